@@ -1,0 +1,22 @@
+"""Analytic solutions of contact, elasticity and linear viscoelasticity, to check a solver against.
+
+The package stands alone: numpy and scipy only, nothing of the rest of ``fingerpad``. One module a subject:
+
+================== ===========================================================================
+hertz              rigid or elastic cylinder on a half-plane: width, pressure, stresses below
+westergaard        sinusoidal surface on a half-plane, partial contact
+cattaneo_mindlin   partial slip of the Hertz line contact
+punch              flat rigid punch with sharp edges
+layered            thin bonded incompressible layer; stack of bonded layers under a cosine load
+layered_contact    a rigid profile pressed on a stack of layers (numerical, one Fourier kernel)
+lame               thick cylinder under internal and external pressure
+cook               published and recomputed numbers of Cook's membrane
+prony_point        a material point with a Prony series: relaxation, creep, strain ramps, cycles
+lee_radok          viscoelastic line contact while the contact grows
+ting               hereditary integrals for any contact with one Prony series
+manufactured       displacement fields with their body forces, small and finite strain
+================== ===========================================================================
+
+Any consistent set of units will do; the docstrings use the SI. Forces and moments of plane problems are per
+unit length out of plane. Pressures are positive in compression, stresses positive in tension.
+"""

@@ -1,0 +1,39 @@
+"""Partial slip of the Hertz line contact under a tangential force Q < mu P applied after the normal force P.
+
+Exact when normal and tangential problems are uncoupled: similar materials, or an incompressible body on a
+rigid one.
+Sources: C. Cattaneo (1938); R. D. Mindlin (1949); K. L. Johnson, *Contact Mechanics* (1985), section 7.2(a).
+"""
+
+import numpy as np
+
+from ._check import positive
+
+
+def stick_ratio(tangential_force, normal_force, friction):
+    """Half width of the stick zone over that of the contact, c/a = sqrt(1 - Q/(mu P)).
+
+    Raises ``ValueError`` unless 0 <= Q <= mu P.
+    """
+    positive(normal_force=normal_force, friction=friction)
+    share = np.asarray(tangential_force, dtype=float) / (friction * normal_force)
+    if np.any((share < 0) | (share > 1)):
+        raise ValueError("the tangential force must lie between 0 and friction times the normal force")
+    return np.sqrt(1 - share)
+
+
+def traction(x, half_width, peak_pressure, friction, stick_ratio):
+    """Shear traction q(x) = mu p0 [sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - x^2/c^2)], Pa, of the shape of ``x``.
+
+    The second term only inside the stick zone |x| < c. Raises ``ValueError`` for a stick ratio outside [0,
+    1].
+    """
+    positive(half_width=half_width)
+    if not 0 <= stick_ratio <= 1:
+        raise ValueError("stick_ratio must lie in [0, 1]")
+    s = np.asarray(x, dtype=float) / half_width
+    return (
+        friction
+        * peak_pressure
+        * (np.sqrt(np.maximum(0, 1 - s**2)) - np.sqrt(np.maximum(0, stick_ratio**2 - s**2)))
+    )
