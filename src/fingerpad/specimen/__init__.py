@@ -1,0 +1,42 @@
+"""The specimen: outline, layers, mesh and materials of the pad."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+_HOME = {
+    "OutlineCurve": "fingerpad.specimen.outline",
+    "OutlineError": "fingerpad.specimen.outline",
+    "MeshError": "fingerpad.specimen.mesh",
+    "MeshSize": "fingerpad.specimen.mesh",
+    "PadMesh": "fingerpad.specimen.mesh",
+    "build_pad_mesh": "fingerpad.specimen.mesh",
+    "count_nodes": "fingerpad.specimen.mesh",
+    "skin_chain": "fingerpad.specimen.mesh",
+    "read_pad_mesh": "fingerpad.specimen.external",
+    "quality_table": "fingerpad.specimen.quality",
+}
+
+__all__ = ["mesh_for", *_HOME]
+
+
+def __getattr__(name: str):
+    if name in _HOME:
+        return getattr(import_module(_HOME[name]), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def mesh_for(scene, plan):
+    """The mesh of a scene: its external mesh if it names one, else its outline meshed as the plan says.
+
+    Raises
+    ------
+    OutlineError, MeshError : see `build_pad_mesh` and `read_pad_mesh`.
+    """
+    if scene.specimen.mesh is not None:
+        from fingerpad.specimen.external import read_pad_mesh
+
+        return read_pad_mesh(scene.specimen.mesh)
+    from fingerpad.specimen.mesh import build_pad_mesh
+
+    return build_pad_mesh(scene.specimen.outline, plan.mesh_size)

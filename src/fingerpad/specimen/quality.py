@@ -1,0 +1,118 @@
+"""Quality of a mesh: size, smallest edge, and how near its elements are to rectangles or even triangles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fingerpad.specimen.mesh import MeshError, PadMesh, corner_count, element_edges
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+_GAUSS = np.sqrt(0.6)
+_SQUARE = np.array(
+    [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)], dtype=float
+)
+_TRIANGLE = np.array([(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)])
+_TRIANGLE_POINTS = np.array([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)])  # three-point rule
+
+
+def _monomials(element: str) -> list[tuple[int, int]]:
+    order = 2 if element in ("quad9", "tri6") else 1
+    total = 2 * order if element.startswith("quad") else order
+    return [(i, j) for i in range(order + 1) for j in range(order + 1) if i + j <= total]
+
+
+def _derivatives(element: str, at: np.ndarray) -> np.ndarray:
+    """Derivatives of the shape functions at reference points (m, 2), shape (m, 2, nodes per element)."""
+    powers = _monomials(element)
+    nodes = (_SQUARE if element.startswith("quad") else _TRIANGLE)[: len(powers)]
+    coefficients = np.linalg.inv(np.array([[x**i * y**j for i, j in powers] for x, y in nodes]))
+    slopes = np.array(
+        [
+            [
+                [i * x ** max(i - 1, 0) * y**j for i, j in powers],
+                [j * x**i * y ** max(j - 1, 0) for i, j in powers],
+            ]
+            for x, y in at
+        ]
+    )
+    return slopes @ coefficients
+
+
+def sample_points(element: str) -> tuple[np.ndarray, np.ndarray]:
+    """Corners and Gauss points (3 x 3 in quads, 3 in triangles) of the reference element, each (m, 2)."""
+    if element.startswith("quad"):
+        return _SQUARE[:4], _GAUSS * _SQUARE
+    return _TRIANGLE[:3], _TRIANGLE_POINTS
+
+
+def jacobians(mesh: PadMesh, at: np.ndarray) -> np.ndarray:
+    """Jacobian matrices (elements, m, 2, 2) in m at reference points (m, 2); [..., k, :] is tangent k."""
+    return np.einsum("mkn,enx->emkx", _derivatives(mesh.element, at), mesh.points[mesh.cells], optimize=True)
+
+
+def _determinant(tangents: np.ndarray) -> np.ndarray:
+    return tangents[..., 0, 0] * tangents[..., 1, 1] - tangents[..., 0, 1] * tangents[..., 1, 0]
+
+
+def check_orientation(mesh: PadMesh, name: str) -> None:
+    """Raise `MeshError` naming the first element whose Jacobian is not positive at every Gauss point."""
+    determinant = _determinant(jacobians(mesh, sample_points(mesh.element)[1]))
+    bad = np.flatnonzero(determinant.min(axis=1) <= 0.0)
+    if len(bad):
+        what = "runs clockwise" if determinant[bad[0]].max() <= 0.0 else "is folded"
+        x, y = mesh.points[mesh.cells[bad[0]]].mean(axis=0) * 1e3
+        raise MeshError(
+            f"{name}: element {bad[0]} at ({x:.3f}, {y:.3f}) mm {what} ({len(bad)} of {len(mesh.cells)}); "
+            "elements must be counter-clockwise with a positive Jacobian"
+        )
+
+
+def scaled_jacobian(mesh: PadMesh) -> np.ndarray:
+    """Smallest scaled Jacobian (elements,) over corners and Gauss points; 1 is a rectangle or even triangle.
+
+    The determinant of the curved element's tangents over the product of their lengths; in a triangle over the
+    largest product of two sides' lengths, times 2 / sqrt(3) (P. M. Knupp, 2003).
+    """
+    tangents = jacobians(mesh, np.concatenate(sample_points(mesh.element)))
+    lengths = np.hypot(tangents[..., 0], tangents[..., 1])
+    scale = lengths[..., 0] * lengths[..., 1]
+    if mesh.element.startswith("tri"):
+        third = np.hypot(*np.moveaxis(tangents[..., 1, :] - tangents[..., 0, :], -1, 0))
+        scale = np.maximum(scale, third * lengths.max(axis=-1)) * np.sqrt(0.75)
+    return (_determinant(tangents) / scale).min(axis=1)
+
+
+def quality(mesh: PadMesh) -> dict[str, float]:
+    """nodes, elements, smallest_edge_m (corner to corner) and worst_scaled_jacobian of a mesh."""
+    start, end = element_edges(mesh.cells[:, : corner_count(mesh.element)], mesh.element).T
+    return {
+        "nodes": len(mesh.points),
+        "elements": len(mesh.cells),
+        "smallest_edge_m": float(np.hypot(*(mesh.points[end] - mesh.points[start]).T).min()),
+        "worst_scaled_jacobian": float(scaled_jacobian(mesh).min()),
+    }
+
+
+def quality_table(meshes: Mapping[str, PadMesh]) -> DataFrame:
+    """One row per mesh: mesh, element, nodes, elements, smallest edge (um), worst scaled Jacobian (1)."""
+    import pandas as pd
+
+    rows = []
+    for name, mesh in meshes.items():
+        values = mesh.quality()
+        rows.append(
+            {
+                "mesh": name,
+                "element": mesh.element,
+                "nodes": values["nodes"],
+                "elements": values["elements"],
+                "smallest edge (um)": values["smallest_edge_m"] * 1e6,
+                "worst scaled Jacobian (1)": values["worst_scaled_jacobian"],
+            }
+        )
+    return pd.DataFrame(rows)
