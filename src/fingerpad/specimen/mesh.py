@@ -400,6 +400,8 @@ def build_pad_mesh(outline: Outline, size: MeshSize) -> PadMesh:
     cells = number(steps[..., 0], steps[..., 1])
     mirror = number(-steps[..., 0], steps[..., 1])[:, _MIRRORED["quad9"]]
 
+    by_layer = np.argsort(np.concatenate((region, region)), kind="stable")  # as a .msh file keeps them
+
     def chain(first: int, last: int, row: int, step: int = 2) -> np.ndarray:
         start = np.arange(first, last, step)
         return number(np.column_stack((start, start + step, start + step // 2)), np.array(row))
@@ -407,9 +409,9 @@ def build_pad_mesh(outline: Outline, size: MeshSize) -> PadMesh:
     nail, bottom = 2 * nail, wide - 1
     mesh = PadMesh(
         points=points,
-        cells=np.concatenate((cells, mirror)),
+        cells=np.concatenate((cells, mirror))[by_layer],
         element="quad9",
-        region=np.concatenate((region, region)),
+        region=np.concatenate((region, region))[by_layer],
         curves={
             "skin": chain(-nail, nail, 0),
             "bone": chain(bottom, -bottom, deep - 1, step=-2),

@@ -1,0 +1,260 @@
+"""Meshes as gmsh .msh files: the built mesh is written to one, a user's own mesh is read from one.
+
+Coordinates are in mm. Physical surfaces epidermis, dermis and fat, and physical curves skin, bone and nail,
+must be there; together the curves are the whole boundary. Linear and quadratic triangles and quads are read
+(format 2.2 or 4.1); an 8-node quad is given the centre node where its own (serendipity) map puts the centre.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from fingerpad.specimen.mesh import CURVES, REGIONS, MeshError, PadMesh, element_edges
+from fingerpad.specimen.quality import check_orientation
+
+_ELEMENTS = {2: "tri3", 9: "tri6", 3: "quad4", 16: "quad8", 10: "quad9"}  # by gmsh's element type
+_TYPES = {element: number for number, element in _ELEMENTS.items()}
+_LINES = {2: 1, 3: 8}  # gmsh's element type of a line, by its number of nodes
+_SAME_PLACE = 1e-6  # of the pad's width: two nodes closer than this are mirror images of each other
+
+
+@contextmanager
+def _quiet_gmsh() -> Iterator[object]:
+    import gmsh
+
+    gmsh.initialize(["fingerpad", "-v", "0"], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        yield gmsh
+    finally:
+        gmsh.finalize()
+
+
+def write_pad_mesh(mesh: PadMesh, path: str | Path) -> None:
+    """Write `mesh` to a gmsh .msh file (version 4.1, mm), whole or not at all."""
+    path = Path(path)
+    partial = path.with_name(f".{path.stem}.{os.getpid()}.msh")
+    partial.touch()
+    try:
+        with _quiet_gmsh() as gmsh:
+            gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+            gmsh.option.setNumber("Mesh.Binary", 0)
+            for number, name in enumerate(mesh.curves, start=1):
+                gmsh.model.addDiscreteEntity(1, number)
+                gmsh.model.addPhysicalGroup(1, [number], number, name)
+            for number, name in enumerate(REGIONS, start=1):
+                gmsh.model.addDiscreteEntity(2, number)
+                gmsh.model.addPhysicalGroup(2, [number], number, name)
+            tags = np.arange(1, len(mesh.points) + 1)
+            places = np.column_stack((mesh.points * 1e3, np.zeros(len(tags))))
+            gmsh.model.mesh.addNodes(2, 1, tags, places.ravel())
+            for number, facets in enumerate(mesh.curves.values(), start=1):
+                line = _LINES[facets.shape[1]]
+                gmsh.model.mesh.addElementsByType(number, line, [], facets.ravel() + 1)
+            for number in range(1, len(REGIONS) + 1):
+                cells = mesh.cells[mesh.region == number - 1]
+                gmsh.model.mesh.addElementsByType(number, _TYPES[mesh.element], [], cells.ravel() + 1)
+            gmsh.model.mesh.reclassifyNodes()
+            gmsh.write(str(partial))
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def _read_groups(path: Path) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
+    """What is in the file, nodes by their tags.
+
+    Node tags (n,), their places (n, 3) in mm, surfaces as {name: [(gmsh's type, element tags, node tags)]},
+    curves likewise, and the number of all surface elements, named or not.
+    """
+    with path.open("rb") as file:
+        if file.read(11) != b"$MeshFormat":
+            raise MeshError(f"{path}: is not a gmsh mesh; a .msh file of version 2.2 or 4.1 is allowed")
+    with _quiet_gmsh() as gmsh:
+        try:
+            gmsh.open(str(path))
+            tags, places, _ = gmsh.model.mesh.getNodes()
+            groups: tuple[dict, dict] = ({}, {})
+            for dimension, wanted in ((1, CURVES), (2, REGIONS)):
+                for _, group in gmsh.model.getPhysicalGroups(dimension):
+                    name = gmsh.model.getPhysicalName(dimension, group)
+                    if name not in wanted:
+                        continue
+                    for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
+                        blocks = zip(*gmsh.model.mesh.getElements(dimension, entity), strict=True)
+                        groups[dimension - 1].setdefault(name, []).extend(blocks)
+            count = sum(len(part) for part in gmsh.model.mesh.getElements(2)[1])
+        except Exception as error:  # gmsh raises nothing more specific
+            raise MeshError(f"{path}: gmsh cannot read it ({' '.join(str(error).split())})") from error
+    return tags, places.reshape(-1, 3), groups[1], groups[0], count
+
+
+def _require_groups(path: Path, surfaces: dict, curves: dict) -> None:
+    for kind, wanted, found in (("surface", REGIONS, surfaces), ("curve", CURVES, curves)):
+        for name in wanted:
+            if not found.get(name):
+                raise MeshError(
+                    f"{path}: {kind} {name} is missing; physical {kind}s {', '.join(wanted)} must be there"
+                )
+
+
+def _gather_cells(path: Path, surfaces: dict, count: int) -> tuple[str, np.ndarray, np.ndarray]:
+    """Element kind, node tags (elements, nodes) and region (elements,) of all three layers."""
+    kinds, cells, numbers, region = set(), [], [], []
+    for index, name in enumerate(REGIONS):
+        for kind, tags, nodes in surfaces[name]:
+            if kind not in _ELEMENTS:
+                raise MeshError(
+                    f"{path}: surface {name} has elements of gmsh's type {kind}; allowed are triangles of 3 "
+                    "or 6 nodes and quads of 4, 8 or 9"
+                )
+            kinds.add(_ELEMENTS[kind])
+            cells.append(nodes.reshape(len(tags), -1))
+            numbers.append(tags)
+            region.append(np.full(len(tags), index, dtype=np.int8))
+    if len(kinds) > 1:
+        raise MeshError(f"{path}: mixes {' and '.join(sorted(kinds))}; one kind of element is allowed")
+    tags = np.concatenate(numbers)
+    if len(np.unique(tags)) < len(tags):
+        raise MeshError(f"{path}: an element is in two of {', '.join(REGIONS)}; one layer each is allowed")
+    if len(tags) < count:
+        raise MeshError(
+            f"{path}: {count - len(tags)} surface elements are in none of {', '.join(REGIONS)}; each must be "
+            "in one"
+        )
+    return kinds.pop(), np.concatenate(cells), np.concatenate(region)
+
+
+def _with_centre(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """8-node quads as 9-node quads of the same shape."""
+    nodes = points[cells]
+    centre = 0.5 * nodes[:, 4:].sum(axis=1) - 0.25 * nodes[:, :4].sum(axis=1)
+    number = len(points) + np.arange(len(cells), dtype=cells.dtype)
+    return np.concatenate((points, centre)), np.column_stack((cells, number))
+
+
+def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The named boundary facets, material on the right, from the end nodes of the file's line elements."""
+    edges = element_edges(mesh.cells, mesh.element)
+    unique, first, uses = np.unique(
+        np.sort(edges[:, :2], axis=1), axis=0, return_index=True, return_counts=True
+    )
+    boundary = {
+        pair: edge
+        for pair, edge, use in zip(map(tuple, unique.tolist()), first, uses, strict=True)
+        if use == 1
+    }
+
+    def place(pair: tuple[int, int]) -> str:
+        x, y = mesh.points[list(pair)].mean(axis=0) * 1e3
+        return f"({x:.3f}, {y:.3f}) mm"
+
+    curves = {}
+    for name, lines in pairs.items():
+        chosen = []
+        for pair in dict.fromkeys(map(tuple, np.sort(lines, axis=1).tolist())):
+            if pair not in boundary:
+                raise MeshError(
+                    f"{path}: curve {name} has an edge at {place(pair)} that is not on the boundary, or in "
+                    f"two curves; {', '.join(pairs)} must be boundary edges, each in one curve"
+                )
+            chosen.append(boundary.pop(pair))
+        facets = edges[chosen]
+        curves[name] = facets[:, [1, 0, *range(2, facets.shape[1])]]
+    if boundary:
+        raise MeshError(
+            f"{path}: {len(boundary)} boundary edges, the first at {place(next(iter(boundary)))}, are in "
+            f"none of {', '.join(pairs)}; each must be in one (are the layers joined?)"
+        )
+    return curves
+
+
+def _in_order(path: Path, skin: np.ndarray) -> np.ndarray:
+    """The skin's facets from left to right, end to start."""
+    follows = {start: index for index, start in enumerate(skin[:, 0].tolist())}
+    first = set(follows) - set(skin[:, 1].tolist())
+    order = []
+    node = next(iter(first), None)
+    while node in follows:
+        order.append(follows.pop(node))
+        node = int(skin[order[-1], 1])
+    if len(first) != 1 or follows:
+        raise MeshError(f"{path}: curve skin must be one line with two ends, from nail to nail")
+    return skin[order]
+
+
+def _is_symmetric(mesh: PadMesh) -> bool:
+    """Whether the mesh is its own mirror image in x = 0, with no element astride the axis."""
+    from scipy.spatial import cKDTree
+
+    near = _SAME_PLACE * np.ptp(mesh.points[:, 0])
+    x = mesh.points[mesh.cells, 0]
+    if ((x.min(axis=1) < -near) & (x.max(axis=1) > near)).any():
+        return False
+    distance, image = cKDTree(mesh.points).query(mesh.points * (-1.0, 1.0))
+    if distance.max() > near or len(np.unique(image)) < len(image):
+        return False
+
+    def same(rows: np.ndarray, labels: np.ndarray) -> bool:
+        mine = np.column_stack((labels, np.sort(rows, axis=1)))
+        mirrored = np.column_stack((labels, np.sort(image[rows], axis=1)))
+        return np.array_equal(np.unique(mine, axis=0), np.unique(mirrored, axis=0))
+
+    return same(mesh.cells, mesh.region) and all(
+        same(facets, np.zeros(len(facets), dtype=int)) for facets in mesh.curves.values()
+    )
+
+
+def read_pad_mesh(path: str | Path) -> PadMesh:
+    """Read a pad from a gmsh .msh file (mm) with physical groups epidermis, dermis, fat, skin, bone, nail.
+
+    Returns
+    -------
+    PadMesh in m, with the elements of the file (quad8 becomes quad9), and `symmetric` found out.
+
+    Raises
+    ------
+    MeshError : one line naming the file, what is wrong and what is allowed, when the file is missing or
+        unreadable, a group is missing, an element is of another kind, in no layer, in two, or not
+        counter-clockwise, the mesh is not plane, or the curves are not the whole boundary.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise MeshError(f"{path}: there is no such mesh file; a gmsh .msh file is allowed")
+    tags, places, surfaces, lines, count = _read_groups(path)
+    _require_groups(path, surfaces, lines)
+    element, cell_tags, region = _gather_cells(path, surfaces, count)
+
+    used = np.unique(cell_tags)
+    order = np.argsort(tags)
+    places = places[order[np.searchsorted(tags, used, sorter=order)]]
+    size = np.ptp(places, axis=0).max()
+    if not np.isfinite(places).all() or np.ptp(places[:, 2]) > _SAME_PLACE * size:
+        raise MeshError(f"{path}: nodes must be finite and lie in one plane, z = constant")
+    points = places[:, :2] / 1e3
+    cells = np.searchsorted(used, cell_tags).astype(np.int32)
+    if element == "quad8":
+        points, cells = _with_centre(points, cells)
+        element = "quad9"
+
+    mesh = PadMesh(points, cells, element, region, {}, symmetric=False)
+    check_orientation(mesh, str(path))
+    pairs = {}
+    for name in CURVES:
+        ends = np.concatenate([nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]])
+        stray = ~np.isin(ends, used)
+        if stray.any():
+            raise MeshError(
+                f"{path}: curve {name} has an edge of no element; curves follow the elements' edges"
+            )
+        pairs[name] = np.searchsorted(used, ends)
+    curves = _facets(path, mesh, pairs)
+    curves["skin"] = _in_order(path, curves["skin"])
+    mesh = replace(mesh, curves=curves)
+    return replace(mesh, symmetric=_is_symmetric(mesh))
