@@ -1,0 +1,59 @@
+# One command does everything. Needs only git, make, python3 (3.11 or newer) and python3-venv.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+# The lock file as it was installed: a target of this Makefile and the environment the workflow's rules depend on.
+INSTALLED := $(VENV)/installed.lock
+SNAKEMAKE := $(BIN)/snakemake --workflow-profile workflow/profiles/default
+
+.PHONY: help setup figures smoke test bench lint report regression-update lock schemas clean
+
+help:
+	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
+	@echo "make test               set up, then run the tests"
+	@echo "make smoke              set up, then the same workflow with config/smoke.yaml (coarse, under results/smoke)"
+	@echo "make bench              set up, then measure and print the benchmark table"
+	@echo "make report             pack the figures, their captions and the run's statistics into results/report.zip"
+	@echo "make regression-update  accept a deliberate change of the figures"
+	@echo "make lint               style, formatting and the import contracts"
+	@echo "make schemas            write workflow/schemas from the typed models"
+	@echo "make clean              remove the results (not the environment, not the committed figures)"
+
+setup: $(INSTALLED)
+
+$(INSTALLED): requirements.lock pyproject.toml workflow/scripts/system_libraries.sh
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "fingerpad needs Python 3.11 or newer; name one with: make PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
+	  { echo "$(PYTHON) cannot make a virtual environment; on Debian: sudo apt-get install -y python3-venv" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --use-pep517 --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
+	sh workflow/scripts/system_libraries.sh $(BIN)/python
+	@cp requirements.lock $@
+
+figures: $(INSTALLED)
+	$(SNAKEMAKE)
+
+smoke: $(INSTALLED)
+	$(SNAKEMAKE) --configfile config/smoke.yaml
+
+test: $(INSTALLED)
+	$(BIN)/python -m pytest
+
+bench: $(INSTALLED)
+	$(BIN)/python -m fingerpad.studies.bench
+
+lint: $(INSTALLED)
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/lint-imports
+
+report: figures
+	$(SNAKEMAKE) --report results/report.zip
+
+schemas: $(INSTALLED)
+	$(BIN)/python -m fingerpad.config schemas
+
+clean:
+	rm -rf results .snakemake

@@ -1,0 +1,53 @@
+"""fingerpad: specimen -> stimulus -> mechanics -> receptors -> figures and tables.
+
+Inputs:  config/thesis.yaml (or the file given with --configfile), config/scenes, config/specimens.
+Outputs: the figures, tables and results that the configuration names.
+
+    make figures                                       everything of config/thesis.yaml
+    .venv/bin/snakemake --workflow-profile workflow/profiles/default chapter4
+    .venv/bin/snakemake --workflow-profile workflow/profiles/default figures/thesis/fig_4-10.png
+"""
+
+from snakemake.utils import min_version, validate
+
+min_version("9.3")
+
+# Not an unconditional default: Snakemake would merge its keys into those of a file given on the command line.
+if not workflow.overwrite_configfiles:
+
+    configfile: "config/thesis.yaml"
+
+
+validate(config, "workflow/schemas/workflow.schema.json")
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/simulations.smk"
+include: "workflow/rules/figures.smk"
+
+
+localrules:
+    all,
+    chapter3,
+    chapter4,
+
+
+rule all:
+    """Every figure and table of the configuration, and the simulations they rest on."""
+    default_target: True
+    input:
+        figures(),
+        tables(),
+        histories(config["scenes"]),
+
+
+rule chapter3:
+    """The figures of the thesis's chapter 3: the specimen and its mesh."""
+    input:
+        figures("3-"),
+
+
+rule chapter4:
+    """The figures of the thesis's chapter 4: ramp-and-hold indentation with nine surfaces."""
+    input:
+        figures("4-"),

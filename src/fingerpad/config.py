@@ -1,0 +1,78 @@
+"""The typed model of a workflow configuration, and the JSON schemas of everything a user writes in YAML.
+
+``python -m fingerpad.config schemas`` writes ``workflow/schemas/*.schema.json``; the first line of each YAML
+file under ``config/`` points an editor at its schema.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+Name = Annotated[str, StringConstraints(pattern=r"^[a-z0-9_]+$")]
+FigureNumber = Annotated[str, StringConstraints(pattern=r"^[0-9]+-[0-9]+$")]
+Accuracy = Literal["draft", "thesis", "fine"]
+Directory = Annotated[str, StringConstraints(pattern=r"^[^/].*[^/]$")]
+
+
+class WorkflowConfig(BaseModel):
+    """What the workflow simulates, draws and tabulates, and where it puts it (paths from the root)."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", title="fingerpad workflow configuration")
+
+    name: Name = Field(description="name of the run")
+    results: Accuracy = Literal["draft", "thesis", "fine"]
+Directory = Field(
+        description="directory of plans, meshes and simulation histories (not committed)"
+    )
+    figures: Accuracy = Literal["draft", "thesis", "fine"]
+Directory = Field(
+        description="directory of the thesis figures, fig_<number>.png beside fig_<number>.csv"
+    )
+    tables: Accuracy = Literal["draft", "thesis", "fine"]
+Directory = Field(description="directory of the tables, <name>.csv beside <name>.md")
+    scenes: tuple[Name, ...] = Field(min_length=1, description="scenes to simulate, files of config/scenes")
+    accuracy: Accuracy | None = Field(
+        default=None, description="accuracy that replaces what every scene states; left out: as each scene states"
+    )
+    companion_accuracy: Accuracy | None = Field(
+        default=None,
+        description="accuracy of each scene's coarser companion run, from which discretisation errors follow",
+    )
+    figure_numbers: tuple[FigureNumber, ...] = Field(
+        description="figures to draw, by their number in the thesis"
+    )
+    table_names: tuple[Name, ...] = Field(default=(), description="tables to write")
+
+
+def schemas() -> dict[str, dict]:
+    """Return the JSON schema of each kind of YAML file, by the stem of its schema file."""
+    from fingerpad.scene import Scene, SpecimenFile
+
+    models = {"workflow": WorkflowConfig, "scene": Scene, "specimen": SpecimenFile}
+    return {
+        stem: {"$schema": "https://json-schema.org/draft/2020-12/schema"} | model.model_json_schema()
+        for stem, model in models.items()
+    }
+
+
+def write_schemas(directory: Path) -> list[Path]:
+    """Write the schema files into `directory` and return their paths."""
+    directory.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for stem, schema in schemas().items():
+        path = directory / f"{stem}.schema.json"
+        path.write_text(json.dumps(schema, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        paths.append(path)
+    return paths
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] != ["schemas"]:
+        sys.exit("usage: python -m fingerpad.config schemas [DIRECTORY]")
+    for written in write_schemas(Path(*sys.argv[2:3] or ("workflow/schemas",))):
+        print(written)
