@@ -1,0 +1,76 @@
+"""Types of the fields of a document: quantities, numbers and lists, checked as they are read."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, ValidationInfo
+
+from fingerpad.documents import Problem
+from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, parse_number, parse_quantity
+
+
+class SI(float):
+    """A number already in SI that takes the place of text in a document being filled in."""
+
+
+def quantity(
+    dimension: str, sign: Literal["positive", "non-negative", "any"] = "positive", note: str = ""
+) -> Any:
+    """Field type: text with a unit in a document, an SI float in Python; `note` explains a wrong `sign`."""
+
+    def parse(value: Any, info: ValidationInfo) -> float:
+        in_python = info.context is None or isinstance(value, SI)
+        result = (
+            parse_number(value)
+            if in_python and not isinstance(value, str)
+            else parse_quantity(value, dimension)
+        )
+        kind = DIMENSIONS[dimension]
+        if (sign == "positive" and result <= 0) or (sign == "non-negative" and result < 0):
+            wrong = "is negative" if result < 0 else "is zero"
+            least = "above zero" if sign == "positive" else "of zero or more"
+            raise Problem(f"{wrong}{note}", f"{kind.noun} {least} such as '{kind.example}'")
+        return result
+
+    surface = Annotated[
+        str,
+        Field(
+            pattern=QUANTITY_PATTERN,
+            description=f"{DIMENSIONS[dimension].noun} with its unit",
+            examples=[DIMENSIONS[dimension].example],
+        ),
+    ]
+    return Annotated[float, BeforeValidator(parse, json_schema_input_type=surface)]
+
+
+def number(allowed: str, low: float, high: float, *, low_included: bool = False) -> Any:
+    """Field type: a number (or its text) between two bounds, the upper one excluded."""
+
+    def parse(value: Any) -> float:
+        result = parse_number(value)
+        if not (low < result < high or (low_included and result == low)):
+            raise Problem("is outside the range", allowed)
+        return result
+
+    bounds: dict[str, float] = {"ge" if low_included else "gt": low}
+    if math.isfinite(high):
+        bounds["lt"] = high
+    surface = (
+        Annotated[float, Field(**bounds)]
+        | Annotated[str, Field(pattern=r"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*%?\s*$")]
+    )
+    return Annotated[float, BeforeValidator(parse, json_schema_input_type=surface)]
+
+
+def listed(value: Any) -> Any:
+    """`value` if it is a list; `Problem` otherwise."""
+    if not isinstance(value, (list, tuple)):
+        raise Problem("is not a list", "a list")
+    return value
+
+
+Length = quantity("length")
+SignedLength = quantity("length", "any")
+Time = quantity("time")
