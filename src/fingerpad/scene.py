@@ -1,0 +1,548 @@
+"""A scene: specimen, stimulus, motion, outputs and accuracy, read from YAML and checked.
+
+Quantities are strings with units in a document and SI floats in the models. In Python the models are made
+with SI floats directly (``Cylinder(curvature=210.0)``).
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic.json_schema import SkipJsonSchema
+
+from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
+from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity
+from fingerpad.scene_specimen import (
+    DEFAULT_SPECIMEN,
+    Layer,
+    Layers,
+    Outline,
+    PronyTerm,
+    Source,
+    Specimen,
+    SpecimenFile,
+    source_of,
+)
+from fingerpad.units import QuantityError, format_quantity, parse_number
+
+__all__ = [
+    "Bar", "Cylinder", "Discretisation", "Flat", "Hold", "Layer", "Layers", "Line", "Outline", "Outputs",
+    "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Specimen",
+    "SpecimenFile", "load_scene", "scene_json_schema", "specimen_json_schema",
+]  # fmt: skip
+
+EFFECTS = ("friction", "viscoelasticity", "finite_strain", "symmetry", "ridges")
+LEVELS = ("draft", "thesis", "fine")
+MAXIMUM_STEPS = 100_000
+
+
+# --- stimulus -------------------------------------------------------------------------------------
+
+
+class Flat(Strict):
+    """Rigid flat plate."""
+
+    shape: Literal["flat"] = "flat"
+
+
+class Cylinder(Strict):
+    """Rigid cylinder lying along the finger's axis."""
+
+    shape: Literal["cylinder"] = "cylinder"
+    curvature: quantity("curvature", note=": for a curvature of zero use shape: flat")
+    """Curvature, the inverse of the radius."""
+
+
+class Bar(Strict):
+    """Rigid rectangular bar lying along the finger's axis."""
+
+    shape: Literal["bar"] = "bar"
+    width: Length
+    """Width of the face."""
+    fillet: quantity("length", "non-negative") = 0.0
+    """Radius of the rounded edges."""
+
+    @model_validator(mode="after")
+    def _check(self) -> Bar:
+        if self.fillet > self.width / 2:
+            raise Problem(
+                "is more than half the width",
+                f"0 mm to {format_quantity(self.width / 2, 'length')}",
+                ("fillet",),
+            )
+        return self
+
+
+class Line(Strict):
+    """Line load: a knife edge lying along the finger's axis."""
+
+    shape: Literal["line"] = "line"
+
+
+class Sampled(Strict):
+    """Rigid profile given by points: its lower surface, y up, in the frame of the stimulus."""
+
+    internal: ClassVar = frozenset({"x", "y"})
+
+    shape: Literal["sampled"] = "sampled"
+    csv: Path
+    """File with the columns `x (mm)` and `y (mm)`, x strictly increasing."""
+    x: SkipJsonSchema[tuple[float, ...]]
+    y: SkipJsonSchema[tuple[float, ...]]
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """Reads the points from the file."""
+        if "x" not in data and "csv" in data:
+            if not isinstance(data["csv"], (str, Path)):
+                raise Problem("is not a path", "the path of a CSV file", ("csv",))
+            data["csv"] = source_of(context).resolve(data["csv"])
+            data["x"], data["y"] = _read_profile(data["csv"])
+        return data
+
+
+_COLUMNS = ("x (mm)", "y (mm)")
+
+
+def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Points of a profile, m; `Problem` unless they are numbers with x strictly increasing."""
+
+    def wrong(problem: str) -> Problem:
+        return Problem(
+            problem, "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing", ("csv",)
+        )
+
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file, skipinitialspace=True))
+    except FileNotFoundError:
+        raise wrong("is not an existing file") from None
+    except (OSError, ValueError, csv.Error) as error:
+        raise wrong(f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})") from None
+    for name in _COLUMNS:
+        if rows and name not in rows[0]:
+            raise wrong(f"has no column '{name}'")
+    if len(rows) < 2:
+        raise wrong("has fewer than two points")
+    points = []
+    for line, row in enumerate(rows, start=2):
+        try:
+            point = tuple(1e-3 * parse_number(row[name] or "") for name in _COLUMNS)
+        except QuantityError:
+            raise wrong(f"has no finite number in row {line}") from None
+        if points and point[0] <= points[-1][0]:
+            raise wrong(f"is not single-valued: x does not increase in row {line}")
+        points.append(point)
+    x, y = zip(*points, strict=True)
+    return x, y
+
+
+_SHAPES = {"flat": Flat, "cylinder": Cylinder, "bar": Bar, "line": Line, "sampled": Sampled}
+
+
+def _check_shape(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        if "shape" not in value:
+            raise Problem("is missing", ", ".join(_SHAPES), ("shape",), HIDE)
+        if value["shape"] == "wavy":
+            raise Problem("is not in this version", ", ".join(_SHAPES), ("shape",))
+        if not isinstance(value["shape"], str) or value["shape"] not in _SHAPES:
+            raise Problem(
+                f"is not a known shape, {nearest(value['shape'], _SHAPES)}", ", ".join(_SHAPES), ("shape",)
+            )
+    elif not isinstance(value, tuple(_SHAPES.values())):
+        raise Problem("is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}')
+    return value
+
+
+def _tag(value: Any) -> str | None:
+    """Label of the union member that `value` is or describes."""
+    if isinstance(value, Mapping):
+        return next(
+            (f"<{key}>" for key in (value.get("shape"), *_LEGS) if key in _SHAPES or key in value), None
+        )
+    return next((f"<{key}>" for key, model in {**_SHAPES, **_LEGS}.items() if isinstance(value, model)), None)
+
+
+Stimulus = Annotated[
+    Annotated[Flat, Tag("<flat>")]
+    | Annotated[Cylinder, Tag("<cylinder>")]
+    | Annotated[Bar, Tag("<bar>")]
+    | Annotated[Line, Tag("<line>")]
+    | Annotated[Sampled, Tag("<sampled>")],
+    Discriminator(_tag),
+    BeforeValidator(_check_shape),
+]
+
+
+# --- motion ---------------------------------------------------------------------------------------
+
+
+_PUSH = ": the stimulus must press into the skin"
+
+
+class PressToForce(Strict):
+    """Press until the force is reached."""
+
+    press_to_force: quantity("force", note=_PUSH)
+    """Normal force at the end of the leg."""
+    rate: quantity("force_rate", note=_PUSH) | None = None
+    """Rate of the force; left out for the steady state."""
+
+
+class PressToDepth(Strict):
+    """Press until the indentation depth is reached."""
+
+    press_to_depth: quantity("length", note=_PUSH)
+    """Depth of the stimulus below first touch at the end of the leg."""
+    speed: quantity("speed", note=_PUSH) | None = None
+    """Speed of the stimulus; left out for the steady state."""
+
+
+class Hold(Strict):
+    """Keep what the leg before prescribed."""
+
+    hold: Time
+    """Duration."""
+
+
+_LEGS = {"press_to_force": PressToForce, "press_to_depth": PressToDepth, "hold": Hold}
+
+
+def _check_leg(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        kinds = [key for key in _LEGS if key in value]
+        first = next(iter(value), None)
+        if "slide" in value:
+            raise Problem("is not in this version", f"a leg of {', '.join(_LEGS)}", ("slide",))
+        if not kinds:
+            near = f", {nearest(first, _LEGS)}" if isinstance(first, str) else ""
+            raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(_LEGS)}")
+        if len(kinds) > 1:
+            raise Problem(f"is two legs in one: {' and '.join(kinds)}", "one of them in each entry of motion")
+    elif not isinstance(value, tuple(_LEGS.values())):
+        raise Problem("is not a leg", _LEG_EXAMPLE)
+    return value
+
+
+_LEG_EXAMPLE = 'legs such as {press_to_force: "20 gf", rate: "40 gf/s"} and {hold: "2 s"}'
+
+Leg = Annotated[
+    Annotated[PressToForce, Tag("<press_to_force>")]
+    | Annotated[PressToDepth, Tag("<press_to_depth>")]
+    | Annotated[Hold, Tag("<hold>")],
+    Discriminator(_tag),
+    BeforeValidator(_check_leg),
+]
+
+_TAGS = frozenset(f"<{key}>" for key in (*_SHAPES, *_LEGS, "level", "tolerance", "discretisation"))
+
+
+def _check_motion(legs: Any) -> Any:
+    if not listed(legs):
+        raise Problem("is empty", _LEG_EXAMPLE)
+    return legs
+
+
+# --- outputs, accuracy, effects -------------------------------------------------------------------
+
+
+class Receptors(Strict):
+    """Material points at which strain energy is recorded: every depth at every offset."""
+
+    depths: Annotated[tuple[Length, ...], BeforeValidator(listed)]
+    """Depths below the skin; left out, those of the thesis's specimen."""
+    offsets: Annotated[tuple[SignedLength, ...], BeforeValidator(listed)] = (0.0,)
+    """Lateral positions."""
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """Depths left out are those of the default specimen."""
+        if "depths" not in data:
+            depths = source_of(context).part(DEFAULT_SPECIMEN, "receptor_depths")
+            data["depths"] = [SI(depth) for depth in depths]
+        return data
+
+
+class Outputs(Strict):
+    """What a simulation records beside its history."""
+
+    receptors: Receptors
+    """Where strain energy is recorded."""
+    snapshots: Annotated[tuple[quantity("time", "non-negative"), ...], BeforeValidator(listed)] = ()
+    """Times of full fields."""
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """Receptors left out are those of the default specimen."""
+        data.setdefault("receptors", {})
+        return data
+
+
+class Discretisation(Strict):
+    """Accuracy by hand; what is left out is chosen by the plan."""
+
+    element: Literal["Q1P0", "Q2P1", "P2B"] | None = None
+    """Element: displacement and pressure interpolation."""
+    skin_edge: Length | None = None
+    """Length of the element edges along the skin where contact is expected."""
+    steps: Annotated[int, Field(ge=1, le=MAXIMUM_STEPS, strict=True)] | None = None
+    """Number of time steps of the whole motion."""
+
+
+Level = Literal["draft", "thesis", "fine"]
+_ACCURACY = f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, or a mapping of element, skin_edge, steps"
+
+
+def _check_accuracy(value: Any) -> Any:
+    if isinstance(value, str) and value not in LEVELS:
+        try:
+            return parse_number(value)
+        except QuantityError:
+            raise Problem("is not a known accuracy", _ACCURACY) from None
+    if isinstance(value, bool) or not isinstance(value, (str, int, float, Mapping, Discretisation)):
+        raise Problem("is not a known accuracy", _ACCURACY)
+    return value
+
+
+def _accuracy_tag(value: Any) -> str:
+    if isinstance(value, str):
+        return "<level>"
+    return "<tolerance>" if isinstance(value, (int, float)) else "<discretisation>"
+
+
+Accuracy = Annotated[
+    Annotated[Level, Tag("<level>")]
+    | Annotated[number("a tolerance above 0 and below 1", 0.0, 1.0), Tag("<tolerance>")]
+    | Annotated[Discretisation, Tag("<discretisation>")],
+    Discriminator(_accuracy_tag),
+    BeforeValidator(_check_accuracy),
+]
+
+_SWITCH = {True: True, False: False, "on": True, "off": False, "true": True, "false": False}
+
+
+def _read_effects(value: Any) -> dict[str, bool]:
+    if value == "auto":
+        return {}
+    choices = ", ".join(EFFECTS)
+    if not isinstance(value, Mapping):
+        raise Problem("is not a set of effects", f"auto, or on or off for {choices}")
+    effects = {}
+    for key, switch in value.items():
+        if key not in EFFECTS:
+            raise Problem(f"is not a known effect, {nearest(key, EFFECTS)}", choices, (str(key)[:60],), HIDE)
+        if not isinstance(switch, (bool, str)) or switch not in _SWITCH:
+            raise Problem("is not a switch", "on or off", (key,))
+        effects[key] = _SWITCH[switch]
+    return effects
+
+
+_EffectsSurface = (
+    Literal["auto"] | dict[Literal[EFFECTS], bool | Literal["on", "off", "true", "false"]]  # type: ignore[valid-type]
+)
+Effects = Annotated[dict[str, bool], BeforeValidator(_read_effects, json_schema_input_type=_EffectsSurface)]
+
+
+# --- scene ----------------------------------------------------------------------------------------
+
+
+class Scene(Strict):
+    """One simulation: something pressed on a fingerpad, what to record and how well."""
+
+    internal: ClassVar = frozenset({"name"})
+
+    name: SkipJsonSchema[str]
+    specimen: Specimen
+    """What is touched; parts left out are the thesis's."""
+    stimulus: Stimulus
+    """What touches it: {shape: flat}, or cylinder, bar, line, sampled."""
+    friction: number("a coefficient of zero or more", 0.0, math.inf, low_included=True) = 0.0
+    """Coulomb coefficient of friction."""
+    motion: Annotated[tuple[Leg, ...], BeforeValidator(_check_motion)]
+    """Programme of legs, one after the other."""
+    outputs: Outputs
+    """What is recorded."""
+    accuracy: Accuracy = "thesis"
+    """draft, thesis, fine, a tolerance such as 0.02, or a mapping."""
+    effects: Effects = Field(default_factory=dict)
+    """auto, or switches for effects that the plan shall not decide."""
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """The name is the file's; specimen and outputs left out are the default specimen's."""
+        if context is not None:
+            data["name"] = context.path.stem
+        data.setdefault("specimen", {})
+        data.setdefault("outputs", {})
+        return data
+
+    @model_validator(mode="after")
+    def _check(self) -> Scene:
+        self._check_programme()
+        outline = self.specimen.outline
+        if outline is not None:
+            self._check_inside(outline)
+        end = self.end_time
+        for i, time in enumerate(self.outputs.snapshots):
+            if end is not None and time > end * (1 + 1e-9):
+                raise Problem(
+                    "is after the end of the motion",
+                    f"up to {format_quantity(end, 'time')}",
+                    ("outputs", "snapshots", i),
+                )
+        return self
+
+    def _check_programme(self) -> None:
+        if isinstance(self.motion[0], Hold):
+            raise Problem(
+                "comes before anything is pressed",
+                "a press_to_force or press_to_depth leg first",
+                ("motion", 0, "hold"),
+            )
+        last: tuple[str, float] | None = None
+        for i, leg in enumerate(self.motion):
+            if isinstance(leg, Hold):
+                continue
+            key = "press_to_force" if isinstance(leg, PressToForce) else "press_to_depth"
+            target = (key, getattr(leg, key))
+            if target == last:
+                raise Problem(
+                    "is where the leg before ended", "another target, or a hold", ("motion", i, key)
+                )
+            last = target
+
+    def _check_inside(self, outline: Outline) -> None:
+        thickness = outline.soft_thickness
+        below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the bone"
+        for i, leg in enumerate(self.motion):
+            if isinstance(leg, PressToDepth) and leg.press_to_depth >= thickness:
+                raise Problem("presses to the bone", below, ("motion", i, "press_to_depth"))
+        for i, depth in enumerate(self.outputs.receptors.depths):
+            if depth >= thickness:
+                raise Problem("is outside the skin", below, ("outputs", "receptors", "depths", i))
+        for i, offset in enumerate(self.outputs.receptors.offsets):
+            if abs(offset) >= outline.half_width:
+                side = f"within {format_quantity(outline.half_width, 'length')} of the middle"
+                raise Problem("is beside the pad", side, ("outputs", "receptors", "offsets", i))
+        edge = self.accuracy.skin_edge if isinstance(self.accuracy, Discretisation) else None
+        if edge is not None and edge >= outline.half_width:
+            raise Problem(
+                "is larger than the pad",
+                f"below {format_quantity(outline.half_width, 'length')}",
+                ("accuracy", "skin_edge"),
+            )
+
+    @property
+    def end_time(self) -> float | None:
+        """Duration of the motion, s; None when only the solution tells (change of control, steady leg)."""
+        time, force, depth = 0.0, 0.0, 0.0
+        for leg in self.motion:
+            if isinstance(leg, Hold):
+                time += leg.hold
+            elif isinstance(leg, PressToForce):
+                if leg.rate is None or math.isnan(force):
+                    return None
+                time += abs(leg.press_to_force - force) / leg.rate
+                force, depth = leg.press_to_force, math.nan
+            else:
+                if leg.speed is None or math.isnan(depth):
+                    return None
+                time += abs(leg.press_to_depth - depth) / leg.speed
+                force, depth = math.nan, leg.press_to_depth
+        return time
+
+    def with_accuracy(self, accuracy: Any) -> Scene:
+        """Copy of the scene at another accuracy.
+
+        Args:
+            accuracy: draft, thesis, fine, a tolerance as number or text, or a `Discretisation`.
+
+        Raises:
+            SceneError: it is none of these.
+        """
+        fields = {name: getattr(self, name) for name in type(self).model_fields}
+        try:
+            return Scene(**{**fields, "accuracy": accuracy})
+        except ValidationError as error:
+            raise explain(error, self.name, {"accuracy": accuracy}, _TAGS) from None
+
+    def canonical(self) -> dict[str, Any]:
+        """The scene as plain data for provenance: SI numbers, names and content hashes in place of paths.
+
+        Equal scenes give equal dictionaries, in the same order of keys; `json.dumps` takes them as they are.
+        """
+        data = self.model_dump(mode="json")
+        mesh, stimulus = self.specimen.mesh, self.stimulus
+        if mesh is not None:
+            data["specimen"]["mesh"] = {"name": mesh.name, "sha256": _sha256(mesh.read_bytes())}
+        if isinstance(stimulus, Sampled):
+            points = json.dumps([stimulus.x, stimulus.y]).encode()
+            data["stimulus"] = {"shape": "sampled", "csv": stimulus.csv.name, "sha256": _sha256(points)}
+        return json.loads(json.dumps(data, sort_keys=True))
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Read and check a scene.
+
+    Args:
+        path: YAML file. Paths in it are relative to it, and names of specimens are looked up in
+            config/specimens of its folder, of the folders above, and of the repository.
+
+    Returns:
+        The scene, every quantity an SI float.
+
+    Raises:
+        SceneError: the file cannot be read or anything in it is wrong; its text is one line.
+    """
+    path = Path(path)
+    document = read_yaml(path)
+    try:
+        return Scene.model_validate(document, context=Source(path))
+    except ValidationError as error:
+        raise explain(error, path, document, _TAGS) from None
+
+
+def scene_json_schema() -> dict[str, Any]:
+    """JSON schema of a scene document as people write it (text with units, names of specimens)."""
+    schema = Scene.model_json_schema(mode="validation")
+    for name in ("Outline", "Layers", "Layer", "Receptors", "Outputs", "Specimen"):
+        schema["$defs"][name].pop("required", None)
+    schema["required"] = ["stimulus", "motion"]
+    return _published(schema, "A fingerpad scene")
+
+
+def specimen_json_schema() -> dict[str, Any]:
+    """JSON schema of a specimen file as people write it."""
+    return _published(SpecimenFile.model_json_schema(mode="validation"), "A fingerpad specimen")
+
+
+def _published(schema: dict[str, Any], title: str) -> dict[str, Any]:
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": title, **_tidy(schema)}
+
+
+def _tidy(schema: Any) -> Any:
+    """Without generated titles, nulls and SI defaults, which documents lack; a shape is required."""
+    if isinstance(schema, list):
+        return [_tidy(item) for item in schema if item != {"type": "null"}]
+    if not isinstance(schema, dict):
+        return schema
+    tidy = {
+        key: _tidy(value)
+        for key, value in schema.items()
+        if not (key == "title" or (key == "default" and not isinstance(value, str)))
+    }
+    if "shape" in tidy.get("properties", {}):
+        tidy["required"] = ["shape", *tidy.get("required", [])]
+    return tidy
