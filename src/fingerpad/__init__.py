@@ -1,0 +1,38 @@
+"""The human fingerpad in touch: skin, contact and the strain energy that receptors see.
+
+Three verbs are the whole shallow interface; each is imported at its first use.
+
+- ``load_scene(path)``: read and check a scene (`fingerpad.scene`).
+- ``plan(scene)``: choose effects and discretisation, with reasons (`fingerpad.effects`).
+- ``simulate(scene)``: run it; returns an `xarray.Dataset` (`fingerpad.simulation`).
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fingerpad.effects import plan
+    from fingerpad.scene import load_scene
+    from fingerpad.simulation import simulate
+
+__all__ = ["load_scene", "plan", "simulate"]
+
+_MODULES = {
+    "load_scene": "fingerpad.scene",
+    "plan": "fingerpad.effects",
+    "simulate": "fingerpad.simulation",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return importlib.import_module("importlib.metadata").version("fingerpad")
+    if name not in _MODULES:
+        raise AttributeError(f"module 'fingerpad' has no attribute '{name}'")
+    return getattr(importlib.import_module(_MODULES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])
