@@ -12,6 +12,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -214,32 +215,46 @@ def _limit_growth(s: np.ndarray, edge: np.ndarray, growth: float) -> np.ndarray:
 
 
 def _columns(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
-    """Arc lengths of the column boundaries from apex to bottom, and the index of the nail's rim."""
-    length = curve.length
-    nail = float(curve.arc_length(curve.theta_at_x(curve.outline.nail_half_width, lower=True))[0])
-    fine = min(np.ceil(size.fine_half_width / size.skin_edge - 1e-6) * size.skin_edge, nail)
+    """Arc lengths of the column boundaries from apex to bottom, and the index of the nail's rim.
+
+    The end of the fine zone, the widest place (where the curvature jumps) and the nail's rim are boundaries.
+    """
+    breaks = [
+        0.0,
+        float(curve.arc_length(0.5 * np.pi)[0]),
+        float(curve.arc_length(curve.theta_at_x(curve.outline.nail_half_width, lower=True))[0]),
+        curve.length,
+    ]
+    nail = breaks[2]
+    fine = min(np.ceil(size.fine_half_width / size.skin_edge - 1e-6) * size.skin_edge, curve.length)
+    nearest = min(breaks, key=lambda s: abs(s - fine))
+    if abs(nearest - fine) < size.skin_edge:
+        fine = nearest
+    else:
+        breaks = sorted([*breaks, fine])
+    half_width = curve.outline.half_width
     focus = [
-        (float(curve.arc_length(curve.theta_at_x(min(abs(x), curve.outline.half_width)))[0]), edge)
+        (float(curve.arc_length(curve.theta_at_x(min(abs(x), half_width)))[0]), edge)
         for x, edge in size.focus
     ]
-    smallest = min([size.skin_edge, *(edge for _, edge in focus)])
-    grid = np.linspace(0.0, length, max(4000, int(np.ceil(4.0 * length / smallest))) + 1)
-    grid = np.union1d(grid, [fine, nail, *(s for s, _ in focus)])
 
-    coarse = size.coarse_edge or _COARSEST * size.skin_edge
-    edge = np.minimum(coarse, _LARGEST_TURN / curve.curvature(curve.theta_at(grid)))
+    smallest = min([size.skin_edge, *(edge for _, edge in focus)])
+    grid = np.linspace(0.0, curve.length, max(4000, int(np.ceil(4.0 * curve.length / smallest))) + 1)
+    grid = np.union1d(grid, [*breaks, *(s for s, _ in focus)])
+    radius = 1.0 / curve.curvature(curve.theta_at(grid))
+    edge = np.minimum(_LARGEST_TURN * radius, radius - curve.layer_depths[-1])
+    edge = np.minimum(edge, size.coarse_edge or _COARSEST * size.skin_edge)
     edge = np.where(grid <= fine, np.minimum(edge, size.skin_edge), edge)
+    for low, high in pairwise(breaks):
+        edge = np.where((grid >= low) & (grid <= high), np.minimum(edge, high - low), edge)
     for s, wanted in focus:
         edge = np.where(grid == s, np.minimum(edge, wanted), edge)
     edge = _limit_growth(grid, edge, size.growth)
 
-    parts = [_divide(grid, edge, fine, nail, np.ceil), _divide(grid, edge, nail, length, np.round)]
-    if nail - fine < 0.5 * size.skin_edge:
-        parts = parts[1:]
-        fine = nail
-    if fine > 0.0:
-        parts.insert(0, _divide(grid, edge, 0.0, fine, np.ceil))
-    columns = np.concatenate([part[:-1] for part in parts] + [[length]])
+    parts = [
+        _divide(grid, edge, low, high, np.ceil if low <= fine else np.round) for low, high in pairwise(breaks)
+    ]
+    columns = np.concatenate([part[:-1] for part in parts] + [[curve.length]])
     return columns, int(np.searchsorted(columns, nail))
 
 
@@ -260,7 +275,7 @@ def _rows(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, tuple[int, i
     reached = min(first + np.log(size.growth) * middle, size.layer_edge)
     dermis = _layer_rows(middle, inner, reached, size)
     fat = curve.outline.apex_height - inner - curve.bone_point(0.0)[0, 1]
-    edge = size.growth * size.layer_edge
+    edge = size.growth * (dermis[-1] - dermis[-2])
     count = np.log1p((size.growth - 1.0) * fat / edge) / np.log(size.growth)
     rows = np.concatenate((epidermis[:-1], dermis))
     return rows, (len(epidermis) - 1, len(rows) - 1), max(1, int(np.ceil(count - 1e-6))), edge
@@ -421,5 +436,8 @@ def build_pad_mesh(outline: Outline, size: MeshSize) -> PadMesh:
     )
     from fingerpad.specimen.quality import check_orientation
 
-    check_orientation(mesh, "outline")
+    try:
+        check_orientation(mesh, "outline")
+    except MeshError as error:
+        raise MeshError(f"{error}; thicker fat beside the bone or a smaller skin_edge is allowed") from None
     return mesh
