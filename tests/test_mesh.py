@@ -452,6 +452,17 @@ def test_external_meshes_of_every_kind(kind, version, tmp_path):
     assert area == pytest.approx(np.pi * (64e-6 - 9e-6), rel=1e-3)
 
 
+def test_centre_of_an_eight_node_quad_is_that_of_its_own_map(tmp_path):
+    path = write_rings(tmp_path / "rings.msh", "quad8")
+    mesh = read_pad_mesh(path)
+    nodes = mesh.points[mesh.cells]
+    shape = np.array([-0.25] * 4 + [0.5] * 4)  # the serendipity functions at the centre
+    np.testing.assert_allclose(nodes[:, 8], np.einsum("n,enx->ex", shape, nodes[:, :8]), atol=1e-15)
+    assert (
+        np.abs(nodes[:, 8] - nodes[:, :4].mean(axis=1)).max() > 1e-5
+    )  # curved elements, or nothing is shown
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_external_symmetric_mesh_has_a_right_half(kind, tmp_path):
     mesh = read_pad_mesh(write_rings(tmp_path / "rings.msh", kind))
