@@ -64,6 +64,19 @@ def number(allowed: str, low: float, high: float, *, low_included: bool = False)
     return Annotated[float, BeforeValidator(parse, json_schema_input_type=surface)]
 
 
+def whole(low: int, high: int) -> Any:
+    """Field type: a whole number between two bounds, both included."""
+
+    def parse(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            raise Problem("is not in the range", f"a whole number from {low} to {high}")
+        return value
+
+    return Annotated[
+        int, BeforeValidator(parse, json_schema_input_type=Annotated[int, Field(ge=low, le=high)])
+    ]
+
+
 def listed(value: Any) -> Any:
     """`value` if it is a list; `Problem` otherwise."""
     if not isinstance(value, (list, tuple)):

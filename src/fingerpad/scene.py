@@ -18,7 +18,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError
 from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
-from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity
+from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity, whole
 from fingerpad.scene_specimen import (
     DEFAULT_SPECIMEN,
     Layer,
@@ -293,7 +293,7 @@ class Discretisation(Strict):
     """Element: displacement and pressure interpolation."""
     skin_edge: Length | None = None
     """Length of the element edges along the skin where contact is expected."""
-    steps: Annotated[int, Field(ge=1, le=MAXIMUM_STEPS, strict=True)] | None = None
+    steps: whole(1, MAXIMUM_STEPS) | None = None
     """Number of time steps of the whole motion."""
 
 

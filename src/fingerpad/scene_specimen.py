@@ -230,10 +230,12 @@ def _named(part: str, surface: Any) -> BeforeValidator:
         source = source_of(info.context)
         if isinstance(value, str):
             return () if (part, value) == ("prony", "none") else source.part(value, part)
+        if part == "prony":
+            return listed(value)
         if isinstance(value, Mapping):
             default = _si(source.part(DEFAULT_SPECIMEN, part))
             return {**default, **{key: _merge(default.get(key), item) for key, item in value.items()}}
-        return listed(value) if part == "prony" else value
+        return value
 
     name = Annotated[
         str, Field(pattern="^[A-Za-z0-9][A-Za-z0-9_-]*$", description="name in config/specimens")
