@@ -1,0 +1,684 @@
+"""Scenes: what is accepted, what is refused and in which words, and what comes out."""
+
+import copy
+import json
+from pathlib import Path
+
+import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+
+from fingerpad.scene import (
+    Cylinder,
+    Discretisation,
+    Flat,
+    Hold,
+    Outline,
+    PressToDepth,
+    PressToForce,
+    Sampled,
+    Scene,
+    SceneError,
+    load_scene,
+    scene_json_schema,
+    specimen_json_schema,
+)
+
+pytestmark = pytest.mark.unit
+
+CONFIG = Path(__file__).parents[1] / "config"
+SCENES = sorted(CONFIG.glob("scenes/**/*.yaml"))
+THESIS_CURVATURES = {
+    "k79": 78.74, "k105": 104.99, "k158": 157.48, "k210": 209.97,
+    "k315": 314.96, "k420": 419.95, "k630": 629.92, "k1260": 1259.84,
+}  # fmt: skip
+
+RAMP_AND_HOLD = {
+    "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}],
+}
+
+# a pad of known sizes, so that these tests do not hang on what the thesis's specimen is found to be
+OUTLINE = {
+    "apex_height": "6 mm", "apex_radius": "7.9 mm", "half_width": "8.5 mm", "depth_below": "6.2 mm",
+    "epidermis_thickness": "0.85 mm", "dermis_thickness": "0.85 mm", "stratum_corneum_thickness": "0.35 mm",
+    "bone_centre_height": "-1.5 mm", "bone_half_width": "4 mm", "bone_half_height": "2.5 mm",
+    "nail_half_width": "5 mm",
+}  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A directory for scenes, with specimens of its own."""
+    specimens = tmp_path / "config" / "specimens"
+    specimens.mkdir(parents=True)
+    thesis = yaml.safe_load((CONFIG / "specimens/thesis.yaml").read_text())
+    write(specimens, {**thesis, "outline": OUTLINE}, "thesis.yaml")
+    write(specimens, (CONFIG / "specimens/homogeneous.yaml").read_text(), "homogeneous.yaml")
+    return tmp_path
+
+
+def write(folder, document, name="my_scene.yaml"):
+    path = folder / name
+    path.write_text(document if isinstance(document, str) else yaml.safe_dump(document), encoding="utf-8")
+    return path
+
+
+def changed(**changes):
+    return {**copy.deepcopy(RAMP_AND_HOLD), **changes}
+
+
+def specimen(**parts):
+    return changed(specimen=parts)
+
+
+def motion(*legs):
+    return changed(motion=list(legs))
+
+
+def receptors(**keys):
+    return changed(outputs={"receptors": keys})
+
+
+FORCE = {"press_to_force": "20 gf", "rate": "40 gf/s"}
+DEPTH = {"press_to_depth": "1 mm", "speed": "2 mm/s"}
+
+# name: document, key the message names, words it contains
+BAD = {
+    "unknown key": (changed(moton=[]), "moton", "the nearest is 'motion'"),
+    "unknown key in a leg": (motion({**FORCE, "rat": "1 N/s"}), "motion[0].rat", "the nearest is 'rate'"),
+    "unknown key in specimen": (specimen(outlin="thesis"), "specimen.outlin", "the nearest is 'outline'"),
+    "unknown key in a layer": (
+        specimen(layers={"fat": {"youngs_moduls": "1 MPa"}}),
+        "specimen.layers.fat.youngs_moduls",
+        "the nearest is 'youngs_modulus'",
+    ),
+    "thickness of a layer": (
+        specimen(layers={"fat": {"thickness": "1 mm"}}),
+        "specimen.layers.fat.thickness",
+        "epidermis_thickness",
+    ),
+    "unknown key in a stimulus": (
+        changed(stimulus={"shape": "flat", "curvature": "1 1/m"}),
+        "stimulus.curvature",
+        "the nearest is 'shape'",
+    ),
+    "name is the file's": (changed(name="x"), "name", "is not a known key"),
+    "steps that are a switch": (changed(accuracy={"steps": True}), "accuracy.steps", "a whole number"),
+    "key that is not text": (changed(**{"accuracy": {5: 1}}), "accuracy.5", "is not a known key"),
+    "no stimulus": ({"motion": [FORCE]}, "stimulus", "is missing"),
+    "no motion": ({"stimulus": {"shape": "flat"}}, "motion", "is missing"),
+    "empty key": (changed(specimen=None), "specimen", "is empty"),
+    "empty file": ("", "", "is not a mapping"),
+    "a list": ("- 1", "", "is not a mapping"),
+    "missing unit": (motion({"press_to_force": "20 gf", "rate": "40"}), "motion[0].rate", "'40' has no unit"),
+    "bare number": (motion({"press_to_force": 20}), "motion[0].press_to_force", "20 has no unit"),
+    "wrong dimension": (
+        motion({"press_to_force": "20 gf", "rate": "40 gf"}),
+        "motion[0].rate",
+        "'40 gf' has the wrong dimension: it is a force; allowed: a force rate with its unit such as",
+    ),
+    "mass for force": (motion({"press_to_force": "20 g"}), "motion[0].press_to_force", "wrong dimension"),
+    "unknown unit": (motion({"hold": "2 sex"}), "motion[0].hold", "unknown unit 'sex'"),
+    "not finite": (motion({"press_to_force": "nan gf"}), "motion[0].press_to_force", "finite"),
+    "negative thickness": (
+        specimen(outline={"dermis_thickness": "-0.85 mm"}),
+        "specimen.outline.dermis_thickness",
+        "is negative",
+    ),
+    "layers thicker than the pad": (
+        specimen(outline={"epidermis_thickness": "4.5 mm"}),
+        "specimen.outline.epidermis_thickness",
+        "'4.5 mm' makes the layers thicker than the pad",
+    ),
+    "no fat beside the bone": (
+        specimen(outline={"bone_half_width": "7 mm"}),
+        "specimen.outline.bone_half_width",
+        "less than 6.8 mm",
+    ),
+    "bone above the skin": (
+        specimen(outline={"bone_centre_height": "5 mm"}),
+        "specimen.outline.bone_centre_height",
+        "outside the skin",
+    ),
+    "bone below the pad": (
+        specimen(outline={"bone_half_height": "4.8 mm", "bone_centre_height": "-2 mm"}),
+        "specimen.outline.bone_half_height",
+        "outside the section",
+    ),
+    "stratum corneum too thick": (
+        specimen(outline={"stratum_corneum_thickness": "1 mm"}),
+        "specimen.outline.stratum_corneum_thickness",
+        "up to 0.85 mm",
+    ),
+    "nail too wide": (
+        specimen(outline={"nail_half_width": "9 mm"}),
+        "specimen.outline.nail_half_width",
+        "8.5 mm",
+    ),
+    "Poisson's ratio of a half": (
+        specimen(layers={"fat": {"poisson_ratio": 0.5}}),
+        "specimen.layers.fat.poisson_ratio",
+        "0.5 is outside the range; allowed: a number above -1 and below 0.5",
+    ),
+    "Poisson's ratio of minus one": (
+        specimen(layers={"fat": {"poisson_ratio": -1}}),
+        "specimen.layers.fat.poisson_ratio",
+        "above -1",
+    ),
+    "negative modulus": (
+        specimen(layers={"dermis": {"youngs_modulus": "-1 kPa"}}),
+        "specimen.layers.dermis.youngs_modulus",
+        "is negative",
+    ),
+    "Prony sum of one": (
+        specimen(prony=[{"g": 0.5, "tau": "1 s"}, {"g": 0.5, "tau": "2 s"}]),
+        "specimen.prony",
+        "sum to 1; allowed: a sum of g below 1",
+    ),
+    "Prony term of one": (specimen(prony=[{"g": 1, "tau": "1 s"}]), "specimen.prony[0].g", "below 1"),
+    "negative g": (specimen(prony=[{"g": -0.1, "tau": "1 s"}]), "specimen.prony[0].g", "above 0"),
+    "negative tau": (specimen(prony=[{"g": 0.1, "tau": "-1 s"}]), "specimen.prony[0].tau", "is negative"),
+    "zero tau": (specimen(prony=[{"g": 0.1, "tau": "0 s"}]), "specimen.prony[0].tau", "is zero"),
+    "no tau": (specimen(prony=[{"g": 0.1}]), "specimen.prony[0].tau", "is missing"),
+    "no list of Prony terms": (specimen(prony={}), "specimen.prony", "is not a list"),
+    "specimen of no file": (specimen(layers="thesi"), "specimen.layers", "homogeneous, thesis"),
+    "path for a name": (specimen(outline="../thesis"), "specimen.outline", "is not the name of a specimen"),
+    "file without the part": (specimen(outline="homogeneous"), "specimen.outline", "without outline"),
+    "moduli in no known state": (
+        specimen(moduli="short"),
+        "specimen.moduli",
+        "'long_term' or 'instantaneous'",
+    ),
+    "ridges": (specimen(ridges="inner"), "specimen.ridges", "is not in this version; allowed: none"),
+    "negative contact length": (specimen(contact_length="-10 mm"), "specimen.contact_length", "is negative"),
+    "mesh file missing": (specimen(mesh="no.msh"), "specimen.mesh", "'no.msh' is not an existing file"),
+    "mesh that is no path": (specimen(mesh=3), "specimen.mesh", "is not a path"),
+    "mesh beside an outline": (
+        specimen(mesh="no.msh", outline="thesis"),
+        "specimen.mesh",
+        "one of mesh and outline",
+    ),
+    "cylinder with zero curvature": (
+        changed(stimulus={"shape": "cylinder", "curvature": "0 1/m"}),
+        "stimulus.curvature",
+        "is zero: for a curvature of zero use shape: flat",
+    ),
+    "negative curvature": (
+        changed(stimulus={"shape": "cylinder", "curvature": "-1 1/m"}),
+        "stimulus.curvature",
+        "is negative",
+    ),
+    "no curvature": (changed(stimulus={"shape": "cylinder"}), "stimulus.curvature", "is missing"),
+    "unknown shape": (changed(stimulus={"shape": "cilinder"}), "stimulus.shape", "the nearest is 'cylinder'"),
+    "shape that is no text": (changed(stimulus={"shape": [1]}), "stimulus.shape", "is not a known shape"),
+    "no shape": (changed(stimulus={"curvature": "1 1/m"}), "stimulus.shape", "is missing"),
+    "wavy": (changed(stimulus={"shape": "wavy"}), "stimulus.shape", "is not in this version"),
+    "stimulus that is a word": (changed(stimulus="flat"), "stimulus", "is not a mapping"),
+    "fillet wider than the bar": (
+        changed(stimulus={"shape": "bar", "width": "1 mm", "fillet": "0.6 mm"}),
+        "stimulus.fillet",
+        "0 mm to 0.5 mm",
+    ),
+    "negative fillet": (
+        changed(stimulus={"shape": "bar", "width": "1 mm", "fillet": "-1 um"}),
+        "stimulus.fillet",
+        "is negative",
+    ),
+    "profile missing": (
+        changed(stimulus={"shape": "sampled", "csv": "no.csv"}),
+        "stimulus.csv",
+        "not an existing",
+    ),
+    "negative friction": (changed(friction=-0.1), "friction", "zero or more"),
+    "friction with a unit": (changed(friction="1 N"), "friction", "wrong dimension"),
+    "friction not finite": (changed(friction=float("nan")), "friction", "is not finite"),
+    "empty motion": (motion(), "motion", "is empty; allowed: legs such as"),
+    "motion that is no list": (changed(motion=FORCE), "motion", "is not a list"),
+    "negative force": (
+        motion({"press_to_force": "-20 gf"}),
+        "motion[0].press_to_force",
+        "must press into the skin",
+    ),
+    "zero force": (motion({"press_to_force": "0 gf"}), "motion[0].press_to_force", "is zero"),
+    "negative rate": (motion({**FORCE, "rate": "-40 gf/s"}), "motion[0].rate", "must press into the skin"),
+    "negative depth": (motion({"press_to_depth": "-1 mm"}), "motion[0].press_to_depth", "must press into"),
+    "negative speed": (motion({**DEPTH, "speed": "-1 mm/s"}), "motion[0].speed", "must press into the skin"),
+    "speed for rate": (
+        motion({"press_to_force": "1 N", "speed": "1 mm/s"}),
+        "motion[0].speed",
+        "not a known key",
+    ),
+    "depth to the bone": (motion({"press_to_depth": "5 mm"}), "motion[0].press_to_depth", "below the 5 mm"),
+    "hold first": (motion({"hold": "1 s"}, FORCE), "motion[0].hold", "before anything is pressed"),
+    "negative hold": (motion(FORCE, {"hold": "-1 s"}), "motion[1].hold", "is negative"),
+    "leg that goes nowhere": (
+        motion(FORCE, {"hold": "1 s"}, FORCE),
+        "motion[2].press_to_force",
+        "where the leg",
+    ),
+    "slide": (
+        motion(FORCE, {"slide": "80 mm", "speed": "1 mm/s"}),
+        "motion[1].slide",
+        "is not in this version",
+    ),
+    "unknown leg": (motion({"pres_to_force": "1 N"}), "motion[0]", "the nearest is 'press_to_force'"),
+    "leg of two kinds": (motion({**FORCE, "hold": "1 s"}), "motion[0]", "two legs in one"),
+    "leg that is a word": (motion("hold"), "motion[0]", "is not a leg"),
+    "receptor below the bone": (
+        receptors(depths=["1 mm", "5 mm"]),
+        "outputs.receptors.depths[1]",
+        "outside the skin",
+    ),
+    "receptor above the skin": (receptors(depths=["-1 um"]), "outputs.receptors.depths[0]", "is negative"),
+    "receptor on the skin": (receptors(depths=["0 um"]), "outputs.receptors.depths[0]", "is zero"),
+    "receptor beside the pad": (receptors(offsets=["9 mm"]), "outputs.receptors.offsets[0]", "within 8.5 mm"),
+    "depths that are no list": (receptors(depths="1 mm"), "outputs.receptors.depths", "is not a list"),
+    "snapshot after the end": (
+        changed(outputs={"snapshots": ["2.6 s"]}),
+        "outputs.snapshots[0]",
+        "up to 2.5 s",
+    ),
+    "negative snapshot": (changed(outputs={"snapshots": ["-1 s"]}), "outputs.snapshots[0]", "is negative"),
+    "tolerance of zero": (
+        changed(accuracy=0),
+        "accuracy",
+        "0 is outside the range; allowed: a tolerance above 0",
+    ),
+    "negative tolerance": (changed(accuracy="-0.02"), "accuracy", "a tolerance above 0 and below 1"),
+    "tolerance of one": (changed(accuracy=1.0), "accuracy", "below 1"),
+    "unknown accuracy": (changed(accuracy="best"), "accuracy", "draft, thesis, fine"),
+    "switch for accuracy": (changed(accuracy=True), "accuracy", "draft, thesis, fine"),
+    "unknown element": (changed(accuracy={"element": "Q3"}), "accuracy.element", "'Q1P0', 'Q2P1' or 'P2B'"),
+    "no steps": (changed(accuracy={"steps": 0}), "accuracy.steps", "a whole number from 1 to 100000"),
+    "edge larger than the pad": (
+        changed(accuracy={"skin_edge": "9 mm"}),
+        "accuracy.skin_edge",
+        "below 8.5 mm",
+    ),
+    "unknown effect": (changed(effects={"fricton": True}), "effects.fricton", "the nearest is 'friction'"),
+    "effect that is no switch": (changed(effects={"friction": 1}), "effects.friction", "on or off"),
+    "effects that are a switch": (changed(effects=True), "effects", "auto, or on or off"),
+    "no YAML": ("stimulus: {", "", "is not valid YAML at line"),
+    "no text": ("stimulus: \x00", "", "is not valid YAML"),
+    "duplicate key": ("friction: 0\nfriction: 1", "", "'friction' is given twice"),
+    "object in YAML": ("!!python/object/apply:os.getcwd []", "", "is not valid YAML"),
+    "nested without end": ("[" * 5000, "", "is not valid YAML"),
+    "endless integer": (f"friction: {'9' * 5000}", "", "is not valid YAML"),
+    "huge integer": (
+        f"stimulus: {{shape: flat}}\nmotion: [{{hold: 1 s}}]\nfriction: 0x{'f' * 5000}",
+        "friction",
+        "is not finite",
+    ),
+    "text of many lines": (changed(accuracy="a\nb\u2028c"), "accuracy", "is not a known accuracy"),
+}
+
+
+@pytest.mark.parametrize(("document", "key", "words"), BAD.values(), ids=BAD)
+def test_bad_input_is_one_line_naming_file_key_and_what_is_allowed(folder, document, key, words):
+    path = write(folder, document)
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    line = str(caught.value)
+    assert len(line.splitlines()) == 1
+    assert line.startswith(f"{path}: {key}: " if key else f"{path}: ")
+    assert words in line
+    assert len(line) < len(str(path)) + 400
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("x (mm),y (mm)\n0,0\n1,0\n1,1\n", "not single-valued: x does not increase in row 4"),
+        ("x (mm),y (mm)\n0,0\n2,0\n1,1\n", "not single-valued: x does not increase in row 4"),
+        ("x (mm),y (mm)\n0,0\none,1\n", "no finite number in row 3"),
+        ("x (mm),y (mm)\n0,0\n1,nan\n", "no finite number in row 3"),
+        ("x (mm),y (mm)\n0,0\n1\n", "no finite number in row 3"),
+        ("x,y\n0,0\n1,1\n", "no column 'x (mm)'"),
+        ("x (mm),y (mm)\n0,0\n", "fewer than two points"),
+        ("", "fewer than two points"),
+        ("x (mm),y (mm)\n\x00,\xff\n1,1\n", "no finite number in row 2"),
+    ],
+)
+def test_a_profile_is_points_with_x_increasing(folder, rows, words):
+    (folder / "profile.csv").write_text(rows, encoding="utf-8")
+    path = write(folder, changed(stimulus={"shape": "sampled", "csv": "profile.csv"}))
+    with pytest.raises(SceneError, match="stimulus.csv: 'profile.csv' ") as caught:
+        load_scene(path)
+    assert words in str(caught.value) and "allowed: " in str(caught.value)
+
+
+@pytest.mark.parametrize("content", [b"x (mm),y (mm)\n\xff\xfe,1\n", None])
+def test_a_profile_that_cannot_be_read(folder, content):
+    if content is None:
+        (folder / "profile.csv").mkdir()
+    else:
+        (folder / "profile.csv").write_bytes(content)
+    path = write(folder, changed(stimulus={"shape": "sampled", "csv": "profile.csv"}))
+    with pytest.raises(SceneError, match="cannot be read"):
+        load_scene(path)
+
+
+def test_a_sampled_profile_is_read_in_metres(folder):
+    (folder / "profile.csv").write_text("\ufeffx (mm),y (mm)\n-1,0.5\n0,0\n1,0.5\n", encoding="utf-8")
+    scene = load_scene(write(folder, changed(stimulus={"shape": "sampled", "csv": "profile.csv"})))
+    assert isinstance(scene.stimulus, Sampled)
+    assert scene.stimulus.x == pytest.approx((-1e-3, 0.0, 1e-3))
+    assert scene.stimulus.y == pytest.approx((5e-4, 0.0, 5e-4))
+
+
+def test_points_of_a_profile_cannot_be_given_in_the_scene(folder):
+    stimulus = {"shape": "sampled", "csv": "p.csv", "x": [0, 1], "y": [0, 1]}
+    with pytest.raises(SceneError, match=r"stimulus\.x: is not a known key"):
+        load_scene(write(folder, changed(stimulus=stimulus)))
+
+
+@pytest.mark.parametrize("path", ["no.yaml", ".", "no/scene.yaml", "\0.yaml"])
+def test_a_scene_that_cannot_be_read(folder, path):
+    with pytest.raises(SceneError):
+        load_scene(folder / path)
+
+
+def test_an_error_in_a_specimen_file_names_that_file(folder):
+    document = {"outline": {**OUTLINE, "dermis_thickness": "-1 mm"}}
+    file = write(folder / "config/specimens", document, "thin.yaml")
+    (folder / "scenes").mkdir()
+    with pytest.raises(SceneError) as caught:
+        load_scene(write(folder / "scenes", specimen(outline="thin")))
+    assert str(caught.value).startswith(f"{file}: outline.dermis_thickness: '-1 mm' is negative")
+
+
+def test_a_specimen_near_the_scene_comes_before_the_repository_s(folder):
+    layers = yaml.safe_load((CONFIG / "specimens/thesis.yaml").read_text())["layers"]
+    layers["fat"]["youngs_modulus"] = "20 kPa"
+    own = {"layers": layers, "moduli": "instantaneous"}
+    write(folder / "config/specimens", own, "homogeneous.yaml")
+    scene = load_scene(write(folder, specimen(layers="homogeneous")))
+    assert scene.specimen.layers.fat.youngs_modulus == 20e3
+    assert scene.specimen.moduli == "instantaneous"
+    assert scene.specimen.outline.apex_height == 6e-3
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
+def test_the_scenes_that_come_with_the_project_load_and_fit_the_schema(path):
+    scene = load_scene(path)
+    assert scene.name == path.stem
+    json.dumps(scene.canonical())
+    document = yaml.safe_load(path.read_text())
+    Draft202012Validator(scene_json_schema()).validate(document)
+
+
+def test_the_thesis_scenes_are_the_nineteen():
+    names = {f"ramp{rate}_{shape}" for rate in (40, 150) for shape in ("flat", *THESIS_CURVATURES)}
+    assert {path.stem for path in CONFIG.glob("scenes/*.yaml")} == names | {"homogeneous_flat"}
+    for name in names:
+        scene = load_scene(CONFIG / "scenes" / f"{name}.yaml")
+        ramp, hold = scene.motion
+        assert (ramp.press_to_force, hold.hold) == (pytest.approx(20 * 9.80665e-3), 2.0)
+        assert scene.end_time == pytest.approx(2 + 20 / int(name[4:].split("_")[0]))
+        label = name.split("_")[1]
+        if label == "flat":
+            assert isinstance(scene.stimulus, Flat)
+        else:
+            assert scene.stimulus.curvature == pytest.approx(THESIS_CURVATURES[label], rel=1e-12)
+            assert scene.stimulus.curvature == pytest.approx(float(label[1:]), rel=5e-3)
+
+
+def test_what_is_left_out_is_the_thesis_s(folder):
+    scene = load_scene(write(folder, RAMP_AND_HOLD))
+    assert scene.specimen.outline == Outline(
+        apex_height=6e-3, apex_radius=7.9e-3, half_width=8.5e-3, depth_below=6.2e-3,
+        epidermis_thickness=0.85e-3, dermis_thickness=0.85e-3, stratum_corneum_thickness=0.35e-3,
+        bone_centre_height=-1.5e-3, bone_half_width=4e-3, bone_half_height=2.5e-3, nail_half_width=5e-3,
+    )  # fmt: skip
+    layers = scene.specimen.layers
+    assert [layer.youngs_modulus for layer in (layers.epidermis, layers.dermis, layers.fat)] == [
+        15e4,
+        15e3,
+        15e3,
+    ]
+    assert {layer.poisson_ratio for layer in (layers.epidermis, layers.dermis, layers.fat)} == {0.48}
+    assert [(term.g, term.tau) for term in scene.specimen.prony] == [(0.055, 3.25), (0.3691, 0.3414)]
+    assert (scene.specimen.moduli, scene.specimen.contact_length) == ("long_term", 0.01)
+    assert (scene.friction, scene.accuracy, scene.effects) == (0.0, "thesis", {})
+    assert scene.outputs.receptors.depths and scene.outputs.receptors.offsets == (0.0,)
+
+
+def test_keys_left_out_of_a_part_are_the_thesis_s(folder):
+    scene = load_scene(
+        write(
+            folder, specimen(layers={"fat": {"youngs_modulus": "20 kPa"}}, outline={"apex_height": "6.5 mm"})
+        )
+    )
+    fat = scene.specimen.layers.fat
+    assert (fat.youngs_modulus, fat.poisson_ratio) == (20e3, 0.48)
+    assert (scene.specimen.outline.apex_height, scene.specimen.outline.half_width) == (6.5e-3, 8.5e-3)
+    assert scene.specimen.outline.soft_thickness == pytest.approx(5.5e-3)
+
+
+@pytest.mark.parametrize("prony", ["none", []])
+def test_no_relaxation(folder, prony):
+    assert load_scene(write(folder, specimen(prony=prony))).specimen.prony == ()
+
+
+def test_legs(folder):
+    document = motion(
+        {"press_to_force": "20 gf"}, {"press_to_depth": "1 mm", "speed": "2 mm/s"}, {"hold": "3 s"}
+    )
+    assert load_scene(write(folder, document)).motion == (
+        PressToForce(press_to_force=20 * 9.80665e-3),
+        PressToDepth(press_to_depth=1e-3, speed=2e-3),
+        Hold(hold=3.0),
+    )
+
+
+@pytest.mark.parametrize(
+    ("legs", "end"),
+    [
+        ([FORCE, {"hold": "2 s"}], 2.5),
+        ([DEPTH, {"hold": "1 s"}, {"press_to_depth": "0.5 mm", "speed": "1 mm/s"}], 2.0),
+        ([FORCE, DEPTH], None),
+        ([{"press_to_force": "20 gf"}, {"hold": "2 s"}], None),
+    ],
+)
+def test_the_end_is_known_when_the_programme_alone_tells(folder, legs, end):
+    assert load_scene(write(folder, motion(*legs))).end_time == (end and pytest.approx(end))
+
+
+@pytest.mark.parametrize(
+    ("text", "effects"),
+    [
+        ("auto", {}),
+        ("{finite_strain: on, symmetry: off}", {"finite_strain": True, "symmetry": False}),
+        ('{friction: "on", viscoelasticity: "off"}', {"friction": True, "viscoelasticity": False}),
+        ("{ridges: false}", {"ridges": False}),
+    ],
+)
+def test_effects_are_switches_in_any_yaml(folder, text, effects):
+    path = write(folder, yaml.safe_dump(RAMP_AND_HOLD) + f"effects: {text}\n")
+    assert load_scene(path).effects == effects
+
+
+@pytest.mark.parametrize(
+    ("accuracy", "value"),
+    [
+        ("fine", "fine"),
+        (0.02, 0.02),
+        ("0.02", 0.02),
+        ("2 %", 0.02),
+        (
+            {"element": "Q1P0", "skin_edge": "67 um", "steps": 8},
+            Discretisation(element="Q1P0", skin_edge=67e-6, steps=8),
+        ),
+    ],
+)
+def test_accuracy(folder, accuracy, value):
+    assert load_scene(write(folder, changed(accuracy=accuracy))).accuracy == value
+
+
+def test_another_accuracy_is_a_copy(folder):
+    scene = load_scene(write(folder, RAMP_AND_HOLD))
+    draft = scene.with_accuracy("draft")
+    assert (scene.accuracy, draft.accuracy, scene.with_accuracy("0.1").accuracy) == ("thesis", "draft", 0.1)
+    assert draft.specimen is scene.specimen
+    with pytest.raises(SceneError, match="accuracy: 'x' is not a known accuracy"):
+        scene.with_accuracy("x")
+
+
+def test_in_python_models_take_si_numbers():
+    assert Cylinder(curvature=210.0).curvature == 210.0
+    with pytest.raises(ValueError, match="is zero"):
+        Cylinder(curvature=0.0)
+    with pytest.raises(ValueError, match="frozen"):
+        Cylinder(curvature=1.0).curvature = 2.0
+
+
+def test_canonical_has_no_paths_and_follows_the_contents(folder):
+    def canonical(folder, rows):
+        (folder / "p.csv").write_text("x (mm),y (mm)\n" + rows)
+        return load_scene(write(folder, changed(stimulus={"shape": "sampled", "csv": "p.csv"}))).canonical()
+
+    a, b = folder / "a", folder / "b"
+    a.mkdir(), b.mkdir()
+    first, same, other = canonical(a, "0,0\n1,0\n"), canonical(b, "0.0,0\n1,0\n"), canonical(a, "0,0\n2,0\n")
+    assert json.dumps(first) == json.dumps(same) != json.dumps(other)
+    assert str(folder) not in json.dumps(first)
+
+    (folder / "my.msh").write_text("nodes")
+    meshed = load_scene(write(folder, specimen(mesh="my.msh"))).canonical()
+    assert meshed["specimen"]["mesh"]["name"] == "my.msh" and len(meshed["specimen"]["mesh"]["sha256"]) == 64
+    assert str(folder) not in json.dumps(meshed)
+
+
+def test_specimen_files_fit_their_schema():
+    validator = Draft202012Validator(specimen_json_schema())
+    for path in CONFIG.glob("specimens/*.yaml"):
+        validator.validate(yaml.safe_load(path.read_text()))
+
+
+SCHEMA_SEES = [
+    "unknown key",
+    "missing unit",
+    "bare number",
+    "no stimulus",
+    "unknown shape",
+    "slide",
+    "unknown accuracy",
+    "Poisson's ratio of a half",
+    "unknown effect",
+    "no curvature",
+    "leg of two kinds",
+    "ridges",
+    "name is the file's",
+]
+
+
+@pytest.mark.parametrize("name", SCHEMA_SEES)
+def test_the_schema_sees_what_an_editor_can(name):
+    validator = Draft202012Validator(scene_json_schema())
+    assert validator.is_valid(RAMP_AND_HOLD)
+    assert not validator.is_valid(BAD[name][0])
+
+
+# --- properties -----------------------------------------------------------------------------------
+
+leaves = (
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats()
+    | st.text(max_size=12)
+    | st.sampled_from(
+        ["1 mm", "20 gf", "40 gf/s", "2 s", "flat", "thesis", "auto", "none", "cylinder", "210 1/m", "-1 m"]
+    )
+)
+KEYS = """
+specimen outline mesh layers moduli prony ridges contact_length stimulus shape curvature width
+fillet csv friction motion press_to_force rate press_to_depth speed hold slide outputs receptors
+depths offsets snapshots accuracy element skin_edge steps effects g tau fat youngs_modulus
+poisson_ratio apex_height finite_strain
+""".split()
+keys = st.sampled_from(KEYS) | st.text(max_size=5) | st.integers() | st.booleans()
+junk = st.recursive(
+    leaves,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(keys, inner, max_size=4),
+    max_leaves=12,
+)
+many = settings(
+    max_examples=150,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+
+
+def _loads_or_says_why(path):
+    try:
+        assert isinstance(load_scene(path), Scene)
+    except SceneError as error:
+        assert len(str(error).splitlines()) == 1
+        assert str(error).startswith(str(path.parent))
+
+
+@many
+@given(document=junk)
+def test_junk_is_a_scene_or_a_scene_error(folder, document):
+    _loads_or_says_why(write(folder, document if isinstance(document, dict) else {"motion": document}))
+
+
+@many
+@given(data=st.data())
+def test_a_scene_with_anything_in_one_place_is_a_scene_or_a_scene_error(folder, data):
+    document = yaml.safe_load((CONFIG / "scenes/examples/every_key.yaml").read_text())
+    place = document
+    while True:
+        choices = list(place) if isinstance(place, dict) else range(len(place))
+        key = data.draw(st.sampled_from(list(choices)))
+        if not isinstance(place[key], (dict, list)) or not place[key] or data.draw(st.booleans()):
+            break
+        place = place[key]
+    place[key] = data.draw(junk)
+    _loads_or_says_why(write(folder, document))
+
+
+@many
+@given(
+    content=st.binary(max_size=60)
+    | st.text(alphabet="a:{}[]&*!|>-? \n\t'\"#%@,1", max_size=40).map(str.encode)
+)
+def test_any_bytes_are_a_scene_or_a_scene_error(folder, content):
+    path = folder / "bytes.yaml"
+    path.write_bytes(content)
+    _loads_or_says_why(path)
+
+
+@many
+@given(
+    depth_um=st.integers(1, 4999),
+    force_mgf=st.integers(1, 10**6),
+    rate_mgf=st.integers(1, 10**6),
+    curvature=st.integers(1, 5000),
+)
+def test_a_scene_is_the_same_in_any_units(folder, depth_um, force_mgf, rate_mgf, curvature):
+    gf = 9.80665e-3
+
+    def load(length, force, rate, bend):
+        document = changed(
+            stimulus={"shape": "cylinder", "curvature": bend},
+            motion=[{"press_to_force": force, "rate": rate}, {"hold": "2 s"}],
+            outputs={"receptors": {"depths": [length]}},
+        )
+        return load_scene(write(folder, document))
+
+    ours = load(f"{depth_um} um", f"{force_mgf / 1000!r} gf", f"{rate_mgf / 1000!r} gf/s", f"{curvature} 1/m")
+    theirs = load(
+        f"{depth_um / 1e6!r} m",
+        f"{force_mgf / 1000 * gf!r} N",
+        f"{rate_mgf / 1000 * gf * 60!r} N/min",
+        f"{curvature / 1000!r} 1/mm",
+    )
+    assert ours.outputs.receptors.depths == pytest.approx(theirs.outputs.receptors.depths, rel=1e-14)
+    assert ours.stimulus.curvature == pytest.approx(theirs.stimulus.curvature, rel=1e-14)
+    for name in ("press_to_force", "rate"):
+        assert getattr(ours.motion[0], name) == pytest.approx(getattr(theirs.motion[0], name), rel=1e-14)
