@@ -15,48 +15,46 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z0-9_]+$")]
 FigureNumber = Annotated[str, StringConstraints(pattern=r"^[0-9]+-[0-9]+$")]
-Accuracy = Literal["draft", "thesis", "fine"]
-Directory = Annotated[str, StringConstraints(pattern=r"^[^/].*[^/]$")]
+Directory = Annotated[str, StringConstraints(pattern=r"^[^/](.*[^/])?$")]
+Accuracy = Literal["draft", "thesis", "fine"] | Annotated[float, Field(gt=0, lt=1)]
 
 
 class WorkflowConfig(BaseModel):
     """What the workflow simulates, draws and tabulates, and where it puts it (paths from the root)."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", title="fingerpad workflow configuration")
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", use_attribute_docstrings=True, title="A fingerpad workflow configuration"
+    )
 
-    name: Name = Field(description="name of the run")
-    results: Accuracy = Literal["draft", "thesis", "fine"]
-Directory = Field(
-        description="directory of plans, meshes and simulation histories (not committed)"
-    )
-    figures: Accuracy = Literal["draft", "thesis", "fine"]
-Directory = Field(
-        description="directory of the thesis figures, fig_<number>.png beside fig_<number>.csv"
-    )
-    tables: Accuracy = Literal["draft", "thesis", "fine"]
-Directory = Field(description="directory of the tables, <name>.csv beside <name>.md")
-    scenes: tuple[Name, ...] = Field(min_length=1, description="scenes to simulate, files of config/scenes")
-    accuracy: Accuracy | None = Field(
-        default=None, description="accuracy that replaces what every scene states; left out: as each scene states"
-    )
-    companion_accuracy: Accuracy | None = Field(
-        default=None,
-        description="accuracy of each scene's coarser companion run, from which discretisation errors follow",
-    )
-    figure_numbers: tuple[FigureNumber, ...] = Field(
-        description="figures to draw, by their number in the thesis"
-    )
-    table_names: tuple[Name, ...] = Field(default=(), description="tables to write")
+    name: Name
+    """Name of the run."""
+    results: Directory
+    """Directory of plans, meshes and simulation histories (not committed)."""
+    figures: Directory
+    """Directory of the thesis figures, fig_<number>.png beside fig_<number>.csv."""
+    tables: Directory
+    """Directory of the tables, <name>.csv beside <name>.md."""
+    scenes: Annotated[tuple[Name, ...], Field(min_length=1)]
+    """Scenes to simulate, files of config/scenes."""
+    accuracy: Accuracy | None = None
+    """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each states."""
+    companion_accuracy: Accuracy | None = None
+    """Accuracy of each scene's coarser companion, from which discretisation errors follow; left out, none."""
+    figure_numbers: tuple[FigureNumber, ...]
+    """Figures to draw, by their number in the thesis."""
+    table_names: tuple[Name, ...] = ()
+    """Tables to write."""
 
 
 def schemas() -> dict[str, dict]:
     """Return the JSON schema of each kind of YAML file, by the stem of its schema file."""
-    from fingerpad.scene import Scene, SpecimenFile
+    from fingerpad.scene import scene_json_schema, specimen_json_schema
 
-    models = {"workflow": WorkflowConfig, "scene": Scene, "specimen": SpecimenFile}
+    dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     return {
-        stem: {"$schema": "https://json-schema.org/draft/2020-12/schema"} | model.model_json_schema()
-        for stem, model in models.items()
+        "workflow": dialect | WorkflowConfig.model_json_schema(),
+        "scene": scene_json_schema(),
+        "specimen": specimen_json_schema(),
     }
 
 

@@ -24,6 +24,7 @@ wildcard_constraints:
     fidelity="simulations|coarse",
     scene="[a-z0-9_]+",
     number="[0-9]+-[0-9]+",
+    table="[a-z0-9_]+",
 
 
 def sources(script):

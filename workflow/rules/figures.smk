@@ -39,10 +39,10 @@ rule figure:
         " {input.histories} {input.meshes} {input.coarse} > {log} 2>&1"
 
 
-rule thesis_comparison:
-    """Every history -> each number and trend of the thesis beside its simulated value, with a verdict."""
+rule table:
+    """All histories and meshes of the configuration -> a table, for programs (CSV) and for people (Markdown)."""
     input:
-        sources("thesis_comparison"),
+        sources("table"),
         ENVIRONMENT,
         reference=REFERENCE,
         histories=histories(config["scenes"]),
@@ -50,18 +50,18 @@ rule thesis_comparison:
         coarse=companions(config["scenes"]),
     output:
         csv=report(
-            f"{config['tables']}/thesis_comparison.csv",
-            caption="../report/thesis_comparison.rst",
+            f"{config['tables']}/{{table}}.csv",
+            caption="../report/table.rst",
             category="Tables",
-            labels={"table": "thesis comparison"},
+            labels={"table": "{table}"},
         ),
-        md=f"{config['tables']}/thesis_comparison.md",
+        md=f"{config['tables']}/{{table}}.md",
     log:
-        f"{RESULTS}/logs/table/thesis_comparison.log",
+        f"{RESULTS}/logs/table/{{table}}.log",
     threads: 1
     resources:
         mem_mb=1000,
         runtime=5,
     shell:
-        "python workflow/scripts/thesis_comparison.py {input.reference} {output.csv}"
+        "python workflow/scripts/table.py {wildcards.table} {input.reference} {output.csv}"
         " {input.histories} {input.meshes} {input.coarse} > {log} 2>&1"

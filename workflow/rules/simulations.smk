@@ -27,7 +27,10 @@ rule plan:
 
 
 rule mesh:
-    """A scene and its plan -> the mesh of the pad, with named layers and boundaries."""
+    """A scene -> the mesh of the pad that its plan asks for, with named layers and boundaries.
+
+    The plan is made anew from the scene, in milliseconds; the file is an input so that it is there to be read.
+    """
     input:
         sources("mesh"),
         ENVIRONMENT,
@@ -45,17 +48,16 @@ rule mesh:
         mem_mb=1000,
         runtime=5,
     shell:
-        "python workflow/scripts/mesh.py {input.scene} {params.accuracy} {input.plan} {output} > {log} 2>&1"
+        "python workflow/scripts/mesh.py {input.scene} {params.accuracy} {output} > {log} 2>&1"
 
 
 rule simulate:
-    """A scene, its plan and its mesh -> the history of the whole motion, one cached NetCDF file."""
+    """A scene and its mesh -> the history of the whole motion, one cached NetCDF file."""
     input:
         sources("simulate"),
         ENVIRONMENT,
         scene=scene_file,
         named=files_named_by_scene,
-        plan=rules.plan.output,
         mesh=rules.mesh.output,
     output:
         ensure(f"{RESULTS}/{{fidelity}}/{{scene}}/history.nc", non_empty=True),
@@ -71,5 +73,4 @@ rule simulate:
         mem_mb=2000,
         runtime=30,
     shell:
-        "python workflow/scripts/simulate.py {input.scene} {params.accuracy} {input.plan} {input.mesh} {output}"
-        " > {log} 2>&1"
+        "python workflow/scripts/simulate.py {input.scene} {params.accuracy} {input.mesh} {output} > {log} 2>&1"

@@ -1,9 +1,9 @@
-"""Draw a figure: figure.py NUMBER REFERENCE.csv FIGURE.png [RESULTS/{simulations,coarse}/SCENE/{history.nc,mesh.msh} ...]"""
+"""Draw a figure from results: figure.py NUMBER REFERENCE.csv FIGURE.png [HISTORY.nc | MESH.msh ...]"""
 
 import sys
 
 from fingerpad.figures import FIGURES, publish, read_reference
-from fingerpad.figures.io import read_results
+from fingerpad.figures.inputs import read_results
 
 number, reference, png, *paths = sys.argv[1:]
 spec = FIGURES[number]

@@ -2,11 +2,10 @@
 
 import sys
 
-from fingerpad.effects import plan
-from fingerpad.scene import load_scene
+from fingerpad import load_scene, plan
 
 scene_path, accuracy, out = sys.argv[1:]
 scene = load_scene(scene_path)
 if accuracy != "as_stated":
-    scene = scene.model_copy(update={"accuracy": accuracy})
+    scene = scene.with_accuracy(accuracy)
 plan(scene).write(out)

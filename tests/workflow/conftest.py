@@ -1,0 +1,96 @@
+"""A copy of the project's tree in which the workflow is run, and what a dry run would do in it."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+TREE = ("Snakefile", "config", "pyproject.toml", "requirements.lock", "src", "workflow")
+PROFILE = ("--workflow-profile", "workflow/profiles/default", "--quiet", "host")
+SMOKE = ("--configfile", "config/smoke.yaml")
+
+
+@dataclass
+class Project:
+    """A copy of the tree. `smoke` runs and dry runs use the coarse configuration unless told otherwise."""
+
+    root: Path
+    environment: dict[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def copy(cls, root: Path) -> "Project":
+        for name in TREE:
+            source = ROOT / name
+            if source.is_dir():
+                shutil.copytree(
+                    source, root / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
+                )
+            else:
+                shutil.copy(source, root / name)
+        return cls(root)
+
+    def snakemake(self, *arguments: str, **environment: str) -> subprocess.CompletedProcess:
+        path = os.pathsep.join([str(self.root / "src"), str(Path(__file__).parent / "trace")])
+        return subprocess.run(
+            [sys.executable, "-m", "snakemake", *PROFILE, *arguments],
+            cwd=self.root,
+            env=os.environ | {"PYTHONPATH": path} | self.environment | environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+        )
+
+    def run(self, *arguments: str, **environment: str) -> str:
+        """Run the workflow; its whole output."""
+        done = self.snakemake(*arguments, **environment)
+        logs = "\n".join(f"{log}:\n{log.read_text()}" for log in self.root.glob("results/*/logs/**/*.log"))
+        assert done.returncode == 0, f"{done.stdout}\n{done.stderr}\n{logs}"
+        return done.stdout + done.stderr
+
+    def planned(self, *arguments: str) -> dict[str, set[str]]:
+        """What a dry run would make: rule -> output files; targets without files are left out."""
+        text = self.run("--dry-run", *arguments)
+        jobs: dict[str, set[str]] = {}
+        rule = ""
+        for line in text.splitlines():
+            if start := re.match(r"(?:local)?rule (\w+):", line):
+                rule = start[1]
+            elif outputs := re.match(r"    output: (.*)", line):
+                names = (re.sub(r" \(.*?\)$", "", name) for name in outputs[1].split(", "))
+                jobs.setdefault(rule, set()).update(names)
+        return jobs
+
+    @contextmanager
+    def edited(self, path: str, addition: str = "\n# edited\n"):
+        """Append to a file, and put it back as it was (but newer) in the end."""
+        file = self.root / path
+        before = file.read_bytes()
+        file.write_bytes(before + addition.encode())
+        try:
+            yield
+        finally:
+            file.write_bytes(before)
+
+
+@pytest.fixture
+def clone(tmp_path) -> Project:
+    """A tree in which nothing has run."""
+    return Project.copy(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory) -> Project:
+    """A tree in which the coarse configuration has run once, with a cache and every opened file recorded."""
+    project = Project.copy(tmp_path_factory.mktemp("finished"))
+    traces, cache = tmp_path_factory.mktemp("traces"), tmp_path_factory.mktemp("cache")
+    project.environment = {"SNAKEMAKE_OUTPUT_CACHE": str(cache)}
+    project.run(*SMOKE, "--cache", TRACE_DIRECTORY=str(traces), TRACE_ROOT=str(project.root))
+    project.traces, project.cache = traces, cache
+    return project

@@ -1,0 +1,74 @@
+"""Which files each target asks for, in a tree where nothing has run."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+pytestmark = pytest.mark.workflow
+
+SMOKE = ("--configfile", "config/smoke.yaml")
+
+
+def config(project, name):
+    return yaml.safe_load((project.root / "config" / f"{name}.yaml").read_text())
+
+
+def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice(clone):
+    thesis, jobs = config(clone, "thesis"), clone.planned()
+    figures = {f"figures/thesis/fig_{n}.{kind}" for n in thesis["figure_numbers"] for kind in ("png", "csv")}
+    assert jobs.pop("figure") == figures
+    assert jobs.pop("table") == {
+        f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")
+    }
+    for rule, name in (("plan", "plan.json"), ("mesh", "mesh.msh"), ("simulate", "history.nc")):
+        assert jobs.pop(rule) == {
+            f"results/thesis/{fidelity}/{scene}/{name}"
+            for fidelity in ("simulations", "coarse")
+            for scene in thesis["scenes"]
+        }
+    assert not jobs
+
+
+def test_a_configuration_given_replaces_the_default_and_writes_under_its_results_only(clone):
+    smoke, jobs = config(clone, "smoke"), clone.planned(*SMOKE)
+    outputs = {Path(path) for paths in jobs.values() for path in paths}
+    assert all(path.is_relative_to("results/smoke") for path in outputs)
+    assert {path.parent.name for path in outputs if path.name == "history.nc"} == set(smoke["scenes"])
+    assert {path.stem for path in outputs if path.suffix == ".png"} == {
+        f"fig_{n}" for n in smoke["figure_numbers"]
+    }
+
+
+@pytest.mark.parametrize("chapter", ["3", "4"])
+def test_chapter_makes_its_figures_only(clone, chapter):
+    numbers = [n for n in config(clone, "thesis")["figure_numbers"] if n.startswith(f"{chapter}-")]
+    jobs = clone.planned(f"chapter{chapter}")
+    assert {Path(path).stem for path in jobs["figure"]} == {f"fig_{n}" for n in numbers}
+    assert "table" not in jobs
+
+
+def test_single_figure_simulates_only_the_scenes_it_needs(clone):
+    jobs = clone.planned("figures/thesis/fig_4-15.png")
+    assert jobs["figure"] == {"figures/thesis/fig_4-15.png", "figures/thesis/fig_4-15.csv"}
+    assert {Path(path).parent.name for path in jobs["simulate"]} == {"ramp40_k210"}
+
+
+def test_committed_figures_of_a_fresh_clone_are_made_anew(clone):
+    """The figures are there and newer than every source, the results they were drawn from are not."""
+    figure = clone.root / "figures" / "thesis" / "fig_4-15.png"
+    figure.parent.mkdir(parents=True)
+    figure.touch()
+    figure.with_suffix(".csv").touch()
+    assert "figures/thesis/fig_4-15.png" in clone.planned()["figure"]
+    (clone.root / ".venv").mkdir()
+    (clone.root / ".venv" / "installed.lock").write_bytes((clone.root / "requirements.lock").read_bytes())
+    assert "simulate" in clone.planned("figures/thesis/fig_4-15.png")
+
+
+def test_wrong_configuration_is_refused_before_anything_runs(clone):
+    wrong = clone.root / "wrong.yaml"
+    wrong.write_text((clone.root / "config" / "smoke.yaml").read_text() + "acuracy: draft\n")
+    done = clone.snakemake("--dry-run", "--configfile", "wrong.yaml")
+    assert done.returncode != 0
+    assert "acuracy" in done.stdout + done.stderr

@@ -1,0 +1,10 @@
+"""Make a table from results: table.py NAME REFERENCE.csv TABLE.csv [HISTORY.nc | MESH.msh ...]"""
+
+import sys
+
+from fingerpad.figures.inputs import read_results
+from fingerpad.figures.tables import TABLES, publish_table
+
+name, reference, table, *paths = sys.argv[1:]
+histories, meshes, coarse = read_results(paths)
+publish_table(TABLES[name](histories, coarse, meshes, reference), table)

@@ -1,1 +1,0 @@
-"""Compare with the thesis's numbers: thesis_comparison.py REFERENCE.csv TABLE.csv [RESULTS/... as for figure.py]"""
