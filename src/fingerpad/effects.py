@@ -1,0 +1,379 @@
+"""Scene -> plan: which effects the scene calls for, which discretisation, why, and what it will cost.
+
+Nothing is solved here. Every choice carries a sentence with the number that decided it, and every choice can be overridden in
+the scene. The thresholds and measured constants stand together in :class:`Rules`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fingerpad.estimates import ContactEstimate, PadEstimate
+from fingerpad.scene import Discretisation, Hold, PressToDepth, PressToForce, Scene
+from fingerpad.specimen.materials import Prony
+from fingerpad.specimen.external import read_pad_mesh
+from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes
+from fingerpad.specimen.measures import apex_measures
+from fingerpad.stimuli.motion import STEADY, programme
+from fingerpad.stimuli.profiles import profile_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class PlanError(ValueError):
+    """The scene asks for a combination that cannot be planned; the message is one line."""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A discretisation: edges m, steps per leg, and the error it was measured to have (largest of the headline quantities)."""
+
+    skin_edge: float
+    layer_edge: float
+    steps: int
+    growth: float
+    error: float
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Thresholds and measured constants of the planner.
+
+    Attributes:
+        presets: by name; errors are measured on the ramp-and-hold family against a mesh of half the edge and steps of ``fine``.
+        mesh_order: observed order with which that error falls with the skin edge.
+        small_strain_share: small strain is used when its expected error is below this share of the accuracy asked for.
+        relaxation_share: viscosity is left out when what it can change is below this share of the accuracy.
+        fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
+        seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
+            finite and with small strain, and per node and step for output.
+    """
+
+    presets: Mapping[str, Preset] = field(
+        default_factory=lambda: {
+            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02),
+            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007),
+        }
+    )
+    mesh_order: float = 1.5
+    small_strain_share: float = 1.0
+    relaxation_share: float = 0.25
+    fine_half_width: float = 3.4e-3
+    edges_per_half_width: float = 2.0
+    seconds_start: float = 1.2
+    seconds_finite: float = 3.0e-6
+    seconds_small: float = 1.0e-6
+    iterations_finite: float = 2.6
+    iterations_small: float = 2.0
+
+
+RULES = Rules()
+
+
+@dataclass(frozen=True)
+class Effect:
+    """Whether an effect is simulated, and why."""
+
+    on: bool
+    why: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything decided about a scene before it is solved.
+
+    Attributes:
+        effects: friction, viscoelasticity, finite_strain, symmetry, ridges. state: moduli used when viscosity is off
+        ("long_term" or "instantaneous"). element: key of the element. mesh_size: of a built mesh, None for an external one.
+        contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them.
+        timed: does time matter? nodes, smallest_edge (m): of the mesh that is solved on.
+    """
+
+    effects: dict[str, Effect]
+    state: str
+    element: str
+    mesh_size: MeshSize | None
+    contact: ContactEstimate
+    steps_per_leg: int
+    steps: int
+    timed: bool
+    nodes: int
+    smallest_edge: float
+    estimated_error: float
+    predicted_cost_s: float
+
+    @property
+    def discretisation(self) -> dict[str, Any]:
+        """Element, nodes, smallest edge and steps, as printed and as written to plan.json."""
+        out = {
+            "element": self.element,
+            "nodes": self.nodes,
+            "smallest_edge_um": round(self.smallest_edge * 1e6, 3),
+            "steps": self.steps,
+        }
+        if self.mesh_size is not None:
+            out |= {
+                "skin_edge_um": round(self.mesh_size.skin_edge * 1e6, 3),
+                "fine_half_width_mm": round(self.mesh_size.fine_half_width * 1e3, 3),
+            }
+        return out
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-able description (plan.json); :func:`read_plan` reads it back."""
+        return {
+            "effects": {name: asdict(effect) for name, effect in self.effects.items()},
+            "discretisation": self.discretisation,
+            "moduli_state": self.state,
+            "estimated_error": self.estimated_error,
+            "predicted_cost_s": round(self.predicted_cost_s, 2),
+            "contact_estimate_SI": asdict(self.contact),
+            "mesh_size_SI": None if self.mesh_size is None else asdict(self.mesh_size),
+            "smallest_edge_SI": self.smallest_edge,
+            "steps_per_leg": self.steps_per_leg,
+            "timed": self.timed,
+        }
+
+    def write(self, path: str | Path) -> None:
+        """Write plan.json, whole or not at all."""
+        from fingerpad.files import write_text
+
+        write_text(path, json.dumps(self.to_dict(), indent=2) + "\n")
+
+
+def plan(scene: Scene, rules: Rules = RULES) -> Plan:
+    """Decide effects and discretisation of ``scene``.
+
+    Raises:
+        PlanError: an override asks for what the scene cannot have. MeshError: an external mesh cannot be read.
+    """
+    external = read_pad_mesh(scene.specimen.mesh).elevated() if scene.specimen.mesh else None
+    profile = profile_of(scene.stimulus)
+    contact = _worst_contact(scene, external)
+    preset, by_hand = _preset(scene, rules, contact)
+    tolerance = preset.error
+    effects = {
+        "friction": _friction(scene),
+        "viscoelasticity": Effect(False, ""),
+        "finite_strain": _finite_strain(scene, contact, tolerance, rules),
+        "symmetry": _symmetry(scene, profile, external),
+        "ridges": Effect(False, "the specimen has none"),
+    }
+    effects["viscoelasticity"], state = _viscoelasticity(scene, tolerance, rules)
+    _apply_overrides(scene, effects)
+    timed = effects["viscoelasticity"].on
+    steps_per_leg = preset.steps
+    if by_hand and by_hand.steps:
+        steps_per_leg = max(1, round(by_hand.steps / len(scene.motion)))
+    steps = len(list(schedule(scene, steps_per_leg, timed)))
+    element = _element(by_hand, external)
+    if external is None:
+        size = _mesh_size(scene, preset, profile, contact, rules)
+        nodes = count_nodes(scene.specimen.outline, size)
+        smallest = min([size.skin_edge, size.layer_edge, *(edge for _, edge in size.focus)])
+        edge = size.skin_edge
+    else:
+        size, nodes = None, len(external.points)
+        smallest = edge = external.quality()["smallest_edge_m"]
+    if effects["symmetry"].on:
+        nodes = nodes // 2 + 1
+    error = _estimated_error(edge, contact, rules)
+    return Plan(
+        effects, state, element, size, contact, steps_per_leg, steps, timed, nodes, smallest, error,
+        _cost(nodes, steps, effects, rules),
+    )  # fmt: skip
+
+
+def schedule(scene: Scene, steps_per_leg: int, timed: bool, present=None):
+    """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`)."""
+    return programme(
+        scene.motion,
+        steps=steps_per_leg,
+        contact_length=scene.specimen.contact_length,
+        timed=timed,
+        snapshots=scene.outputs.snapshots,
+        present=present,
+    )
+
+
+def read_plan(path: str | Path) -> Plan:
+    """The plan written to ``path`` by :meth:`Plan.write`."""
+    data = json.loads(Path(path).read_text(encoding="utf-8"))
+    size = data["mesh_size_SI"]
+    if size is not None:
+        size = MeshSize(**size | {"focus": tuple(tuple(pair) for pair in size["focus"])})
+    known = data["discretisation"]
+    return Plan(
+        {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
+        ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], known["steps"], data["timed"],
+        known["nodes"], data["smallest_edge_SI"], data["estimated_error"], data["predicted_cost_s"],
+    )  # fmt: skip
+
+
+# -- the choices --------------------------------------------------------------------------------------------------------
+
+
+def _worst_contact(scene: Scene, external: PadMesh | None) -> ContactEstimate:
+    specimen, layers = scene.specimen, scene.specimen.layers
+
+    def plane(layer):
+        return layer.youngs_modulus / (1 - layer.poisson_ratio**2)
+
+    if specimen.outline is not None:
+        outline = specimen.outline
+        radius, epidermis, soft = outline.apex_radius, outline.epidermis_thickness, outline.soft_thickness
+    else:
+        radius, epidermis, soft = apex_measures(external)
+    softest = min(plane(layers.dermis), plane(layers.fat))
+    relax = 1.0
+    if specimen.moduli == "instantaneous" and specimen.prony:
+        relax = 1 - sum(term.g for term in specimen.prony)
+    pad = PadEstimate(radius, epidermis, soft, relax * plane(layers.epidermis), relax * softest)
+    curvature = getattr(scene.stimulus, "curvature", 0.0)
+    if scene.stimulus.shape == "line":
+        curvature = 1e5
+    worst = ContactEstimate(0.0, 0.0, 0.0)
+    for leg in scene.motion:
+        if isinstance(leg, PressToForce):
+            now = pad.pressed(leg.press_to_force / specimen.contact_length, curvature)
+        elif isinstance(leg, PressToDepth):
+            now = pad.pressed_to(leg.press_to_depth, curvature)
+        else:
+            continue
+        worst = max(worst, now, key=lambda estimate: estimate.depth)
+    if scene.stimulus.shape == "bar":
+        wide = max(worst.half_width, scene.stimulus.width / 2)
+        worst = replace(worst, half_width=wide, strain=max(worst.strain, 0.5))
+    return worst
+
+
+def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Preset, Discretisation | None]:
+    """The discretisation asked for: a named one, the cheapest that meets a tolerance, or one by hand."""
+    accuracy = scene.accuracy
+    if isinstance(accuracy, str):
+        return rules.presets[accuracy], None
+    thesis = rules.presets["thesis"]
+    if isinstance(accuracy, Discretisation):
+        edge = accuracy.skin_edge or thesis.skin_edge
+        scale = edge / thesis.skin_edge
+        error = _estimated_error(edge, contact, rules)
+        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, error=error), accuracy
+    scale = (accuracy / _estimated_error(thesis.skin_edge, contact, rules)) ** (1 / rules.mesh_order)
+    scale = float(np.clip(scale, 0.15, 3.0))
+    steps = int(np.clip(round(thesis.steps * (thesis.error / accuracy) ** 0.5), 6, 200))
+    return Preset(thesis.skin_edge * scale, thesis.layer_edge * scale, steps, thesis.growth, accuracy), None
+
+
+def _estimated_error(edge: float, contact: ContactEstimate, rules: Rules) -> float:
+    """Expected relative error of depth, width, pressure and strain energy, from the measured law error ~ (edge / width)^order."""
+    thesis = rules.presets["thesis"]
+    # the presets' errors were measured at the sharpest of the thesis's cylinders, contact half-width 0.35 mm
+    relative = (edge / thesis.skin_edge) * min(0.35e-3 / max(contact.half_width, 1e-5), 4.0)
+    return float(thesis.error * max(relative, 0.25 * edge / thesis.skin_edge) ** rules.mesh_order)
+
+
+def _friction(scene: Scene) -> Effect:
+    if scene.friction == 0:
+        return Effect(False, "the coefficient is 0")
+    return Effect(False, f"nothing slides, so the coefficient {scene.friction:g} is never called on")
+
+
+def _finite_strain(scene, contact, tolerance, rules) -> Effect:
+    error = contact.strain
+    limit = rules.small_strain_share * tolerance
+    number = f"small strain would be wrong by about {error:.1%} (estimated strain), {limit:.1%} is allowed"
+    return Effect(error > limit, number)
+
+
+def _symmetry(scene, profile, external) -> Effect:
+    if not profile.symmetric:
+        return Effect(False, "the stimulus is not symmetric about x = 0")
+    if external is not None and not external.symmetric:
+        return Effect(False, "the external mesh is not its own mirror image in x = 0")
+    return Effect(True, "pad, stimulus and motion are mirror images in x = 0: half the unknowns suffice")
+
+
+def _viscoelasticity(scene: Scene, tolerance: float, rules: Rules) -> tuple[Effect, str]:
+    prony = Prony(tuple(t.g for t in scene.specimen.prony), tuple(t.tau for t in scene.specimen.prony))
+    if not prony:
+        return Effect(False, "the specimen has no Prony series"), "long_term"
+    durations = leg_durations(scene)
+    if all(d is None for d in durations):
+        return Effect(False, "no leg names a rate: steady states need the long-term moduli only"), "long_term"
+    timed = [d for d in durations if d is not None]
+    limit = rules.relaxation_share * tolerance
+    relaxed = 1 - float(prony.relaxation(sum(timed)))
+    if None not in durations and relaxed < limit:
+        why = f"the motion is over before {relaxed:.2%} of the stress can relax ({limit:.2%} allowed): instantaneous moduli"
+        return Effect(False, why), "instantaneous"
+    pressed = [d for d, leg in zip(durations, scene.motion, strict=True) if d is not None and not isinstance(leg, Hold)]
+    lag = max((float(np.sum(prony.beta * np.asarray(prony.tau)) / d) for d in pressed), default=0.0)
+    if lag < limit:
+        why = f"so slow that viscosity adds at most {lag:.2%} to the stress ({limit:.2%} allowed): long-term moduli"
+        return Effect(False, why), "long_term"
+    why = f"{relaxed:.0%} of the shear stress can relax within the {sum(timed):.3g} s of the motion"
+    return Effect(True, why), "long_term"
+
+
+def leg_durations(scene: Scene) -> list[float | None]:
+    """Seconds of each leg; None for steady ones."""
+    out: list[float | None] = [None] * len(scene.motion)
+    for step in schedule(scene, 1, True):
+        out[step.leg] = None if step.dt >= STEADY else (out[step.leg] or 0.0) + step.dt
+    return out
+
+
+def _apply_overrides(scene: Scene, effects: dict[str, Effect]) -> None:
+    for name, wanted in scene.effects.items():
+        effect = effects[name]
+        if wanted == effect.on:
+            continue
+        if wanted and name in ("friction", "ridges"):
+            raise PlanError(f"{scene.name}: effects.{name}: on, but {effect.why}; allowed: off or auto")
+        if wanted and name == "symmetry":
+            raise PlanError(f"{scene.name}: effects.symmetry: on, but {effect.why}; allowed: off or auto")
+        if wanted and name == "viscoelasticity" and not scene.specimen.prony:
+            raise PlanError(f"{scene.name}: effects.viscoelasticity: on, but {effect.why}; allowed: off or auto")
+        effects[name] = Effect(wanted, f"asked for in the scene (the planner: {'on' if effect.on else 'off'}, {effect.why})")
+
+
+def _element(by_hand: Discretisation | None, external: PadMesh | None) -> str:
+    natural = {"quad9": "Q2P1", "quad4": "Q1P0", "tri6": "P2B"}[external.element if external else "quad9"]
+    if by_hand is None or by_hand.element is None or by_hand.element == natural:
+        return natural
+    raise PlanError(
+        f"accuracy.element: {by_hand.element} does not fit the mesh of {external.element if external else 'quad9'}; "
+        f"allowed: {natural}"
+    )
+
+
+def _mesh_size(scene: Scene, preset: Preset, profile, contact: ContactEstimate, rules: Rules) -> MeshSize:
+    outline = scene.specimen.outline
+    offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
+    fine = max(rules.fine_half_width, 1.3 * contact.half_width, offsets)
+    focus = ()
+    if profile.edges:
+        fillet = getattr(scene.stimulus, "fillet", 0.0)
+        edge = min(preset.skin_edge / 4, fillet / 2) if fillet else preset.skin_edge / 4
+        focus = tuple((x, edge) for x in sorted({abs(x) for x in profile.edges}))
+    return MeshSize(
+        skin_edge=preset.skin_edge,
+        fine_half_width=min(fine, 0.9 * outline.half_width),
+        layer_edge=preset.layer_edge,
+        growth=preset.growth,
+        focus=focus,
+    )
+
+
+def _cost(nodes: int, steps: int, effects: dict[str, Effect], rules: Rules) -> float:
+    if effects["finite_strain"].on:
+        work = rules.seconds_finite * rules.iterations_finite
+    else:
+        work = rules.seconds_small * rules.iterations_small
+    return float(rules.seconds_start + work * nodes * steps)

@@ -1,0 +1,206 @@
+"""Exact unilateral contact of skin nodes with a rigid profile, in the condensed (Schur) system.
+
+No penalty: nodal normal forces are multipliers of ``gap >= 0``. At each Newton iteration the gap is linearised where the skin
+and the profile stood before, the profile's own movement is part of the linear solve, and the resulting mixed linear
+complementarity problem
+
+    S' du - N^T f + b dd = r,      0 <= f  perpendicular to  gap + N du + n_y dd >= 0,      sum(-n_y f) = F or dd given
+
+is solved to the end by block principal pivoting (Portugal, Judice and Vicente 1994). ``S'`` is the Schur complement less the
+multipliers times the second derivative of the gap. Under force control the profile's depth is one more unknown.
+
+Friction, when a plan calls for it, gets a module of its own on the same condensed quantities; nothing of it is here.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, lapack, lu_factor, lu_solve
+
+
+class ContactError(RuntimeError):
+    """The complementarity problem has no solution the pivoting could find."""
+
+
+@dataclass
+class Zone:
+    """Skin nodes that may touch, and where their degrees of freedom sit in the condensed system.
+
+    Attributes:
+        nodes: (nz,) node numbers ordered along the skin. condensed: (nc,) ascending equation numbers.
+        column: (nz, 2) position in ``condensed`` of each degree of freedom, -1 where prescribed.
+    """
+
+    nodes: np.ndarray
+    equation: np.ndarray
+    condensed: np.ndarray = field(init=False)
+    column: np.ndarray = field(init=False)
+
+    def __post_init__(self):
+        equation = self.equation[self.nodes]
+        self.condensed = np.unique(equation[equation >= 0])
+        self.column = np.where(equation >= 0, np.searchsorted(self.condensed, np.maximum(equation, 0)), -1)
+
+    def gather(self, values: np.ndarray) -> np.ndarray:
+        """(nz, 2) nodal components as a condensed matrix: row k has ``values[k]`` in the columns of node k."""
+        out = np.zeros((len(self.nodes), len(self.condensed)))
+        for axis in (0, 1):
+            free = self.column[:, axis] >= 0
+            out[np.flatnonzero(free), self.column[free, axis]] = values[free, axis]
+        return out
+
+
+@dataclass
+class ContactStep:
+    """Solution of one linearised contact problem."""
+
+    condensed_displacement: np.ndarray  # (nc,) m
+    depth_change: float  # m
+    force: np.ndarray  # (nz,) N/m, >= 0, along the gap's gradient
+    active: np.ndarray  # (nz,) bool
+    pivots: int
+
+
+def _solver(matrix):
+    """A function solving with ``matrix``: Cholesky where positive definite, LU otherwise."""
+    try:
+        factors = cho_factor(matrix, check_finite=False)
+        return lambda right: cho_solve(factors, right, check_finite=False)
+    except np.linalg.LinAlgError:
+        factors = lu_factor(matrix, check_finite=False)
+        return lambda right: lu_solve(factors, right, check_finite=False)
+
+
+def solve_contact(
+    zone: Zone,
+    schur: np.ndarray,
+    right: np.ndarray,
+    gap: np.ndarray,
+    gradient: np.ndarray,
+    curvature: np.ndarray,
+    previous_force: np.ndarray,
+    active: np.ndarray,
+    *,
+    force: float | None = None,
+    depth_change: float | None = None,
+) -> ContactStep:
+    """Solve the linearised unilateral problem exactly.
+
+    Args:
+        schur: (nc, nc) N/m^2. right: (nc,) reduced residual without contact forces, N/m. gap: (nz,) m. gradient: (nz, 2).
+        curvature: (nz,) 1/m, second derivative of the gap along the tangent. previous_force: (nz,) N/m multipliers that weigh it.
+        active: (nz,) bool first guess. Exactly one of force (N/m, the sum of -gradient_y f) and depth_change (m).
+
+    Raises:
+        ContactError: pivoting does not end, or nothing can carry the force.
+    """
+    matrix, border, corner = schur, None, 0.0
+    bent = previous_force * curvature
+    if np.any(bent != 0):
+        tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
+        rows = zone.gather(tangent)
+        on = np.flatnonzero(bent)
+        matrix = schur - rows[on].T @ (bent[on, None] * rows[on])
+        border = -(bent[on] * tangent[on, 1]) @ rows[on]
+        corner = -float(bent @ tangent[:, 1] ** 2)
+    normal = zone.gather(gradient)
+    nz = len(zone.nodes)
+    columns = [normal.T, right[:, None]] + ([border[:, None]] if border is not None else [])
+    solved = _solver(matrix)(np.concatenate(columns, axis=1))
+    compliance = normal @ solved[:, :nz]
+    free = solved[:, nz]
+    offset = gap + normal @ free
+    lever = gradient[:, 1].copy()
+    load_shift = 0.0
+    if border is not None:
+        bend = solved[:, nz + 1]
+        lever -= normal @ bend
+        corner -= float(border @ bend)
+        load_shift = float(border @ free)
+    else:
+        bend = None
+    if np.any(bent != 0) and force is not None and not _positive(compliance, active, lever, corner):
+        # too curved for its own load at this linearisation: leave the geometric term out, convergence gets linear
+        return solve_contact(
+            zone, schur, right, gap, gradient, 0 * curvature, previous_force, active, force=force, depth_change=depth_change
+        )
+    if depth_change is not None:
+        f, active, pivots = _pivot(compliance, offset + lever * depth_change, active)
+        dd = depth_change
+    else:
+        f, dd, active, pivots = _pivot_with_depth(compliance, offset, lever, corner, force - load_shift, active)
+    du = free + solved[:, :nz] @ f
+    if bend is not None:
+        du -= bend * dd
+    return ContactStep(du, dd, f, active, pivots)
+
+
+def _positive(compliance, active, lever, corner):
+    """Is the problem convex on the presently active nodes?"""
+    if not active.any():
+        return True
+    return lapack.dpotrf(compliance[np.ix_(active, active)])[1] == 0
+
+
+def _pivot(compliance, offset, active):
+    def solve(on):
+        f = np.zeros(len(offset))
+        if on.any():
+            f[on] = np.linalg.solve(compliance[np.ix_(on, on)], -offset[on])
+        return f, 0.0
+
+    f, _, active, pivots = _principal_pivoting(solve, lambda f, _: offset + compliance @ f, offset, active)
+    return f, active, pivots
+
+
+def _pivot_with_depth(compliance, offset, lever, corner, load, active):
+    if not active.any():
+        active = np.zeros(len(offset), bool)
+        active[np.argmin(offset)] = True
+
+    def solve(on):
+        if not on.any():
+            raise ContactError("no node can carry the force")
+        k = np.flatnonzero(on)
+        system = np.zeros((len(k) + 1, len(k) + 1))
+        system[:-1, :-1] = compliance[np.ix_(k, k)]
+        system[:-1, -1] = lever[k]
+        system[-1, :-1] = -lever[k]
+        system[-1, -1] = corner
+        solution = np.linalg.solve(system, np.append(-offset[k], load))
+        f = np.zeros(len(offset))
+        f[k] = solution[:-1]
+        return f, solution[-1]
+
+    return _principal_pivoting(solve, lambda f, dd: offset + compliance @ f + lever * dd, offset, active, keep_one=True)
+
+
+def _principal_pivoting(solve, gap_of, offset, active, keep_one=False):
+    """Exchange all infeasible nodes at once; if that stops helping, one at a time (which always ends)."""
+    active = active.copy()
+    best, patience = len(active) + 1, 8
+    scale = max(np.abs(offset).max(), 1e-12)
+    for pivots in range(1, 40 + 4 * len(active)):
+        try:
+            f, dd = solve(active)
+        except np.linalg.LinAlgError as error:
+            raise ContactError("the contact compliance is singular") from error
+        gap = gap_of(f, dd)
+        wrong = np.where(active, f < -1e-12 * np.abs(f).max(), gap < -1e-11 * scale)
+        count = int(wrong.sum())
+        if not count:
+            f[~active] = 0
+            return np.maximum(f, 0), dd, active, pivots
+        if count < best:
+            best, patience = count, 8
+        elif patience:
+            patience -= 1
+        else:
+            last = np.flatnonzero(wrong)[-1]
+            wrong = np.zeros_like(wrong)
+            wrong[last] = True
+        flipped = active ^ wrong
+        if keep_one and not flipped.any():
+            flipped[np.argmax(np.where(active, f, -np.inf))] = True
+        active = flipped
+    raise ContactError("the active set keeps cycling")

@@ -1,0 +1,117 @@
+"""Reference elements: shape functions, quadrature and the pressure space each displacement element is paired with.
+
+Every element is a mixed one. The dilatation ``J - 1`` is projected, element by element, on a small pressure space;
+the number of its modes is all that tells a locking element from a sound one:
+
+=========  ==================  ==========================================  ===================================
+name       displacement        pressure modes                              use
+=========  ==================  ==========================================  ===================================
+``Q2P1``   9-node quad         3 (linear in x, y; discontinuous)           default
+``Q1P0``   4-node quad         1 (mean dilatation)                         external linear quads
+``P2B``    6-node triangle     3                                           external triangles (with a bubble node)
+``Q2``     9-node quad         9 (= pointwise, no projection)              teaching case: oscillates
+``Q1``     4-node quad         4 (= pointwise)                             teaching case: locks
+``Q2R``    9-node quad, 2 x 2  4 (= pointwise at the reduced points)       teaching case: may hourglass
+=========  ==================  ==========================================  ===================================
+
+Sources: Simo, Taylor and Pister (1985) for the three-field form; Sussman and Bathe (1987) for Q2 with linear
+pressure; Crouzeix and Raviart (1973) for the triangle with a bubble.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from skfem import ElementQuad1, ElementQuad2, ElementTriP2
+from skfem.quadrature import get_quadrature
+
+
+@dataclass(frozen=True)
+class ReferenceElement:
+    """One element on its reference cell.
+
+    Attributes:
+        name: key in :data:`ELEMENTS`.
+        nodes_per_element: ``nen``.
+        points: (nq, 2) quadrature points; ``weights``: (nq,).
+        values: (nq, nen) shape functions; ``gradients``: (nq, nen, 2) with respect to the reference coordinates.
+        pressure_modes: 1, 3, or nq (pointwise).
+        nodes: (nen, 2) reference coordinates of the nodes.
+    """
+
+    name: str
+    points: np.ndarray
+    weights: np.ndarray
+    values: np.ndarray
+    gradients: np.ndarray
+    pressure_modes: int
+    nodes: np.ndarray
+    triangle: bool
+
+    @property
+    def nodes_per_element(self) -> int:
+        return self.nodes.shape[0]
+
+    def shape(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Shape functions (n, nen) and reference gradients (n, nen, 2) at reference points ``xi`` (n, 2)."""
+        return _SHAPES[self.name](np.asarray(xi, dtype=float))
+
+
+def _lagrange(element, count):
+    def shape(xi):
+        values = np.empty((len(xi), count))
+        gradients = np.empty((len(xi), count, 2))
+        for i in range(count):
+            values[:, i], gradient = element.lbasis(xi.T, i)
+            gradients[:, i] = gradient.T
+        return values, gradients
+
+    return shape
+
+
+def _triangle_with_bubble(xi):
+    """Quadratic triangle plus a cubic bubble, made nodal at the centroid (7 nodes)."""
+    v6, g6 = _lagrange(ElementTriP2(), 6)(xi)
+    x, y = xi[:, 0], xi[:, 1]
+    bubble = 27 * x * y * (1 - x - y)
+    slope = 27 * np.stack([y * (1 - 2 * x - y), x * (1 - x - 2 * y)], axis=1)
+    at_centroid = np.array([-1 / 9] * 3 + [4 / 9] * 3)
+    values = np.column_stack([v6 - bubble[:, None] * at_centroid, bubble])
+    gradients = np.concatenate([g6 - slope[:, None, :] * at_centroid[None, :, None], slope[:, None, :]], axis=1)
+    return values, gradients
+
+
+_QUAD4 = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+_QUAD9 = np.vstack([_QUAD4, [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]]])
+_TRI7 = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5], [1 / 3, 1 / 3]])
+_Q1, _Q2 = _lagrange(ElementQuad1(), 4), _lagrange(ElementQuad2(), 9)
+_SHAPES = {"Q2P1": _Q2, "Q2": _Q2, "Q2R": _Q2, "Q1P0": _Q1, "Q1": _Q1, "P2B": _triangle_with_bubble}
+
+
+def _build(name, kind, degree, modes, nodes):
+    points, weights = get_quadrature(kind, degree)
+    values, gradients = _SHAPES[name](points.T)
+    return ReferenceElement(
+        name, points.T.copy(), weights.copy(), values, gradients, modes or len(weights), nodes, kind is ElementTriP2
+    )
+
+
+ELEMENTS = {
+    "Q2P1": _build("Q2P1", ElementQuad2, 5, 3, _QUAD9),
+    "Q1P0": _build("Q1P0", ElementQuad1, 3, 1, _QUAD4),
+    "P2B": _build("P2B", ElementTriP2, 5, 3, _TRI7),
+    "Q2": _build("Q2", ElementQuad2, 5, 0, _QUAD9),
+    "Q1": _build("Q1", ElementQuad1, 3, 0, _QUAD4),
+    "Q2R": _build("Q2R", ElementQuad2, 3, 0, _QUAD9),
+}
+
+#: Weights of a uniform line load on one edge: 1/2, 1/2 (linear) and the basis of quadratic edges (start, end, middle).
+EDGE_POINTS, EDGE_WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+def edge_shape(order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Shape functions and derivatives of an edge (start, end[, middle]) at :data:`EDGE_POINTS` on [-1, 1]."""
+    s = EDGE_POINTS
+    if order == 1:
+        return np.stack([(1 - s) / 2, (1 + s) / 2], 1), np.stack([-0.5 + 0 * s, 0.5 + 0 * s], 1)
+    values = np.stack([s * (s - 1) / 2, s * (s + 1) / 2, 1 - s * s], 1)
+    return values, np.stack([s - 0.5, s + 0.5, -2 * s], 1)

@@ -1,0 +1,137 @@
+"""The finite-strain body: nearly incompressible neo-Hooke, total Lagrangian, with or without Prony branches.
+
+psi = mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2 with the plane-strain I1 = tr C + 1; the dilatation is projected on the
+element's pressure modes and condensed (Simo, Taylor and Pister 1985). The tangent's geometric part uses the pressure that the
+last linear step predicted (Magisano, Leonetti and Garcea 2017), which lets a whole load go on in one step.
+"""
+
+import numpy as np
+
+from fingerpad.mechanics import kernels
+from fingerpad.mechanics.space import Space
+from fingerpad.mechanics.viscoelasticity import Branches
+from fingerpad.specimen.materials import Prony
+
+
+class FiniteStrainBody:
+    """Displacement state of a body and the verbs the stepping needs.
+
+    Args:
+        space: the discretised mesh. shear, bulk: (ne,) long-term shear and bulk moduli, Pa.
+        prony: None leaves viscoelasticity out altogether.
+
+    Attributes:
+        u: (n, 2) displacement, m; smallest_jacobian: min det F of the last evaluation.
+    """
+
+    geometrically_linear = False
+
+    def __init__(self, space: Space, shear: np.ndarray, bulk: np.ndarray, prony: Prony | None = None, lagged=True):
+        self.space, self.shear, self.bulk = space, np.asarray(shear, float), np.asarray(bulk, float)
+        self.u = np.zeros(space.points.shape)
+        self.lagged = lagged
+        self._dilatation = np.zeros((len(space.cells), space.psi.shape[2]))
+        self._lag = self._dilatation.copy()
+        self._mesh = (space.cells, space.grad, space.weight, space.psi)
+        self.branches = Branches(prony, space.weight.shape) if prony else None
+        self._factor, self._history = 1.0, None
+        self.smallest_jacobian = 1.0
+        self._data = None
+
+    def begin_step(self, dt: float) -> None:
+        """Prepare a step of ``dt`` seconds (None: no time passes)."""
+        if self.branches is not None:
+            self._factor, history = self.branches.begin(dt)
+            self._history = np.ascontiguousarray(history[..., :3])
+
+    def displace(self, u: np.ndarray, lag: np.ndarray | None = None) -> None:
+        """Put the body at ``u`` (a predictor); the lagged dilatation becomes that of ``u`` unless given."""
+        self.u = np.array(u)
+        self.internal_force()
+        self._lag = self._dilatation.copy() if lag is None else lag
+
+    def internal_force(self) -> np.ndarray:
+        """(n, 2) N/m at the current displacement."""
+        force = np.zeros_like(self.u)
+        self.smallest_jacobian = kernels.internal_force(
+            self.u, *self._mesh, self.shear, self.bulk, self._history, self._factor, force, self._dilatation
+        )
+        return force
+
+    def tangent(self) -> tuple[np.ndarray, np.ndarray]:
+        """Coefficients of the pattern (nonzeros + 1,) and internal force (n, 2) at the current displacement."""
+        if self._data is None:
+            self._data = self.space.pattern.new_data()
+        self._data[:] = 0
+        force = np.zeros_like(self.u)
+        lag = self._lag if self.lagged else self._dilatation
+        self.smallest_jacobian = kernels.assemble_tangent(
+            self.u, *self._mesh, self.shear, self.bulk, lag, self._history, self._factor,
+            self.space.pattern.scatter, self._data, force,
+        )  # fmt: skip
+        return self._data, force
+
+    def linearise(self, solver) -> tuple[np.ndarray, np.ndarray]:
+        """Factor the tangent; returns the Schur complement (nc, nc) and the internal force (n, 2)."""
+        data, force = self.tangent()
+        return solver.factor(data), force
+
+    def advance(self, du: np.ndarray, share: float = 1.0) -> None:
+        """Accept ``share`` of the linear step ``du`` (n, 2); the predicted dilatation becomes the next lag."""
+        kernels.predict_dilatation(self.u, share * du, *self._mesh, self._lag)
+        self.u = self.u + share * du
+
+    def commit(self) -> None:
+        """The step has converged: let the branches move on."""
+        if self.branches is not None:
+            self.branches.commit(self.isochoric_stress())
+
+    def isochoric_stress(self) -> np.ndarray:
+        """Long-term isochoric second Piola-Kirchhoff stress (ne, nq, 4): 11, 22, 12, 33, Pa."""
+        out = np.empty((*self.space.weight.shape, 4))
+        kernels.isochoric_stress(self.u, self.space.cells, self.space.grad, self.shear, out)
+        return out
+
+    def dilatation(self) -> np.ndarray:
+        """(ne, nm) modes of J - 1; the pressure is kappa times them."""
+        return self._dilatation
+
+    def save(self):
+        """Everything needed to come back to this state."""
+        return self.u.copy(), self._dilatation.copy(), self._lag.copy(), self.branches and self.branches.state()
+
+    def restore(self, state) -> None:
+        self.u, self._dilatation, self._lag = (np.array(part) for part in state[:3])
+        if self.branches is not None:
+            self.branches.restore(state[3])
+
+    def energies(self) -> tuple[float, float, float]:
+        """Network energy, Maxwell-spring energy (J/m) and viscous dissipation rate (W/m)."""
+        f = np.eye(2) + np.einsum("eai,eqaj->eqij", self.u[self.space.cells], self.space.grad)
+        jac = f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
+        i1 = np.einsum("eqij,eqij->eq", f, f) + 1
+        isochoric = 0.5 * self.shear[:, None] * (jac ** (-2 / 3) * i1 - 3)
+        network = np.sum(self.space.weight * isochoric) + 0.5 * np.sum(self.bulk[:, None] * self._dilatation**2)
+        if self.branches is None:
+            return float(network), 0.0, 0.0
+        spring = rate = 0.0
+        for beta, tau, q in zip(self.branches.prony.beta, self.branches.prony.tau, self.branches.q, strict=True):
+            square = np.sum(self.space.weight * deviator_square(push_forward(f, q)) / self.shear[:, None]) / beta
+            spring += square / 4
+            rate += square / (2 * tau)
+        return float(network), float(spring), float(rate)
+
+
+def push_forward(f: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Kirchhoff stress F S F^T (..., 4) of a second Piola-Kirchhoff stress (..., 4: 11, 22, 12, 33) in plane strain."""
+    f11, f12, f21, f22 = f[..., 0, 0], f[..., 0, 1], f[..., 1, 0], f[..., 1, 1]
+    s11, s22, s12, s33 = np.moveaxis(s, -1, 0)
+    a11, a12, a21, a22 = f11 * s11 + f12 * s12, f11 * s12 + f12 * s22, f21 * s11 + f22 * s12, f21 * s12 + f22 * s22
+    return np.stack([a11 * f11 + a12 * f12, a21 * f21 + a22 * f22, a11 * f21 + a12 * f22, s33], axis=-1)
+
+
+def deviator_square(t: np.ndarray) -> np.ndarray:
+    """dev t : dev t of symmetric tensors (..., 4: 11, 22, 12, 33)."""
+    t11, t22, t12, t33 = np.moveaxis(t, -1, 0)
+    mean = (t11 + t22 + t33) / 3
+    return (t11 - mean) ** 2 + (t22 - mean) ** 2 + (t33 - mean) ** 2 + 2 * t12**2

@@ -1,0 +1,180 @@
+"""Symmetric sparse factorisation that condenses the system onto a few degrees of freedom (the possible contact zone).
+
+``K x = b`` is split in the condensed degrees of freedom ``c`` and the rest ``i``. One factorisation gives the dense Schur
+complement ``S = K_cc - K_ci K_ii^-1 K_ic``; a forward sweep gives the reduced right-hand side, and after the small dense
+problem has been solved by whoever owns it, a backward sweep gives the rest. PARDISO does all of it inside its own
+factorisation; where it is not available SuperLU gives the same answers, slower.
+"""
+
+import ctypes
+import glob
+import os
+import sys
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spla
+
+
+class FactorisationError(RuntimeError):
+    """The matrix is singular to working precision."""
+
+
+class SymmetricPattern:
+    """Upper-triangular CSR pattern of the free degrees of freedom and where each element entry goes.
+
+    Args:
+        element_dofs: (ne, nd) equation number of each local degree of freedom, -1 where prescribed.
+        size: number of equations.
+    """
+
+    def __init__(self, element_dofs: np.ndarray, size: int):
+        self.size = size
+        rows, cols = np.triu_indices(element_dofs.shape[1])
+        i, j = element_dofs[:, rows], element_dofs[:, cols]
+        key = np.minimum(i, j).astype(np.int64) * size + np.maximum(i, j)
+        used = (i >= 0) & (j >= 0)
+        keys, position = np.unique(key[used], return_inverse=True)
+        diagonal = np.arange(size, dtype=np.int64) * (size + 1)
+        if not np.isin(diagonal, keys, assume_unique=True).all():
+            raise FactorisationError("some nodes belong to no element")
+        self.nonzeros = len(keys)
+        self.scatter = np.full(key.shape, self.nonzeros, dtype=np.int32)  # the extra slot swallows prescribed entries
+        self.scatter[used] = position
+        self.indices = (keys % size).astype(np.int32)
+        self.indptr = np.searchsorted(keys // size, np.arange(size + 1)).astype(np.int32)
+
+    def new_data(self) -> np.ndarray:
+        """Zeroed coefficient storage (nonzeros + 1,); the last entry is the discard slot."""
+        return np.zeros(self.nonzeros + 1)
+
+    def matrix(self, data: np.ndarray) -> sp.csr_matrix:
+        """The full symmetric matrix (both triangles) as CSR."""
+        upper = sp.csr_matrix((data[:-1], self.indices, self.indptr), shape=(self.size, self.size))
+        return (upper + sp.triu(upper, 1).T).tocsr()
+
+
+def _mkl_path():
+    found = sorted(glob.glob(os.path.join(sys.prefix, "lib", "libmkl_rt.so*")), key=len)
+    return found[0] if found else None
+
+
+def pardiso_available() -> bool:
+    return os.environ.get("FINGERPAD_LINEAR_SOLVER", "pardiso") == "pardiso" and _mkl_path() is not None
+
+
+class PardisoCondensation:
+    """Intel MKL PARDISO (through the pypardiso wheel) as LDL^T.
+
+    Its Cholesky is a quarter faster, but with a Schur complement it crashes the process, instead of reporting, when the
+    tangent is indefinite; LDL^T takes definite and indefinite tangents alike.
+    """
+
+    name = "pardiso"
+
+    def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray):
+        os.environ.setdefault("PYPARDISO_MKL_RT", _mkl_path())
+        from pypardiso import PyPardisoSolver
+
+        self._pattern, self.condensed = pattern, np.asarray(condensed, dtype=np.int64)
+        if np.any(np.diff(self.condensed) <= 0):
+            raise ValueError("condensed equations must be ascending")
+        self._ia, self._ja = pattern.indptr + 1, pattern.indices + 1
+        perm = np.zeros(pattern.size, dtype=np.int32)
+        perm[self.condensed] = 1
+        self._handle = PyPardisoSolver(mtype=-2)
+        self._handle.perm = perm
+        self._handle.iparm[:] = 0
+        # own settings; METIS; pivot perturbation; Bunch-Kaufman; report inertia; Schur complement and its factors
+        for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 36: 2 if len(self.condensed) else 0}.items():
+            self._handle.iparm[i - 1] = value
+        self._data = self._dummy = np.zeros(max(pattern.size, pattern.nonzeros))
+        self._call(11, self._dummy, np.zeros(pattern.size))
+
+    def _call(self, phase, right, out):
+        handle = self._handle
+        i32, f64, one = ctypes.POINTER(ctypes.c_int32), ctypes.POINTER(ctypes.c_double), ctypes.c_int32(1)
+        error = ctypes.c_int32(0)
+        handle._mkl_pardiso(
+            handle.pt.ctypes.data_as(ctypes.POINTER(handle._pt_type[0])), one, one, ctypes.c_int32(handle.mtype),
+            ctypes.c_int32(phase), ctypes.c_int32(self._pattern.size), self._data.ctypes.data_as(f64),
+            self._ia.ctypes.data_as(i32), self._ja.ctypes.data_as(i32), handle.perm.ctypes.data_as(i32), one,
+            handle.iparm.ctypes.data_as(i32), ctypes.c_int32(0), right.ctypes.data_as(f64), out.ctypes.data_as(f64), error,
+        )  # fmt: skip
+        return error.value
+
+    def factor(self, data: np.ndarray) -> np.ndarray:
+        """Factorise coefficients of the pattern (nonzeros + 1,); returns the Schur complement (nc, nc).
+
+        Raises:
+            FactorisationError: singular to working precision.
+        """
+        self._data = data
+        nc = len(self.condensed)
+        schur = np.zeros((nc, nc)) if nc else self._dummy
+        if self._call(22, self._dummy, schur) != 0 or not np.isfinite(schur).all():
+            raise FactorisationError("the tangent is singular")
+        return schur if nc else np.zeros((0, 0))
+
+    @property
+    def negative_pivots(self) -> int:
+        """Negative eigenvalues of the last factored matrix: 0 for a stable equilibrium without contact forces."""
+        return int(self._handle.iparm[22])
+
+    def forward(self, right: np.ndarray) -> np.ndarray:
+        """Reduced right-hand side (nc,) for the condensed degrees of freedom; keeps the rest for :meth:`backward`."""
+        self._reduced = np.zeros(self._pattern.size)
+        self._call(331 if len(self.condensed) else 33, np.array(right, dtype=float), self._reduced)
+        return self._reduced[self.condensed]
+
+    def backward(self, condensed_values: np.ndarray) -> np.ndarray:
+        """Full solution (n,) from the condensed part (nc,)."""
+        if not len(self.condensed):
+            return self._reduced
+        reduced = self._reduced.copy()
+        reduced[self.condensed] = condensed_values
+        out = np.zeros_like(reduced)
+        self._call(333, reduced, out)
+        return out
+
+    def __del__(self):
+        if hasattr(self, "_handle"):
+            self._call(-1, self._dummy, np.zeros(1))
+
+
+class SuperLUCondensation:
+    """The same three verbs with scipy's SuperLU, for machines without PARDISO."""
+
+    name = "superlu"
+
+    def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray):
+        self._pattern, self.condensed = pattern, np.asarray(condensed, dtype=np.int64)
+        self._interior = np.setdiff1d(np.arange(pattern.size), self.condensed)
+        self.negative_pivots = 0
+
+    def factor(self, data: np.ndarray) -> np.ndarray:
+        matrix = self._pattern.matrix(data).tocsc()
+        i, c = self._interior, self.condensed
+        try:
+            self._lu = spla.splu(matrix[i][:, i], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        except RuntimeError as error:
+            raise FactorisationError("the tangent is singular") from error
+        self._coupling = matrix[c][:, i]
+        schur = matrix[c][:, c].toarray() - self._coupling @ self._lu.solve(self._coupling.T.toarray())
+        return (schur + schur.T) / 2
+
+    def forward(self, right: np.ndarray) -> np.ndarray:
+        self._interior_solution = self._lu.solve(right[self._interior])
+        return right[self.condensed] - self._coupling @ self._interior_solution
+
+    def backward(self, condensed_values: np.ndarray) -> np.ndarray:
+        out = np.empty(self._pattern.size)
+        out[self.condensed] = condensed_values
+        out[self._interior] = self._interior_solution - self._lu.solve(self._coupling.T @ condensed_values)
+        return out
+
+
+def condensation(pattern: SymmetricPattern, condensed: np.ndarray):
+    """The best available solver for this pattern, condensing onto the given equations (nc,)."""
+    solver = PardisoCondensation if pardiso_available() else SuperLUCondensation
+    return solver(pattern, condensed)

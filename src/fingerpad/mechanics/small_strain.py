@@ -1,0 +1,105 @@
+"""The small-strain body: the linearisation of the finite one, its own and cheaper path.
+
+The tangent is constant and factored once for each step size. A Prony branch of a linear body needs no tensors at quadrature
+points: it is a *branch displacement* v with ``v(t + dt) = exp(-dt/tau) v(t) + gamma (u(t + dt) - u(t))`` whose stress is beta
+times the deviatoric stress of v.
+"""
+
+import numpy as np
+
+from fingerpad.mechanics import kernels
+from fingerpad.mechanics.linear_solver import SymmetricPattern
+from fingerpad.mechanics.space import Space
+from fingerpad.mechanics.viscoelasticity import step_coefficients
+from fingerpad.specimen.materials import Prony
+
+
+class SmallStrainBody:
+    """Linear body with the verbs of :class:`~fingerpad.mechanics.finite_strain.FiniteStrainBody` (same arguments)."""
+
+    geometrically_linear = True
+    smallest_jacobian = 1.0
+
+    def __init__(self, space: Space, shear: np.ndarray, bulk: np.ndarray, prony: Prony | None = None):
+        self.space, self.shear, self.bulk, self.prony = space, np.asarray(shear, float), np.asarray(bulk, float), prony
+        self.u = np.zeros(space.points.shape)
+        self.v = np.zeros((len(prony.tau) if prony else 0, *self.u.shape))
+        self._last = self.u.copy()
+        nodes = space.cells
+        everything = SymmetricPattern(np.concatenate([2 * nodes, 2 * nodes + 1], axis=1), 2 * len(space.points))
+        self._deviatoric = everything.matrix(self._stiffness(everything, 1.0, 0.0))
+        self._volumetric = everything.matrix(self._stiffness(everything, 0.0, 1.0))
+        self._free = [self._stiffness(space.pattern, 1.0, 0.0), self._stiffness(space.pattern, 0.0, 1.0)]
+        self._factored = None
+        self._begin(1.0, np.zeros_like(self.u))
+
+    def _stiffness(self, pattern, deviatoric, volumetric):
+        space, data = self.space, pattern.new_data()
+        zero = np.zeros_like(self.u)
+        no_lag = np.zeros((len(space.cells), space.psi.shape[2]))
+        kernels.assemble_tangent(
+            zero, space.cells, space.grad, space.weight, space.psi, deviatoric * self.shear, volumetric * self.bulk,
+            no_lag, None, 1.0, pattern.scatter, data, zero.copy(),
+        )  # fmt: skip
+        return data
+
+    def _begin(self, factor, history):
+        self._factor, self._history = factor, history
+
+    def begin_step(self, dt: float) -> None:
+        """Prepare a step of ``dt`` seconds."""
+        if self.prony:
+            self._decay, self._gamma, factor = step_coefficients(self.prony, dt)
+            beta = self.prony.beta
+            branch = np.tensordot(beta * self._decay, self.v, axes=1) - np.sum(beta * self._gamma) * self._last
+            self._begin(factor, branch)
+
+    def displace(self, u: np.ndarray, lag=None) -> None:
+        self.u = np.array(u)
+
+    def internal_force(self) -> np.ndarray:
+        """(n, 2) N/m at the current displacement."""
+        answering = (self._factor * self.u + self._history).ravel()
+        return (self._deviatoric @ answering + self._volumetric @ self.u.ravel()).reshape(self.u.shape)
+
+    def linearise(self, solver) -> tuple[np.ndarray, np.ndarray]:
+        """Schur complement (nc, nc), factored anew only for a new step size or contact zone, and internal force (n, 2)."""
+        key = (id(solver), self._factor)
+        if self._factored is None or self._factored[0] != key:
+            self._data = self._factor * self._free[0] + self._free[1]
+            self._factored = (key, solver.factor(self._data), solver)
+        return self._factored[1].copy(), self.internal_force()
+
+    def advance(self, du: np.ndarray, share: float = 1.0) -> None:
+        self.u = self.u + share * du
+
+    def commit(self) -> None:
+        """The step has converged: let the branch displacements move on."""
+        if self.prony:
+            decay, gamma = self._decay[:, None, None], self._gamma[:, None, None]
+            self.v = decay * self.v + gamma * (self.u - self._last)
+        self._last = self.u.copy()
+
+    def dilatation(self) -> np.ndarray:
+        """(ne, nm) modes of div u."""
+        space, out = self.space, np.empty((len(self.space.cells), self.space.psi.shape[2]))
+        kernels.predict_dilatation(np.zeros_like(self.u), self.u, space.cells, space.grad, space.weight, space.psi, out)
+        return out
+
+    def save(self):
+        return self.u.copy(), self.v.copy(), self._last.copy()
+
+    def restore(self, state) -> None:
+        self.u, self.v, self._last = (part.copy() for part in state)
+
+    def energies(self) -> tuple[float, float, float]:
+        """Network energy, Maxwell-spring energy (J/m) and viscous dissipation rate (W/m)."""
+        u = self.u.ravel()
+        network = 0.5 * u @ (self._deviatoric @ u + self._volumetric @ u)
+        spring = rate = 0.0
+        if self.prony:
+            for beta, tau, v in zip(self.prony.beta, self.prony.tau, self.v, strict=True):
+                energy = 0.5 * beta * v.ravel() @ (self._deviatoric @ v.ravel())
+                spring += energy
+                rate += 2 * energy / tau
+        return float(network), float(spring), float(rate)

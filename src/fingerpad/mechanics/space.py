@@ -1,0 +1,133 @@
+"""A mesh turned into arrays the element loops read: gradients, weights, pressure modes, equations, pattern."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fingerpad.mechanics.elements import EDGE_WEIGHTS, ELEMENTS, edge_shape
+from fingerpad.mechanics.linear_solver import SymmetricPattern
+
+DEFAULT_ELEMENT = {"quad9": "Q2P1", "quad4": "Q1P0", "tri6": "P2B"}
+
+
+@dataclass(frozen=True)
+class PlaneStrain:
+    """What a two-dimensional field means in three dimensions: no out-of-plane stretch, force per contact length.
+
+    Attributes:
+        contact_length: m; newtons over it are the newtons per metre of the model.
+    """
+
+    contact_length: float = 1.0
+    out_of_plane_stretch: float = 1.0
+
+    def volume_weight(self, points: np.ndarray) -> np.ndarray:
+        """Volume per cross-section area at points (..., 2); an axisymmetric measure would return 2 pi r."""
+        return np.ones(points.shape[:-1])
+
+
+class Space:
+    """Displacement and pressure spaces on one mesh.
+
+    Args:
+        points: (n, 2) m. cells: (ne, nen) in the order of gmsh (6-node triangles are given their bubble node here).
+        kind: "quad9", "quad4" or "tri6". element: key of ELEMENTS; None = the default for the kind.
+        fixed: (n, 2) bool, prescribed degrees of freedom.
+
+    Attributes:
+        points, cells: as used (with bubble nodes). grad (ne, nq, nen, 2) 1/m; weight (ne, nq) m^2 (times the measure);
+        psi (ne, nq, nm) pressure modes, orthonormal in the weight; equation (n, 2) equation number or -1; size.
+
+    Raises:
+        ValueError: an element is inverted or the element does not fit the mesh.
+    """
+
+    def __init__(self, points, cells, kind, fixed, element=None, measure=None):
+        points, cells, fixed = np.asarray(points, float), np.asarray(cells, np.int32), np.asarray(fixed, bool)
+        self.element = ELEMENTS[element or DEFAULT_ELEMENT[kind]]
+        self.measure = measure or PlaneStrain()
+        if kind == "tri6" and self.element.nodes_per_element == 7:
+            centroid = -points[cells[:, :3]].sum(1) / 9 + 4 / 9 * points[cells[:, 3:]].sum(1)
+            cells = np.column_stack([cells, len(points) + np.arange(len(cells), dtype=np.int32)])
+            points = np.vstack([points, centroid])
+            fixed = np.vstack([fixed, np.zeros((len(cells), 2), bool)])
+        if cells.shape[1] != self.element.nodes_per_element:
+            raise ValueError(f"element {self.element.name} does not fit a mesh of {kind}")
+        self.points, self.cells, self.fixed = points, cells, fixed
+        x = points[cells]
+        jacobian = np.einsum("qai,eaj->eqij", self.element.gradients, x)
+        det = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
+        if det.min() <= 0:
+            raise ValueError(f"element {int(det.min(1).argmin())} is inverted")
+        inverse = np.linalg.inv(jacobian)
+        self.grad = np.ascontiguousarray(np.einsum("eqij,qaj->eqai", inverse, self.element.gradients))
+        position = np.einsum("qa,eai->eqi", self.element.values, x)
+        self.weight = det * self.element.weights * self.measure.volume_weight(position)
+        self._centre = x.mean(1)
+        self._span = np.sqrt(self.weight.sum(1))
+        modes = self._raw_modes(position)
+        gram = np.einsum("eq,eqa,eqb->eab", self.weight, modes, modes)
+        self._orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
+        self.psi = np.ascontiguousarray(np.einsum("eqa,eba->eqb", modes, self._orthonormal))
+        self.equation = np.full(points.shape, -1, dtype=np.int64)
+        self.equation[~fixed] = np.arange(np.count_nonzero(~fixed))
+        self.size = int(self.equation.max()) + 1
+
+    def _raw_modes(self, position):
+        """Pressure modes before orthonormalisation at points (ne, nq, 2): 1, x, y about the centre, or one per point."""
+        count = self.element.pressure_modes
+        if count not in (1, 3):
+            return np.broadcast_to(np.eye(count), (len(position), count, count))
+        local = (position - self._centre[:, None]) / self._span[:, None, None]
+        return np.concatenate([np.ones((*local.shape[:2], 1)), local], axis=2)[:, :, :count]
+
+    @property
+    def nodes(self) -> int:
+        return len(self.points)
+
+    @cached_property
+    def pattern(self) -> SymmetricPattern:
+        return SymmetricPattern(self.element_equations(), self.size)
+
+    def element_equations(self) -> np.ndarray:
+        """(ne, 2 nen) equations in local order (all x, all y)."""
+        return np.concatenate([self.equation[self.cells, 0], self.equation[self.cells, 1]], axis=1)
+
+    def pressure_modes(self, elements: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Orthonormal pressure modes (n, nm) of ``elements`` (n,) at physical ``points`` (n, 2).
+
+        Raises:
+            ValueError: the element's pressure is pointwise and has no value between its quadrature points.
+        """
+        count = self.element.pressure_modes
+        if count not in (1, 3):
+            raise ValueError(f"{self.element.name} has no pressure field")
+        local = (points - self._centre[elements]) / self._span[elements][:, None]
+        raw = np.column_stack([np.ones(len(points)), local])[:, :count]
+        return np.einsum("na,nba->nb", raw, self._orthonormal[elements])
+
+    def to_equations(self, field: np.ndarray) -> np.ndarray:
+        """Values of a nodal field (n, 2) at the free equations (size,)."""
+        return field[~self.fixed]
+
+    def to_nodes(self, vector: np.ndarray) -> np.ndarray:
+        """Nodal field (n, 2) with ``vector`` (size,) at the free degrees of freedom and zero elsewhere."""
+        out = np.zeros(self.points.shape)
+        out[~self.fixed] = vector
+        return out
+
+
+def edge_load_vectors(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Nodal vectors (n, 2) of ``int N_a n ds`` over edges (m, 2 or 3; start, end[, middle]) with unit outward pressure.
+
+    The body lies on the right of start -> end; the vector points out of it. This is the consistent nodal load of a uniform
+    pressure of one on the curve as it lies now, so force over it is pressure on straight and curved edges alike.
+    """
+    values, slopes = edge_shape(edges.shape[1] - 1)
+    tangent = np.einsum("qa,mai->mqi", slopes, points[edges])
+    normal = np.stack([-tangent[..., 1], tangent[..., 0]], axis=-1)
+    nodal = np.einsum("q,qa,mqi->mai", EDGE_WEIGHTS, values, normal)
+    out = np.zeros(points.shape)
+    np.add.at(out, edges, nodal)
+    return out

@@ -1,0 +1,368 @@
+"""Quasi-static stepping: Newton's method with the exact contact problem inside, step cutting, and checks of every state.
+
+The stepper is composed of a body (small or finite strain, with or without Prony branches), the skin that may touch and a rigid
+profile. It knows nothing of scenes, plans or files. Time enters only through the step sizes; inertia is never solved.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fingerpad.mechanics.contact import ContactError, Zone, solve_contact
+from fingerpad.mechanics.linear_solver import FactorisationError, condensation
+from fingerpad.stimuli.motion import STEADY, Step
+
+
+class NonConvergence(RuntimeError):
+    """A step could not be completed even after cutting.
+
+    Attributes:
+        time: s, where the last converged state stands. reason: what failed. advice: what to try.
+        records: the records of every converged scheduled step.
+    """
+
+    def __init__(self, time: float, reason: str, advice: str):
+        super().__init__(f"no convergence after t = {time:.6g} s: {reason}; try {advice}")
+        self.time, self.reason, self.advice, self.records = time, reason, advice, []
+
+
+class _StepFailure(RuntimeError):
+    """One attempt at a step failed; the message is the reason."""
+
+
+@dataclass(frozen=True)
+class NewtonSettings:
+    """Tolerances relative to the current contact force and to the node spacing, and limits."""
+
+    force_tolerance: float = 1e-4
+    gap_tolerance: float = 1e-3
+    max_iterations: int = 14
+    max_halvings: int = 10
+
+
+@dataclass(frozen=True)
+class Skin:
+    """The part of the boundary that may touch.
+
+    Attributes:
+        nodes: (ns,) ordered along the skin. edges: (m, 2 or 3) boundary edges (start, end[, middle]), body on their right.
+        spacing: m, smallest distance of neighbouring nodes. start: indices (first, last + 1) of the first contact zone.
+    """
+
+    nodes: np.ndarray
+    edges: np.ndarray
+    spacing: float
+    start: tuple[int, int]
+
+
+@dataclass
+class Record:
+    """What one converged step left behind (arrays over the skin are (ns,))."""
+
+    leg: int
+    time: float
+    depth: float
+    force: float
+    tangential_force: float
+    nodal_force: np.ndarray
+    gradient: np.ndarray
+    gap: np.ndarray
+    displacement: np.ndarray  # (n, 2)
+    iterations: int
+    halvings: int
+    residual: float
+    complementarity: float
+    smallest_jacobian: float
+    energy_error: float
+    work: float
+    energies: tuple[float, float, float]
+    dissipated: float
+
+
+class QuasiStatic:
+    """Walks a schedule of steps.
+
+    Args:
+        body: FiniteStrainBody or SmallStrainBody, unloaded. skin: where contact may happen. profile: the rigid shape.
+        observers: callables ``(body, dt)`` run after each converged substep (receptors keep their own history so).
+        external: (n, 2) dead nodal forces, N/m, or None.
+    """
+
+    def __init__(self, body, skin: Skin, profile, settings: NewtonSettings | None = None, observers=(), external=None):
+        self.body, self.skin, self.profile = body, skin, profile
+        self.settings = settings or NewtonSettings()
+        self.observers = observers
+        self.external = external
+        self.points = body.space.points
+        self.nodal_force = np.zeros(len(skin.nodes))
+        self.active = np.zeros(len(skin.nodes), bool)
+        self.depth = 0.0
+        self.time = 0.0
+        self.work = self.dissipated = 0.0
+        self._rate = 0.0
+        self._control = {"force": 0.0, "depth": 0.0}
+        self._set_zone(*skin.start)
+        self.height = self._first_touch()
+        self._previous = None
+        self.total_iterations = self.total_halvings = self.factorisations = 0
+
+    # -- geometry ---------------------------------------------------------------------------------------------------
+
+    def _set_zone(self, first, last):
+        self._range = slice(max(first, 0), min(last, len(self.skin.nodes)))
+        self.zone = Zone(self.skin.nodes[self._range], self.body.space.equation)
+        self.solver = condensation(self.body.space.pattern, self.zone.condensed)
+
+    def _grow_zone(self):
+        first, last = self._range.start, self._range.stop
+        more = max(8, (last - first) // 3)
+        self._set_zone(first - more if first else 0, last + more)
+
+    def _zone_is_tight(self):
+        """Does contact reach an end of the zone that is not an end of the skin?"""
+        on = np.flatnonzero(self.active[self._range])
+        if not len(on):
+            return False
+        low = self._range.start > 0 and on[0] < 3
+        return low or (self._range.stop < len(self.skin.nodes) and on[-1] >= len(self.zone.nodes) - 3)
+
+    def _evaluate(self, nodes):
+        position = self.points[nodes] + self.body.u[nodes]
+        return self.profile.evaluate(position - np.array([0.0, self.height - self.depth]))
+
+    def _first_touch(self) -> float:
+        """Height of the profile's origin at which it just touches the undeformed skin."""
+        skin = self.points[self.skin.nodes]
+        top = skin[:, 1].max()
+
+        def closest(height):
+            return self.profile.evaluate(skin - np.array([0.0, height]))[0].min()
+
+        span = np.ptp(skin[:, 1]) + np.ptp(skin[:, 0])
+        if abs(closest(top)) < 1e-15 * span:
+            return top
+        return brentq(closest, top - span, top + span, xtol=1e-15 * span, rtol=1e-15)
+
+    # -- one step ---------------------------------------------------------------------------------------------------
+
+    def _save(self):
+        return self.body.save(), self.nodal_force.copy(), self.active.copy(), self.depth
+
+    def _restore(self, state):
+        self.body.restore(state[0])
+        self.nodal_force, self.active, self.depth = state[1].copy(), state[2].copy(), state[3]
+
+    def _attempt(self, dt, control, target):
+        """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure."""
+        body, settings = self.body, self.settings
+        body.begin_step(dt)
+        for iteration in range(1, settings.max_iterations + 1):
+            if self._zone_is_tight():
+                self._grow_zone()
+            try:
+                residual, gap, gradient = self._iterate(control, target)
+            except (FactorisationError, ContactError) as error:
+                raise _StepFailure(str(error)) from error
+            if not np.isfinite(residual):
+                raise _StepFailure("the residual is not finite")
+            if residual <= 1.0 and not self._zone_is_tight():
+                return iteration, residual, gap, gradient
+        raise _StepFailure(f"{settings.max_iterations} Newton iterations did not suffice")
+
+    def _iterate(self, control, target):
+        """One Newton iteration; returns the residual over its tolerance and the new gap and gradient of the zone."""
+        body, zone, part = self.body, self.zone, self._range
+        space = body.space
+        gap, gradient, curvature = self._evaluate(zone.nodes)
+        schur, internal = body.linearise(self.solver)
+        if not body.smallest_jacobian > 0:
+            raise _StepFailure("an element has turned inside out")
+        self.factorisations += 1
+        load = -internal if self.external is None else self.external - internal
+        reduced = self.solver.forward(space.to_equations(load))
+        goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
+        step = solve_contact(
+            zone, schur, reduced, gap, gradient, curvature, self.nodal_force[part], self.active[part], **goal
+        )
+        du = space.to_nodes(self.solver.backward(step.condensed_displacement))
+        u, depth = body.u, self.depth
+        share = 1.0
+        while True:
+            body.advance(du, share)
+            internal = body.internal_force()
+            if body.smallest_jacobian > 0.02 or body.geometrically_linear:
+                break
+            share /= 2
+            if share < 0.05:
+                raise _StepFailure("an element would turn inside out")
+            body.displace(u)
+        self.depth = depth + share * step.depth_change
+        self.nodal_force[:] = 0
+        self.active[:] = False
+        self.nodal_force[part], self.active[part] = step.force, step.active
+        gap, gradient, _ = self._evaluate(zone.nodes)
+        unbalanced = -internal if self.external is None else self.external - internal
+        unbalanced[zone.nodes] += step.force[:, None] * gradient
+        scale = max(step.force.sum(), np.abs(self.external).sum() if self.external is not None else 0.0)
+        if scale == 0:  # nothing touches: the body must come back to rest
+            scale = body.space.measure.out_of_plane_stretch * np.abs(internal).sum() + 1e-30
+        equilibrium = np.linalg.norm(space.to_equations(unbalanced)) / scale
+        opening = np.abs(gap[step.active]).max(initial=0.0)
+        penetration = max(0.0, -gap.min(initial=0.0))
+        balance = 0.0
+        if control == "force" and target > 0:
+            balance = abs(target + np.sum(step.force * gradient[:, 1])) / target
+        settings = self.settings
+        residual = max(
+            equilibrium / settings.force_tolerance,
+            balance / settings.force_tolerance,
+            max(opening, penetration) / (settings.gap_tolerance * self.skin.spacing),
+        )
+        return residual if share == 1.0 else max(residual, 2.0), gap, gradient
+
+    def _check(self, control, target, gap):
+        """States that satisfy the equations may still be wrong; refuse them."""
+        force = -self.nodal_force[self._range] @ self._gradient[:, 1]
+        if force < -1e-9 * self.nodal_force.sum():
+            raise _StepFailure("the indenter is pulled instead of pushed")
+        if control == "depth" and target > 0 and not self.active.any() and self.depth > self.skin.spacing:
+            raise _StepFailure("contact was lost under a pressed indenter")
+        outside = np.ones(len(self.skin.nodes), bool)
+        outside[self._range] = False
+        if outside.any():
+            far = self._evaluate(self.skin.nodes[outside])[0]
+            if far.min() < -self.settings.gap_tolerance * self.skin.spacing:
+                self._grow_zone()
+                raise _StepFailure("skin outside the contact zone touches the profile")
+
+    def _advance(self, dt, control, target, predict):
+        """One substep with predictor, check and commit."""
+        state = self._save()
+        try:
+            if predict is not None and self._previous is not None:
+                u, forces, depth, lag = self._previous
+                body_u, ratio = self.body.u, predict
+                self.body.displace(body_u + ratio * (body_u - u))
+                if not self.body.smallest_jacobian > 0.1:
+                    self.body.displace(body_u)
+                else:
+                    self.nodal_force = np.maximum(self.nodal_force + ratio * (self.nodal_force - forces), 0)
+                    self.depth = self.depth + ratio * (self.depth - depth)
+            else:
+                self.body.displace(self.body.u)
+            iterations, residual, gap, gradient = self._attempt(dt, control, target)
+            self._gradient, self._gap = gradient, gap
+            self._check(control, target, gap)
+        except _StepFailure:
+            self._restore(state)
+            raise
+        old_force = getattr(self, "_force", 0.0)
+        self._force = float(-self.nodal_force[self._range] @ gradient[:, 1])
+        self._tangential = float(-self.nodal_force[self._range] @ gradient[:, 0])
+        self.body.commit()
+        for observe in self.observers:
+            observe(self.body, dt)
+        self.work += 0.5 * (old_force + self._force) * (self.depth - state[3])
+        self._energies = self.body.energies()
+        rate = self._energies[2]
+        if rate or self._rate:
+            self.dissipated += 0.5 * (self._rate + rate) * dt if dt < STEADY else 0.0
+        self._rate = rate
+        self._previous = (state[0][0], state[1], state[3], None)
+        return iterations, residual
+
+    def run(self, steps: Iterable[Step], on_step: Callable[[Record], None] | None = None) -> list[Record]:
+        """Walk the schedule; returns one record per scheduled step.
+
+        Raises:
+            NonConvergence: a step fails even after ``max_halvings`` halvings; its ``records`` hold what converged.
+        """
+        records: list[Record] = []
+        last = None
+        for step in steps:
+            control = "force" if step.force is not None else "depth"
+            target = step.force if control == "force" else step.depth
+            begin = getattr(self, "_force", 0.0) if control == "force" else self.depth
+            smooth = last is not None and last.leg == step.leg
+            done, size, iterations, halvings = 0.0, 1.0, 0, 0
+            ratio = step.dt / last.dt if smooth else None
+            while done < 1.0:
+                size = min(size, 1.0 - done)
+                goal = target if done + size >= 1.0 else begin + (done + size) * (target - begin)
+                try:
+                    used, residual = self._advance(size * step.dt, control, goal, ratio if size == 1.0 else None)
+                except _StepFailure as failure:
+                    if ratio is not None and size == 1.0:
+                        ratio = None  # first doubt the predictor, then the step
+                        continue
+                    size /= 2
+                    halvings += 1
+                    if size < 0.5**self.settings.max_halvings:
+                        problem = NonConvergence(self.time, str(failure), self._advice(str(failure)))
+                        problem.records = records
+                        raise problem from failure
+                    continue
+                done += size
+                iterations += used
+                self.time = step.time - (1.0 - done) * step.dt if step.dt < STEADY else step.time
+                size *= 2
+            last = step if not halvings else None
+            self.total_iterations += iterations
+            self.total_halvings += halvings
+            record = self._record(step, iterations, halvings, residual)
+            records.append(record)
+            if on_step:
+                on_step(record)
+        return records
+
+    def _advice(self, reason):
+        if "inside out" in reason:
+            return "a finer skin mesh, a fillet on sharp edges, or a smaller depth or force"
+        if "carry the force" in reason:
+            return "depth control, or a profile that stays above the pad"
+        return "more steps, a finer mesh, or depth instead of force control"
+
+    def _record(self, step, iterations, halvings, residual):
+        gap = np.full(len(self.skin.nodes), np.nan)
+        gap[self._range] = self._gap
+        gradient = np.zeros((len(self.skin.nodes), 2))
+        gradient[self._range] = self._gradient
+        total = max(self.nodal_force.sum(), 1e-300)
+        slack = np.abs(self._gap) * self.nodal_force[self._range]
+        stored = self._energies[0] + self._energies[1]
+        balance = abs(self.work - stored - self.dissipated) / max(abs(self.work), 1e-300)
+        return Record(
+            step.leg, step.time, self.depth, self._force, self._tangential, self.nodal_force.copy(), gradient, gap,
+            self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,
+            float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
+            float(balance) if self.work else 0.0, self.work, self._energies, self.dissipated,
+        )  # fmt: skip
+
+
+def equilibrate(body, external: np.ndarray, settings: NewtonSettings | None = None, dt: float = 1.0) -> int:
+    """Bring a body without contact into equilibrium with dead nodal forces (n, 2) N/m; returns the iterations.
+
+    Prescribed displacements are those already standing in ``body.u``.
+
+    Raises:
+        NonConvergence: Newton's method fails.
+    """
+    settings = replace(settings or NewtonSettings(), force_tolerance=1e-9)
+    solver = condensation(body.space.pattern, np.zeros(0, dtype=np.int64))
+    body.begin_step(dt)
+    body.displace(body.u)
+    for iteration in range(1, 4 * settings.max_iterations):
+        _, internal = body.linearise(solver)
+        unbalanced = body.space.to_equations(external - internal)
+        solver.forward(unbalanced)
+        body.advance(body.space.to_nodes(solver.backward(np.zeros(0))))
+        force = body.internal_force()
+        if not body.smallest_jacobian > 0:
+            break
+        scale = max(np.abs(external).max(), np.abs(force).max(), 1e-300)
+        if np.abs(body.space.to_equations(external - force)).max() <= settings.force_tolerance * scale:
+            body.commit()
+            return iteration
+    raise NonConvergence(0.0, "Newton's method found no equilibrium", "smaller loads")

@@ -1,0 +1,1 @@
+"""What is felt: the mechanical state at material points under the skin, where receptors sit."""

@@ -1,0 +1,171 @@
+"""Mechanical state at chosen material points, with their own Prony history.
+
+Receptor depths fall where they fall, not on quadrature points. Each receptor is therefore treated like one more quadrature
+point (of zero weight): displacement gradient and pressure are evaluated there exactly as the element interpolates them, and
+the branch stresses follow the same recurrence as in the body.
+
+Three meanings of strain energy density (per undeformed volume) are kept apart, because under constant force they disagree even
+in trend (see :func:`strain_energies`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fingerpad.mechanics.finite_strain import deviator_square, push_forward
+from fingerpad.mechanics.space import Space
+from fingerpad.mechanics.viscoelasticity import Branches
+
+
+class ReceptorError(ValueError):
+    """A receptor lies outside the meshed tissue."""
+
+
+@dataclass(frozen=True)
+class Location:
+    """Where material points sit in a mesh: element (nr,), reference coordinates (nr, 2)."""
+
+    element: np.ndarray
+    xi: np.ndarray
+
+
+def locate(space: Space, points: np.ndarray) -> Location:
+    """Find the elements and reference coordinates of physical points (nr, 2), m.
+
+    Raises:
+        ReceptorError: a point lies in no element.
+    """
+    points = np.atleast_2d(points)
+    centres = space.points[space.cells].mean(1)
+    tree = cKDTree(centres)
+    _, candidates = tree.query(points, k=min(24, len(centres)))
+    candidates = np.atleast_2d(candidates)
+    element, xi = np.full(len(points), -1), np.zeros((len(points), 2))
+    open_points = np.arange(len(points))
+    for column in candidates.T:
+        if not len(open_points):
+            break
+        trial = column[open_points]
+        local = _inverse_map(space, trial, points[open_points])
+        tolerance = 1e-6
+        inside = (local >= -tolerance).all(1)
+        inside &= local.sum(1) <= 1 + tolerance if space.element.triangle else (local <= 1 + tolerance).all(1)
+        found = open_points[inside]
+        element[found], xi[found] = trial[inside], local[inside]
+        open_points = open_points[~inside]
+    if len(open_points):
+        x, y = points[open_points[0]] * 1e3
+        raise ReceptorError(f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue")
+    return Location(element, xi)
+
+
+def _inverse_map(space, elements, points):
+    xi = np.full((len(elements), 2), 1 / 3 if space.element.triangle else 0.5)
+    nodes = space.points[space.cells[elements]]
+    for _ in range(12):
+        values, gradients = space.element.shape(xi)
+        residual = points - np.einsum("na,nai->ni", values, nodes)
+        jacobian = np.einsum("nai,naj->nji", gradients, nodes)
+        with np.errstate(all="ignore"):
+            determinant = jacobian[:, 0, 0] * jacobian[:, 1, 1] - jacobian[:, 0, 1] * jacobian[:, 1, 0]
+            step = np.column_stack(
+                [
+                    jacobian[:, 1, 1] * residual[:, 0] - jacobian[:, 0, 1] * residual[:, 1],
+                    jacobian[:, 0, 0] * residual[:, 1] - jacobian[:, 1, 0] * residual[:, 0],
+                ]
+            )
+            xi = np.clip(np.nan_to_num(xi + step / determinant[:, None]), -2.0, 3.0)
+    return xi
+
+
+class MaterialPoints:
+    """Receptors in a body; an observer of the stepper.
+
+    Args:
+        body: the body they belong to. points: (nr, 2) undeformed positions, m.
+        shear_instantaneous: (ne,) Pa, the moduli the headline strain energy is measured with.
+
+    Raises:
+        ReceptorError: a point lies outside the mesh.
+    """
+
+    def __init__(self, body, points: np.ndarray, shear_instantaneous: np.ndarray):
+        space = body.space
+        self.location = locate(space, points)
+        element = self.location.element
+        _, slopes = space.element.shape(self.location.xi)
+        self.cells = space.cells[element]
+        jacobian = np.einsum("nai,naj->nij", slopes, space.points[self.cells])
+        self.grad = np.einsum("nij,naj->nai", np.linalg.inv(jacobian), slopes)
+        self.psi = space.pressure_modes(element, np.atleast_2d(points))
+        self.shear, self.bulk = body.shear[element], body.bulk[element]
+        self.shear_instantaneous = np.asarray(shear_instantaneous)[element]
+        self._linear = body.geometrically_linear
+        prony = body.prony if self._linear else body.branches and body.branches.prony
+        self.branches = Branches(prony, (len(element),)) if prony else None
+
+    def _gradient(self, body):
+        return np.einsum("nai,naj->nij", body.u[self.cells], self.grad)
+
+    def _isochoric(self, gradient):
+        if self._linear:
+            strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
+            mean = np.trace(strain, axis1=1, axis2=2) / 3
+            return 2 * self.shear[:, None] * np.stack(
+                [strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], -mean], axis=1
+            )
+        f = np.eye(2) + gradient
+        c = np.einsum("nki,nkj->nij", f, f)
+        det = c[:, 0, 0] * c[:, 1, 1] - c[:, 0, 1] ** 2
+        i1 = c[:, 0, 0] + c[:, 1, 1] + 1
+        modulus, third = self.shear * det ** (-1 / 3), i1 / 3 / det
+        return modulus[:, None] * np.stack(
+            [1 - third * c[:, 1, 1], 1 - third * c[:, 0, 0], third * c[:, 0, 1], 1 - i1 / 3], axis=1
+        )
+
+    def __call__(self, body, dt: float) -> None:
+        """Follow one converged substep of ``dt`` seconds."""
+        if self.branches is not None:
+            self.branches.begin(dt)
+            self.branches.commit(self._isochoric(self._gradient(body)))
+
+    def strain_energies(self, body) -> dict[str, np.ndarray]:
+        """The three strain energy densities (nr,) Pa at the body's present state; see :func:`strain_energies`."""
+        gradient = self._gradient(body)
+        dilatation = np.einsum("nb,nb->n", body.dilatation()[self.location.element], self.psi)
+        stress = self._isochoric(gradient)
+        f = np.broadcast_to(np.eye(2), gradient.shape) if self._linear else np.eye(2) + gradient
+        if self._linear:
+            network = deviator_square(stress) / (4 * self.shear)
+        else:
+            jac = f[:, 0, 0] * f[:, 1, 1] - f[:, 0, 1] * f[:, 1, 0]
+            i1 = np.einsum("nij,nij->n", f, f) + 1
+            network = 0.5 * self.shear * (jac ** (-2 / 3) * i1 - 3)
+        network = network + 0.5 * self.bulk * dilatation**2
+        branch = [] if self.branches is None else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
+        return strain_energies(f, stress, branch, network, self.shear, self.shear_instantaneous, self.bulk, dilatation)
+
+
+def strain_energies(f, stress, branches, network, shear, shear_instantaneous, bulk, dilatation):
+    """Strain energy densities of a finite linear viscoelastic solid, Pa (J per undeformed m^3).
+
+    * ``strain_energy_density`` (headline): the elastic energy that the total stress stands for on the instantaneous moduli,
+      ``tau_dev : tau_dev / (4 G_0) + kappa/2 (J - 1)^2`` with tau the Kirchhoff stress without the volumetric part.
+    * ``strain_energy_network``: psi(C) of the long-term network alone.
+    * ``strain_energy_recoverable``: network plus the Maxwell springs, ``tau_i : tau_i / (4 G_i)`` each.
+
+    Args:
+        f: (nr, 2, 2). stress: (nr, 4) long-term isochoric second Piola-Kirchhoff stress. branches: pairs (beta, (nr, 4) stress).
+        network: (nr,) Pa. shear, shear_instantaneous, bulk: (nr,) Pa. dilatation: (nr,) projected J - 1.
+    """
+    total, springs = stress, 0.0
+    for beta, q in branches:
+        total = total + q
+        springs = springs + deviator_square(push_forward(f, q)) / (4 * beta * shear)
+    headline = deviator_square(push_forward(f, total)) / (4 * shear_instantaneous) + 0.5 * bulk * dilatation**2
+    return {
+        "strain_energy_density": headline,
+        "strain_energy_network": network,
+        "strain_energy_recoverable": network + springs,
+    }

@@ -1,0 +1,292 @@
+"""One scene, simulated: the plan composes body, contact and receptors; the stepper runs; the history is unfolded."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+from threadpoolctl import threadpool_limits
+
+from fingerpad.effects import Plan, plan, schedule
+from fingerpad.mechanics.finite_strain import FiniteStrainBody
+from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tributary_length
+from fingerpad.mechanics.small_strain import SmallStrainBody
+from fingerpad.mechanics.space import PlaneStrain, Space
+from fingerpad.mechanics.stepping import NonConvergence, QuasiStatic, Record, Skin
+from fingerpad.receptors.material_points import MaterialPoints
+from fingerpad.results import add_snapshots, dataset, peak_memory_MB, provenance
+from fingerpad.scene import Scene
+from fingerpad.specimen import mesh_for
+from fingerpad.specimen.materials import Prony, moduli
+from fingerpad.specimen.measures import below_skin
+from fingerpad.specimen.mesh import PadMesh, skin_chain
+from fingerpad.stimuli.profiles import profile_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_plan = plan
+
+
+def simulate(
+    scene: Scene,
+    plan: Plan | None = None,
+    mesh: PadMesh | None = None,
+    progress: Callable[[dict[str, Any]], None] | None = None,
+) -> xr.Dataset:
+    """Simulate a scene.
+
+    Args:
+        scene: a checked scene. plan: how (default: ``fingerpad.plan(scene)``). mesh: the whole pad's mesh (default: built or
+        read as the plan says). progress: called after each step with time_s, end_time_s, contact_width_mm, iterations, cutbacks.
+
+    Returns:
+        The history of the whole pad (see :mod:`fingerpad.results`).
+
+    Raises:
+        PlanError, MeshError, OutlineError: the input cannot be meshed or planned (before anything is solved).
+        ReceptorError: a receptor lies outside the soft tissue.
+        NonConvergence: a step failed for good; its ``dataset`` is the history up to the last converged step.
+    """
+    with threadpool_limits(1):
+        return _Run(scene, plan or _plan(scene), mesh).run(progress)
+
+
+class _Run:
+    """The parts of one simulation, and their way back to the whole pad."""
+
+    def __init__(self, scene: Scene, plan: Plan, mesh: PadMesh | None):
+        self.cpu, self.wall = time.process_time(), time.perf_counter()
+        self.scene, self.plan = scene, plan
+        self.whole = (mesh or mesh_for(scene, plan)).elevated()
+        self.mesh = self.whole.right_half() if plan.effects["symmetry"].on else self.whole
+        self.share = 0.5 if self.mesh.half else 1.0
+        specimen = scene.specimen
+        self.prony = Prony(tuple(t.g for t in specimen.prony), tuple(t.tau for t in specimen.prony))
+        self.body, instantaneous = self._body()
+        self.receptors = self._receptors(instantaneous)
+        self.profile = profile_of(scene.stimulus)
+        self.skin = self._skin()
+        self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=(self.receptors,))
+
+    def _body(self):
+        specimen, plan, mesh = self.scene.specimen, self.plan, self.mesh
+        fixed = np.zeros(mesh.points.shape, bool)
+        for name in ("bone", "nail"):
+            fixed[np.unique(mesh.curves[name])] = True
+        if mesh.half:
+            fixed[np.unique(mesh.curves["symmetry"]), 0] = True
+        space = Space(
+            mesh.points, mesh.cells, mesh.element, fixed, plan.element, PlaneStrain(specimen.contact_length)
+        )
+        layers = [getattr(specimen.layers, name) for name in mesh.regions]
+        known = moduli(
+            [layer.youngs_modulus for layer in layers], [layer.poisson_ratio for layer in layers], self.prony, specimen.moduli
+        )
+        shear = known.shear_long_term if plan.state == "long_term" else known.shear_instantaneous
+        kind = FiniteStrainBody if plan.effects["finite_strain"].on else SmallStrainBody
+        prony = self.prony if plan.effects["viscoelasticity"].on else None
+        return kind(space, shear[mesh.region], known.bulk[mesh.region], prony), known.shear_instantaneous[mesh.region]
+
+    def _receptors(self, instantaneous):
+        receptors = self.scene.outputs.receptors
+        depth, offset = (grid.ravel() for grid in np.meshgrid(receptors.depths, receptors.offsets, indexing="ij"))
+        points = below_skin(self.whole, depth, offset)
+        if self.mesh.half:
+            points = np.abs(points * [1, 0]) + points * [0, 1]
+        self.depth, self.offset = depth, offset
+        return MaterialPoints(self.body, points, instantaneous)
+
+    def _skin(self):
+        chain = skin_chain(self.mesh)
+        x, y = self.mesh.points[chain].T
+        apex = int(np.argmin(np.abs(x) + 10 * (y.max() - y)))
+        spacing = float(np.hypot(np.diff(x), np.diff(y)).min())
+        reach = 1.4 * self.plan.contact.half_width
+        near = np.flatnonzero((np.abs(x - x[apex]) <= reach) & (y > y.max() - np.ptp(y) / 2))
+        start = (int(near.min()) - 8, int(near.max()) + 9)
+        return Skin(chain, self.mesh.curves["skin"], spacing, start)
+
+    def run(self, progress):
+        states: list[dict[str, np.ndarray]] = [self.receptors.strain_energies(self.body)]
+        snapshots: list[tuple[float, np.ndarray, np.ndarray]] = []
+        wanted = self.scene.outputs.snapshots
+        total = self._nominal_end()
+        counts = {"iterations": 0, "cutbacks": 0}
+
+        def after(record: Record):
+            states.append(self.receptors.strain_energies(self.body))
+            if any(abs(record.time - t) <= 1e-9 * max(t, 1e-12) for t in wanted):
+                snapshots.append((record.time, record.displacement, self._element_pressure()))
+            if progress:
+                counts["iterations"] += record.iterations
+                counts["cutbacks"] += record.halvings
+                width = 2e3 * self.share * np.ptp(self._edges(record)) if record.nodal_force.any() else 0.0
+                progress({"time_s": record.time, "end_time_s": total, "contact_width_mm": float(width)} | counts)
+
+        try:
+            records = self.stepper.run(self._steps(), after)
+        except NonConvergence as failure:
+            failure.dataset = self._history(failure.records, states, snapshots, complete=False) if failure.records else None
+            raise
+        return self._history(records, states, snapshots, complete=True)
+
+    def _present(self):
+        return getattr(self.stepper, "_force", 0.0) / self.share, self.stepper.depth
+
+    def _steps(self):
+        for step in schedule(self.scene, self.plan.steps_per_leg, self.plan.timed, self._present):
+            yield step if step.force is None else replace(step, force=step.force * self.share)
+
+    def _nominal_end(self):
+        last = 0.0
+        for step in schedule(self.scene, self.plan.steps_per_leg, self.plan.timed):
+            last = step.time
+        return last or 1.0
+
+    # -- back to the whole pad --------------------------------------------------------------------------------------
+
+    def _element_pressure(self):
+        modes = self.body.dilatation()
+        space = self.body.space
+        mean = np.einsum("eq,eqb,eb->e", space.weight, space.psi, modes) / space.weight.sum(1)
+        return self.body.bulk * mean
+
+    def _length_and_gradient(self, record):
+        position = self.stepper.points + record.displacement
+        return tributary_length(position, self.skin.edges, self.skin.nodes, record.gradient), position
+
+    def _edges(self, record):
+        length, position = self._length_and_gradient(record)
+        edges = contact_edges(position[self.skin.nodes, 0], record.nodal_force / length)
+        return (0.0, edges[1]) if self.mesh.half and record.nodal_force[0] > 0 else edges
+
+    def _history(self, records: list[Record], states, snapshots, complete: bool):
+        unfold = _Unfolding(self.whole, self.mesh, self.skin.nodes)
+        count = len(records) + 1
+        chain = skin_chain(self.whole)
+        out = {name: np.zeros(count) for name in (
+            "force", "tangential_force", "indentation_depth", "contact_width", "centre_pressure", "peak_pressure",
+            "centre_lateral_displacement", "residual", "complementarity_error", "energy_balance_error", "external_work",
+            "stored_energy", "dissipated_energy",
+        )}  # fmt: skip
+        out |= {name: np.zeros(count, np.int32) for name in ("leg", "newton_iterations", "cutbacks")}
+        out["min_detF"] = np.ones(count)
+        for name in ("contact_pressure", "contact_pressure_smoothed", "skin_displacement_x", "skin_displacement_y"):
+            out[name] = np.zeros((count, len(chain)))
+        apex = int(np.argmin(np.abs(self.whole.points[chain, 0]) + 10 * np.ptp(self.whole.points[chain, 1]) * (
+            self.whole.points[chain, 1] < self.whole.points[chain, 1].max() - np.ptp(self.whole.points[chain, 1]) / 2
+        )))  # fmt: skip
+        for k, record in enumerate(records, start=1):
+            length, position = self._length_and_gradient(record)
+            smooth = smoothed_pressure(record.nodal_force, length, self.mesh.half)
+            edges = self._edges(record)
+            u = record.displacement[self.skin.nodes]
+            row = {
+                "force": record.force / self.share,
+                "tangential_force": 0.0 if self.mesh.half else record.tangential_force,
+                "indentation_depth": record.depth,
+                "contact_width": np.nan_to_num(edges[1] - edges[0]) / self.share,
+                "residual": record.residual,
+                "complementarity_error": record.complementarity,
+                "energy_balance_error": record.energy_error,
+                "external_work": record.work / self.share,
+                "stored_energy": (record.energies[0] + record.energies[1]) / self.share,
+                "dissipated_energy": record.dissipated / self.share,
+                "leg": record.leg,
+                "newton_iterations": record.iterations,
+                "cutbacks": record.halvings,
+                "min_detF": record.smallest_jacobian,
+                "contact_pressure": unfold.skin(record.nodal_force / length),
+                "contact_pressure_smoothed": unfold.skin(smooth),
+                "skin_displacement_x": unfold.skin(u[:, 0], odd=True),
+                "skin_displacement_y": unfold.skin(u[:, 1]),
+            }
+            for name, value in row.items():
+                out[name][k] = value
+            out["peak_pressure"][k] = out["contact_pressure_smoothed"][k].max()
+            out["centre_pressure"][k] = out["contact_pressure_smoothed"][k, apex]
+            out["centre_lateral_displacement"][k] = out["skin_displacement_x"][k, apex]
+        for name in states[0]:
+            out[name] = np.array([state[name] for state in states])
+        coordinates = {
+            "time": np.array([0.0] + [record.time for record in records]),
+            "receptor_depth": self.depth,
+            "receptor_offset": self.offset,
+            "skin_x": self.whole.points[chain, 0],
+            "skin_y": self.whole.points[chain, 1],
+        }
+        cost = {
+            "cpu_s": round(time.process_time() - self.cpu, 4),
+            "wall_s": round(time.perf_counter() - self.wall, 4),
+            "peak_rss_MB": round(peak_memory_MB(), 1),
+            "nodes": int(len(self.mesh.points)),
+            "unknowns": int(self.body.space.size),
+            "factorisations": int(self.stepper.factorisations),
+            "linear_solver": self.stepper.solver.name,
+        }
+        history = dataset(
+            out,
+            coordinates,
+            {
+                "title": f"fingerpad history of {self.scene.name}",
+                "complete": int(complete),
+                "scene": self.scene.canonical(),
+                "plan": self.plan.to_dict(),
+                "cost": cost,
+                "estimated_error": float(self.plan.estimated_error),
+                "singular": int(self.profile.singular),
+                "provenance": provenance(),
+            },
+        )
+        if snapshots:
+            cells = self.whole.cells
+            history = add_snapshots(
+                history,
+                [when for when, _, _ in snapshots],
+                self.whole.points,
+                cells,
+                self.whole.region,
+                np.array([unfold.nodes(u) for _, u, _ in snapshots]),
+                np.array([unfold.elements(p) for _, _, p in snapshots]),
+            )
+        return history
+
+
+class _Unfolding:
+    """Values of the solved mesh on the whole mesh; the identity when the whole pad was solved."""
+
+    def __init__(self, whole: PadMesh, solved: PadMesh, skin_nodes: np.ndarray):
+        self.left = whole.points[:, 0] < 0 if solved.half else np.zeros(len(whole.points), bool)
+        if not solved.half:
+            self.node = np.arange(len(whole.points))
+            self.element = np.arange(len(whole.cells))
+        else:
+            self.node = _mirror_match(solved.points, whole.points)
+            self.element = _mirror_match(solved.points[solved.cells].mean(1), whole.points[whole.cells].mean(1))
+        chain = skin_chain(whole)
+        position = np.full(len(solved.points), -1)
+        position[skin_nodes] = np.arange(len(skin_nodes))
+        self._skin, self._skin_left = position[self.node[chain]], self.left[chain]
+
+    def nodes(self, field):
+        out = field[self.node].copy()
+        out[self.left, 0] *= -1
+        return out
+
+    def elements(self, values):
+        return values[self.element]
+
+    def skin(self, values, odd=False):
+        out = values[self._skin]
+        return np.where(self._skin_left, -out, out) if odd else out
+
+
+def _mirror_match(solved, whole):
+    distance, index = cKDTree(solved).query(np.column_stack([np.abs(whole[:, 0]), whole[:, 1]]))
+    assert distance.max() < 1e-6 * np.ptp(whole[:, 0]), "the half mesh is not half of the whole"
+    return index

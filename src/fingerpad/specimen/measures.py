@@ -1,0 +1,71 @@
+"""Measures of a meshed pad: the skin's apex, layer thicknesses, and points at a depth below the skin."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fingerpad.specimen.mesh import MeshError, PadMesh, skin_chain
+
+
+def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
+    """Points (k, 2) m along the skin, following curved edges."""
+    facets, points = mesh.curves["skin"], mesh.points
+    s = np.linspace(-1, 1, per_edge)
+    if facets.shape[1] == 3:
+        shape = np.stack([s * (s - 1) / 2, s * (s + 1) / 2, 1 - s * s])
+    else:
+        shape = np.stack([(1 - s) / 2, (1 + s) / 2])
+    fine = np.einsum("as,fai->fsi", shape, points[facets]).reshape(-1, 2)
+    return np.vstack([fine, fine * [-1, 1]]) if mesh.half else fine
+
+
+def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
+    """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft tissue to the bone, m.
+
+    Raises:
+        MeshError: there is no skin, or no bone below it, at x = 0.
+    """
+    chain = skin_chain(mesh)
+    x, y = mesh.points[chain].T
+    if not (x.min() <= 0 <= x.max()):
+        raise MeshError("mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0")
+    reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
+    near = np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min())
+    bend = -2 * np.polyfit(x[near], y[near], 2)[0]
+    top = y[near].max()
+    bone = mesh.points[np.unique(mesh.curves["bone"])]
+    under = bone[(np.abs(bone[:, 0]) <= np.abs(bone[:, 0]).min() + reach) & (bone[:, 1] < top)]
+    if not len(under):
+        raise MeshError("mesh: there is no bone below x = 0; allowed: a curve named bone under the apex")
+    soft = top - under[:, 1].max()
+    layer = mesh.points[np.unique(mesh.cells[mesh.region == 0])]
+    column = layer[np.abs(layer[:, 0]) < reach]
+    return float(1 / max(bend, 1e-3)), float(top - column[:, 1].min() if len(column) else soft / 4), float(soft)
+
+
+def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """Points (n, 2) m at lateral position ``offsets`` whose distance to the undeformed skin is ``depths`` (n,) m.
+
+    On the axis of a symmetric pad that is straight below the apex; elsewhere depth is measured along the skin's normal, as
+    the layers are.
+
+    Raises:
+        MeshError: no point of that depth exists at that offset.
+    """
+    depths, offsets = np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float))
+    skin = _fine_skin(mesh)
+    tree = cKDTree(skin)
+    order = np.argsort(skin[:, 0])
+    upper = skin[order]
+    upper = upper[upper[:, 1] > mesh.points[:, 1].max() - 0.5 * np.ptp(mesh.points[:, 1])]
+    high = np.interp(offsets, upper[:, 0], upper[:, 1])
+    low = high - 4 * depths
+    for _ in range(60):
+        middle = (low + high) / 2
+        deep = tree.query(np.column_stack([offsets, middle]))[0] > depths
+        low, high = np.where(deep, middle, low), np.where(deep, high, middle)
+    found = np.column_stack([offsets, (low + high) / 2])
+    if np.any(np.abs(tree.query(found)[0] - depths) > 1e-3 * depths):
+        raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")
+    return found

@@ -1,0 +1,1 @@
+"""What touches the pad: rigid profiles as signed distances, and motion programmes."""

@@ -1,0 +1,85 @@
+"""Motion programmes: the legs of a scene turned into steps."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+#: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed after it.
+STEADY = 1e9
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: leg number, end time s, duration s (:data:`STEADY`: to the steady state), and what is reached at its end.
+
+    Exactly one of ``force`` (N per m of contact length) and ``depth`` (m) is given.
+    """
+
+    leg: int
+    time: float
+    dt: float
+    force: float | None = None
+    depth: float | None = None
+
+
+def geometric(duration: float, count: int, first: float) -> np.ndarray:
+    """``count`` step sizes (s) that sum to ``duration``, start at ``first`` and grow by a constant ratio (never shrink)."""
+    if count == 1 or first * count >= duration:
+        return np.full(count, duration / count)
+    ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, 1 + (duration / first) ** (1 / (count - 1)))
+    steps = first * ratio ** np.arange(count)
+    return steps * (duration / steps.sum())
+
+
+def programme(
+    legs: Sequence,
+    *,
+    steps: int,
+    contact_length: float,
+    timed: bool = True,
+    snapshots: Sequence[float] = (),
+    present: Callable[[], tuple[float, float]] | None = None,
+) -> Iterator[Step]:
+    """Steps of a motion programme, leg by leg.
+
+    Args:
+        legs: validated legs (press_to_force/rate, press_to_depth/speed, hold), SI, newtons. steps: per leg.
+        contact_length: m, turns N into N/m. timed: does time matter? If not, a press is load increments and a hold one step.
+        snapshots: times (s) at which a step must end.
+        present: asked when a leg begins for the force (N/m) and depth (m) reached so far, which a change between force and
+            depth control needs; without it such a leg is taken to start from zero.
+    """
+    time, force, depth, last = 0.0, 0.0, 0.0, None
+    for number, leg in enumerate(legs):
+        kind = next(key for key in ("press_to_force", "press_to_depth", "hold") if hasattr(leg, key))
+        target = getattr(leg, kind)
+        if kind == "hold":
+            sizes = geometric(target, steps, min(last or target / steps, target / steps)) if timed else np.array([target])
+            values = [(force, depth)] * len(sizes)
+        else:
+            reached = present() if present else (force or 0.0, depth or 0.0)
+            by_force = kind == "press_to_force"
+            start, end = (reached[0], target / contact_length) if by_force else (reached[1], target)
+            speed = leg.rate and leg.rate / contact_length if by_force else leg.speed
+            # a steady press is path-independent: increments only guide Newton's method and let the energy be balanced
+            count = min(steps, 8) if speed is None else steps
+            last = None if speed is None else abs(end - start) / speed / count
+            sizes = np.full(count, STEADY if speed is None else last)
+            path = [start + (end - start) * k / count for k in range(1, count)] + [end]
+            values = [(value, None) if by_force else (None, value) for value in path]
+        for dt, (force_now, depth_now) in zip(sizes, values, strict=True):
+            begin, time = time, time + (float(dt) if dt < STEADY else 0.0)
+            for cut in sorted(t for t in snapshots if begin + 1e-9 * time < t < time - 1e-9 * time):
+                share = (cut - begin) / (time - begin)
+                yield Step(number, cut, cut - begin, *_between((force, depth), (force_now, depth_now), share))
+                begin = cut
+            yield Step(number, time, time - begin if dt < STEADY else STEADY, force_now, depth_now)
+            force, depth = force_now, depth_now
+
+
+def _between(before, after, share):
+    return (
+        None if b is None else b if a is None else a + share * (b - a) for a, b in zip(before, after, strict=True)
+    )
