@@ -1,0 +1,224 @@
+"""Every element alone: patch test, tangent, energy, uniform pressure on its edges."""
+
+import numpy as np
+import pytest
+from meshes import KIND, mapped, nodes_of, rectangle
+from pressing import press
+from problems import lame_constants, make_body, solve
+
+from fingerpad.mechanics.pressure import contact_pressure
+from fingerpad.mechanics.space import edge_load_vectors
+from fingerpad.reference_solutions import manufactured
+from fingerpad.specimen.materials import Prony
+
+ELEMENTS = ("Q1P0", "Q2P1", "P2B")
+AFFINE = manufactured.affine([[0.08, 0.15], [-0.1, -0.06]], [0.02, -0.03])
+PRONY = Prony((0.055, 0.3691), (3.25, 0.3414))
+
+
+def boundary(mesh, *curves):
+    fixed = np.zeros(mesh.points.shape, bool)
+    fixed[nodes_of(mesh, *(curves or ("left", "right", "bottom", "top")))] = True
+    return fixed
+
+
+# -- patch test ----------------------------------------------------------------------------------------------
+
+
+def check_patch(element, strain, poisson, soft_element=1.0):
+    """Affine boundary values give the affine field inside and the uniform stress on the rim."""
+    mesh = rectangle(4, 3, 2.0, 1.0, KIND[element], distortion=0.3)
+    shear, bulk = lame_constants(3.0, poisson)
+    body = make_body(mesh, boundary(mesh), shear, bulk, element, strain)
+    body.shear[5] *= soft_element
+    if strain == "small" and soft_element != 1:
+        body = type(body)(body.space, body.shear, body.bulk)
+    space = body.space
+    start = AFFINE.displacement(space.points)
+    start[~space.fixed] = 0.8 * start[~space.fixed]
+    solve(body, np.zeros_like(start), start)
+    error = np.abs(body.u - AFFINE.displacement(space.points)).max()
+    assert error < 1e-11, f"truth: the field is affine, but off by {error:.2e}"
+
+    stress = {"small": manufactured.small_strain_stress, "finite": manufactured.first_piola_stress}[strain]
+    piola = stress(AFFINE, np.zeros(2), shear, bulk)
+    traction = np.zeros_like(body.u)
+    for name, normal in {"left": (-1, 0), "right": (1, 0), "bottom": (0, -1), "top": (0, 1)}.items():
+        load = edge_load_vectors(mesh.points, mesh.curves[name])
+        length = np.hypot(load[:, 0], load[:, 1])
+        traction[: len(length)] += length[:, None] * (piola @ normal)
+    np.testing.assert_allclose(
+        body.internal_force(), traction, atol=1e-9 * np.abs(traction).max(), err_msg="truth"
+    )
+
+
+@pytest.mark.parametrize("poisson", [0.3, 0.4999])
+@pytest.mark.parametrize("strain", ["small", "finite"])
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_patch(element, strain, poisson, must_fail):
+    """A distorted patch reproduces a uniform strain and its stress to round-off (Irons and Razzaque 1972)."""
+    check_patch(element, strain, poisson)
+    must_fail(check_patch, element, strain, poisson, soft_element=0.99)
+
+
+# -- tangent and energy --------------------------------------------------------------------------------------
+
+
+def deformed_body(element, prony=None, poisson=0.45, shake=0.003):
+    """A finite-strain body in some state, with a history if viscoelastic; no lag in its pressure."""
+    mesh = rectangle(3, 2, 1.0, 0.8, KIND[element], distortion=0.2)
+    shear, bulk = lame_constants(3.0, poisson)
+    body = make_body(mesh, boundary(mesh, "bottom"), shear, bulk, element, "finite", prony)
+    random = np.random.default_rng(5)
+    for dt in (0.1, 0.3):
+        body.begin_step(dt)
+        u = AFFINE.displacement(body.space.points) + random.normal(0, shake, body.u.shape)
+        u[body.space.fixed] = 0
+        body.displace(u)
+        body.commit()
+    body.begin_step(0.2)
+    u = 1.3 * body.u + random.normal(0, shake / 2, body.u.shape)
+    u[body.space.fixed] = 0
+    body.displace(u)
+    return body
+
+
+def check_tangent(element, prony, lag_share=1.0):
+    body = deformed_body(element, prony)
+    body.displace(body.u, lag_share * body.dilatation())
+    space, u = body.space, body.u.copy()
+    data, _ = body.tangent()
+    tangent = space.pattern.matrix(data).toarray()
+    h = 1e-6
+    numerical = np.empty_like(tangent)
+    for column in range(space.size):
+        step = space.to_nodes(h * np.eye(space.size)[column])
+        forces = []
+        for sign in (1, -1):
+            body.displace(u + sign * step)
+            forces.append(space.to_equations(body.internal_force()))
+        numerical[:, column] = (forces[0] - forces[1]) / (2 * h)
+    error = np.abs(tangent - numerical).max() / np.abs(tangent).max()
+    assert error < 1e-7, f"truth: the tangent is off by {error:.2e} of its largest entry"
+
+
+@pytest.mark.parametrize("prony", [None, PRONY], ids=["elastic", "viscoelastic"])
+@pytest.mark.parametrize("element", [*ELEMENTS, "Q1", "Q2", "Q2R"])
+def test_tangent_is_the_derivative_of_the_force(element, prony, must_fail):
+    """With the lagged pressure at its present value the tangent equals differences of the force."""
+    check_tangent(element, prony)
+    must_fail(check_tangent, element, prony, lag_share=0.9)
+
+
+def check_force_is_gradient(element, strain, wrong_bulk=1.0):
+    if strain == "finite":
+        body = deformed_body(element)
+    else:
+        mesh = rectangle(3, 2, 1.0, 0.8, KIND[element], distortion=0.2)
+        body = make_body(mesh, boundary(mesh, "bottom"), *lame_constants(3.0, 0.45), element)
+    u = np.random.default_rng(2).normal(0, 0.004, body.u.shape)
+    direction = np.random.default_rng(3).normal(0, 1, body.u.shape)
+    body.displace(u)
+    work = np.sum(body.internal_force() * direction)
+    h, energy = 1e-6, []
+    body.bulk = wrong_bulk * body.bulk
+    for sign in (1, -1):
+        body.displace(u + sign * h * direction)
+        body.internal_force()
+        energy.append(body.energies()[0])
+    numerical = (energy[0] - energy[1]) / (2 * h)
+    assert abs(work - numerical) < 1e-7 * abs(work), (
+        f"truth: the energy's slope {numerical!r} is not the work {work!r}"
+    )
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+@pytest.mark.parametrize("strain", ["finite", "small"])
+def test_force_is_the_gradient_of_the_energy(element, strain, must_fail):
+    """Elastic internal forces derive from the recorded network energy."""
+    check_force_is_gradient(element, strain)
+    if strain == "finite":
+        must_fail(check_force_is_gradient, element, strain, wrong_bulk=1.01)
+
+
+def test_finite_strain_forces_start_as_small_strain_ones(must_fail):
+    """At the undeformed state both bodies have the same tangent."""
+
+    def check(poisson=0.45):
+        mesh = rectangle(3, 2, 1.0, 0.8, "quad9", distortion=0.2)
+        u = 1e-7 * np.random.default_rng(0).normal(size=mesh.points.shape)
+        forces = []
+        for strain, nu in (("small", 0.45), ("finite", poisson)):
+            body = make_body(mesh, boundary(mesh, "bottom"), *lame_constants(3.0, nu), None, strain)
+            body.displace(u)
+            forces.append(body.internal_force())
+        scale = np.abs(forces[0]).max()
+        np.testing.assert_allclose(forces[1], forces[0], atol=1e-5 * scale, err_msg="truth")
+
+    check()
+    must_fail(check, poisson=0.449)
+
+
+# -- pressure on edges ---------------------------------------------------------------------------------------
+
+
+def check_uniform_pressure(element, curved, nodal_share=None):
+    """Consistent nodal forces of a uniform pressure are turned back into that pressure at every node."""
+    bend = 0.3 if curved else 0.0
+    mesh = mapped(
+        5, 2, lambda s: np.stack([s[:, 0], 0.5 * s[:, 1] - bend * s[:, 1] * s[:, 0] ** 2], 1), KIND[element]
+    )
+    chain = np.unique(mesh.curves["top"])
+    chain = chain[np.argsort(mesh.points[chain, 0])]
+    edges = mesh.curves["top"]
+    load = -1250.0 * edge_load_vectors(mesh.points, edges)[chain]
+    force = np.hypot(load[:, 0], load[:, 1])
+    gradient = load / force[:, None]
+    if nodal_share is not None:  # the naive split of a quadratic edge
+        force = nodal_share(len(chain)) * force.sum()
+    pressure = contact_pressure(mesh.points, edges, chain, force, gradient)
+    np.testing.assert_allclose(pressure, 1250.0, rtol=1e-12, err_msg="truth: uniform pressure")
+    total = load.sum(0)
+    ends = mesh.points[chain[-1]] - mesh.points[chain[0]]
+    np.testing.assert_allclose(
+        total, 1250.0 * np.array([ends[1], -ends[0]]), rtol=1e-12, err_msg="truth: resultant"
+    )
+
+
+@pytest.mark.parametrize("curved", [False, True], ids=["straight", "curved"])
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_uniform_pressure_patch(element, curved, must_fail):
+    """Nodal contact forces of a uniform pressure give that pressure at corner and mid-side nodes alike."""
+
+    def equal_shares(count):
+        share = np.ones(count)
+        share[[0, -1]] = 0.5
+        return share / share.sum()
+
+    check_uniform_pressure(element, curved)
+    if element != "Q1P0" or curved:
+        must_fail(check_uniform_pressure, element, curved, nodal_share=equal_shares)
+
+
+def check_contact_patch(element, strain, depth, poisson=0.0):
+    mesh = rectangle(6, 4, 2.0, 2.0, KIND[element], distortion=0.2)
+    fixed = np.zeros(mesh.points.shape, bool)
+    fixed[nodes_of(mesh, "bottom"), 1] = True
+    fixed[nodes_of(mesh, "left", "right"), 0] = True
+    body = make_body(mesh, fixed, *lame_constants(2e6, poisson), element, strain)
+    result = press(body, mesh, depth=depth)
+    expected = 2e6 * depth / 2.0
+    within = 1e-9 if strain == "small" else 2 * depth
+    np.testing.assert_allclose(result.pressure, expected, rtol=within, err_msg="truth: pressure")
+    np.testing.assert_allclose(
+        result.pressure, result.pressure[0], rtol=1e-7, err_msg="truth: uniform pressure"
+    )
+    assert abs(result.force - 2.0 * result.pressure[0]) < 1e-7 * result.force, "truth: resultant"
+
+
+@pytest.mark.parametrize("strain", ["small", "finite"])
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_contact_patch(element, strain, must_fail):
+    """A block under a plate carries E delta/h: 1e5 Pa for nu = 0 (El-Abbasi and Bathe 2001, SSNP121)."""
+    check_contact_patch(element, strain, depth=0.1 if strain == "small" else 1e-3)
+    must_fail(check_contact_patch, element, strain, depth=1e-3, poisson=0.3)
