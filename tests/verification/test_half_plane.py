@@ -1,0 +1,119 @@
+"""Contact of a half-plane without friction: Hertz (1881) and Westergaard (1939)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from pressing import press
+from problems import two_numbers
+from strips import Layer, half_strip
+
+from fingerpad.reference_solutions import hertz, layered_contact, westergaard
+from fingerpad.stimuli.profiles import Cylinder, Profile
+
+DEPTH, RADIUS, SHEAR = 20.0, 200.0, 1.0  # in units of the half width of the contact, 1
+POISSON = 0.4999
+WITHIN = {"Q1P0": 0.03, "Q2P1": 0.005, "P2B": 0.015}
+
+#: half width, centre pressure over p0 and depth
+HERTZ = {
+    "Q1P0": (1.0119118, 0.99993992, 0.0073639972),
+    "Q2P1": (1.0035673, 1.0022758, 0.0073805012),
+    "P2B": (1.0028722, 0.99848929, 0.0073746539),
+}
+
+
+def hertz_contact(element, poisson=POISSON, radius=RADIUS, load_share=1.0):
+    """Strip twenty half widths deep under the force that makes a half width of one."""
+    load = hertz.force(1.0, RADIUS, 2 * SHEAR / (1 - POISSON))
+    mesh, body = half_strip([Layer(DEPTH, SHEAR, poisson)], DEPTH, element)
+    return load, press(body, mesh, Cylinder(1 / radius), force=load_share * load / 2)
+
+
+def check_hertz(element, **mutant):
+    load, result = hertz_contact(element, **mutant)
+    p0, within, frozen = hertz.peak_pressure(load, 1.0), WITHIN[element], HERTZ[element]
+    inside = result.x < 0.9
+    assert inside.sum() > 7
+    error = np.abs(result.pressure - hertz.pressure(result.x, 1.0, p0))[inside].max() / p0
+    assert error < within, f"truth: the pressure is off by {error:.4f} of its peak"
+    two_numbers(result.half_width, truth=1.0, within=within, frozen=frozen[0])
+    two_numbers(result.pressure[0] / p0, truth=1.0, within=within, frozen=frozen[1])
+    two_numbers(2 * result.force, truth=load, within=1e-9, frozen=load, tight=1e-9)
+    strip = layered_contact.press(
+        lambda x: x**2 / (2 * RADIUS), [Layer(DEPTH, SHEAR, POISSON)], DEPTH, load, 1024
+    )
+    two_numbers(result.depth, truth=strip.depth, within=within / 3, frozen=frozen[2])
+
+
+@pytest.mark.parametrize("element", WITHIN)
+def test_hertz_line_contact(element, must_fail):
+    """A rigid cylinder makes Hertz's pressure inside 0.9 a, his width, and the depth of a strip."""
+    check_hertz(element)
+    must_fail(check_hertz, element, poisson=0.3)
+    must_fail(check_hertz, element, radius=0.8 * RADIUS)
+    must_fail(check_hertz, element, load_share=0.9)
+
+
+@dataclass(frozen=True)
+class Sinusoid(Profile):
+    """Rigid wave 2 h sin^2(pi x/lambda) of small slope, lowest at x = 0."""
+
+    amplitude: float
+    wavelength: float
+
+    def evaluate(self, points):
+        k = 2 * np.pi / self.wavelength
+        phase = k * points[:, 0]
+        height = self.amplitude * (1 - np.cos(phase))
+        slope = self.amplitude * k * np.sin(phase)
+        cosine = 1 / np.sqrt(1 + slope**2)
+        gradient = np.column_stack([slope, -np.ones_like(slope)]) * cosine[:, None]
+        return (height - points[:, 1]) * cosine, gradient, self.amplitude * k**2 * np.cos(phase) * cosine**3
+
+
+WAVE, WAVELENGTH = 1e-3, 2.0
+#: half width over the wavelength and peak pressure over the full-contact pressure
+WESTERGAARD = {
+    ("Q1P0", 0.1): (0.099732586, 0.61759832),
+    ("Q1P0", 0.25): (0.24852326, 1.4142606),
+    ("Q1P0", 0.4): (0.39662628, 1.9026646),
+    ("Q2P1", 0.1): (0.099691474, 0.6186049),
+    ("Q2P1", 0.25): (0.25117089, 1.4148365),
+    ("Q2P1", 0.4): (0.39902962, 1.9030915),
+    ("P2B", 0.1): (0.099528188, 0.61503659),
+    ("P2B", 0.25): (0.251125, 1.4128637),
+    ("P2B", 0.4): (0.39844128, 1.9012327),
+}
+
+
+def check_westergaard(element, ratio, poisson=0.4, amplitude=WAVE):
+    modulus = 2 * SHEAR / (1 - 0.4)
+    half = ratio * WAVELENGTH
+    full = westergaard.full_contact_pressure(WAVE, WAVELENGTH, modulus)
+    load = westergaard.mean_pressure(half, WAVE, WAVELENGTH, modulus) * WAVELENGTH
+    mesh, body = half_strip(
+        [Layer(WAVELENGTH, SHEAR, poisson)],
+        WAVELENGTH / 2,
+        element,
+        fine=0.98,
+        columns=(40, 1),
+        rows=(20, 10),
+    )
+    result = press(body, mesh, Sinusoid(amplitude, WAVELENGTH), force=load / 2)
+    truth = westergaard.pressure(result.x, half, WAVE, WAVELENGTH, modulus)
+    inside, within = result.x < 0.9 * half, 1.6 * WITHIN[element]
+    error = np.abs(result.pressure - truth)[inside].max() / truth[0]
+    assert error < within, f"truth: the pressure is off by {error:.4f} of its peak"
+    frozen = WESTERGAARD[element, ratio]
+    two_numbers(result.half_width / WAVELENGTH, truth=ratio, within=within, frozen=frozen[0])
+    two_numbers(result.pressure[0] / full, truth=truth[0] / full, within=within, frozen=frozen[1])
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.25, 0.4])
+@pytest.mark.parametrize("element", WITHIN)
+def test_westergaard_wave(element, ratio, must_fail):
+    """A wavy surface touches with the width and the pressure of Westergaard's periodic solution."""
+    check_westergaard(element, ratio)
+    must_fail(check_westergaard, element, ratio, poisson=0.1)
+    must_fail(check_westergaard, element, ratio, amplitude=1.3 * WAVE)
