@@ -442,22 +442,20 @@ class Scene(Strict):
 
     @property
     def end_time(self) -> float | None:
-        """Duration of the motion, s; None when only the solution tells (change of control, steady leg)."""
+        """Duration of the motion, s, steady legs taking none; None if a change of control leaves it open."""
         time, force, depth = 0.0, 0.0, 0.0
         for leg in self.motion:
             if isinstance(leg, Hold):
                 time += leg.hold
             elif isinstance(leg, PressToForce):
-                if leg.rate is None or math.isnan(force):
-                    return None
-                time += abs(leg.press_to_force - force) / leg.rate
+                if leg.rate is not None:
+                    time += abs(leg.press_to_force - force) / leg.rate
                 force, depth = leg.press_to_force, math.nan
             else:
-                if leg.speed is None or math.isnan(depth):
-                    return None
-                time += abs(leg.press_to_depth - depth) / leg.speed
+                if leg.speed is not None:
+                    time += abs(leg.press_to_depth - depth) / leg.speed
                 force, depth = math.nan, leg.press_to_depth
-        return time
+        return None if math.isnan(time) else time
 
     def with_accuracy(self, accuracy: Any) -> Scene:
         """Copy of the scene at another accuracy.
