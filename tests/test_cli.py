@@ -1,0 +1,297 @@
+"""The command line: exit codes, what is written and what is not, mostly with a stand-in for the solver."""
+
+import json
+import subprocess
+import sys
+import types
+from pathlib import Path
+
+import pytest
+import xarray as xr
+import yaml
+
+from fingerpad.cli import main
+from wrong_scenes import BAD, RAMP_AND_HOLD, changed, pad_folder, specimen, write
+
+pytestmark = pytest.mark.unit
+
+CONFIG = Path(__file__).parents[1] / "config"
+SUMMARY = {
+    "legs": [{"depth_mm": 0.5, "force_N_per_m": 19.6, "contact_width_mm": 4.7}],
+    "run": {"steps": 2, "newton_iterations": 5, "wall_s": 1.5},
+}
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "my_scene.yaml"
+    path.write_text(yaml.safe_dump(changed(accuracy="draft")))
+    return path
+
+
+@pytest.fixture
+def solver(monkeypatch):
+    """Stand-ins for mesh, simulation and results; `solver.fails` is what the simulation raises."""
+    import fingerpad.specimen
+
+    solver = types.SimpleNamespace(fails=None, progress=None, plan=None)
+    dataset = xr.Dataset({"force": ("time", [0.0, 19.6])})
+
+    def simulate(scene, plan=None, mesh=None, progress=None):
+        solver.progress, solver.plan = progress, plan
+        if solver.fails is not None:
+            raise solver.fails
+        if progress:
+            keys = ("time_s", "end_time_s", "contact_width_mm", "iterations", "cutbacks")
+            progress(dict(zip(keys, (0.5, 2.5, 4.7, 3, 0), strict=True)))
+        return dataset
+
+    simulation, results = types.ModuleType("fingerpad.simulation"), types.ModuleType("fingerpad.results")
+    simulation.simulate = simulate
+    results.summary = lambda dataset: SUMMARY
+    results.write_history = lambda dataset, path: dataset.to_netcdf(path, engine="h5netcdf")
+    results.write_vtu = lambda dataset, mesh, directory: (Path(directory) / "0.vtu").write_text("<VTKFile/>")
+    monkeypatch.setitem(sys.modules, "fingerpad.simulation", simulation)
+    monkeypatch.setitem(sys.modules, "fingerpad.results", results)
+    monkeypatch.setattr(fingerpad.specimen, "mesh_for", lambda scene, plan: object())
+    return solver
+
+
+def names(directory):
+    return sorted(path.name for path in Path(directory).iterdir())
+
+
+def refused(capsys, arguments):
+    """The one line of a refusal."""
+    assert main([str(argument) for argument in arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("fingerpad: ") and err.endswith("\n") and len(err.splitlines()) == 1
+    return err.removeprefix("fingerpad: ").rstrip()
+
+
+# --- wrong input ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("document", "key"), [case[:2] for case in BAD.values()], ids=BAD)
+def test_wrong_scenes_exit_2_with_one_line_and_write_nothing(tmp_path, capsys, document, key):
+    path = write(pad_folder(tmp_path), document)
+    line = refused(capsys, ["run", path, "--out", tmp_path / "new" / "out"])
+    assert line.startswith(f"{path}: {key}: " if key else f"{path}: ")
+    assert names(tmp_path) == ["config", "my_scene.yaml"]
+
+
+@pytest.mark.parametrize("command", ["plan", "run", "mesh"])
+@pytest.mark.parametrize("content", [None, b"\xff\xfe\x00", b"a: [", b""])
+def test_files_that_are_no_scene(tmp_path, capsys, command, content):
+    path = tmp_path / "none.yaml"
+    if content is not None:
+        path.write_bytes(content)
+    out = {"plan": [], "run": ["--out", tmp_path / "out"], "mesh": ["--out", tmp_path / "out.msh"]}[command]
+    assert str(path) in refused(capsys, [command, path, *out])
+    assert names(tmp_path) == ([] if content is None else ["none.yaml"])
+
+
+@pytest.mark.parametrize("accuracy", ["best", "0", "-1", "nan", "1"])
+def test_wrong_accuracy_on_the_command_line(tmp_path, scene, capsys, accuracy):
+    line = refused(capsys, ["run", scene, "--out", tmp_path / "out", f"--accuracy={accuracy}"])
+    assert line.startswith(f"--accuracy: '{accuracy}' ") and "allowed: " in line
+    assert names(tmp_path) == ["my_scene.yaml"]
+
+
+def test_an_output_that_is_a_file(tmp_path, scene, capsys):
+    (tmp_path / "file").write_text("kept")
+    for out in ("file", "file/below"):
+        assert "--out" in refused(capsys, ["run", scene, "--out", tmp_path / out])
+    assert "--out" in refused(capsys, ["mesh", scene, "--out", tmp_path / "file" / "a.msh"])
+    assert "ending in .msh" in refused(capsys, ["mesh", scene, "--out", tmp_path / "mesh.txt"])
+    assert (tmp_path / "file").read_text() == "kept" and names(tmp_path) == ["file", "my_scene.yaml"]
+
+
+def test_a_directory_that_cannot_be_written(tmp_path, scene, capsys, monkeypatch):
+    monkeypatch.setattr("os.access", lambda *_: False)
+    assert "cannot be written" in refused(capsys, ["run", scene, "--out", tmp_path / "out"])
+    assert names(tmp_path) == ["my_scene.yaml"]
+
+
+def test_an_external_mesh_that_is_no_mesh_is_named_with_its_key(tmp_path, capsys):
+    (tmp_path / "my.msh").write_text("not a mesh")
+    path = tmp_path / "my_scene.yaml"
+    path.write_text(yaml.safe_dump(specimen(mesh="my.msh")))
+    line = refused(capsys, ["run", path, "--out", tmp_path / "out"])
+    assert line.startswith(f"{path}: specimen.mesh: ") and "my.msh" in line
+    assert names(tmp_path) == ["my.msh", "my_scene.yaml"]
+
+
+def test_a_plan_that_cannot_be_made_names_the_key(tmp_path, capsys):
+    path = tmp_path / "my_scene.yaml"
+    path.write_text(yaml.safe_dump(changed(effects={"ridges": True})))
+    assert refused(capsys, ["plan", path]).startswith(f"{path}: effects.ridges: ")
+
+
+@pytest.mark.parametrize(
+    "arguments", [[], ["fly"], ["run", "a.yaml"], ["plan"], ["plan", "a.yaml", "--fast"]]
+)
+def test_usage_errors_exit_2(arguments, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    assert "usage: fingerpad" in capsys.readouterr().err
+
+
+# --- what is done ---------------------------------------------------------------------------------
+
+
+def test_version(capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    assert capsys.readouterr().out.startswith("fingerpad 0.")
+
+
+def test_plan_as_json_and_as_a_table(scene, capsys):
+    assert main(["plan", str(scene), "--json"]) == 0
+    plan = json.loads(capsys.readouterr().out)
+    assert set(plan["effects"]) == {"friction", "viscoelasticity", "finite_strain", "symmetry", "ridges"}
+    assert all(set(effect) == {"on", "why"} for effect in plan["effects"].values())
+    assert {"element", "nodes", "steps"} <= set(plan["discretisation"])
+
+    assert main(["plan", str(scene)]) == 0
+    table = capsys.readouterr().out
+    for words in ("Plan of my_scene", "finite strain", "friction", "nodes", "predicted cost"):
+        assert words in table
+
+
+def test_accuracy_replaces_the_scene_s(scene, capsys):
+    def nodes(*options):
+        assert main(["plan", str(scene), "--json", *options]) == 0
+        return json.loads(capsys.readouterr().out)["discretisation"]["nodes"]
+
+    assert nodes() == nodes("--accuracy", "draft") < nodes("--accuracy", "thesis")
+
+
+def test_run_writes_three_files(tmp_path, scene, solver, capsys):
+    out = tmp_path / "new" / "out"
+    assert main(["run", str(scene), "--out", str(out)]) == 0
+    assert names(out) == ["history.nc", "plan.json", "summary.json"]
+    assert json.loads((out / "summary.json").read_text()) == SUMMARY
+    assert json.loads((out / "plan.json").read_text()) == json.loads(json.dumps(solver.plan.to_dict()))
+    with xr.open_dataset(out / "history.nc", engine="h5netcdf") as history:
+        assert history.force[-1] == 19.6
+    stdout, stderr = capsys.readouterr()
+    assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout
+
+
+def test_quiet_says_nothing_and_vtu_adds_fields(tmp_path, scene, solver, capsys):
+    assert main(["run", str(scene), "--out", str(tmp_path / "out"), "--quiet", "--vtu"]) == 0
+    assert names(tmp_path / "out") == ["history.nc", "plan.json", "summary.json", "vtu"]
+    assert names(tmp_path / "out" / "vtu") == ["0.vtu"]
+    assert capsys.readouterr() == ("", "") and solver.progress is None
+
+
+def test_results_of_two_runs_do_not_mix(tmp_path, scene, solver):
+    out = tmp_path / "out"
+    arguments = ["run", str(scene), "--out", str(out), "--quiet"]
+    assert main([*arguments, "--vtu"]) == 0
+    (out / "last_converged.nc").write_text("old")
+    (out / "notes.txt").write_text("a user's own")
+    assert main(arguments) == 0
+    assert names(out) == ["history.nc", "notes.txt", "plan.json", "summary.json"]
+
+
+def test_progress_on_a_terminal(tmp_path, scene, solver, monkeypatch, capsys):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 0
+    assert solver.progress is not None
+
+
+# --- what goes wrong later ------------------------------------------------------------------------
+
+
+def _non_convergence(dataset):
+    from fingerpad.mechanics.stepping import NonConvergence
+
+    error = NonConvergence(0.25, "the residual stalls", "smaller steps")
+    error.dataset = dataset
+    return error
+
+
+def test_non_convergence_exits_3_and_saves_the_last_converged_state(tmp_path, scene, solver, capsys):
+    out = tmp_path / "out"
+    assert main(["run", str(scene), "--out", str(out), "--quiet"]) == 0
+    solver.fails = _non_convergence(xr.Dataset({"force": ("time", [0.0, 9.8])}))
+    assert main(["run", str(scene), "--out", str(out), "--quiet"]) == 3
+    assert names(out) == ["last_converged.nc", "plan.json"]
+    err = capsys.readouterr().err
+    assert len(err.splitlines()) == 1
+    for words in ("0.25 s", "the residual stalls", "smaller steps", str(out / "last_converged.nc")):
+        assert words in err
+
+
+def test_non_convergence_before_the_first_step(tmp_path, scene, solver, capsys):
+    solver.fails = _non_convergence(None)
+    assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 3
+    assert names(tmp_path / "out") == ["plan.json"]
+    assert "no step had converged" in capsys.readouterr().err
+
+
+def test_interrupt_leaves_nothing(tmp_path, scene, solver, capsys):
+    solver.fails = KeyboardInterrupt()
+    assert main(["run", str(scene), "--out", str(tmp_path / "new" / "out")]) == 130
+    assert names(tmp_path) == ["my_scene.yaml"]
+    assert capsys.readouterr().err == "fingerpad: interrupted\n"
+
+
+@pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt(), 130), (OSError(28, "No space left"), 2)])
+def test_a_run_stopped_while_writing_leaves_the_old_results(
+    tmp_path, scene, solver, monkeypatch, error, code
+):
+    out = tmp_path / "out"
+    arguments = ["run", str(scene), "--out", str(out), "--quiet"]
+    assert main(arguments) == 0
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+
+    def fail(dataset, path):
+        Path(path).write_text("half")
+        raise error
+
+    monkeypatch.setattr(sys.modules["fingerpad.results"], "write_history", fail)
+    assert main(arguments) == code
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
+# --- for real -------------------------------------------------------------------------------------
+
+
+def test_mesh_writes_a_mesh_that_can_be_read_again(tmp_path, scene, capsys):
+    out = tmp_path / "new" / "pad.msh"
+    assert main(["mesh", str(scene), "--out", str(out)]) == 0
+    assert names(out.parent) == ["pad.msh"]
+    assert "nodes: " in capsys.readouterr().out
+
+    path = tmp_path / "on_mesh.yaml"
+    path.write_text(yaml.safe_dump({**RAMP_AND_HOLD, "specimen": {"mesh": "new/pad.msh"}}))
+    assert main(["plan", str(path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["effects"]["symmetry"]["on"]
+
+
+def test_as_a_process(tmp_path):
+    def fingerpad(*arguments):
+        return subprocess.run(
+            [sys.executable, "-m", "fingerpad.cli", *arguments], capture_output=True, text=True
+        )
+
+    assert fingerpad("--version").returncode == 0
+    wrong = fingerpad("run", "no.yaml", "--out", str(tmp_path / "out"))
+    assert (wrong.returncode, wrong.stdout, wrong.stderr) == (
+        2,
+        "",
+        "fingerpad: no.yaml: there is no such file\n",
+    )
+    assert names(tmp_path) == []
+
+
+def test_importing_the_package_is_quick_because_it_imports_nothing():
+    slow = {"numpy", "pydantic", "pint", "numba", "rich"}
+    code = f"import sys, fingerpad, fingerpad.cli; print(sorted({slow} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"

@@ -1,0 +1,288 @@
+"""Scenes that must be refused, for the tests of the scene and of the command line."""
+
+import copy
+from pathlib import Path
+
+import yaml
+
+CONFIG = Path(__file__).parents[1] / "config"
+
+RAMP_AND_HOLD = {
+    "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}],
+}
+
+
+# a pad of known sizes, so that these tests do not hang on what the thesis's specimen is found to be
+OUTLINE = {
+    "apex_height": "6 mm", "apex_radius": "7.9 mm", "half_width": "8.5 mm", "depth_below": "6.2 mm",
+    "epidermis_thickness": "0.85 mm", "dermis_thickness": "0.85 mm", "stratum_corneum_thickness": "0.35 mm",
+    "bone_centre_height": "-1.5 mm", "bone_half_width": "4 mm", "bone_half_height": "2.5 mm",
+    "nail_half_width": "5 mm",
+}  # fmt: skip
+
+
+def write(folder, document, name="my_scene.yaml"):
+    path = folder / name
+    path.write_text(document if isinstance(document, str) else yaml.safe_dump(document), encoding="utf-8")
+    return path
+
+
+def pad_folder(folder):
+    """Give `folder` specimens of its own: the thesis's on a pad of known sizes, and the homogeneous one."""
+    specimens = folder / "config" / "specimens"
+    specimens.mkdir(parents=True)
+    thesis = yaml.safe_load((CONFIG / "specimens/thesis.yaml").read_text())
+    write(specimens, {**thesis, "outline": OUTLINE}, "thesis.yaml")
+    write(specimens, (CONFIG / "specimens/homogeneous.yaml").read_text(), "homogeneous.yaml")
+    return folder
+
+
+def changed(**changes):
+    return {**copy.deepcopy(RAMP_AND_HOLD), **changes}
+
+
+def specimen(**parts):
+    return changed(specimen=parts)
+
+
+def motion(*legs):
+    return changed(motion=list(legs))
+
+
+def receptors(**keys):
+    return changed(outputs={"receptors": keys})
+
+
+FORCE = {"press_to_force": "20 gf", "rate": "40 gf/s"}
+DEPTH = {"press_to_depth": "1 mm", "speed": "2 mm/s"}
+
+# name: document, key the message names, words it contains
+BAD = {
+    "unknown key": (changed(moton=[]), "moton", "the nearest is 'motion'"),
+    "unknown key in a leg": (motion({**FORCE, "rat": "1 N/s"}), "motion[0].rat", "the nearest is 'rate'"),
+    "unknown key in specimen": (specimen(outlin="thesis"), "specimen.outlin", "the nearest is 'outline'"),
+    "unknown key in a layer": (
+        specimen(layers={"fat": {"youngs_moduls": "1 MPa"}}),
+        "specimen.layers.fat.youngs_moduls",
+        "the nearest is 'youngs_modulus'",
+    ),
+    "thickness of a layer": (
+        specimen(layers={"fat": {"thickness": "1 mm"}}),
+        "specimen.layers.fat.thickness",
+        "epidermis_thickness",
+    ),
+    "unknown key in a stimulus": (
+        changed(stimulus={"shape": "flat", "curvature": "1 1/m"}),
+        "stimulus.curvature",
+        "the nearest is 'shape'",
+    ),
+    "name is the file's": (changed(name="x"), "name", "is not a known key"),
+    "steps that are a switch": (changed(accuracy={"steps": True}), "accuracy.steps", "a whole number"),
+    "key that is not text": (changed(**{"accuracy": {5: 1}}), "accuracy.5", "is not a known key"),
+    "no stimulus": ({"motion": [FORCE]}, "stimulus", "is missing"),
+    "no motion": ({"stimulus": {"shape": "flat"}}, "motion", "is missing"),
+    "empty key": (changed(specimen=None), "specimen", "is empty"),
+    "empty file": ("", "", "is not a mapping"),
+    "a list": ("- 1", "", "is not a mapping"),
+    "missing unit": (motion({"press_to_force": "20 gf", "rate": "40"}), "motion[0].rate", "'40' has no unit"),
+    "bare number": (motion({"press_to_force": 20}), "motion[0].press_to_force", "20 has no unit"),
+    "wrong dimension": (
+        motion({"press_to_force": "20 gf", "rate": "40 gf"}),
+        "motion[0].rate",
+        "'40 gf' has the wrong dimension: it is a force; allowed: a force rate with its unit such as",
+    ),
+    "mass for force": (motion({"press_to_force": "20 g"}), "motion[0].press_to_force", "wrong dimension"),
+    "unknown unit": (motion({"hold": "2 sex"}), "motion[0].hold", "unknown unit 'sex'"),
+    "not finite": (motion({"press_to_force": "nan gf"}), "motion[0].press_to_force", "finite"),
+    "negative thickness": (
+        specimen(outline={"dermis_thickness": "-0.85 mm"}),
+        "specimen.outline.dermis_thickness",
+        "is negative",
+    ),
+    "layers thicker than the pad": (
+        specimen(outline={"epidermis_thickness": "4.5 mm"}),
+        "specimen.outline.epidermis_thickness",
+        "'4.5 mm' makes the layers thicker than the pad",
+    ),
+    "no fat beside the bone": (
+        specimen(outline={"bone_half_width": "7 mm"}),
+        "specimen.outline.bone_half_width",
+        "less than 6.8 mm",
+    ),
+    "bone above the skin": (
+        specimen(outline={"bone_centre_height": "5 mm"}),
+        "specimen.outline.bone_centre_height",
+        "outside the skin",
+    ),
+    "bone below the pad": (
+        specimen(outline={"bone_half_height": "4.8 mm", "bone_centre_height": "-2 mm"}),
+        "specimen.outline.bone_half_height",
+        "outside the section",
+    ),
+    "stratum corneum too thick": (
+        specimen(outline={"stratum_corneum_thickness": "1 mm"}),
+        "specimen.outline.stratum_corneum_thickness",
+        "up to 0.85 mm",
+    ),
+    "nail too wide": (
+        specimen(outline={"nail_half_width": "9 mm"}),
+        "specimen.outline.nail_half_width",
+        "8.5 mm",
+    ),
+    "Poisson's ratio of a half": (
+        specimen(layers={"fat": {"poisson_ratio": 0.5}}),
+        "specimen.layers.fat.poisson_ratio",
+        "0.5 is outside the range; allowed: a number above -1 and below 0.5",
+    ),
+    "Poisson's ratio of minus one": (
+        specimen(layers={"fat": {"poisson_ratio": -1}}),
+        "specimen.layers.fat.poisson_ratio",
+        "above -1",
+    ),
+    "negative modulus": (
+        specimen(layers={"dermis": {"youngs_modulus": "-1 kPa"}}),
+        "specimen.layers.dermis.youngs_modulus",
+        "is negative",
+    ),
+    "Prony sum of one": (
+        specimen(prony=[{"g": 0.5, "tau": "1 s"}, {"g": 0.5, "tau": "2 s"}]),
+        "specimen.prony",
+        "sum to 1; allowed: a sum of g below 1",
+    ),
+    "Prony term of one": (specimen(prony=[{"g": 1, "tau": "1 s"}]), "specimen.prony[0].g", "below 1"),
+    "negative g": (specimen(prony=[{"g": -0.1, "tau": "1 s"}]), "specimen.prony[0].g", "above 0"),
+    "negative tau": (specimen(prony=[{"g": 0.1, "tau": "-1 s"}]), "specimen.prony[0].tau", "is negative"),
+    "zero tau": (specimen(prony=[{"g": 0.1, "tau": "0 s"}]), "specimen.prony[0].tau", "is zero"),
+    "no tau": (specimen(prony=[{"g": 0.1}]), "specimen.prony[0].tau", "is missing"),
+    "no list of Prony terms": (specimen(prony={}), "specimen.prony", "is not a list"),
+    "specimen of no file": (specimen(layers="thesi"), "specimen.layers", "homogeneous, thesis"),
+    "path for a name": (specimen(outline="../thesis"), "specimen.outline", "is not the name of a specimen"),
+    "file without the part": (specimen(outline="homogeneous"), "specimen.outline", "without outline"),
+    "moduli in no known state": (
+        specimen(moduli="short"),
+        "specimen.moduli",
+        "'long_term' or 'instantaneous'",
+    ),
+    "ridges": (specimen(ridges="inner"), "specimen.ridges", "is not in this version; allowed: none"),
+    "negative contact length": (specimen(contact_length="-10 mm"), "specimen.contact_length", "is negative"),
+    "mesh file missing": (specimen(mesh="no.msh"), "specimen.mesh", "'no.msh' is not an existing file"),
+    "mesh that is no path": (specimen(mesh=3), "specimen.mesh", "is not a path"),
+    "mesh beside an outline": (
+        specimen(mesh="no.msh", outline="thesis"),
+        "specimen.mesh",
+        "one of mesh and outline",
+    ),
+    "cylinder with zero curvature": (
+        changed(stimulus={"shape": "cylinder", "curvature": "0 1/m"}),
+        "stimulus.curvature",
+        "is zero: for a curvature of zero use shape: flat",
+    ),
+    "negative curvature": (
+        changed(stimulus={"shape": "cylinder", "curvature": "-1 1/m"}),
+        "stimulus.curvature",
+        "is negative",
+    ),
+    "no curvature": (changed(stimulus={"shape": "cylinder"}), "stimulus.curvature", "is missing"),
+    "unknown shape": (changed(stimulus={"shape": "cilinder"}), "stimulus.shape", "the nearest is 'cylinder'"),
+    "shape that is no text": (changed(stimulus={"shape": [1]}), "stimulus.shape", "is not a known shape"),
+    "no shape": (changed(stimulus={"curvature": "1 1/m"}), "stimulus.shape", "is missing"),
+    "wavy": (changed(stimulus={"shape": "wavy"}), "stimulus.shape", "is not in this version"),
+    "stimulus that is a word": (changed(stimulus="flat"), "stimulus", "is not a mapping"),
+    "fillet wider than the bar": (
+        changed(stimulus={"shape": "bar", "width": "1 mm", "fillet": "0.6 mm"}),
+        "stimulus.fillet",
+        "0 mm to 0.5 mm",
+    ),
+    "negative fillet": (
+        changed(stimulus={"shape": "bar", "width": "1 mm", "fillet": "-1 um"}),
+        "stimulus.fillet",
+        "is negative",
+    ),
+    "profile missing": (
+        changed(stimulus={"shape": "sampled", "csv": "no.csv"}),
+        "stimulus.csv",
+        "not an existing",
+    ),
+    "negative friction": (changed(friction=-0.1), "friction", "zero or more"),
+    "friction with a unit": (changed(friction="1 N"), "friction", "wrong dimension"),
+    "friction not finite": (changed(friction=float("nan")), "friction", "is not finite"),
+    "empty motion": (motion(), "motion", "is empty; allowed: legs such as"),
+    "motion that is no list": (changed(motion=FORCE), "motion", "is not a list"),
+    "negative force": (
+        motion({"press_to_force": "-20 gf"}),
+        "motion[0].press_to_force",
+        "must press into the skin",
+    ),
+    "zero force": (motion({"press_to_force": "0 gf"}), "motion[0].press_to_force", "is zero"),
+    "negative rate": (motion({**FORCE, "rate": "-40 gf/s"}), "motion[0].rate", "must press into the skin"),
+    "negative depth": (motion({"press_to_depth": "-1 mm"}), "motion[0].press_to_depth", "must press into"),
+    "negative speed": (motion({**DEPTH, "speed": "-1 mm/s"}), "motion[0].speed", "must press into the skin"),
+    "speed for rate": (
+        motion({"press_to_force": "1 N", "speed": "1 mm/s"}),
+        "motion[0].speed",
+        "not a known key",
+    ),
+    "depth to the bone": (motion({"press_to_depth": "5 mm"}), "motion[0].press_to_depth", "below the 5 mm"),
+    "hold first": (motion({"hold": "1 s"}, FORCE), "motion[0].hold", "before anything is pressed"),
+    "negative hold": (motion(FORCE, {"hold": "-1 s"}), "motion[1].hold", "is negative"),
+    "leg that goes nowhere": (
+        motion(FORCE, {"hold": "1 s"}, FORCE),
+        "motion[2].press_to_force",
+        "where the leg",
+    ),
+    "slide": (
+        motion(FORCE, {"slide": "80 mm", "speed": "1 mm/s"}),
+        "motion[1].slide",
+        "is not in this version",
+    ),
+    "unknown leg": (motion({"pres_to_force": "1 N"}), "motion[0]", "the nearest is 'press_to_force'"),
+    "leg of two kinds": (motion({**FORCE, "hold": "1 s"}), "motion[0]", "two legs in one"),
+    "leg that is a word": (motion("hold"), "motion[0]", "is not a leg"),
+    "receptor below the bone": (
+        receptors(depths=["1 mm", "5 mm"]),
+        "outputs.receptors.depths[1]",
+        "outside the skin",
+    ),
+    "receptor above the skin": (receptors(depths=["-1 um"]), "outputs.receptors.depths[0]", "is negative"),
+    "receptor on the skin": (receptors(depths=["0 um"]), "outputs.receptors.depths[0]", "is zero"),
+    "receptor beside the pad": (receptors(offsets=["9 mm"]), "outputs.receptors.offsets[0]", "within 8.5 mm"),
+    "depths that are no list": (receptors(depths="1 mm"), "outputs.receptors.depths", "is not a list"),
+    "snapshot after the end": (
+        changed(outputs={"snapshots": ["2.6 s"]}),
+        "outputs.snapshots[0]",
+        "up to 2.5 s",
+    ),
+    "negative snapshot": (changed(outputs={"snapshots": ["-1 s"]}), "outputs.snapshots[0]", "is negative"),
+    "tolerance of zero": (
+        changed(accuracy=0),
+        "accuracy",
+        "0 is outside the range; allowed: a tolerance above 0",
+    ),
+    "negative tolerance": (changed(accuracy="-0.02"), "accuracy", "a tolerance above 0 and below 1"),
+    "tolerance of one": (changed(accuracy=1.0), "accuracy", "below 1"),
+    "unknown accuracy": (changed(accuracy="best"), "accuracy", "draft, thesis, fine"),
+    "switch for accuracy": (changed(accuracy=True), "accuracy", "draft, thesis, fine"),
+    "unknown element": (changed(accuracy={"element": "Q3"}), "accuracy.element", "'Q1P0', 'Q2P1' or 'P2B'"),
+    "no steps": (changed(accuracy={"steps": 0}), "accuracy.steps", "a whole number from 1 to 100000"),
+    "edge larger than the pad": (
+        changed(accuracy={"skin_edge": "9 mm"}),
+        "accuracy.skin_edge",
+        "below 8.5 mm",
+    ),
+    "unknown effect": (changed(effects={"fricton": True}), "effects.fricton", "the nearest is 'friction'"),
+    "effect that is no switch": (changed(effects={"friction": 1}), "effects.friction", "on or off"),
+    "effects that are a switch": (changed(effects=True), "effects", "auto, or on or off"),
+    "no YAML": ("stimulus: {", "", "is not valid YAML at line"),
+    "no text": ("stimulus: \x00", "", "is not valid YAML"),
+    "duplicate key": ("friction: 0\nfriction: 1", "", "'friction' is given twice"),
+    "object in YAML": ("!!python/object/apply:os.getcwd []", "", "is not valid YAML"),
+    "nested without end": ("[" * 5000, "", "is not valid YAML"),
+    "endless integer": (f"friction: {'9' * 5000}", "", "is not valid YAML"),
+    "huge integer": (
+        f"stimulus: {{shape: flat}}\nmotion: [{{hold: 1 s}}]\nfriction: 0x{'f' * 5000}",
+        "friction",
+        "is not finite",
+    ),
+    "text of many lines": (changed(accuracy="a\nb\u2028c"), "accuracy", "is not a known accuracy"),
+}
