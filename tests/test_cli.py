@@ -182,14 +182,21 @@ def test_run_writes_three_files(tmp_path, scene, solver, capsys):
     assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout
 
 
-def test_quiet_says_nothing_and_vtu_adds_fields(tmp_path, scene, solver, capsys):
+def test_quiet_says_nothing_and_vtu_adds_fields(tmp_path, solver, capsys):
+    scene = write(tmp_path, changed(outputs={"snapshots": ["1 s"]}))
     assert main(["run", str(scene), "--out", str(tmp_path / "out"), "--quiet", "--vtu"]) == 0
     assert names(tmp_path / "out") == ["history.nc", "plan.json", "summary.json", "vtu"]
     assert names(tmp_path / "out" / "vtu") == ["0.vtu"]
     assert capsys.readouterr() == ("", "") and solver.progress is None
 
 
-def test_results_of_two_runs_do_not_mix(tmp_path, scene, solver):
+def test_vtu_without_snapshots_is_said(tmp_path, scene, solver, capsys):
+    assert main(["run", str(scene), "--out", str(tmp_path / "out"), "--vtu"]) == 0
+    assert "no vtu" in capsys.readouterr().out and "vtu" not in names(tmp_path / "out")
+
+
+def test_results_of_two_runs_do_not_mix(tmp_path, solver):
+    scene = write(tmp_path, changed(outputs={"snapshots": ["1 s"]}))
     out = tmp_path / "out"
     arguments = ["run", str(scene), "--out", str(out), "--quiet"]
     assert main([*arguments, "--vtu"]) == 0
@@ -273,6 +280,20 @@ def test_mesh_writes_a_mesh_that_can_be_read_again(tmp_path, scene, capsys):
     path.write_text(yaml.safe_dump({**RAMP_AND_HOLD, "specimen": {"mesh": "new/pad.msh"}}))
     assert main(["plan", str(path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["effects"]["symmetry"]["on"]
+
+
+def test_run_for_real(tmp_path, capsys):
+    path = write(tmp_path, changed(accuracy="draft", outputs={"snapshots": ["0.5 s"]}))
+    out = tmp_path / "out"
+    assert main(["run", str(path), "--out", str(out), "--vtu", "--quiet"]) == 0
+    assert names(out) == ["history.nc", "plan.json", "summary.json", "vtu"]
+    assert len(names(out / "vtu")) == 1
+    ramp, hold = json.loads((out / "summary.json").read_text())["legs"]
+    for leg in (ramp, hold):
+        assert leg["force_N_per_m"] == pytest.approx(20 * 9.80665e-3 / 0.01, rel=1e-6)
+    assert hold["depth_mm"] > ramp["depth_mm"] > 0
+    assert (ramp["time_s"], hold["time_s"]) == pytest.approx((0.5, 2.5))
+    assert capsys.readouterr().err == ""
 
 
 def test_as_a_process(tmp_path):

@@ -24,6 +24,15 @@ if TYPE_CHECKING:
 DONE, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
 RESULTS = ("plan.json", "history.nc", "summary.json", "last_converged.nc", "vtu")
 
+# errors of wrong input: where they are defined, and the key they are about when they do not name it
+_ERRORS = {
+    "SceneError": ("documents", ""),
+    "PlanError": ("effects", ""),
+    "OutlineError": ("specimen.outline", "specimen.outline"),
+    "MeshError": ("specimen.mesh", "specimen.mesh"),
+    "ReceptorError": ("receptors.material_points", "outputs.receptors"),
+}
+
 
 class _Refusal(ValueError):
     """A request that cannot be met; its text is the one line shown."""
@@ -64,7 +73,9 @@ def _parser() -> argparse.ArgumentParser:
 
     run = commands.add_parser("run", help="simulate a scene: history.nc, summary.json, plan.json")
     run.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the results go")
-    run.add_argument("--vtu", action="store_true", help="also write the snapshots for ParaView, in DIR/vtu")
+    run.add_argument(
+        "--vtu", action="store_true", help="also write the scene's snapshots for ParaView, in DIR/vtu"
+    )
     run.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
     run.set_defaults(command=_run)
 
@@ -124,10 +135,12 @@ def _run(options: argparse.Namespace) -> int:
             write_history(dataset, stage / "history.nc")
             totals = summary(dataset)
             _write_json(totals, stage / "summary.json")
-            if options.vtu:
+            if options.vtu and scene.outputs.snapshots:
                 (stage / "vtu").mkdir()
                 write_vtu(dataset, mesh, stage / "vtu")
     if not options.quiet:
+        if options.vtu and not scene.outputs.snapshots:
+            print("no vtu: the scene has no outputs.snapshots")
         print(_closing_line(totals, directory))
     return DONE
 
@@ -173,21 +186,22 @@ def _mesh_for(path: Path, scene: Scene, plan: Plan) -> Any:
 
 def _input_errors() -> tuple[type[ValueError], ...]:
     """What counts as wrong input; a module that was not imported cannot have raised its error."""
-    names = {"documents": "SceneError", "effects": "PlanError", "specimen.mesh": "MeshError"}
-    loaded = ((sys.modules.get(f"fingerpad.{module}"), name) for module, name in names.items())
+    loaded = ((sys.modules.get(f"fingerpad.{module}"), name) for name, (module, _) in _ERRORS.items())
     return (_Refusal, *(getattr(module, name) for module, name in loaded if hasattr(module, name)))
 
 
 @contextlib.contextmanager
 def _naming(path: Path, scene: Scene) -> Iterator[None]:
-    """Puts the file, and for a mesh the key, before the message of an error met after the scene was read."""
+    """Puts file and key before the message of an error met after the scene was read."""
     try:
         yield
     except _input_errors() as error:
         message = str(error).removeprefix(f"{scene.name}: ")
-        if type(error).__name__ == "MeshError":
-            message = f"specimen.{'outline' if scene.specimen.mesh is None else 'mesh'}: {message}"
-        raise _Refusal(f"{path}: {message}") from None
+        key = _ERRORS.get(type(error).__name__, ("", ""))[1]
+        if key == "specimen.mesh" and scene.specimen.mesh is None:
+            key = "specimen.outline"
+        message = message.removeprefix(f"{key.rpartition('.')[2]}: ")
+        raise _Refusal(": ".join(filter(None, [str(path), key, message]))) from None
 
 
 # --- files ----------------------------------------------------------------------------------------
