@@ -1,0 +1,159 @@
+"""What figures and tables read from a history: phases, profiles, receptor traces, discretisation errors.
+
+A history is the dataset of one simulation (SI units, time[0] unloaded); a coarse companion is the same scene
+on a mesh of twice the edge. Nothing here computes mechanics.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from fingerpad.units import parse_quantity
+
+SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
+"""Labels of the nine surfaces, broad to sharp: curvature in 1/m as the thesis rounds it."""
+
+TOP, STEADY = "top of ramp", "steady state"
+PHASES = ("during ramp", TOP, STEADY)
+ERROR = "discretisation_error (%)"
+SIMULATED = "simulated"
+RAMP_FRACTIONS = (0.2, 0.4, 0.6, 0.8)
+
+Histories = Mapping[str, xr.Dataset]
+Feature = Callable[[xr.Dataset], float]
+
+PRESSURE_SCALE = 0.04
+"""Factor of the pressure traces of Fig 4-21, of the thesis's choosing."""
+
+PRESSURE = "contact_pressure_smoothed"
+"""The pressure plotted: nodal force over tributary length, both averaged over five neighbours."""
+
+
+def scene_name(programme: str, label: str) -> str:
+    """Scene of a surface in a programme: ``("ramp40", "79") -> "ramp40_k79"``."""
+    return f"{programme}_flat" if label == "flat" else f"{programme}_k{label}"
+
+
+def scenes(programme: str, labels: Iterable[str] = SURFACES) -> tuple[str, ...]:
+    """Scenes of several surfaces in one force programme."""
+    return tuple(scene_name(programme, label) for label in labels)
+
+
+def scene_of(history: xr.Dataset) -> dict[str, Any]:
+    """The validated scene (SI) a history was simulated from."""
+    return json.loads(history.attrs["scene"])
+
+
+def is_simulated(frame: pd.DataFrame) -> pd.Series:
+    """Rows of a figure's frame that hold simulated data (the others mark thesis ranges)."""
+    return frame["source"].astype(str).str.startswith(SIMULATED)
+
+
+def ramp_end(history: xr.Dataset) -> int:
+    """Index of the last output of the first leg: the top of the ramp."""
+    leg = history["leg"].values
+    return int(np.flatnonzero(leg == leg[0])[-1])
+
+
+def phase_indices(history: xr.Dataset) -> list[tuple[int, str]]:
+    """Outputs shown in profile figures: a few during the ramp, its top, and the last one."""
+    time = history["time"].values
+    top = ramp_end(history)
+    during = {int(np.argmin(abs(time[: top + 1] - f * time[top]))) for f in RAMP_FRACTIONS} - {0, top}
+    return [(i, PHASES[0]) for i in sorted(during)] + [(top, TOP), (len(time) - 1, STEADY)]
+
+
+def force_gf(history: xr.Dataset) -> np.ndarray:
+    """Normal force in gram-force (time): line load times the scene's contact length."""
+    length = scene_of(history)["specimen"]["contact_length"]
+    return history["force"].values * length / parse_quantity("1 gf", "force")
+
+
+def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> int:
+    """Index of the receptor at `depth` and `offset` (m). Raises KeyError if the scene has none there."""
+    miss = np.hypot(history["receptor_depth"].values - depth, history["receptor_offset"].values - offset)
+    index = int(miss.argmin())
+    if miss[index] > 1e-6:
+        raise KeyError(f"no receptor at depth {depth * 1e6:g} um, offset {offset * 1e3:g} mm")
+    return index
+
+
+def energy(
+    history: xr.Dataset, depth: float, offset: float = 0.0, name: str = "strain_energy_density"
+) -> np.ndarray:
+    """Strain energy density (time) in Pa at one receptor."""
+    return history[name].values[:, receptor_index(history, depth, offset)]
+
+
+def energy_rate(history: xr.Dataset, depth: float) -> pd.DataFrame:
+    """Time derivative of the strain energy density at the centre, with the times it is taken at.
+
+    Second-order differences on the output times (numpy.gradient), taken leg by leg, so that the jump at the
+    top of the ramp stays a jump: that time appears twice, once with the rate of each leg.
+    """
+    time, value, top = history["time"].values, energy(history, depth), ramp_end(history)
+    pieces = []
+    for part in (slice(0, top + 1), slice(top, len(time))):
+        if len(time[part]) > 1:
+            rate = np.gradient(value[part], time[part])
+            pieces.append(pd.DataFrame({"time (s)": time[part], "strain_energy_rate (Pa/s)": rate}))
+    return pd.concat(pieces, ignore_index=True)
+
+
+def profile(history: xr.Dataset, index: int, name: str = PRESSURE) -> tuple[np.ndarray, np.ndarray]:
+    """Deformed lateral position (m) and pressure (Pa) of the skin nodes at one output."""
+    x = history["skin_x"].values + history["skin_displacement_x"].values[index]
+    return x, history[name].values[index]
+
+
+def in_contact(history: xr.Dataset, index: int, margin: int = 1) -> np.ndarray:
+    """Mask of the skin nodes in contact at one output, with `margin` free nodes on either side."""
+    touching = np.flatnonzero(history["contact_pressure"].values[index] > 0)
+    mask = np.zeros(history.sizes["skin_node"], bool)
+    if touching.size:
+        mask[max(touching[0] - margin, 0) : touching[-1] + margin + 1] = True
+    return mask
+
+
+def centre_node(history: xr.Dataset) -> int:
+    """Index of the skin node at the apex (x = 0, on the upper side)."""
+    x, y = history["skin_x"].values, history["skin_y"].values
+    return int(np.argmin(np.where(y > 0, abs(x), np.inf)))
+
+
+def surface_nodes(history: xr.Dataset) -> np.ndarray:
+    """Indices of skin nodes from the centre to the right as far as anything ever touches (half contact)."""
+    centre = centre_node(history)
+    ever = np.flatnonzero((history["contact_pressure"].values > 0).any(axis=0))
+    return np.arange(centre, max(ever.max(initial=centre), centre) + 1)
+
+
+def error_percent(fine: xr.Dataset, coarse: xr.Dataset | None, *features: Feature) -> float:
+    """Largest relative difference (%) of scalar features between a history and its coarse companion.
+
+    The features are values at matching moments (top of the ramp, end), so the two may differ in output times.
+    NaN without a companion.
+    """
+    if coarse is None:
+        return float("nan")
+    pairs = [(f(fine), f(coarse)) for f in features]
+    return max(100 * abs(a - b) / abs(a) if a else 0.0 for a, b in pairs)
+
+
+def at_ends(name: str) -> tuple[Feature, Feature]:
+    """Features of a scalar history: its value at the top of the ramp and at the end."""
+    return (lambda d: float(d[name].values[ramp_end(d)])), (lambda d: float(d[name].values[-1]))
+
+
+def energy_at_ends(depth: float, offset: float = 0.0) -> tuple[Feature, Feature]:
+    """Features of the strain energy density at one receptor: top of the ramp and end."""
+    return (
+        lambda d: float(energy(d, depth, offset)[ramp_end(d)]),
+        lambda d: float(energy(d, depth, offset)[-1]),
+    )

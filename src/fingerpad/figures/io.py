@@ -1,0 +1,43 @@
+"""Publishing a figure: the picture and its plotted data side by side, written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fingerpad.figures.style import theme
+from fingerpad.files import write_atomically
+
+DPI = 200
+FLOAT_FORMAT = "%.6g"
+TEXT_COLUMNS = ("source", "surface", "phase", "layer", "panel", "series", "quantity", "pad")
+
+
+def write_frame(frame: pd.DataFrame, path: Path) -> None:
+    """Write a frame as CSV, six significant digits."""
+    write_atomically(
+        path, lambda p: frame.to_csv(p, index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
+    )
+
+
+def read_frame(path: Path) -> pd.DataFrame:
+    """Read a figure's CSV back: text columns as text (surface "79" too), everything else as numbers."""
+    with open(path, encoding="utf-8") as stream:
+        header = stream.readline().strip().split(",")
+    return pd.read_csv(path, dtype={c: str for c in TEXT_COLUMNS if c in header})
+
+
+def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
+    """Write a picture as PNG at a fixed resolution and without metadata: same data, same bytes."""
+    with theme():  # ticks and the layout are made only now
+        write_atomically(path, lambda p: fig.savefig(p, format="png", dpi=dpi, metadata={"Software": None}))
+
+
+def publish(fig: Figure, frame: pd.DataFrame, png_path: str | os.PathLike) -> None:
+    """Write ``fig_X.png`` and, beside it, ``fig_X.csv`` with the plotted data."""
+    png = Path(png_path)
+    write_frame(frame, png.with_suffix(".csv"))
+    write_picture(fig, png)

@@ -1,0 +1,100 @@
+"""What a figure is: the scenes it needs, a function to its data, and one from the data to the picture."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fingerpad.figures.features import SIMULATED, Histories
+
+if TYPE_CHECKING:
+    from fingerpad.specimen.mesh import PadMesh
+
+Meshes = Mapping[str, "PadMesh"]
+FrameFunction = Callable[[Histories, Meshes, Histories, pd.DataFrame], pd.DataFrame]
+
+
+@dataclass(frozen=True)
+class FigureSpec:
+    """One figure.
+
+    Attributes
+    ----------
+    number, title
+        The thesis's figure number (``4-10``) and a short title of our own.
+    needs
+        Names of the scenes whose histories (and meshes) the frame is made from.
+    frame
+        ``frame(histories, meshes, coarse, reference)``: the tidy data frame, units in the column names.
+        `coarse` holds the companions on a coarser mesh (may be empty: the error column is then NaN);
+        `reference` is the table of `read_reference` (may be empty: thesis ranges are then left out).
+    draw
+        ``draw(frame)``: the picture, a function of the frame alone.
+    """
+
+    number: str
+    title: str
+    needs: tuple[str, ...]
+    frame: FrameFunction
+    draw: Callable[[pd.DataFrame], Figure]
+
+
+def read_reference(path: str | PathLike) -> pd.DataFrame:
+    """Table of numbers printed in the thesis, indexed by id.
+
+    Columns figure, quantity, condition, low, high, units, kind (stated | axis_range | garbled), form (value |
+    range | axis | trend | layout), tolerance, source. Raises ValueError for a repeated id or an unknown kind
+    or form.
+    """
+    table = pd.read_csv(path, dtype={"id": str, "figure": str, "condition": str, "units": str}).set_index(
+        "id"
+    )
+    if not table.index.is_unique:
+        raise ValueError(f"{path}: repeated id {table.index[table.index.duplicated()][0]}")
+    for column, allowed in {
+        "kind": {"stated", "axis_range", "garbled"},
+        "form": {"value", "range", "axis", "trend", "layout"},
+    }.items():
+        unknown = set(table[column]) - allowed
+        if unknown:
+            raise ValueError(
+                f"{path}: unknown {column} {sorted(map(str, unknown))}, allowed {sorted(allowed)}"
+            )
+    return table
+
+
+def empty_reference() -> pd.DataFrame:
+    """A reference table without rows: figures then carry no thesis ranges."""
+    return pd.DataFrame(columns=["low", "high", "kind"])
+
+
+def axis_rows(
+    reference: pd.DataFrame, column: str, ids: str | Mapping[str, str], key: str = "surface"
+) -> pd.DataFrame:
+    """Rows that mark a thesis axis range: two rows (ends) a range, `source` saying so.
+
+    `ids` is one id for the whole figure, or a mapping panel -> id with the panel's name in the column `key`.
+    """
+    keyed = ids if isinstance(ids, Mapping) else {None: ids}
+    rows = []
+    for panel, id_ in keyed.items():
+        if id_ not in reference.index:
+            continue
+        entry = reference.loc[id_]
+        doubt = ", reading uncertain" if entry["kind"] == "garbled" else ""
+        for end in ("low", "high"):
+            row = {"source": f"thesis axis range ({id_}{doubt})", column: entry[end]}
+            rows.append(row if panel is None else {key: panel, **row})
+    return pd.DataFrame(rows)
+
+
+def assemble(simulated: pd.DataFrame, *marks: pd.DataFrame) -> pd.DataFrame:
+    """Simulated rows followed by the rows that mark thesis ranges, with a `source` column first."""
+    if "source" not in simulated:
+        simulated.insert(0, "source", SIMULATED)
+    return pd.concat([simulated, *(m for m in marks if not m.empty)], ignore_index=True)

@@ -1,0 +1,242 @@
+"""One style for every figure: page-width pictures, one colour map for curvature, a line style a phase.
+
+Colours of the surfaces come from one perceptually uniform, colour-blind-safe sequential map; the phases of an
+indentation are told apart by line style alone, as in the thesis, so every figure also reads in grey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import wraps
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fingerpad.figures.features import ERROR, PHASES, STEADY, SURFACES, TOP, is_simulated
+
+PAGE_WIDTH = 7.0  # inch, the text width of an A4 page
+GREY = "0.45"
+BAND = "0.955"
+INK = "0.15"
+
+RC = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.5,
+    "axes.titlesize": 8.5,
+    "axes.labelsize": 8.5,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "legend.fontsize": 8,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 4,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "lines.linewidth": 1.4,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "axes.formatter.use_mathtext": True,
+    "axes.formatter.limits": (-4, 5),
+}
+
+_MAP = mpl.colormaps["plasma"]
+COLOURS = {label: _MAP(x) for label, x in zip(SURFACES, np.linspace(0.0, 0.78, len(SURFACES)), strict=True)}
+
+PHASE_LINES = {
+    "during ramp": {"linestyle": (0, (1, 1.6)), "linewidth": 1.0},
+    TOP: {"linestyle": (0, (4, 1.8)), "linewidth": 1.9},
+    STEADY: {"linestyle": "-", "linewidth": 1.4},
+}
+
+LAYER_COLOURS = {
+    "stratum corneum": "#8c6d52",
+    "epidermis": "#c49a78",
+    "dermis": "#e3b7a8",
+    "fat": "#f6e7c4",
+    "bone": "#b9bec4",
+}
+
+
+def styled(draw: Callable[[pd.DataFrame], Figure]) -> Callable[[pd.DataFrame], Figure]:
+    """Run a drawing function under the shared style, whatever the caller's matplotlib settings are."""
+
+    @wraps(draw)
+    def inner(frame: pd.DataFrame) -> Figure:
+        with theme():
+            return draw(frame)
+
+    return inner
+
+
+@contextmanager
+def theme() -> Iterator[None]:
+    """Matplotlib's own defaults with this style on top; the caller's settings come back afterwards."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(RC)
+        yield
+
+
+def surface_name(label: str) -> str:
+    """Panel title of a surface: ``flat plate`` or ``K = 79 1/m``."""
+    return "flat plate" if label == "flat" else f"K = {label} 1/m"
+
+
+def new_figure(
+    frame: pd.DataFrame,
+    number: str,
+    title: str,
+    height: float,
+    note: list[str] | None = None,
+    header: float = 0.0,
+) -> Figure:
+    """Empty page-wide figure of a height (inch), title line above, provenance and error note below.
+
+    `header` (inch) leaves room under the title. The note is taken from the frame, so that a picture drawn
+    from a saved CSV says the same.
+    """
+    width = PAGE_WIDTH
+    fig = Figure(figsize=(width, height), layout="constrained")
+    lines = note or footnote(frame)
+    top, bottom = (0.30 + header) / height, (0.16 * len(lines) + 0.08) / height
+    fig.get_layout_engine().set(
+        rect=(0.005, bottom, 0.99, 1 - top - bottom), w_pad=0.04, h_pad=0.04, hspace=0.04
+    )
+    fig.text(0.012, 1 - 0.09 / height, f"Fig. {number}", ha="left", va="top", fontweight="bold", fontsize=9.5)
+    fig.text(0.012 + 0.82 / width, 1 - 0.09 / height, title, ha="left", va="top", fontsize=9.5)
+    fig.text(
+        0.012,
+        0.06 / height,
+        "\n".join(lines),
+        ha="left",
+        va="bottom",
+        fontsize=7,
+        color=GREY,
+        linespacing=1.35,
+    )
+    return fig
+
+
+def footnote(frame: pd.DataFrame) -> list[str]:
+    """Lines under a picture: provenance, discretisation error, and how thesis values are marked."""
+    first = "Simulated: 2-D plane-strain finite elements, not measured."
+    if ERROR in frame and frame[ERROR].notna().any():
+        worst = frame[ERROR].max()
+        shown = f"{worst:.1f}" if worst >= 0.1 else f"{worst:.2g}"
+        first += f" Discretisation error ≤ {shown} % (difference to a mesh of twice the edge)."
+    lines = [first]
+    if "source" in frame:
+        kinds = set(frame.loc[~is_simulated(frame), "source"])
+        if any("axis range" in k for k in kinds):
+            lines.append(
+                "Axes end where those of Cysyk (1999) end; a grey band marks the thesis's axis range where"
+                " the simulation needs more."
+            )
+    return lines
+
+
+def limit_axis(ax: Axes, frame: pd.DataFrame, column: str, axis: str = "y") -> None:
+    """Set one axis to the thesis's range found in `frame` and extend it only if simulated data leave it.
+
+    Where it must be extended, the thesis's range is shaded and labelled. Without a range in the frame the
+    axis is left to the data.
+    """
+    values = frame.loc[~is_simulated(frame) & frame["source"].str.contains("axis range"), column].dropna()
+    data = frame.loc[is_simulated(frame), column].dropna()
+    set_limits = ax.set_ylim if axis == "y" else ax.set_xlim
+    if values.empty:
+        if axis == "y" and not data.empty:
+            set_limits(min(0.0, data.min()), data.max() * 1.06)
+        return
+    low, high = values.min(), values.max()
+    if (
+        axis == "x" and not data.empty and low < 0 and data.abs().max() > high
+    ):  # a profile wider than the axis
+        set_limits(-data.abs().max() * 1.04, data.abs().max() * 1.04)
+        ax.axvspan(low, high, color=BAND, lw=0, zorder=0)
+        return
+    if axis == "x" or data.empty or data.max() <= high * 1.001:
+        set_limits(low, high)
+        return
+    set_limits(low, data.max() * 1.06)
+    ax.axhspan(low, high, color=BAND, lw=0, zorder=0)
+    bracket = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
+    line = {"arrowstyle": "|-|,widthA=.2,widthB=.2", "color": GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", (1.02, low), (1.02, high), arrowprops=line, **bracket)
+    ax.annotate("thesis axis range", (1.03, (low + high) / 2), xycoords=bracket["xycoords"], rotation=90,
+                ha="left", va="center", fontsize=6, color=GREY)  # fmt: skip
+
+
+def nine_panels(fig: Figure, labels: Sequence, xlabel: str, ylabel: str) -> dict[str, Axes]:
+    """A 3 x 3 grid in the thesis's order (flat plate top left, sharpest bottom right), shared axis labels."""
+    axes = fig.subplots(3, 3)
+    axes[2, 1].set_xlabel(xlabel)
+    axes[1, 0].set_ylabel(ylabel)
+    return dict(zip(labels, axes.ravel(), strict=True))
+
+
+def spread(values: Sequence[float], gap: float, low: float, high: float) -> np.ndarray:
+    """Positions at least `gap` apart, in the order of `values` and closest to them (least squares).
+
+    They stay within ``low .. high`` where there is room. Used to place direct labels. Ties keep their order.
+    """
+    from scipy.optimize import isotonic_regression  # here, for it is slow to import
+
+    values = np.asarray(values, float)
+    order = np.argsort(values, kind="stable")
+    steps = gap * np.arange(len(values))
+    shifted = isotonic_regression(values[order] - steps).x
+    shifted = np.clip(shifted, low, max(low, high - steps[-1]))
+    out = np.empty_like(values)
+    out[order] = shifted + steps
+    return out
+
+
+def label_ends(ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, heading: str = "") -> None:
+    """Label each trace directly at `x_label` (data units), joined to its end by a hairline.
+
+    `ends` maps a surface label to the (x, y) of the trace's last point. Axis limits must be set already.
+    """
+    low, high = ax.get_ylim()
+    gap = (high - low) * 0.135 / _axes_height(ax)
+    labels = list(ends)
+    positions = spread(
+        [ends[k][1] for k in labels], gap, low + gap * 0.4, high - gap * (1.6 if heading else 0.5)
+    )
+    for label, position in zip(labels, positions, strict=True):
+        x, y = ends[label]
+        ax.plot([x, x_label], [y, position], color=COLOURS[label], lw=0.6, alpha=0.7, clip_on=False)
+        text = "flat plate" if label == "flat" else label
+        ax.text(x_label, position, f" {text}", color=COLOURS[label], va="center", fontsize=8)
+    if heading:
+        ax.text(x_label, positions.max() + gap * 1.1, heading, va="center", ha="left", fontsize=7)
+
+
+def _axes_height(ax: Axes) -> float:
+    """Rough height of an axes in inch before the layout is solved."""
+    spec = ax.get_subplotspec()
+    ratios = spec.get_gridspec().get_height_ratios()
+    rows = range(spec.rowspan.start, spec.rowspan.stop)
+    share = sum(ratios[r] for r in rows) / sum(ratios)
+    return max(0.5, (ax.figure.get_figheight() - 0.9) * share - 0.2)
+
+
+def phase_legend(fig_or_ax: Figure | Axes, phases: Sequence[str] = PHASES, **kwargs) -> None:
+    """Legend of the three line styles of the phases."""
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], color=INK, label=p, **PHASE_LINES[p]) for p in phases]
+    fig_or_ax.legend(handles=handles, handlelength=2.6, **kwargs)

@@ -1,0 +1,180 @@
+"""Made-up histories with the shapes of real ones: for testing figures and tables only, never a result."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+
+import numpy as np
+import xarray as xr
+
+from fingerpad.scene import Outline
+from fingerpad.specimen.mesh import MeshSize, PadMesh, build_pad_mesh
+
+SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
+CURVATURE = dict(
+    zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True)
+)
+OUTLINE = {
+    "apex_height": 6e-3,
+    "apex_radius": 7.9e-3,
+    "half_width": 8.5e-3,
+    "depth_below": 6.2e-3,
+    "epidermis_thickness": 0.85e-3,
+    "dermis_thickness": 0.85e-3,
+    "stratum_corneum_thickness": 0.35e-3,
+    "bone_centre_height": -1.5e-3,
+    "bone_half_width": 4e-3,
+    "bone_half_height": 2.5e-3,
+    "nail_half_width": 5e-3,
+}
+DEPTHS = np.array([560, 600, 640, 765, 800, 845, 870, 915, 960]) * 1e-6
+LOAD = 19.6133  # N/m
+KNOWN = (0, 79, 210, 420, 1260)  # 1/m, surfaces with measured values (below: end of hold)
+DEPTH = (0.54e-3, 0.63e-3, 0.71e-3, 0.76e-3, 0.83e-3)
+WIDTH = (4.74e-3, 3.17e-3, 2.08e-3, 1.37e-3, 0.69e-3)
+ENERGY_600 = (186, 384, 758, 1278, 2227)
+ENERGY_915 = (108, 197, 319, 426, 536)
+
+
+@cache
+def mesh(edge: float = 0.5e-3) -> PadMesh:
+    """A coarse mesh of the thesis's section."""
+    return build_pad_mesh(Outline(**OUTLINE), MeshSize(skin_edge=edge, fine_half_width=2e-3, layer_edge=edge))
+
+
+def meshes(names) -> dict[str, PadMesh]:
+    """The same coarse mesh under every scene's name."""
+    return dict.fromkeys(names, mesh())
+
+
+def all_scenes() -> list[str]:
+    """Names of the nineteen scenes."""
+    names = [f"{p}_{'flat' if k == 'flat' else 'k' + k}" for p in ("ramp40", "ramp150") for k in SURFACES]
+    return [*names, "homogeneous_flat"]
+
+
+def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
+    """Every scene's made-up history; `scale` multiplies every result (a stand-in for a coarse companion)."""
+    return {name: history(name, scale, edge) for name in all_scenes()}
+
+
+def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
+    """One made-up history that follows the dataset's contract."""
+    programme, surface = name.split("_")
+    label = surface.removeprefix("k")
+    rate = 150 if programme == "ramp150" else 40
+    ramp = 20 / rate
+    time = np.concatenate((np.linspace(0, ramp, 21), ramp + np.geomspace(0.01, 2.0, 16)))
+    leg = np.where(time <= ramp, 0, 1)
+    load = np.minimum(time / ramp, 1.0)
+    crept = 1 - np.exp(-np.maximum(time - ramp, 0) / 0.4)
+    at = lambda table: np.interp(np.sqrt(CURVATURE[label]), np.sqrt(KNOWN), table)  # noqa: E731
+
+    depth = at(DEPTH) * load**0.7 * (0.86 + 0.14 * crept)
+    width = at(WIDTH) * load**0.55 * (0.9 + 0.1 * crept)
+    skin_x, skin_y = _skin(edge)
+    pressure = np.array(
+        [
+            _pressure(skin_x, skin_y, LOAD * f, w, programme != "homogeneous")
+            for f, w in zip(load, width, strict=True)
+        ]
+    )
+    centre = int(np.argmin(np.where(skin_y > 0, abs(skin_x), np.inf)))
+
+    offsets = np.round(np.arange(-5e-3, 5.01e-3, 0.25e-3), 9)
+    points = [(z, 0.0) for z in DEPTHS]
+    if programme == "ramp150":
+        points += [(z, o) for z in (800e-6, 915e-6) for o in offsets if o != 0]
+    receptor_depth, receptor_offset = np.array(points).T
+    surface_energy = np.interp(
+        receptor_depth, (560e-6, 600e-6, 849e-6, 851e-6, 960e-6), (0.8, 1.0, 3.0, 1.1, 0.95)
+    )
+    shallow = receptor_depth < 850e-6
+    peak = np.where(shallow, at(ENERGY_600) * 0.5, at(ENERGY_915)) * surface_energy
+    peak = peak * np.exp(-((receptor_offset / (0.5 * at(WIDTH) + 0.8e-3)) ** 2))
+    energy = np.outer(load**1.2 * (1 - 0.18 * crept), peak)
+    network = np.outer(load**1.2 * (1 + 0.15 * crept), peak)
+
+    bump = np.exp(-((skin_x / (0.6 * at(WIDTH) + 1e-3)) ** 2)) * (skin_y > 0)
+    full = {
+        "force": ("time", LOAD * load, "N/m"),
+        "tangential_force": ("time", 0 * load, "N/m"),
+        "indentation_depth": ("time", depth, "m"),
+        "contact_width": ("time", width, "m"),
+        "centre_pressure": ("time", pressure[:, centre], "Pa"),
+        "peak_pressure": ("time", pressure.max(axis=1), "Pa"),
+        "contact_pressure": (("time", "skin_node"), pressure, "Pa"),
+        "contact_pressure_smoothed": (("time", "skin_node"), pressure, "Pa"),
+        "skin_displacement_x": (
+            ("time", "skin_node"),
+            np.outer(depth, 0.02 * np.sin(skin_x / 2e-3) * bump),
+            "m",
+        ),
+        "skin_displacement_y": (("time", "skin_node"), -np.outer(depth, bump), "m"),
+        "strain_energy_density": (("time", "receptor"), energy, "Pa"),
+        "strain_energy_network": (("time", "receptor"), network, "Pa"),
+        "strain_energy_recoverable": (("time", "receptor"), network * 1.05, "Pa"),
+    }
+    data = {
+        k: (dims, v * scale if k != "force" else v, {"units": unit}) for k, (dims, v, unit) in full.items()
+    }
+    data["leg"] = ("time", leg)
+    coords = {
+        "time": ("time", time, {"units": "s"}),
+        "receptor_depth": ("receptor", receptor_depth, {"units": "m"}),
+        "receptor_offset": ("receptor", receptor_offset, {"units": "m"}),
+        "skin_x": ("skin_node", skin_x, {"units": "m"}),
+        "skin_y": ("skin_node", skin_y, {"units": "m"}),
+    }
+    return xr.Dataset(
+        data, coords, {"title": f"made up: {name}", "scene": json.dumps(_scene(name, label, rate))}
+    )
+
+
+def _skin(edge: float) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes along an ellipse-like section, left to right, one at the apex."""
+    count = int(2.6 * 7.5e-3 / edge)
+    angle = np.linspace(-2.6, 2.6, 2 * count + 1)
+    x, y = 8.5e-3 * np.sin(angle), np.where(np.cos(angle) > 0, 6e-3, 6.2e-3) * np.cos(angle)
+    x[count] = 0.0
+    return x, y
+
+
+def _pressure(x: np.ndarray, y: np.ndarray, load: float, width: float, layered: bool) -> np.ndarray:
+    """A symmetric pressure (Pa) of resultant `load` over `width`, with twin peaks when it is wide."""
+    if width <= 0:
+        return np.zeros_like(x)
+    half = width / 2
+    inside = np.clip(1 - (x / half) ** 2, 0, None) ** 0.5 * (y > 0)
+    excess = max(half - 0.5e-3, 0.0)
+    if layered:
+        inside = inside * (1 + 0.5 * min(1.0, excess / 1e-3) * np.exp(-(((abs(x) - excess) / 0.35e-3) ** 2)))
+    total = np.trapezoid(inside, x)
+    return load * inside / total if total > 0 else np.where(abs(x) == 0, load / 67e-6, 0.0) * (y > 0)
+
+
+def _scene(name: str, label: str, rate: float) -> dict:
+    moduli = (0.15e6, 0.015e6, 0.015e6) if name != "homogeneous_flat" else (0.03e6,) * 3
+    layers = {
+        layer: {"youngs_modulus": e, "poisson_ratio": 0.48}
+        for layer, e in zip(("epidermis", "dermis", "fat"), moduli, strict=True)
+    }
+    stimulus = {"shape": "flat"} if label == "flat" else {"shape": "cylinder", "curvature": CURVATURE[label]}
+    force = 9.80665e-3
+    return {
+        "name": name,
+        "specimen": {
+            "outline": OUTLINE,
+            "mesh": None,
+            "layers": layers,
+            "moduli": "long_term",
+            "prony": [{"g": 0.055, "tau": 3.25}, {"g": 0.3691, "tau": 0.3414}],
+            "ridges": "none",
+            "contact_length": 0.01,
+        },
+        "stimulus": stimulus,
+        "friction": 0.0,
+        "motion": [{"press_to_force": 20 * force, "rate": rate * force}, {"hold": 2.0}],
+        "accuracy": "thesis",
+    }

@@ -1,0 +1,202 @@
+"""The comparison with the thesis's numbers: rules of judgement, complete ids, and each trend's mutant."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import synthetic
+from fingerpad.figures.comparison import (
+    COLUMNS,
+    NUMBERS,
+    TRENDS,
+    Results,
+    judge,
+    thesis_comparison,
+)
+from fingerpad.figures.spec import read_reference
+from fingerpad.figures.tables import TABLES, markdown, publish_table
+
+pytestmark = pytest.mark.unit
+REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"
+
+
+@pytest.fixture(scope="module")
+def made():
+    histories = synthetic.histories()
+    return histories, synthetic.histories(1.01), synthetic.meshes(histories)
+
+
+@pytest.fixture(scope="module")
+def table(made):
+    return thesis_comparison(*made, REFERENCE).set_index("id")
+
+
+def test_every_number_of_the_reference_is_answered_and_no_other():
+    reference = read_reference(REFERENCE)
+    trends = set(reference.index[reference["form"] == "trend"])
+    numbers = set(reference.index[reference["form"].isin(["value", "range", "axis"])])
+    assert set(TRENDS) == trends and set(NUMBERS) == numbers
+
+
+def test_columns_kinds_and_verdicts_are_those_asked_for(table):
+    assert list(table.reset_index().columns) == list(COLUMNS)
+    assert set(table["thesis_kind"]) <= {"stated", "axis_range", "garbled"}
+    allowed = {"inside", "outside", "trend_holds", "trend_fails", "not_comparable"}
+    assert set(table["verdict"]) <= allowed
+
+
+def test_outside_rows_say_by_how_much(table):
+    notes = table.loc[table["verdict"] == "outside", "note"]
+    assert len(notes) and notes.str.contains("%").all()
+
+
+def test_the_error_is_the_difference_to_the_companion_in_the_rows_units(table):
+    row = table.loc["T123"]
+    assert row["discretisation_error"] == pytest.approx(0.01 * row["simulated"], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "form, low, high, tolerance, value, error, verdict",
+    [
+        ("value", 0.5, np.nan, 0.2, 0.59, 0.0, "inside"),
+        ("value", 0.5, np.nan, 0.2, 0.61, 0.0, "outside"),
+        ("value", 0.5, np.nan, 0.0, 0.52, 0.03, "inside"),
+        ("value", 9, np.nan, 0.0, 8, 0.0, "outside"),
+        ("range", 1.0, 1.5, np.nan, 0.83, 0.02, "outside"),
+        ("range", 1.0, 1.5, np.nan, 0.99, 0.02, "inside"),
+        ("range", 1.0, 1.5, np.nan, 1.6, 0.0, "outside"),
+        ("axis", 0, 10000, np.nan, 9900, 0.0, "inside"),
+        ("axis", 0, 10000, np.nan, 10050, 100.0, "inside"),
+        ("axis", 0, 10000, np.nan, 10500, 100.0, "outside"),
+        ("axis", 0, 10000, np.nan, 4900, 0.0, "outside"),
+        ("axis", 0, 10000, np.nan, np.nan, 0.0, "not_comparable"),
+    ],
+)
+def test_rules_of_judgement(form, low, high, tolerance, value, error, verdict):
+    entry = {"form": form, "low": low, "high": high, "tolerance": tolerance}
+    assert judge(value, error, entry)[0] == verdict
+
+
+def test_what_was_not_simulated_is_not_comparable(made):
+    histories, coarse, meshes = made
+    few = {"ramp40_flat": histories["ramp40_flat"]}
+    rows = thesis_comparison(few, {}, meshes, REFERENCE).set_index("id")
+    assert rows.loc["T106", "verdict"] == "inside"
+    assert rows.loc["T133", "verdict"] == "not_comparable"
+    assert "ramp40_k1260" in rows.loc["T133", "note"]
+    assert rows.loc["TR01", "verdict"] == "not_comparable"
+
+
+def test_sensitivity_run_is_quoted(made):
+    histories, coarse, meshes = made
+    more = histories | {"sensitivity_fat_k1260": histories["ramp40_k1260"]}
+    note = thesis_comparison(more, coarse, meshes, REFERENCE).set_index("id").loc["T102a", "note"]
+    assert "with 3.3 mm of fat the depth is 0.83 mm" in note
+
+
+def _set(history, name, values):
+    return history.assign({name: (history[name].dims, values, history[name].attrs)})
+
+
+def _trend(made, id_, changes):
+    """A trend on histories of which some are changed."""
+    return TRENDS[id_](Results(made[0] | changes, made[2]))
+
+
+def test_order_of_surfaces_fails_when_two_are_exchanged(made):
+    h = made[0]
+    swapped = {"ramp40_k105": h["ramp40_k315"], "ramp40_k315": h["ramp40_k105"]}
+    for id_ in ("TR01", "TR02", "TR03", "TR04", "TR05"):
+        assert _trend(made, id_, {}).holds and not _trend(made, id_, swapped).holds
+
+
+def _plate(made, shape):
+    history = made[0]["ramp40_flat"]
+    time = history["time"].values
+    return {"ramp40_flat": _set(history, "centre_pressure", np.interp(time, *zip(*shape, strict=True)))}
+
+
+def test_double_peak_of_the_plate(made):
+    double = [(0, 0), (0.2, 4400), (0.35, 4200), (0.5, 4600), (2.5, 4300)]
+    single = [(0, 0), (0.2, 4400), (0.5, 4600), (2.5, 4300)]
+    falling = [(0, 0), (0.2, 4400), (0.5, 4000), (2.5, 3900)]
+    assert _trend(made, "T327", _plate(made, double)).holds
+    assert not _trend(made, "T327", _plate(made, single)).holds
+    assert not _trend(made, "T327", _plate(made, falling)).holds
+
+
+def test_centre_pressure_peaks_before_the_ramps_end_and_sooner_for_broad_surfaces(made):
+    def peaking(times):
+        changed = {}
+        for label, peak in zip(synthetic.SURFACES[1:], times, strict=True):
+            history = made[0][f"ramp40_k{label}"]
+            time = history["time"].values
+            changed[f"ramp40_k{label}"] = _set(history, "centre_pressure", 1e4 - 1e4 * (time - peak) ** 2)
+        return changed
+
+    good = peaking((0.20, 0.25, 0.30, 0.33, 0.38, 0.42, 0.5, 0.5))
+    assert all(_trend(made, id_, good).holds for id_ in ("T328", "T328a", "T328b", "T329"))
+    late = peaking((0.20, 0.25, 0.30, 0.33, 0.38, 0.50, 0.5, 0.5))
+    assert not _trend(made, "T328", late).holds
+    mixed = peaking((0.20, 0.35, 0.30, 0.33, 0.38, 0.42, 0.4, 0.4))
+    assert not any(_trend(made, id_, mixed).holds for id_ in ("T328a", "T328b", "T329"))
+
+
+def test_off_centre_peaks(made):
+    assert _trend(made, "TR12", {}).holds and _trend(made, "TR13", {}).holds
+    assert not _trend(made, "TR13", {"homogeneous_flat": made[0]["ramp40_k79"]}).holds
+    assert not _trend(made, "TR12", {"ramp40_k1260": made[0]["ramp40_k79"]}).holds
+    assert not _trend(made, "TR10", {"ramp40_k79": made[0]["homogeneous_flat"]}).holds
+
+
+def test_symmetry_of_pressure(made):
+    history = made[0]["ramp40_k210"]
+    lopsided = history["contact_pressure"].values * (1 + 0.01 * (history["skin_x"].values > 0))
+    assert _trend(made, "TR11", {}).holds
+    assert not _trend(made, "TR11", {"ramp40_k210": _set(history, "contact_pressure", lopsided)}).holds
+
+
+def test_strain_energy_trends_tell_the_definitions_apart(table):
+    assert table.loc["TR20a", "verdict"] == table.loc["TR21a", "verdict"] == "trend_holds"
+    assert table.loc["TR20b", "verdict"] == table.loc["TR21c", "verdict"] == "trend_fails"
+    assert table.loc["TR20b", "condition"].endswith("network energy")
+
+
+def test_pressure_decay_fails_when_pressure_rises_in_the_hold(made):
+    history = made[0]["ramp40_k420"]
+    rising = np.maximum.accumulate(history["centre_pressure"].values) * np.linspace(
+        1, 1.1, history.sizes["time"]
+    )
+    assert _trend(made, "TR09", {}).holds
+    assert not _trend(made, "TR09", {"ramp40_k420": _set(history, "centre_pressure", rising)}).holds
+
+
+def test_energy_profile_with_twin_peaks_fails(made):
+    history = made[0]["ramp150_flat"]
+    beside = abs(abs(history["receptor_offset"].values) - 1e-3) < 1e-9
+    twin = history["strain_energy_density"].values * (1 + beside)
+    assert _trend(made, "TR19", {}).holds
+    changed = {"ramp150_flat": _set(history, "strain_energy_density", twin)}
+    assert not _trend(made, "TR19", changed).holds
+
+
+def test_tables_are_written_as_csv_and_markdown(table, tmp_path):
+    frame = table.reset_index()
+    publish_table(frame, tmp_path / "thesis_comparison.csv")
+    back = pd.read_csv(tmp_path / "thesis_comparison.csv")
+    assert len(back) == len(frame) and list(back.columns) == list(COLUMNS)
+    lines = (tmp_path / "thesis_comparison.md").read_text().splitlines()
+    assert len(lines) == len(frame) + 2 and all(line.count("|") == len(COLUMNS) + 1 for line in lines)
+
+
+def test_markdown_escapes_nothing_it_should_not():
+    text = markdown(pd.DataFrame({"a": [1.23456, float("nan")], "b": ["x", None]}))
+    assert text.splitlines()[2:] == ["| 1.235 | x |", "|  |  |"]
+
+
+def test_mesh_quality_has_a_row_a_scene(made):
+    rows = TABLES["mesh_quality"](*made, REFERENCE)
+    assert len(rows) == len(made[2])
+    assert rows["nodes"].eq(len(synthetic.mesh().points)).all()
