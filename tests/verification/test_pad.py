@@ -1,0 +1,260 @@
+"""Identities of the pad that need no published number: separability, symmetry, energy, scaling, limit."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pads import LOAD, SHAPES, THESIS, pad_body, pad_mesh, press_pad, ramp_and_hold
+from pressing import over_skin, skin_of, walk
+from problems import two_numbers
+
+from fingerpad.mechanics.stepping import NewtonSettings, Step
+from fingerpad.reference_solutions import ting
+
+BOTH_SHAPES = pytest.mark.parametrize("shape", SHAPES)
+COUNT = 16
+
+
+@pytest.fixture(scope="module")
+def half():
+    """Right half of the small pad."""
+    return pad_mesh().right_half()
+
+
+# -- separability --------------------------------------------------------------------------------------------
+
+
+def pressed_history(mesh, shape, key, goal, poisson, prony, count=COUNT):
+    """Times (2 count,) and the state over the skin after each step of a ramp and hold, small strain."""
+    steps = ramp_and_hold(key, goal, count)
+    body = pad_body(mesh, "small", poisson, prony)
+    records = walk(body, mesh, steps, SHAPES[shape], curve="skin").records
+    skin = skin_of(mesh, "skin")
+    return np.array([step.time for step in steps]), [over_skin(body, skin, records, r) for r in records]
+
+
+def force_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
+    """Depth control: largest deviation of the force from the hereditary integral of the elastic forces."""
+    times, ends = pressed_history(mesh, shape, "depth", 0.4e-3, poisson, prony)
+    ramp = [
+        press_pad(pad_body(mesh, "small", poisson), mesh, shape, depth=end.depth).force
+        for end in ends[:COUNT]
+    ]
+    elastic = np.concatenate([[0.0], ramp, np.full(COUNT, ramp[-1])]) / THESIS.g_infinity
+    truth = ting.force_under_depth_control(np.append(0.0, times), elastic, THESIS.g, THESIS.tau)[1:]
+    return np.abs(np.array([end.force for end in ends]) / truth - 1)[COUNT // 4 :].max()
+
+
+def depth_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
+    """Force control: largest deviations of depth and width from the elastic ones at the creep integral."""
+    times, ends = pressed_history(mesh, shape, "force", LOAD / 2, poisson, prony)
+    applied = LOAD * np.minimum(np.append(0.0, times) / 0.5, 1.0)
+    elastic = THESIS.g_infinity * ting.elastic_force_under_force_control(
+        np.append(0.0, times), applied, THESIS.g, THESIS.tau
+    )
+    worst = np.zeros(2)
+    for k in (COUNT // 2, COUNT - 1, 3 * COUNT // 2, 2 * COUNT - 1):
+        truth = press_pad(pad_body(mesh, "small", poisson), mesh, shape, force=elastic[k + 1])
+        found = ends[k]
+        worst = np.maximum(
+            worst, np.abs([found.depth / truth.depth - 1, found.half_width / truth.half_width - 1])
+        )
+    return worst
+
+
+def check_separability(mesh, shape, **mutant):
+    force = force_deviation(mesh, shape, **mutant)
+    assert force < 0.005, f"truth: the force deviates by {force:.4f} from the hereditary integral"
+    depth, width = depth_deviation(mesh, shape, **mutant)
+    assert depth < 0.005, f"truth: the depth deviates by {depth:.4f} from the elastic one"
+    assert width < 0.03, f"truth: the width deviates by {width:.4f} from the elastic one"
+
+
+@BOTH_SHAPES
+def test_layered_pad_separates(half, shape, must_fail):
+    """With nu near 0.5 and one Prony series a ramp and hold follows from one elastic curve (Ting 1966)."""
+    check_separability(half, shape)
+    must_fail(check_separability, half, shape, prony=None)
+
+
+SEPARATION_AT_048 = {
+    "flat": (0.0404086, 0.0350085),
+    "cylinder": (0.038065, 0.0341356),
+}
+
+
+@BOTH_SHAPES
+def test_separability_at_the_poisson_ratio_of_the_thesis(half, shape):
+    """At nu = 0.48, where the bulk does not relax, force and depth still separate to a few per cent."""
+    force, depth = force_deviation(half, shape, 0.48), depth_deviation(half, shape, 0.48)[0]
+    assert max(force, depth) < 0.05
+    assert (force, depth) == pytest.approx(SEPARATION_AT_048[shape], rel=1e-3)
+
+
+# -- symmetry ------------------------------------------------------------------------------------------------
+
+
+def check_half_is_full(shape, strain, layers=None):
+    """Depth, width, pressures and displacements of the half model unfold to those of the whole pad."""
+    whole_mesh = pad_mesh()
+    half_mesh = whole_mesh.right_half()
+    whole = press_pad(pad_body(whole_mesh, strain), whole_mesh, shape, force=LOAD)
+    extra = {} if layers is None else {"layers": layers}
+    half = press_pad(pad_body(half_mesh, strain, **extra), half_mesh, shape, force=LOAD)
+    np.testing.assert_allclose(half.depth, whole.depth, rtol=1e-8, err_msg="truth: depth")
+    np.testing.assert_allclose(2 * half.force, whole.force, rtol=1e-8, err_msg="truth: force")
+    np.testing.assert_allclose(2 * half.half_width, np.ptp(whole.edges), rtol=1e-7, err_msg="truth: width")
+    right = len(whole.pressure) // 2
+    top = whole.pressure.max()
+    np.testing.assert_allclose(
+        half.pressure, whole.pressure[right:], atol=1e-7 * top, err_msg="truth: pressure"
+    )
+    np.testing.assert_allclose(whole.pressure, whole.pressure[::-1], atol=1e-7 * top, err_msg="truth: mirror")
+    assert abs(whole.records[-1].tangential_force) < 1e-8 * LOAD, "truth: no tangential force"
+
+
+@pytest.mark.parametrize("strain", ["small", "finite"])
+@BOTH_SHAPES
+def test_half_model_is_the_full_model(shape, strain, must_fail):
+    """The half model gives the whole pad's answer to solver tolerance, and symmetric pressure."""
+    check_half_is_full(shape, strain)
+    must_fail(check_half_is_full, shape, strain, layers=(0.15e6, 0.015e6, 0.0151e6))
+
+
+# -- energy --------------------------------------------------------------------------------------------------
+
+
+def energy_errors(mesh, strain, prony, count, dissipated_share=1.0):
+    """Imbalance of work, stored and dissipated energy over the work, after each step of a ramp and hold."""
+    body = pad_body(mesh, strain, 0.48, prony)
+    records = walk(body, mesh, ramp_and_hold("force", LOAD / 2, count), SHAPES["flat"], curve="skin").records
+    return np.array(
+        [abs(r.work - sum(r.energies[:2]) - dissipated_share * r.dissipated) / r.work for r in records]
+    )
+
+
+def check_energy(mesh, strain, prony=THESIS, **mutant):
+    coarse, fine = (energy_errors(mesh, strain, prony, count, **mutant)[-1] for count in (8, 16))
+    assert fine < 2e-3, f"truth: {fine:.2e} of the work is lost"
+    if strain == "small" or prony is None:  # the energy of a Maxwell spring at finite strain is a convention
+        assert fine < 0.4 * coarse, f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
+    frozen = ENERGY[strain, prony is None]
+    two_numbers(fine, truth=frozen, within=0.1, frozen=frozen, tight=1e-3)
+
+
+ENERGY = {
+    ("small", True): 0.000843002,
+    ("small", False): 0.00104956,
+    ("finite", True): 0.00108594,
+    ("finite", False): 0.00188579,
+}
+
+
+@pytest.mark.parametrize("prony", [None, THESIS], ids=["elastic", "viscoelastic"])
+@pytest.mark.parametrize("strain", ["small", "finite"])
+def test_energy_balance(half, strain, prony, must_fail):
+    """Work of the indenter = stored + dissipated energy, up to the trapezoidal rule's error in the step."""
+    check_energy(half, strain, prony)
+    if prony:
+        must_fail(check_energy, half, strain, prony, dissipated_share=0.9)
+
+
+# -- scaling -------------------------------------------------------------------------------------------------
+
+
+def check_scaling(mesh, strain, length, stress, load_share=1.0):
+    """Lengths times ``length`` and stresses times ``stress`` leave every ratio unchanged."""
+    scaled = replace(mesh, points=mesh.points * length)
+    reference = press_pad(pad_body(mesh, strain), mesh, "flat", force=LOAD)
+    result = press_pad(
+        pad_body(scaled, strain, scale=stress), scaled, "flat", force=load_share * LOAD * stress * length
+    )
+    for name, unit in {"depth": length, "half_width": length, "force": stress * length}.items():
+        expected = getattr(reference, name) * unit
+        np.testing.assert_allclose(getattr(result, name), expected, rtol=1e-8, err_msg=f"truth: {name}")
+    np.testing.assert_allclose(
+        result.pressure, stress * reference.pressure, atol=1e-7 * result.pressure.max()
+    )
+    assert result.records[-1].iterations == reference.records[-1].iterations
+
+
+@pytest.mark.parametrize(
+    "length, stress", [(1.0, 37.0), (1e3, 1e-6), (1e6, 1e-3)], ids=["stiffer", "mm N", "um"]
+)
+@pytest.mark.parametrize("strain", ["small", "finite"])
+def test_units_do_not_matter(half, strain, length, stress, must_fail):
+    """Moduli and forces times c leave every length; millimetres give what metres give."""
+    check_scaling(half, strain, length, stress)
+    must_fail(check_scaling, half, strain, length, stress, load_share=1.001)
+
+
+# -- small strain is the limit of finite strain --------------------------------------------------------------
+
+
+def check_small_is_the_limit(mesh, shape, poisson=0.48):
+    """Relative difference of the depths at 1/16, 1/32 and 1/64 of the load."""
+    found = []
+    for share in (16, 32, 64):
+        depths = [
+            press_pad(pad_body(mesh, strain, nu), mesh, shape, force=LOAD / share).depth
+            for strain, nu in (("small", 0.48), ("finite", poisson))
+        ]
+        found.append(abs(depths[1] / depths[0] - 1))
+    rates = np.log2(np.array(found[:-1]) / found[1:])
+    assert found[-1] < 2.5e-3, f"truth: still {found[-1]:.2e} apart"
+    assert rates.mean() > 0.9, (
+        f"truth: the difference falls with the rates {rates}, not in proportion to the load"
+    )
+    two_numbers(found[0], truth=LIMIT[shape], within=0.1, frozen=LIMIT[shape], tight=1e-4)
+
+
+LIMIT = {
+    "flat": 0.00741542,
+    "cylinder": 0.00667745,
+}
+
+
+@BOTH_SHAPES
+def test_finite_strain_becomes_small_strain(half, shape, must_fail):
+    """As the load goes to zero finite-strain depth joins small-strain depth at first order in the load."""
+    check_small_is_the_limit(half, shape)
+    must_fail(check_small_is_the_limit, half, shape, poisson=0.47)
+
+
+# -- effort --------------------------------------------------------------------------------------------------
+
+#: Newton iterations and step halvings of a ramp and hold of 16 steps
+EFFORT = {
+    ("flat", "small"): 16,
+    ("flat", "finite"): 31,
+    ("cylinder", "small"): 17,
+    ("cylinder", "finite"): 32,
+}
+
+
+@pytest.mark.parametrize("strain", ["small", "finite"])
+@BOTH_SHAPES
+def test_solver_effort(half, shape, strain):
+    """A viscoelastic ramp and hold takes at most 2.5 iterations a step and no cut; the count is frozen."""
+    steps = ramp_and_hold("force", LOAD / 2, 8)
+    body = pad_body(half, strain, prony=THESIS)
+    records = walk(body, half, steps, SHAPES[shape], NewtonSettings(), "skin").records
+    iterations, halvings = sum(r.iterations for r in records), sum(r.halvings for r in records)
+    assert len(records) == 16
+    assert halvings == 0
+    assert iterations <= 2.5 * len(records)
+    assert abs(iterations - EFFORT[shape, strain]) <= 1
+
+
+@pytest.mark.parametrize("poisson", [0.48, 0.4999])
+@BOTH_SHAPES
+def test_whole_load_in_one_step(half, shape, poisson):
+    """The full load goes on in one finite-strain step of at most six iterations, at nu = 0.48 and 0.4999."""
+    body = pad_body(half, "finite", poisson)
+    record = walk(
+        body, half, [Step(0, 1.0, 1.0, force=LOAD / 2)], SHAPES[shape], NewtonSettings(), "skin"
+    ).records[-1]
+    assert record.iterations <= 6
+    assert record.halvings == 0
+    assert record.smallest_jacobian > 0.5
+    assert record.complementarity < 1e-3
