@@ -1,0 +1,98 @@
+"""Strain energy at receptors: against Hertz's field below the contact, and term by term in simple shear."""
+
+import numpy as np
+import pytest
+from meshes import nodes_of, rectangle
+from pressing import press
+from problems import make_body, two_numbers
+from strips import Layer, half_strip
+
+from fingerpad.receptors.material_points import MaterialPoints
+from fingerpad.reference_solutions import hertz, prony_point
+from fingerpad.specimen.materials import Prony
+from fingerpad.stimuli.profiles import Cylinder
+
+THESIS = Prony((0.055, 0.3691), (3.25, 0.3414))
+DEPTHS = (0.3, 0.786, 1.5, 2.5)  # half widths
+
+#: network energy over p0^2/G at DEPTHS
+HERTZ = {
+    ("Q1P0", "small"): (0.024034449, 0.045720478, 0.031205463, 0.016389509),
+    ("Q1P0", "finite"): (0.023991469, 0.045774578, 0.03124537, 0.016409539),
+    ("Q2P1", "small"): (0.023125771, 0.045358974, 0.031925595, 0.016095347),
+    ("Q2P1", "finite"): (0.023078888, 0.045411527, 0.031966469, 0.016115246),
+    ("P2B", "small"): (0.022639289, 0.04470788, 0.031723015, 0.016056725),
+    ("P2B", "finite"): (0.022590433, 0.044757525, 0.031763187, 0.016076494),
+}
+
+
+def check_hertz_energy(element, strain="small", poisson=0.4999, off_axis=0.0):
+    """Incompressible half-plane: the density below the contact is (largest shear stress)^2 / 2 G."""
+    shear, radius, depth = 1.0, 200.0, 150.0
+    load = hertz.force(1.0, radius, 2 * shear / (1 - poisson))
+    p0 = hertz.peak_pressure(load, 1.0)
+    mesh, body = half_strip(
+        [Layer(depth, shear, poisson)], depth, element, strain, fine=3 / depth, columns=(24, 18)
+    )
+    points = np.column_stack([np.full(len(DEPTHS), off_axis), -np.array(DEPTHS)])
+    receptors = MaterialPoints(body, points, body.shear)
+    press(body, mesh, Cylinder(1 / radius), force=load / 2)
+    energies = receptors.strain_energies(body)
+    truth = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)["max_shear"] ** 2 / (2 * shear)
+    within = 0.08 if element == "Q1P0" else 0.02
+    for found, expected, frozen in zip(
+        energies["strain_energy_network"], truth, HERTZ[element, strain], strict=True
+    ):
+        two_numbers(found / p0**2, truth=expected / p0**2, within=within, frozen=frozen, tight=1e-5)
+    for name in ("strain_energy_density", "strain_energy_recoverable"):
+        np.testing.assert_allclose(
+            energies[name], energies["strain_energy_network"], rtol=2e-3, err_msg="truth"
+        )
+
+
+@pytest.mark.parametrize("strain", ["small", "finite"])
+@pytest.mark.parametrize("element", ["Q1P0", "Q2P1", "P2B"])
+def test_energy_below_hertz_contact(element, strain, must_fail):
+    """Strain energy on the axis below a cylinder is that of Hertz's stresses (Johnson 1985, section 4.2)."""
+    check_hertz_energy(element, strain)
+    must_fail(check_hertz_energy, element, strain, off_axis=0.9)
+
+
+def check_shear_energies(strain, series=THESIS):
+    """The energies at the end of a shear ramp of 0.5 s and after a hold of 2 s."""
+    mesh = rectangle(1, 1)
+    fixed = np.zeros(mesh.points.shape, bool)
+    fixed[nodes_of(mesh, "bottom")] = True
+    long_term, shear = 2.0, 1e-3
+    instantaneous = long_term / THESIS.g_infinity
+    body = make_body(mesh, fixed, long_term, 50.0, "Q2P1", strain, series)
+    receptors = MaterialPoints(body, np.array([[0.31, 0.77]]), np.array([instantaneous]))
+    unit = np.column_stack([mesh.points[:, 1], 0 * mesh.points[:, 1]])
+    for dt, now in ((0.5, shear), (2.0, shear)):
+        body.begin_step(dt)
+        body.displace(now * unit)
+        receptors(body, dt)
+        body.commit()
+        time = 0.5 if dt == 0.5 else 2.5
+        history = [0, 0.5, 2.5], [0, shear, shear]
+        total = prony_point.stress_from_strain(*history, THESIS.g, THESIS.tau, instantaneous)
+        springs = 0.0
+        for g, tau in zip(THESIS.g, THESIS.tau, strict=True):
+            held = prony_point.stress_from_strain(*history, [g], [tau], instantaneous)
+            branch = held - instantaneous * (1 - g) * np.array(history[1])
+            springs += branch**2 / (2 * g * instantaneous)
+        k = history[0].index(time)
+        truth = {
+            "strain_energy_density": total[k] ** 2 / (2 * instantaneous),
+            "strain_energy_network": long_term * shear**2 / 2,
+            "strain_energy_recoverable": long_term * shear**2 / 2 + springs[k],
+        }
+        for name, found in receptors.strain_energies(body).items():
+            np.testing.assert_allclose(found, truth[name], rtol=1e-5, err_msg=f"truth: {name} at {time} s")
+
+
+@pytest.mark.parametrize("strain", ["small", "finite"])
+def test_three_strain_energies_in_shear(strain, must_fail):
+    """A sheared point's headline energy is s^2/2G_0, its network's G y^2/2, recoverable with the springs'."""
+    check_shear_energies(strain)
+    must_fail(check_shear_energies, strain, series=None)
