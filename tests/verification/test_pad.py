@@ -246,15 +246,46 @@ def test_solver_effort(half, shape, strain):
     assert abs(iterations - EFFORT[shape, strain]) <= 1
 
 
-@pytest.mark.parametrize("poisson", [0.48, 0.4999])
-@BOTH_SHAPES
-def test_whole_load_in_one_step(half, shape, poisson):
-    """The full load goes on in one finite-strain step of at most six iterations, at nu = 0.48 and 0.4999."""
-    body = pad_body(half, "finite", poisson)
-    record = walk(
-        body, half, [Step(0, 1.0, 1.0, force=LOAD / 2)], SHAPES[shape], NewtonSettings(), "skin"
-    ).records[-1]
-    assert record.iterations <= 6
-    assert record.halvings == 0
+def check_one_step(mesh, shape, poisson, lagged=True):
+    body = pad_body(mesh, "finite", poisson)
+    body.lagged = lagged
+    step = Step(0, 1.0, 1.0, force=LOAD / 2)
+    record = walk(body, mesh, [step], SHAPES[shape], NewtonSettings(), "skin").records[-1]
+    cost = f"{record.iterations} iterations and {record.halvings} halvings"
+    assert record.iterations <= 6 and record.halvings == 0, f"truth: {cost} instead of one step"
     assert record.smallest_jacobian > 0.5
     assert record.complementarity < 1e-3
+
+
+@pytest.mark.parametrize("poisson", [0.48, 0.4999])
+@BOTH_SHAPES
+def test_whole_load_in_one_step(half, shape, poisson, must_fail):
+    """The full load goes on in one finite-strain step of at most six iterations, at nu = 0.48 and 0.4999."""
+    check_one_step(half, shape, poisson)
+    if poisson == 0.4999:  # plain Newton needs the load cut to pieces
+        must_fail(check_one_step, half, shape, poisson, lagged=False)
+
+
+# -- limits of the Prony series ------------------------------------------------------------------------------
+
+
+def check_prony_limit(mesh, strain, held, modulus, prony=THESIS):
+    """Force of a pad pressed 0.4 mm at once and held for ``held`` seconds over that of an elastic pad."""
+    poisson = 0.4999
+    steps = [Step(0, 0.0, 0.0, depth=0.4e-3), Step(1, held, held, depth=0.4e-3)]
+    viscoelastic = walk(pad_body(mesh, strain, poisson, prony), mesh, steps, curve="skin")
+    elastic = press_pad(pad_body(mesh, strain, poisson), mesh, "flat", depth=0.4e-3)
+    ratio = viscoelastic.force / elastic.force
+    assert abs(ratio - modulus) < 2e-3 * modulus, f"truth: {ratio!r} is not {modulus!r}"
+    if modulus == 1.0:
+        np.testing.assert_allclose(viscoelastic.depth, elastic.depth, rtol=1e-8, err_msg="truth: depth")
+        np.testing.assert_allclose(ratio, 1, rtol=1e-6, err_msg="truth: exactly the long-term answer")
+
+
+@pytest.mark.parametrize("strain", ["small", "finite"])
+def test_prony_limits(half, strain, must_fail):
+    """Held long after 3.25 s the pad is the long-term one, long before 0.34 s the instantaneous one."""
+    check_prony_limit(half, strain, 1e6, 1.0)
+    check_prony_limit(half, strain, 1e-4, 1 / 0.5759)
+    must_fail(check_prony_limit, half, strain, 3.0, 1.0)
+    must_fail(check_prony_limit, half, strain, 1e-4, 1 / 0.5759, prony=None)
