@@ -84,23 +84,26 @@ def _tree(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
 
 
-def _statements(node: ast.AST, inside_functions: bool) -> Iterator[ast.AST]:
-    for child in ast.iter_child_nodes(node):
-        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
-            for other in child.orelse:
-                yield other
-                yield from _statements(other, inside_functions)
+def _statements(body: Iterable[ast.stmt], inside_functions: bool) -> Iterator[ast.stmt]:
+    """Statements at any depth, but for what only a type checker runs and, if asked, bodies of functions."""
+    for node in body:
+        yield node
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and not inside_functions:
             continue
-        if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef)) and not inside_functions:
-            continue
-        yield child
-        yield from _statements(child, inside_functions)
+        for block in ("body", "orelse", "finalbody", "handlers", "cases"):
+            for_checker = block == "body" and isinstance(node, ast.If) and _type_checking(node.test)
+            if not for_checker:
+                yield from _statements(getattr(node, block, ()), inside_functions)
+
+
+def _type_checking(test: ast.expr) -> bool:
+    return "TYPE_CHECKING" in (getattr(test, "id", None), getattr(test, "attr", None))
 
 
 def _imports(path: Path, module: str | None, entered: bool) -> Iterator[str]:
     root = PACKAGE.name
     package = module if path.name == "__init__.py" else (module or "").rpartition(".")[0]
-    for node in _statements(_tree(path), inside_functions=entered):
+    for node in _statements(_tree(path).body, inside_functions=entered):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name.split(".")[0] == root)
         elif isinstance(node, ast.ImportFrom):
