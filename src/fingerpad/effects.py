@@ -51,6 +51,8 @@ class Rules:
         small_strain_share: small strain is used when its expected error is below this share of the accuracy asked for.
         relaxation_share: viscosity is left out when what it can change is below this share of the accuracy.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
+        inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
+        edges_per_half_width: a contact narrower than this many edges gets a finer skin mesh under the apex.
         seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
             finite and with small strain, and per node and step for output.
     """
@@ -67,6 +69,7 @@ class Rules:
     relaxation_share: float = 0.25
     fine_half_width: float = 3.4e-3
     edges_per_half_width: float = 2.0
+    inertia_limit: float = 0.1
     seconds_start: float = 1.2
     seconds_finite: float = 3.0e-6
     seconds_small: float = 1.0e-6
@@ -93,7 +96,7 @@ class Plan:
         effects: friction, viscoelasticity, finite_strain, symmetry, ridges. state: moduli used when viscosity is off
         ("long_term" or "instantaneous"). element: key of the element. mesh_size: of a built mesh, None for an external one.
         contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them.
-        timed: does time matter? nodes, smallest_edge (m): of the mesh that is solved on.
+        timed: does time matter? nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
     """
 
     effects: dict[str, Effect]
@@ -106,6 +109,7 @@ class Plan:
     timed: bool
     nodes: int
     smallest_edge: float
+    inertia_ratio: float
     estimated_error: float
     predicted_cost_s: float
 
@@ -136,6 +140,7 @@ class Plan:
             "contact_estimate_SI": asdict(self.contact),
             "mesh_size_SI": None if self.mesh_size is None else asdict(self.mesh_size),
             "smallest_edge_SI": self.smallest_edge,
+            "inertia_ratio": self.inertia_ratio,
             "steps_per_leg": self.steps_per_leg,
             "timed": self.timed,
         }
@@ -155,7 +160,12 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     """
     external = read_pad_mesh(scene.specimen.mesh).elevated() if scene.specimen.mesh else None
     profile = profile_of(scene.stimulus)
-    contact = _worst_contact(scene, external)
+    contact = _worst_contact(scene, profile, external)
+    inertia = _inertia_ratio(scene, contact)
+    if inertia > rules.inertia_limit:
+        raise PlanError(
+            f"motion: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); allowed: up to {rules.inertia_limit:g}"
+        )
     preset, by_hand = _preset(scene, rules, contact)
     tolerance = preset.error
     effects = {
@@ -185,7 +195,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         nodes = nodes // 2 + 1
     error = _estimated_error(edge, contact, rules)
     return Plan(
-        effects, state, element, size, contact, steps_per_leg, steps, timed, nodes, smallest, error,
+        effects, state, element, size, contact, steps_per_leg, steps, timed, nodes, smallest, inertia, error,
         _cost(nodes, steps, effects, rules),
     )  # fmt: skip
 
@@ -212,14 +222,14 @@ def read_plan(path: str | Path) -> Plan:
     return Plan(
         {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
         ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], known["steps"], data["timed"],
-        known["nodes"], data["smallest_edge_SI"], data["estimated_error"], data["predicted_cost_s"],
+        known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["estimated_error"], data["predicted_cost_s"],
     )  # fmt: skip
 
 
 # -- the choices --------------------------------------------------------------------------------------------------------
 
 
-def _worst_contact(scene: Scene, external: PadMesh | None) -> ContactEstimate:
+def _worst_contact(scene: Scene, profile, external: PadMesh | None) -> ContactEstimate:
     specimen, layers = scene.specimen, scene.specimen.layers
 
     def plane(layer):
@@ -237,7 +247,7 @@ def _worst_contact(scene: Scene, external: PadMesh | None) -> ContactEstimate:
     pad = PadEstimate(radius, epidermis, soft, relax * plane(layers.epidermis), relax * softest)
     curvature = getattr(scene.stimulus, "curvature", 0.0)
     if scene.stimulus.shape == "line":
-        curvature = 1e5
+        curvature = 1 / profile.fillet
     worst = ContactEstimate(0.0, 0.0, 0.0)
     for leg in scene.motion:
         if isinstance(leg, PressToForce):
@@ -251,6 +261,18 @@ def _worst_contact(scene: Scene, external: PadMesh | None) -> ContactEstimate:
         wide = max(worst.half_width, scene.stimulus.width / 2)
         worst = replace(worst, half_width=wide, strain=max(worst.strain, 0.5))
     return worst
+
+
+def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> float:
+    """rho v^2 / mu of the softest layer: what leaving inertia out of the equations neglects."""
+    layers = scene.specimen.layers
+    softest = min(layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in (layers.epidermis, layers.dermis, layers.fat))
+    speed = 0.0
+    for leg, duration in zip(scene.motion, leg_durations(scene), strict=True):
+        if duration and not isinstance(leg, Hold):
+            depth = leg.press_to_depth if isinstance(leg, PressToDepth) else contact.depth
+            speed = max(speed, getattr(leg, "speed", None) or depth / duration)
+    return 1000.0 * speed**2 / softest
 
 
 def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Preset, Discretisation | None]:
@@ -359,9 +381,11 @@ def _mesh_size(scene: Scene, preset: Preset, profile, contact: ContactEstimate, 
     fine = max(rules.fine_half_width, 1.3 * contact.half_width, offsets)
     focus = ()
     if profile.edges:
-        fillet = getattr(scene.stimulus, "fillet", 0.0)
+        fillet = getattr(profile, "fillet", 0.0)
         edge = min(preset.skin_edge / 4, fillet / 2) if fillet else preset.skin_edge / 4
         focus = tuple((x, edge) for x in sorted({abs(x) for x in profile.edges}))
+    elif not isinstance(scene.accuracy, Discretisation) and preset.skin_edge > contact.half_width / rules.edges_per_half_width:
+        focus = ((0.0, contact.half_width / rules.edges_per_half_width),)
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * outline.half_width),

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 _plan = plan
 
+#: Unprojected volumetric stiffness under edge indenters, in shear moduli.
+EDGE_STIFFNESS = 5.0
+
 
 def simulate(
     scene: Scene,
@@ -67,9 +70,9 @@ class _Run:
         self.share = 0.5 if self.mesh.half else 1.0
         specimen = scene.specimen
         self.prony = Prony(tuple(t.g for t in specimen.prony), tuple(t.tau for t in specimen.prony))
+        self.profile = profile_of(scene.stimulus)
         self.body, instantaneous = self._body()
         self.receptors = self._receptors(instantaneous)
-        self.profile = profile_of(scene.stimulus)
         self.skin = self._skin()
         self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=(self.receptors,))
 
@@ -88,9 +91,13 @@ class _Run:
             [layer.youngs_modulus for layer in layers], [layer.poisson_ratio for layer in layers], self.prony, specimen.moduli
         )
         shear = known.shear_long_term if plan.state == "long_term" else known.shear_instantaneous
-        kind = FiniteStrainBody if plan.effects["finite_strain"].on else SmallStrainBody
         prony = self.prony if plan.effects["viscoelasticity"].on else None
-        return kind(space, shear[mesh.region], known.bulk[mesh.region], prony), known.shear_instantaneous[mesh.region]
+        args = (space, shear[mesh.region], known.bulk[mesh.region], prony)
+        if plan.effects["finite_strain"].on:
+            body = FiniteStrainBody(*args, pointwise=EDGE_STIFFNESS if self.profile.singular else None)
+        else:
+            body = SmallStrainBody(*args)
+        return body, known.shear_instantaneous[mesh.region]
 
     def _receptors(self, instantaneous):
         receptors = self.scene.outputs.receptors
@@ -125,7 +132,7 @@ class _Run:
             if progress:
                 counts["iterations"] += record.iterations
                 counts["cutbacks"] += record.halvings
-                width = 2e3 * self.share * np.ptp(self._edges(record)) if record.nodal_force.any() else 0.0
+                width = 1e3 * np.ptp(self._edges(record)) / self.share if record.nodal_force.any() else 0.0
                 progress({"time_s": record.time, "end_time_s": total, "contact_width_mm": float(width)} | counts)
 
         try:
@@ -136,7 +143,7 @@ class _Run:
         return self._history(records, states, snapshots, complete=True)
 
     def _present(self):
-        return getattr(self.stepper, "_force", 0.0) / self.share, self.stepper.depth
+        return self.stepper.force / self.share, self.stepper.depth
 
     def _steps(self):
         for step in schedule(self.scene, self.plan.steps_per_leg, self.plan.timed, self._present):

@@ -119,27 +119,37 @@ def solve_contact(
         load_shift = float(border @ free)
     else:
         bend = None
-    if np.any(bent != 0) and force is not None and not _positive(compliance, active, lever, corner):
-        # too curved for its own load at this linearisation: leave the geometric term out, convergence gets linear
+    try:
+        if depth_change is not None:
+            dd = depth_change
+            f, active, pivots = _pivot(compliance, offset + lever * dd, active)
+        else:
+            f, dd, active, pivots = _pivot_with_depth(compliance, offset, lever, corner, force - load_shift, active)
+        if border is not None and not _stable(matrix, compliance, active):
+            raise ContactError("the curved contact is not stable")
+    except ContactError:
+        if border is None:
+            raise
+        # too curved for its own load at this linearisation: half of the geometric term is safer and still converges
+        bent = 0.5 * curvature if np.abs(curvature).max() * previous_force.max() > 1e-6 * np.abs(schur).max() else 0 * curvature
         return solve_contact(
-            zone, schur, right, gap, gradient, 0 * curvature, previous_force, active, force=force, depth_change=depth_change
+            zone, schur, right, gap, gradient, bent, previous_force, active, force=force, depth_change=depth_change
         )
-    if depth_change is not None:
-        f, active, pivots = _pivot(compliance, offset + lever * depth_change, active)
-        dd = depth_change
-    else:
-        f, dd, active, pivots = _pivot_with_depth(compliance, offset, lever, corner, force - load_shift, active)
     du = free + solved[:, :nz] @ f
     if bend is not None:
         du -= bend * dd
     return ContactStep(du, dd, f, active, pivots)
 
 
-def _positive(compliance, active, lever, corner):
-    """Is the problem convex on the presently active nodes?"""
-    if not active.any():
+def _stable(matrix, compliance, active):
+    """Is ``matrix`` positive definite on the displacements that keep the active gaps closed?
+
+    By the inertia of the bordered matrix: the active compliance must have as many negative eigenvalues as ``matrix``.
+    """
+    if lapack.dpotrf(matrix)[1] == 0:
         return True
-    return lapack.dpotrf(compliance[np.ix_(active, active)])[1] == 0
+    inside = compliance[np.ix_(active, active)]
+    return np.sum(np.linalg.eigvalsh(matrix) < 0) == np.sum(np.linalg.eigvalsh((inside + inside.T) / 2) < 0)
 
 
 def _pivot(compliance, offset, active):

@@ -19,6 +19,8 @@ class FiniteStrainBody:
     Args:
         space: the discretised mesh. shear, bulk: (ne,) long-term shear and bulk moduli, Pa.
         prony: None leaves viscoelasticity out altogether.
+        pointwise: volumetric modulus in units of ``shear`` that is not projected on the pressure modes; a few of them keep
+            elements under an edge from folding, where det F varies wildly within one element. None leaves it out.
 
     Attributes:
         u: (n, 2) displacement, m; smallest_jacobian: min det F of the last evaluation.
@@ -26,7 +28,7 @@ class FiniteStrainBody:
 
     geometrically_linear = False
 
-    def __init__(self, space: Space, shear: np.ndarray, bulk: np.ndarray, prony: Prony | None = None, lagged=True):
+    def __init__(self, space: Space, shear: np.ndarray, bulk: np.ndarray, prony: Prony | None = None, lagged=True, pointwise: float | None = None):
         self.space, self.shear, self.bulk = space, np.asarray(shear, float), np.asarray(bulk, float)
         self.u = np.zeros(space.points.shape)
         self.lagged = lagged
@@ -35,6 +37,7 @@ class FiniteStrainBody:
         self._mesh = (space.cells, space.grad, space.weight, space.psi)
         self.branches = Branches(prony, space.weight.shape) if prony else None
         self._factor, self._history = 1.0, None
+        self._pointwise = None if pointwise is None else pointwise * self.shear
         self.smallest_jacobian = 1.0
         self._data = None
 
@@ -54,7 +57,8 @@ class FiniteStrainBody:
         """(n, 2) N/m at the current displacement."""
         force = np.zeros_like(self.u)
         self.smallest_jacobian = kernels.internal_force(
-            self.u, *self._mesh, self.shear, self.bulk, self._history, self._factor, force, self._dilatation
+            self.u, *self._mesh, self.shear, self.bulk, self._history, self._factor, self._pointwise, force,
+            self._dilatation
         )
         return force
 
@@ -66,7 +70,7 @@ class FiniteStrainBody:
         force = np.zeros_like(self.u)
         lag = self._lag if self.lagged else self._dilatation
         self.smallest_jacobian = kernels.assemble_tangent(
-            self.u, *self._mesh, self.shear, self.bulk, lag, self._history, self._factor,
+            self.u, *self._mesh, self.shear, self.bulk, lag, self._history, self._factor, self._pointwise,
             self.space.pattern.scatter, self._data, force,
         )  # fmt: skip
         return self._data, force
@@ -112,6 +116,8 @@ class FiniteStrainBody:
         i1 = np.einsum("eqij,eqij->eq", f, f) + 1
         isochoric = 0.5 * self.shear[:, None] * (jac ** (-2 / 3) * i1 - 3)
         network = np.sum(self.space.weight * isochoric) + 0.5 * np.sum(self.bulk[:, None] * self._dilatation**2)
+        if self._pointwise is not None:
+            network += 0.5 * np.sum(self.space.weight * self._pointwise[:, None] * (jac - 1) ** 2)
         if self.branches is None:
             return float(network), 0.0, 0.0
         spring = rate = 0.0

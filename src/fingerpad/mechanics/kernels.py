@@ -22,12 +22,14 @@ _JIT = {"cache": True, "fastmath": {"contract", "nsz", "reassoc", "arcp"}, "erro
 
 
 @njit(**_JIT)
-def assemble_tangent(u, conn, grad, weight, psi, mu, kappa, dilatation_lag, history, factor, scatter, data, force):
+def assemble_tangent(
+    u, conn, grad, weight, psi, mu, kappa, dilatation_lag, history, factor, pointwise, scatter, data, force
+):
     """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``.
 
     Shapes: u (n, 2); conn (ne, nen); grad (ne, nq, nen, 2); weight (ne, nq); psi (ne, nq, nm), orthonormal pressure modes;
     mu, kappa (ne,); dilatation_lag (ne, nm); history (ne, nq, 3) second Piola-Kirchhoff 11, 22, 12, or None; factor: share
-    of the isochoric stress that answers at once; scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded);
+    of the isochoric stress that answers at once; pointwise (ne,): extra volumetric modulus that is not projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded);
     force (n, 2), accumulated. Returns the smallest det F.
     """
     ne, nen = conn.shape
@@ -119,6 +121,14 @@ def assemble_tangent(u, conn, grad, weight, psi, mu, kappa, dilatation_lag, hist
             alpha = -2.0 * mod / (3.0 * jac) * w
             beta = 5.0 * mod * i1 / (9.0 * jac * jac) * w
             cross = (plag - s) * w
+            if pointwise is not None:
+                extra = pointwise[e] * (jac - 1.0)
+                p11 += extra * f22
+                p12 -= extra * f21
+                p21 -= extra * f12
+                p22 += extra * f11
+                beta += pointwise[e] * w
+                cross += extra * w
             for a in range(nen):
                 gx = grad[e, q, a, 0]
                 gy = grad[e, q, a, 1]
@@ -170,7 +180,7 @@ def assemble_tangent(u, conn, grad, weight, psi, mu, kappa, dilatation_lag, hist
 
 
 @njit(**_JIT)
-def internal_force(u, conn, grad, weight, psi, mu, kappa, history, factor, force, dilatation):
+def internal_force(u, conn, grad, weight, psi, mu, kappa, history, factor, pointwise, force, dilatation):
     """Internal force (n, 2), accumulated in ``force``; fills ``dilatation`` (ne, nm). Returns the smallest det F."""
     ne, nen = conn.shape
     nq = weight.shape[1]
@@ -225,6 +235,8 @@ def internal_force(u, conn, grad, weight, psi, mu, kappa, history, factor, force
             i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
             mod = factor * mu[e] * jac ** (-2.0 / 3.0)
             s = kappa[e] * p - mod * i1 / (3.0 * jac)
+            if pointwise is not None:
+                s += pointwise[e] * (jac - 1.0)
             p11 = mod * f11 + s * f22
             p12 = mod * f12 - s * f21
             p21 = mod * f21 - s * f12

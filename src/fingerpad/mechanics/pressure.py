@@ -61,7 +61,7 @@ def _edge(x, pressure, last, side):
     gap = x[last + side] - x[last]
     inner = last - side
     share = 0.5
-    if 0 <= inner < len(x) and pressure[inner] > pressure[last]:
-        slope = (pressure[inner] ** 2 - pressure[last] ** 2) / (x[last] - x[inner])
-        share = pressure[last] ** 2 / slope / gap
+    if 0 <= inner < len(x) and pressure[inner] > pressure[last] and side * (x[last] - x[inner]) > 0:
+        reach = pressure[last] ** 2 / (pressure[inner] ** 2 - pressure[last] ** 2) * (x[last] - x[inner])
+        share = reach / gap if side * gap > 0 else 0.0
     return float(x[last] + min(max(share, 0.0), 1.0) * gap)

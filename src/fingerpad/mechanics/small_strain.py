@@ -39,7 +39,7 @@ class SmallStrainBody:
         no_lag = np.zeros((len(space.cells), space.psi.shape[2]))
         kernels.assemble_tangent(
             zero, space.cells, space.grad, space.weight, space.psi, deviatoric * self.shear, volumetric * self.bulk,
-            no_lag, None, 1.0, pattern.scatter, data, zero.copy(),
+            no_lag, None, 1.0, None, pattern.scatter, data, zero.copy(),
         )  # fmt: skip
         return data
 

@@ -23,8 +23,8 @@ class NonConvergence(RuntimeError):
         records: the records of every converged scheduled step.
     """
 
-    def __init__(self, time: float, reason: str, advice: str):
-        super().__init__(f"no convergence after t = {time:.6g} s: {reason}; try {advice}")
+    def __init__(self, time: float, reason: str, advice: str, where: str = ""):
+        super().__init__(f"no convergence after t = {time:.6g} s{where}: {reason}; try {advice}")
         self.time, self.reason, self.advice, self.records = time, reason, advice, []
 
 
@@ -101,8 +101,7 @@ class QuasiStatic:
         self.depth = 0.0
         self.time = 0.0
         self.work = self.dissipated = 0.0
-        self._rate = 0.0
-        self._control = {"force": 0.0, "depth": 0.0}
+        self._rate = self.force = self._tangential = 0.0
         self._set_zone(*skin.start)
         self.height = self._first_touch()
         self._previous = None
@@ -242,7 +241,7 @@ class QuasiStatic:
         state = self._save()
         try:
             if predict is not None and self._previous is not None:
-                u, forces, depth, lag = self._previous
+                u, forces, depth = self._previous
                 body_u, ratio = self.body.u, predict
                 self.body.displace(body_u + ratio * (body_u - u))
                 if not self.body.smallest_jacobian > 0.1:
@@ -258,19 +257,19 @@ class QuasiStatic:
         except _StepFailure:
             self._restore(state)
             raise
-        old_force = getattr(self, "_force", 0.0)
-        self._force = float(-self.nodal_force[self._range] @ gradient[:, 1])
+        old_force = self.force
+        self.force = float(-self.nodal_force[self._range] @ gradient[:, 1])
         self._tangential = float(-self.nodal_force[self._range] @ gradient[:, 0])
         self.body.commit()
         for observe in self.observers:
             observe(self.body, dt)
-        self.work += 0.5 * (old_force + self._force) * (self.depth - state[3])
+        self.work += 0.5 * (old_force + self.force) * (self.depth - state[3])
         self._energies = self.body.energies()
         rate = self._energies[2]
         if rate or self._rate:
             self.dissipated += 0.5 * (self._rate + rate) * dt if dt < STEADY else 0.0
         self._rate = rate
-        self._previous = (state[0][0], state[1], state[3], None)
+        self._previous = (state[0][0], state[1], state[3])
         return iterations, residual
 
     def run(self, steps: Iterable[Step], on_step: Callable[[Record], None] | None = None) -> list[Record]:
@@ -284,7 +283,7 @@ class QuasiStatic:
         for step in steps:
             control = "force" if step.force is not None else "depth"
             target = step.force if control == "force" else step.depth
-            begin = getattr(self, "_force", 0.0) if control == "force" else self.depth
+            begin = self.force if control == "force" else self.depth
             smooth = last is not None and last.leg == step.leg
             done, size, iterations, halvings = 0.0, 1.0, 0, 0
             ratio = step.dt / last.dt if smooth else None
@@ -300,7 +299,8 @@ class QuasiStatic:
                     size /= 2
                     halvings += 1
                     if size < 0.5**self.settings.max_halvings:
-                        problem = NonConvergence(self.time, str(failure), self._advice(str(failure)))
+                        where = f" (depth {self.depth * 1e3:.4g} mm, force {self.force:.4g} N/m of the meshed part)"
+                        problem = NonConvergence(self.time, str(failure), self._advice(str(failure)), where)
                         problem.records = records
                         raise problem from failure
                     continue
@@ -334,7 +334,7 @@ class QuasiStatic:
         stored = self._energies[0] + self._energies[1]
         balance = abs(self.work - stored - self.dissipated) / max(abs(self.work), 1e-300)
         return Record(
-            step.leg, step.time, self.depth, self._force, self._tangential, self.nodal_force.copy(), gradient, gap,
+            step.leg, step.time, self.depth, self.force, self._tangential, self.nodal_force.copy(), gradient, gap,
             self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,
             float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
             float(balance) if self.work else 0.0, self.work, self._energies, self.dissipated,
