@@ -6,6 +6,10 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed.lock
 SNAKEMAKE := $(BIN)/snakemake --workflow-profile workflow/profiles/default
 
+# One thread a process: the workflow runs one process a core.
+export OMP_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+
 .PHONY: help setup figures smoke test bench lint report regression-update lock schemas clean
 
 help:
@@ -50,7 +54,10 @@ lint: $(INSTALLED)
 	$(BIN)/lint-imports
 
 report: figures
-	$(SNAKEMAKE) --report results/report.zip
+	PYTHONWARNINGS=ignore::RuntimeWarning $(SNAKEMAKE) --report results/report.zip
+
+regression-update: figures
+	FINGERPAD_UPDATE_BASELINES=1 $(BIN)/python -m pytest -q tests/test_figure_regression.py
 
 schemas: $(INSTALLED)
 	$(BIN)/python -m fingerpad.config schemas
