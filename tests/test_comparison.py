@@ -7,16 +7,12 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.figures.comparison import (
-    COLUMNS,
-    NUMBERS,
-    TRENDS,
-    Results,
-    judge,
-    thesis_comparison,
-)
+from fingerpad.figures.comparison import COLUMNS, judge, thesis_comparison
+from fingerpad.figures.features import centre_node
+from fingerpad.figures.numbers import NUMBERS, Results
 from fingerpad.figures.spec import read_reference
 from fingerpad.figures.tables import TABLES, markdown, publish_table
+from fingerpad.figures.trends import TRENDS
 
 pytestmark = pytest.mark.unit
 REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"
@@ -100,6 +96,13 @@ def _set(history, name, values):
     return history.assign({name: (history[name].dims, values, history[name].attrs)})
 
 
+def _set_centre(history, values):
+    """The history with another pressure at the centre."""
+    pressure = history["contact_pressure"].values.copy()
+    pressure[:, centre_node(history)] = values
+    return _set(history, "contact_pressure", pressure)
+
+
 def _trend(made, id_, changes):
     """A trend on histories of which some are changed."""
     return TRENDS[id_](Results(made[0] | changes, made[2]))
@@ -115,7 +118,7 @@ def test_order_of_surfaces_fails_when_two_are_exchanged(made):
 def _plate(made, shape):
     history = made[0]["ramp40_flat"]
     time = history["time"].values
-    return {"ramp40_flat": _set(history, "centre_pressure", np.interp(time, *zip(*shape, strict=True)))}
+    return {"ramp40_flat": _set_centre(history, np.interp(time, *zip(*shape, strict=True)))}
 
 
 def test_double_peak_of_the_plate(made):
@@ -133,7 +136,7 @@ def test_centre_pressure_peaks_before_the_ramps_end_and_sooner_for_broad_surface
         for label, peak in zip(synthetic.SURFACES[1:], times, strict=True):
             history = made[0][f"ramp40_k{label}"]
             time = history["time"].values
-            changed[f"ramp40_k{label}"] = _set(history, "centre_pressure", 1e4 - 1e4 * (time - peak) ** 2)
+            changed[f"ramp40_k{label}"] = _set_centre(history, 1e4 - 1e4 * (time - peak) ** 2)
         return changed
 
     good = peaking((0.20, 0.25, 0.30, 0.33, 0.38, 0.42, 0.5, 0.5))
@@ -166,11 +169,11 @@ def test_strain_energy_trends_tell_the_definitions_apart(table):
 
 def test_pressure_decay_fails_when_pressure_rises_in_the_hold(made):
     history = made[0]["ramp40_k420"]
-    rising = np.maximum.accumulate(history["centre_pressure"].values) * np.linspace(
+    rising = np.maximum.accumulate(history["contact_pressure"].values.max(axis=1)) * np.linspace(
         1, 1.1, history.sizes["time"]
     )
     assert _trend(made, "TR09", {}).holds
-    assert not _trend(made, "TR09", {"ramp40_k420": _set(history, "centre_pressure", rising)}).holds
+    assert not _trend(made, "TR09", {"ramp40_k420": _set_centre(history, rising)}).holds
 
 
 def test_energy_profile_with_twin_peaks_fails(made):

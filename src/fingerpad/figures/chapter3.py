@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from scipy.spatial import cKDTree
 
 from fingerpad.figures import style
 from fingerpad.figures.features import ERROR, Histories, scene_of
@@ -49,19 +48,25 @@ def fig_3_4(frame: pd.DataFrame) -> Figure:
         ax.set(
             title=title,
             aspect="equal",
-            xlim=(-9.6, 9.6),
-            ylim=(-7, 9.6),
+            xlim=(-10, 10),
+            ylim=(-8.2, 9.6),
             xlabel="x (mm)",
             yticks=[-6, -3, 0, 3, 6],
         )
     axes[0].set_ylabel("y (mm)")
 
     _fill(axes[0], {k: v for k, v in loops.items() if k != "epidermis"}, merged=True)
-    names = {"epidermis": (-6.9, 2.5), "dermis": (-3.1, 4.35), "fat": (3.2, 2.6), "bone": (2.6, -1.5)}
-    for (name, at), x in zip(names.items(), (-7.6, -2.6, 2.6, 6.6), strict=True):
-        _point_out(axes[0], name, at, (x, 8.3))
+    bands = {"epidermis": ("stratum corneum", -7.0), "dermis": ("dermis", -1.0)}
+    inner = {"epidermis": "dermis", "dermis": "fat"}
+    for name, (outer, x) in bands.items():
+        y = (_upper(loops[outer], x) + _upper(loops[inner[name]], x)) / 2
+        _point_out(axes[0], name, (x, y), (x, 8.3))
+    axes[0].text(0, (apex["fat"] + apex["bone"]) / 2, "fat", ha="center", va="center", fontsize=7)
+    axes[0].text(
+        0, (loops["bone"][:, 1].min() + apex["bone"]) / 2, "bone", ha="center", va="center", fontsize=7
+    )
     size = f"{np.ptp(skin[:, 0]):.1f} × {np.ptp(skin[:, 1]):.1f} mm"
-    axes[0].text(0, -1.5, size, ha="center", va="center", fontsize=6.5)
+    axes[0].text(0, -7.3, size, ha="center", va="center", fontsize=7)
 
     for layer in ("stratum corneum", "dermis", "fat", "bone"):
         x, y = loops[layer].T
@@ -76,6 +81,12 @@ def fig_3_4(frame: pd.DataFrame) -> Figure:
     corneum = apex["stratum corneum"] - apex["epidermis"]
     _point_out(axes[2], f"stratum corneum, {corneum:.2f} mm", (0, 5.85), (0, 8.3))
     return fig
+
+
+def _upper(loop: np.ndarray, x: float) -> float:
+    """Height at which a closed line passes `x` on its upper side."""
+    near = loop[np.argsort(abs(loop[:, 0] - x))]
+    return float(near[near[:, 1] > loop[:, 1].mean()][0, 1])
 
 
 def _point_out(ax: Axes, text: str, at: tuple[float, float], label: tuple[float, float]) -> None:
@@ -95,7 +106,9 @@ def _fill(ax: Axes, loops: dict[str, np.ndarray], merged: bool) -> None:
 def frame_3_5(
     histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
 ) -> pd.DataFrame:
-    """Corners of every element (one row a corner) with its layer, the bone's rim, and the mesh's quality."""
+    """Outline of every element (one row a point) with its layer, the bone's rim, and the mesh's quality."""
+    from scipy.spatial import cKDTree  # here, for it is slow to import
+
     mesh = meshes[SCENE]
     corners = mesh.points[mesh.cells[:, : corner_count(mesh.element)]]
     layer = np.array(mesh.regions)[mesh.region]
@@ -104,14 +117,16 @@ def frame_3_5(
     layer = np.where(
         (layer == "epidermis") & (depth < stratum_corneum(histories[SCENE])), "stratum corneum", layer
     )
-    count = corners.shape[1]
+    polygons = [element_outline(mesh, nodes) for nodes in mesh.cells]
+    counts = [len(p) for p in polygons]
+    points = np.concatenate(polygons) * 1e3
     elements = pd.DataFrame(
         {
             "series": "element",
-            "element": np.repeat(np.arange(len(corners)), count),
-            "layer": np.repeat(layer, count),
-            X: corners[..., 0].ravel() * 1e3,
-            Y: corners[..., 1].ravel() * 1e3,
+            "element": np.repeat(np.arange(len(polygons)), counts),
+            "layer": np.repeat(layer, counts),
+            X: points[:, 0].round(4),
+            Y: points[:, 1].round(4),
         }
     )
     bone = pd.DataFrame(
@@ -141,9 +156,9 @@ def fig_3_5(frame: pd.DataFrame) -> Figure:
     fig = style.new_figure(frame, "3-5", "Finite element mesh of the fingerpad", 5.3, note=[NOTE])
     ax = fig.subplots()
     elements = frame[frame["series"] == "element"]
-    count = int(elements["element"].value_counts().iloc[0])
-    polygons = elements[[X, Y]].to_numpy().reshape(-1, count, 2)
-    layers = elements["layer"].to_numpy()[::count]
+    start = np.flatnonzero(np.diff(elements["element"].to_numpy(), prepend=-1))
+    polygons = np.split(elements[[X, Y]].to_numpy(), start[1:])
+    layers = elements["layer"].to_numpy()[start]
     rim = frame[frame["series"] == "rim"]
     ax.fill(rim[X], rim[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
     ax.add_collection(
@@ -165,6 +180,17 @@ def fig_3_5(frame: pd.DataFrame) -> Figure:
     return fig
 
 
+def element_outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.ndarray:
+    """Points (n, 2) in m round one element; middle nodes only where a side is bent by over `straight`."""
+    corners = corner_count(mesh.element)
+    first = mesh.points[nodes[:corners]]
+    if len(nodes) == corners:
+        return first
+    middle = mesh.points[nodes[corners : 2 * corners]]
+    bent = np.hypot(*(middle - (first + np.roll(first, -1, axis=0)) / 2).T) > straight
+    return np.concatenate([[a, m] if b else [a] for a, m, b in zip(first, middle, bent, strict=True)])
+
+
 def stratum_corneum(history) -> float:
     """Thickness (m) of the stratum corneum in a history's scene, which must have a parametric outline."""
     return scene_of(history)["specimen"]["outline"]["stratum_corneum_thickness"]
@@ -178,7 +204,8 @@ def boundaries(mesh: PadMesh) -> dict[str, np.ndarray]:
     """
     if mesh.half:
         raise ValueError("boundaries are drawn from the whole mesh, not from a half of it")
-    edges = element_edges(mesh.cells, mesh.element)[:, :2]
+    sides = element_edges(mesh.cells, mesh.element)
+    edges = sides[:, :2]
     owner = np.tile(np.arange(len(mesh.cells)), corner_count(mesh.element))
     order = np.lexsort(np.sort(edges, axis=1).T)
     pairs = np.sort(edges, axis=1)[order]
@@ -187,12 +214,17 @@ def boundaries(mesh: PadMesh) -> dict[str, np.ndarray]:
     low, high = mesh.region[owner[first]], mesh.region[owner[second]]
     alone = np.ones(len(edges), bool)
     alone[first] = alone[second] = False
-    rim = sorted(loops(edges[alone]), key=lambda loop: np.ptp(mesh.points[loop, 0]))
+    rim = sorted(loops(_halves(sides[alone])), key=lambda loop: np.ptp(mesh.points[loop, 0]))
     lines = {"skin": rim[-1], "bone": rim[0]}
     for index, name in ((1, "dermis"), (2, "fat")):
         inner = ((low == index - 1) & (high == index)) | ((high == index - 1) & (low == index))
-        lines[name] = max(loops(edges[first][inner]), key=len)
+        lines[name] = max(loops(_halves(sides[first][inner])), key=len)
     return {name: mesh.points[line] for name, line in lines.items()}
+
+
+def _halves(sides: np.ndarray) -> np.ndarray:
+    """Element sides (start, end[, middle]) as straight edges (n, 2), through the middle node if any."""
+    return sides if sides.shape[1] == 2 else np.vstack((sides[:, [0, 2]], sides[:, [2, 1]]))
 
 
 def loops(edges: np.ndarray) -> list[np.ndarray]:

@@ -7,6 +7,7 @@ and line styles follow the thesis (Cysyk 1999), so that a picture can be laid be
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -27,19 +28,22 @@ from fingerpad.figures.features import (
     Histories,
     at_ends,
     centre_node,
+    centre_pressure,
+    depth,
     energy,
-    energy_at_ends,
     energy_rate,
     error_percent,
     force_gf,
     in_contact,
     is_simulated,
+    peak_pressure,
     phase_indices,
     profile,
     ramp_end,
     scene_name,
     scenes,
     surface_nodes,
+    width,
 )
 from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
 
@@ -58,6 +62,7 @@ RECEPTOR = "receptor_depth (um)"
 SHOWN_DEPTH = 915e-6  # m, the receptor depth of Figs 4-21, 4-23, 4-28
 DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))
 PROFILE_SURFACES = ("flat", "158", "1260")
+shown_energy = partial(energy, depth=SHOWN_DEPTH)
 
 PRESSURE_AXES = dict(zip(SURFACES, [f"T{i}" for i in range(125, 134)], strict=True))
 DISPLACEMENT_AXES = {
@@ -127,11 +132,11 @@ def _profiles(
 
 
 def _profile_rows(history: xr.Dataset, coarse: xr.Dataset | None, half: bool = False) -> pd.DataFrame:
-    error = error_percent(history, coarse, *at_ends("peak_pressure"))
+    error = error_percent(history, coarse, *at_ends(peak_pressure))
     parts = []
     for index, phase in phase_indices(history):
         x, p = profile(history, index)
-        depth = -history["skin_displacement_y"].values[index]
+        down = -history["skin_displacement_y"].values[index]
         keep = in_contact(history, index)
         if half:
             keep &= np.arange(len(x)) >= centre_node(history)
@@ -141,7 +146,7 @@ def _profile_rows(history: xr.Dataset, coarse: xr.Dataset | None, half: bool = F
                     "phase": phase,
                     TIME: history["time"].values[index],
                     X: x[keep] * 1e3,
-                    "vertical_displacement (mm)": depth[keep] * 1e3,
+                    "vertical_displacement (mm)": down[keep] * 1e3,
                     P: p[keep],
                     ERROR: error,
                 }
@@ -199,7 +204,7 @@ def frame_4_6(
     for label in SURFACES:
         name = scene_name("ramp40", label)
         history = histories[name]
-        error = error_percent(history, coarse.get(name), *at_ends("indentation_depth"))
+        error = error_percent(history, coarse.get(name), *at_ends(depth))
         for index, phase in phase_indices(history)[-2:]:
             x = history["skin_x"].values + history["skin_displacement_x"].values[index]
             y = history["skin_y"].values + history["skin_displacement_y"].values[index]
@@ -225,9 +230,8 @@ def frame_4_6(
 @style.styled
 def fig_4_6(frame: pd.DataFrame) -> Figure:
     """Surface profile, nine panels."""
-    fig = style.new_figure(
-        frame, "4-6", "Skin profile at the top of the ramp and in steady state, 20 gf", 6.4
-    )
+    title = "Skin profile at the top of the ramp and in steady state, 20 gf"
+    fig = style.new_figure(frame, "4-6", title, 6.6, header=0.2)
     axes = style.nine_panels(fig, SURFACES, "x (mm)", "y (mm)")
     for label, ax in axes.items():
         rows = _of(frame, "surface", label)
@@ -237,7 +241,7 @@ def fig_4_6(frame: pd.DataFrame) -> Figure:
         style.limit_axis(ax, rows, X, "x")
         style.limit_axis(ax, rows[~is_simulated(rows)], "y (mm)")
         ax.set(title=style.surface_name(label), xticks=[-10, 0, 10], yticks=[3, 4, 5, 6])
-    style.phase_legend(axes["79"], (TOP, STEADY), loc="lower center")
+    style.phase_legend(fig, (TOP, STEADY))
     return fig
 
 
@@ -251,8 +255,8 @@ def frame_4_7(
     rows = _traces(
         histories,
         coarse,
-        {DEPTH: lambda d: d["indentation_depth"].values * 1e3},
-        at_ends("indentation_depth"),
+        {DEPTH: lambda d: depth(d) * 1e3},
+        at_ends(depth),
     )
     return assemble(rows, axis_rows(reference, TIME, "T103"), axis_rows(reference, DEPTH, "T102"))
 
@@ -274,9 +278,7 @@ def frame_4_8(
     histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
 ) -> pd.DataFrame:
     """Contact width against time, and the ranges of width that the axes of Fig 4-9 imply for the hold."""
-    rows = _traces(
-        histories, coarse, {WIDTH: lambda d: d["contact_width"].values * 1e3}, at_ends("contact_width")
-    )
+    rows = _traces(histories, coarse, {WIDTH: lambda d: width(d) * 1e3}, at_ends(width))
     implied = axis_rows(reference, "inverse", WIDTH_RANGES)
     if not implied.empty:
         implied[WIDTH] = 1 / implied.pop("inverse")
@@ -315,9 +317,9 @@ def frame_4_10(
     histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
 ) -> pd.DataFrame:
     """Force and pressure at the centre against time."""
-    columns = {FORCE: force_gf, P_CENTRE: lambda d: d["centre_pressure"].values}
+    columns = {FORCE: force_gf, P_CENTRE: centre_pressure}
     return assemble(
-        _traces(histories, coarse, columns, at_ends("centre_pressure")),
+        _traces(histories, coarse, columns, at_ends(centre_pressure)),
         axis_rows(reference, TIME, "T124"),
         axis_rows(reference, FORCE, "T122"),
         axis_rows(reference, P_CENTRE, "T123"),
@@ -354,7 +356,7 @@ def frame_4_11(
 @style.styled
 def fig_4_11(frame: pd.DataFrame) -> Figure:
     """Pressure distribution, nine panels."""
-    fig = style.new_figure(frame, "4-11", "Contact pressure across the contact region", 6.6)
+    fig = style.new_figure(frame, "4-11", "Contact pressure across the contact region", 6.8, header=0.2)
     axes = style.nine_panels(fig, SURFACES, "horizontal location (mm)", "contact pressure (Pa)")
     for label, ax in axes.items():
         rows = _of(frame, "surface", label)
@@ -362,7 +364,7 @@ def fig_4_11(frame: pd.DataFrame) -> Figure:
         style.limit_axis(ax, rows, P)
         _draw_phases(ax, rows, X, P, style.COLOURS[label])
         ax.set_title(style.surface_name(label))
-    style.phase_legend(axes["flat"], loc="lower center", fontsize=7)
+    style.phase_legend(fig)
     return fig
 
 
@@ -382,7 +384,8 @@ def frame_4_12(
 @style.styled
 def fig_4_12(frame: pd.DataFrame) -> Figure:
     """Flat plate, (a) homogeneous and (b) layered pad."""
-    fig = style.new_figure(frame, "4-12", "Flat plate: pressure on a homogeneous and on the layered pad", 6.2)
+    title = "Flat plate: pressure on a homogeneous and on the layered pad"
+    fig = style.new_figure(frame, "4-12", title, 6.3, header=0.2)
     axes = fig.subplots(2, 1)
     for ax, tag, pad in zip(axes, "ab", ("homogeneous", "layered"), strict=True):
         rows = _of(frame, "pad", pad)
@@ -390,7 +393,7 @@ def fig_4_12(frame: pd.DataFrame) -> Figure:
         style.limit_axis(ax, rows, P)
         _draw_phases(ax, rows, X, P, style.COLOURS["flat"])
         ax.set(xlabel="x (mm)", ylabel="contact pressure (Pa)", title=f"({tag}) {pad} pad")
-    style.phase_legend(axes[0], loc="upper right")
+    style.phase_legend(fig)
     return fig
 
 
@@ -410,17 +413,16 @@ def frame_4_13(
 @style.styled
 def fig_4_13(frame: pd.DataFrame) -> Figure:
     """Pressure against vertical displacement, nine panels."""
-    fig = style.new_figure(
-        frame, "4-13", "Contact pressure against vertical displacement of every contact node", 6.6
-    )
+    title = "Contact pressure against vertical displacement of every contact node"
+    fig = style.new_figure(frame, "4-13", title, 6.8, header=0.2)
     axes = style.nine_panels(fig, SURFACES, "vertical displacement (mm)", "contact pressure (Pa)")
     for label, ax in axes.items():
         rows = _of(frame, "surface", label)
         style.limit_axis(ax, rows, "vertical_displacement (mm)", "x")
         style.limit_axis(ax, rows, P)
         _draw_phases(ax, rows, "vertical_displacement (mm)", P, style.COLOURS[label])
-        ax.set_title(style.surface_name(label))
-    style.phase_legend(axes["79"], loc="upper right", fontsize=7)
+        ax.set(title=style.surface_name(label), xticks=np.arange(0, ax.get_xlim()[1] + 0.1, 0.5))
+    style.phase_legend(fig)
     return fig
 
 
@@ -433,7 +435,7 @@ def frame_4_14(
     )
     critical = pd.DataFrame()
     if "T147" in reference.index:
-        edge = histories["ramp40_k210"]["contact_width"].values[-1] * 1e3 / 2
+        edge = width(histories["ramp40_k210"])[-1] * 1e3 / 2
         critical = pd.DataFrame(
             {"source": "distance stated in the thesis (T147)", X: [edge - reference.loc["T147", "low"], edge]}
         )
@@ -443,7 +445,8 @@ def frame_4_14(
 @style.styled
 def fig_4_14(frame: pd.DataFrame) -> Figure:
     """Half profile, K = 210 1/m."""
-    fig = style.new_figure(frame, "4-14", "Pressure from the centre outwards over time, K = 210 1/m", 4.6)
+    title = "Pressure from the centre outwards over time, K = 210 1/m"
+    fig = style.new_figure(frame, "4-14", title, 4.7, header=0.2)
     ax = fig.subplots()
     style.limit_axis(ax, frame, X, "x")
     style.limit_axis(ax, frame, P)
@@ -457,7 +460,7 @@ def fig_4_14(frame: pd.DataFrame) -> Figure:
         text = f"{np.ptp(critical):.1f} mm from the edge:\ncritical distance stated in the thesis"
         ax.text(critical.mean(), y * 1.3, text, ha="center", va="bottom", fontsize=7, color=style.GREY,
                 bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1})  # fmt: skip
-    style.phase_legend(ax, loc="upper right")
+    style.phase_legend(fig)
     return fig
 
 
@@ -468,8 +471,8 @@ def frame_4_15(
     histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
 ) -> pd.DataFrame:
     """Largest pressure and pressure at the centre for K = 210 1/m."""
-    columns = {name: lambda d, n=name: d[n.split()[0]].values for name in (P_PEAK, P_CENTRE)}
-    errors = (*at_ends("peak_pressure"), *at_ends("centre_pressure"))
+    columns = {P_PEAK: peak_pressure, P_CENTRE: centre_pressure}
+    errors = (*at_ends(peak_pressure), *at_ends(centre_pressure))
     return assemble(
         _traces(histories, coarse, columns, errors, ("210",)),
         axis_rows(reference, TIME, "T149"),
@@ -508,7 +511,7 @@ def frame_4_16(
             P: history[PRESSURE].values[:, nodes].T.ravel(),
         }
     )
-    rows[ERROR] = error_percent(history, coarse.get(name), *at_ends("centre_pressure"))
+    rows[ERROR] = error_percent(history, coarse.get(name), *at_ends(centre_pressure))
     return assemble(rows, axis_rows(reference, TIME, "T151"), axis_rows(reference, P, "T150"))
 
 
@@ -554,16 +557,16 @@ def frame_4_20(
     for label in PROFILE_SURFACES:
         name = scene_name("ramp150", label)
         history = histories[name]
-        for depth in (800e-6, 915e-6):
-            error = error_percent(history, coarse.get(name), *energy_at_ends(depth))
-            row = np.flatnonzero(abs(history["receptor_depth"].values - depth) < 1e-6)
+        for z in (800e-6, 915e-6):
+            error = error_percent(history, coarse.get(name), *at_ends(partial(energy, depth=z)))
+            row = np.flatnonzero(abs(history["receptor_depth"].values - z) < 1e-6)
             row = row[np.argsort(history["receptor_offset"].values[row])]
             for index, phase in ((ramp_end(history), TOP), (history.sizes["time"] - 1, STEADY)):
                 parts.append(
                     pd.DataFrame(
                         {
                             "surface": label,
-                            "panel": f"{depth * 1e6:.0f} um",
+                            "panel": f"{z * 1e6:.0f} um",
                             "phase": phase,
                             TIME: history["time"].values[index],
                             X: history["receptor_offset"].values[row] * 1e3,
@@ -586,9 +589,10 @@ def frame_4_20(
 @style.styled
 def fig_4_20(frame: pd.DataFrame) -> Figure:
     """Pressure above, strain energy at two depths below, three surfaces across."""
-    fig = style.new_figure(frame, "4-20", "Pressure and strain energy profiles, 150 gf/s ramp to 20 gf", 6.8)
+    title = "Pressure and strain energy profiles, 150 gf/s ramp to 20 gf"
+    fig = style.new_figure(frame, "4-20", title, 7.0, header=0.2)
     axes = fig.subplots(3, 3)
-    half_widths = {"flat": 5, "158": 4, "1260": 2}
+    ticks = {"flat": (-5, 0, 5), "158": (-4, -2, 0, 2, 4), "1260": (-2, 0, 2)}
     titles = {
         "pressure": "contact pressure (Pa)",
         "800 um": "strain energy density (Pa)\n800 µm, epidermis",
@@ -600,13 +604,13 @@ def fig_4_20(frame: pd.DataFrame) -> Figure:
             column = P if panel == "pressure" else SED
             style.limit_axis(ax, rows, column)
             _draw_phases(ax, rows, X, column, style.COLOURS[label])
-            ax.set_xlim(-half_widths[label], half_widths[label])
+            ax.set(xlim=(ticks[label][0], ticks[label][-1]), xticks=ticks[label])
         row[0].set_ylabel(ylabel)
     for ax, label in zip(axes[0], PROFILE_SURFACES, strict=True):
         ax.set_title(style.surface_name(label))
     for ax in axes[-1]:
         ax.set_xlabel("x (mm)")
-    style.phase_legend(axes[0, 2], (TOP, STEADY), loc="upper right", fontsize=7)
+    style.phase_legend(fig, (TOP, STEADY))
     return fig
 
 
@@ -619,10 +623,10 @@ def frame_4_21(
     """Strain energy at 915 um and centre pressure times 0.04."""
     scaled = "scaled_centre_pressure (Pa)"
     columns = {
-        SED: lambda d: energy(d, SHOWN_DEPTH),
-        scaled: lambda d: PRESSURE_SCALE * d["centre_pressure"].values,
+        SED: shown_energy,
+        scaled: lambda d: PRESSURE_SCALE * centre_pressure(d),
     }
-    rows = _traces(histories, coarse, columns, (*energy_at_ends(SHOWN_DEPTH), *at_ends("centre_pressure")))
+    rows = _traces(histories, coarse, columns, (*at_ends(shown_energy), *at_ends(centre_pressure)))
     return assemble(rows, axis_rows(reference, SED, ENERGY_AXES))
 
 
@@ -631,7 +635,7 @@ def fig_4_21(frame: pd.DataFrame) -> Figure:
     """Strain energy (solid) and scaled pressure (dashed), nine panels."""
     scaled = "scaled_centre_pressure (Pa)"
     title = f"Strain energy density at 915 µm and contact pressure × {PRESSURE_SCALE}, centre"
-    fig = style.new_figure(frame, "4-21", title, 6.6)
+    fig = style.new_figure(frame, "4-21", title, 6.8, header=0.2)
     axes = style.nine_panels(
         fig, SURFACES, "time (s)", f"strain energy density, contact pressure × {PRESSURE_SCALE} (Pa)"
     )
@@ -643,7 +647,7 @@ def fig_4_21(frame: pd.DataFrame) -> Figure:
         ax.plot(rows[TIME], rows[SED], color=style.COLOURS[label], label="strain energy density", **solid)
         ax.plot(rows[TIME], rows[scaled], color=style.COLOURS[label], label="scaled pressure", **dashed)
         ax.set(title=style.surface_name(label), xlim=(0, 2.5), xticks=[0, 1, 2])
-    axes["1260"].legend(loc="lower right", handlelength=2.6, fontsize=7)
+    style.header_legend(fig, axes["1260"].lines)
     return fig
 
 
@@ -651,7 +655,7 @@ def frame_4_23(
     histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
 ) -> pd.DataFrame:
     """Strain energy at 915 um against time."""
-    rows = _traces(histories, coarse, {SED: lambda d: energy(d, SHOWN_DEPTH)}, energy_at_ends(SHOWN_DEPTH))
+    rows = _traces(histories, coarse, {SED: shown_energy}, at_ends(shown_energy))
     return assemble(rows, axis_rows(reference, TIME, "T189"), axis_rows(reference, SED, "T188"))
 
 
@@ -667,10 +671,10 @@ def frame_4_24(
 ) -> pd.DataFrame:
     """Strain energy at nine depths against time."""
     parts = [
-        _traces(histories, coarse, {SED: lambda d, z=depth: energy(d, z)}, energy_at_ends(depth)).assign(
-            **{RECEPTOR: round(depth * 1e6)}
+        _traces(histories, coarse, {SED: partial(energy, depth=z)}, at_ends(partial(energy, depth=z))).assign(
+            **{RECEPTOR: round(z * 1e6)}
         )
-        for depth in DEPTHS
+        for z in DEPTHS
     ]
     marks = axis_rows(reference, SED, DEPTH_AXES, key=RECEPTOR)
     if not marks.empty:
@@ -686,17 +690,15 @@ def fig_4_24(frame: pd.DataFrame) -> Figure:
     )
     depths = sorted(frame[RECEPTOR].unique())
     axes = style.nine_panels(fig, depths, "time (s)", "strain energy density (Pa)")
-    for depth, ax in axes.items():
-        rows = frame[frame[RECEPTOR] == depth]
+    for z, ax in axes.items():
+        rows = frame[frame[RECEPTOR] == z]
         style.limit_axis(ax, rows, SED)
         _draw_traces(ax, rows, SED)
-        layer = "epidermis" if depth < 850 else "dermis"
-        ax.set(title=f"{depth:.0f} µm ({layer})", xlim=(0, 2.5), xticks=[0, 1, 2])
-    handles = [ax.lines[i] for i in range(len(SURFACES))]
-    names = [style.surface_name(k) for k in SURFACES]
-    tight = {"handlelength": 0.9, "columnspacing": 0.9, "handletextpad": 0.3, "borderaxespad": 0}
-    place = {"loc": "upper center", "bbox_to_anchor": (0.5, 1 - 0.27 / fig.get_figheight())}
-    fig.legend(handles, names, ncols=len(names), fontsize=7, **place, **tight)
+        layer = "epidermis" if z < 850 else "dermis"
+        ax.set(title=f"{z:.0f} µm ({layer})", xlim=(0, 2.5), xticks=[0, 1, 2])
+    for label, line in zip(SURFACES, ax.lines, strict=False):
+        line.set_label("flat plate" if label == "flat" else f"{label} 1/m")
+    style.header_legend(fig, ax.lines[: len(SURFACES)], handlelength=1.0, columnspacing=1.2, fontsize=7)
     return fig
 
 
@@ -741,6 +743,9 @@ def fig_4_28(frame: pd.DataFrame) -> Figure:
         ends[label] = tuple(rows.loc[jump - 1, [TIME, RATE]])
     style.label_ends(ax, ends, ends["flat"][0] * 1.3, "curvature (1/m)")
     ax.set(xlabel="time (s)", ylabel="strain energy rate (Pa/s)")
+    ax.text(
+        1.75, 60, "hold: rates slightly below zero, off the axis", ha="center", fontsize=7, color=style.GREY
+    )
     return fig
 
 

@@ -26,13 +26,15 @@ SIMULATED = "simulated"
 RAMP_FRACTIONS = (0.2, 0.4, 0.6, 0.8)
 
 Histories = Mapping[str, xr.Dataset]
+Trace = Callable[[xr.Dataset], np.ndarray]
 Feature = Callable[[xr.Dataset], float]
 
 PRESSURE_SCALE = 0.04
 """Factor of the pressure traces of Fig 4-21, of the thesis's choosing."""
 
-PRESSURE = "contact_pressure_smoothed"
-"""The pressure plotted: nodal force over tributary length, both averaged over five neighbours."""
+PRESSURE = "contact_pressure"
+"""The pressure of every figure and table: nodal force over tributary length, not averaged over neighbours.
+An average lowers the peak under sharp surfaces and blurs the contact edge."""
 
 
 def scene_name(programme: str, label: str) -> str:
@@ -146,14 +148,26 @@ def error_percent(fine: xr.Dataset, coarse: xr.Dataset | None, *features: Featur
     return max(100 * abs(a - b) / abs(a) if a else 0.0 for a, b in pairs)
 
 
-def at_ends(name: str) -> tuple[Feature, Feature]:
-    """Features of a scalar history: its value at the top of the ramp and at the end."""
-    return (lambda d: float(d[name].values[ramp_end(d)])), (lambda d: float(d[name].values[-1]))
+def at_ends(trace: Trace) -> tuple[Feature, Feature]:
+    """Features of a trace: its value at the top of the ramp and at the end."""
+    return (lambda d: float(trace(d)[ramp_end(d)])), (lambda d: float(trace(d)[-1]))
 
 
-def energy_at_ends(depth: float, offset: float = 0.0) -> tuple[Feature, Feature]:
-    """Features of the strain energy density at one receptor: top of the ramp and end."""
-    return (
-        lambda d: float(energy(d, depth, offset)[ramp_end(d)]),
-        lambda d: float(energy(d, depth, offset)[-1]),
-    )
+def depth(history: xr.Dataset) -> np.ndarray:
+    """Indentation depth (time) in m."""
+    return history["indentation_depth"].values
+
+
+def width(history: xr.Dataset) -> np.ndarray:
+    """Contact width (time) in m."""
+    return history["contact_width"].values
+
+
+def centre_pressure(history: xr.Dataset) -> np.ndarray:
+    """Pressure (time) in Pa at the skin node at the apex."""
+    return history[PRESSURE].values[:, centre_node(history)]
+
+
+def peak_pressure(history: xr.Dataset) -> np.ndarray:
+    """Largest pressure (time) in Pa of any skin node."""
+    return history[PRESSURE].values.max(axis=1)

@@ -36,7 +36,7 @@ TOLERANCES = {
     "y (mm)": 1e-3,
     "node_x (mm)": 1e-6,
     "receptor_depth (um)": 1e-6,
-    "element": 1e-9,
+    "element": 1e-5,
     "value": 1e-3,
 }
 """Largest difference allowed in a column, relative to the largest value of the curve. Pressure and width
@@ -48,7 +48,7 @@ ERROR_TOLERANCE = 0.2
 SIMILARITY = 0.98
 """Least structural similarity of two pictures, averaged where either has ink (1: the same)."""
 
-BASELINE_DPI = 80
+BASELINE_DPI = 60
 """Resolution of the baseline pictures."""
 
 
