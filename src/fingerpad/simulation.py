@@ -56,11 +56,11 @@ def simulate(
         NonConvergence: a step failed for good; its ``dataset`` is the history up to the last converged step.
     """
     with threadpool_limits(1):
-        return _Run(scene, plan or _plan(scene), mesh).run(progress)
+        return Simulation(scene, plan or _plan(scene), mesh).run(progress)
 
 
-class _Run:
-    """The parts of one simulation, and their way back to the whole pad."""
+class Simulation:
+    """The parts of one simulation, composed by its plan, and their way back to the whole pad."""
 
     def __init__(self, scene: Scene, plan: Plan, mesh: PadMesh | None):
         self.cpu, self.wall = time.process_time(), time.perf_counter()
@@ -136,7 +136,7 @@ class _Run:
                 progress({"time_s": record.time, "end_time_s": total, "contact_width_mm": float(width)} | counts)
 
         try:
-            records = self.stepper.run(self._steps(), after)
+            records = self.stepper.run(self.steps(), after)
         except NonConvergence as failure:
             failure.dataset = self._history(failure.records, states, snapshots, complete=False) if failure.records else None
             raise
@@ -145,7 +145,8 @@ class _Run:
     def _present(self):
         return self.stepper.force / self.share, self.stepper.depth
 
-    def _steps(self):
+    def steps(self):
+        """Steps of the motion with forces on the part of the pad that is solved."""
         for step in schedule(self.scene, self.plan.steps_per_leg, self.plan.timed, self._present):
             yield step if step.force is None else replace(step, force=step.force * self.share)
 
@@ -169,7 +170,7 @@ class _Run:
 
     def _edges(self, record):
         length, position = self._length_and_gradient(record)
-        edges = contact_edges(position[self.skin.nodes, 0], record.nodal_force / length)
+        edges = contact_edges(position[self.skin.nodes, 0], record.nodal_force / length, record.gap)
         return (0.0, edges[1]) if self.mesh.half and record.nodal_force[0] > 0 else edges
 
     def _history(self, records: list[Record], states, snapshots, complete: bool):

@@ -138,7 +138,7 @@ class PardisoCondensation:
         return out
 
     def __del__(self):
-        if hasattr(self, "_handle"):
+        if hasattr(self, "_handle") and not sys.is_finalizing():
             self._call(-1, self._dummy, np.zeros(1))
 
 

@@ -40,28 +40,37 @@ def smoothed_pressure(nodal_force, length, mirrored: bool) -> np.ndarray:
     return np.where(nodal_force > 0, smooth, 0.0)
 
 
-def contact_edges(x, pressure) -> tuple[float, float]:
+def contact_edges(x, pressure, gap) -> tuple[float, float]:
     """Left and right contact edge (m), located between nodes; (nan, nan) without contact.
 
     Args:
-        x: (ns,) lateral position of the deformed skin nodes in order. pressure: (ns,) Pa.
+        x: (ns,) lateral position of the deformed skin nodes in order. pressure: (ns,) Pa. gap: (ns,) m, nan where unknown.
 
-    Near its edge a smooth contact has pressure proportional to the square root of the distance, so the square of the pressure
-    is extrapolated linearly from the last two touching nodes and kept between the last touching node and the next one.
+    Inside the edge of a smooth contact the pressure grows like the square root of the distance, outside it the gap grows like
+    its power 3/2 (Johnson 1985, section 5.1). The edge is the mean of the two extrapolations, each from two nodes and each kept
+    between the last touching node and the next one.
     """
     on = np.flatnonzero(pressure > 0)
     if not len(on):
         return np.nan, np.nan
-    return _edge(x, pressure, on[0], -1), _edge(x, pressure, on[-1], +1)
+    return _edge(x, pressure, gap, on[0], -1), _edge(x, pressure, gap, on[-1], +1)
 
 
-def _edge(x, pressure, last, side):
-    if not 0 <= last + side < len(x):
+def _edge(x, pressure, gap, last, side):
+    outer = last + side
+    if not 0 <= outer < len(x) or side * (x[outer] - x[last]) <= 0:
         return float(x[last])
-    gap = x[last + side] - x[last]
-    inner = last - side
-    share = 0.5
-    if 0 <= inner < len(x) and pressure[inner] > pressure[last] and side * (x[last] - x[inner]) > 0:
-        reach = pressure[last] ** 2 / (pressure[inner] ** 2 - pressure[last] ** 2) * (x[last] - x[inner])
-        share = reach / gap if side * gap > 0 else 0.0
-    return float(x[last] + min(max(share, 0.0), 1.0) * gap)
+    found = [
+        _root(x[last - side], x[last], pressure[last - side] ** 2, pressure[last] ** 2) if 0 <= last - side < len(x) else None,
+        _root(x[outer + side], x[outer], *np.cbrt(gap[[outer + side, outer]]) ** 2) if 0 <= outer + side < len(x) else None,
+    ]
+    low, high = sorted((x[last], x[outer]))
+    found = [min(max(value, low), high) for value in found if value is not None]
+    return float(np.mean(found)) if found else float((x[last] + x[outer]) / 2)
+
+
+def _root(far, near, at_far, at_near):
+    """Where the line through (far, at_far) and (near, at_near) vanishes, if it falls from far to near; else None."""
+    if not at_far > at_near >= 0:
+        return None
+    return near + (near - far) * at_near / (at_far - at_near)

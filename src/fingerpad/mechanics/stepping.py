@@ -146,10 +146,12 @@ class QuasiStatic:
 
     # -- one step ---------------------------------------------------------------------------------------------------
 
-    def _save(self):
+    def save(self):
+        """The state to come back to: body, contact forces, active nodes, depth."""
         return self.body.save(), self.nodal_force.copy(), self.active.copy(), self.depth
 
-    def _restore(self, state):
+    def restore(self, state):
+        """Come back to a saved state."""
         self.body.restore(state[0])
         self.nodal_force, self.active, self.depth = state[1].copy(), state[2].copy(), state[3]
 
@@ -161,7 +163,7 @@ class QuasiStatic:
             if self._zone_is_tight():
                 self._grow_zone()
             try:
-                residual, gap, gradient = self._iterate(control, target)
+                residual, gap, gradient = self.iterate(control, target)
             except (FactorisationError, ContactError) as error:
                 raise _StepFailure(str(error)) from error
             if not np.isfinite(residual):
@@ -170,7 +172,7 @@ class QuasiStatic:
                 return iteration, residual, gap, gradient
         raise _StepFailure(f"{settings.max_iterations} Newton iterations did not suffice")
 
-    def _iterate(self, control, target):
+    def iterate(self, control, target):
         """One Newton iteration; returns the residual over its tolerance and the new gap and gradient of the zone."""
         body, zone, part = self.body, self.zone, self._range
         space = body.space
@@ -238,7 +240,7 @@ class QuasiStatic:
 
     def _advance(self, dt, control, target, predict):
         """One substep with predictor, check and commit."""
-        state = self._save()
+        state = self.save()
         try:
             if predict is not None and self._previous is not None:
                 u, forces, depth = self._previous
@@ -255,7 +257,7 @@ class QuasiStatic:
             self._gradient, self._gap = gradient, gap
             self._check(control, target, gap)
         except _StepFailure:
-            self._restore(state)
+            self.restore(state)
             raise
         old_force = self.force
         self.force = float(-self.nodal_force[self._range] @ gradient[:, 1])

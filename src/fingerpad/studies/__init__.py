@@ -1,0 +1,1 @@
+"""Studies that run the model to learn about the model."""

@@ -1,0 +1,180 @@
+"""Speed of the solver on this machine: ``python -m fingerpad.studies.bench [--workflow]``.
+
+Everything is measured in one process with one thread, as medians of repeated runs; ratios within the process are what may be
+quoted, absolute times belong to the machine named in the table. Writes figures/tables/speed.csv and .md.
+"""
+
+from __future__ import annotations
+
+import os
+
+for _name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+import argparse  # noqa: E402
+import statistics  # noqa: E402
+import subprocess  # noqa: E402
+import sys  # noqa: E402
+import time  # noqa: E402
+from pathlib import Path  # noqa: E402
+
+import numpy as np  # noqa: E402
+import pandas as pd  # noqa: E402
+from threadpoolctl import threadpool_limits  # noqa: E402
+
+from fingerpad.effects import plan  # noqa: E402
+from fingerpad.files import write_atomically  # noqa: E402
+from fingerpad.mechanics.linear_solver import condensation  # noqa: E402
+from fingerpad.results import provenance  # noqa: E402
+from fingerpad.scene import Cylinder, Discretisation, Flat, Layer, Layers, PressToForce, Scene, load_scene  # noqa: E402
+from fingerpad.simulation import Simulation, simulate  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[3]
+SCENES = ROOT / "config" / "scenes"
+COLUMNS = ["what", "value", "unit", "target", "met", "repeats", "how"]
+
+
+def seconds(call, repeats: int) -> tuple[float, float, float]:
+    """Least, median and largest process time (s) of ``call``."""
+    times = []
+    for _ in range(repeats):
+        start = time.process_time()
+        call()
+        times.append(time.process_time() - start)
+    return min(times), statistics.median(times), max(times)
+
+
+def newton_iteration(repeats: int = 15) -> list[list]:
+    """One Newton iteration of the whole pad against factorisation and solution of the same matrix."""
+    scene = load_scene(SCENES / "ramp40_k210.yaml").model_copy(update={"effects": {"symmetry": False}})
+    run = Simulation(scene, plan(scene), None)
+    stepper, body = run.stepper, run.body
+    steps = list(run.steps())
+    stepper.run(steps[:10])
+    data, force = body.tangent()
+    data = data.copy()
+    right = body.space.to_equations(force)
+    plain = condensation(body.space.pattern, np.zeros(0, dtype=np.int64))
+
+    def factor_and_solve():
+        plain.factor(data)
+        plain.forward(right)
+
+    state = stepper.save()
+    target = steps[10].force
+
+    def iteration():
+        stepper.restore(state)
+        stepper.iterate("force", target)
+
+    body.begin_step(steps[10].dt)
+    iteration()
+    ratios, schur = [], []
+    for _ in range(repeats):  # in pairs, so that a busy machine slows both
+        a = seconds(factor_and_solve, 1)[1]
+        ratios.append(seconds(iteration, 1)[1] / a)
+        b = seconds(lambda: plain.factor(data), 1)[1]
+        schur.append(seconds(lambda: stepper.solver.factor(data), 1)[1] / b)
+    nodes = len(body.space.points)
+    how = f"{nodes} nodes, {body.space.size} unknowns, {len(stepper.zone.nodes)} skin nodes in the contact zone"
+    ratio, schur_ratio = statistics.median(ratios), statistics.median(schur)
+    return [
+        ["Newton iteration / (factor + solve)", ratio, "1", "<= 1.8", ratio <= 1.8, repeats, how],
+        ["factor with Schur complement / plain factor", schur_ratio, "1", "<= 1.25", schur_ratio <= 1.25, repeats, how],
+        ["factor + solve", 1e3 * seconds(factor_and_solve, repeats)[1], "ms", "", "", repeats, how],
+    ]
+
+
+def ramp_and_hold(repeats: int = 3) -> list[list]:
+    """The nine-shape scenes at figure resolution: broadest, middle and sharpest."""
+    rows = []
+    for name in ("ramp40_flat", "ramp40_k210", "ramp40_k1260"):
+        scene = load_scene(SCENES / f"{name}.yaml")
+        chosen = plan(scene)
+        history = simulate(scene, chosen)
+        _, median, _ = seconds(lambda scene=scene, chosen=chosen: simulate(scene, chosen), repeats)
+        steps, iterations = history.sizes["time"] - 1, int(history.newton_iterations.sum())
+        how = f"{chosen.nodes} nodes (half pad), {steps} steps, {iterations} Newton iterations, meshing included"
+        rows.append([f"ramp and hold, {name}", median, "s", "<= 3", median <= 3, repeats, how])
+    return rows
+
+
+def one_step() -> list[list]:
+    """The whole load in one step: Newton iterations, which no machine changes."""
+    rows = []
+    base = load_scene(SCENES / "ramp40_flat.yaml")
+    for stimulus, label in ((Flat(), "flat"), (Cylinder(curvature=1259.84), "1260 1/m")):
+        for nu in (0.48, 0.4999):
+            history = simulate(_steady(base, stimulus, nu))
+            count, cuts = int(history.newton_iterations.sum()), int(history.cutbacks.sum())
+            how = f"20 gram-weight, {label}, nu = {nu}, {cuts} cuts"
+            rows.append(["full load in one step", count, "iterations", "<= 6", count <= 6 and not cuts, 1, how])
+    return rows
+
+
+def _steady(base: Scene, stimulus, nu: float) -> Scene:
+    layers = Layers(**{
+        name: Layer(youngs_modulus=layer.youngs_modulus, poisson_ratio=nu)
+        for name, layer in ((name, getattr(base.specimen.layers, name)) for name in ("epidermis", "dermis", "fat"))
+    })  # fmt: skip
+    return base.model_copy(
+        update={
+            "specimen": base.specimen.model_copy(update={"layers": layers}),
+            "stimulus": stimulus,
+            "motion": (PressToForce(press_to_force=20 * 9.80665e-3, rate=None),),
+            "accuracy": Discretisation(element=None, skin_edge=None, steps=1),
+        }
+    )
+
+
+def overhead(repeats: int = 5) -> list[list]:
+    """What a simulation process costs before it simulates: start, imports, scene, plan, compiled kernels."""
+    code = (
+        "import fingerpad, fingerpad.results, fingerpad.simulation as s;"
+        f"scene = fingerpad.load_scene({str(SCENES / 'ramp40_flat.yaml')!r}); s.Simulation(scene, fingerpad.plan(scene), None)"
+    )
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        times.append(time.perf_counter() - start)
+    median = statistics.median(times)
+    how = "wall time of a process that imports, plans, meshes and builds the model of ramp40_flat"
+    return [["process overhead per job", median, "s", "<= 1.5", median <= 1.5, repeats, how]]
+
+
+def workflow() -> list[list]:
+    """The whole default target from nothing, on two cores (results are made again)."""
+    command = [str(Path(sys.executable).parent / "snakemake"), "--workflow-profile", "workflow/profiles/default"]
+    start = time.perf_counter()
+    subprocess.run([*command, "--forceall", "--cores", "2", "--quiet"], check=True, cwd=ROOT)
+    wall = time.perf_counter() - start
+    return [["make figures, after set-up", wall, "s", "<= 180", wall <= 180, 1, "wall time, 2 cores, every job rerun"]]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--workflow", action="store_true", help="also time the default workflow target from nothing")
+    parser.add_argument("--out", type=Path, default=ROOT / "figures" / "tables" / "speed.csv")
+    options = parser.parse_args()
+    with threadpool_limits(1):
+        rows = [*newton_iteration(), *ramp_and_hold(), *one_step()]
+    rows += overhead()
+    if options.workflow:
+        rows += workflow()
+    table = pd.DataFrame(rows, columns=COLUMNS)
+    table["value"] = [float(f"{value:.4g}") for value in table["value"]]
+    made_by = provenance()
+    machine = f"{made_by['processor']}, {os.cpu_count()} cores, 1 thread, python {made_by['python']}, " + ", ".join(
+        f"{name} {made_by['packages'][name]}" for name in ("numpy", "numba", "mkl")
+    )
+    table["machine"] = machine
+    print(table.drop(columns="machine").to_markdown(index=False))
+    print(machine)
+    write_atomically(options.out, lambda path: table.to_csv(path, index=False))
+    text = f"{table.drop(columns='machine').to_markdown(index=False)}\n\nMedians, process time unless wall is said; {machine}.\n"
+    write_atomically(options.out.with_suffix(".md"), lambda path: path.write_text(text, encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,234 @@
+"""The dense contact problem, the condensation it works on and what is read off its forces."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fingerpad.mechanics.contact import ContactError, Zone, solve_contact
+from fingerpad.mechanics.linear_solver import (
+    FactorisationError,
+    PardisoCondensation,
+    SuperLUCondensation,
+    SymmetricPattern,
+    pardiso_available,
+)
+from fingerpad.mechanics.pressure import contact_edges, contact_pressure, smoothed_pressure, tributary_length
+from fingerpad.mechanics.space import edge_load_vectors
+
+pytestmark = pytest.mark.unit
+
+
+def zone_of(count):
+    equation = np.arange(2 * count).reshape(count, 2)
+    return Zone(np.arange(count), equation)
+
+
+def problem(seed, count=12):
+    """A random well-posed contact problem: nodes above and below a plate that comes from above."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(2 * count, 2 * count))
+    schur = root @ root.T + 2 * count * np.eye(2 * count)
+    gap = rng.uniform(0, 1e-2, count)
+    gap[0] = 0.0
+    gradient = np.tile([0.0, -1.0], (count, 1))
+    return zone_of(count), schur, np.zeros(2 * count), gap, gradient
+
+
+def solve(parts, active=None, curvature=None, previous=None, **control):
+    zone, schur, right, gap, gradient = parts
+    n = len(gap)
+    zero = np.zeros(n)
+    return solve_contact(
+        zone, schur, right, gap, gradient, zero if curvature is None else curvature,
+        zero if previous is None else previous, np.zeros(n, bool) if active is None else active, **control,
+    )  # fmt: skip
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.floats(1e-3, 1e3))
+def test_force_control_satisfies_every_condition(seed, force):
+    """Forces push, closed gaps are closed, open gaps are open, the sum is the load, and equilibrium holds."""
+    parts = problem(seed)
+    zone, schur, right, gap, gradient = parts
+    step = solve(parts, force=force)
+    opening = gap + zone.gather(gradient) @ step.condensed_displacement + gradient[:, 1] * step.depth_change
+    assert step.force.min() >= 0 and step.force.sum() == pytest.approx(force, rel=1e-9)
+    assert np.abs(opening[step.active]).max() < 1e-10 and opening.min() > -1e-10
+    assert np.all(step.force[~step.active] == 0)
+    np.testing.assert_allclose(schur @ step.condensed_displacement, zone.gather(gradient).T @ step.force, atol=1e-9 * force)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.integers(0, 2**12 - 1))
+def test_solution_does_not_depend_on_the_first_guess(seed, guess):
+    """The convex problem has one solution, whatever active set the pivoting starts from."""
+    parts = problem(seed)
+    active = np.array([guess >> i & 1 for i in range(12)], bool)
+    reference, other = solve(parts, force=1.0), solve(parts, force=1.0, active=active)
+    np.testing.assert_allclose(other.force, reference.force, atol=1e-9)
+
+
+def test_depth_control_agrees_with_force_control():
+    """Pressing by the depth that a force produced needs that force."""
+    parts = problem(3)
+    by_force = solve(parts, force=2.0)
+    by_depth = solve(parts, depth_change=by_force.depth_change)
+    np.testing.assert_allclose(by_depth.force, by_force.force, atol=1e-9)
+
+
+def test_no_contact_below_first_touch():
+    """An indenter that stays above every node carries nothing."""
+    parts = problem(5)
+    parts[3][:] += 1.0
+    step = solve(parts, depth_change=0.5)
+    assert not step.active.any() and step.force.sum() == 0
+
+
+def test_nothing_can_carry_a_force_sideways():
+    """A profile that only meets nodes edge-on cannot take a vertical force, and says so."""
+    zone, schur, right, gap, gradient = problem(7)
+    gradient = np.tile([1.0, 0.0], (len(gap), 1))
+    with pytest.raises(ContactError):
+        solve((zone, schur, right, gap, gradient), force=1.0)
+
+
+def test_curvature_enters_the_tangent():
+    """With a curved profile the solution is that of the Lagrangian's second derivative, and differs without it."""
+    parts = problem(9)
+    zone, schur, _, gap, gradient = parts
+    previous, curvature = np.zeros(12), np.full(12, 50.0)
+    previous[0] = 0.3
+    tilt = np.array([0.6, -0.8])
+    gradient = np.tile(tilt, (12, 1))
+    parts = (zone, schur, np.zeros(24), gap, gradient)
+    step = solve(parts, force=1.0, previous=previous, curvature=curvature)
+    tangent = np.array([0.8, 0.6])
+    matrix = schur.copy()
+    matrix[:2, :2] -= 15.0 * np.outer(tangent, tangent)
+    border = np.zeros(24)
+    border[:2] = -15.0 * tangent * tangent[1]
+    right = zone.gather(gradient).T @ step.force - border * step.depth_change
+    np.testing.assert_allclose(matrix @ step.condensed_displacement, right, atol=1e-8)
+    plain = solve(parts, force=1.0)
+    assert np.abs(plain.condensed_displacement - step.condensed_displacement).max() > 1e-4
+
+
+# -- condensation ---------------------------------------------------------------------------------------------------------
+
+
+def system(seed, definite):
+    rng = np.random.default_rng(seed)
+    elements, nd, size = 60, 8, 150
+    dofs = np.array([rng.choice(size, nd, replace=False) for _ in range(elements)])
+    dofs.reshape(-1)[:size] = np.arange(size)
+    dofs[rng.random(dofs.shape) < 0.0] = -1
+    pattern, dense = SymmetricPattern(dofs, size), np.zeros((size, size))
+    data = pattern.new_data()
+    rows, cols = np.triu_indices(nd)
+    for e in range(elements):
+        root = rng.normal(size=(nd, nd))
+        k = root @ root.T + np.eye(nd) if definite else root + root.T
+        np.add.at(data, pattern.scatter[e], k[rows, cols])
+        dense[np.ix_(dofs[e], dofs[e])] += k
+    return pattern, data, dense, rng
+
+
+@pytest.mark.parametrize("definite", [True, False], ids=["definite", "indefinite"])
+@pytest.mark.parametrize("kind", [PardisoCondensation, SuperLUCondensation])
+@pytest.mark.parametrize("condensed", [0, 1, 20])
+def test_condensation_equals_dense_algebra(kind, definite, condensed):
+    """Schur complement, reduced right-hand side and back-substitution are those of the full system, for both solvers."""
+    if kind is PardisoCondensation and not pardiso_available():
+        pytest.skip("PARDISO is not installed here")
+    pattern, data, dense, rng = system(11, definite)
+    np.testing.assert_allclose(pattern.matrix(data).toarray(), dense, atol=1e-12)
+    c = np.sort(rng.choice(pattern.size, condensed, replace=False))
+    i = np.setdiff1d(np.arange(pattern.size), c)
+    right = rng.normal(size=pattern.size)
+    solver = kind(pattern, c)
+    schur = solver.factor(data)
+    expected = dense[np.ix_(c, c)] - dense[np.ix_(c, i)] @ np.linalg.solve(dense[np.ix_(i, i)], dense[np.ix_(i, c)])
+    np.testing.assert_allclose(schur, expected, atol=1e-8 * (1 + np.abs(expected).max(initial=0)))
+    reduced = solver.forward(right)
+    values = np.linalg.solve(schur, reduced) if condensed else np.zeros(0)
+    np.testing.assert_allclose(solver.backward(values), np.linalg.solve(dense, right), rtol=1e-6, atol=1e-7)
+
+
+def test_node_without_element_is_named():
+    """An equation that no element touches is an error, not a singular matrix later."""
+    with pytest.raises(FactorisationError, match="no element"):
+        SymmetricPattern(np.array([[0, 1, 2, 3]]), 5)
+
+
+def test_condensed_equations_must_ascend():
+    if not pardiso_available():
+        pytest.skip("PARDISO is not installed here")
+    pattern, *_ = system(1, True)
+    with pytest.raises(ValueError, match="ascending"):
+        PardisoCondensation(pattern, np.array([5, 2]))
+
+
+# -- pressure -------------------------------------------------------------------------------------------------------------
+
+
+def arc(order, count=6, radius=2.0):
+    """Nodes and edges of a convex arc from left to right, the body below."""
+    angle = np.linspace(2.2, 0.9, order * count + 1)
+    points = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    starts = np.arange(0, order * count, order)
+    edges = np.column_stack([starts, starts + order, *([starts + 1] if order == 2 else [])])
+    return points, edges
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_unit_pressure_loads_balance_the_chord(order):
+    """A uniform pressure on an arc has the resultant of its chord, and points out of the body."""
+    points, edges = arc(order)
+    load = edge_load_vectors(points, edges)
+    chord = points[-1] - points[0]
+    np.testing.assert_allclose(load.sum(0), [-chord[1], chord[0]], atol=1e-12)
+    assert load[len(points) // 2, 1] > 0
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_uniform_pressure_is_recovered_on_curved_edges(order):
+    """Nodal forces of a uniform pressure give that pressure at every node, curved or not."""
+    points, edges = arc(order)
+    load = edge_load_vectors(points, edges)
+    gradient = -load / np.linalg.norm(load, axis=1)[:, None]
+    force = -7.0 * np.einsum("ni,ni->n", load, gradient)
+    pressure = contact_pressure(points, edges, np.arange(len(points)), force, gradient)
+    np.testing.assert_allclose(pressure, 7.0, rtol=1e-12)
+
+
+def test_smoothing_keeps_a_uniform_pressure_and_removes_alternation():
+    """The 5-point average is exact for uniform pressure, also at a mirrored axis, and damps a corner/middle alternation."""
+    points, edges = arc(2)
+    load = edge_load_vectors(points, edges)
+    length = tributary_length(points, edges, np.arange(len(points)), -load / np.linalg.norm(load, axis=1)[:, None])
+    np.testing.assert_allclose(smoothed_pressure(3.0 * length, length, False), 3.0, rtol=1e-12)
+    wiggle = np.where(np.arange(len(points)) % 2, 1.02, 0.96)
+    inner = smoothed_pressure(3.0 * length * wiggle, length, False)[3:-3]
+    assert np.ptp(inner) < 0.35 * np.ptp(3.0 * wiggle)
+    half_force, half_length = 3.0 * length[6:].copy(), length[6:].copy()
+    half_force[0] /= 2
+    half_length[0] /= 2
+    np.testing.assert_allclose(smoothed_pressure(half_force, half_length, True)[:4], 3.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("half_width", [0.31, 0.33, 0.349, 0.37])
+def test_contact_edge_lies_between_nodes(half_width):
+    """The edge of a Hertz contact is found within a tenth of the node spacing, where whole nodes miss it by up to one."""
+    x = np.arange(-10, 11) * 0.05
+    pressure = np.sqrt(np.maximum(half_width**2 - x**2, 0))
+    s = np.maximum(np.abs(x) / half_width, 1.0)
+    gap = s * np.sqrt(s**2 - 1) - np.log(s + np.sqrt(s**2 - 1))
+    left, right = contact_edges(x, pressure, gap)
+    assert right == pytest.approx(half_width, abs=0.005) and left == pytest.approx(-half_width, abs=0.005)
+    by_pressure = contact_edges(x, pressure, np.full_like(x, np.nan))[1]
+    assert by_pressure == pytest.approx(half_width, abs=0.005)
+
+
+def test_no_contact_has_no_edges():
+    assert np.isnan(contact_edges(np.arange(5.0), np.zeros(5), np.ones(5))).all()
