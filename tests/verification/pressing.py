@@ -54,7 +54,7 @@ def over_skin(body, skin, records, record):
     nodes = skin.nodes
     pressure = contact_pressure(position, skin.edges, nodes, record.nodal_force, record.gradient)
     x = position[nodes, 0]
-    return Pressed(x, pressure, record.force, record.depth, contact_edges(x, pressure), records)
+    return Pressed(x, pressure, record.force, record.depth, contact_edges(x, pressure, record.gap), records)
 
 
 def press(body, mesh, profile=None, *, force=None, depth=None, steps=1):
