@@ -67,7 +67,8 @@ shown_energy = partial(energy, depth=SHOWN_DEPTH)
 PRESSURE_AXES = dict(zip(SURFACES, [f"T{i}" for i in range(125, 134)], strict=True))
 DISPLACEMENT_AXES = {
     "flat": "T138",
-    **{k: "T139" for k in ("79", "105")},
+    "79": "T126",  # of Fig 4-11: only a tick at 5000 Pa is legible in Fig 4-13 itself (T139)
+    "105": "T127",
     **{k: "T140" for k in ("158", "210", "315")},
     **{k: "T141" for k in ("420", "630")},
     "1260": "T142",
