@@ -166,7 +166,9 @@ class Simulation:
 
     def _length_and_gradient(self, record):
         position = self.stepper.points + record.displacement
-        return tributary_length(position, self.skin.edges, self.skin.nodes, record.gradient), position
+        # the linear theory knows no deformed lengths
+        lengths = self.stepper.points if self.body.geometrically_linear else position
+        return tributary_length(lengths, self.skin.edges, self.skin.nodes, record.gradient), position
 
     def _edges(self, record):
         length, position = self._length_and_gradient(record)
@@ -216,8 +218,8 @@ class Simulation:
             }
             for name, value in row.items():
                 out[name][k] = value
-            out["peak_pressure"][k] = out["contact_pressure_smoothed"][k].max()
-            out["centre_pressure"][k] = out["contact_pressure_smoothed"][k, apex]
+            out["peak_pressure"][k] = out["contact_pressure"][k].max()
+            out["centre_pressure"][k] = out["contact_pressure"][k, apex]
             out["centre_lateral_displacement"][k] = out["skin_displacement_x"][k, apex]
         for name in states[0]:
             out[name] = np.array([state[name] for state in states])

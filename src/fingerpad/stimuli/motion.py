@@ -26,7 +26,7 @@ class Step:
 
 def geometric(duration: float, count: int, first: float) -> np.ndarray:
     """``count`` step sizes (s) that sum to ``duration``, start at ``first`` and grow by a constant ratio (never shrink)."""
-    if count == 1 or first * count >= duration:
+    if count == 1 or first * count >= duration * (1 - 1e-9):
         return np.full(count, duration / count)
     ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, 1 + (duration / first) ** (1 / (count - 1)))
     steps = first * ratio ** np.arange(count)

@@ -1,0 +1,175 @@
+"""The planner: effects chosen and explained, overridable, and discretisations that follow the scene."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from fingerpad.effects import PlanError, plan, read_plan
+from fingerpad.estimates import PadEstimate, layer_kernel
+from fingerpad.scene import (
+    Bar,
+    Cylinder,
+    Discretisation,
+    Hold,
+    Line,
+    PressToDepth,
+    PressToForce,
+    PronyTerm,
+    Sampled,
+    load_scene,
+)
+
+pytestmark = pytest.mark.unit
+
+SCENES = Path(__file__).parents[1] / "config" / "scenes"
+GF = 9.80665e-3
+
+
+@pytest.fixture(scope="module")
+def ramp():
+    return load_scene(SCENES / "ramp40_k210.yaml")
+
+
+def changed(scene, **update):
+    return scene.model_copy(update=update)
+
+
+def specimen(scene, **update):
+    return scene.model_copy(update={"specimen": scene.specimen.model_copy(update=update)})
+
+
+def test_ramp_and_hold_calls_for_what_the_thesis_needs(ramp):
+    """A loaded, timed, symmetric, frictionless press: finite strain, viscosity and half the pad; no friction, no ridges."""
+    effects = plan(ramp).effects
+    assert {name for name, effect in effects.items() if effect.on} == {"viscoelasticity", "finite_strain", "symmetry"}
+    assert all(effect.why for effect in effects.values())
+    assert "%" in effects["finite_strain"].why and "%" in effects["viscoelasticity"].why
+
+
+def test_light_touch_needs_small_strain_only(ramp):
+    """As the load falls, small strain becomes good enough, and the number says so."""
+    light = changed(ramp, motion=(PressToForce(press_to_force=1e-2 * GF, rate=2e-2 * GF),))
+    assert not plan(light).effects["finite_strain"].on
+    assert plan(changed(light, accuracy=0.0005)).effects["finite_strain"].on
+
+
+def test_steady_press_needs_no_time(ramp):
+    """Without a rate the relaxed moduli answer."""
+    steady = plan(changed(ramp, motion=(PressToDepth(press_to_depth=1e-3),)))
+    assert not steady.effects["viscoelasticity"].on and steady.state == "long_term" and not steady.timed
+
+
+def test_very_fast_and_very_slow_need_no_viscosity(ramp):
+    """A press over before anything relaxes has instantaneous moduli, one much slower than every branch long-term ones."""
+    fast = plan(changed(ramp, motion=(PressToForce(press_to_force=2 * GF, rate=2e3 * GF),)))
+    assert not fast.effects["viscoelasticity"].on and fast.state == "instantaneous"
+    slow = plan(changed(ramp, motion=(PressToForce(press_to_force=20 * GF, rate=20 * GF / 1e4), Hold(hold=10.0))))
+    assert not slow.effects["viscoelasticity"].on and slow.state == "long_term"
+    assert plan(ramp).effects["viscoelasticity"].on
+
+
+def test_no_prony_no_viscosity(ramp):
+    assert not plan(specimen(ramp, prony=())).effects["viscoelasticity"].on
+    weak = specimen(ramp, prony=(PronyTerm(g=1e-4, tau=1.0),))
+    assert not plan(weak).effects["viscoelasticity"].on
+
+
+def test_lopsided_stimulus_keeps_the_whole_pad(ramp, tmp_path):
+    """Symmetry halves the unknowns only where it holds."""
+    csv = tmp_path / "p.csv"
+    csv.write_text("x (mm),y (mm)\n-1,1\n0,0\n1,2\n")
+    lopsided = Sampled(csv=csv, x=(-1e-3, 0.0, 1e-3), y=(1e-3, 0.0, 2e-3))
+    whole, half = plan(changed(ramp, stimulus=lopsided)), plan(ramp)
+    assert not whole.effects["symmetry"].on and half.effects["symmetry"].on
+    assert whole.nodes > 1.9 * half.nodes
+
+
+def test_friction_is_not_called_on_when_nothing_slides(ramp):
+    effect = plan(changed(ramp, friction=0.6)).effects["friction"]
+    assert not effect.on and "slides" in effect.why
+
+
+def test_overrides_are_obeyed_and_said(ramp):
+    """The user may switch effects; the reason then names the user."""
+    off = plan(changed(ramp, effects={"finite_strain": False, "viscoelasticity": False, "symmetry": False}))
+    assert not any(off.effects[name].on for name in ("finite_strain", "viscoelasticity", "symmetry"))
+    assert "asked for" in off.effects["finite_strain"].why
+
+
+@pytest.mark.parametrize("effect", ["friction", "ridges"])
+def test_effects_that_do_not_exist_cannot_be_switched_on(ramp, effect):
+    with pytest.raises(PlanError, match=f"effects.{effect}"):
+        plan(changed(ramp, effects={effect: True}))
+
+
+def test_viscosity_without_a_series_cannot_be_switched_on(ramp):
+    with pytest.raises(PlanError, match="viscoelasticity"):
+        plan(changed(specimen(ramp, prony=()), effects={"viscoelasticity": True}))
+
+
+def test_motion_so_fast_that_inertia_matters_is_refused(ramp):
+    """A quasi-static answer is not given where rho v^2 / mu is not small; a 40 mm/s press is far below the limit."""
+    with pytest.raises(PlanError, match="inertia"):
+        plan(changed(ramp, motion=(PressToDepth(press_to_depth=1e-3, speed=2.0),)))
+    assert plan(changed(ramp, motion=(PressToDepth(press_to_depth=1e-3, speed=0.04),))).inertia_ratio < 1e-3
+
+
+def test_presets_and_tolerances_order_cost_and_error(ramp):
+    """Finer asks for more nodes, steps and time and promises less error; a tolerance gets the cheapest that meets it."""
+    draft, thesis, fine = (plan(changed(ramp, accuracy=level)) for level in ("draft", "thesis", "fine"))
+    assert draft.nodes < thesis.nodes < fine.nodes and draft.predicted_cost_s < thesis.predicted_cost_s < fine.predicted_cost_s
+    assert draft.estimated_error > thesis.estimated_error > fine.estimated_error
+    for tolerance in (0.05, 0.02, 0.005):
+        assert plan(changed(ramp, accuracy=tolerance)).estimated_error <= tolerance * 1.01
+    assert plan(changed(ramp, accuracy=0.05)).nodes < plan(changed(ramp, accuracy=0.005)).nodes
+
+
+def test_mesh_follows_edges_and_needles(ramp):
+    """Edges of the profile and contacts narrower than the mesh get finer skin there; broad ones do not."""
+    assert plan(ramp).mesh_size.focus == ()
+    bar = plan(changed(ramp, stimulus=Bar(width=1.5875e-3, fillet=0.1e-3))).mesh_size
+    assert bar.focus[0][0] == pytest.approx(0.79375e-3) and bar.focus[0][1] <= 0.05e-3
+    assert plan(changed(ramp, stimulus=Line())).mesh_size.focus
+    needle = plan(changed(ramp, stimulus=Cylinder(curvature=1e4))).mesh_size
+    assert needle.focus and needle.focus[0][1] < 0.1e-3
+
+
+def test_discretisation_by_hand(ramp):
+    """Those who want the wheel get it."""
+    own = plan(changed(ramp, accuracy=Discretisation(element="Q2P1", skin_edge=0.2e-3, steps=30)))
+    assert own.mesh_size.skin_edge == 0.2e-3 and own.steps == 30
+    with pytest.raises(PlanError, match="element"):
+        plan(changed(ramp, accuracy=Discretisation(element="P2B", skin_edge=None, steps=None)))
+
+
+def test_plan_survives_its_file(ramp, tmp_path):
+    """A plan read back is the plan written."""
+    written = plan(ramp)
+    written.write(tmp_path / "plan.json")
+    assert read_plan(tmp_path / "plan.json").to_dict() == written.to_dict()
+    keys = json.loads((tmp_path / "plan.json").read_text())
+    assert set(keys["effects"]) == {"friction", "viscoelasticity", "finite_strain", "symmetry", "ridges"}
+    assert {"element", "nodes", "smallest_edge_um", "steps"} <= set(keys["discretisation"]) and keys["predicted_cost_s"] > 0
+
+
+# -- the estimates behind the choices -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("wavenumber", "kernel"), [(0.1, 9.9673), (0.5, 8.0556), (1.0, 4.1124), (2.0, 1.5328)])
+def test_layer_kernel(wavenumber, kernel):
+    """Surface compliance of an incompressible layer on a ten times softer half-plane."""
+    assert layer_kernel(0.1, wavenumber) == pytest.approx(kernel, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("curvature", "width", "depth"), [(0, 4.96, 0.560), (78.74, 3.3, 0.67), (209.97, 2.2, 0.75), (1259.84, 0.73, 0.881)]
+)
+def test_estimates_are_good_enough_to_plan_with(curvature, width, depth):
+    """Estimated widths within 20 % and depths within 25 % of simulated long-term values (mm) at 20 gram-weight."""
+    plane = 1 - 0.48**2
+    pad = PadEstimate(11e-3, 0.85e-3, 5.5e-3, 0.15e6 / plane, 0.015e6 / plane)
+    found = pad.pressed(19.6133, curvature)
+    assert 2e3 * found.half_width == pytest.approx(width, rel=0.2)
+    assert 1e3 * found.depth == pytest.approx(depth, rel=0.25)
+    assert pad.pressed_to(found.depth, curvature).half_width == pytest.approx(found.half_width, rel=1e-6)
