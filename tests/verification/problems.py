@@ -8,6 +8,7 @@ from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.linear_solver import condensation
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import Space
+from fingerpad.specimen.materials import Prony, moduli
 
 BODIES = {"small": SmallStrainBody, "finite": FiniteStrainBody}
 
@@ -19,8 +20,9 @@ def two_numbers(value, *, truth, within, frozen, tight=1e-6):
 
 
 def lame_constants(youngs_modulus, poisson):
-    """Shear and bulk modulus."""
-    return youngs_modulus / (2 * (1 + poisson)), youngs_modulus / (3 * (1 - 2 * poisson))
+    """Shear and bulk modulus, as the package converts them."""
+    known = moduli(youngs_modulus, poisson, Prony())
+    return float(known.shear_long_term), float(known.bulk)
 
 
 def make_body(mesh, fixed, shear, bulk, element=None, strain="small", prony=None):

@@ -6,7 +6,7 @@ from meshes import KIND, mapped, nodes_of, rectangle
 from pressing import press
 from problems import lame_constants, make_body, solve
 
-from fingerpad.mechanics.pressure import contact_pressure
+from fingerpad.mechanics.pressure import contact_pressure, smoothed_pressure
 from fingerpad.mechanics.space import edge_load_vectors
 from fingerpad.reference_solutions import manufactured
 from fingerpad.specimen.materials import Prony
@@ -198,6 +198,22 @@ def test_uniform_pressure_patch(element, curved, must_fail):
     check_uniform_pressure(element, curved)
     if element != "Q1P0" or curved:
         must_fail(check_uniform_pressure, element, curved, nodal_share=equal_shares)
+
+
+def check_smoothing(mirrored, weights=(1, 2, 3, 2, 1)):
+    force, length = np.random.default_rng(4).uniform(1, 2, (2, 12))
+    whole = [np.concatenate([v[:0:-1], [2 * v[0]], v[1:]]) if mirrored else v for v in (force, length)]
+    sums = [np.convolve(v, weights, mode="same") for v in whole]
+    expected = (sums[0] / sums[1])[-12:]
+    found = smoothed_pressure(force, length, mirrored)
+    np.testing.assert_allclose(found, expected, rtol=1e-12, err_msg="truth: weights 1, 2, 3, 2, 1")
+
+
+@pytest.mark.parametrize("mirrored", [False, True], ids=["whole", "half"])
+def test_smoothed_pressure(mirrored, must_fail):
+    """Smoothed pressure is force over length, both averaged with weights 1, 2, 3, 2, 1 (mirrored)."""
+    check_smoothing(mirrored)
+    must_fail(check_smoothing, mirrored, weights=(1, 2, 2, 2, 1))
 
 
 def check_contact_patch(element, strain, depth, poisson=0.0):

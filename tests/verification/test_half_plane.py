@@ -17,9 +17,9 @@ WITHIN = {"Q1P0": 0.03, "Q2P1": 0.005, "P2B": 0.015}
 
 #: half width, centre pressure over p0 and depth
 HERTZ = {
-    "Q1P0": (1.0119118, 0.99993992, 0.0073639972),
-    "Q2P1": (1.0035673, 1.0022758, 0.0073805012),
-    "P2B": (1.0028722, 0.99848929, 0.0073746539),
+    "Q1P0": (1.0087854, 0.99993992, 0.0073639972),
+    "Q2P1": (1.0017836, 1.0022758, 0.0073805012),
+    "P2B": (1.0014361, 0.99848929, 0.0073746539),
 }
 
 
@@ -39,7 +39,7 @@ def check_hertz(element, **mutant):
     assert error < within, f"truth: the pressure is off by {error:.4f} of its peak"
     two_numbers(result.half_width, truth=1.0, within=within, frozen=frozen[0])
     two_numbers(result.pressure[0] / p0, truth=1.0, within=within, frozen=frozen[1])
-    two_numbers(2 * result.force, truth=load, within=1e-9, frozen=load, tight=1e-9)
+    two_numbers(2 * result.force, truth=load, within=1e-7, frozen=load, tight=1e-7)
     strip = layered_contact.press(
         lambda x: x**2 / (2 * RADIUS), [Layer(DEPTH, SHEAR, POISSON)], DEPTH, load, 1024
     )
@@ -75,15 +75,15 @@ class Sinusoid(Profile):
 WAVE, WAVELENGTH = 1e-3, 2.0
 #: half width over the wavelength and peak pressure over the full-contact pressure
 WESTERGAARD = {
-    ("Q1P0", 0.1): (0.099732586, 0.61759832),
-    ("Q1P0", 0.25): (0.24852326, 1.4142606),
-    ("Q1P0", 0.4): (0.39662628, 1.9026646),
-    ("Q2P1", 0.1): (0.099691474, 0.6186049),
-    ("Q2P1", 0.25): (0.25117089, 1.4148365),
-    ("Q2P1", 0.4): (0.39902962, 1.9030915),
-    ("P2B", 0.1): (0.099528188, 0.61503659),
-    ("P2B", 0.25): (0.251125, 1.4128637),
-    ("P2B", 0.4): (0.39844128, 1.9012327),
+    ("Q1P0", 0.1): (0.099801762, 0.61759833),
+    ("Q1P0", 0.25): (0.24920298, 1.4142606),
+    ("Q1P0", 0.4): (0.39852928, 1.9026646),
+    ("Q2P1", 0.1): (0.099836286, 0.61860491),
+    ("Q2P1", 0.25): (0.25114795, 1.4148366),
+    ("Q2P1", 0.4): (0.39912905, 1.9030917),
+    ("P2B", 0.1): (0.099073982, 0.6150366),
+    ("P2B", 0.25): (0.25073412, 1.4128638),
+    ("P2B", 0.4): (0.39950415, 1.9012329),
 }
 
 

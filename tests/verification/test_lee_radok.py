@@ -47,7 +47,7 @@ def check_creep(count=6, series=ONE_TERM):
         two_numbers(width, truth=truth, within=0.01, frozen=frozen)
 
 
-CREEP = (0.99992971, 1.3139677, 1.5227539, 1.8747183)
+CREEP = (0.99910828, 1.3169537, 1.5210054, 1.8728379)
 
 
 def test_contact_creeps_under_a_constant_force(must_fail):
@@ -101,7 +101,7 @@ def check_ramp_and_hold(count=10, series=THESIS):
         two_numbers(ends[index].half_width, truth=truth[index], within=0.01, frozen=frozen)
 
 
-RAMP = (1.0006862, 1.1700591)
+RAMP = (0.99989274, 1.1683629)
 
 
 def test_ramp_and_hold(must_fail):

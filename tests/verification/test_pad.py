@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from pads import LOAD, SHAPES, THESIS, pad_body, pad_mesh, press_pad, ramp_and_hold
-from pressing import over_skin, skin_of, walk
+from pressing import TIGHT, over_skin, skin_of, walk
 from problems import two_numbers
 
 from fingerpad.mechanics.stepping import NewtonSettings, Step
 from fingerpad.reference_solutions import ting
+from fingerpad.stimuli.profiles import Cylinder
 
 BOTH_SHAPES = pytest.mark.parametrize("shape", SHAPES)
 COUNT = 16
@@ -264,6 +265,27 @@ def test_whole_load_in_one_step(half, shape, poisson, must_fail):
     check_one_step(half, shape, poisson)
     if poisson == 0.4999:  # plain Newton needs the load cut to pieces
         must_fail(check_one_step, half, shape, poisson, lagged=False)
+
+
+class Misjudged(Cylinder):
+    """A cylinder that hides its curvature from the tangent."""
+
+    def evaluate(self, points):
+        distance, gradient, curvature = super().evaluate(points)
+        return distance, gradient, 0 * curvature
+
+
+def check_quadratic_convergence(mesh, shape=Cylinder):
+    settings = replace(TIGHT, force_tolerance=1e-10)
+    body, step = pad_body(mesh, "finite"), Step(0, 1.0, 1.0, force=LOAD / 2)
+    record = walk(body, mesh, [step], shape(1260.0), settings, "skin").records[-1]
+    assert record.iterations <= 6, f"truth: {record.iterations} iterations are not quadratic convergence"
+
+
+def test_newton_converges_quadratically_on_a_sharp_cylinder(half, must_fail):
+    """With gap curvature in the tangent a force residual of 1e-10 is reached in at most six iterations."""
+    check_quadratic_convergence(half)
+    must_fail(check_quadratic_convergence, half, shape=Misjudged)
 
 
 # -- limits of the Prony series ------------------------------------------------------------------------------
