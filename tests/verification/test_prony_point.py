@@ -6,7 +6,7 @@ from meshes import nodes_of, rectangle
 from problems import make_body, solve, two_numbers
 
 from fingerpad.mechanics.space import edge_load_vectors
-from fingerpad.reference_solutions import prony_point
+from fingerpad.reference_solutions import manufactured, prony_point
 from fingerpad.specimen.materials import Prony
 
 THESIS = Prony((0.055, 0.3691), (3.25, 0.3414))
@@ -58,6 +58,35 @@ def test_relaxation_is_exact_for_any_step(strain, must_fail):
     check_relaxation(strain, np.linspace(0.1, 15.0, 40))
     must_fail(check_relaxation, strain, [15.0], series=None)
     must_fail(check_relaxation, strain, [15.0], series=ONE_TERM)
+
+
+def check_large_relaxation(held, series=THESIS, rotation=0.0):
+    """A large strain applied at once, then held: the relaxed network carries the stress of G(t)."""
+    cosine, sine = np.cos(rotation), np.sin(rotation)
+    strained = np.array([[1.2, 0.3], [-0.2, 0.9]])
+    field = manufactured.affine(np.array([[cosine, -sine], [sine, cosine]]) @ strained - np.eye(2))
+    mesh = rectangle(1, 1)
+    body = make_body(mesh, np.zeros(mesh.points.shape, bool), SHEAR, BULK, "Q2P1", "finite", series)
+    for dt in (0.0, held):
+        body.begin_step(dt)
+        body.displace(field.displacement(mesh.points))
+        force = body.internal_force()
+        body.commit()
+    shear = SHEAR * float(THESIS.relaxation(held)) / THESIS.g_infinity
+    piola = manufactured.first_piola_stress(field, np.zeros(2), shear, BULK)
+    reaction = np.zeros_like(force)
+    for curve in ("left", "right", "bottom", "top"):
+        load = edge_load_vectors(mesh.points, mesh.curves[curve])
+        reaction += load @ piola.T
+    np.testing.assert_allclose(force, reaction, atol=1e-10 * np.abs(reaction).max(), err_msg="truth")
+
+
+@pytest.mark.parametrize("rotation", [0.0, 0.7])
+def test_relaxation_at_large_strain_and_rotation(rotation, must_fail):
+    """Held at any F the stress is that of a neo-Hookean solid of modulus G(t), rotated or not (Simo 1987)."""
+    check_large_relaxation(0.8, rotation=rotation)
+    must_fail(check_large_relaxation, 0.8, series=None, rotation=rotation)
+    must_fail(check_large_relaxation, 0.8, series=ONE_TERM, rotation=rotation)
 
 
 def check_ramp(series, count, ran_as="same"):
