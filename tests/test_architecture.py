@@ -16,8 +16,6 @@ def test_import_contracts_are_kept(monkeypatch, capsys):
     assert status == EXIT_STATUS_SUCCESS, capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    "script", sorted((ROOT / "workflow" / "scripts").iterdir()), ids=lambda path: path.name
-)
+@pytest.mark.parametrize("script", sorted((ROOT / "workflow" / "scripts").iterdir()), ids=lambda path: path.name)
 def test_scripts_are_thin(script):
     assert len(script.read_text().splitlines()) < 40

@@ -129,9 +129,7 @@ def test_a_plan_that_cannot_be_made_names_the_key(tmp_path, capsys):
     assert refused(capsys, ["plan", path]).startswith(f"{path}: effects.ridges: ")
 
 
-@pytest.mark.parametrize(
-    "arguments", [[], ["fly"], ["run", "a.yaml"], ["plan"], ["plan", "a.yaml", "--fast"]]
-)
+@pytest.mark.parametrize("arguments", [[], ["fly"], ["run", "a.yaml"], ["plan"], ["plan", "a.yaml", "--fast"]])
 def test_usage_errors_exit_2(arguments, capsys):
     with pytest.raises(SystemExit) as caught:
         main(arguments)
@@ -250,9 +248,7 @@ def test_interrupt_leaves_nothing(tmp_path, scene, solver, capsys):
 
 
 @pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt(), 130), (OSError(28, "No space left"), 2)])
-def test_a_run_stopped_while_writing_leaves_the_old_results(
-    tmp_path, scene, solver, monkeypatch, error, code
-):
+def test_a_run_stopped_while_writing_leaves_the_old_results(tmp_path, scene, solver, monkeypatch, error, code):
     out = tmp_path / "out"
     arguments = ["run", str(scene), "--out", str(out), "--quiet"]
     assert main(arguments) == 0
@@ -298,9 +294,7 @@ def test_run_for_real(tmp_path, capsys):
 
 def test_as_a_process(tmp_path):
     def fingerpad(*arguments):
-        return subprocess.run(
-            [sys.executable, "-m", "fingerpad.cli", *arguments], capture_output=True, text=True
-        )
+        return subprocess.run([sys.executable, "-m", "fingerpad.cli", *arguments], capture_output=True, text=True)
 
     assert fingerpad("--version").returncode == 0
     wrong = fingerpad("run", "no.yaml", "--out", str(tmp_path / "out"))

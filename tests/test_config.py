@@ -20,9 +20,7 @@ YAML_FILES = sorted((ROOT / "config").rglob("*.yaml"))
 
 def test_committed_schemas_are_those_of_the_models(tmp_path):
     for fresh in write_schemas(tmp_path):
-        assert (SCHEMAS / fresh.name).read_text() == fresh.read_text(), (
-            "run `make schemas` and commit the result"
-        )
+        assert (SCHEMAS / fresh.name).read_text() == fresh.read_text(), "run `make schemas` and commit the result"
     assert {path.name for path in SCHEMAS.iterdir()} == {path.name for path in tmp_path.iterdir()}
 
 

@@ -395,9 +395,7 @@ def write_rings(path, kind="quad9", structured=True, order=None, version=4.1, ed
         centre = geo.addPoint(0, 0, 0, 1.0)
         rings = []
         for radius in (8.0, 7.0, 6.0, 3.0):
-            points = [
-                geo.addPoint(radius * x, radius * y, 0, 1.0) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))
-            ]
+            points = [geo.addPoint(radius * x, radius * y, 0, 1.0) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
             rings.append([geo.addCircleArc(points[i], centre, points[(i + 1) % 4]) for i in range(4)])
             rings[-1].append(points)
         surfaces = []
@@ -458,9 +456,7 @@ def test_centre_of_an_eight_node_quad_is_that_of_its_own_map(tmp_path):
     nodes = mesh.points[mesh.cells]
     shape = np.array([-0.25] * 4 + [0.5] * 4)  # the serendipity functions at the centre
     np.testing.assert_allclose(nodes[:, 8], np.einsum("n,enx->ex", shape, nodes[:, :8]), atol=1e-15)
-    assert (
-        np.abs(nodes[:, 8] - nodes[:, :4].mean(axis=1)).max() > 1e-5
-    )  # curved elements, or nothing is shown
+    assert np.abs(nodes[:, 8] - nodes[:, :4].mean(axis=1)).max() > 1e-5  # curved elements, or nothing is shown
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -507,9 +503,7 @@ def test_linear_triangles_can_be_elevated(tmp_path):
     np.testing.assert_allclose(middle, 0.5 * (corners + corners[:, [1, 2, 0]]), atol=1e-18)
     for name, facets in raised.curves.items():
         np.testing.assert_array_equal(facets[:, :2], mesh.curves[name])
-        np.testing.assert_allclose(
-            raised.points[facets[:, 2]], raised.points[facets[:, :2]].mean(axis=1), atol=1e-18
-        )
+        np.testing.assert_allclose(raised.points[facets[:, 2]], raised.points[facets[:, :2]].mean(axis=1), atol=1e-18)
     assert len(skin_chain(raised)) == 25
     raised.right_half()
 
@@ -585,9 +579,7 @@ def test_mixed_elements(tmp_path):
 
 def test_element_in_two_layers(tmp_path):
     refused(
-        write_rings(
-            tmp_path / "pad.msh", edit=lambda groups: [*groups[1:], (2, [1, 5], "epidermis"), (2, [1], "fat")]
-        ),
+        write_rings(tmp_path / "pad.msh", edit=lambda groups: [*groups[1:], (2, [1, 5], "epidermis"), (2, [1], "fat")]),
         "in two of",
     )
 

@@ -39,9 +39,7 @@ def test_follows_imports_direct_indirect_relative_and_inside_functions(toy):
 
 
 def test_leaves_out_imports_for_type_checking(toy):
-    found = toy(
-        "import toy.a", a="from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import toy.b", b=""
-    )
+    found = toy("import toy.a", a="from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import toy.b", b="")
     assert found == {"toy/__init__.py", "toy/a.py"}
 
 

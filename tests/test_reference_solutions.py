@@ -191,22 +191,16 @@ def test_thin_layer_laws_fit_together():
 def test_layered_contact_reaches_hertz_and_the_thin_layer():
     shear, radius, load = 1.0, 20.0, 0.05
     a = hertz.half_width(load, radius, 4 * shear)
-    thick = layered_contact.press(
-        lambda x: x**2 / (2 * radius), [layered.Layer(20.0, shear, 0.5)], 20.0, load, 1024
-    )
+    thick = layered_contact.press(lambda x: x**2 / (2 * radius), [layered.Layer(20.0, shear, 0.5)], 20.0, load, 1024)
     assert thick.pressure[0] == pytest.approx(hertz.peak_pressure(load, a), rel=2e-3)
     assert thick.half_width == pytest.approx(a, rel=0.02)
     assert thick.pressure.sum() * 2 * 20.0 / 1024 == pytest.approx(load, rel=1e-12)
 
     radius, a = 1000.0, 20.0
     load = layered.thin_layer_force(a, radius, 1.0, 3 * shear)
-    thin = layered_contact.press(
-        lambda x: x**2 / (2 * radius), [layered.Layer(1.0, shear, 0.5)], 80.0, load, 1024
-    )
+    thin = layered_contact.press(lambda x: x**2 / (2 * radius), [layered.Layer(1.0, shear, 0.5)], 80.0, load, 1024)
     assert thin.depth == pytest.approx(layered.thin_layer_depth(a, radius), rel=0.15)
-    assert thin.pressure[0] == pytest.approx(
-        layered.thin_layer_pressure(0.0, a, radius, 1.0, 3 * shear), rel=0.02
-    )
+    assert thin.pressure[0] == pytest.approx(layered.thin_layer_pressure(0.0, a, radius, 1.0, 3 * shear), rel=0.02)
 
 
 def test_layered_contact_reproduces_westergaard():
@@ -227,9 +221,7 @@ def test_layered_contact_reproduces_westergaard():
     [(0.3, 4.5825e-3), (0.49, 5.03993e-3), (0.499, 5.06025e-3), (0.4999, 5.06227e-3), (0.5, 5.0625e-3)],
 )
 def test_thick_cylinder_of_macneal_and_harder(poisson, displacement):
-    assert lame.radial_displacement(3.0, 3, 9, 1000, poisson, internal=1) == pytest.approx(
-        displacement, rel=2e-6
-    )
+    assert lame.radial_displacement(3.0, 3, 9, 1000, poisson, internal=1) == pytest.approx(displacement, rel=2e-6)
 
 
 def test_thick_cylinder_of_ssnv130():
@@ -280,14 +272,10 @@ def test_point_histories_do_not_depend_on_the_step_and_invert():
     fine_t = np.concatenate([[0.0], np.linspace(0, 0.5, 41), np.linspace(0.5, 2.5, 31)])
     fine = np.concatenate([[0.0], np.interp(fine_t[1:], [0, 0.5, 2.5], [0.1, 0.6, 0.6])])
     for function in (prony_point.stress_from_strain, prony_point.strain_from_stress):
-        assert function(fine_t, fine, *PRONY)[-1] == pytest.approx(
-            function(coarse_t, coarse, *PRONY)[-1], rel=1e-12
-        )
+        assert function(fine_t, fine, *PRONY)[-1] == pytest.approx(function(coarse_t, coarse, *PRONY)[-1], rel=1e-12)
     fine_t = np.linspace(0, 2, 4001)
     strain = np.sin(fine_t)
-    back = prony_point.strain_from_stress(
-        fine_t, prony_point.stress_from_strain(fine_t, strain, *PRONY, 3.0), *PRONY, 3.0
-    )
+    back = prony_point.strain_from_stress(fine_t, prony_point.stress_from_strain(fine_t, strain, *PRONY, 3.0), *PRONY, 3.0)
     np.testing.assert_allclose(back, strain, atol=1e-6)
 
 
@@ -326,9 +314,7 @@ def test_lee_radok_routes_agree():
     t = np.linspace(0, 3, 301)
     rate, radius, shear = 0.2, 5.0, 2.0
     ramp = lee_radok.ramp_force(t, rate, radius, shear, *PRONY)
-    np.testing.assert_allclose(
-        lee_radok.force_from_width(t, np.sqrt(rate * t), radius, shear, *PRONY), ramp, rtol=1e-11
-    )
+    np.testing.assert_allclose(lee_radok.force_from_width(t, np.sqrt(rate * t), radius, shear, *PRONY), ramp, rtol=1e-11)
     by_quadrature = lee_radok.force_by_quadrature(
         3.0, lambda s: rate, radius, lambda s: shear * prony_point.relaxation(s, *PRONY)
     )
@@ -349,9 +335,7 @@ def test_ting_contains_lee_radok():
         ting.force_under_depth_control(t, elastic, *PRONY),
         lee_radok.force_from_width(t, np.sqrt(elastic / np.pi), 1.0, 1.0, *PRONY),
     )
-    depth = ting.depth_under_force_control(
-        [0, 0.5, 2.5], [0, 1.0, 1.0], *PRONY, np.linspace(0, 2, 41), np.linspace(0, 2, 41)
-    )
+    depth = ting.depth_under_force_control([0, 0.5, 2.5], [0, 1.0, 1.0], *PRONY, np.linspace(0, 2, 41), np.linspace(0, 2, 41))
     expected = prony_point.strain_from_stress([0, 0.5, 2.5], [0, 1.0, 1.0], *PRONY)
     np.testing.assert_allclose(depth, expected)
 
@@ -403,10 +387,7 @@ def test_piola_stress_is_the_derivative_of_the_energy():
             step = np.zeros((2, 2))
             step[i, j] = h
             energies = [
-                manufactured.finite_strain_energy(
-                    manufactured.affine(base + s * step), POINTS[:1], 1.3, 20.0
-                )[0]
-                for s in (1, -1)
+                manufactured.finite_strain_energy(manufactured.affine(base + s * step), POINTS[:1], 1.3, 20.0)[0] for s in (1, -1)
             ]
             assert stress[i, j] == pytest.approx((energies[0] - energies[1]) / (2 * h), abs=1e-7)
 

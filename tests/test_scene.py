@@ -184,11 +184,7 @@ def test_what_is_left_out_is_the_thesis_s(folder):
 
 
 def test_keys_left_out_of_a_part_are_the_thesis_s(folder):
-    scene = load_scene(
-        write(
-            folder, specimen(layers={"fat": {"youngs_modulus": "20 kPa"}}, outline={"apex_height": "6.5 mm"})
-        )
-    )
+    scene = load_scene(write(folder, specimen(layers={"fat": {"youngs_modulus": "20 kPa"}}, outline={"apex_height": "6.5 mm"})))
     fat = scene.specimen.layers.fat
     assert (fat.youngs_modulus, fat.poisson_ratio) == (20e3, 0.48)
     assert (scene.specimen.outline.apex_height, scene.specimen.outline.half_width) == (6.5e-3, 8.5e-3)
@@ -201,9 +197,7 @@ def test_no_relaxation(folder, prony):
 
 
 def test_legs(folder):
-    document = motion(
-        {"press_to_force": "20 gf"}, {"press_to_depth": "1 mm", "speed": "2 mm/s"}, {"hold": "3 s"}
-    )
+    document = motion({"press_to_force": "20 gf"}, {"press_to_depth": "1 mm", "speed": "2 mm/s"}, {"hold": "3 s"})
     assert load_scene(write(folder, document)).motion == (
         PressToForce(press_to_force=20 * 9.80665e-3),
         PressToDepth(press_to_depth=1e-3, speed=2e-3),
@@ -329,9 +323,7 @@ leaves = (
     | st.integers()
     | st.floats()
     | st.text(max_size=12)
-    | st.sampled_from(
-        ["1 mm", "20 gf", "40 gf/s", "2 s", "flat", "thesis", "auto", "none", "cylinder", "210 1/m", "-1 m"]
-    )
+    | st.sampled_from(["1 mm", "20 gf", "40 gf/s", "2 s", "flat", "thesis", "auto", "none", "cylinder", "210 1/m", "-1 m"])
 )
 KEYS = """
 specimen outline mesh layers moduli prony ridges contact_length stimulus shape curvature width
@@ -382,10 +374,7 @@ def test_a_scene_with_anything_in_one_place_is_a_scene_or_a_scene_error(folder, 
 
 
 @many
-@given(
-    content=st.binary(max_size=60)
-    | st.text(alphabet="a:{}[]&*!|>-? \n\t'\"#%@,1", max_size=40).map(str.encode)
-)
+@given(content=st.binary(max_size=60) | st.text(alphabet="a:{}[]&*!|>-? \n\t'\"#%@,1", max_size=40).map(str.encode))
 def test_any_bytes_are_a_scene_or_a_scene_error(folder, content):
     path = folder / "bytes.yaml"
     path.write_bytes(content)

@@ -58,9 +58,7 @@ def test_a_quantity_is_the_same_in_every_unit_of_its_dimension(value, case):
     dimension, units, unit = case
     expected = value * units[unit]
     for other, factor in units.items():
-        assert parse_quantity(f"{expected / factor!r} {other}", dimension) == pytest.approx(
-            expected, rel=1e-13
-        )
+        assert parse_quantity(f"{expected / factor!r} {other}", dimension) == pytest.approx(expected, rel=1e-13)
 
 
 @given(value=numbers, dimension=st.sampled_from(sorted(DIMENSIONS)))
@@ -115,9 +113,7 @@ def test_wrong_numbers(value):
         parse_number(value)
 
 
-@given(
-    text=st.text(max_size=40) | st.from_regex(QUANTITY_PATTERN), dimension=st.sampled_from(sorted(DIMENSIONS))
-)
+@given(text=st.text(max_size=40) | st.from_regex(QUANTITY_PATTERN), dimension=st.sampled_from(sorted(DIMENSIONS)))
 def test_any_text_is_a_finite_number_or_a_quantity_error(text, dimension):
     try:
         assert math.isfinite(parse_quantity(text, dimension))

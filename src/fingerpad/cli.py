@@ -73,16 +73,12 @@ def _parser() -> argparse.ArgumentParser:
 
     run = commands.add_parser("run", help="simulate a scene: history.nc, summary.json, plan.json")
     run.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the results go")
-    run.add_argument(
-        "--vtu", action="store_true", help="also write the scene's snapshots for ParaView, in DIR/vtu"
-    )
+    run.add_argument("--vtu", action="store_true", help="also write the scene's snapshots for ParaView, in DIR/vtu")
     run.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
     run.set_defaults(command=_run)
 
     mesh = commands.add_parser("mesh", help="write the mesh a scene would be simulated on")
-    mesh.add_argument(
-        "--out", metavar="FILE.msh", type=Path, required=True, help="mesh file, coordinates in mm"
-    )
+    mesh.add_argument("--out", metavar="FILE.msh", type=Path, required=True, help="mesh file, coordinates in mm")
     mesh.set_defaults(command=_mesh)
 
     for command in (plan, run, mesh):
@@ -301,9 +297,7 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     console.print(effects)
     details = Table("discretisation", "")
     for name, value in plan.discretisation.items():
-        details.add_row(
-            Text(name.replace("_", " ")), Text(f"{value:.4g}" if isinstance(value, float) else str(value))
-        )
+        details.add_row(Text(name.replace("_", " ")), Text(f"{value:.4g}" if isinstance(value, float) else str(value)))
     console.print(details)
     console.print(Text(f"predicted cost: {plan.predicted_cost_s:.2g} s of one core"))
 

@@ -15,10 +15,10 @@ import numpy as np
 
 from fingerpad.estimates import ContactEstimate, PadEstimate
 from fingerpad.scene import Discretisation, Hold, PressToDepth, PressToForce, Scene
-from fingerpad.specimen.materials import Prony
 from fingerpad.specimen.external import read_pad_mesh
-from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes
+from fingerpad.specimen.materials import Prony
 from fingerpad.specimen.measures import apex_measures
+from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes
 from fingerpad.stimuli.motion import STEADY, programme
 from fingerpad.stimuli.profiles import profile_of
 
@@ -266,7 +266,9 @@ def _worst_contact(scene: Scene, profile, external: PadMesh | None) -> ContactEs
 def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> float:
     """rho v^2 / mu of the softest layer: what leaving inertia out of the equations neglects."""
     layers = scene.specimen.layers
-    softest = min(layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in (layers.epidermis, layers.dermis, layers.fat))
+    softest = min(
+        layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in (layers.epidermis, layers.dermis, layers.fat)
+    )
     speed = 0.0
     for leg, duration in zip(scene.motion, leg_durations(scene), strict=True):
         if duration and not isinstance(leg, Hold):

@@ -52,7 +52,9 @@ class PadEstimate:
             modulus = self.stiff / layer_kernel(ratio, wavenumber)
             half_width = 0.5 * (half_width + np.sqrt(4 * force * radius / (np.pi * modulus)))
         depth = force / (2 * np.pi * self.soft) * (max(np.log(self.soft_thickness / half_width), 0.0) + 2.5)
-        return ContactEstimate(float(half_width), float(depth), float(max(0.65 * half_width / radius, depth / self.soft_thickness)))
+        return ContactEstimate(
+            float(half_width), float(depth), float(max(0.65 * half_width / radius, depth / self.soft_thickness))
+        )
 
     def pressed_to(self, depth: float, curvature: float) -> ContactEstimate:
         """Contact at ``depth`` m: the force is sought first."""

@@ -15,18 +15,12 @@ class SI(float):
     """A number already in SI that takes the place of text in a document being filled in."""
 
 
-def quantity(
-    dimension: str, sign: Literal["positive", "non-negative", "any"] = "positive", note: str = ""
-) -> Any:
+def quantity(dimension: str, sign: Literal["positive", "non-negative", "any"] = "positive", note: str = "") -> Any:
     """Field type: text with a unit in a document, an SI float in Python; `note` explains a wrong `sign`."""
 
     def parse(value: Any, info: ValidationInfo) -> float:
         in_python = info.context is None or isinstance(value, SI)
-        result = (
-            parse_number(value)
-            if in_python and not isinstance(value, str)
-            else parse_quantity(value, dimension)
-        )
+        result = parse_number(value) if in_python and not isinstance(value, str) else parse_quantity(value, dimension)
         kind = DIMENSIONS[dimension]
         if (sign == "positive" and result <= 0) or (sign == "non-negative" and result < 0):
             wrong = "is negative" if result < 0 else "is zero"
@@ -57,10 +51,7 @@ def number(allowed: str, low: float, high: float, *, low_included: bool = False)
     bounds: dict[str, float] = {"ge" if low_included else "gt": low}
     if math.isfinite(high):
         bounds["lt"] = high
-    surface = (
-        Annotated[float, Field(**bounds)]
-        | Annotated[str, Field(pattern=r"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*%?\s*$")]
-    )
+    surface = Annotated[float, Field(**bounds)] | Annotated[str, Field(pattern=r"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*%?\s*$")]
     return Annotated[float, BeforeValidator(parse, json_schema_input_type=surface)]
 
 
@@ -72,9 +63,7 @@ def whole(low: int, high: int) -> Any:
             raise Problem("is not in the range", f"a whole number from {low} to {high}")
         return value
 
-    return Annotated[
-        int, BeforeValidator(parse, json_schema_input_type=Annotated[int, Field(ge=low, le=high)])
-    ]
+    return Annotated[int, BeforeValidator(parse, json_schema_input_type=Annotated[int, Field(ge=low, le=high)])]
 
 
 def listed(value: Any) -> Any:

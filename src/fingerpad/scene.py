@@ -115,9 +115,7 @@ def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Points of a profile, m; `Problem` unless they are numbers with x strictly increasing."""
 
     def wrong(problem: str) -> Problem:
-        return Problem(
-            problem, "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing", ("csv",)
-        )
+        return Problem(problem, "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing", ("csv",))
 
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
@@ -154,9 +152,7 @@ def _check_shape(value: Any) -> Any:
         if value["shape"] == "wavy":
             raise Problem("is not in this version", ", ".join(_SHAPES), ("shape",))
         if not isinstance(value["shape"], str) or value["shape"] not in _SHAPES:
-            raise Problem(
-                f"is not a known shape, {nearest(value['shape'], _SHAPES)}", ", ".join(_SHAPES), ("shape",)
-            )
+            raise Problem(f"is not a known shape, {nearest(value['shape'], _SHAPES)}", ", ".join(_SHAPES), ("shape",))
     elif not isinstance(value, tuple(_SHAPES.values())):
         raise Problem("is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}')
     return value
@@ -165,9 +161,7 @@ def _check_shape(value: Any) -> Any:
 def _tag(value: Any) -> str | None:
     """Label of the union member that `value` is or describes."""
     if isinstance(value, Mapping):
-        return next(
-            (f"<{key}>" for key in (value.get("shape"), *_LEGS) if key in _SHAPES or key in value), None
-        )
+        return next((f"<{key}>" for key in (value.get("shape"), *_LEGS) if key in _SHAPES or key in value), None)
     return next((f"<{key}>" for key, model in {**_SHAPES, **_LEGS}.items() if isinstance(value, model)), None)
 
 
@@ -414,9 +408,7 @@ class Scene(Strict):
             key = "press_to_force" if isinstance(leg, PressToForce) else "press_to_depth"
             target = (key, getattr(leg, key))
             if target == last:
-                raise Problem(
-                    "is where the leg before ended", "another target, or a hold", ("motion", i, key)
-                )
+                raise Problem("is where the leg before ended", "another target, or a hold", ("motion", i, key))
             last = target
 
     def _check_inside(self, outline: Outline) -> None:

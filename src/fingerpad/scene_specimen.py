@@ -65,11 +65,7 @@ class Outline(Strict):
                 ("bone_centre_height",),
             )
         if layers >= self.soft_thickness:
-            key = (
-                "epidermis_thickness"
-                if self.epidermis_thickness >= self.dermis_thickness
-                else "dermis_thickness"
-            )
+            key = "epidermis_thickness" if self.epidermis_thickness >= self.dermis_thickness else "dermis_thickness"
             raise Problem(
                 f"makes the layers thicker than the pad: epidermis and dermis together are {mm(layers)}",
                 f"less than the {mm(self.soft_thickness)} from the skin to the bone",
@@ -101,9 +97,7 @@ class Outline(Strict):
 class Layer(Strict):
     """Isotropic elasticity of one layer."""
 
-    hints: ClassVar = {
-        "thickness": "is not a key of a layer, the outline has epidermis_thickness and dermis_thickness"
-    }
+    hints: ClassVar = {"thickness": "is not a key of a layer, the outline has epidermis_thickness and dermis_thickness"}
 
     youngs_modulus: quantity("pressure")
     """Young's modulus, in the state named by `moduli`."""
@@ -190,9 +184,7 @@ class Source:
             }
             if name not in found:
                 names = ", ".join(sorted(found)) or "none found"
-                raise Problem(
-                    "is not the name of a specimen", f"names of files in config/specimens ({names})", key
-                )
+                raise Problem("is not the name of a specimen", f"names of files in config/specimens ({names})", key)
             self._files[name] = _read_specimen(found[name], self)
         return self._files[name]
 
@@ -237,9 +229,7 @@ def _named(part: str, surface: Any) -> BeforeValidator:
             return {**default, **{key: _merge(default.get(key), item) for key, item in value.items()}}
         return value
 
-    name = Annotated[
-        str, Field(pattern="^[A-Za-z0-9][A-Za-z0-9_-]*$", description="name in config/specimens")
-    ]
+    name = Annotated[str, Field(pattern="^[A-Za-z0-9][A-Za-z0-9_-]*$", description="name in config/specimens")]
     return BeforeValidator(read, json_schema_input_type=name | surface)
 
 
@@ -276,18 +266,14 @@ class Specimen(Strict):
                 raise Problem("is not a path", "the path of a .msh file", ("mesh",))
             data["mesh"] = source.resolve(data["mesh"])
             if not data["mesh"].is_file():
-                raise Problem(
-                    "is not an existing file", "the path of a .msh file, relative to the scene", ("mesh",)
-                )
+                raise Problem("is not an existing file", "the path of a .msh file, relative to the scene", ("mesh",))
         else:
             data.setdefault("outline", DEFAULT_SPECIMEN)
         data.setdefault("layers", DEFAULT_SPECIMEN)
         data.setdefault("prony", DEFAULT_SPECIMEN)
         if "moduli" not in data:
             named = data["layers"] if isinstance(data["layers"], str) else DEFAULT_SPECIMEN
-            data["moduli"] = source.specimen(named, ("layers",)).moduli or source.part(
-                DEFAULT_SPECIMEN, "moduli"
-            )
+            data["moduli"] = source.specimen(named, ("layers",)).moduli or source.part(DEFAULT_SPECIMEN, "moduli")
         if "contact_length" not in data:
             data["contact_length"] = SI(source.part(DEFAULT_SPECIMEN, "contact_length"))
         if isinstance(data.get("ridges"), str) and data["ridges"] in ("inner", "inner_and_outer"):

@@ -83,9 +83,7 @@ class Simulation:
             fixed[np.unique(mesh.curves[name])] = True
         if mesh.half:
             fixed[np.unique(mesh.curves["symmetry"]), 0] = True
-        space = Space(
-            mesh.points, mesh.cells, mesh.element, fixed, plan.element, PlaneStrain(specimen.contact_length)
-        )
+        space = Space(mesh.points, mesh.cells, mesh.element, fixed, plan.element, PlaneStrain(specimen.contact_length))
         layers = [getattr(specimen.layers, name) for name in mesh.regions]
         known = moduli(
             [layer.youngs_modulus for layer in layers], [layer.poisson_ratio for layer in layers], self.prony, specimen.moduli
@@ -111,7 +109,7 @@ class Simulation:
     def _skin(self):
         chain = skin_chain(self.mesh)
         x, y = self.mesh.points[chain].T
-        apex = int(np.argmin(np.abs(x) + 10 * (y.max() - y)))
+        apex = _apex(self.mesh.points[chain])
         spacing = float(np.hypot(np.diff(x), np.diff(y)).min())
         reach = 1.4 * self.plan.contact.half_width
         near = np.flatnonzero((np.abs(x - x[apex]) <= reach) & (y > y.max() - np.ptp(y) / 2))
@@ -188,9 +186,7 @@ class Simulation:
         out["min_detF"] = np.ones(count)
         for name in ("contact_pressure", "contact_pressure_smoothed", "skin_displacement_x", "skin_displacement_y"):
             out[name] = np.zeros((count, len(chain)))
-        apex = int(np.argmin(np.abs(self.whole.points[chain, 0]) + 10 * np.ptp(self.whole.points[chain, 1]) * (
-            self.whole.points[chain, 1] < self.whole.points[chain, 1].max() - np.ptp(self.whole.points[chain, 1]) / 2
-        )))  # fmt: skip
+        apex = _apex(self.whole.points[chain])
         for k, record in enumerate(records, start=1):
             length, position = self._length_and_gradient(record)
             smooth = smoothed_pressure(record.nodal_force, length, self.mesh.half)
@@ -265,6 +261,12 @@ class Simulation:
                 np.array([unfold.elements(p) for _, _, p in snapshots]),
             )
         return history
+
+
+def _apex(skin: np.ndarray) -> int:
+    """Index of the skin node (ns, 2) nearest to x = 0 on the side that is touched."""
+    x, y = skin.T
+    return int(np.argmin(np.where(y > y.max() - np.ptp(y) / 2, np.abs(x), np.inf)))
 
 
 class _Unfolding:

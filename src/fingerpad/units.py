@@ -52,9 +52,7 @@ DIMENSIONS: dict[str, Dimension] = {
 }
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_QUANTITY = re.compile(
-    rf"(?P<number>{_NUMBER})(?:\s*/\s*(?P<divisor>[0-9]+)(?=\s))?\s*(?P<unit>.*)", re.DOTALL
-)
+_QUANTITY = re.compile(rf"(?P<number>{_NUMBER})(?:\s*/\s*(?P<divisor>[0-9]+)(?=\s))?\s*(?P<unit>.*)", re.DOTALL)
 _FACTOR = re.compile(r"(?P<name>1|%|[A-Za-zµμ]+(?:_[A-Za-zµμ]+)*)(?:(?:\^|\*\*)(?P<power>-?[1-9])(?![0-9]))?")
 _SEPARATOR = re.compile(r"\s*(?P<sign>[/*·])\s*|\s+")
 _GRAM_WEIGHT = re.compile(r"\b(?:g|gram)[\s-]*(?:wt|weight)\b")
@@ -113,9 +111,7 @@ def _unit(text: str) -> pint.Unit:
         name = factor["name"]
         if name != "1":
             try:
-                unit *= ureg.parse_units("percent" if name == "%" else name) ** (
-                    sign * int(factor["power"] or 1)
-                )
+                unit *= ureg.parse_units("percent" if name == "%" else name) ** (sign * int(factor["power"] or 1))
             except (pint.PintError, AssertionError, TypeError, ValueError, AttributeError) as error:
                 raise ValueError(name) from error
         position = factor.end()
@@ -207,11 +203,7 @@ def parse_quantity(text: Any, dimension: str) -> float:
         number = float(match["number"]) / float(match["divisor"] or 1.0)
         # dividing by a whole number keeps "0.85 mm" the float nearest to 0.00085
         inverse = round(1.0 / factor)
-        value = (
-            number / inverse
-            if inverse > 1 and math.isclose(inverse * factor, 1.0, rel_tol=1e-15)
-            else number * factor
-        )
+        value = number / inverse if inverse > 1 and math.isclose(inverse * factor, 1.0, rel_tol=1e-15) else number * factor
     except (ZeroDivisionError, OverflowError):
         value = math.nan
     if not math.isfinite(value):

@@ -37,9 +37,7 @@ def mapped(columns, rows, mapping, kind="quad9", distortion=0.0, region=None):
     i, j = (2 * part.ravel() for part in np.meshgrid(np.arange(nx), np.arange(ny), indexing="ij"))
     steps = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)]
     cells = np.stack([number[i + a, j + b] for a, b in steps], 1)
-    layer = (
-        np.zeros(len(cells), int) if region is None else np.asarray(region(grid.reshape(-1, 2)[cells[:, 8]]))
-    )
+    layer = np.zeros(len(cells), int) if region is None else np.asarray(region(grid.reshape(-1, 2)[cells[:, 8]]))
     rims = {
         "bottom": number[::-1, 0],
         "right": number[-1, ::-1],
@@ -70,9 +68,7 @@ def mapped(columns, rows, mapping, kind="quad9", distortion=0.0, region=None):
     )
 
 
-def rectangle(
-    columns, rows, width=1.0, height=1.0, kind="quad9", distortion=0.0, origin=(0.0, 0.0), region=None
-):
+def rectangle(columns, rows, width=1.0, height=1.0, kind="quad9", distortion=0.0, origin=(0.0, 0.0), region=None):
     """Rectangle with its lower left corner at ``origin``."""
     return mapped(columns, rows, lambda s: s * (width, height) + origin, kind, distortion, region)
 

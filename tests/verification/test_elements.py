@@ -47,9 +47,7 @@ def check_patch(element, strain, poisson, soft_element=1.0):
         load = edge_load_vectors(mesh.points, mesh.curves[name])
         length = np.hypot(load[:, 0], load[:, 1])
         traction[: len(length)] += length[:, None] * (piola @ normal)
-    np.testing.assert_allclose(
-        body.internal_force(), traction, atol=1e-9 * np.abs(traction).max(), err_msg="truth"
-    )
+    np.testing.assert_allclose(body.internal_force(), traction, atol=1e-9 * np.abs(traction).max(), err_msg="truth")
 
 
 @pytest.mark.parametrize("poisson", [0.3, 0.4999])
@@ -127,9 +125,7 @@ def check_force_is_gradient(element, strain, wrong_bulk=1.0):
         body.internal_force()
         energy.append(body.energies()[0])
     numerical = (energy[0] - energy[1]) / (2 * h)
-    assert abs(work - numerical) < 1e-7 * abs(work), (
-        f"truth: the energy's slope {numerical!r} is not the work {work!r}"
-    )
+    assert abs(work - numerical) < 1e-7 * abs(work), f"truth: the energy's slope {numerical!r} is not the work {work!r}"
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
@@ -165,9 +161,7 @@ def test_finite_strain_forces_start_as_small_strain_ones(must_fail):
 def check_uniform_pressure(element, curved, nodal_share=None):
     """Consistent nodal forces of a uniform pressure are turned back into that pressure at every node."""
     bend = 0.3 if curved else 0.0
-    mesh = mapped(
-        5, 2, lambda s: np.stack([s[:, 0], 0.5 * s[:, 1] - bend * s[:, 1] * s[:, 0] ** 2], 1), KIND[element]
-    )
+    mesh = mapped(5, 2, lambda s: np.stack([s[:, 0], 0.5 * s[:, 1] - bend * s[:, 1] * s[:, 0] ** 2], 1), KIND[element])
     chain = np.unique(mesh.curves["top"])
     chain = chain[np.argsort(mesh.points[chain, 0])]
     edges = mesh.curves["top"]
@@ -180,9 +174,7 @@ def check_uniform_pressure(element, curved, nodal_share=None):
     np.testing.assert_allclose(pressure, 1250.0, rtol=1e-12, err_msg="truth: uniform pressure")
     total = load.sum(0)
     ends = mesh.points[chain[-1]] - mesh.points[chain[0]]
-    np.testing.assert_allclose(
-        total, 1250.0 * np.array([ends[1], -ends[0]]), rtol=1e-12, err_msg="truth: resultant"
-    )
+    np.testing.assert_allclose(total, 1250.0 * np.array([ends[1], -ends[0]]), rtol=1e-12, err_msg="truth: resultant")
 
 
 @pytest.mark.parametrize("curved", [False, True], ids=["straight", "curved"])
@@ -226,9 +218,7 @@ def check_contact_patch(element, strain, depth, poisson=0.0):
     expected = 2e6 * depth / 2.0
     within = 1e-9 if strain == "small" else 2 * depth
     np.testing.assert_allclose(result.pressure, expected, rtol=within, err_msg="truth: pressure")
-    np.testing.assert_allclose(
-        result.pressure, result.pressure[0], rtol=1e-7, err_msg="truth: uniform pressure"
-    )
+    np.testing.assert_allclose(result.pressure, result.pressure[0], rtol=1e-7, err_msg="truth: uniform pressure")
     assert abs(result.force - 2.0 * result.pressure[0]) < 1e-7 * result.force, "truth: resultant"
 
 

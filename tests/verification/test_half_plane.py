@@ -40,9 +40,7 @@ def check_hertz(element, **mutant):
     two_numbers(result.half_width, truth=1.0, within=within, frozen=frozen[0])
     two_numbers(result.pressure[0] / p0, truth=1.0, within=within, frozen=frozen[1])
     two_numbers(2 * result.force, truth=load, within=1e-7, frozen=load, tight=1e-7)
-    strip = layered_contact.press(
-        lambda x: x**2 / (2 * RADIUS), [Layer(DEPTH, SHEAR, POISSON)], DEPTH, load, 1024
-    )
+    strip = layered_contact.press(lambda x: x**2 / (2 * RADIUS), [Layer(DEPTH, SHEAR, POISSON)], DEPTH, load, 1024)
     two_numbers(result.depth, truth=strip.depth, within=within / 3, frozen=frozen[2])
 
 

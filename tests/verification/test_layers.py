@@ -25,13 +25,9 @@ THIN = {
 def check_thin_layer(element, poisson=POISSON, ran_as=None):
     """A layer of thickness one under a contact fifteen thicknesses to each side."""
     load = layered.thin_layer_force(HALF_WIDTH, THIN_RADIUS, 1.0, 3 * SHEAR)
-    mesh, body = half_strip(
-        [Layer(1.0, SHEAR, poisson)], 4 * HALF_WIDTH, ran_as or element, fine=0.3, columns=(36, 16), rows=[4]
-    )
+    mesh, body = half_strip([Layer(1.0, SHEAR, poisson)], 4 * HALF_WIDTH, ran_as or element, fine=0.3, columns=(36, 16), rows=[4])
     result = press(body, mesh, Cylinder(1 / THIN_RADIUS), force=load / 2)
-    truth = layered_contact.press(
-        lambda x: x**2 / (2 * THIN_RADIUS), [Layer(1.0, SHEAR, POISSON)], 4 * HALF_WIDTH, load, 1024
-    )
+    truth = layered_contact.press(lambda x: x**2 / (2 * THIN_RADIUS), [Layer(1.0, SHEAR, POISSON)], 4 * HALF_WIDTH, load, 1024)
     law = layered.thin_layer_pressure(result.x, HALF_WIDTH, THIN_RADIUS, 1.0, 3 * SHEAR)
     inside = result.x < 0.9 * HALF_WIDTH
     error = np.abs(result.pressure - law)[inside].max() / law[0]

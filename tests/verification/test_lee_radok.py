@@ -85,13 +85,9 @@ def test_force_relaxes_under_a_held_contact(must_fail):
 def check_ramp_and_hold(count=10, series=THESIS):
     """The thesis's programme: force up in 0.5 s, held for 2 s; width against the hereditary integral."""
     load = hertz.force(1.2, RADIUS, 4 * SHEAR)
-    times = np.concatenate(
-        [np.linspace(0, 0.5, count + 1)[1:], 0.5 + 2.0 * (np.arange(1, count + 1) / count) ** 2]
-    )
+    times = np.concatenate([np.linspace(0, 0.5, count + 1)[1:], 0.5 + 2.0 * (np.arange(1, count + 1) / count) ** 2])
     forces = np.minimum(times / 0.5, 1.0) * load / 2
-    steps = [
-        Step(0, t, dt, force=f) for t, dt, f in zip(times, np.diff(times, prepend=0.0), forces, strict=True)
-    ]
+    steps = [Step(0, t, dt, force=f) for t, dt, f in zip(times, np.diff(times, prepend=0.0), forces, strict=True)]
     ends = run(steps, series)
     fine = np.unique(np.concatenate([[0.0], times]))
     truth = lee_radok.width_from_force(

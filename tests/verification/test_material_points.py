@@ -31,23 +31,17 @@ def check_hertz_energy(element, strain="small", poisson=0.4999, off_axis=0.0):
     shear, radius, depth = 1.0, 200.0, 150.0
     load = hertz.force(1.0, radius, 2 * shear / (1 - poisson))
     p0 = hertz.peak_pressure(load, 1.0)
-    mesh, body = half_strip(
-        [Layer(depth, shear, poisson)], depth, element, strain, fine=3 / depth, columns=(24, 18)
-    )
+    mesh, body = half_strip([Layer(depth, shear, poisson)], depth, element, strain, fine=3 / depth, columns=(24, 18))
     points = np.column_stack([np.full(len(DEPTHS), off_axis), -np.array(DEPTHS)])
     receptors = MaterialPoints(body, points, body.shear)
     press(body, mesh, Cylinder(1 / radius), force=load / 2)
     energies = receptors.strain_energies(body)
     truth = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)["max_shear"] ** 2 / (2 * shear)
     within = 0.08 if element == "Q1P0" else 0.02
-    for found, expected, frozen in zip(
-        energies["strain_energy_network"], truth, HERTZ[element, strain], strict=True
-    ):
+    for found, expected, frozen in zip(energies["strain_energy_network"], truth, HERTZ[element, strain], strict=True):
         two_numbers(found / p0**2, truth=expected / p0**2, within=within, frozen=frozen, tight=1e-5)
     for name in ("strain_energy_density", "strain_energy_recoverable"):
-        np.testing.assert_allclose(
-            energies[name], energies["strain_energy_network"], rtol=2e-3, err_msg="truth"
-        )
+        np.testing.assert_allclose(energies[name], energies["strain_energy_network"], rtol=2e-3, err_msg="truth")
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])

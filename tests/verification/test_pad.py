@@ -37,10 +37,7 @@ def pressed_history(mesh, shape, key, goal, poisson, prony, count=COUNT):
 def force_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
     """Depth control: largest deviation of the force from the hereditary integral of the elastic forces."""
     times, ends = pressed_history(mesh, shape, "depth", 0.4e-3, poisson, prony)
-    ramp = [
-        press_pad(pad_body(mesh, "small", poisson), mesh, shape, depth=end.depth).force
-        for end in ends[:COUNT]
-    ]
+    ramp = [press_pad(pad_body(mesh, "small", poisson), mesh, shape, depth=end.depth).force for end in ends[:COUNT]]
     elastic = np.concatenate([[0.0], ramp, np.full(COUNT, ramp[-1])]) / THESIS.g_infinity
     truth = ting.force_under_depth_control(np.append(0.0, times), elastic, THESIS.g, THESIS.tau)[1:]
     return np.abs(np.array([end.force for end in ends]) / truth - 1)[COUNT // 4 :].max()
@@ -50,16 +47,12 @@ def depth_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
     """Force control: largest deviations of depth and width from the elastic ones at the creep integral."""
     times, ends = pressed_history(mesh, shape, "force", LOAD / 2, poisson, prony)
     applied = LOAD * np.minimum(np.append(0.0, times) / 0.5, 1.0)
-    elastic = THESIS.g_infinity * ting.elastic_force_under_force_control(
-        np.append(0.0, times), applied, THESIS.g, THESIS.tau
-    )
+    elastic = THESIS.g_infinity * ting.elastic_force_under_force_control(np.append(0.0, times), applied, THESIS.g, THESIS.tau)
     worst = np.zeros(2)
     for k in (COUNT // 2, COUNT - 1, 3 * COUNT // 2, 2 * COUNT - 1):
         truth = press_pad(pad_body(mesh, "small", poisson), mesh, shape, force=elastic[k + 1])
         found = ends[k]
-        worst = np.maximum(
-            worst, np.abs([found.depth / truth.depth - 1, found.half_width / truth.half_width - 1])
-        )
+        worst = np.maximum(worst, np.abs([found.depth / truth.depth - 1, found.half_width / truth.half_width - 1]))
     return worst
 
 
@@ -107,9 +100,7 @@ def check_half_is_full(shape, strain, layers=None):
     np.testing.assert_allclose(2 * half.half_width, np.ptp(whole.edges), rtol=1e-7, err_msg="truth: width")
     right = len(whole.pressure) // 2
     top = whole.pressure.max()
-    np.testing.assert_allclose(
-        half.pressure, whole.pressure[right:], atol=1e-7 * top, err_msg="truth: pressure"
-    )
+    np.testing.assert_allclose(half.pressure, whole.pressure[right:], atol=1e-7 * top, err_msg="truth: pressure")
     np.testing.assert_allclose(whole.pressure, whole.pressure[::-1], atol=1e-7 * top, err_msg="truth: mirror")
     assert abs(whole.records[-1].tangential_force) < 1e-8 * LOAD, "truth: no tangential force"
 
@@ -129,9 +120,7 @@ def energy_errors(mesh, strain, prony, count, dissipated_share=1.0):
     """Imbalance of work, stored and dissipated energy over the work, after each step of a ramp and hold."""
     body = pad_body(mesh, strain, 0.48, prony)
     records = walk(body, mesh, ramp_and_hold("force", LOAD / 2, count), SHAPES["flat"], curve="skin").records
-    return np.array(
-        [abs(r.work - sum(r.energies[:2]) - dissipated_share * r.dissipated) / r.work for r in records]
-    )
+    return np.array([abs(r.work - sum(r.energies[:2]) - dissipated_share * r.dissipated) / r.work for r in records])
 
 
 def check_energy(mesh, strain, prony=THESIS, **mutant):
@@ -167,21 +156,15 @@ def check_scaling(mesh, strain, length, stress, load_share=1.0):
     """Lengths times ``length`` and stresses times ``stress`` leave every ratio unchanged."""
     scaled = replace(mesh, points=mesh.points * length)
     reference = press_pad(pad_body(mesh, strain), mesh, "flat", force=LOAD)
-    result = press_pad(
-        pad_body(scaled, strain, scale=stress), scaled, "flat", force=load_share * LOAD * stress * length
-    )
+    result = press_pad(pad_body(scaled, strain, scale=stress), scaled, "flat", force=load_share * LOAD * stress * length)
     for name, unit in {"depth": length, "half_width": length, "force": stress * length}.items():
         expected = getattr(reference, name) * unit
         np.testing.assert_allclose(getattr(result, name), expected, rtol=1e-8, err_msg=f"truth: {name}")
-    np.testing.assert_allclose(
-        result.pressure, stress * reference.pressure, atol=1e-7 * result.pressure.max()
-    )
+    np.testing.assert_allclose(result.pressure, stress * reference.pressure, atol=1e-7 * result.pressure.max())
     assert result.records[-1].iterations == reference.records[-1].iterations
 
 
-@pytest.mark.parametrize(
-    "length, stress", [(1.0, 37.0), (1e3, 1e-6), (1e6, 1e-3)], ids=["stiffer", "mm N", "um"]
-)
+@pytest.mark.parametrize("length, stress", [(1.0, 37.0), (1e3, 1e-6), (1e6, 1e-3)], ids=["stiffer", "mm N", "um"])
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_units_do_not_matter(half, strain, length, stress, must_fail):
     """Moduli and forces times c leave every length; millimetres give what metres give."""
@@ -203,9 +186,7 @@ def check_small_is_the_limit(mesh, shape, poisson=0.48):
         found.append(abs(depths[1] / depths[0] - 1))
     rates = np.log2(np.array(found[:-1]) / found[1:])
     assert found[-1] < 2.5e-3, f"truth: still {found[-1]:.2e} apart"
-    assert rates.mean() > 0.9, (
-        f"truth: the difference falls with the rates {rates}, not in proportion to the load"
-    )
+    assert rates.mean() > 0.9, f"truth: the difference falls with the rates {rates}, not in proportion to the load"
     two_numbers(found[0], truth=LIMIT[shape], within=0.1, frozen=LIMIT[shape], tight=1e-4)
 
 

@@ -45,9 +45,7 @@ def check_relaxation(strain, held, series=THESIS):
     """``held``: times of the steps after a jump to a shear of 0.4."""
     times = np.concatenate([[0.0], held])
     stress = drive(strain, series, times, np.full(len(times), 0.4))
-    np.testing.assert_allclose(
-        stress, 0.4 * SHEAR * THESIS.relaxation(times) / THESIS.g_infinity, rtol=1e-11, err_msg="truth"
-    )
+    np.testing.assert_allclose(stress, 0.4 * SHEAR * THESIS.relaxation(times) / THESIS.g_infinity, rtol=1e-11, err_msg="truth")
     two_numbers(stress[-1], truth=0.4 * SHEAR, within=0.02, frozen=0.8007562572)
 
 
@@ -148,9 +146,7 @@ def check_cycle(strain, frozen, series=THESIS, amplitude=0.02, frequency=2.5):
         stresses.append(shear_stress(mesh, body))
         body.commit()
         rates.append(body.energies()[2])
-    truth = prony_point.dissipation_per_cycle(
-        amplitude, frequency, THESIS.g, THESIS.tau, SHEAR / THESIS.g_infinity
-    )
+    truth = prony_point.dissipation_per_cycle(amplitude, frequency, THESIS.g, THESIS.tau, SHEAR / THESIS.g_infinity)
     last = slice(-97, None)
     two_numbers(np.trapezoid(stresses[last], shears[last]), truth=truth, within=5e-3, frozen=frozen[0])
     two_numbers(np.trapezoid(rates[last], times[last]), truth=truth, within=5e-3, frozen=frozen[1])

@@ -98,9 +98,7 @@ def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
     """What is not declared cannot trigger a rerun: the rules' inputs against what processes really opened."""
     summary = finished.snakemake(*SMOKE, "--detailed-summary", "--forceall").stdout.splitlines()
     header = next(line for line in summary if line.startswith("output_file")).split("\t")
-    rows = [
-        dict(zip(header, line.split("\t"), strict=False)) for line in summary if line.startswith("results/")
-    ]
+    rows = [dict(zip(header, line.split("\t"), strict=False)) for line in summary if line.startswith("results/")]
     declared = {(row["rule"], row["output_file"]): set(row["input-file(s)"].split(",")) for row in rows}
     jobs = [json.loads(path.read_text()) for path in finished.traces.iterdir()]
     jobs = [job for job in jobs if job["argv"][0].startswith("workflow/scripts/")]

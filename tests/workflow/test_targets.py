@@ -18,14 +18,10 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice(cl
     thesis, jobs = config(clone, "thesis"), clone.planned()
     figures = {f"figures/thesis/fig_{n}.{kind}" for n in thesis["figure_numbers"] for kind in ("png", "csv")}
     assert jobs.pop("figure") == figures
-    assert jobs.pop("table") == {
-        f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")
-    }
+    assert jobs.pop("table") == {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
     for rule, name in (("plan", "plan.json"), ("mesh", "mesh.msh"), ("simulate", "history.nc")):
         assert jobs.pop(rule) == {
-            f"results/thesis/{fidelity}/{scene}/{name}"
-            for fidelity in ("simulations", "coarse")
-            for scene in thesis["scenes"]
+            f"results/thesis/{fidelity}/{scene}/{name}" for fidelity in ("simulations", "coarse") for scene in thesis["scenes"]
         }
     assert not jobs
 
@@ -35,9 +31,7 @@ def test_a_configuration_given_replaces_the_default_and_writes_under_its_results
     outputs = {Path(path) for paths in jobs.values() for path in paths}
     assert all(path.is_relative_to("results/smoke") for path in outputs)
     assert {path.parent.name for path in outputs if path.name == "history.nc"} == set(smoke["scenes"])
-    assert {path.stem for path in outputs if path.suffix == ".png"} == {
-        f"fig_{n}" for n in smoke["figure_numbers"]
-    }
+    assert {path.stem for path in outputs if path.suffix == ".png"} == {f"fig_{n}" for n in smoke["figure_numbers"]}
 
 
 @pytest.mark.parametrize("chapter", ["3", "4"])

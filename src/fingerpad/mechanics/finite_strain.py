@@ -28,7 +28,15 @@ class FiniteStrainBody:
 
     geometrically_linear = False
 
-    def __init__(self, space: Space, shear: np.ndarray, bulk: np.ndarray, prony: Prony | None = None, lagged=True, pointwise: float | None = None):
+    def __init__(
+        self,
+        space: Space,
+        shear: np.ndarray,
+        bulk: np.ndarray,
+        prony: Prony | None = None,
+        lagged=True,
+        pointwise: float | None = None,
+    ):
         self.space, self.shear, self.bulk = space, np.asarray(shear, float), np.asarray(bulk, float)
         self.u = np.zeros(space.points.shape)
         self.lagged = lagged
@@ -57,8 +65,7 @@ class FiniteStrainBody:
         """(n, 2) N/m at the current displacement."""
         force = np.zeros_like(self.u)
         self.smallest_jacobian = kernels.internal_force(
-            self.u, *self._mesh, self.shear, self.bulk, self._history, self._factor, self._pointwise, force,
-            self._dilatation
+            self.u, *self._mesh, self.shear, self.bulk, self._history, self._factor, self._pointwise, force, self._dilatation
         )
         return force
 

@@ -22,15 +22,13 @@ _JIT = {"cache": True, "fastmath": {"contract", "nsz", "reassoc", "arcp"}, "erro
 
 
 @njit(**_JIT)
-def assemble_tangent(
-    u, conn, grad, weight, psi, mu, kappa, dilatation_lag, history, factor, pointwise, scatter, data, force
-):
+def assemble_tangent(u, conn, grad, weight, psi, mu, kappa, dilatation_lag, history, factor, pointwise, scatter, data, force):
     """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``.
 
     Shapes: u (n, 2); conn (ne, nen); grad (ne, nq, nen, 2); weight (ne, nq); psi (ne, nq, nm), orthonormal pressure modes;
     mu, kappa (ne,); dilatation_lag (ne, nm); history (ne, nq, 3) second Piola-Kirchhoff 11, 22, 12, or None; factor: share
-    of the isochoric stress that answers at once; pointwise (ne,): extra volumetric modulus that is not projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded);
-    force (n, 2), accumulated. Returns the smallest det F.
+    of the isochoric stress that answers at once; pointwise (ne,): extra volumetric modulus that is not projected, or None;
+    scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded); force (n, 2), accumulated. Returns the smallest det F.
     """
     ne, nen = conn.shape
     nq = weight.shape[1]

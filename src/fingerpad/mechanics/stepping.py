@@ -5,7 +5,7 @@ profile. It knows nothing of scenes, plans or files. Time enters only through th
 """
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
@@ -184,9 +184,7 @@ class QuasiStatic:
         load = -internal if self.external is None else self.external - internal
         reduced = self.solver.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
-        step = solve_contact(
-            zone, schur, reduced, gap, gradient, curvature, self.nodal_force[part], self.active[part], **goal
-        )
+        step = solve_contact(zone, schur, reduced, gap, gradient, curvature, self.nodal_force[part], self.active[part], **goal)
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
         u, depth = body.u, self.depth
         share = 1.0
@@ -286,7 +284,7 @@ class QuasiStatic:
             control = "force" if step.force is not None else "depth"
             target = step.force if control == "force" else step.depth
             begin = self.force if control == "force" else self.depth
-            smooth = last is not None and last.leg == step.leg
+            smooth = last is not None and last.leg == step.leg and last.dt > 0
             done, size, iterations, halvings = 0.0, 1.0, 0, 0
             ratio = step.dt / last.dt if smooth else None
             while done < 1.0:
@@ -341,30 +339,3 @@ class QuasiStatic:
             float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
             float(balance) if self.work else 0.0, self.work, self._energies, self.dissipated,
         )  # fmt: skip
-
-
-def equilibrate(body, external: np.ndarray, settings: NewtonSettings | None = None, dt: float = 1.0) -> int:
-    """Bring a body without contact into equilibrium with dead nodal forces (n, 2) N/m; returns the iterations.
-
-    Prescribed displacements are those already standing in ``body.u``.
-
-    Raises:
-        NonConvergence: Newton's method fails.
-    """
-    settings = replace(settings or NewtonSettings(), force_tolerance=1e-9)
-    solver = condensation(body.space.pattern, np.zeros(0, dtype=np.int64))
-    body.begin_step(dt)
-    body.displace(body.u)
-    for iteration in range(1, 4 * settings.max_iterations):
-        _, internal = body.linearise(solver)
-        unbalanced = body.space.to_equations(external - internal)
-        solver.forward(unbalanced)
-        body.advance(body.space.to_nodes(solver.backward(np.zeros(0))))
-        force = body.internal_force()
-        if not body.smallest_jacobian > 0:
-            break
-        scale = max(np.abs(external).max(), np.abs(force).max(), 1e-300)
-        if np.abs(body.space.to_equations(external - force)).max() <= settings.force_tolerance * scale:
-            body.commit()
-            return iteration
-    raise NonConvergence(0.0, "Newton's method found no equilibrium", "smaller loads")

@@ -32,8 +32,4 @@ def traction(x, half_width, peak_pressure, friction, stick_ratio):
     if not 0 <= stick_ratio <= 1:
         raise ValueError("stick_ratio must lie in [0, 1]")
     s = np.asarray(x, dtype=float) / half_width
-    return (
-        friction
-        * peak_pressure
-        * (np.sqrt(np.maximum(0, 1 - s**2)) - np.sqrt(np.maximum(0, stick_ratio**2 - s**2)))
-    )
+    return friction * peak_pressure * (np.sqrt(np.maximum(0, 1 - s**2)) - np.sqrt(np.maximum(0, stick_ratio**2 - s**2)))

@@ -111,9 +111,7 @@ def stack_compliance(wavenumber, layers):
         raise ValueError("wavenumber must not be negative")
     if wavenumber == 0:
         return sum(
-            layer.thickness
-            * (1 - 2 * layer.poisson_ratio)
-            / (2 * layer.shear_modulus * (1 - layer.poisson_ratio))
+            layer.thickness * (1 - 2 * layer.poisson_ratio) / (2 * layer.shear_modulus * (1 - layer.poisson_ratio))
             for layer in layers
         )
     tops = [_mode(layer, wavenumber, 0.0) for layer in layers]

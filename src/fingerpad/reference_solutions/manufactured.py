@@ -99,10 +99,7 @@ def _trigonometric(amplitude, k, curl):
         return np.stack(
             [
                 np.stack(
-                    [
-                        np.stack([component(p, i, *np.add(orders[j], orders[m])) for m in range(2)], -1)
-                        for j in range(2)
-                    ],
+                    [np.stack([component(p, i, *np.add(orders[j], orders[m])) for m in range(2)], -1) for j in range(2)],
                     -2,
                 )
                 for i in range(2)

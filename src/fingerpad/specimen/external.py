@@ -99,9 +99,7 @@ def _require_groups(path: Path, surfaces: dict, curves: dict) -> None:
     for kind, wanted, found in (("surface", REGIONS, surfaces), ("curve", CURVES, curves)):
         for name in wanted:
             if not found.get(name):
-                raise MeshError(
-                    f"{path}: {kind} {name} is missing; physical {kind}s {', '.join(wanted)} must be there"
-                )
+                raise MeshError(f"{path}: {kind} {name} is missing; physical {kind}s {', '.join(wanted)} must be there")
 
 
 def _gather_cells(path: Path, surfaces: dict, count: int) -> tuple[str, np.ndarray, np.ndarray]:
@@ -124,10 +122,7 @@ def _gather_cells(path: Path, surfaces: dict, count: int) -> tuple[str, np.ndarr
     if len(np.unique(tags)) < len(tags):
         raise MeshError(f"{path}: an element is in two of {', '.join(REGIONS)}; one layer each is allowed")
     if len(tags) < count:
-        raise MeshError(
-            f"{path}: {count - len(tags)} surface elements are in none of {', '.join(REGIONS)}; each must be "
-            "in one"
-        )
+        raise MeshError(f"{path}: {count - len(tags)} surface elements are in none of {', '.join(REGIONS)}; each must be in one")
     return kinds.pop(), np.concatenate(cells), np.concatenate(region)
 
 
@@ -142,14 +137,8 @@ def _with_centre(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.
 def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The named boundary facets, material on the right, from the end nodes of the file's line elements."""
     edges = element_edges(mesh.cells, mesh.element)
-    unique, first, uses = np.unique(
-        np.sort(edges[:, :2], axis=1), axis=0, return_index=True, return_counts=True
-    )
-    boundary = {
-        pair: edge
-        for pair, edge, use in zip(map(tuple, unique.tolist()), first, uses, strict=True)
-        if use == 1
-    }
+    unique, first, uses = np.unique(np.sort(edges[:, :2], axis=1), axis=0, return_index=True, return_counts=True)
+    boundary = {pair: edge for pair, edge, use in zip(map(tuple, unique.tolist()), first, uses, strict=True) if use == 1}
 
     def place(pair: tuple[int, int]) -> str:
         x, y = mesh.points[list(pair)].mean(axis=0) * 1e3
@@ -250,9 +239,7 @@ def read_pad_mesh(path: str | Path) -> PadMesh:
         ends = np.concatenate([nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]])
         stray = ~np.isin(ends, used)
         if stray.any():
-            raise MeshError(
-                f"{path}: curve {name} has an edge of no element; curves follow the elements' edges"
-            )
+            raise MeshError(f"{path}: curve {name} has an edge of no element; curves follow the elements' edges")
         pairs[name] = np.searchsorted(used, ends)
     curves = _facets(path, mesh, pairs)
     curves["skin"] = _in_order(path, curves["skin"])

@@ -150,9 +150,7 @@ class PadMesh:
         cells = np.column_stack((self.cells, middle.reshape(3, count).T)).astype(np.int32)
         known = dict(zip(map(tuple, pairs.tolist()), range(first, len(points)), strict=True))
         curves = {
-            name: np.array(
-                [(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32
-            ).reshape(-1, 3)
+            name: np.array([(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32).reshape(-1, 3)
             for name, facets in self.curves.items()
         }
         return PadMesh(points, cells, "tri6", self.region, curves, self.symmetric, self.half)
@@ -233,10 +231,7 @@ def _columns(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
     else:
         breaks = sorted([*breaks, fine])
     half_width = curve.outline.half_width
-    focus = [
-        (float(curve.arc_length(curve.theta_at_x(min(abs(x), half_width)))[0]), edge)
-        for x, edge in size.focus
-    ]
+    focus = [(float(curve.arc_length(curve.theta_at_x(min(abs(x), half_width)))[0]), edge) for x, edge in size.focus]
 
     smallest = min([size.skin_edge, *(edge for _, edge in focus)])
     grid = np.linspace(0.0, curve.length, max(4000, int(np.ceil(4.0 * curve.length / smallest))) + 1)
@@ -251,9 +246,7 @@ def _columns(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
         edge = np.where(grid == s, np.minimum(edge, wanted), edge)
     edge = _limit_growth(grid, edge, size.growth)
 
-    parts = [
-        _divide(grid, edge, low, high, np.ceil if low <= fine else np.round) for low, high in pairwise(breaks)
-    ]
+    parts = [_divide(grid, edge, low, high, np.ceil if low <= fine else np.round) for low, high in pairwise(breaks)]
     columns = np.concatenate([part[:-1] for part in parts] + [[curve.length]])
     return columns, int(np.searchsorted(columns, nail))
 
@@ -314,9 +307,7 @@ def count_nodes(outline: Outline, size: MeshSize) -> int:
     return 4 * (len(columns) - 1) * (2 * (skin_rows + fat_rows) + 1)
 
 
-def _node_positions(
-    curve: OutlineCurve, columns: np.ndarray, rows: np.ndarray, fat_rows: int, fat_edge: float
-):
+def _node_positions(curve: OutlineCurve, columns: np.ndarray, rows: np.ndarray, fat_rows: int, fat_edge: float):
     """Positions of the right half's nodes, shape (2 columns + 1, 2 rows + 1, 2), in m."""
     theta = curve.theta_at(_with_middles(columns))
     skin = [curve.point(theta, depth) for depth in _with_middles(rows)]
@@ -355,10 +346,7 @@ def _reference_quads(columns: int, bands: tuple[int, ...]) -> tuple[np.ndarray, 
     """
     with gmsh_session() as geometry:
         ends = np.concatenate(([0], np.cumsum(bands)))
-        corners = [
-            (geometry.add_point((0.0, -float(y))), geometry.add_point((float(columns), -float(y))))
-            for y in ends
-        ]
+        corners = [(geometry.add_point((0.0, -float(y))), geometry.add_point((float(columns), -float(y)))) for y in ends]
         across = [geometry.add_line(left, right) for left, right in corners]
         for line in across:
             geometry.set_transfinite_curve(line, columns + 1, "Progression", 1.0)
@@ -367,9 +355,7 @@ def _reference_quads(columns: int, bands: tuple[int, ...]) -> tuple[np.ndarray, 
             left, right = geometry.add_line(upper[0], lower[0]), geometry.add_line(lower[1], upper[1])
             for line in (left, right):
                 geometry.set_transfinite_curve(line, count + 1, "Progression", 1.0)
-            surface = geometry.add_plane_surface(
-                geometry.add_curve_loop([left, across[band + 1], right, -across[band]])
-            )
+            surface = geometry.add_plane_surface(geometry.add_curve_loop([left, across[band + 1], right, -across[band]]))
             geometry.set_transfinite_surface(surface, "Left", [upper[0], lower[0], lower[1], upper[1]])
             geometry.set_recombined_surfaces([surface])
             geometry.add_physical(surface, REGIONS[band])

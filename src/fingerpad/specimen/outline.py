@@ -92,9 +92,7 @@ class OutlineCurve:
         """Points (n, 2) in m at the angles theta (n,), `depth` m below the skin along the normal."""
         theta = np.atleast_1d(np.asarray(theta, dtype=float))
         sine = np.sin(theta)
-        skin = np.column_stack(
-            (self.scale * sine * (1.0 + self.widening * sine**2), self._height(theta) * np.cos(theta))
-        )
+        skin = np.column_stack((self.scale * sine * (1.0 + self.widening * sine**2), self._height(theta) * np.cos(theta)))
         points = skin - np.asarray(depth, dtype=float).reshape(-1, 1) * self.normal(theta)
         points[(theta == 0.0) | (np.abs(theta) == np.pi), 0] = 0.0  # exactly on the axis
         return points
@@ -204,8 +202,7 @@ class OutlineCurve:
         )
         if inside.min() <= 1.0 or not -outline.depth_below < outline.bone_centre_height < outline.apex_height:
             raise OutlineError(
-                "outline: the bone (bone_centre_height, bone_half_width, bone_half_height) must lie inside "
-                "the skin"
+                "outline: the bone (bone_centre_height, bone_half_width, bone_half_height) must lie inside the skin"
             )
         room = np.hypot(*(skin - self.bone_point(self.bone_foot(skin))).T).min()
         if thickness >= room:

@@ -80,6 +80,4 @@ def programme(
 
 
 def _between(before, after, share):
-    return (
-        None if b is None else b if a is None else a + share * (b - a) for a, b in zip(before, after, strict=True)
-    )
+    return (None if b is None else b if a is None else a + share * (b - a) for a, b in zip(before, after, strict=True))

@@ -1,0 +1,90 @@
+"""Meshes from elsewhere go the same way as the built one and give the same answer."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fingerpad import load_scene, plan, simulate
+from fingerpad.results import summary
+from fingerpad.specimen.mesh import PadMesh, build_pad_mesh
+
+pytestmark = pytest.mark.unit
+
+SCENES = Path(__file__).parents[1] / "config" / "scenes"
+TEXT = """
+specimen: {{mesh: {mesh}}}
+stimulus: {{shape: cylinder, curvature: "209.97 1/m"}}
+motion: [{{press_to_force: "20 gf"}}]
+outputs: {{receptors: {{depths: ["600 um", "915 um"]}}}}
+"""
+
+
+def linear(mesh):
+    curves = {name: facets[:, :2] for name, facets in mesh.curves.items()}
+    return compact(PadMesh(mesh.points, mesh.cells[:, :4], "quad4", mesh.region, curves, True))
+
+
+def compact(mesh):
+    used = np.unique(mesh.cells)
+    number = np.full(len(mesh.points), -1, np.int32)
+    number[used] = np.arange(len(used))
+    curves = {name: number[facets] for name, facets in mesh.curves.items()}
+    return PadMesh(mesh.points[used], number[mesh.cells], mesh.element, mesh.region, curves, mesh.symmetric)
+
+
+def triangles(mesh):
+    split = [[0, 1, 2, 4, 5, 8], [0, 2, 3, 8, 6, 7]]
+    cells = np.concatenate([mesh.cells[:, order] for order in split])
+    return PadMesh(mesh.points, cells, "tri6", np.tile(mesh.region, 2), mesh.curves, False)
+
+
+def linear_triangles(mesh):
+    flat = linear(mesh)
+    cells = np.concatenate([flat.cells[:, [0, 1, 2]], flat.cells[:, [0, 2, 3]]])
+    return PadMesh(flat.points, cells, "tri3", np.tile(flat.region, 2), flat.curves, False)
+
+
+@pytest.fixture(scope="module")
+def built():
+    scene = load_scene(SCENES / "ramp40_k210.yaml")
+    size = plan(scene).mesh_size
+    return build_pad_mesh(scene.specimen.outline, size)
+
+
+def run(mesh, folder, **update):
+    mesh.write(folder / "my.msh")
+    (folder / "scene.yaml").write_text(TEXT.format(mesh="my.msh"))
+    scene = load_scene(folder / "scene.yaml").model_copy(update=update)
+    chosen = plan(scene)
+    return chosen, summary(simulate(scene, chosen))["legs"][-1]
+
+
+@pytest.fixture(scope="module")
+def reference(built, tmp_path_factory):
+    return run(built, tmp_path_factory.mktemp("quad9"))
+
+
+@pytest.mark.parametrize(
+    ("change", "element", "tolerance"),
+    [(linear, "Q1P0", 0.03), (triangles, "P2B", 0.01), (linear_triangles, "P2B", 0.03)],
+)
+def test_every_element_gives_the_same_answer(change, element, tolerance, built, reference, tmp_path):
+    """Linear and quadratic quads and triangles on the same nodes agree in depth, width, pressure and strain energy."""
+    chosen, leg = run(change(built), tmp_path)
+    assert chosen.element == element
+    expected = reference[1]
+    for key in ("depth_mm", "contact_width_mm", "centre_pressure_Pa"):
+        assert leg[key] == pytest.approx(expected[key], rel=tolerance if key == "depth_mm" else 2 * tolerance), key
+    for key in ("strain_energy_Pa", "strain_energy_network_Pa"):
+        assert leg[key] == pytest.approx(expected[key], rel=2 * tolerance), key
+
+
+def test_symmetric_external_mesh_is_halved(built, reference, tmp_path):
+    """A mirror-symmetric external mesh costs half, and answers as the whole does."""
+    chosen, leg = reference
+    assert chosen.effects["symmetry"].on and chosen.nodes == pytest.approx(len(built.points) / 2, rel=0.02)
+    whole, full = run(built, tmp_path, effects={"symmetry": False})
+    assert whole.nodes == len(built.points)
+    assert full["depth_mm"] == pytest.approx(leg["depth_mm"], rel=1e-4)
+    assert full["strain_energy_Pa"] == pytest.approx(leg["strain_energy_Pa"], rel=1e-3)
