@@ -17,7 +17,7 @@ from fingerpad.estimates import ContactEstimate, PadEstimate
 from fingerpad.scene import Discretisation, Hold, PressToDepth, PressToForce, Scene
 from fingerpad.specimen.external import read_pad_mesh
 from fingerpad.specimen.materials import Prony
-from fingerpad.specimen.measures import apex_measures
+from fingerpad.specimen.measures import apex_edge, apex_measures
 from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes
 from fingerpad.stimuli.motion import STEADY, programme
 from fingerpad.stimuli.profiles import profile_of
@@ -97,6 +97,7 @@ class Plan:
         ("long_term" or "instantaneous"). element: key of the element. mesh_size: of a built mesh, None for an external one.
         contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them.
         timed: does time matter? nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
+        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; predicted_cost_s: CPU seconds.
     """
 
     effects: dict[str, Effect]
@@ -110,6 +111,7 @@ class Plan:
     nodes: int
     smallest_edge: float
     inertia_ratio: float
+    contact_edge: float
     estimated_error: float
     predicted_cost_s: float
 
@@ -141,6 +143,7 @@ class Plan:
             "mesh_size_SI": None if self.mesh_size is None else asdict(self.mesh_size),
             "smallest_edge_SI": self.smallest_edge,
             "inertia_ratio": self.inertia_ratio,
+            "contact_edge_SI": self.contact_edge,
             "steps_per_leg": self.steps_per_leg,
             "timed": self.timed,
         }
@@ -187,15 +190,15 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         size = _mesh_size(scene, preset, profile, contact, rules)
         nodes = count_nodes(scene.specimen.outline, size)
         smallest = min([size.skin_edge, size.layer_edge, *(edge for _, edge in size.focus)])
-        edge = size.skin_edge
+        edge = min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
     else:
         size, nodes = None, len(external.points)
-        smallest = edge = external.quality()["smallest_edge_m"]
+        smallest, edge = external.quality()["smallest_edge_m"], apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
-    error = _estimated_error(edge, contact, rules)
+    error = estimated_error(edge, contact.half_width, rules)
     return Plan(
-        effects, state, element, size, contact, steps_per_leg, steps, timed, nodes, smallest, inertia, error,
+        effects, state, element, size, contact, steps_per_leg, steps, timed, nodes, smallest, inertia, edge, error,
         _cost(nodes, steps, effects, rules),
     )  # fmt: skip
 
@@ -222,7 +225,8 @@ def read_plan(path: str | Path) -> Plan:
     return Plan(
         {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
         ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], known["steps"], data["timed"],
-        known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["estimated_error"], data["predicted_cost_s"],
+        known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
+        data["estimated_error"], data["predicted_cost_s"],
     )  # fmt: skip
 
 
@@ -286,19 +290,23 @@ def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Prese
     if isinstance(accuracy, Discretisation):
         edge = accuracy.skin_edge or thesis.skin_edge
         scale = edge / thesis.skin_edge
-        error = _estimated_error(edge, contact, rules)
+        error = estimated_error(edge, contact.half_width, rules)
         return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, error=error), accuracy
-    scale = (accuracy / _estimated_error(thesis.skin_edge, contact, rules)) ** (1 / rules.mesh_order)
+    scale = (accuracy / estimated_error(thesis.skin_edge, contact.half_width, rules)) ** (1 / rules.mesh_order)
     scale = float(np.clip(scale, 0.15, 3.0))
     steps = int(np.clip(round(thesis.steps * (thesis.error / accuracy) ** 0.5), 6, 200))
     return Preset(thesis.skin_edge * scale, thesis.layer_edge * scale, steps, thesis.growth, accuracy), None
 
 
-def _estimated_error(edge: float, contact: ContactEstimate, rules: Rules) -> float:
-    """Expected relative error of depth, width, pressure and strain energy, from the measured law error ~ (edge / width)^order."""
+def estimated_error(edge: float, half_width: float, rules: Rules = RULES) -> float:
+    """Expected relative error of depth, width, pressure and strain energy: the measured law error ~ (edge / width)^order.
+
+    Args:
+        edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
+    """
     thesis = rules.presets["thesis"]
     # the presets' errors were measured at the sharpest of the thesis's cylinders, contact half-width 0.35 mm
-    relative = (edge / thesis.skin_edge) * min(0.35e-3 / max(contact.half_width, 1e-5), 4.0)
+    relative = (edge / thesis.skin_edge) * min(0.35e-3 / max(half_width, 1e-5), 10.0)
     return float(thesis.error * max(relative, 0.25 * edge / thesis.skin_edge) ** rules.mesh_order)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from threadpoolctl import threadpool_limits
 
-from fingerpad.effects import Plan, plan, schedule
+from fingerpad.effects import Plan, estimated_error, plan, schedule
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tributary_length
 from fingerpad.mechanics.small_strain import SmallStrainBody
@@ -154,6 +154,14 @@ class Simulation:
             last = step.time
         return last or 1.0
 
+    def _estimated_error(self, records, width):
+        """The plan's error law at the narrowest contact that was found at a leg's end; at least a half for a few nodes."""
+        ends = [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
+        narrowest = min((width[k + 1] for k in ends), default=0.0)
+        error = estimated_error(self.plan.contact_edge, narrowest / 2)
+        touching = min((np.count_nonzero(records[k].nodal_force) / self.share for k in ends), default=0)
+        return float(max(error, 0.5) if touching < 4 else error)
+
     # -- back to the whole pad --------------------------------------------------------------------------------------
 
     def _element_pressure(self):
@@ -244,7 +252,7 @@ class Simulation:
                 "scene": self.scene.canonical(),
                 "plan": self.plan.to_dict(),
                 "cost": cost,
-                "estimated_error": float(self.plan.estimated_error),
+                "estimated_error": self._estimated_error(records, out["contact_width"]),
                 "singular": int(self.profile.singular),
                 "provenance": provenance(),
             },

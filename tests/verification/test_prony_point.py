@@ -136,24 +136,24 @@ def test_creep(strain, frozen, must_fail):
 
 
 def check_cycle(strain, frozen, series=THESIS, amplitude=0.02, frequency=2.5):
-    """Mean dissipation over the last of five cycles of 96 steps, and the work lost in it."""
+    """Energy dissipated in the last of five cycles of 96 steps, and the work lost in it."""
     mesh, body, unit = sheared_element(strain, series)
     times = np.linspace(0, 5, 5 * 96 + 1) * 2 * np.pi / frequency
-    shears, stresses, rates = amplitude * np.sin(frequency * times), [0.0], [0.0]
+    shears, stresses, lost = amplitude * np.sin(frequency * times), [0.0], [0.0]
     for dt, shear in zip(np.diff(times), shears[1:], strict=True):
         body.begin_step(dt)
         body.displace(shear * unit)
         stresses.append(shear_stress(mesh, body))
         body.commit()
-        rates.append(body.energies()[2])
+        lost.append(body.energies()[2] - body.energies()[1])
     truth = prony_point.dissipation_per_cycle(amplitude, frequency, THESIS.g, THESIS.tau, SHEAR / THESIS.g_infinity)
     last = slice(-97, None)
     two_numbers(np.trapezoid(stresses[last], shears[last]), truth=truth, within=5e-3, frozen=frozen[0])
-    two_numbers(np.trapezoid(rates[last], times[last]), truth=truth, within=5e-3, frozen=frozen[1])
+    two_numbers(lost[-1] - lost[-97], truth=truth, within=5e-3, frozen=frozen[1])
 
 
 @pytest.mark.parametrize(
-    "strain, frozen", [("small", (8.23581110e-4, 8.24437258e-4)), ("finite", (8.23639581e-4, 8.24651122e-4))]
+    "strain, frozen", [("small", (8.23581110e-4, 8.23554609e-4)), ("finite", (8.23639581e-4, 8.23613066e-4))]
 )
 def test_dissipation_of_a_cycle(strain, frozen, must_fail):
     """A steady cycle loses pi amplitude^2 G'', as work and as recorded dissipation (Christensen 1982)."""

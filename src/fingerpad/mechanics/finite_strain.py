@@ -45,6 +45,8 @@ class FiniteStrainBody:
         self._mesh = (space.cells, space.grad, space.weight, space.psi)
         self.branches = Branches(prony, space.weight.shape) if prony else None
         self._factor, self._history = 1.0, None
+        self.branch_work = 0.0
+        self._stretch = self._right_cauchy_green() if prony else None
         self._pointwise = None if pointwise is None else pointwise * self.shear
         self.smallest_jacobian = 1.0
         self._data = None
@@ -93,9 +95,19 @@ class FiniteStrainBody:
         self.u = self.u + share * du
 
     def commit(self) -> None:
-        """The step has converged: let the branches move on."""
+        """The step has converged: let the branches move on, and add up the work that was done on them."""
         if self.branches is not None:
+            before, stretch = self.branches.q.sum(0), self._right_cauchy_green()
             self.branches.commit(self.isochoric_stress())
+            mean = 0.5 * (before + self.branches.q.sum(0))[..., :3] * [0.5, 0.5, 1.0]
+            change = np.sum(mean * (stretch - self._stretch), axis=2)
+            self.branch_work += float(np.sum(self.space.weight * change))
+            self._stretch = stretch
+
+    def _right_cauchy_green(self):
+        out = np.empty((*self.space.weight.shape, 3))
+        kernels.right_cauchy_green(self.u, self.space.cells, self.space.grad, out)
+        return out
 
     def isochoric_stress(self) -> np.ndarray:
         """Long-term isochoric second Piola-Kirchhoff stress (ne, nq, 4): 11, 22, 12, 33, Pa."""
@@ -109,15 +121,22 @@ class FiniteStrainBody:
 
     def save(self):
         """Everything needed to come back to this state."""
-        return self.u.copy(), self._dilatation.copy(), self._lag.copy(), self.branches and self.branches.state()
+        history = self.branches and (self.branches.state(), self.branch_work, self._stretch)
+        return self.u.copy(), self._dilatation.copy(), self._lag.copy(), history
 
     def restore(self, state) -> None:
+        """Come back to a saved state."""
         self.u, self._dilatation, self._lag = (np.array(part) for part in state[:3])
         if self.branches is not None:
-            self.branches.restore(state[3])
+            branches, self.branch_work, self._stretch = state[3]
+            self.branches.restore(branches)
 
     def energies(self) -> tuple[float, float, float]:
-        """Network energy, Maxwell-spring energy (J/m) and viscous dissipation rate (W/m)."""
+        """Network energy, Maxwell-spring energy and the work done on the branches so far, J/m.
+
+        Branch work less spring energy is what the dashpots have dissipated. The work is the integral of the branches' second
+        Piola-Kirchhoff stress over the Green strain, by the trapezoidal rule, so a hold of any length adds none.
+        """
         f = np.eye(2) + np.einsum("eai,eqaj->eqij", self.u[self.space.cells], self.space.grad)
         jac = f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
         i1 = np.einsum("eqij,eqij->eq", f, f) + 1
@@ -125,14 +144,12 @@ class FiniteStrainBody:
         network = np.sum(self.space.weight * isochoric) + 0.5 * np.sum(self.bulk[:, None] * self._dilatation**2)
         if self._pointwise is not None:
             network += 0.5 * np.sum(self.space.weight * self._pointwise[:, None] * (jac - 1) ** 2)
-        if self.branches is None:
-            return float(network), 0.0, 0.0
-        spring = rate = 0.0
-        for beta, tau, q in zip(self.branches.prony.beta, self.branches.prony.tau, self.branches.q, strict=True):
-            square = np.sum(self.space.weight * deviator_square(push_forward(f, q)) / self.shear[:, None]) / beta
-            spring += square / 4
-            rate += square / (2 * tau)
-        return float(network), float(spring), float(rate)
+        spring = 0.0
+        if self.branches is not None:
+            for beta, q in zip(self.branches.prony.beta, self.branches.q, strict=True):
+                square = deviator_square(push_forward(f, q)) / self.shear[:, None]
+                spring += float(np.sum(self.space.weight * square)) / (4 * beta)
+        return float(network), spring, self.branch_work
 
 
 def push_forward(f: np.ndarray, s: np.ndarray) -> np.ndarray:

@@ -327,3 +327,27 @@ def isochoric_stress(u, conn, grad, mu, out):
             out[e, q, 1] = mod * (1.0 - s * c11)
             out[e, q, 2] = mod * s * c12
             out[e, q, 3] = mod * (1.0 - i1 / 3.0)
+
+
+@njit(**_JIT)
+def right_cauchy_green(u, conn, grad, out):
+    """F^T F (11, 22, 12) into ``out`` (ne, nq, 3)."""
+    ne, nen = conn.shape
+    nq = grad.shape[1]
+    for e in range(ne):
+        for q in range(nq):
+            f11 = 1.0
+            f12 = 0.0
+            f21 = 0.0
+            f22 = 1.0
+            for a in range(nen):
+                gx = grad[e, q, a, 0]
+                gy = grad[e, q, a, 1]
+                n = conn[e, a]
+                f11 += u[n, 0] * gx
+                f12 += u[n, 0] * gy
+                f21 += u[n, 1] * gx
+                f22 += u[n, 1] * gy
+            out[e, q, 0] = f11 * f11 + f21 * f21
+            out[e, q, 1] = f12 * f12 + f22 * f22
+            out[e, q, 2] = f11 * f12 + f21 * f22

@@ -25,6 +25,7 @@ class SmallStrainBody:
         self.u = np.zeros(space.points.shape)
         self.v = np.zeros((len(prony.tau) if prony else 0, *self.u.shape))
         self._last = self.u.copy()
+        self.branch_work = 0.0
         nodes = space.cells
         everything = SymmetricPattern(np.concatenate([2 * nodes, 2 * nodes + 1], axis=1), 2 * len(space.points))
         self._deviatoric = everything.matrix(self._stiffness(everything, 1.0, 0.0))
@@ -74,10 +75,13 @@ class SmallStrainBody:
         self.u = self.u + share * du
 
     def commit(self) -> None:
-        """The step has converged: let the branch displacements move on."""
+        """The step has converged: let the branch displacements move on, and add up the work that was done on them."""
         if self.prony:
             decay, gamma = self._decay[:, None, None], self._gamma[:, None, None]
-            self.v = decay * self.v + gamma * (self.u - self._last)
+            step = self.u - self._last
+            before, self.v = self.v, decay * self.v + gamma * step
+            mean = np.tensordot(self.prony.beta, 0.5 * (before + self.v), axes=1)
+            self.branch_work += float(mean.ravel() @ (self._deviatoric @ step.ravel()))
         self._last = self.u.copy()
 
     def dilatation(self) -> np.ndarray:
@@ -87,19 +91,20 @@ class SmallStrainBody:
         return out
 
     def save(self):
-        return self.u.copy(), self.v.copy(), self._last.copy()
+        """Everything needed to come back to this state."""
+        return self.u.copy(), self.v.copy(), self._last.copy(), self.branch_work
 
     def restore(self, state) -> None:
-        self.u, self.v, self._last = (part.copy() for part in state)
+        """Come back to a saved state."""
+        self.u, self.v, self._last = (part.copy() for part in state[:3])
+        self.branch_work = state[3]
 
     def energies(self) -> tuple[float, float, float]:
-        """Network energy, Maxwell-spring energy (J/m) and viscous dissipation rate (W/m)."""
+        """Network energy, Maxwell-spring energy and the work done on the branches so far (trapezoidal rule), J/m."""
         u = self.u.ravel()
         network = 0.5 * u @ (self._deviatoric @ u + self._volumetric @ u)
-        spring = rate = 0.0
+        spring = 0.0
         if self.prony:
-            for beta, tau, v in zip(self.prony.beta, self.prony.tau, self.v, strict=True):
-                energy = 0.5 * beta * v.ravel() @ (self._deviatoric @ v.ravel())
-                spring += energy
-                rate += 2 * energy / tau
-        return float(network), float(spring), float(rate)
+            for beta, v in zip(self.prony.beta, self.v, strict=True):
+                spring += 0.5 * beta * float(v.ravel() @ (self._deviatoric @ v.ravel()))
+        return float(network), spring, self.branch_work

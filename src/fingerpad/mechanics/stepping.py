@@ -100,8 +100,7 @@ class QuasiStatic:
         self.active = np.zeros(len(skin.nodes), bool)
         self.depth = 0.0
         self.time = 0.0
-        self.work = self.dissipated = 0.0
-        self._rate = self.force = self._tangential = 0.0
+        self.work = self.force = self._tangential = 0.0
         self._set_zone(*skin.start)
         self.height = self._first_touch()
         self._previous = None
@@ -265,10 +264,6 @@ class QuasiStatic:
             observe(self.body, dt)
         self.work += 0.5 * (old_force + self.force) * (self.depth - state[3])
         self._energies = self.body.energies()
-        rate = self._energies[2]
-        if rate or self._rate:
-            self.dissipated += 0.5 * (self._rate + rate) * dt if dt < STEADY else 0.0
-        self._rate = rate
         self._previous = (state[0][0], state[1], state[3])
         return iterations, residual
 
@@ -331,11 +326,11 @@ class QuasiStatic:
         gradient[self._range] = self._gradient
         total = max(self.nodal_force.sum(), 1e-300)
         slack = np.abs(self._gap) * self.nodal_force[self._range]
-        stored = self._energies[0] + self._energies[1]
-        balance = abs(self.work - stored - self.dissipated) / max(abs(self.work), 1e-300)
+        network, spring, branch_work = self._energies
+        balance = abs(self.work - network - branch_work) / max(abs(self.work), 1e-300)
         return Record(
             step.leg, step.time, self.depth, self.force, self._tangential, self.nodal_force.copy(), gradient, gap,
             self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,
             float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
-            float(balance) if self.work else 0.0, self.work, self._energies, self.dissipated,
+            float(balance) if self.work else 0.0, self.work, self._energies, branch_work - spring,
         )  # fmt: skip

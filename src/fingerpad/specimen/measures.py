@@ -44,6 +44,15 @@ def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
     return float(1 / max(bend, 1e-3)), float(top - column[:, 1].min() if len(column) else soft / 4), float(soft)
 
 
+def apex_edge(mesh: PadMesh) -> float:
+    """Length (m) of the skin's element edges around x = 0 on the side that is touched."""
+    ends = mesh.points[mesh.curves["skin"][:, :2]]
+    high = ends[..., 1].mean(1) > ends[..., 1].max() - 0.5 * np.ptp(ends[..., 1])
+    lengths = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    nearest = np.argsort(np.where(high, np.abs(ends[..., 0].mean(1)), np.inf))[:4]
+    return float(lengths[nearest].mean())
+
+
 def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     """Points (n, 2) m at lateral position ``offsets`` whose distance to the undeformed skin is ``depths`` (n,) m.
 
