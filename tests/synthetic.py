@@ -12,9 +12,7 @@ from fingerpad.scene import Outline
 from fingerpad.specimen.mesh import MeshSize, PadMesh, build_pad_mesh
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
-CURVATURE = dict(
-    zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True)
-)
+CURVATURE = dict(zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True))
 OUTLINE = {
     "apex_height": 6e-3,
     "apex_radius": 7.9e-3,
@@ -75,10 +73,7 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     width = at(WIDTH) * load**0.55 * (0.9 + 0.1 * crept)
     skin_x, skin_y = _skin(edge)
     pressure = np.array(
-        [
-            _pressure(skin_x, skin_y, LOAD * f, w, programme != "homogeneous")
-            for f, w in zip(load, width, strict=True)
-        ]
+        [_pressure(skin_x, skin_y, LOAD * f, w, programme != "homogeneous") for f, w in zip(load, width, strict=True)]
     )
     centre = int(np.argmin(np.where(skin_y > 0, abs(skin_x), np.inf)))
 
@@ -87,9 +82,7 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     if programme == "ramp150":
         points += [(z, o) for z in (800e-6, 915e-6) for o in offsets if o != 0]
     receptor_depth, receptor_offset = np.array(points).T
-    surface_energy = np.interp(
-        receptor_depth, (560e-6, 600e-6, 849e-6, 851e-6, 960e-6), (0.8, 1.0, 3.0, 1.1, 0.95)
-    )
+    surface_energy = np.interp(receptor_depth, (560e-6, 600e-6, 849e-6, 851e-6, 960e-6), (0.8, 1.0, 3.0, 1.1, 0.95))
     shallow = receptor_depth < 850e-6
     peak = np.where(shallow, at(ENERGY_600) * 0.5, at(ENERGY_915)) * surface_energy
     peak = peak * np.exp(-((receptor_offset / (0.5 * at(WIDTH) + 0.8e-3)) ** 2))
@@ -116,9 +109,7 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         "strain_energy_network": (("time", "receptor"), network, "Pa"),
         "strain_energy_recoverable": (("time", "receptor"), network * 1.05, "Pa"),
     }
-    data = {
-        k: (dims, v * scale if k != "force" else v, {"units": unit}) for k, (dims, v, unit) in full.items()
-    }
+    data = {k: (dims, v * scale if k != "force" else v, {"units": unit}) for k, (dims, v, unit) in full.items()}
     data["leg"] = ("time", leg)
     coords = {
         "time": ("time", time, {"units": "s"}),
@@ -127,9 +118,7 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         "skin_x": ("skin_node", skin_x, {"units": "m"}),
         "skin_y": ("skin_node", skin_y, {"units": "m"}),
     }
-    return xr.Dataset(
-        data, coords, {"title": f"made up: {name}", "scene": json.dumps(_scene(name, label, rate))}
-    )
+    return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(_scene(name, label, rate))})
 
 
 def _skin(edge: float) -> tuple[np.ndarray, np.ndarray]:

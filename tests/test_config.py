@@ -44,7 +44,7 @@ def test_yaml_names_its_schema_and_fulfils_it(path):
 def test_workflow_configurations_fulfil_the_model(name):
     config = WorkflowConfig.model_validate(yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text()))
     assert config.name == name
-    for scene in config.scenes:
+    for scene in (*config.scenes, *config.variants):
         assert (ROOT / "config" / "scenes" / f"{scene}.yaml").is_file()
 
 

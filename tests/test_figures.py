@@ -8,6 +8,7 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import synthetic
 from fingerpad.figures import FIGURES, publish, read_frame
@@ -24,7 +25,7 @@ from fingerpad.figures.regression import (
     tolerance,
 )
 from fingerpad.figures.spec import empty_reference, read_reference
-from fingerpad.figures.style import COLOURS, spread
+from fingerpad.figures.style import COLOURS, spread, theme
 
 pytestmark = pytest.mark.unit
 REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"
@@ -60,9 +61,7 @@ def test_frame_has_units_in_its_column_names_and_an_error_column(frames, number)
 def test_frame_needs_only_the_scenes_it_names(made, number):
     histories, meshes, coarse, reference = made
     spec = FIGURES[number]
-    only = {
-        k: {name: d[name] for name in spec.needs} for k, d in (("h", histories), ("m", meshes), ("c", coarse))
-    }
+    only = {k: {name: d[name] for name in spec.needs} for k, d in (("h", histories), ("m", meshes), ("c", coarse))}
     spec.frame(only["h"], only["m"], only["c"], reference)
 
 
@@ -105,6 +104,20 @@ def test_figures_work_without_companions_and_without_the_reference(made):
         frame = spec.frame(histories, meshes, {}, empty_reference())
         assert ft.is_simulated(frame).all() and frame[ft.ERROR].isna().all()
         spec.draw(frame)
+
+
+@pytest.mark.parametrize("number", FIGURES)
+def test_no_text_leaves_the_picture(frames, number):
+    fig = FIGURES[number].draw(frames[number])
+    with theme():
+        FigureCanvasAgg(fig).draw()
+        width, height = fig.get_size_inches() * fig.dpi
+        ticks = {label for ax in fig.axes for axis in (ax.xaxis, ax.yaxis) for label in axis.get_ticklabels()}
+        for text in set(fig.findobj(mpl.text.Text)) - ticks:
+            if text.get_visible() and text.get_text():
+                box = text.get_window_extent()
+                inside = box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
+                assert inside, text.get_text()
 
 
 def test_axes_are_the_thesiss_where_the_data_fit(frames):
@@ -243,9 +256,7 @@ def test_reference_table_is_checked(tmp_path):
 
 
 def test_figures_do_not_load_mechanics():
-    code = (
-        "import fingerpad.figures, sys; print([m for m in sys.modules if m == 'numba' or 'mechanics' in m])"
-    )
+    code = "import fingerpad.figures, sys; print([m for m in sys.modules if m == 'numba' or 'mechanics' in m])"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "[]"
 
@@ -256,9 +267,7 @@ def test_figures_do_not_load_mechanics():
 @pytest.mark.parametrize("number", [n for n in FIGURES if n.startswith("4-")])
 def test_a_change_of_two_per_cent_in_one_curve_is_noticed(frames, number):
     frame = frames[number]
-    column = [
-        c for c in frame if "(Pa" in c or c in ("indentation_depth (mm)", "contact_width (mm)", "y (mm)")
-    ][-1]
+    column = [c for c in frame if "(Pa" in c or c in ("indentation_depth (mm)", "contact_width (mm)", "y (mm)")][-1]
     label = next(c for c in ("surface", "node_x (mm)", "pad", "phase", "source") if c in frame)
     rows = ft.is_simulated(frame) & (frame[label] == frame[label].iloc[0]) & frame[column].notna()
     changed = frame.copy()

@@ -36,6 +36,8 @@ class WorkflowConfig(BaseModel):
     """Directory of the tables, <name>.csv beside <name>.md."""
     scenes: Annotated[tuple[Name, ...], Field(min_length=1)]
     """Scenes to simulate, files of config/scenes."""
+    variants: tuple[Name, ...] = ()
+    """Scenes with something changed, for tables of sensitivity; simulated without a companion."""
     accuracy: Accuracy | None = None
     """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each states."""
     companion_accuracy: Accuracy | None = None

@@ -14,7 +14,7 @@ def config(project, name):
     return yaml.safe_load((project.root / "config" / f"{name}.yaml").read_text())
 
 
-def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice(clone):
+def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_and_variants_once(clone):
     thesis, jobs = config(clone, "thesis"), clone.planned()
     figures = {f"figures/thesis/fig_{n}.{kind}" for n in thesis["figure_numbers"] for kind in ("png", "csv")}
     assert jobs.pop("figure") == figures
@@ -22,7 +22,7 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice(cl
     for rule, name in (("plan", "plan.json"), ("mesh", "mesh.msh"), ("simulate", "history.nc")):
         assert jobs.pop(rule) == {
             f"results/thesis/{fidelity}/{scene}/{name}" for fidelity in ("simulations", "coarse") for scene in thesis["scenes"]
-        }
+        } | {f"results/thesis/simulations/{scene}/{name}" for scene in thesis["variants"]}
     assert not jobs
 
 

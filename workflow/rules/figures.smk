@@ -40,12 +40,12 @@ rule figure:
 
 
 rule table:
-    """All histories and meshes of the configuration -> a table, for programs (CSV) and for people (Markdown)."""
+    """All histories, and the meshes of the scenes, -> a table, for programs (CSV) and for people (Markdown)."""
     input:
         sources("table"),
         ENVIRONMENT,
         reference=REFERENCE,
-        histories=histories(config["scenes"]),
+        histories=histories([*config["scenes"], *config.get("variants", [])]),
         meshes=meshes(config["scenes"]),
         coarse=companions(config["scenes"]),
     output:

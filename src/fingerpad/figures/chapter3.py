@@ -20,17 +20,13 @@ SCENE = "ramp40_flat"
 NOTE = "The model's own geometry and mesh, not measured; the MRI sections of Cysyk (1999) are not available."
 
 
-def frame_3_4(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_3_4(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Closed boundaries of the section, outside to inside, named by the layer they enclose."""
     loops = boundaries(meshes[SCENE])
     loops["stratum corneum"] = loops["skin"]
     loops["epidermis"] = inward(loops["skin"], stratum_corneum(histories[SCENE]))
     parts = [
-        pd.DataFrame(
-            {"layer": layer, X: loops[layer][:, 0] * 1e3, Y: loops[layer][:, 1] * 1e3, ERROR: np.nan}
-        )
+        pd.DataFrame({"layer": layer, X: loops[layer][:, 0] * 1e3, Y: loops[layer][:, 1] * 1e3, ERROR: np.nan})
         for layer in LAYERS
     ]
     return assemble(pd.concat(parts, ignore_index=True))
@@ -62,9 +58,7 @@ def fig_3_4(frame: pd.DataFrame) -> Figure:
         y = (_upper(loops[outer], x) + _upper(loops[inner[name]], x)) / 2
         _point_out(axes[0], name, (x, y), (x, 8.3))
     axes[0].text(0, (apex["fat"] + apex["bone"]) / 2, "fat", ha="center", va="center", fontsize=7)
-    axes[0].text(
-        0, (loops["bone"][:, 1].min() + apex["bone"]) / 2, "bone", ha="center", va="center", fontsize=7
-    )
+    axes[0].text(0, (loops["bone"][:, 1].min() + apex["bone"]) / 2, "bone", ha="center", va="center", fontsize=7)
     size = f"{np.ptp(skin[:, 0]):.1f} × {np.ptp(skin[:, 1]):.1f} mm"
     axes[0].text(0, -7.3, size, ha="center", va="center", fontsize=7)
 
@@ -103,9 +97,7 @@ def _fill(ax: Axes, loops: dict[str, np.ndarray], merged: bool) -> None:
             ax.fill(*loops[layer].T, facecolor=colour, edgecolor=style.INK, lw=0.6)
 
 
-def frame_3_5(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_3_5(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Outline of every element (one row a point) with its layer, the bone's rim, and the mesh's quality."""
     from scipy.spatial import cKDTree  # here, for it is slow to import
 
@@ -114,9 +106,7 @@ def frame_3_5(
     layer = np.array(mesh.regions)[mesh.region]
     loops = boundaries(mesh)
     depth = cKDTree(densify(loops["skin"], 20e-6)).query(corners.mean(axis=1))[0]
-    layer = np.where(
-        (layer == "epidermis") & (depth < stratum_corneum(histories[SCENE])), "stratum corneum", layer
-    )
+    layer = np.where((layer == "epidermis") & (depth < stratum_corneum(histories[SCENE])), "stratum corneum", layer)
     polygons = [element_outline(mesh, nodes) for nodes in mesh.cells]
     counts = [len(p) for p in polygons]
     points = np.concatenate(polygons) * 1e3
@@ -129,9 +119,7 @@ def frame_3_5(
             Y: points[:, 1].round(4),
         }
     )
-    bone = pd.DataFrame(
-        {"series": "rim", "layer": "bone", X: loops["bone"][:, 0] * 1e3, Y: loops["bone"][:, 1] * 1e3}
-    )
+    bone = pd.DataFrame({"series": "rim", "layer": "bone", X: loops["bone"][:, 0] * 1e3, Y: loops["bone"][:, 1] * 1e3})
     values = mesh.quality()
     quality = pd.DataFrame(
         {
@@ -162,9 +150,7 @@ def fig_3_5(frame: pd.DataFrame) -> Figure:
     rim = frame[frame["series"] == "rim"]
     ax.fill(rim[X], rim[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
     ax.add_collection(
-        PolyCollection(
-            polygons, facecolors=[style.LAYER_COLOURS[k] for k in layers], edgecolors="0.25", linewidths=0.22
-        )
+        PolyCollection(polygons, facecolors=[style.LAYER_COLOURS[k] for k in layers], edgecolors="0.25", linewidths=0.22)
     )
     ax.set(aspect="equal", xlim=(-10, 10), ylim=(-6.6, 6.6), xlabel="x (mm)", ylabel="y (mm)")
     ax.set(xticks=range(-10, 11, 2), yticks=range(-6, 7, 2))

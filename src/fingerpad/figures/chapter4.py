@@ -73,9 +73,7 @@ DISPLACEMENT_AXES = {
     **{k: "T141" for k in ("420", "630")},
     "1260": "T142",
 }
-WIDTH_RANGES = dict(
-    zip(SURFACES, ["T106", "T108", "T110", "T112", "T114", "T115", "T116", "T118", "T120"], strict=True)
-)
+WIDTH_RANGES = dict(zip(SURFACES, ["T106", "T108", "T110", "T112", "T114", "T115", "T116", "T118", "T120"], strict=True))
 ENERGY_AXES = {
     "flat": "T173",
     "79": "T174",
@@ -168,9 +166,7 @@ def _draw_phases(ax: Axes, rows: pd.DataFrame, x: str, y: str, colour: object) -
         ax.plot(curve[x], curve[y], color=colour, **style.PHASE_LINES[phase])
 
 
-def _draw_traces(
-    ax: Axes, frame: pd.DataFrame, column: str, x_label: float | None = None, heading: str = ""
-) -> None:
+def _draw_traces(ax: Axes, frame: pd.DataFrame, column: str, x_label: float | None = None, heading: str = "") -> None:
     """Nine traces against time in the colours of their surfaces, labelled at `x_label` if given."""
     ends = {}
     for label in SURFACES:
@@ -181,9 +177,7 @@ def _draw_traces(
         style.label_ends(ax, ends, x_label, heading)
 
 
-def _one_panel(
-    frame: pd.DataFrame, number: str, title: str, column: str, ylabel: str, x_label: float
-) -> Figure:
+def _one_panel(frame: pd.DataFrame, number: str, title: str, column: str, ylabel: str, x_label: float) -> Figure:
     """A figure of one panel with nine direct-labelled traces against time."""
     fig = style.new_figure(frame, number, title, height=4.6)
     ax = fig.subplots()
@@ -197,9 +191,7 @@ def _one_panel(
 # --- 4-6 -----------------------------------------------------------------------------------------------
 
 
-def frame_4_6(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_6(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Deformed skin at the top of the ramp and in steady state: the upper side, one row a node."""
     parts = []
     for label in SURFACES:
@@ -249,9 +241,7 @@ def fig_4_6(frame: pd.DataFrame) -> Figure:
 # --- 4-7, 4-8 ------------------------------------------------------------------------------------------
 
 
-def frame_4_7(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_7(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Indentation depth against time."""
     rows = _traces(
         histories,
@@ -275,9 +265,7 @@ def fig_4_7(frame: pd.DataFrame) -> Figure:
     )
 
 
-def frame_4_8(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_8(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Contact width against time, and the ranges of width that the axes of Fig 4-9 imply for the hold."""
     rows = _traces(histories, coarse, {WIDTH: lambda d: width(d) * 1e3}, at_ends(width))
     implied = axis_rows(reference, "inverse", WIDTH_RANGES)
@@ -290,9 +278,7 @@ def frame_4_8(
 @style.styled
 def fig_4_8(frame: pd.DataFrame) -> Figure:
     """Contact width, nine traces, with the thesis's ranges for the hold as brackets on the right."""
-    fig = _one_panel(
-        frame, "4-8", "Contact width, 40 gf/s ramp to 20 gf, 2 s hold", WIDTH, "contact width (mm)", 2.56
-    )
+    fig = _one_panel(frame, "4-8", "Contact width, 40 gf/s ramp to 20 gf, 2 s hold", WIDTH, "contact width (mm)", 2.56)
     ax = fig.axes[0]
     ranges = frame[frame["source"].str.startswith("thesis range of Fig 4-9")]
     for column, (label, ends) in enumerate(ranges.groupby("surface", sort=False)[WIDTH]):
@@ -314,9 +300,7 @@ def fig_4_8(frame: pd.DataFrame) -> Figure:
 # --- 4-10 ----------------------------------------------------------------------------------------------
 
 
-def frame_4_10(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_10(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Force and pressure at the centre against time."""
     columns = {FORCE: force_gf, P_CENTRE: centre_pressure}
     return assemble(
@@ -346,9 +330,7 @@ def fig_4_10(frame: pd.DataFrame) -> Figure:
 # --- 4-11, 4-12, 4-13, 4-14 ----------------------------------------------------------------------------
 
 
-def frame_4_11(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_11(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Pressure over the contact during the ramp, at its top and in steady state."""
     rows = _profiles(histories, coarse, "ramp40", SURFACES).drop(columns="vertical_displacement (mm)")
     return assemble(rows, axis_rows(reference, X, "T134"), axis_rows(reference, P, PRESSURE_AXES))
@@ -369,9 +351,7 @@ def fig_4_11(frame: pd.DataFrame) -> Figure:
     return fig
 
 
-def frame_4_12(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_12(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Pressure under the flat plate on the homogeneous and on the layered pad."""
     pads = {"homogeneous": "homogeneous_flat", "layered": "ramp40_flat"}
     rows = [_profile_rows(histories[name], coarse.get(name)).assign(pad=pad) for pad, name in pads.items()]
@@ -398,9 +378,7 @@ def fig_4_12(frame: pd.DataFrame) -> Figure:
     return fig
 
 
-def frame_4_13(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_13(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Pressure against vertical displacement of the contact nodes (right half), one curve a depth."""
     rows = _profiles(histories, coarse, "ramp40", SURFACES, half=True).drop(columns=X)
     across = {k: "T143" if k in ("flat", "79", "105") else "T144" for k in SURFACES}
@@ -427,13 +405,9 @@ def fig_4_13(frame: pd.DataFrame) -> Figure:
     return fig
 
 
-def frame_4_14(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_14(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Half of the pressure profile over time for K = 210 1/m, and the thesis's critical distance."""
-    rows = _profiles(histories, coarse, "ramp40", ("210",), half=True).drop(
-        columns="vertical_displacement (mm)"
-    )
+    rows = _profiles(histories, coarse, "ramp40", ("210",), half=True).drop(columns="vertical_displacement (mm)")
     critical = pd.DataFrame()
     if "T147" in reference.index:
         edge = width(histories["ramp40_k210"])[-1] * 1e3 / 2
@@ -468,9 +442,7 @@ def fig_4_14(frame: pd.DataFrame) -> Figure:
 # --- 4-15, 4-16 ----------------------------------------------------------------------------------------
 
 
-def frame_4_15(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_15(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Largest pressure and pressure at the centre for K = 210 1/m."""
     columns = {P_PEAK: peak_pressure, P_CENTRE: centre_pressure}
     errors = (*at_ends(peak_pressure), *at_ends(centre_pressure))
@@ -488,9 +460,7 @@ def fig_4_15(frame: pd.DataFrame) -> Figure:
     ax = fig.subplots()
     rows = frame[is_simulated(frame)]
     ax.plot(rows[TIME], rows[P_PEAK], color=style.COLOURS["210"], label="maximum")
-    ax.plot(
-        rows[TIME], rows[P_CENTRE], color=style.COLOURS["210"], label="centre node", **style.PHASE_LINES[TOP]
-    )
+    ax.plot(rows[TIME], rows[P_CENTRE], color=style.COLOURS["210"], label="centre node", **style.PHASE_LINES[TOP])
     style.limit_axis(ax, frame, TIME, "x")
     style.limit_axis(ax, frame, P_PEAK)
     ax.set(xlabel="time (s)", ylabel="contact pressure (Pa)")
@@ -498,9 +468,7 @@ def fig_4_15(frame: pd.DataFrame) -> Figure:
     return fig
 
 
-def frame_4_16(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_16(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Pressure against time at each skin node of the right half that ever touches, K = 210 1/m."""
     name = scene_name("ramp40", "210")
     history = histories[name]
@@ -525,9 +493,7 @@ def fig_4_16(frame: pd.DataFrame) -> Figure:
     for x, trace in rows.groupby("node_x (mm)"):
         centre = abs(x) < 1e-6
         line = style.PHASE_LINES[STEADY if centre else PHASES[0]]
-        ax.plot(
-            trace[TIME], trace[P], color=style.COLOURS["210"], label="centre node" if centre else None, **line
-        )
+        ax.plot(trace[TIME], trace[P], color=style.COLOURS["210"], label="centre node" if centre else None, **line)
     style.limit_axis(ax, frame, TIME, "x")
     style.limit_axis(ax, frame, P)
     ax.set(xlabel="time (s)", ylabel="contact pressure (Pa)")
@@ -545,9 +511,7 @@ def fig_4_16(frame: pd.DataFrame) -> Figure:
 # --- 4-20 ----------------------------------------------------------------------------------------------
 
 
-def frame_4_20(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_20(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Pressure and strain energy profiles at the top of the 150 gf/s ramp and in steady state."""
     parts = [
         _profiles(histories, coarse, "ramp150", PROFILE_SURFACES)
@@ -618,9 +582,7 @@ def fig_4_20(frame: pd.DataFrame) -> Figure:
 # --- 4-21, 4-23, 4-24, 4-28 ----------------------------------------------------------------------------
 
 
-def frame_4_21(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_21(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Strain energy at 915 um and centre pressure times 0.04."""
     scaled = "scaled_centre_pressure (Pa)"
     columns = {
@@ -637,9 +599,7 @@ def fig_4_21(frame: pd.DataFrame) -> Figure:
     scaled = "scaled_centre_pressure (Pa)"
     title = f"Strain energy density at 915 µm and contact pressure × {PRESSURE_SCALE}, centre"
     fig = style.new_figure(frame, "4-21", title, 6.8, header=0.2)
-    axes = style.nine_panels(
-        fig, SURFACES, "time (s)", f"strain energy density, contact pressure × {PRESSURE_SCALE} (Pa)"
-    )
+    axes = style.nine_panels(fig, SURFACES, "time (s)", f"strain energy density, contact pressure × {PRESSURE_SCALE} (Pa)")
     for label, ax in axes.items():
         rows = _of(frame, "surface", label)
         both = rows.assign(**{SED: rows[[SED, scaled]].max(axis=1)})
@@ -652,9 +612,7 @@ def fig_4_21(frame: pd.DataFrame) -> Figure:
     return fig
 
 
-def frame_4_23(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_23(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Strain energy at 915 um against time."""
     rows = _traces(histories, coarse, {SED: shown_energy}, at_ends(shown_energy))
     return assemble(rows, axis_rows(reference, TIME, "T189"), axis_rows(reference, SED, "T188"))
@@ -667,9 +625,7 @@ def fig_4_23(frame: pd.DataFrame) -> Figure:
     return _one_panel(frame, "4-23", title, SED, "strain energy density (Pa)", 2.62)
 
 
-def frame_4_24(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_24(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Strain energy at nine depths against time."""
     parts = [
         _traces(histories, coarse, {SED: partial(energy, depth=z)}, at_ends(partial(energy, depth=z))).assign(
@@ -686,9 +642,7 @@ def frame_4_24(
 @style.styled
 def fig_4_24(frame: pd.DataFrame) -> Figure:
     """Strain energy at nine depths, nine traces each."""
-    fig = style.new_figure(
-        frame, "4-24", "Strain energy density at nine depths under the centre", 7.2, header=0.22
-    )
+    fig = style.new_figure(frame, "4-24", "Strain energy density at nine depths under the centre", 7.2, header=0.22)
     depths = sorted(frame[RECEPTOR].unique())
     axes = style.nine_panels(fig, depths, "time (s)", "strain energy density (Pa)")
     for z, ax in axes.items():
@@ -703,16 +657,12 @@ def fig_4_24(frame: pd.DataFrame) -> Figure:
     return fig
 
 
-def frame_4_28(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame
-) -> pd.DataFrame:
+def frame_4_28(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Rate of the strain energy at 915 um against time (see `energy_rate` for the differences taken)."""
     parts = []
     for label in SURFACES:
         name = scene_name("ramp40", label)
-        error = error_percent(
-            histories[name], coarse.get(name), lambda d: float(energy_rate(d, SHOWN_DEPTH)[RATE].max())
-        )
+        error = error_percent(histories[name], coarse.get(name), lambda d: float(energy_rate(d, SHOWN_DEPTH)[RATE].max()))
         parts.append(energy_rate(histories[name], SHOWN_DEPTH).assign(surface=label, **{ERROR: error}))
     return assemble(
         pd.concat(parts, ignore_index=True),
@@ -744,9 +694,7 @@ def fig_4_28(frame: pd.DataFrame) -> Figure:
         ends[label] = tuple(rows.loc[jump - 1, [TIME, RATE]])
     style.label_ends(ax, ends, ends["flat"][0] * 1.3, "curvature (1/m)")
     ax.set(xlabel="time (s)", ylabel="strain energy rate (Pa/s)")
-    ax.text(
-        1.75, 60, "hold: rates slightly below zero, off the axis", ha="center", fontsize=7, color=style.GREY
-    )
+    ax.text(1.75, 60, "hold: rates slightly below zero, off the axis", ha="center", fontsize=7, color=style.GREY)
     return fig
 
 
@@ -757,9 +705,7 @@ FIGURES = (
     FigureSpec("4-8", "Contact width", _NINE, frame_4_8, fig_4_8),
     FigureSpec("4-10", "Centre pressure with the force trace", _NINE, frame_4_10, fig_4_10),
     FigureSpec("4-11", "Pressure distribution over time", _NINE, frame_4_11, fig_4_11),
-    FigureSpec(
-        "4-12", "Homogeneous and layered pad", ("homogeneous_flat", "ramp40_flat"), frame_4_12, fig_4_12
-    ),
+    FigureSpec("4-12", "Homogeneous and layered pad", ("homogeneous_flat", "ramp40_flat"), frame_4_12, fig_4_12),
     FigureSpec("4-13", "Pressure against vertical displacement", _NINE, frame_4_13, fig_4_13),
     FigureSpec("4-14", "Half pressure profile, K = 210 1/m", ("ramp40_k210",), frame_4_14, fig_4_14),
     FigureSpec("4-15", "Maximum and centre pressure, K = 210 1/m", ("ramp40_k210",), frame_4_15, fig_4_15),

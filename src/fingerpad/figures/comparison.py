@@ -1,19 +1,10 @@
 """The thesis against this model, number by number: ``figures/tables/thesis_comparison``.
 
 Every row starts from a row of the reference table (what the thesis prints, id by id) and a function below
-that reads the same quantity from the simulated histories. How they are judged follows from the row's `form`:
+that reads the same quantity from the simulated histories. Numbers are judged by the rules in `verdicts`; a
+trend holds or fails. `layout` rows only set axes of figures and have no row here.
 
-value
-    inside if within the row's relative tolerance (0: equal to six digits) or the discretisation error.
-range
-    inside if between low and high, give or take the discretisation error.
-axis
-    the thesis shows only an axis. Inside if the largest plotted value stays below its end and fills at least
-    `FILL` of it, since a plot is drawn to be filled.
-trend
-    trend_holds or trend_fails.
-
-`layout` rows only set axes of figures and have no row here.
+A row that is outside says by how much, the likeliest reason, and what the sensitivity runs make of it.
 """
 
 from __future__ import annotations
@@ -24,59 +15,61 @@ from os import PathLike
 import numpy as np
 import pandas as pd
 
-from fingerpad.figures.features import (
-    SURFACES,
-    Histories,
-    peak_pressure,
-    scene_of,
-)
-from fingerpad.figures.numbers import NUMBERS, Results, end_of
+from fingerpad.figures.features import SURFACES, Histories, peak_pressure, scene_of
+from fingerpad.figures.numbers import GIVEN, INVERSE_WIDTHS, NUMBERS, Results, end_of, top_of
+from fingerpad.figures.sensitivity import evidence, variant_scene
 from fingerpad.figures.spec import Meshes, read_reference
 from fingerpad.figures.trends import TRENDS
-
-FILL = 0.5
-"""Least share of a thesis axis that its largest curve should fill."""
+from fingerpad.figures.verdicts import is_inside, judge, significant
 
 COLUMNS = (
     "id", "figure", "quantity", "condition", "thesis_low", "thesis_high", "thesis_kind", "simulated",
     "discretisation_error", "units", "verdict", "note",
 )  # fmt: skip
 
-CHOSEN = ("T153",)
-"""Rows of a mesh's own measures, which differ between mesh and companion by intent."""
-
-_TRANSIENT = "likeliest: the ramp's transient; time scale of the moduli and load a length are not stated"
+_RAMP = "likeliest: the stiff transient of the ramp; state of the moduli and load per length are not stated"
+_BENDING = "likeliest: the bending of the stiff epidermis over the section"
 
 
 def _settled(label: str, programme: str = "ramp40") -> Callable[[Results], str]:
     """Reason of a ramp pressure above the axis, with the pressure that the hold settles to."""
-    return lambda r: (
-        f"{float(peak_pressure(r(label, programme))[-1]):.0f} Pa at the end of the hold; {_TRANSIENT}"
-    )
+    return lambda r: f"{float(peak_pressure(r(label, programme))[-1]):.0f} Pa at the end of the hold; {_RAMP}"
+
+
+def _radius(results: Results) -> str:
+    """Reason of the chosen apex radius, with the contact width that the smaller one gives."""
+    reason = "chosen for the contact widths of Fig 4-9"
+    scene = results.histories.get(variant_scene("radius", "flat"))
+    if scene is None:
+        return reason
+    radius = scene_of(scene)["specimen"]["outline"]["apex_radius"] * 1e3
+    inverse = 1e-3 / end_of(scene, "contact_width")
+    return f"{reason}: {radius:.1f} mm gives {inverse:.3f} 1/mm under the flat plate (T106)"
 
 
 REASONS: dict[str, str | Callable[[Results], str]] = {
     "T037a": "quadratic elements carry four nodes each; linear ones would number as the nodes do",
-    "T102a": "likeliest: three-dimensional contact and a bone whose place is not stated; thicker fat: deeper",
-    "T323": "chosen for the contact widths of Fig 4-9, which a radius of 7.9 mm would not give",
+    "T102a": "likeliest: state of the moduli and thickness of the fat, neither is stated",
+    "T323": _radius,
     **{f"T{125 + i}": _settled(label) for i, label in enumerate(SURFACES)},
     **{f"T{i}": _settled("210") for i in (145, 148, 150, 154)},
-    **{
-        f"T165{tag}": _settled(label, "ramp150")
-        for tag, label in zip("abc", ("flat", "158", "1260"), strict=True)
-    },
-    "T136": _settled("flat"),
-    "T138": _settled("flat"),
-    "T139": "5000 Pa is the last legible tick, not the end: Fig 4-11 shows the same curves up to 8000 Pa",
-    **{f"T{i}": _TRANSIENT for i in (135, 140, 141, 142, *range(173, 180))},
-    **{f"T177{tag}": _TRANSIENT for tag in "ab"},
-    **{
-        f"T{i}": "likeliest: the stiff epidermis stores bending, which hangs on details of the section"
-        for i in (166, 167, 168, *range(192, 198))
-    },
-    "T170": "likeliest: the faster ramp's transient, as for the pressures",
+    **{f"T165{tag}": _settled(label, "ramp150") for tag, label in zip("abc", ("flat", "158", "1260"), strict=True)},
+    **{f"T{i}": _settled("flat") for i in (136, 138)},
+    "T139": "5000 Pa is the last legible tick: Fig 4-11 shows the same curves up to 8000 Pa",
+    **{f"T{i}": _RAMP for i in (123, 135, 140, 141, 142, 159, 170, *range(173, 180))},
+    **{f"T177{tag}": _RAMP for tag in "ab"},
+    **{f"T{i}": _BENDING for i in (166, 167, 168, *range(192, 198))},
 }
 """Likeliest reason of a known difference, by id; used when the row is outside."""
+
+
+def _remark(id_: str, entry: Mapping, results: Results) -> str:
+    """What else to say of a number, inside or not: the inverse contact width that the hold starts with."""
+    label = next((k for k, i in INVERSE_WIDTHS.items() if i == id_), None)
+    if label is None:
+        return ""
+    start = 1e-3 / top_of(results(label), "contact_width")
+    return f"{start:.3g} when the hold starts" + ("" if is_inside(start, 0.0, entry) else ", outside")
 
 
 def _reason(id_: str, results: Results) -> str:
@@ -84,23 +77,10 @@ def _reason(id_: str, results: Results) -> str:
     return reason(results) if callable(reason) else reason
 
 
-def _sensitivity(id_: str, results: Results) -> str:
-    """What a sensitivity run, if simulated, says about a difference."""
-    scene = results.histories.get("sensitivity_fat_k1260")
-    if id_ != "T102a" or scene is None:
-        return ""
-    outline = scene_of(scene)["specimen"]["outline"]
-    fat = outline["apex_height"] - outline["bone_centre_height"] - outline["bone_half_height"]
-    fat -= outline["epidermis_thickness"] + outline["dermis_thickness"]
-    return f"with {fat * 1e3:.1f} mm of fat the depth is {end_of(scene, 'indentation_depth') * 1e3:.2f} mm"
-
-
 # --- the table -----------------------------------------------------------------------------------------
 
 
-def thesis_comparison(
-    histories: Histories, coarse: Histories, meshes: Meshes, reference_csv: str | PathLike
-) -> pd.DataFrame:
+def thesis_comparison(histories: Histories, coarse: Histories, meshes: Meshes, reference_csv: str | PathLike) -> pd.DataFrame:
     """Compare the thesis's numbers and trends of chapters 3 and 4 with the simulated ones.
 
     Parameters
@@ -112,16 +92,16 @@ def thesis_comparison(
     Returns
     -------
     One row an id, columns `COLUMNS`; numbers in the row's `units`. The discretisation error is the difference
-    of the row's number between mesh and companion, in the same units. Scenes that were not simulated give
-    ``not_comparable``.
+    of the row's number between mesh and companion, in the same units, empty for what is `GIVEN`. Scenes that
+    were not simulated give ``not_comparable``.
     """
     reference = read_reference(reference_csv)
     fine, rough = Results(histories, meshes), Results(coarse, meshes)
-    rows = [_row(id_, entry, fine, rough) for id_, entry in reference.iterrows() if entry["form"] != "layout"]
+    rows = [_row(id_, entry, fine, rough, reference) for id_, entry in reference.iterrows() if entry["form"] != "layout"]
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _row(id_: str, entry: Mapping, fine: Results, rough: Results) -> dict:
+def _row(id_: str, entry: Mapping, fine: Results, rough: Results, reference: pd.DataFrame) -> dict:
     row = {
         "id": id_,
         "figure": entry["figure"],
@@ -138,39 +118,22 @@ def _row(id_: str, entry: Mapping, fine: Results, rough: Results) -> dict:
         if entry["form"] == "trend":
             trend = TRENDS[id_](fine)
             verdict = "trend_holds" if trend.holds else "trend_fails"
-            return row | {"simulated": trend.shown, "verdict": verdict, "note": trend.note}
+            return row | {"simulated": significant(trend.shown, 4), "verdict": verdict, "note": trend.note}
         value = float(NUMBERS[id_](fine))
     except KeyError as missing:
         return row | {"verdict": "not_comparable", "note": f"not simulated: {missing.args[0]}"}
     try:
-        error = 0.0 if id_ in CHOSEN else abs(value - float(NUMBERS[id_](rough)))
+        error = float("nan") if id_ in GIVEN else abs(value - float(NUMBERS[id_](rough)))
     except KeyError:
         error = float("nan")
-    verdict, note = judge(value, np.nan_to_num(error), entry)
+    allowed = float(np.nan_to_num(error))
+    verdict, note = judge(value, allowed, entry)
     if verdict == "outside":
-        note = "; ".join(filter(None, (note, _reason(id_, fine), _sensitivity(id_, fine))))
-    if entry["kind"] == "garbled":
-        note = "; ".join(filter(None, (note, "thesis reading uncertain")))
-    return row | {"simulated": value, "discretisation_error": error, "verdict": verdict, "note": note}
-
-
-def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
-    """Verdict and how far outside, of a number against a reference row (rules in the module's text)."""
-    low, high = float(entry["low"]), float(entry["high"])
-    if not np.isfinite(value):
-        return "not_comparable", "the simulation does not show it"
-    if entry["form"] == "value":
-        allowed = max(float(entry["tolerance"]) * abs(low), error, 1e-6 * abs(low))
-        if abs(value - low) <= allowed:
-            return "inside", ""
-        return "outside", f"by {value - low:+.3g} ({value / low - 1:+.0%})"
-    if entry["form"] == "axis":
-        if value > high + error:
-            return "outside", f"{value / high - 1:.0%} above the axis's end"
-        if value < FILL * high - error:
-            return "outside", f"fills only {value / high:.0%} of the axis"
-        return "inside", f"fills {value / high:.0%} of the axis"
-    if low - error <= value <= high + error:
-        return "inside", ""
-    near = low if value < low else high
-    return "outside", f"by {value - near:+.3g} ({value / near - 1:+.0%})"
+        runs = "" if id_ in GIVEN else evidence(id_, value, allowed, fine, rough, reference)
+        note = "; ".join(filter(None, (note, _reason(id_, fine), runs)))
+    doubt = "thesis reading uncertain" if entry["kind"] == "garbled" else ""
+    note = "; ".join(filter(None, (note, _remark(id_, entry, fine), doubt)))
+    if id_ not in GIVEN:
+        row |= {"discretisation_error": significant(error, 2)}
+        value = significant(value, 4)
+    return row | {"simulated": value, "verdict": verdict, "note": note}

@@ -86,9 +86,7 @@ def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> in
     return index
 
 
-def energy(
-    history: xr.Dataset, depth: float, offset: float = 0.0, name: str = "strain_energy_density"
-) -> np.ndarray:
+def energy(history: xr.Dataset, depth: float, offset: float = 0.0, name: str = "strain_energy_density") -> np.ndarray:
     """Strain energy density (time) in Pa at one receptor."""
     return history[name].values[:, receptor_index(history, depth, offset)]
 
@@ -165,9 +163,9 @@ def width(history: xr.Dataset) -> np.ndarray:
 
 def centre_pressure(history: xr.Dataset) -> np.ndarray:
     """Pressure (time) in Pa at the skin node at the apex."""
-    return history[PRESSURE].values[:, centre_node(history)]
+    return history["centre_pressure"].values
 
 
 def peak_pressure(history: xr.Dataset) -> np.ndarray:
     """Largest pressure (time) in Pa of any skin node."""
-    return history[PRESSURE].values.max(axis=1)
+    return history["peak_pressure"].values

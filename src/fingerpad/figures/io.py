@@ -18,9 +18,7 @@ TEXT_COLUMNS = ("source", "surface", "phase", "layer", "panel", "series", "quant
 
 def write_frame(frame: pd.DataFrame, path: Path) -> None:
     """Write a frame as CSV, six significant digits."""
-    write_atomically(
-        path, lambda p: frame.to_csv(p, index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
-    )
+    write_atomically(path, lambda p: frame.to_csv(p, index=False, float_format=FLOAT_FORMAT, lineterminator="\n"))
 
 
 def read_frame(path: Path) -> pd.DataFrame:

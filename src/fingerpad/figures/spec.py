@@ -51,9 +51,7 @@ def read_reference(path: str | PathLike) -> pd.DataFrame:
     range | axis | trend | layout), tolerance, source. Raises ValueError for a repeated id or an unknown kind
     or form.
     """
-    table = pd.read_csv(path, dtype={"id": str, "figure": str, "condition": str, "units": str}).set_index(
-        "id"
-    )
+    table = pd.read_csv(path, dtype={"id": str, "figure": str, "condition": str, "units": str}).set_index("id")
     if not table.index.is_unique:
         raise ValueError(f"{path}: repeated id {table.index[table.index.duplicated()][0]}")
     for column, allowed in {
@@ -62,9 +60,7 @@ def read_reference(path: str | PathLike) -> pd.DataFrame:
     }.items():
         unknown = set(table[column]) - allowed
         if unknown:
-            raise ValueError(
-                f"{path}: unknown {column} {sorted(map(str, unknown))}, allowed {sorted(allowed)}"
-            )
+            raise ValueError(f"{path}: unknown {column} {sorted(map(str, unknown))}, allowed {sorted(allowed)}")
     return table
 
 
@@ -73,9 +69,7 @@ def empty_reference() -> pd.DataFrame:
     return pd.DataFrame(columns=["low", "high", "kind"])
 
 
-def axis_rows(
-    reference: pd.DataFrame, column: str, ids: str | Mapping[str, str], key: str = "surface"
-) -> pd.DataFrame:
+def axis_rows(reference: pd.DataFrame, column: str, ids: str | Mapping[str, str], key: str = "surface") -> pd.DataFrame:
     """Rows that mark a thesis axis range: two rows (ends) a range, `source` saying so.
 
     `ids` is one id for the whole figure, or a mapping panel -> id with the panel's name in the column `key`.

@@ -21,7 +21,7 @@ from matplotlib.lines import Line2D
 from fingerpad.figures.features import ERROR, PHASES, STEADY, SURFACES, TOP, is_simulated
 
 PAGE_WIDTH = 7.0  # inch, the text width of an A4 page
-NOTE_WIDTH = 130  # characters of a footnote's line
+NOTE_WIDTH = 118  # characters of a footnote's line
 GREY = "0.45"
 BAND = "0.955"
 INK = "0.15"
@@ -115,9 +115,7 @@ def new_figure(
     fig = Figure(figsize=(width, height), layout="constrained")
     lines = note or footnote(frame)
     top, bottom = (0.30 + header) / height, (0.16 * len(lines) + 0.08) / height
-    fig.get_layout_engine().set(
-        rect=(0.005, bottom, 0.99, 1 - top - bottom), w_pad=0.04, h_pad=0.04, hspace=0.04
-    )
+    fig.get_layout_engine().set(rect=(0.005, bottom, 0.99, 1 - top - bottom), w_pad=0.04, h_pad=0.04, hspace=0.04)
     fig.text(0.012, 1 - 0.09 / height, f"Fig. {number}", ha="left", va="top", fontweight="bold", fontsize=9.5)
     fig.text(0.012 + 0.82 / width, 1 - 0.09 / height, title, ha="left", va="top", fontsize=9.5)
     fig.text(
@@ -137,14 +135,13 @@ def footnote(frame: pd.DataFrame) -> list[str]:
     """Lines under a picture: provenance, discretisation error, and how thesis values are marked."""
     first = "Simulated: 2-D plane-strain finite elements, not measured."
     if frame[ERROR].notna().any():
-        first += f" Discretisation error {_error_text(frame)} (difference to a mesh of twice the edge)."
-    lines = textwrap.wrap(first, NOTE_WIDTH)
+        first += f" Discretisation error {_error_text(frame)} (difference to a mesh of twice the edge and half the time steps)."
+    lines = [first]
     if frame.loc[~is_simulated(frame), "source"].str.contains("axis range").any():
         lines.append(
-            "Axes end where those of Cysyk (1999) end; a grey band marks the thesis's axis range where"
-            " the simulation needs more."
+            "Axes end where those of Cysyk (1999) end; a grey band marks the thesis's axis range where the simulation needs more."
         )
-    return lines
+    return [part for line in lines for part in textwrap.wrap(line, NOTE_WIDTH)]
 
 
 def _error_text(frame: pd.DataFrame) -> str:
@@ -175,9 +172,7 @@ def limit_axis(ax: Axes, frame: pd.DataFrame, column: str, axis: str = "y") -> N
             set_limits(min(0.0, data.min()), data.max() * 1.06)
         return
     low, high = values.min(), values.max()
-    if (
-        axis == "x" and not data.empty and low < 0 and data.abs().max() > high
-    ):  # a profile wider than the axis
+    if axis == "x" and not data.empty and low < 0 and data.abs().max() > high:  # a profile wider than the axis
         set_limits(-data.abs().max() * 1.04, data.abs().max() * 1.04)
         ax.axvspan(low, high, color=BAND, lw=0, zorder=0)
         return
@@ -226,9 +221,7 @@ def label_ends(ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, h
     low, high = ax.get_ylim()
     gap = (high - low) * 0.135 / _axes_height(ax)
     labels = list(ends)
-    positions = spread(
-        [ends[k][1] for k in labels], gap, low + gap * 0.4, high - gap * (1.6 if heading else 0.5)
-    )
+    positions = spread([ends[k][1] for k in labels], gap, low + gap * 0.4, high - gap * (1.6 if heading else 0.5))
     for label, position in zip(labels, positions, strict=True):
         x, y = ends[label]
         ax.plot([x, x_label], [y, position], color=COLOURS[label], lw=0.6, alpha=0.7, clip_on=False)

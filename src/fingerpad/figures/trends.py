@@ -46,9 +46,7 @@ def _ordered(values: list[float], growing: bool, what: str) -> Trend:
     steps = np.diff(values) if growing else -np.diff(values)
     wrong = [f"{SURFACES[i]} to {SURFACES[i + 1]}" for i in np.flatnonzero(steps <= 0)]
     note = f"{what}: {values[0]:.3g} (flat) to {values[-1]:.3g} (1260)"
-    return Trend(
-        not wrong, len(values) - len(wrong), note + (f"; not from {', '.join(wrong)}" if wrong else "")
-    )
+    return Trend(not wrong, len(values) - len(wrong), note + (f"; not from {', '.join(wrong)}" if wrong else ""))
 
 
 def _everywhere(outcome: dict[str, bool], what: str = "", needed: int | None = None) -> Trend:
@@ -102,9 +100,7 @@ def _peaks_sooner(results: Results) -> Trend:
     labels = CYLINDERS[:-2]
     times = [_peak_time(results(k)) for k in labels]
     ordered = [True, *(b >= a for a, b in zip(times, times[1:], strict=False))]
-    return _everywhere(
-        dict(zip(labels, ordered, strict=True)), f"{times[0]:.2f} s (79) to {times[-1]:.2f} s (420)"
-    )
+    return _everywhere(dict(zip(labels, ordered, strict=True)), f"{times[0]:.2f} s (79) to {times[-1]:.2f} s (420)")
 
 
 def _peaks_at_top(label: str) -> Callable[[Results], Trend]:
@@ -153,9 +149,7 @@ def _symmetric(history: xr.Dataset) -> bool:
 
 
 def _same_width(results: Results) -> Trend:
-    plain, layered = (
-        end_of(results.histories[n], "contact_width") for n in ("homogeneous_flat", "ramp40_flat")
-    )
+    plain, layered = (end_of(results.histories[n], "contact_width") for n in ("homogeneous_flat", "ramp40_flat"))
     difference = plain / layered - 1
     note = f"homogeneous {plain * 1e3:.2f} mm, layered {layered * 1e3:.2f} mm; "
     note += "a stiff skin bends, so the same depth goes with a narrower contact"
@@ -190,13 +184,9 @@ def _hold_decay(history: xr.Dataset, values: np.ndarray) -> tuple[float, float]:
 
 def _same_decay(results: Results) -> Trend:
     history = results("210")
-    (largest, half), (centre, half_centre) = (
-        _hold_decay(history, trace(history)) for trace in (peak_pressure, centre_pressure)
-    )
+    (largest, half), (centre, half_centre) = (_hold_decay(history, trace(history)) for trace in (peak_pressure, centre_pressure))
     note = f"fall {largest:.1%} and {centre:.1%}, half of it after {half:.2f} and {half_centre:.2f} s"
-    return Trend(
-        largest > 0 and centre > 0 and abs(half - half_centre) <= 0.3 * half_centre, half / half_centre, note
-    )
+    return Trend(largest > 0 and centre > 0 and abs(half - half_centre) <= 0.3 * half_centre, half / half_centre, note)
 
 
 def _same_time_constant(results: Results) -> Trend:
@@ -205,9 +195,7 @@ def _same_time_constant(results: Results) -> Trend:
     nodes = [n for n in surface_nodes(history) if history["skin_x"].values[n] < half_width - 0.6e-3]
     halves = [_hold_decay(history, history[PRESSURE].values[:, n])[1] for n in nodes]
     spread = (max(halves) - min(halves)) / float(np.mean(halves))
-    note = (
-        f"half of the fall after {min(halves):.2f} to {max(halves):.2f} s at {len(nodes)} nodes past the peak"
-    )
+    note = f"half of the fall after {min(halves):.2f} to {max(halves):.2f} s at {len(nodes)} nodes past the peak"
     return Trend(bool(spread <= 0.3), spread, note)
 
 
@@ -271,10 +259,7 @@ def _energy_trend(name: str, kind: str) -> Callable[[Results], Trend]:
 
 
 def _difference_grows(results: Results) -> Trend:
-    gaps = [
-        PRESSURE_SCALE * float(centre_pressure(results(k))[-1]) - energy(results(k), 915e-6)[-1]
-        for k in SURFACES
-    ]
+    gaps = [PRESSURE_SCALE * float(centre_pressure(results(k))[-1]) - energy(results(k), 915e-6)[-1] for k in SURFACES]
     return _ordered(gaps, True, "0.04 x pressure less energy, Pa")
 
 
@@ -296,14 +281,10 @@ TRENDS: dict[str, Callable[[Results], Trend]] = {
     "T328a": _peaks_sooner,
     "T328b": _peaks_at_top("630"),
     "T329": _peaks_at_top("1260"),
-    "TR01": lambda r: _ordered(
-        [end_of(r(k), "indentation_depth") * 1e3 for k in SURFACES], True, "depth, mm"
-    ),
+    "TR01": lambda r: _ordered([end_of(r(k), "indentation_depth") * 1e3 for k in SURFACES], True, "depth, mm"),
     "TR02": lambda r: _ordered([width_mm(r, k) for k in SURFACES], False, "width, mm"),
     "TR03": lambda r: _ordered([float(centre_pressure(r(k))[-1]) for k in SURFACES], True, "pressure, Pa"),
-    "TR04": lambda r: _ordered(
-        [float(energy(r(k), 915e-6)[ramp_end(r(k))]) for k in SURFACES], True, "energy at 915 um, Pa"
-    ),
+    "TR04": lambda r: _ordered([float(energy(r(k), 915e-6)[ramp_end(r(k))]) for k in SURFACES], True, "energy at 915 um, Pa"),
     "TR05": lambda r: _ordered(
         [float(energy_rate(r(k), 915e-6)["strain_energy_rate (Pa/s)"].max()) for k in SURFACES],
         True,

@@ -1,0 +1,63 @@
+"""How a simulated number is judged against a row of the reference table.
+
+The rule follows from the row's `form`:
+
+value
+    inside if within the row's relative tolerance (0: equal to six digits) or the discretisation error.
+range
+    inside if between low and high, give or take the discretisation error.
+axis
+    the thesis shows only an axis. Inside if the largest plotted value stays below its end and fills at least
+    `FILL` of it, since a plot is drawn to be filled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+FILL = 0.5
+"""Least share of a thesis axis that its largest curve should fill."""
+
+
+def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
+    """Verdict on a number and how far outside it is.
+
+    Parameters
+    ----------
+    value, error : the number and its discretisation error, both in the row's units.
+    entry : low, high, form and tolerance of the reference row.
+
+    Returns
+    -------
+    ``inside``, ``outside`` or ``not_comparable`` (a number that is not finite), and a remark.
+    """
+    low, high = float(entry["low"]), float(entry["high"])
+    if not np.isfinite(value):
+        return "not_comparable", "the simulation does not show it"
+    if entry["form"] == "value":
+        allowed = max(float(entry["tolerance"]) * abs(low), error, 1e-6 * abs(low))
+        if abs(value - low) <= allowed:
+            return "inside", ""
+        return "outside", f"by {value - low:+.3g} ({value / low - 1:+.0%})"
+    if entry["form"] == "axis":
+        if value > high + error:
+            return "outside", f"{value / high - 1:.0%} above the axis's end"
+        if value < FILL * high - error:
+            return "outside", f"fills only {value / high:.0%} of the axis"
+        return "inside", f"fills {value / high:.0%} of the axis"
+    if low - error <= value <= high + error:
+        return "inside", ""
+    near = low if value < low else high
+    return "outside", f"by {value - near:+.3g} ({value / near - 1:+.0%})"
+
+
+def is_inside(value: float, error: float, entry: Mapping) -> bool:
+    """Whether a number is inside its reference row."""
+    return judge(value, error, entry)[0] == "inside"
+
+
+def significant(value: float, digits: int) -> float:
+    """A number rounded to significant digits."""
+    return float(f"{value:.{digits}g}")
