@@ -75,7 +75,7 @@ def files_named_by_scene(wildcards):
         return []
     scene = yaml.safe_load(path.read_text(encoding="utf-8"))
     specimen, stimulus = scene.get("specimen") or {}, scene.get("stimulus") or {}
-    parts = {specimen.get(part) for part in ("outline", "layers", "prony")}
+    parts = [specimen.get(part) for part in ("outline", "layers", "prony")]
     names = {"thesis"} | {name for name in parts if isinstance(name, str) and name != "none"}
     paths = [path.parent / name for name in (specimen.get("mesh"), stimulus.get("csv")) if name]
     return [*(f"config/specimens/{name}.yaml" for name in sorted(names)), *map(os.path.relpath, paths)]
