@@ -1,0 +1,48 @@
+"""What the README shows works as shown."""
+
+import re
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+pytestmark = pytest.mark.unit
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+
+
+def block(language):
+    (text,) = re.findall(rf"```{language}\n(.*?)```", README, re.S)
+    return text
+
+
+def test_the_scene_and_the_three_verbs(tmp_path, monkeypatch, capsys):
+    """The README's scene, run by the README's Python lines, gives its frozen depth and width."""
+    matplotlib.use("Agg")
+    (tmp_path / "my_scene.yaml").write_text(block("yaml"), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(block("python"), names)
+    printed = capsys.readouterr().out
+    assert "small strain would be wrong by" in printed
+    assert re.search(r"depth 0\.7\d mm, width 1\.[34]\d mm", printed), printed
+    assert names["history"].sizes["snapshot"] == 1
+    assert float(names["history"].indentation_depth[-1]) * 1e3 == pytest.approx(FROZEN_DEPTH_MM, rel=1e-4)
+
+
+FROZEN_DEPTH_MM = 0.747176
+
+
+def test_files_that_are_named_exist():
+    """Every path of the repository that the README names is there."""
+    root = Path(__file__).parents[1]
+    named = set(re.findall(r"(?:config|figures|tests|workflow)/[\w./-]+\w", README))
+    missing = [name for name in named if not (root / name).exists() and "*" not in name and not name.startswith("figures/thesis/fig_")]
+    assert not missing, missing
+
+
+def test_commands_that_are_named_exist():
+    """Every make target of the README is in the Makefile."""
+    makefile = (Path(__file__).parents[1] / "Makefile").read_text(encoding="utf-8")
+    for target in set(re.findall(r"make ([a-z][\w-]+)", README)):
+        assert re.search(rf"^{target}:", makefile, re.M), target
