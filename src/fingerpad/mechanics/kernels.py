@@ -22,6 +22,39 @@ _JIT = {"cache": True, "fastmath": {"contract", "nsz", "reassoc", "arcp"}, "erro
 
 
 @njit(**_JIT)
+def _gradient(field, nodes, slopes):
+    """Gradient (11, 12, 21, 22) of a nodal field (n, 2) at one quadrature point with slopes (nen, 2)."""
+    g11 = g12 = g21 = g22 = 0.0
+    for a in range(len(nodes)):
+        x = field[nodes[a], 0]
+        y = field[nodes[a], 1]
+        g11 += x * slopes[a, 0]
+        g12 += x * slopes[a, 1]
+        g21 += y * slopes[a, 0]
+        g22 += y * slopes[a, 1]
+    return g11, g12, g21, g22
+
+
+@njit(**_JIT)
+def _dilatation(u, nodes, slopes, weight, psi, f, theta):
+    """Deformation gradients ``f`` (nq, 4) and dilatation modes ``theta`` (nm,) of one element; returns its smallest det F."""
+    smallest = np.inf
+    for m in range(len(theta)):
+        theta[m] = 0.0
+    for q in range(len(weight)):
+        g11, g12, g21, g22 = _gradient(u, nodes, slopes[q])
+        f[q, 0] = 1.0 + g11
+        f[q, 1] = g12
+        f[q, 2] = g21
+        f[q, 3] = 1.0 + g22
+        jac = f[q, 0] * f[q, 3] - g12 * g21
+        smallest = min(smallest, jac)
+        for m in range(len(theta)):
+            theta[m] += weight[q] * psi[q, m] * (jac - 1.0)
+    return smallest
+
+
+@njit(**_JIT)
 def assemble_tangent(u, conn, grad, weight, psi, mu, kappa, dilatation_lag, history, factor, pointwise, scatter, data, force):
     """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``.
 
@@ -42,43 +75,17 @@ def assemble_tangent(u, conn, grad, weight, psi, mu, kappa, dilatation_lag, hist
     bv = np.empty(nd)
     g = np.empty((nm, nd))
     re = np.empty(nd)
-    ux = np.empty(nen)
-    uy = np.empty(nen)
     ff = np.empty((nq, 4))
     theta = np.empty(nm)
     for e in range(ne):
-        for a in range(nen):
-            ux[a] = u[conn[e, a], 0]
-            uy[a] = u[conn[e, a], 1]
         for i in range(nd):
             re[i] = 0.0
             for j in range(nd):
                 k[i, j] = 0.0
         for m in range(nm):
-            theta[m] = 0.0
             for i in range(nd):
                 g[m, i] = 0.0
-        for q in range(nq):
-            f11 = 1.0
-            f12 = 0.0
-            f21 = 0.0
-            f22 = 1.0
-            for a in range(nen):
-                gx = grad[e, q, a, 0]
-                gy = grad[e, q, a, 1]
-                f11 += ux[a] * gx
-                f12 += ux[a] * gy
-                f21 += uy[a] * gx
-                f22 += uy[a] * gy
-            ff[q, 0] = f11
-            ff[q, 1] = f12
-            ff[q, 2] = f21
-            ff[q, 3] = f22
-            jac = f11 * f22 - f12 * f21
-            if jac < smallest:
-                smallest = jac
-            for m in range(nm):
-                theta[m] += weight[e, q] * psi[e, q, m] * (jac - 1.0)
+        smallest = min(smallest, _dilatation(u, conn[e], grad[e], weight[e], psi[e], ff, theta))
         if smallest <= 0.0:
             return smallest
         for q in range(nq):
@@ -185,39 +192,13 @@ def internal_force(u, conn, grad, weight, psi, mu, kappa, history, factor, point
     nm = psi.shape[2]
     smallest = np.inf
     ff = np.empty((nq, 4))
-    ux = np.empty(nen)
-    uy = np.empty(nen)
     rx = np.empty(nen)
     ry = np.empty(nen)
     for e in range(ne):
         for a in range(nen):
-            ux[a] = u[conn[e, a], 0]
-            uy[a] = u[conn[e, a], 1]
             rx[a] = 0.0
             ry[a] = 0.0
-        for m in range(nm):
-            dilatation[e, m] = 0.0
-        for q in range(nq):
-            f11 = 1.0
-            f12 = 0.0
-            f21 = 0.0
-            f22 = 1.0
-            for a in range(nen):
-                gx = grad[e, q, a, 0]
-                gy = grad[e, q, a, 1]
-                f11 += ux[a] * gx
-                f12 += ux[a] * gy
-                f21 += uy[a] * gx
-                f22 += uy[a] * gy
-            ff[q, 0] = f11
-            ff[q, 1] = f12
-            ff[q, 2] = f21
-            ff[q, 3] = f22
-            jac = f11 * f22 - f12 * f21
-            if jac < smallest:
-                smallest = jac
-            for m in range(nm):
-                dilatation[e, m] += weight[e, q] * psi[e, q, m] * (jac - 1.0)
+        smallest = min(smallest, _dilatation(u, conn[e], grad[e], weight[e], psi[e], ff, dilatation[e]))
         if smallest <= 0.0:
             return smallest
         for q in range(nq):
@@ -272,26 +253,10 @@ def predict_dilatation(u, du, conn, grad, weight, psi, out):
         for m in range(nm):
             out[e, m] = 0.0
         for q in range(nq):
-            f11 = 1.0
-            f12 = 0.0
-            f21 = 0.0
-            f22 = 1.0
-            d11 = 0.0
-            d12 = 0.0
-            d21 = 0.0
-            d22 = 0.0
-            for a in range(nen):
-                gx = grad[e, q, a, 0]
-                gy = grad[e, q, a, 1]
-                n = conn[e, a]
-                f11 += u[n, 0] * gx
-                f12 += u[n, 0] * gy
-                f21 += u[n, 1] * gx
-                f22 += u[n, 1] * gy
-                d11 += du[n, 0] * gx
-                d12 += du[n, 0] * gy
-                d21 += du[n, 1] * gx
-                d22 += du[n, 1] * gy
+            f11, f12, f21, f22 = _gradient(u, conn[e], grad[e, q])
+            f11 += 1.0
+            f22 += 1.0
+            d11, d12, d21, d22 = _gradient(du, conn[e], grad[e, q])
             value = f11 * f22 - f12 * f21 - 1.0 + f22 * d11 - f21 * d12 - f12 * d21 + f11 * d22
             for m in range(nm):
                 out[e, m] += weight[e, q] * psi[e, q, m] * value
@@ -304,18 +269,9 @@ def isochoric_stress(u, conn, grad, mu, out):
     nq = grad.shape[1]
     for e in range(ne):
         for q in range(nq):
-            f11 = 1.0
-            f12 = 0.0
-            f21 = 0.0
-            f22 = 1.0
-            for a in range(nen):
-                gx = grad[e, q, a, 0]
-                gy = grad[e, q, a, 1]
-                n = conn[e, a]
-                f11 += u[n, 0] * gx
-                f12 += u[n, 0] * gy
-                f21 += u[n, 1] * gx
-                f22 += u[n, 1] * gy
+            f11, f12, f21, f22 = _gradient(u, conn[e], grad[e, q])
+            f11 += 1.0
+            f22 += 1.0
             jac = f11 * f22 - f12 * f21
             c11 = f11 * f11 + f21 * f21
             c22 = f12 * f12 + f22 * f22
@@ -336,18 +292,9 @@ def right_cauchy_green(u, conn, grad, out):
     nq = grad.shape[1]
     for e in range(ne):
         for q in range(nq):
-            f11 = 1.0
-            f12 = 0.0
-            f21 = 0.0
-            f22 = 1.0
-            for a in range(nen):
-                gx = grad[e, q, a, 0]
-                gy = grad[e, q, a, 1]
-                n = conn[e, a]
-                f11 += u[n, 0] * gx
-                f12 += u[n, 0] * gy
-                f21 += u[n, 1] * gx
-                f22 += u[n, 1] * gy
+            f11, f12, f21, f22 = _gradient(u, conn[e], grad[e, q])
+            f11 += 1.0
+            f22 += 1.0
             out[e, q, 0] = f11 * f11 + f21 * f21
             out[e, q, 1] = f12 * f12 + f22 * f22
             out[e, q, 2] = f11 * f12 + f21 * f22
