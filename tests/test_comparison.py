@@ -114,7 +114,7 @@ def test_outside_rows_quote_the_variants_and_whether_they_bring_the_number_insid
     )
     note = rows.loc["T126", "note"]
     assert rows.loc["T126", "verdict"] == "outside"
-    assert "variants at flat, 40 gf/s: fat +0%, instantaneous +29%, radius +0%; none inside" in note
+    assert "variants (flat, 40 gf/s): fat +0%, instantaneous +29%, radius +0%; none inside" in note
     outside = rows[rows["verdict"].eq("outside") & ~rows.index.isin(list(GIVEN))]
     assert outside["note"].str.contains("variants").all()
 

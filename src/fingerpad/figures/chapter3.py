@@ -162,7 +162,7 @@ def fig_3_5(frame: pd.DataFrame) -> Figure:
         f"smallest edge {value['smallest_edge (um)']:.0f} µm\n"
         f"worst scaled Jacobian {value['worst_scaled_jacobian (1)']:.2f}"
     )
-    ax.text(9.9, 6.4, text, ha="right", va="top", fontsize=7.5, linespacing=1.4)
+    ax.text(9.9, 6.75, text, ha="right", va="top", fontsize=7.5, linespacing=1.4)
     return fig
 
 

@@ -14,6 +14,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from fingerpad.figures import style
 from fingerpad.figures.features import (
@@ -181,8 +182,7 @@ def _one_panel(frame: pd.DataFrame, number: str, title: str, column: str, ylabel
     """A figure of one panel with nine direct-labelled traces against time."""
     fig = style.new_figure(frame, number, title, height=4.6)
     ax = fig.subplots()
-    style.limit_axis(ax, frame, TIME, "x")
-    style.limit_axis(ax, frame, column)
+    style.limit_axes(ax, frame, TIME, column)
     ax.set(xlabel="time (s)", ylabel=ylabel)
     _draw_traces(ax, frame, column, x_label, "curvature (1/m)")
     return fig
@@ -278,11 +278,11 @@ def frame_4_8(histories: Histories, meshes: Meshes, coarse: Histories, reference
 @style.styled
 def fig_4_8(frame: pd.DataFrame) -> Figure:
     """Contact width, nine traces, with the thesis's ranges for the hold as brackets on the right."""
-    fig = _one_panel(frame, "4-8", "Contact width, 40 gf/s ramp to 20 gf, 2 s hold", WIDTH, "contact width (mm)", 2.56)
+    fig = _one_panel(frame, "4-8", "Contact width, 40 gf/s ramp to 20 gf, 2 s hold", WIDTH, "contact width (mm)", 2.54)
     ax = fig.axes[0]
     ranges = frame[frame["source"].str.startswith("thesis range of Fig 4-9")]
     for column, (label, ends) in enumerate(ranges.groupby("surface", sort=False)[WIDTH]):
-        x = 2.92 + 0.03 * (column % 3)
+        x = 2.935 + 0.025 * (column % 3)
         ax.plot(
             [x, x],
             [ends.min(), ends.max()],
@@ -320,8 +320,7 @@ def fig_4_10(frame: pd.DataFrame) -> Figure:
     upper.plot(flat[TIME], flat[FORCE], color=style.INK)
     style.limit_axis(upper, frame, FORCE)
     upper.set(ylabel="force (gf)", yticks=[0, 10, 20, 30])
-    style.limit_axis(lower, frame, TIME, "x")
-    style.limit_axis(lower, frame, P_CENTRE)
+    style.limit_axes(lower, frame, TIME, P_CENTRE)
     lower.set(xlabel="time (s)", ylabel="contact pressure at the centre (Pa)")
     _draw_traces(lower, frame, P_CENTRE, 2.62, "curvature (1/m)")
     return fig
@@ -343,8 +342,7 @@ def fig_4_11(frame: pd.DataFrame) -> Figure:
     axes = style.nine_panels(fig, SURFACES, "horizontal location (mm)", "contact pressure (Pa)")
     for label, ax in axes.items():
         rows = _of(frame, "surface", label)
-        style.limit_axis(ax, rows, X, "x")
-        style.limit_axis(ax, rows, P)
+        style.limit_axes(ax, rows, X, P)
         _draw_phases(ax, rows, X, P, style.COLOURS[label])
         ax.set_title(style.surface_name(label))
     style.phase_legend(fig)
@@ -370,8 +368,7 @@ def fig_4_12(frame: pd.DataFrame) -> Figure:
     axes = fig.subplots(2, 1)
     for ax, tag, pad in zip(axes, "ab", ("homogeneous", "layered"), strict=True):
         rows = _of(frame, "pad", pad)
-        style.limit_axis(ax, rows, X, "x")
-        style.limit_axis(ax, rows, P)
+        style.limit_axes(ax, rows, X, P)
         _draw_phases(ax, rows, X, P, style.COLOURS["flat"])
         ax.set(xlabel="x (mm)", ylabel="contact pressure (Pa)", title=f"({tag}) {pad} pad")
     style.phase_legend(fig)
@@ -397,8 +394,7 @@ def fig_4_13(frame: pd.DataFrame) -> Figure:
     axes = style.nine_panels(fig, SURFACES, "vertical displacement (mm)", "contact pressure (Pa)")
     for label, ax in axes.items():
         rows = _of(frame, "surface", label)
-        style.limit_axis(ax, rows, "vertical_displacement (mm)", "x")
-        style.limit_axis(ax, rows, P)
+        style.limit_axes(ax, rows, "vertical_displacement (mm)", P)
         _draw_phases(ax, rows, "vertical_displacement (mm)", P, style.COLOURS[label])
         ax.set(title=style.surface_name(label), xticks=np.arange(0, ax.get_xlim()[1] + 0.1, 0.5))
     style.phase_legend(fig)
@@ -423,8 +419,7 @@ def fig_4_14(frame: pd.DataFrame) -> Figure:
     title = "Pressure from the centre outwards over time, K = 210 1/m"
     fig = style.new_figure(frame, "4-14", title, 4.7, header=0.2)
     ax = fig.subplots()
-    style.limit_axis(ax, frame, X, "x")
-    style.limit_axis(ax, frame, P)
+    style.limit_axes(ax, frame, X, P)
     _draw_phases(ax, frame, X, P, style.COLOURS["210"])
     ax.set(xlabel="distance from the centre (mm)", ylabel="contact pressure (Pa)")
     critical = frame.loc[frame["source"].str.startswith("distance stated"), X]
@@ -432,9 +427,8 @@ def fig_4_14(frame: pd.DataFrame) -> Figure:
         y = 0.045 * ax.get_ylim()[1]
         ends = {"arrowstyle": "|-|,widthA=.3,widthB=.3", "color": style.GREY, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (critical.min(), y), (critical.max(), y), arrowprops=ends)
-        text = f"{np.ptp(critical):.1f} mm from the edge:\ncritical distance stated in the thesis"
-        ax.text(critical.mean(), y * 1.3, text, ha="center", va="bottom", fontsize=7, color=style.GREY,
-                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 1})  # fmt: skip
+        text = f"{np.ptp(critical):.1f} mm from the edge:\ncritical distance\nstated in the thesis"
+        ax.text(critical.max() + 0.02, y, text, ha="left", va="bottom", fontsize=7, color=style.GREY)
     style.phase_legend(fig)
     return fig
 
@@ -461,8 +455,7 @@ def fig_4_15(frame: pd.DataFrame) -> Figure:
     rows = frame[is_simulated(frame)]
     ax.plot(rows[TIME], rows[P_PEAK], color=style.COLOURS["210"], label="maximum")
     ax.plot(rows[TIME], rows[P_CENTRE], color=style.COLOURS["210"], label="centre node", **style.PHASE_LINES[TOP])
-    style.limit_axis(ax, frame, TIME, "x")
-    style.limit_axis(ax, frame, P_PEAK)
+    style.limit_axes(ax, frame, TIME, P_PEAK)
     ax.set(xlabel="time (s)", ylabel="contact pressure (Pa)")
     ax.legend(loc="lower right", handlelength=2.6)
     return fig
@@ -494,8 +487,7 @@ def fig_4_16(frame: pd.DataFrame) -> Figure:
         centre = abs(x) < 1e-6
         line = style.PHASE_LINES[STEADY if centre else PHASES[0]]
         ax.plot(trace[TIME], trace[P], color=style.COLOURS["210"], label="centre node" if centre else None, **line)
-    style.limit_axis(ax, frame, TIME, "x")
-    style.limit_axis(ax, frame, P)
+    style.limit_axes(ax, frame, TIME, P)
     ax.set(xlabel="time (s)", ylabel="contact pressure (Pa)")
     handles = ax.get_legend_handles_labels()[0]
     other = ax.plot([], [], color=style.COLOURS["210"], **style.PHASE_LINES[PHASES[0]])
@@ -608,7 +600,9 @@ def fig_4_21(frame: pd.DataFrame) -> Figure:
         ax.plot(rows[TIME], rows[SED], color=style.COLOURS[label], label="strain energy density", **solid)
         ax.plot(rows[TIME], rows[scaled], color=style.COLOURS[label], label="scaled pressure", **dashed)
         ax.set(title=style.surface_name(label), xlim=(0, 2.5), xticks=[0, 1, 2])
-    style.header_legend(fig, axes["1260"].lines)
+    handles = [Line2D([], [], color=style.INK, label=line.get_label(), **look)
+               for line, look in zip(axes["flat"].lines, (solid, dashed), strict=True)]  # fmt: skip
+    style.header_legend(fig, handles)
     return fig
 
 
@@ -676,8 +670,7 @@ def fig_4_28(frame: pd.DataFrame) -> Figure:
     """Strain energy rate, nine traces labelled in the ramp."""
     fig = style.new_figure(frame, "4-28", "Rate of strain energy density 915 µm under the centre", 4.8)
     ax = fig.subplots()
-    style.limit_axis(ax, frame, TIME, "x")
-    style.limit_axis(ax, frame, RATE)
+    style.limit_axes(ax, frame, TIME, RATE)
     ends = {}
     for label in SURFACES:
         rows = frame[(frame["surface"] == label) & is_simulated(frame)].reset_index(drop=True)
@@ -694,7 +687,9 @@ def fig_4_28(frame: pd.DataFrame) -> Figure:
         ends[label] = tuple(rows.loc[jump - 1, [TIME, RATE]])
     style.label_ends(ax, ends, ends["flat"][0] * 1.3, "curvature (1/m)")
     ax.set(xlabel="time (s)", ylabel="strain energy rate (Pa/s)")
-    ax.text(1.75, 60, "hold: rates slightly below zero, off the axis", ha="center", fontsize=7, color=style.GREY)
+    lowest = frame.loc[is_simulated(frame), RATE].min()
+    text = f"hold: rates below zero (to {lowest:.0f} Pa/s), off the axis"
+    ax.text(1.75, 60, text, ha="center", fontsize=7, color=style.GREY)
     return fig
 
 

@@ -85,7 +85,7 @@ def thesis_comparison(histories: Histories, coarse: Histories, meshes: Meshes, r
 
     Parameters
     ----------
-    histories, coarse : scene name -> history, and its companion on a mesh of twice the edge (may be empty).
+    histories, coarse : scene name -> history, and its companion on a coarser mesh (may be empty).
     meshes : scene name -> mesh.
     reference_csv : the table of printed numbers (see `read_reference`).
 

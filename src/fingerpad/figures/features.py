@@ -1,7 +1,7 @@
 """What figures and tables read from a history: phases, profiles, receptor traces, discretisation errors.
 
 A history is the dataset of one simulation (SI units, time[0] unloaded); a coarse companion is the same scene
-on a mesh of twice the edge. Nothing here computes mechanics.
+on a mesh of up to twice the edge and half the time steps. Nothing here computes mechanics.
 """
 
 from __future__ import annotations

@@ -161,5 +161,6 @@ def evidence(id_: str, value: float, error: float, fine: Results, rough: Results
             shown.append(f"{variant} {text}")
     except KeyError:
         return ""
-    where = "" if exact else f" at {' and '.join(k for k in SHAPES if k in base.used)}, 40 gf/s"
+    surfaces = " and ".join(k if k == "flat" else f"K = {k}" for k in SHAPES if k in base.used)
+    where = "" if exact else f" ({surfaces}, 40 gf/s)"
     return f"variants{where}: {', '.join(shown)}{'' if any(fits) else '; none inside'}"

@@ -17,11 +17,12 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 
 from fingerpad.figures.features import ERROR, PHASES, STEADY, SURFACES, TOP, is_simulated
 
 PAGE_WIDTH = 7.0  # inch, the text width of an A4 page
-NOTE_WIDTH = 118  # characters of a footnote's line
+NOTE_WIDTH = 142  # characters of a footnote's line
 GREY = "0.45"
 BAND = "0.955"
 INK = "0.15"
@@ -133,9 +134,11 @@ def new_figure(
 
 def footnote(frame: pd.DataFrame) -> list[str]:
     """Lines under a picture: provenance, discretisation error, and how thesis values are marked."""
-    first = "Simulated: 2-D plane-strain finite elements, not measured."
+    first = "Simulated in plane strain, not measured."
     if frame[ERROR].notna().any():
-        first += f" Discretisation error {_error_text(frame)} (difference to a mesh of twice the edge and half the time steps)."
+        first += (
+            f" Discretisation error {_error_text(frame)}: difference to a mesh of up to twice the edge and half the time steps."
+        )
     lines = [first]
     if frame.loc[~is_simulated(frame), "source"].str.contains("axis range").any():
         lines.append(
@@ -164,28 +167,49 @@ def limit_axis(ax: Axes, frame: pd.DataFrame, column: str, axis: str = "y") -> N
     Where it must be extended, the thesis's range is shaded and labelled. Without a range in the frame the
     axis is left to the data.
     """
+    _mark(ax, **{axis: _set_limits(ax, frame, column, axis)})
+
+
+def limit_axes(ax: Axes, frame: pd.DataFrame, x: str, y: str) -> None:
+    """Set both axes as `limit_axis` does; where both are extended, what the thesis shows is one rectangle."""
+    _mark(ax, _set_limits(ax, frame, x, "x"), _set_limits(ax, frame, y, "y"))
+
+
+def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> tuple[float, float] | None:
+    """Set the limits of one axis; the thesis's range if the data leave it."""
     values = frame.loc[~is_simulated(frame) & frame["source"].str.contains("axis range"), column].dropna()
     data = frame.loc[is_simulated(frame), column].dropna()
     set_limits = ax.set_ylim if axis == "y" else ax.set_xlim
     if values.empty:
         if axis == "y" and not data.empty:
             set_limits(min(0.0, data.min()), data.max() * 1.06)
-        return
+        return None
     low, high = values.min(), values.max()
     if axis == "x" and not data.empty and low < 0 and data.abs().max() > high:  # a profile wider than the axis
         set_limits(-data.abs().max() * 1.04, data.abs().max() * 1.04)
-        ax.axvspan(low, high, color=BAND, lw=0, zorder=0)
-        return
+        return low, high
     if axis == "x" or data.empty or data.max() <= high * 1.001:
         set_limits(low, high)
-        return
+        return None
     set_limits(low, data.max() * 1.06)
-    ax.axhspan(low, high, color=BAND, lw=0, zorder=0)
-    bracket = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
-    line = {"arrowstyle": "|-|,widthA=.2,widthB=.2", "color": GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", (1.02, low), (1.02, high), arrowprops=line, **bracket)
-    ax.annotate("thesis axis range", (1.03, (low + high) / 2), xycoords=bracket["xycoords"], rotation=90,
-                ha="left", va="center", fontsize=6, color=GREY)  # fmt: skip
+    return low, high
+
+
+def _mark(ax: Axes, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> None:
+    """Shade the thesis's range where an axis goes beyond it, with a bracket beside a vertical one."""
+    band = {"color": BAND, "lw": 0, "zorder": 0}
+    if x and y:
+        ax.add_patch(Rectangle((x[0], y[0]), x[1] - x[0], y[1] - y[0], **band))
+    elif x:
+        ax.axvspan(*x, **band)
+    elif y:
+        ax.axhspan(*y, **band)
+    if y:
+        bracket = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
+        line = {"arrowstyle": "|-|,widthA=.2,widthB=.2", "color": GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
+        ax.annotate("", (1.02, y[0]), (1.02, y[1]), arrowprops=line, **bracket)
+        ax.annotate("thesis axis range", (1.03, sum(y) / 2), xycoords=bracket["xycoords"], rotation=90,
+                    ha="left", va="center", fontsize=6, color=GREY)  # fmt: skip
 
 
 def nine_panels(fig: Figure, labels: Sequence, xlabel: str, ylabel: str) -> dict[str, Axes]:
