@@ -1,0 +1,183 @@
+"""Measured data that the model is compared with and calibrated to: the CSV files of ``config/reference``.
+
+Every row says where it comes from (``source``) and how it was obtained (``how_obtained``). Forces over depth are a folder: a
+further subject is a further file in ``config/reference/force_depth``.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+INDENTERS = ("flat plate", "flat probe 6.35 mm", "flat probe", "point probe", "cylinder")
+"""Indenters that the files may name."""
+
+
+class ReferenceDataError(ValueError):
+    """A reference file is wrong; the message is one line: file, row and column, value, what is allowed."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a column may hold: text, one of some words, or a number above (or from) a bound; `optional` allows none."""
+
+    words: tuple[str, ...] = ()
+    text: bool = False
+    above: float | None = None
+    least: float | None = None
+    optional: bool = False
+
+    @property
+    def allowed(self) -> str:
+        """What is allowed, in words."""
+        if self.words:
+            return ", ".join(self.words)
+        if self.text:
+            return "text"
+        bound = f" above {self.above:g}" if self.above is not None else f" from {self.least:g}" if self.least is not None else ""
+        return f"a number{bound}{' or nothing' if self.optional else ''}"
+
+    def read(self, cell: str) -> str | float:
+        """The value of a cell; ValueError if it is not allowed."""
+        if self.words or self.text:
+            if not cell or (self.words and cell not in self.words):
+                raise ValueError
+            return cell
+        if self.optional and not cell:
+            return math.nan
+        value = float(cell)
+        if not math.isfinite(value) or (self.above is not None and not value > self.above):
+            raise ValueError
+        if self.least is not None and not value >= self.least:
+            raise ValueError
+        return value
+
+
+_ORIGIN = {"source": Column(text=True), "how_obtained": Column(text=True)}
+
+FORCE_DEPTH = {
+    "subject": Column(text=True),
+    "indenter": Column(words=INDENTERS),
+    "depth_mm": Column(above=0.0),
+    "speed_mm_per_s": Column(least=0.0),
+    "force_N": Column(above=0.0),
+    **_ORIGIN,
+}
+"""Normal force at an indentation depth; a speed of 0 is the steady state."""
+
+RELAXATION = {
+    "series": Column(text=True),
+    "indenter": Column(words=INDENTERS),
+    "term": Column(least=1.0),
+    "g": Column(above=0.0, optional=True),
+    "tau_s": Column(above=0.0),
+    **_ORIGIN,
+}
+"""Terms of relaxation functions; g is the share of the instantaneous shear modulus, empty where the source gives none."""
+
+SURFACE_PROFILES = {
+    "subject": Column(text=True),
+    "indenter": Column(words=INDENTERS),
+    "diameter_mm": Column(above=0.0),
+    "depth_mm": Column(above=0.0),
+    "speed_mm_per_s": Column(least=0.0),
+    "lateral_distance_mm": Column(),
+    "deflection_mm": Column(),
+    **_ORIGIN,
+}
+"""Deflection of the skin, downward positive, beside an indenter at a depth."""
+
+
+def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
+    """Forces over depth.
+
+    Args:
+        paths: a folder, all of whose CSV files are read, or files.
+
+    Returns:
+        Columns of :data:`FORCE_DEPTH`, the files one after the other in the order of their names.
+
+    Raises:
+        ReferenceDataError: a file is wrong, there is none, or a subject's depth under an indenter at a speed is given twice.
+    """
+    if isinstance(paths, (str, Path)) and Path(paths).is_dir():
+        files = sorted(Path(paths).glob("*.csv"))
+    else:
+        files = sorted(map(Path, [paths] if isinstance(paths, (str, Path)) else paths))
+    if not files:
+        raise ReferenceDataError(f"{paths}: holds no CSV file; allowed: at least one with columns {', '.join(FORCE_DEPTH)}")
+    seen: dict[tuple, str] = {}
+    frames = []
+    for file in files:
+        frame = read_table(file, FORCE_DEPTH)
+        for row, record in enumerate(frame.itertuples(index=False), start=2):
+            key = (record.subject, record.indenter, record.depth_mm, record.speed_mm_per_s)
+            if key in seen:
+                what = f"subject '{key[0]}', {key[1]}, {key[2]:g} mm, {key[3]:g} mm/s"
+                raise ReferenceDataError(f"{file}: row {row}: {what} is in {seen[key]} already; allowed: each once")
+            seen[key] = f"{file.name} row {row}"
+        frames.append(frame)
+    return pd.concat(frames, ignore_index=True)
+
+
+def read_relaxation(path: str | Path) -> pd.DataFrame:
+    """Relaxation series, columns of :data:`RELAXATION`; `ReferenceDataError` if the file is wrong or shares sum to 1 or more."""
+    frame = read_table(path, RELAXATION)
+    totals = frame.groupby("series", sort=False)["g"].sum()
+    for series, total in totals[totals >= 1].items():
+        row = int(frame.index[frame["series"] == series][0]) + 2
+        raise ReferenceDataError(f"{path}: row {row}, column g: series '{series}' sums to {total:g}; allowed: less than 1")
+    return frame
+
+
+def read_surface_profiles(path: str | Path) -> pd.DataFrame:
+    """Surface profiles, columns of :data:`SURFACE_PROFILES`; `ReferenceDataError` if the file is wrong."""
+    return read_table(path, SURFACE_PROFILES)
+
+
+def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
+    """A CSV file with exactly the columns of `schema`, in any order, and at least one row.
+
+    Raises:
+        ReferenceDataError: it cannot be read, a column is missing, unknown or repeated, a row is too short or too long, or a
+        cell holds what its column does not allow. Rows are counted as in a text editor, the header being row 1.
+    """
+    path = Path(path)
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            rows = [[cell.strip() for cell in row] for row in csv.reader(stream)]
+    except (OSError, ValueError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or type(error).__name__
+        raise ReferenceDataError(f"{path}: cannot be read ({reason}); allowed: a CSV file in UTF-8") from None
+    columns = ", ".join(schema)
+    header = rows[0] if rows else []
+    for name in schema:
+        if header.count(name) != 1:
+            problem = "is missing" if name not in header else "is there twice"
+            raise ReferenceDataError(f"{path}: row 1: column {name} {problem}; allowed: {columns}")
+    for name in header:
+        if name not in schema:
+            raise ReferenceDataError(f"{path}: row 1: column '{name}' is not known; allowed: {columns}")
+    values: dict[str, list] = {name: [] for name in header}
+    for number, row in enumerate(rows[1:], start=2):
+        if not any(row):
+            if any(any(later) for later in rows[number:]):
+                raise ReferenceDataError(f"{path}: row {number}: is empty; allowed: {len(header)} cells")
+            break
+        if len(row) != len(header):
+            raise ReferenceDataError(f"{path}: row {number}: has {len(row)} cells; allowed: {len(header)}")
+        for name, cell in zip(header, row, strict=True):
+            try:
+                values[name].append(schema[name].read(cell))
+            except ValueError:
+                raise ReferenceDataError(
+                    f"{path}: row {number}, column {name}: '{cell[:60]}'; allowed: {schema[name].allowed}"
+                ) from None
+    if not values[header[0]]:
+        raise ReferenceDataError(f"{path}: has no rows; allowed: at least one")
+    return pd.DataFrame(values)[list(schema)]
