@@ -52,7 +52,7 @@ class Rules:
         relaxation_share: viscosity is left out when what it can change is below this share of the accuracy.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
-        edges_per_half_width: a contact narrower than this many edges gets a finer skin mesh under the apex.
+        edges_per_half_width: a contact with less than one edge to either side gets this many under the apex.
         seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
             finite and with small strain, and per node and step for output.
     """
@@ -97,7 +97,7 @@ class Plan:
         ("long_term" or "instantaneous"). element: key of the element. mesh_size: of a built mesh, None for an external one.
         contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them.
         timed: does time matter? nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
-        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; predicted_cost_s: CPU seconds.
+        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities.
     """
 
     effects: dict[str, Effect]
@@ -394,7 +394,7 @@ def _mesh_size(scene: Scene, preset: Preset, profile, contact: ContactEstimate, 
         fillet = getattr(profile, "fillet", 0.0)
         edge = min(preset.skin_edge / 4, fillet / 2) if fillet else preset.skin_edge / 4
         focus = tuple((x, edge) for x in sorted({abs(x) for x in profile.edges}))
-    elif not isinstance(scene.accuracy, Discretisation) and preset.skin_edge > contact.half_width / rules.edges_per_half_width:
+    elif not isinstance(scene.accuracy, Discretisation) and preset.skin_edge > contact.half_width:
         focus = ((0.0, contact.half_width / rules.edges_per_half_width),)
     return MeshSize(
         skin_edge=preset.skin_edge,

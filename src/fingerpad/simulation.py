@@ -204,7 +204,7 @@ class Simulation:
                 "force": record.force / self.share,
                 "tangential_force": 0.0 if self.mesh.half else record.tangential_force,
                 "indentation_depth": record.depth,
-                "contact_width": np.nan_to_num(edges[1] - edges[0]) / self.share,
+                "contact_width": max(np.nan_to_num(edges[1] - edges[0]), 0.0) / self.share,
                 "residual": record.residual,
                 "complementarity_error": record.complementarity,
                 "energy_balance_error": record.energy_error,

@@ -12,7 +12,7 @@ multipliers times the second derivative of the gap. Under force control the prof
 Friction, when a plan calls for it, gets a module of its own on the same condensed quantities; nothing of it is here.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, lapack, lu_factor, lu_solve
@@ -59,6 +59,7 @@ class ContactStep:
     force: np.ndarray  # (nz,) N/m, >= 0, along the gap's gradient
     active: np.ndarray  # (nz,) bool
     pivots: int
+    softened: bool = False  # part of the gaps' second derivative was left out: the state was not stable with it
 
 
 def _solver(matrix):
@@ -129,12 +130,20 @@ def solve_contact(
             raise ContactError("the curved contact is not stable")
     except ContactError:
         if border is None:
-            raise
-        # too curved for its own load at this linearisation: half of the geometric term is safer and still converges
-        bent = 0.5 * curvature if np.abs(curvature).max() * previous_force.max() > 1e-6 * np.abs(schur).max() else 0 * curvature
-        return solve_contact(
+            lowest = float(np.linalg.eigvalsh(schur)[0])
+            if lowest > 0:
+                raise
+            # the body itself is not stable here (an element folding under an edge): stiffen it just enough to descend
+            schur, bent = schur - 2 * lowest * np.eye(len(schur)), curvature
+        elif np.abs(curvature).max() * previous_force.max() > 1e-6 * np.abs(schur).max():
+            # too curved for its own load at this linearisation: half of the geometric term is safer and still converges
+            bent = 0.5 * curvature
+        else:
+            bent = 0 * curvature
+        step = solve_contact(
             zone, schur, right, gap, gradient, bent, previous_force, active, force=force, depth_change=depth_change
         )
+        return replace(step, softened=True)
     du = free + solved[:, :nz] @ f
     if bend is not None:
         du -= bend * dd

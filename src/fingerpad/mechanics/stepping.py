@@ -34,11 +34,16 @@ class _StepFailure(RuntimeError):
 
 @dataclass(frozen=True)
 class NewtonSettings:
-    """Tolerances relative to the current contact force and to the node spacing, and limits."""
+    """Tolerances relative to the current contact force and to the node spacing, and limits.
+
+    ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
+    only descends.
+    """
 
     force_tolerance: float = 1e-4
     gap_tolerance: float = 1e-3
     max_iterations: int = 14
+    snap_iterations: int = 60
     max_halvings: int = 10
 
 
@@ -158,7 +163,12 @@ class QuasiStatic:
         """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure."""
         body, settings = self.body, self.settings
         body.begin_step(dt)
-        for iteration in range(1, settings.max_iterations + 1):
+        limit, iteration = settings.max_iterations, 0
+        self._softened = False
+        while iteration < limit:
+            iteration += 1
+            if self._softened:
+                limit = settings.max_iterations + settings.snap_iterations
             if self._zone_is_tight():
                 self._grow_zone()
             try:
@@ -169,7 +179,7 @@ class QuasiStatic:
                 raise _StepFailure("the residual is not finite")
             if residual <= 1.0 and not self._zone_is_tight():
                 return iteration, residual, gap, gradient
-        raise _StepFailure(f"{settings.max_iterations} Newton iterations did not suffice")
+        raise _StepFailure(f"{limit} Newton iterations did not suffice")
 
     def iterate(self, control, target):
         """One Newton iteration; returns the residual over its tolerance and the new gap and gradient of the zone."""
@@ -184,6 +194,7 @@ class QuasiStatic:
         reduced = self.solver.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
         step = solve_contact(zone, schur, reduced, gap, gradient, curvature, self.nodal_force[part], self.active[part], **goal)
+        self._softened |= step.softened
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
         u, depth = body.u, self.depth
         share = 1.0
