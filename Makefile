@@ -10,7 +10,7 @@ SNAKEMAKE := $(BIN)/snakemake --workflow-profile workflow/profiles/default
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help setup figures smoke test bench lint report regression-update lock schemas clean
+.PHONY: help setup figures smoke test bench lint report specimens regression-update lock schemas clean
 
 help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
@@ -18,6 +18,7 @@ help:
 	@echo "make smoke              set up, then the same workflow with config/smoke.yaml (coarse, under results/smoke)"
 	@echo "make bench              set up, then measure and print the benchmark table"
 	@echo "make report             pack the figures, their captions and the run's statistics into results/report.zip"
+	@echo "make specimens          calibrate, and take the calibrated specimens over into config/specimens"
 	@echo "make regression-update  accept a deliberate change of the figures"
 	@echo "make lint               style, formatting and the import contracts"
 	@echo "make schemas            write workflow/schemas from the typed models"
@@ -58,6 +59,10 @@ report: figures
 
 regression-update: figures
 	FINGERPAD_UPDATE_BASELINES=1 $(BIN)/python -m pytest -q tests/test_figure_regression.py
+
+specimens: $(INSTALLED)
+	$(SNAKEMAKE) calibration
+	cp results/thesis/specimens/calibrated_*.yaml config/specimens/
 
 schemas: $(INSTALLED)
 	$(BIN)/python -m fingerpad.config schemas

@@ -23,6 +23,7 @@ validate(config, "workflow/schemas/workflow.schema.json")
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/simulations.smk"
+include: "workflow/rules/calibration.smk"
 include: "workflow/rules/figures.smk"
 
 
@@ -30,6 +31,7 @@ localrules:
     all,
     chapter3,
     chapter4,
+    calibration,
 
 
 rule all:
@@ -38,6 +40,7 @@ rule all:
     input:
         figures(),
         tables(),
+        calibration(),
         histories(config["scenes"]),
 
 
@@ -51,3 +54,9 @@ rule chapter4:
     """The figures of the thesis's chapter 4: ramp-and-hold indentation with nine surfaces."""
     input:
         figures("4-"),
+
+
+rule calibration:
+    """The pad calibrated to measured forces: figures, table and specimens."""
+    input:
+        calibration(),

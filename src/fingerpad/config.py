@@ -34,10 +34,14 @@ class WorkflowConfig(BaseModel):
     """Directory of the thesis figures, fig_<number>.png beside fig_<number>.csv."""
     tables: Directory
     """Directory of the tables, <name>.csv beside <name>.md."""
+    studies: Directory
+    """Directory of the figures of studies, <name>.png beside <name>.csv."""
     scenes: Annotated[tuple[Name, ...], Field(min_length=1)]
     """Scenes to simulate, files of config/scenes."""
     variants: tuple[Name, ...] = ()
     """Scenes with something changed, for tables of sensitivity; simulated without a companion."""
+    calibration_scenes: tuple[Name, ...] = ()
+    """Scenes of the calibration, calibration_plate among them; left out, no calibration."""
     accuracy: Accuracy | None = None
     """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each states."""
     companion_accuracy: Accuracy | None = None

@@ -42,6 +42,14 @@ def tables():
     return [f"{config['tables']}/{name}.csv" for name in config["table_names"]]
 
 
+def calibration():
+    """The figures and the table of the calibration, if the configuration has its scenes; relaxation needs a ramp and hold."""
+    scenes = config.get("calibration_scenes", [])
+    names = ["fit", "identifiability", "residuals"] + (["prony"] if "calibration_ramp_hold" in scenes else [])
+    pictures = [f"{config['studies']}/calibration_{name}.png" for name in names]
+    return [*pictures, f"{config['tables']}/calibration.csv"] if scenes else []
+
+
 def histories(scenes, fidelity="simulations"):
     """The simulation results of some scenes."""
     return [f"{RESULTS}/{fidelity}/{scene}/history.nc" for scene in scenes]

@@ -1,0 +1,117 @@
+"""Simulations and measured forces -> the moduli's constant, the Prony series, calibrated specimens.
+
+Inputs:  config/reference/{force_depth/*.csv,relaxation.csv}, the histories of the scenes named by `calibration_scenes`.
+Outputs: <results>/calibration/*.csv, <results>/specimens/calibrated_*.yaml, and from the CSV files
+         <studies>/calibration_*.png beside their data, <tables>/calibration.csv and calibration.md.
+
+Specimens are committed as config/specimens/calibrated_*.yaml; `make specimens` takes over those of the default run.
+"""
+
+from glob import glob
+
+FORCES = "config/reference/force_depth"
+RAMP = "calibration_ramp_hold"
+CALIBRATION = config.get("calibration_scenes", [])
+
+
+ruleorder: calibration_table > table
+
+
+rule calibrate:
+    """Steady forces of subjects and the elastic curve -> the constant of each, how certain, and a specimen of each."""
+    input:
+        sources("calibrate"),
+        ENVIRONMENT,
+        data=sorted(glob(f"{FORCES}/*.csv")),
+        histories=histories(scene for scene in CALIBRATION if scene != RAMP),
+        coarse=companions(["calibration_plate"] if RAMP in CALIBRATION else []),
+    output:
+        csv=expand(f"{RESULTS}/calibration/{{name}}.csv", name=["fit", "identifiability", "residuals", "estimates"]),
+        specimens=directory(f"{RESULTS}/specimens"),
+    log:
+        f"{RESULTS}/logs/calibrate.log",
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    shell:
+        "python workflow/scripts/calibrate.py {FORCES} {output.csv[0]} {output.specimens}"
+        " {input.histories} {input.coarse} > {log} 2>&1"
+
+
+rule calibrate_prony:
+    """The force of a ramp and hold, the elastic curves and measured time constants -> the Prony series, how certain."""
+    input:
+        sources("calibrate_prony"),
+        ENVIRONMENT,
+        "config/specimens/thesis.yaml",
+        relaxation="config/reference/relaxation.csv",
+        scene=f"config/scenes/{RAMP}.yaml",
+        mesh=f"{RESULTS}/simulations/{RAMP}/mesh.msh",
+        histories=histories(["calibration_plate", "calibration_instantaneous", RAMP]),
+    output:
+        f"{RESULTS}/calibration/prony.csv",
+        f"{RESULTS}/calibration/prony_estimates.csv",
+    params:
+        accuracy=config.get("accuracy") or "as_stated",
+    log:
+        f"{RESULTS}/logs/calibrate_prony.log",
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    shell:
+        "python workflow/scripts/calibrate_prony.py {input.relaxation} {input.scene} {params.accuracy} {input.mesh}"
+        " {output[0]} {input.histories} > {log} 2>&1"
+
+
+rule calibration_figure:
+    """Data of the calibration -> a picture, and the plotted data beside it."""
+    input:
+        sources("calibration_figure"),
+        ENVIRONMENT,
+        data=f"{RESULTS}/calibration/{{name}}.csv",
+    output:
+        png=report(
+            f"{config['studies']}/calibration_{{name}}.png",
+            caption="../report/calibration.rst",
+            category="Calibration",
+            labels={"study": "{name}"},
+        ),
+        csv=f"{config['studies']}/calibration_{{name}}.csv",
+    wildcard_constraints:
+        name="[a-z]+",
+    log:
+        f"{RESULTS}/logs/calibration_figure/{{name}}.log",
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    shell:
+        "python workflow/scripts/calibration_figure.py calibration_{wildcards.name} {input.data} {output.png} > {log} 2>&1"
+
+
+rule calibration_table:
+    """Estimates of the calibration -> one table, for programs (CSV) and for people (Markdown)."""
+    input:
+        sources("calibration_table"),
+        ENVIRONMENT,
+        estimates=expand(
+            f"{RESULTS}/calibration/{{name}}.csv", name=["estimates", "prony_estimates"] if RAMP in CALIBRATION else ["estimates"]
+        ),
+    output:
+        csv=report(
+            f"{config['tables']}/calibration.csv",
+            caption="../report/calibration.rst",
+            category="Tables",
+            labels={"table": "calibration"},
+        ),
+        md=f"{config['tables']}/calibration.md",
+    log:
+        f"{RESULTS}/logs/calibration_table.log",
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    shell:
+        "python workflow/scripts/calibration_table.py {output.csv} {input.estimates} > {log} 2>&1"
