@@ -6,39 +6,16 @@ Outputs: <results>/<fidelity>/<scene>/{plan.json,mesh.msh,history.nc}, where fid
 """
 
 
-rule plan:
-    """A scene file -> which effects are on and why, on what discretisation, at what predicted cost."""
-    input:
-        sources("plan"),
-        scene=scene_file,
-        named=files_named_by_scene,
-    output:
-        f"{RESULTS}/{{fidelity}}/{{scene}}/plan.json",
-    params:
-        accuracy=accuracy,
-    log:
-        f"{RESULTS}/logs/plan/{{fidelity}}/{{scene}}.log",
-    threads: 1
-    resources:
-        mem_mb=500,
-        runtime=2,
-    shell:
-        "python workflow/scripts/plan.py {input.scene} {params.accuracy} {output} > {log} 2>&1"
-
-
 rule mesh:
-    """A scene -> the mesh of the pad that its plan asks for, with named layers and boundaries.
-
-    The plan is made anew from the scene, in milliseconds; the file is an input so that it is there to be read.
-    """
+    """A scene -> its plan (effects, discretisation, cost, and why) and the mesh of the pad that the plan asks for."""
     input:
         sources("mesh"),
         ENVIRONMENT,
         scene=scene_file,
         named=files_named_by_scene,
-        plan=rules.plan.output,
     output:
-        f"{RESULTS}/{{fidelity}}/{{scene}}/mesh.msh",
+        plan=f"{RESULTS}/{{fidelity}}/{{scene}}/plan.json",
+        mesh=f"{RESULTS}/{{fidelity}}/{{scene}}/mesh.msh",
     params:
         accuracy=accuracy,
     log:
@@ -48,7 +25,7 @@ rule mesh:
         mem_mb=1000,
         runtime=5,
     shell:
-        "python workflow/scripts/mesh.py {input.scene} {params.accuracy} {output} > {log} 2>&1"
+        "python workflow/scripts/mesh.py {input.scene} {params.accuracy} {output.plan} {output.mesh} > {log} 2>&1"
 
 
 rule simulate:
@@ -58,7 +35,7 @@ rule simulate:
         ENVIRONMENT,
         scene=scene_file,
         named=files_named_by_scene,
-        mesh=rules.mesh.output,
+        mesh=rules.mesh.output.mesh,
     output:
         ensure(f"{RESULTS}/{{fidelity}}/{{scene}}/history.nc", non_empty=True),
     params:
