@@ -183,9 +183,11 @@ def residuals(frame: pd.DataFrame) -> Figure:
     fig = _figure("Calibration: a contact that grows", note, 3.9)
     left, right = fig.subplots(1, 2)
     residual = frame[frame["panel"] == "residuals"]
+    subjects = residual["subject"].unique()
+    thick = "mean" if "mean" in subjects else subjects[0]
     for model, (style, colour) in MODEL_LINES.items():
         for who, rows in residual[residual["series"] == model].groupby("subject"):
-            mean = who == "mean"
+            mean = who == thick
             left.plot(
                 rows[DEPTH],
                 1e3 * rows["residual (N)"],

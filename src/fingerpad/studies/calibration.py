@@ -250,7 +250,7 @@ def _cited(group) -> str:
     return "; ".join(dict.fromkeys(group["source"].str.replace(r"^(.*?\b\d{4}\b).*$", r"\1", regex=True)))
 
 
-def _line(panel, series, source, depth, force, low=None, high=None):
+def _line(panel, series, source, depth, force, low=np.nan, high=np.nan):
     columns = {"panel": panel, "series": series, "source": source, DEPTH: depth * 1e3, FORCE: force}
     return pd.DataFrame(columns | {"force_low (N)": low, "force_high (N)": high})
 

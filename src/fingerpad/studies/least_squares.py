@@ -67,7 +67,7 @@ class Fit:
     def aicc(self) -> float:
         """Akaike's information criterion for small samples, the scatter counted as a parameter (Hurvich and Tsai 1989)."""
         n, k = self.count, len(self.values) + 1
-        return float(n * np.log(self.rss / n) + 2 * k + 2 * k * (k + 1) / (n - k - 1)) if n > k + 1 else float("nan")
+        return float(n * np.log(max(self.rss, 1e-300) / n) + 2 * k + 2 * k * (k + 1) / (n - k - 1)) if n > k + 1 else float("nan")
 
 
 def fit(
@@ -122,7 +122,8 @@ def fit(
         raise ValueError(f"the fit of {', '.join(names)} did not converge: {found.message}")
     end = evaluate(found.x)
     rss = float(end["residual"] @ end["residual"])
-    spread = float(np.sqrt(rss / (len(data) - len(names)))) if sigma is None else sigma
+    # data without scatter would claim exactness; no force is known to a millionth
+    spread = max(float(np.sqrt(rss / (len(data) - len(names)))), 1e-6 * scale) if sigma is None else sigma
     # the same order as in `start`, data less model
     return Fit(names, np.exp(found.x), end["jacobian"], -end["residual"] / weight, rss, spread, sigma is not None, count)
 
