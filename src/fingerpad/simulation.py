@@ -118,7 +118,8 @@ class Simulation:
 
     def run(self, progress):
         states: list[dict[str, np.ndarray]] = [self.receptors.strain_energies(self.body)]
-        snapshots: list[tuple[float, np.ndarray, np.ndarray]] = []
+        # one a leg and time: of the increments of a steady leg, all at one time, the last
+        snapshots: dict[tuple[int, float], tuple[np.ndarray, np.ndarray]] = {}
         wanted = self.scene.outputs.snapshots
         total = self._nominal_end()
         counts = {"iterations": 0, "cutbacks": 0}
@@ -126,7 +127,7 @@ class Simulation:
         def after(record: Record):
             states.append(self.receptors.strain_energies(self.body))
             if any(abs(record.time - t) <= 1e-9 * max(t, 1e-12) for t in wanted):
-                snapshots.append((record.time, record.displacement, self._element_pressure()))
+                snapshots[record.leg, record.time] = record.displacement, self._element_pressure()
             if progress:
                 counts["iterations"] += record.iterations
                 counts["cutbacks"] += record.halvings
@@ -261,12 +262,12 @@ class Simulation:
             cells = self.whole.cells
             history = add_snapshots(
                 history,
-                [when for when, _, _ in snapshots],
+                [when for _, when in snapshots],
                 self.whole.points,
                 cells,
                 self.whole.region,
-                np.array([unfold.nodes(u) for _, u, _ in snapshots]),
-                np.array([unfold.elements(p) for _, _, p in snapshots]),
+                np.array([unfold.nodes(u) for u, _ in snapshots.values()]),
+                np.array([unfold.elements(p) for _, p in snapshots.values()]),
             )
         return history
 
