@@ -173,3 +173,15 @@ def test_estimates_are_good_enough_to_plan_with(curvature, width, depth):
     assert 2e3 * found.half_width == pytest.approx(width, rel=0.2)
     assert 1e3 * found.depth == pytest.approx(depth, rel=0.25)
     assert pad.pressed_to(found.depth, curvature).half_width == pytest.approx(found.half_width, rel=1e-6)
+
+
+@pytest.mark.parametrize("accuracy", ["draft", "thesis"])
+def test_plan_foretells_the_mesh(ramp, accuracy):
+    """Nodes and smallest edge are those of the mesh that is then built."""
+    from fingerpad.specimen import mesh_for
+
+    whole = changed(ramp, accuracy=accuracy, effects={"symmetry": False})
+    chosen = plan(whole)
+    built = mesh_for(whole, chosen).quality()
+    assert chosen.nodes == built["nodes"]
+    assert chosen.smallest_edge == pytest.approx(built["smallest_edge_m"], rel=0.01)

@@ -18,7 +18,7 @@ from fingerpad.scene import Discretisation, Hold, PressToDepth, PressToForce, Sc
 from fingerpad.specimen.external import read_pad_mesh
 from fingerpad.specimen.materials import Prony
 from fingerpad.specimen.measures import apex_edge, apex_measures
-from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes
+from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes, smallest_edge
 from fingerpad.stimuli.motion import STEADY, programme
 from fingerpad.stimuli.profiles import profile_of
 
@@ -126,6 +126,7 @@ class Plan:
         }
         if self.mesh_size is not None:
             out |= {
+                "contact_edge_um": round(self.contact_edge * 1e6, 3),
                 "skin_edge_um": round(self.mesh_size.skin_edge * 1e6, 3),
                 "fine_half_width_mm": round(self.mesh_size.fine_half_width * 1e3, 3),
             }
@@ -189,7 +190,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     if external is None:
         size = _mesh_size(scene, preset, profile, contact, rules)
         nodes = count_nodes(scene.specimen.outline, size)
-        smallest = min([size.skin_edge, size.layer_edge, *(edge for _, edge in size.focus)])
+        smallest = smallest_edge(scene.specimen.outline, size)
         edge = min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
     else:
         size, nodes = None, len(external.points)

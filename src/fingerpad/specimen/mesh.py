@@ -307,6 +307,15 @@ def count_nodes(outline: Outline, size: MeshSize) -> int:
     return 4 * (len(columns) - 1) * (2 * (skin_rows + fat_rows) + 1)
 
 
+def smallest_edge(outline: Outline, size: MeshSize) -> float:
+    """Shortest element edge (m, corner to corner) of `build_pad_mesh(outline, size)`, without building it."""
+    curve = OutlineCurve(outline)
+    columns, _ = _columns(curve, size)
+    rows, _, fat_rows, fat_edge = _rows(curve, size)
+    corners = _node_positions(curve, columns, rows, fat_rows, fat_edge)[::2, ::2]
+    return float(min(np.hypot(*np.moveaxis(np.diff(corners, axis=axis), -1, 0)).min() for axis in (0, 1)))
+
+
 def _node_positions(curve: OutlineCurve, columns: np.ndarray, rows: np.ndarray, fat_rows: int, fat_edge: float):
     """Positions of the right half's nodes, shape (2 columns + 1, 2 rows + 1, 2), in m."""
     theta = curve.theta_at(_with_middles(columns))
