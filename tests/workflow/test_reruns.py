@@ -10,7 +10,9 @@ pytestmark = [pytest.mark.workflow, pytest.mark.slow]
 SMOKE = ("--configfile", "config/smoke.yaml")
 
 HISTORY = "results/smoke/simulations/homogeneous_flat/history.nc"
-FIGURES = {"figure", "table"}
+COMPANION = "results/smoke/coarse/homogeneous_flat/history.nc"
+CALIBRATION = {"calibrate", "calibration_figure", "calibration_table"}
+FIGURES = {"figure", "table", *CALIBRATION}
 
 
 def test_nothing_is_left_to_do(finished):
@@ -51,19 +53,34 @@ def test_change_in_a_figure_module_reruns_only_figures(finished, module):
 
 def test_change_in_the_comparison_reruns_only_the_table(finished):
     with finished.edited("src/fingerpad/figures/comparison.py"):
-        assert set(finished.planned(*SMOKE)) == {"table"}
+        assert set(finished.planned(*SMOKE)) == {"table", "calibration_table"}
 
 
 def test_change_of_a_scene_reruns_that_scene(finished):
     with finished.edited("config/scenes/homogeneous_flat.yaml"):
         jobs = finished.planned(*SMOKE)
-    assert jobs["simulate"] == {HISTORY}
+    assert jobs["simulate"] == {HISTORY, COMPANION}
 
 
 def test_change_of_a_specimen_reruns_the_scenes_that_name_it(finished):
     with finished.edited("config/specimens/homogeneous.yaml"):
         jobs = finished.planned(*SMOKE)
-    assert jobs["simulate"] == {HISTORY}
+    assert jobs["simulate"] == {HISTORY, COMPANION}
+
+
+def test_change_of_a_measured_force_reruns_the_calibration_and_no_simulation(finished):
+    with finished.edited("config/reference/force_depth/dandekar_2003.csv", "\n"):
+        assert set(finished.planned(*SMOKE)) == CALIBRATION
+
+
+def test_a_further_file_of_measured_forces_reruns_the_calibration(finished):
+    path = finished.root / "config/reference/force_depth/mine.csv"
+    path.write_text((path.parent / "dandekar_2003.csv").read_text().replace("\n1,", "\nme,"))
+    try:
+        assert set(finished.planned(*SMOKE)) == CALIBRATION
+    finally:
+        path.unlink()
+    assert finished.planned(*SMOKE) == {}
 
 
 def test_changed_environment_reruns_meshes_simulations_and_figures(finished):
@@ -113,4 +130,4 @@ def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
         undeclared = {path for path in read - inputs - set(outputs) if "__pycache__" not in path}
         assert not undeclared, f"{rule} opens what it does not declare"
         rules.add(rule)
-    assert rules >= {"mesh", "simulate", "figure", "table"}
+    assert rules >= {"mesh", "simulate", *FIGURES}

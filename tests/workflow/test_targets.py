@@ -8,6 +8,10 @@ import yaml
 pytestmark = pytest.mark.workflow
 
 SMOKE = ("--configfile", "config/smoke.yaml")
+CALIBRATION = {
+    *(f"figures/studies/calibration_{n}.{k}" for n in ("fit", "identifiability", "residuals", "prony") for k in ("png", "csv")),
+    *(f"figures/tables/calibration.{kind}" for kind in ("csv", "md")),
+}
 
 
 def config(project, name):
@@ -20,18 +24,32 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     assert jobs.pop("figure") == figures
     assert jobs.pop("table") == {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
     places = [f"{fidelity}/{scene}" for fidelity in ("simulations", "coarse") for scene in thesis["scenes"]]
-    places += [f"simulations/{scene}" for scene in thesis["variants"]]
+    places += [f"simulations/{scene}" for scene in (*thesis["variants"], *thesis["calibration_scenes"])]
+    places += ["coarse/calibration_plate"]
     assert jobs.pop("mesh") == {f"results/thesis/{place}/{name}" for place in places for name in ("plan.json", "mesh.msh")}
     assert jobs.pop("simulate") == {f"results/thesis/{place}/history.nc" for place in places}
+    assert jobs.pop("calibration_figure") | jobs.pop("calibration_table") == CALIBRATION
+    outputs = jobs.pop("calibrate") | jobs.pop("calibrate_prony")
+    assert {path for path in outputs if not path.endswith(".csv")} == {"results/thesis/specimens"}
     assert not jobs
+
+
+def test_calibration_simulates_its_own_scenes_only(clone):
+    jobs = clone.planned("calibration")
+    assert jobs["calibration_figure"] | jobs["calibration_table"] == CALIBRATION
+    assert {Path(path).parent.name for path in jobs["simulate"]} == set(config(clone, "thesis")["calibration_scenes"])
+    assert not {"figure", "table"} & set(jobs)
 
 
 def test_a_configuration_given_replaces_the_default_and_writes_under_its_results_only(clone):
     smoke, jobs = config(clone, "smoke"), clone.planned(*SMOKE)
     outputs = {Path(path) for paths in jobs.values() for path in paths}
     assert all(path.is_relative_to("results/smoke") for path in outputs)
-    assert {path.parent.name for path in outputs if path.name == "history.nc"} == set(smoke["scenes"])
-    assert {path.stem for path in outputs if path.suffix == ".png"} == {f"fig_{n}" for n in smoke["figure_numbers"]}
+    assert {path.parent.name for path in outputs if path.name == "history.nc"} == {*smoke["scenes"], *smoke["calibration_scenes"]}
+    pictures = {f"fig_{n}" for n in smoke["figure_numbers"]} | {
+        f"calibration_{n}" for n in ("fit", "identifiability", "residuals")
+    }
+    assert {path.stem for path in outputs if path.suffix == ".png"} == pictures
 
 
 @pytest.mark.parametrize("chapter", ["3", "4"])
