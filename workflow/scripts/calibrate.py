@@ -9,12 +9,15 @@ from pathlib import Path
 
 from fingerpad.figures.inputs import read_results
 from fingerpad.figures.io import write_frame
-from fingerpad.reference_data import read_force_depth
+from fingerpad.reference_data import ReferenceDataError, read_force_depth
 from fingerpad.studies.calibration import calibrate, write_specimens
 
 folder, out, specimens, *paths = sys.argv[1:]
 histories, _, coarse = read_results(paths)
-data = read_force_depth(folder)
+try:
+    data = read_force_depth(folder)
+except ReferenceDataError as error:
+    sys.exit(str(error))
 result = calibrate(histories, coarse, data)
 for name in ("fit", "identifiability", "residuals", "estimates"):
     write_frame(getattr(result, name), Path(out).with_name(f"{name}.csv"))

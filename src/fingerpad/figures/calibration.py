@@ -201,7 +201,8 @@ def residuals(frame: pd.DataFrame) -> Figure:
             )
     left.axhline(0, color=GREY, lw=0.7)
     left.set(xlabel="indentation depth (mm)", ylabel="measured less simulated (mN)", title="residuals")
-    left.set_ylim(top=1.9e3 * residual["residual (N)"].max())
+    low, high = left.get_ylim()
+    left.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
     left.legend(loc="upper left")
     length = frame[frame["panel"] == "length"]
     needed, fitted = length[length["series"] == "needed"], length[length["series"] != "needed"]
