@@ -43,11 +43,11 @@ def tables():
 
 
 def calibration():
-    """The figures and the table of the calibration, if the configuration has its scenes; relaxation needs a ramp and hold."""
+    """The figures, the table and the specimens of the calibration, if the configuration has its scenes; relaxation needs a ramp and hold."""
     scenes = config.get("calibration_scenes", [])
     names = ["fit", "identifiability", "residuals"] + (["prony"] if "calibration_ramp_hold" in scenes else [])
     pictures = [f"{config['studies']}/calibration_{name}.png" for name in names]
-    return [*pictures, f"{config['tables']}/calibration.csv"] if scenes else []
+    return [*pictures, f"{config['tables']}/calibration.csv", f"{RESULTS}/specimens"] if scenes else []
 
 
 def histories(scenes, fidelity="simulations"):
