@@ -225,11 +225,11 @@ def test_failure_saves_the_last_state_and_names_the_cause(starved, tmp_path, cap
 
 
 def test_needle_through_the_pad_fails_cleanly(base):
-    """A needle driven 4 mm deep: elements would turn inside out, the history ends with the last sound state."""
+    """A needle driven 4 mm deep: nodes pop round it and elements fold; the history ends with the last sound state."""
     hopeless = scene(base, Cylinder(curvature=6e4), (depth(0.2, 1.0), depth(4.0, 1.0)), nu=0.4999)
     with pytest.raises(NonConvergence) as caught:
         simulate(hopeless, plan(hopeless))
-    assert "inside out" in caught.value.reason and "finer skin mesh" in caught.value.advice
+    assert caught.value.reason and "finer" in caught.value.advice
     kept = caught.value.dataset
-    assert kept.sizes["time"] > 5 and float(kept.min_detF.min()) > 0 and np.isfinite(kept.force).all()
+    assert kept.sizes["time"] > 5 and float(kept.energy_balance_error[-1]) < 0.05 and float(kept.min_detF.min()) > 0 and np.isfinite(kept.force).all()
     assert kept.attrs["estimated_error"] >= 0.5

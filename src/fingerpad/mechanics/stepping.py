@@ -45,6 +45,7 @@ class NewtonSettings:
     max_iterations: int = 14
     snap_iterations: int = 60
     max_halvings: int = 10
+    energy_share: float = 0.35
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,7 @@ class QuasiStatic:
         self.depth = 0.0
         self.time = 0.0
         self.work = self.force = self._tangential = 0.0
+        self._energies = (0.0, 0.0, 0.0)
         self._set_zone(*skin.start)
         self.height = self._first_touch()
         self._previous = None
@@ -244,6 +246,13 @@ class QuasiStatic:
                 self._grow_zone()
                 raise _StepFailure("skin outside the contact zone touches the profile")
 
+    def _check_energy(self, work, energies):
+        """A false equilibrium shows: its energy is not what was put in (trapezoidal, so a large first step has a margin)."""
+        change = energies[0] + energies[2] - self._energies[0] - self._energies[2]
+        margin = self.settings.energy_share * (abs(work) + abs(change)) + 0.02 * abs(self.work)
+        if abs(work - change) > margin:
+            raise _StepFailure("the energy found is not the work that was done")
+
     def _advance(self, dt, control, target, predict):
         """One substep with predictor, check and commit."""
         state = self.save()
@@ -262,17 +271,20 @@ class QuasiStatic:
             iterations, residual, gap, gradient = self._attempt(dt, control, target)
             self._gradient, self._gap = gradient, gap
             self._check()
+            force = float(-self.nodal_force[self._range] @ gradient[:, 1])
+            self.body.commit()
+            work = 0.5 * (self.force + force) * (self.depth - state[3])
+            energies = self.body.energies()
+            self._check_energy(work, energies)
         except _StepFailure:
             self.restore(state)
             raise
-        old_force = self.force
-        self.force = float(-self.nodal_force[self._range] @ gradient[:, 1])
-        self._tangential = float(-self.nodal_force[self._range] @ gradient[:, 0])
-        self.body.commit()
         for observe in self.observers:
             observe(self.body, dt)
-        self.work += 0.5 * (old_force + self.force) * (self.depth - state[3])
-        self._energies = self.body.energies()
+        self.force = force
+        self._tangential = float(-self.nodal_force[self._range] @ gradient[:, 0])
+        self.work += work
+        self._energies = energies
         self._previous = (state[0][0], state[1], state[3])
         return iterations, residual
 
