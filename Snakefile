@@ -45,7 +45,7 @@ rule all:
 
 
 rule chapter3:
-    """The figures of the thesis's chapter 3: the specimen and its mesh."""
+    """The figures of the thesis's chapter 3: the specimen and its mesh, forces, surface profiles and layer boundaries."""
     input:
         figures("3-"),
 

@@ -54,7 +54,8 @@ def all_scenes() -> list[str]:
 
 def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
     """Every scene's made-up history; `scale` multiplies every result (a stand-in for a coarse companion)."""
-    return {name: history(name, scale, edge) for name in all_scenes()}
+    made = {name: history(name, scale, edge) for name in all_scenes()}
+    return made | {name: pressed(name, scale, edge) for name in PRESSED}
 
 
 def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
@@ -119,6 +120,64 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         "skin_y": ("skin_node", skin_y, {"units": "m"}),
     }
     return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(_scene(name, label, rate))})
+
+
+MM, INCH = 1e-3, 25.4e-3
+STEPS = {"flat": {"shape": "flat"}, "line": {"shape": "line"}, "bar": {"shape": "bar", "width": INCH / 16, "fillet": 0.1 * MM}}
+PRESSED = {
+    "steady_line": (STEPS["line"], (0.5, 1.0, 1.5, 2.0), None),
+    "steady_bar_1_16_inch": (STEPS["bar"], (1.0, 2.0), None),
+    "steady_cylinder_1_8_inch": ({"shape": "cylinder", "curvature": 16 / INCH}, (0.5, 1.0, 1.6, 2.5), None),
+    "steady_cylinder_1_4_inch": ({"shape": "cylinder", "curvature": 8 / INCH}, (1.0,), None),
+    "steady_cylinder_3_8_inch": ({"shape": "cylinder", "curvature": 16 / 3 / INCH}, (0.6, 1.25, 1.8, 2.5), None),
+    "steady_cylinder_1_inch": ({"shape": "cylinder", "curvature": 2 / INCH}, (1.0,), None),
+    "calibration_plate": (STEPS["flat"], (0.5, 1.0, 1.5, 2.0, 2.5), None),
+    "calibration_ramp_hold": (STEPS["flat"], (1.0,), (2.0, 10.0)),
+    **{f"ramp_hold_{d:.1f}_mm".replace(".", "_"): (STEPS["flat"], (d,), (2.0, 10.0)) for d in (0.5, 1.5, 2.0)},
+    **{f"ramp_hold_{v}_mm_per_s": (STEPS["flat"], (1.0,), (v, 1.5)) for v in (8, 32)},
+}
+"""Presses to depths: stimulus, depths in mm leg by leg, and speed in mm/s and end in s of a ramp and hold (None: steady)."""
+
+
+def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
+    """A made-up press to depths: force as the square of depth, half of it relaxing, a smooth dent of the skin."""
+    stimulus, targets, timed = PRESSED[name]
+    if timed is None:
+        depth = np.concatenate([[0.0], *(np.linspace(a, b, 5)[1:] for a, b in zip((0, *targets), targets, strict=False))])
+        time, leg, overstress = np.zeros(len(depth)), np.repeat(np.arange(len(targets)), 4), np.zeros(len(depth))
+        leg = np.concatenate(([0], leg))
+        motion = [{"press_to_depth": d * MM, "speed": None} for d in targets]
+    else:
+        speed, end = timed
+        ramp = targets[0] / speed
+        time = np.concatenate((np.linspace(0, ramp, 11), ramp + np.geomspace(0.01, end - ramp, 16)))
+        depth, leg = np.minimum(time * speed, targets[0]), np.where(time <= ramp, 0, 1)
+        overstress = 0.5 * np.exp(-np.maximum(time - ramp, 0) / 0.4)
+        motion = [{"press_to_depth": targets[0] * MM, "speed": speed * MM}, {"hold": end - ramp}]
+    depth = depth * MM
+    skin_x, skin_y = _skin(edge)
+    points = mesh().points
+
+    def dent(x, y):
+        return np.exp(-((x / 2e-3) ** 2)) * np.clip((y - 1e-3) / 5e-3, 0, 1)
+
+    ends = depth[[np.flatnonzero(leg == k)[-1] for k in range(len(targets))]]
+    fields = np.zeros((len(ends), *points.shape))
+    fields[..., 1] = -scale * np.outer(ends, dent(*points.T))
+    data = {
+        "force": ("time", scale * 20 * (depth / MM) ** 2 * (1 + overstress)),
+        "indentation_depth": ("time", depth),
+        "skin_displacement_x": (("time", "skin_node"), np.zeros((len(time), len(skin_x)))),
+        "skin_displacement_y": (("time", "skin_node"), -scale * np.outer(depth, dent(skin_x, skin_y))),
+        "leg": ("time", leg),
+        "node_position": (("node", "axis"), points),
+        "element_nodes": (("element", "element_node"), mesh().cells),
+        "element_region": ("element", mesh().region),
+        "snapshot_displacement": (("snapshot", "node", "axis"), fields),
+    }
+    coords = {"time": ("time", time), "skin_x": ("skin_node", skin_x), "skin_y": ("skin_node", skin_y)}
+    scene = _scene(name, "flat", 40) | {"stimulus": stimulus, "motion": motion}
+    return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(scene)})
 
 
 def _skin(edge: float) -> tuple[np.ndarray, np.ndarray]:

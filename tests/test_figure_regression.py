@@ -28,6 +28,7 @@ ROOT = Path(__file__).parents[1]
 BASELINES = Path(__file__).parent / "baselines"
 PUBLISHED = ROOT / "figures" / "thesis"
 RESULTS = ROOT / "results" / "thesis"
+MEASURED = ROOT / "config" / "reference"
 UPDATE = os.environ.get("FINGERPAD_UPDATE_BASELINES") == "1"
 ACCEPT = "; if this is meant, run make regression-update and commit"
 
@@ -62,7 +63,7 @@ def reference():
 @pytest.mark.parametrize("number", FIGURES)
 def test_data_of_a_coarse_simulation_are_those_of_the_baseline(simulated, reference, number, tmp_path):
     path = BASELINES / f"fig_{number}.csv"
-    frame = FIGURES[number].frame(*simulated, {}, reference)
+    frame = FIGURES[number].frame(*simulated, {}, reference, *FIGURES[number].measurements(MEASURED))
     write_frame(frame, path if UPDATE else tmp_path / "new.csv")
     changed = differences(read_frame(path if UPDATE else tmp_path / "new.csv"), read_frame(path))
     assert not changed, f"{changed}{ACCEPT}"
@@ -98,6 +99,6 @@ def test_published_picture_shows_its_data(number, tmp_path):
 @pytest.mark.skipif(not RESULTS.is_dir(), reason="no results/thesis here: make figures has not been run")
 @pytest.mark.parametrize("number", FIGURES)
 def test_published_data_are_those_of_the_cached_results(cached, reference, number, tmp_path):
-    write_frame(FIGURES[number].frame(*cached, reference), tmp_path / "new.csv")
+    write_frame(FIGURES[number].frame(*cached, reference, *FIGURES[number].measurements(MEASURED)), tmp_path / "new.csv")
     changed = differences(read_frame(tmp_path / "new.csv"), read_frame(PUBLISHED / f"fig_{number}.csv"))
     assert not changed, f"{changed}; run make figures"

@@ -40,11 +40,11 @@ def made():
 
 @pytest.fixture(scope="module")
 def frames(made):
-    return {number: spec.frame(*made) for number, spec in FIGURES.items()}
+    return {number: spec.frame(*made, *spec.measurements(REFERENCE.parent)) for number, spec in FIGURES.items()}
 
 
 def test_all_figures_of_the_two_chapters_are_there():
-    expected = "3-4 3-5 4-6 4-7 4-8 4-10 4-11 4-12 4-13 4-14 4-15 4-16 4-20 4-21 4-23 4-24 4-28".split()
+    expected = "3-4 3-5 3-6 3-7 3-8 3-9 3-10 3-11 4-6 4-7 4-8 4-10 4-11 4-12 4-13 4-14 4-15 4-16 4-20 4-21 4-23 4-24 4-28".split()
     assert list(FIGURES) == expected
 
 
@@ -61,8 +61,10 @@ def test_frame_has_units_in_its_column_names_and_an_error_column(frames, number)
 def test_frame_needs_only_the_scenes_it_names(made, number):
     histories, meshes, coarse, reference = made
     spec = FIGURES[number]
-    only = {k: {name: d[name] for name in spec.needs} for k, d in (("h", histories), ("m", meshes), ("c", coarse))}
-    spec.frame(only["h"], only["m"], only["c"], reference)
+    only = {k: {name: d[name] for name in spec.needs} for k, d in (("h", histories), ("m", meshes))}
+    companions = {name: coarse[name] for name in spec.read_companions}
+    assert set(companions) <= set(spec.needs)
+    spec.frame(only["h"], only["m"], companions, reference)
 
 
 @pytest.mark.parametrize("number", [n for n in FIGURES if n.startswith("4-")])
@@ -93,7 +95,9 @@ def test_picture_does_not_depend_on_the_callers_matplotlib_settings(frames, tmp_
 @pytest.mark.parametrize("number", FIGURES)
 def test_thesis_values_are_never_mixed_with_simulated_ones(frames, number):
     frame = frames[number]
-    other = frame[~ft.is_simulated(frame)]
+    measured = frame["source"].str.startswith("measured (")
+    assert measured.any() == bool(FIGURES[number].measured)
+    other = frame[~ft.is_simulated(frame) & ~measured]
     assert other["source"].str.contains(r"^thesis|stated in the thesis").all()
     assert other["source"].str.contains(r"\(T\d+[a-z]?").all()
 
@@ -248,7 +252,7 @@ def test_reference_table_is_checked(tmp_path):
     table = pd.read_csv(REFERENCE, dtype=str)
     path = tmp_path / "numbers.csv"
     pd.concat([table, table[:1]]).to_csv(path, index=False)
-    with pytest.raises(ValueError, match="repeated id T031"):
+    with pytest.raises(ValueError, match="repeated id T026"):
         read_reference(path)
     table.assign(kind="guess").to_csv(path, index=False)
     with pytest.raises(ValueError, match="unknown kind"):

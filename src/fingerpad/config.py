@@ -39,7 +39,7 @@ class WorkflowConfig(BaseModel):
     scenes: Annotated[tuple[Name, ...], Field(min_length=1)]
     """Scenes to simulate, files of config/scenes."""
     variants: tuple[Name, ...] = ()
-    """Scenes with something changed, for tables of sensitivity; simulated without a companion."""
+    """Scenes simulated without a companion: those of tables of sensitivity, and coarse ones of figures."""
     calibration_scenes: tuple[Name, ...] = ()
     """Scenes of the calibration, calibration_plate among them; left out, no calibration."""
     accuracy: Accuracy | None = None

@@ -25,7 +25,7 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     assert jobs.pop("table") == {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
     places = [f"{fidelity}/{scene}" for fidelity in ("simulations", "coarse") for scene in thesis["scenes"]]
     places += [f"simulations/{scene}" for scene in (*thesis["variants"], *thesis["calibration_scenes"])]
-    places += ["coarse/calibration_plate"]
+    places += ["coarse/calibration_plate", "coarse/calibration_ramp_hold"]
     assert jobs.pop("mesh") == {f"results/thesis/{place}/{name}" for place in places for name in ("plan.json", "mesh.msh")}
     assert jobs.pop("simulate") == {f"results/thesis/{place}/history.nc" for place in places}
     assert jobs.pop("calibration_figure") | jobs.pop("calibration_table") == CALIBRATION

@@ -17,7 +17,8 @@ rule figure:
         reference=REFERENCE,
         histories=lambda w: histories(FIGURES[w.number].needs),
         meshes=lambda w: meshes(FIGURES[w.number].needs),
-        coarse=lambda w: companions(FIGURES[w.number].needs),
+        coarse=lambda w: companions(FIGURES[w.number].read_companions),
+        measured=lambda w: FIGURES[w.number].measured_files("config/reference"),
     output:
         png=report(
             f"{config['figures']}/fig_{{number}}.png",
@@ -45,9 +46,9 @@ rule table:
         sources("table"),
         ENVIRONMENT,
         reference=REFERENCE,
-        histories=histories([*config["scenes"], *config.get("variants", [])]),
+        histories=histories([*config["scenes"], *config.get("variants", []), *CALIBRATION]),
         meshes=meshes(config["scenes"]),
-        coarse=companions(config["scenes"]),
+        coarse=companions([*config["scenes"], *(["calibration_plate", RAMP] if RAMP in CALIBRATION else [])]),
     output:
         csv=report(
             f"{config['tables']}/{{table}}.csv",

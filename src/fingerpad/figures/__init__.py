@@ -3,14 +3,15 @@
 A figure is a function of its data frame, and the frame is saved beside the picture::
 
     spec = FIGURES["4-10"]
-    frame = spec.frame(histories, meshes, coarse, read_reference("config/reference/thesis_numbers.csv"))
+    reference = read_reference("config/reference/thesis_numbers.csv")
+    frame = spec.frame(histories, meshes, coarse, reference, *spec.measurements("config/reference"))
     publish(spec.draw(frame), frame, "figures/thesis/fig_4-10.png")
 """
 
-from fingerpad.figures import chapter3, chapter4
+from fingerpad.figures import chapter3, chapter3_verification, chapter4
 from fingerpad.figures.io import publish, read_frame
 from fingerpad.figures.spec import FigureSpec, read_reference
 
-FIGURES: dict[str, FigureSpec] = {s.number: s for s in (*chapter3.FIGURES, *chapter4.FIGURES)}
+FIGURES: dict[str, FigureSpec] = {s.number: s for s in (*chapter3.FIGURES, *chapter3_verification.FIGURES, *chapter4.FIGURES)}
 
 __all__ = ["FIGURES", "FigureSpec", "publish", "read_frame", "read_reference"]

@@ -182,11 +182,11 @@ def stratum_corneum(history) -> float:
     return scene_of(history)["specimen"]["outline"]["stratum_corneum_thickness"]
 
 
-def boundaries(mesh: PadMesh) -> dict[str, np.ndarray]:
-    """Closed boundary lines (n, 2) in m: ``skin`` (with the nail side), ``dermis``, ``fat``, ``bone``.
+def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
+    """Closed boundary lines: ``skin`` (with the nail side), ``dermis``, ``fat``, ``bone``.
 
-    A layer's line is its outer boundary, where it meets the layer outside it. Raises ValueError for a half
-    mesh.
+    Points (n, 2) in m, or node numbers (n,) if `as_nodes`. A layer's line is its outer boundary, where it meets the layer
+    outside it. Raises ValueError for a half mesh.
     """
     if mesh.half:
         raise ValueError("boundaries are drawn from the whole mesh, not from a half of it")
@@ -205,7 +205,7 @@ def boundaries(mesh: PadMesh) -> dict[str, np.ndarray]:
     for index, name in ((1, "dermis"), (2, "fat")):
         inner = ((low == index - 1) & (high == index)) | ((high == index - 1) & (low == index))
         lines[name] = max(loops(_halves(sides[first][inner])), key=len)
-    return {name: mesh.points[line] for name, line in lines.items()}
+    return lines if as_nodes else {name: mesh.points[line] for name, line in lines.items()}
 
 
 def _halves(sides: np.ndarray) -> np.ndarray:

@@ -19,6 +19,7 @@ from fingerpad.figures.features import SURFACES, Histories, peak_pressure, scene
 from fingerpad.figures.numbers import GIVEN, INVERSE_WIDTHS, NUMBERS, Results, end_of, top_of
 from fingerpad.figures.sensitivity import evidence, variant_scene
 from fingerpad.figures.spec import Meshes, read_reference
+from fingerpad.figures.steady import PLATE, steady_force
 from fingerpad.figures.trends import TRENDS
 from fingerpad.figures.verdicts import is_inside, judge, significant
 
@@ -47,10 +48,21 @@ def _radius(results: Results) -> str:
     return f"{reason}: {radius:.1f} mm gives {inverse:.3f} 1/mm under the flat plate (T106)"
 
 
+_LENGTH = "likeliest: contact length; a constant one of 10 mm is too long for a shallow press, see table calibration"
+_BULK = "the estimate lets the whole force relax; the bulk modulus does not"
+
+
+def _at_2_mm(results: Results) -> str:
+    """Reason of the steady force above its axis, with the force at the depth of the last measured point."""
+    return f"{steady_force(results.histories[PLATE], 2e-3):.3g} N at 2 mm; {_LENGTH}"
+
+
 REASONS: dict[str, str | Callable[[Results], str]] = {
     "T037a": "quadratic elements carry four nodes each; linear ones would number as the nodes do",
     "T102a": "likeliest: state of the moduli and thickness of the fat, neither is stated",
     "T323": _radius,
+    "T062": _at_2_mm,
+    **{f"T{i}": _LENGTH for i in ("066", "070")},
     **{f"T{125 + i}": _settled(label) for i, label in enumerate(SURFACES)},
     **{f"T{i}": _settled("210") for i in (145, 148, 150, 154)},
     **{f"T165{tag}": _settled(label, "ramp150") for tag, label in zip("abc", ("flat", "158", "1260"), strict=True)},
@@ -65,6 +77,8 @@ REASONS: dict[str, str | Callable[[Results], str]] = {
 
 def _remark(id_: str, entry: Mapping, results: Results) -> str:
     """What else to say of a number, inside or not: the inverse contact width that the hold starts with."""
+    if entry["form"] == "estimate":
+        return _BULK
     label = next((k for k, i in INVERSE_WIDTHS.items() if i == id_), None)
     if label is None:
         return ""

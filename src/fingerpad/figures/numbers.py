@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,17 @@ from fingerpad.figures.features import (
     surface_nodes,
 )
 from fingerpad.figures.spec import Meshes
+from fingerpad.figures.steady import (
+    BAR,
+    DEPTH_SCENES,
+    LINE,
+    PLATE,
+    RAMP_HOLD,
+    SPEED_SCENES,
+    force_N,
+    pressed_depths,
+    steady_force,
+)
 from fingerpad.specimen.mesh import corner_count
 
 Number = Callable[["Results"], float]
@@ -171,7 +182,86 @@ def _skin_height(results: Results, label: str) -> float:
 INVERSE_WIDTHS = dict(zip(SURFACES, ("T106", "T108", "T110", "T112", "T114", "T115", "T116", "T118", "T120"), strict=True))
 """Ids of the inverse contact widths of Fig 4-9, by surface."""
 
+# --- chapter 3's checks: steady presses, ramps and holds of a flat plate ---------------------------------
+
+
+def _stimulus(scene: str, of: Callable[[dict], float]) -> Number:
+    """A length (mm) of a scene's stimulus."""
+    return lambda r: of(scene_of(r.histories[scene])["stimulus"]) * 1e3
+
+
+def _diameter(stimulus: dict) -> float:
+    return 2 / stimulus["curvature"]
+
+
+def _depths_of(*scenes: str) -> Callable[[Results], list[float]]:
+    """Depths (mm) that are pressed to, in the order of scenes and legs."""
+    return lambda r: [round(z * 1e3, 9) for name in scenes for z in pressed_depths(r.histories[name])]
+
+
+def _depths_among(scenes: tuple[str, ...]) -> Number:
+    """How many of the thesis's four depths (mm) the scenes press to."""
+    return lambda r: len({0.5, 1.0, 1.5, 2.0} & set(_depths_of(*scenes)(r)))
+
+
+def _speed(scene: str) -> Number:
+    """Mean speed (mm/s) of a scene's first leg."""
+
+    def number(results: Results) -> float:
+        history = results.histories[scene]
+        return top_of(history, "indentation_depth") * 1e3 / ramp_time(history)
+
+    return number
+
+
+def _largest_force(scenes: Iterable[str]) -> Number:
+    """Largest force (N) of several scenes."""
+    return lambda r: max(float(force_N(r.histories[name]).max()) for name in scenes)
+
+
+def _peak_over_steady(scene: str) -> Number:
+    """Largest force of a ramp and hold over the steady force of the plate at its depth."""
+
+    def number(results: Results) -> float:
+        history = results.histories[scene]
+        level = steady_force(results.histories[PLATE], max(pressed_depths(history)))
+        return float(force_N(history).max()) / level
+
+    return number
+
+
+def _not_at_hand(results: Results) -> float:
+    raise KeyError("one of the five subjects; the data of four are at hand (Dandekar, Raju and Srinivasan 2003)")
+
+
+CHAPTER3_GIVEN: dict[str, Number] = {
+    "T026": _stimulus("steady_cylinder_1_8_inch", _diameter),
+    "T027": _stimulus("steady_cylinder_1_4_inch", _diameter),
+    "T028": _stimulus("steady_cylinder_1_inch", _diameter),
+    "T029": _stimulus(BAR, lambda s: s["width"]),
+    "T030": lambda r: _depths_of("steady_cylinder_1_4_inch", "steady_cylinder_1_inch")(r)[0],
+    "T030a": lambda r: _depths_of(BAR)(r)[0],
+    "T057": lambda r: float(np.diff([0.0, *_depths_of(LINE)(r)]).max()),
+    "T060": _depths_among((PLATE,)),
+    "T061": _not_at_hand,
+    "T064": _speed(RAMP_HOLD),
+    "T065": _depths_among(tuple(DEPTH_SCENES.values())),
+    **{f"T068{tag}": _speed(scene) for tag, scene in zip("abc", SPEED_SCENES.values(), strict=True)},
+    "T069": lambda r: _depths_of(*SPEED_SCENES.values())(r)[0],
+    "T072": lambda r: _depths_of(BAR)(r)[-1],
+}
+
+CHAPTER3: dict[str, Number] = {
+    "T058": lambda r: round(float(-r.histories[LINE]["skin_displacement_y"].values.min()) * 1e3, 4),
+    "T062": _largest_force((PLATE,)),
+    "T066": _largest_force(DEPTH_SCENES.values()),
+    "T070": _largest_force(SPEED_SCENES.values()),
+    **{f"E047{tag}": _peak_over_steady(scene) for tag, scene in zip("abcd", DEPTH_SCENES.values(), strict=True)},
+    **{f"E048{tag}": _peak_over_steady(scene) for tag, scene in zip("abc", SPEED_SCENES.values(), strict=True)},
+}
+
 GIVEN: dict[str, Number] = {
+    **CHAPTER3_GIVEN,
     "T031": _outline("stratum_corneum_thickness", 1e6),
     "T033": _outline("epidermis_thickness", 1e6),
     "T034": _outline("epidermis_thickness", 1e6),
@@ -216,79 +306,85 @@ GIVEN: dict[str, Number] = {
 }
 """What goes into the simulations: inputs, counts and geometry. They have no discretisation error."""
 
-NUMBERS: dict[str, Number] = GIVEN | {
-    "T101": lambda r: _skin_height(r, "1260"),
-    "T102": lambda r: max(end_of(r(k), "indentation_depth") for k in SURFACES) * 1e3,
-    "T102a": lambda r: end_of(r("1260"), "indentation_depth") * 1e3,
-    "T104": lambda r: max(width_mm(r, k) for k in SURFACES),
-    **{id_: (lambda r, k=label: 1 / width_mm(r, k)) for label, id_ in INVERSE_WIDTHS.items()},
-    "T123": lambda r: max(float(centre_pressure(r(k)).max()) for k in SURFACES),
-    **{f"T{125 + i}": (lambda r, k=label: highest_pressure(r(k))) for i, label in enumerate(SURFACES)},
-    "T134a": lambda r: max(width_mm(r, k) for k in CYLINDERS) / 2,
-    "T135": lambda r: highest_pressure(r.histories["homogeneous_flat"]),
-    "T136": lambda r: highest_pressure(r("flat")),
-    "T137a": lambda r: width_mm(r, "flat") / 2,
-    "T138": lambda r: highest_pressure(r("flat")),
-    "T139": lambda r: max(highest_pressure(r(k)) for k in ("79", "105")),
-    "T140": lambda r: max(highest_pressure(r(k)) for k in ("158", "210", "315")),
-    "T141": lambda r: max(highest_pressure(r(k)) for k in ("420", "630")),
-    "T142": lambda r: highest_pressure(r("1260")),
-    "T143": lambda r: _sunk(r, "flat"),
-    "T144": lambda r: _sunk(r, "1260"),
-    "T145": lambda r: highest_pressure(r("210")),
-    "T146": lambda r: width_mm(r, "210") / 2,
-    "T147": _critical_distance,
-    "T148": lambda r: highest_pressure(r("210")),
-    "T150": lambda r: highest_pressure(r("210")),
-    "T154": lambda r: highest_pressure(r("210")),
-    "T159": lambda r: max(highest_pressure(r(k)) for k in SURFACES),
-    **{
-        f"T165{tag}": (lambda r, k=label: highest_pressure(r(k, "ramp150")))
-        for tag, label in zip("abc", ("flat", "158", "1260"), strict=True)
-    },
-    **{
-        id_: (lambda r, z=depth, k=label: _energy_peak(r, z, k, "ramp150"))
-        for id_, depth, label in (
-            ("T166", 800e-6, "flat"),
-            ("T167", 800e-6, "158"),
-            ("T168", 800e-6, "1260"),
-            ("T169", 915e-6, "flat"),
-            ("T170", 915e-6, "158"),
-            ("T171", 915e-6, "1260"),
-        )
-    },
-    **{
-        id_: (lambda r, k=label: _larger_of_scaled(r, k))
-        for id_, label in (
-            ("T173", "flat"),
-            ("T174", "79"),
-            ("T175", "105"),
-            ("T176", "210"),
-            ("T177a", "315"),
-            ("T177b", "420"),
-            ("T178", "630"),
-            ("T179", "1260"),
-        )
-    },
-    **{
-        id_: (lambda r, k=label: _energy_peak(r, 915e-6, k))
-        for id_, label in zip(("T181", "T182", "T183", "T184", "T185", "T186", "T187a", "T187b", "T187c"), SURFACES, strict=True)
-    },
-    "T188": lambda r: max(_energy_peak(r, 915e-6, k) for k in SURFACES),
-    **{
-        id_: (lambda r, z=depth: max(_energy_peak(r, z, k) for k in SURFACES))
-        for id_, depth in (
-            ("T192", 560e-6),
-            ("T193", 600e-6),
-            ("T194", 640e-6),
-            ("T195", 765e-6),
-            ("T196", 800e-6),
-            ("T197", 845e-6),
-            ("T198a", 870e-6),
-            ("T198b", 915e-6),
-            ("T198c", 960e-6),
-        )
-    },
-    "T205": lambda r: max(float(energy_rate(r(k), 915e-6)["strain_energy_rate (Pa/s)"].max()) for k in SURFACES),
-}
+NUMBERS: dict[str, Number] = (
+    GIVEN
+    | CHAPTER3
+    | {
+        "T101": lambda r: _skin_height(r, "1260"),
+        "T102": lambda r: max(end_of(r(k), "indentation_depth") for k in SURFACES) * 1e3,
+        "T102a": lambda r: end_of(r("1260"), "indentation_depth") * 1e3,
+        "T104": lambda r: max(width_mm(r, k) for k in SURFACES),
+        **{id_: (lambda r, k=label: 1 / width_mm(r, k)) for label, id_ in INVERSE_WIDTHS.items()},
+        "T123": lambda r: max(float(centre_pressure(r(k)).max()) for k in SURFACES),
+        **{f"T{125 + i}": (lambda r, k=label: highest_pressure(r(k))) for i, label in enumerate(SURFACES)},
+        "T134a": lambda r: max(width_mm(r, k) for k in CYLINDERS) / 2,
+        "T135": lambda r: highest_pressure(r.histories["homogeneous_flat"]),
+        "T136": lambda r: highest_pressure(r("flat")),
+        "T137a": lambda r: width_mm(r, "flat") / 2,
+        "T138": lambda r: highest_pressure(r("flat")),
+        "T139": lambda r: max(highest_pressure(r(k)) for k in ("79", "105")),
+        "T140": lambda r: max(highest_pressure(r(k)) for k in ("158", "210", "315")),
+        "T141": lambda r: max(highest_pressure(r(k)) for k in ("420", "630")),
+        "T142": lambda r: highest_pressure(r("1260")),
+        "T143": lambda r: _sunk(r, "flat"),
+        "T144": lambda r: _sunk(r, "1260"),
+        "T145": lambda r: highest_pressure(r("210")),
+        "T146": lambda r: width_mm(r, "210") / 2,
+        "T147": _critical_distance,
+        "T148": lambda r: highest_pressure(r("210")),
+        "T150": lambda r: highest_pressure(r("210")),
+        "T154": lambda r: highest_pressure(r("210")),
+        "T159": lambda r: max(highest_pressure(r(k)) for k in SURFACES),
+        **{
+            f"T165{tag}": (lambda r, k=label: highest_pressure(r(k, "ramp150")))
+            for tag, label in zip("abc", ("flat", "158", "1260"), strict=True)
+        },
+        **{
+            id_: (lambda r, z=depth, k=label: _energy_peak(r, z, k, "ramp150"))
+            for id_, depth, label in (
+                ("T166", 800e-6, "flat"),
+                ("T167", 800e-6, "158"),
+                ("T168", 800e-6, "1260"),
+                ("T169", 915e-6, "flat"),
+                ("T170", 915e-6, "158"),
+                ("T171", 915e-6, "1260"),
+            )
+        },
+        **{
+            id_: (lambda r, k=label: _larger_of_scaled(r, k))
+            for id_, label in (
+                ("T173", "flat"),
+                ("T174", "79"),
+                ("T175", "105"),
+                ("T176", "210"),
+                ("T177a", "315"),
+                ("T177b", "420"),
+                ("T178", "630"),
+                ("T179", "1260"),
+            )
+        },
+        **{
+            id_: (lambda r, k=label: _energy_peak(r, 915e-6, k))
+            for id_, label in zip(
+                ("T181", "T182", "T183", "T184", "T185", "T186", "T187a", "T187b", "T187c"), SURFACES, strict=True
+            )
+        },
+        "T188": lambda r: max(_energy_peak(r, 915e-6, k) for k in SURFACES),
+        **{
+            id_: (lambda r, z=depth: max(_energy_peak(r, z, k) for k in SURFACES))
+            for id_, depth in (
+                ("T192", 560e-6),
+                ("T193", 600e-6),
+                ("T194", 640e-6),
+                ("T195", 765e-6),
+                ("T196", 800e-6),
+                ("T197", 845e-6),
+                ("T198a", 870e-6),
+                ("T198b", 915e-6),
+                ("T198c", 960e-6),
+            )
+        },
+        "T205": lambda r: max(float(energy_rate(r(k), 915e-6)["strain_energy_rate (Pa/s)"].max()) for k in SURFACES),
+    }
+)
 """Every number that has a row, by id."""

@@ -26,6 +26,8 @@ TOLERANCES = {
     "vertical_displacement (mm)": 1e-3,
     "contact_width (mm)": 3e-3,
     "force (gf)": 1e-5,
+    "force (N)": 2e-3,
+    "deflection (mm)": 1e-3,
     "centre_pressure (Pa)": 3e-3,
     "peak_pressure (Pa)": 3e-3,
     "contact_pressure (Pa)": 5e-3,

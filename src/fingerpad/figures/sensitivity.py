@@ -126,6 +126,8 @@ class _Nearest(Mapping):
 
     def __getitem__(self, scene: str) -> xr.Dataset:
         label = scene.rsplit("_", 1)[1].removeprefix("k")
+        if label not in SURFACES:
+            raise KeyError(scene)
         place = SURFACES.index(label)
         nearest = min(SHAPES, key=lambda k: (abs(SURFACES.index(k) - place), k != "210"))
         self.used.add(nearest)

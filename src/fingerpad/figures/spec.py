@@ -5,18 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fingerpad.figures.features import SIMULATED, Histories
+from fingerpad.figures.features import SIMULATED
+from fingerpad.reference_data import read_force_depth, read_surface_profiles
 
 if TYPE_CHECKING:
     from fingerpad.specimen.mesh import PadMesh
 
 Meshes = Mapping[str, "PadMesh"]
-FrameFunction = Callable[[Histories, Meshes, Histories, pd.DataFrame], pd.DataFrame]
+FrameFunction = Callable[..., pd.DataFrame]
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,10 @@ class FigureSpec:
         `reference` is the table of `read_reference` (may be empty: thesis ranges are then left out).
     draw
         ``draw(frame)``: the picture, a function of the frame alone.
+    companions
+        Names of the scenes whose coarse companions the frame reads; None: of all that it needs.
+    measured
+        Name of the measured data (a key of `MEASURED`) that the frame takes as a fifth argument; empty: none.
     """
 
     number: str
@@ -42,13 +48,40 @@ class FigureSpec:
     needs: tuple[str, ...]
     frame: FrameFunction
     draw: Callable[[pd.DataFrame], Figure]
+    companions: tuple[str, ...] | None = None
+    measured: str = ""
+
+    @property
+    def read_companions(self) -> tuple[str, ...]:
+        """Names of the scenes whose companions the frame reads."""
+        return self.needs if self.companions is None else self.companions
+
+    def measurements(self, folder: str | PathLike) -> tuple[pd.DataFrame, ...]:
+        """The measured data in `folder` that `frame` takes after its four arguments: one table or none."""
+        return (MEASURED[self.measured][1](self.measured_files(folder)),) if self.measured else ()
+
+    def measured_files(self, folder: str | PathLike) -> list[Path]:
+        """The files in `folder` that the measured data are read from."""
+        return sorted(Path(folder).glob(MEASURED[self.measured][0])) if self.measured else []
+
+
+def _only_file(paths: list[Path]) -> pd.DataFrame:
+    (path,) = paths
+    return read_surface_profiles(path)
+
+
+MEASURED: Mapping[str, tuple[str, Callable[[list[Path]], pd.DataFrame]]] = {
+    "force_depth": ("force_depth/*.csv", read_force_depth),
+    "surface_profiles": ("surface_profiles.csv", _only_file),
+}
+"""Measured data by name: their files in the folder of reference data, and their reader."""
 
 
 def read_reference(path: str | PathLike) -> pd.DataFrame:
     """Table of numbers printed in the thesis, indexed by id.
 
     Columns figure, quantity, condition, low, high, units, kind (stated | axis_range | garbled), form (value |
-    range | axis | trend | layout), tolerance, source. Raises ValueError for a repeated id or an unknown kind
+    range | axis | estimate | trend | layout), tolerance, source. Raises ValueError for a repeated id or an unknown kind
     or form.
     """
     table = pd.read_csv(path, dtype={"id": str, "figure": str, "condition": str, "units": str}).set_index("id")
@@ -56,7 +89,7 @@ def read_reference(path: str | PathLike) -> pd.DataFrame:
         raise ValueError(f"{path}: repeated id {table.index[table.index.duplicated()][0]}")
     for column, allowed in {
         "kind": {"stated", "axis_range", "garbled"},
-        "form": {"value", "range", "axis", "trend", "layout"},
+        "form": {"value", "range", "axis", "estimate", "trend", "layout"},
     }.items():
         unknown = set(table[column]) - allowed
         if unknown:

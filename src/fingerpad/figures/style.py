@@ -177,8 +177,9 @@ def limit_axes(ax: Axes, frame: pd.DataFrame, x: str, y: str) -> None:
 
 def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> tuple[float, float] | None:
     """Set the limits of one axis; the thesis's range if the data leave it."""
-    values = frame.loc[~is_simulated(frame) & frame["source"].str.contains("axis range"), column].dropna()
-    data = frame.loc[is_simulated(frame), column].dropna()
+    ranges = ~is_simulated(frame) & frame["source"].str.contains("axis range")
+    values = frame.loc[ranges, column].dropna()
+    data = frame.loc[is_simulated(frame) | frame["source"].str.startswith("measured"), column].dropna()
     set_limits = ax.set_ylim if axis == "y" else ax.set_xlim
     if values.empty:
         if axis == "y" and not data.empty:
@@ -188,11 +189,16 @@ def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> tuple[
     if axis == "x" and not data.empty and low < 0 and data.abs().max() > high:  # a profile wider than the axis
         set_limits(-data.abs().max() * 1.04, data.abs().max() * 1.04)
         return low, high
-    if axis == "x" or data.empty or data.max() <= high * 1.001:
-        set_limits(low, high)
-        return None
-    set_limits(low, data.max() * 1.06)
-    return low, high
+    slack = 1e-3 * (high - low)
+    free = axis == "y" and not data.empty
+    below, above = (
+        free and low < 0 and data.min() < low - slack,
+        free and data.max() > high + slack,
+    )  # an axis from 0 starts there
+    set_limits(
+        data.min() - 0.06 * (high - data.min()) if below else low, data.max() + 0.06 * (data.max() - low) if above else high
+    )
+    return (low, high) if below or above else None
 
 
 def _mark(ax: Axes, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> None:

@@ -6,6 +6,8 @@ value
     inside if within the row's relative tolerance (0: equal to six digits) or the discretisation error.
 range
     inside if between low and high, give or take the discretisation error.
+estimate
+    not a number of the thesis, nor a truth: never judged, the remark says by how much the number differs.
 axis
     the thesis shows only an axis. Inside if the largest plotted value stays below its end and fills at least
     `FILL` of it, since a plot is drawn to be filled.
@@ -36,6 +38,8 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
     low, high = float(entry["low"]), float(entry["high"])
     if not np.isfinite(value):
         return "not_comparable", "the simulation does not show it"
+    if entry["form"] == "estimate":
+        return "not_comparable", f"an estimate to compare with, not a truth; {value / low - 1:+.0%}"
     if entry["form"] == "value":
         allowed = max(float(entry["tolerance"]) * abs(low), error, 1e-6 * abs(low))
         if abs(value - low) <= allowed:
