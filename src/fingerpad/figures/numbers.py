@@ -306,85 +306,81 @@ GIVEN: dict[str, Number] = {
 }
 """What goes into the simulations: inputs, counts and geometry. They have no discretisation error."""
 
-NUMBERS: dict[str, Number] = (
-    GIVEN
-    | CHAPTER3
-    | {
-        "T101": lambda r: _skin_height(r, "1260"),
-        "T102": lambda r: max(end_of(r(k), "indentation_depth") for k in SURFACES) * 1e3,
-        "T102a": lambda r: end_of(r("1260"), "indentation_depth") * 1e3,
-        "T104": lambda r: max(width_mm(r, k) for k in SURFACES),
-        **{id_: (lambda r, k=label: 1 / width_mm(r, k)) for label, id_ in INVERSE_WIDTHS.items()},
-        "T123": lambda r: max(float(centre_pressure(r(k)).max()) for k in SURFACES),
-        **{f"T{125 + i}": (lambda r, k=label: highest_pressure(r(k))) for i, label in enumerate(SURFACES)},
-        "T134a": lambda r: max(width_mm(r, k) for k in CYLINDERS) / 2,
-        "T135": lambda r: highest_pressure(r.histories["homogeneous_flat"]),
-        "T136": lambda r: highest_pressure(r("flat")),
-        "T137a": lambda r: width_mm(r, "flat") / 2,
-        "T138": lambda r: highest_pressure(r("flat")),
-        "T139": lambda r: max(highest_pressure(r(k)) for k in ("79", "105")),
-        "T140": lambda r: max(highest_pressure(r(k)) for k in ("158", "210", "315")),
-        "T141": lambda r: max(highest_pressure(r(k)) for k in ("420", "630")),
-        "T142": lambda r: highest_pressure(r("1260")),
-        "T143": lambda r: _sunk(r, "flat"),
-        "T144": lambda r: _sunk(r, "1260"),
-        "T145": lambda r: highest_pressure(r("210")),
-        "T146": lambda r: width_mm(r, "210") / 2,
-        "T147": _critical_distance,
-        "T148": lambda r: highest_pressure(r("210")),
-        "T150": lambda r: highest_pressure(r("210")),
-        "T154": lambda r: highest_pressure(r("210")),
-        "T159": lambda r: max(highest_pressure(r(k)) for k in SURFACES),
-        **{
-            f"T165{tag}": (lambda r, k=label: highest_pressure(r(k, "ramp150")))
-            for tag, label in zip("abc", ("flat", "158", "1260"), strict=True)
-        },
-        **{
-            id_: (lambda r, z=depth, k=label: _energy_peak(r, z, k, "ramp150"))
-            for id_, depth, label in (
-                ("T166", 800e-6, "flat"),
-                ("T167", 800e-6, "158"),
-                ("T168", 800e-6, "1260"),
-                ("T169", 915e-6, "flat"),
-                ("T170", 915e-6, "158"),
-                ("T171", 915e-6, "1260"),
-            )
-        },
-        **{
-            id_: (lambda r, k=label: _larger_of_scaled(r, k))
-            for id_, label in (
-                ("T173", "flat"),
-                ("T174", "79"),
-                ("T175", "105"),
-                ("T176", "210"),
-                ("T177a", "315"),
-                ("T177b", "420"),
-                ("T178", "630"),
-                ("T179", "1260"),
-            )
-        },
-        **{
-            id_: (lambda r, k=label: _energy_peak(r, 915e-6, k))
-            for id_, label in zip(
-                ("T181", "T182", "T183", "T184", "T185", "T186", "T187a", "T187b", "T187c"), SURFACES, strict=True
-            )
-        },
-        "T188": lambda r: max(_energy_peak(r, 915e-6, k) for k in SURFACES),
-        **{
-            id_: (lambda r, z=depth: max(_energy_peak(r, z, k) for k in SURFACES))
-            for id_, depth in (
-                ("T192", 560e-6),
-                ("T193", 600e-6),
-                ("T194", 640e-6),
-                ("T195", 765e-6),
-                ("T196", 800e-6),
-                ("T197", 845e-6),
-                ("T198a", 870e-6),
-                ("T198b", 915e-6),
-                ("T198c", 960e-6),
-            )
-        },
-        "T205": lambda r: max(float(energy_rate(r(k), 915e-6)["strain_energy_rate (Pa/s)"].max()) for k in SURFACES),
-    }
-)
+NUMBERS: dict[str, Number] = {
+    **GIVEN,
+    **CHAPTER3,
+    "T101": lambda r: _skin_height(r, "1260"),
+    "T102": lambda r: max(end_of(r(k), "indentation_depth") for k in SURFACES) * 1e3,
+    "T102a": lambda r: end_of(r("1260"), "indentation_depth") * 1e3,
+    "T104": lambda r: max(width_mm(r, k) for k in SURFACES),
+    **{id_: (lambda r, k=label: 1 / width_mm(r, k)) for label, id_ in INVERSE_WIDTHS.items()},
+    "T123": lambda r: max(float(centre_pressure(r(k)).max()) for k in SURFACES),
+    **{f"T{125 + i}": (lambda r, k=label: highest_pressure(r(k))) for i, label in enumerate(SURFACES)},
+    "T134a": lambda r: max(width_mm(r, k) for k in CYLINDERS) / 2,
+    "T135": lambda r: highest_pressure(r.histories["homogeneous_flat"]),
+    "T136": lambda r: highest_pressure(r("flat")),
+    "T137a": lambda r: width_mm(r, "flat") / 2,
+    "T138": lambda r: highest_pressure(r("flat")),
+    "T139": lambda r: max(highest_pressure(r(k)) for k in ("79", "105")),
+    "T140": lambda r: max(highest_pressure(r(k)) for k in ("158", "210", "315")),
+    "T141": lambda r: max(highest_pressure(r(k)) for k in ("420", "630")),
+    "T142": lambda r: highest_pressure(r("1260")),
+    "T143": lambda r: _sunk(r, "flat"),
+    "T144": lambda r: _sunk(r, "1260"),
+    "T145": lambda r: highest_pressure(r("210")),
+    "T146": lambda r: width_mm(r, "210") / 2,
+    "T147": _critical_distance,
+    "T148": lambda r: highest_pressure(r("210")),
+    "T150": lambda r: highest_pressure(r("210")),
+    "T154": lambda r: highest_pressure(r("210")),
+    "T159": lambda r: max(highest_pressure(r(k)) for k in SURFACES),
+    **{
+        f"T165{tag}": (lambda r, k=label: highest_pressure(r(k, "ramp150")))
+        for tag, label in zip("abc", ("flat", "158", "1260"), strict=True)
+    },
+    **{
+        id_: (lambda r, z=depth, k=label: _energy_peak(r, z, k, "ramp150"))
+        for id_, depth, label in (
+            ("T166", 800e-6, "flat"),
+            ("T167", 800e-6, "158"),
+            ("T168", 800e-6, "1260"),
+            ("T169", 915e-6, "flat"),
+            ("T170", 915e-6, "158"),
+            ("T171", 915e-6, "1260"),
+        )
+    },
+    **{
+        id_: (lambda r, k=label: _larger_of_scaled(r, k))
+        for id_, label in (
+            ("T173", "flat"),
+            ("T174", "79"),
+            ("T175", "105"),
+            ("T176", "210"),
+            ("T177a", "315"),
+            ("T177b", "420"),
+            ("T178", "630"),
+            ("T179", "1260"),
+        )
+    },
+    **{
+        id_: (lambda r, k=label: _energy_peak(r, 915e-6, k))
+        for id_, label in zip(("T181", "T182", "T183", "T184", "T185", "T186", "T187a", "T187b", "T187c"), SURFACES, strict=True)
+    },
+    "T188": lambda r: max(_energy_peak(r, 915e-6, k) for k in SURFACES),
+    **{
+        id_: (lambda r, z=depth: max(_energy_peak(r, z, k) for k in SURFACES))
+        for id_, depth in (
+            ("T192", 560e-6),
+            ("T193", 600e-6),
+            ("T194", 640e-6),
+            ("T195", 765e-6),
+            ("T196", 800e-6),
+            ("T197", 845e-6),
+            ("T198a", 870e-6),
+            ("T198b", 915e-6),
+            ("T198c", 960e-6),
+        )
+    },
+    "T205": lambda r: max(float(energy_rate(r(k), 915e-6)["strain_energy_rate (Pa/s)"].max()) for k in SURFACES),
+}
 """Every number that has a row, by id."""
