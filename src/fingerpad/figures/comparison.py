@@ -49,7 +49,7 @@ def _radius(results: Results) -> str:
 
 
 _LENGTH = "likeliest: contact length; a constant one of 10 mm is too long for a shallow press, see table calibration"
-_BULK = "the estimate lets the whole force relax; the bulk modulus does not"
+_BULK = "mostly the bulk modulus, which does not relax with the shear modulus as the estimate lets the whole force do"
 
 
 def _at_2_mm(results: Results) -> str:
