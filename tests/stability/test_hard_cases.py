@@ -231,5 +231,6 @@ def test_needle_through_the_pad_fails_cleanly(base):
         simulate(hopeless, plan(hopeless))
     assert caught.value.reason and "finer" in caught.value.advice
     kept = caught.value.dataset
-    assert kept.sizes["time"] > 5 and float(kept.energy_balance_error[-1]) < 0.05 and float(kept.min_detF.min()) > 0 and np.isfinite(kept.force).all()
+    assert kept.sizes["time"] > 5 and float(kept.energy_balance_error[-1]) < 0.05
+    assert float(kept.min_detF.min()) > 0 and np.isfinite(kept.force).all()
     assert kept.attrs["estimated_error"] >= 0.5
