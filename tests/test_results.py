@@ -149,3 +149,14 @@ def test_no_code_of_an_absent_effect_runs(monkeypatch):
     leg = scene.motion[0].model_copy(update={"press_to_force": 1e-3 * scene.motion[0].press_to_force, "rate": None})
     history = simulate(scene.model_copy(update={"motion": (leg,)}))
     assert float(history.force[-1]) > 0
+
+
+def test_without_viscosity_there_is_one_strain_energy():
+    """A pad without a Prony series has one strain energy, whatever it is called; with one, the three differ."""
+    scene = load_scene(SCENES / "ramp40_k1260.yaml").with_accuracy("draft")
+    elastic = scene.model_copy(update={"specimen": scene.specimen.model_copy(update={"prony": ()})})
+    end = simulate(elastic).isel(time=-1)
+    np.testing.assert_allclose(end.strain_energy_density, end.strain_energy_network, rtol=1e-12)
+    np.testing.assert_allclose(end.strain_energy_recoverable, end.strain_energy_network, rtol=1e-12)
+    viscous = simulate(scene).isel(time=-1)
+    assert float(abs(viscous.strain_energy_density / viscous.strain_energy_network - 1).min()) > 0.05

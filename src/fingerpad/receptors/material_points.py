@@ -84,7 +84,8 @@ class MaterialPoints:
 
     Args:
         body: the body they belong to. points: (nr, 2) undeformed positions, m.
-        shear_instantaneous: (ne,) Pa, the moduli the headline strain energy is measured with.
+        shear_instantaneous: (ne,) Pa, the moduli the headline strain energy is measured with; None for a purely elastic
+            solid, whose strain energy has one meaning only.
 
     Raises:
         ReceptorError: a point lies outside the mesh.
@@ -104,7 +105,7 @@ class MaterialPoints:
         self.grad = np.einsum("nij,naj->nai", np.linalg.inv(jacobian), slopes)
         self.psi = space.pressure_modes(element, np.einsum("na,nai->ni", values, nodes))
         self.shear, self.bulk = body.shear[element], body.bulk[element]
-        self.shear_instantaneous = np.asarray(shear_instantaneous)[element]
+        self.shear_instantaneous = None if shear_instantaneous is None else np.asarray(shear_instantaneous)[element]
         self._linear = body.geometrically_linear
         prony = body.prony if self._linear else body.branches and body.branches.prony
         self.branches = Branches(prony, (len(element),)) if prony else None
@@ -184,7 +185,8 @@ def strain_energies(f, stress, branches, network, shear, shear_instantaneous, bu
     """Strain energy densities of a finite linear viscoelastic solid, Pa (J per undeformed m^3).
 
     * ``strain_energy_density`` (headline): the elastic energy that the total stress stands for on the instantaneous moduli,
-      ``tau_dev : tau_dev / (4 G_0) + kappa/2 (J - 1)^2`` with tau the Kirchhoff stress without the volumetric part.
+      ``tau_dev : tau_dev / (4 G_0) + kappa/2 (J - 1)^2`` with tau the Kirchhoff stress without the volumetric part. Without
+      instantaneous moduli (None: no viscosity at all) it is psi(C).
     * ``strain_energy_network``: psi(C) of the long-term network alone.
     * ``strain_energy_recoverable``: network plus the Maxwell springs, ``tau_i : tau_i / (4 G_i)`` each.
 
@@ -196,7 +198,9 @@ def strain_energies(f, stress, branches, network, shear, shear_instantaneous, bu
     for beta, q in branches:
         total = total + q
         springs = springs + deviator_square(push_forward(f, q)) / (4 * beta * shear)
-    headline = deviator_square(push_forward(f, total)) / (4 * shear_instantaneous) + 0.5 * bulk * dilatation**2
+    headline = network
+    if shear_instantaneous is not None:
+        headline = deviator_square(push_forward(f, total)) / (4 * shear_instantaneous) + 0.5 * bulk * dilatation**2
     return {
         "strain_energy_density": headline,
         "strain_energy_network": network,
