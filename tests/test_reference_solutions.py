@@ -8,7 +8,9 @@ from scipy.linalg import expm
 from fingerpad.reference_solutions import (
     cattaneo_mindlin,
     cook,
+    friction_plate,
     hertz,
+    incline,
     lame,
     layered,
     layered_contact,
@@ -137,6 +139,45 @@ def test_cattaneo_mindlin_table(load, ratio, peak, centre):
     assert total / (np.pi / 2) == pytest.approx(load, rel=1e-7)
 
 
+def test_cattaneo_mindlin_return():
+    """On the way back the traction carries the force, never exceeds mu p, and at -Q1 is that of Q1 mirrored."""
+    turn, mu, load = 0.8 * 0.5 * np.pi / 2, 0.5, np.pi / 2
+    x = np.linspace(-1, 1, 401)
+    for force in (turn, 0.3, 0.0, -0.2, -turn):
+
+        def q(x, force=force):
+            return cattaneo_mindlin.returned_traction(x, 1.0, 1.0, mu, turn, force, load)
+
+        kinks = np.sqrt(1 - np.array([turn, (turn - force) / 2]) / (mu * load))
+        total, _ = quad(q, -1, 1, points=[*-kinks, *kinks], limit=200)
+        assert total == pytest.approx(force, abs=1e-7)
+        assert np.all(np.abs(q(x)) <= mu * hertz.pressure(x, 1.0, 1.0) + 1e-12)
+    np.testing.assert_allclose(q(x), -cattaneo_mindlin.returned_traction(x, 1.0, 1.0, mu, turn, turn, load), atol=1e-12)
+    with pytest.raises(ValueError, match="opposite"):
+        cattaneo_mindlin.returned_traction(x, 1.0, 1.0, mu, turn, -1.1 * turn, load)
+
+
+@pytest.mark.parametrize("friction, ratio", [(0.0, 0.1), (0.1, 0.20202), (0.2, 0.306122), (0.3, 0.412371)])
+def test_incline_table_of_cgs4(friction, ratio):
+    """NAFEMS CGS-4 at tan(alpha) = 0.1; downhill is uphill on the mirrored slope; balance of both forces on the plane."""
+    assert incline.limit_ratio(0.1, friction) == pytest.approx(ratio, abs=5e-7)
+    assert incline.limit_ratio(-0.1, friction) == pytest.approx((friction - 0.1) / (1 + 0.1 * friction))
+    along, across = np.array([1, 0.1]), np.array([-0.1, 1])  # uphill and out of the plane, both times sqrt(1.01)
+    push = np.array([ratio, -1.0])
+    assert push @ along == pytest.approx(-friction * (push @ across), abs=1e-6)
+    for wrong in ((0.1, -0.1), (2.0, 0.5)):
+        with pytest.raises(ValueError):
+            incline.limit_ratio(*wrong)
+
+
+def test_friction_plate_numbers_agree_with_each_other():
+    """The recomputed displacements lie within the 5 % of the codes, fall inwards and are less than without friction."""
+    np.testing.assert_allclose(friction_plate.CONVERGED, friction_plate.MEAN_OF_CODES, rtol=0.05)
+    strain = (1 - friction_plate.POISSON_RATIO**2) * friction_plate.SIDE_PRESSURE / friction_plate.YOUNGS_MODULUS
+    left, *others = friction_plate.CONVERGED
+    assert strain * friction_plate.SIDE > left > max(others) and others == sorted(others, reverse=True)
+
+
 def test_punch_pressure_load_and_exponent():
     assert punch.pressure(0.0, 2.0, 10.0) * 2 / 10 == pytest.approx(0.3183, abs=5e-5)
     assert punch.load_fraction([0.5, 0.9], 1.0) == pytest.approx([1 / 3, 0.7129], abs=5e-5)
@@ -144,6 +185,25 @@ def test_punch_pressure_load_and_exponent():
     assert punch.stick_exponent(0.3) > 0
     assert np.isinf(punch.pressure(2.0, 2.0, 1.0))
     assert punch.surface_drop([0.5, 1.0], 1.0, 1.0, 1.0).tolist() == [0, 0]
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
+def test_sticking_punch(poisson):
+    """The tractions carry both forces; at nu = 0.5 they are the frictionless pressure, scaled; shear points outwards before."""
+    normal, sideways = (
+        quad(lambda s, k=k: punch.sticking_tractions(np.sin(s), 1.0, 3.0, 2.0, poisson)[k] * np.cos(s), -1.5707, 1.5707)[0]
+        for k in (0, 1)
+    )
+    assert (normal, sideways) == (pytest.approx(3, rel=2e-3), pytest.approx(2, rel=2e-3))
+    x = np.array([0.0, 0.5])
+    p, q = punch.sticking_tractions(x, 1.0, 3.0, 0.0, poisson)
+    if poisson == 0.5:
+        np.testing.assert_allclose(p, punch.pressure(x, 1.0, 3.0))
+        np.testing.assert_allclose(q, 0)
+    else:
+        assert q[0] == 0 and q[1] > 0 and p[0] > punch.pressure(0.0, 1.0, 3.0)
+    with pytest.raises(ValueError, match="inside"):
+        punch.sticking_tractions(1.0, 1.0, 3.0, 0.0, poisson)
 
 
 # --- layers ---------------------------------------------------------------------------------------

@@ -2,7 +2,8 @@
 
 Exact when normal and tangential problems are uncoupled: similar materials, or an incompressible body on a
 rigid one.
-Sources: C. Cattaneo (1938); R. D. Mindlin (1949); K. L. Johnson, *Contact Mechanics* (1985), section 7.2(a).
+Sources: C. Cattaneo (1938); R. D. Mindlin (1949); R. D. Mindlin & H. Deresiewicz (1953) for the return;
+K. L. Johnson, *Contact Mechanics* (1985), sections 7.2(a), 7.3 and 7.4.
 """
 
 import numpy as np
@@ -33,3 +34,18 @@ def traction(x, half_width, peak_pressure, friction, stick_ratio):
         raise ValueError("stick_ratio must lie in [0, 1]")
     s = np.asarray(x, dtype=float) / half_width
     return friction * peak_pressure * (np.sqrt(np.maximum(0, 1 - s**2)) - np.sqrt(np.maximum(0, stick_ratio**2 - s**2)))
+
+
+def returned_traction(x, half_width, peak_pressure, friction, turn, tangential_force, normal_force):
+    """Shear traction after Q rose to ``turn`` and came back to ``tangential_force``, Pa, of the shape of ``x``.
+
+    On the way back the edges slip the other way: from the traction at the turn twice that of the difference is taken,
+    with a stick zone of c/a = sqrt(1 - (Q1 - Q)/(2 mu P)). Raises ``ValueError`` unless -Q1 <= Q <= Q1 <= mu P.
+    """
+    inner = stick_ratio((turn - tangential_force) / 2, normal_force, friction)
+    first, back = (
+        traction(x, half_width, peak_pressure, friction, ratio) for ratio in (stick_ratio(turn, normal_force, friction), inner)
+    )
+    if tangential_force < -turn:
+        raise ValueError("the tangential force must not go beyond the opposite of the turn")
+    return first - 2 * back
