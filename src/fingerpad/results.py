@@ -24,7 +24,8 @@ from fingerpad.provenance import digest, imported_sources
 #: name -> (dimensions, unit, long name)
 VARIABLES = {
     "force": (("time",), "N/m", "normal force per contact length, compression positive"),
-    "tangential_force": (("time",), "N/m", "tangential force per contact length"),
+    "tangential_force": (("time",), "N/m", "lateral force on the indenter per contact length"),
+    "stroke_distance": (("time",), "m", "way of the pad's centre along the stimulus"),
     "indentation_depth": (("time",), "m", "indentation depth since first touch"),
     "contact_width": (("time",), "m", "contact width"),
     "centre_pressure": (("time",), "Pa", "contact pressure at the skin node at x = 0"),
@@ -47,6 +48,11 @@ VARIABLES = {
     "external_work": (("time",), "J/m", "work of the indenter per contact length"),
     "stored_energy": (("time",), "J/m", "network and Maxwell-spring energy per contact length"),
     "dissipated_energy": (("time",), "J/m", "viscous dissipation per contact length"),
+    "frictional_dissipation": (("time",), "J/m", "frictional dissipation per contact length"),
+    # only with friction
+    "tangential_traction": (("time", "skin_node"), "Pa", "frictional traction on the skin along the contact's tangent"),
+    "slip": (("time", "skin_node"), "m", "way of the skin node over the stimulus in the step"),
+    "contact_state": (("time", "skin_node"), "1", "0 no contact, 1 sticks, 2 slips"),
 }
 COORDINATES = {
     "time": ("time", "s", "time"),
@@ -137,6 +143,7 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
                 "peak_pressure_Pa": float(end.peak_pressure),
                 "centre_pressure_Pa": float(end.centre_pressure),
                 "centre_lateral_displacement_mm": float(end.centre_lateral_displacement) * 1e3,
+                "stroke_distance_mm": float(end.stroke_distance) * 1e3,
                 "strain_energy_Pa": end.strain_energy_density.values.tolist(),
                 "strain_energy_network_Pa": end.strain_energy_network.values.tolist(),
                 "strain_energy_recoverable_Pa": end.strain_energy_recoverable.values.tolist(),

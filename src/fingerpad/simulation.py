@@ -74,7 +74,8 @@ class Simulation:
         self.body, instantaneous = self._body()
         self.receptors = self._receptors(instantaneous)
         self.skin = self._skin()
-        self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=(self.receptors,))
+        friction = scene.friction if plan.effects["friction"].on else None
+        self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=(self.receptors,), friction=friction)
 
     def _body(self):
         specimen, plan, mesh = self.scene.specimen, self.plan, self.mesh
@@ -189,12 +190,15 @@ class Simulation:
         out = {name: np.zeros(count) for name in (
             "force", "tangential_force", "indentation_depth", "contact_width", "centre_pressure", "peak_pressure",
             "centre_lateral_displacement", "residual", "complementarity_error", "energy_balance_error", "external_work",
-            "stored_energy", "dissipated_energy",
+            "stored_energy", "dissipated_energy", "frictional_dissipation", "stroke_distance",
         )}  # fmt: skip
         out |= {name: np.zeros(count, np.int32) for name in ("leg", "newton_iterations", "cutbacks")}
         out["min_detF"] = np.ones(count)
         for name in ("contact_pressure", "contact_pressure_smoothed", "skin_displacement_x", "skin_displacement_y"):
             out[name] = np.zeros((count, len(chain)))
+        if self.stepper.friction is not None:
+            out |= {name: np.zeros((count, len(chain))) for name in ("tangential_traction", "slip")}
+            out["contact_state"] = np.zeros((count, len(chain)), np.int8)
         apex = _apex(self.whole.points[chain])
         for k, record in enumerate(records, start=1):
             length, position = self._length_and_gradient(record)
@@ -212,6 +216,8 @@ class Simulation:
                 "external_work": record.work / self.share,
                 "stored_energy": (record.energies[0] + record.energies[1]) / self.share,
                 "dissipated_energy": record.dissipated / self.share,
+                "frictional_dissipation": record.frictional / self.share,
+                "stroke_distance": record.distance,
                 "leg": record.leg,
                 "newton_iterations": record.iterations,
                 "cutbacks": record.halvings,
@@ -221,6 +227,9 @@ class Simulation:
                 "skin_displacement_x": unfold.skin(u[:, 0], odd=True),
                 "skin_displacement_y": unfold.skin(u[:, 1]),
             }
+            if record.state is not None:
+                row["tangential_traction"] = unfold.skin(record.tangential / length, odd=True)
+                row |= {"slip": unfold.skin(record.slip, odd=True), "contact_state": unfold.skin(record.state)}
             for name, value in row.items():
                 out[name][k] = value
             out["peak_pressure"][k] = out["contact_pressure"][k].max()

@@ -9,10 +9,10 @@ complementarity problem
 is solved to the end by block principal pivoting (Portugal, Judice and Vicente 1994). ``S'`` is the Schur complement less the
 multipliers times the second derivative of the gap. Under force control the profile's depth is one more unknown.
 
-Friction, when a plan calls for it, gets a module of its own on the same condensed quantities; nothing of it is here.
+Friction, when a plan calls for it, has a module of its own on the same condensed quantities; nothing of it is here.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, lapack, lu_factor, lu_solve
@@ -72,6 +72,83 @@ def _solver(matrix):
         return lambda right: lu_solve(factors, right, check_finite=False)
 
 
+@dataclass
+class Response:
+    """How constraint rows answer to multipliers on them once the body has been condensed away.
+
+    With multipliers ``m`` (nr,) and a change ``dd`` of the profile's depth the rows move by
+    ``free + compliance @ m + lever * dd`` and the condensed degrees of freedom by :meth:`displacement`.
+
+    Attributes:
+        matrix: (nc, nc) Schur complement with the geometric term of the gaps. compliance: (nr, nr). free, lever: (nr,).
+        corner, load_shift: the depth's own equation ``load = load_shift - lever @ m + corner * dd``. bent: is there such a term?
+    """
+
+    matrix: np.ndarray
+    compliance: np.ndarray
+    free: np.ndarray
+    lever: np.ndarray
+    corner: float
+    load_shift: float
+    bent: bool
+    _columns: np.ndarray
+    _bend: np.ndarray | None
+
+    def displacement(self, multipliers: np.ndarray, depth_change: float) -> np.ndarray:
+        """(nc,) condensed displacement."""
+        count = len(multipliers)
+        out = self._columns[:, count] + self._columns[:, :count] @ multipliers
+        return out if self._bend is None else out - self._bend * depth_change
+
+
+def respond(zone, schur, right, gradient, curvature, previous_force, directions) -> Response:
+    """Response of the zone to forces on its nodes.
+
+    Args:
+        schur, right, gradient, curvature, previous_force: as in :func:`solve_contact`. directions: list of (nz, 2) unit vectors,
+            each giving nz rows.
+    """
+    matrix, border, corner = schur, None, 0.0
+    bent = previous_force * curvature
+    if np.any(bent != 0):
+        tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
+        rows = zone.gather(tangent)
+        on = np.flatnonzero(bent)
+        matrix = schur - rows[on].T @ (bent[on, None] * rows[on])
+        border = -(bent[on] * tangent[on, 1]) @ rows[on]
+        corner = -float(bent @ tangent[:, 1] ** 2)
+    rows = np.concatenate([zone.gather(direction) for direction in directions])
+    lever = np.concatenate([direction[:, 1] for direction in directions])
+    columns = [rows.T, right[:, None]] + ([border[:, None]] if border is not None else [])
+    solved = _solver(matrix)(np.concatenate(columns, axis=1))
+    count = len(rows)
+    compliance, free = rows @ solved[:, :count], solved[:, count]
+    load_shift, bend = 0.0, None
+    if border is not None:
+        bend = solved[:, count + 1]
+        lever = lever - rows @ bend
+        corner -= float(border @ bend)
+        load_shift = float(border @ free)
+    return Response(matrix, compliance, rows @ free, lever, corner, load_shift, border is not None, solved, bend)
+
+
+def soften(error, schur, curvature, previous_force, bent) -> tuple[np.ndarray, np.ndarray]:
+    """The Schur complement and the curvature to try next when a linearised problem has no stable solution.
+
+    ``bent``: did the geometric term take part? Raises ``error`` when there is nothing to soften.
+    """
+    if not bent:
+        lowest = float(np.linalg.eigvalsh(schur)[0])
+        if lowest > 0:
+            raise error
+        # the body itself is not stable here (an element folding under an edge): stiffen it just enough to descend
+        return schur - 2 * lowest * np.eye(len(schur)), curvature
+    if np.abs(curvature).max() * previous_force.max() > 1e-6 * np.abs(schur).max():
+        # too curved for its own load at this linearisation: half of the geometric term is safer and still converges
+        return schur, 0.5 * curvature
+    return schur, 0 * curvature
+
+
 def solve_contact(
     zone: Zone,
     schur: np.ndarray,
@@ -95,62 +172,27 @@ def solve_contact(
     Raises:
         ContactError: pivoting does not end, or nothing can carry the force.
     """
-    matrix, border, corner = schur, None, 0.0
-    bent = previous_force * curvature
-    if np.any(bent != 0):
-        tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
-        rows = zone.gather(tangent)
-        on = np.flatnonzero(bent)
-        matrix = schur - rows[on].T @ (bent[on, None] * rows[on])
-        border = -(bent[on] * tangent[on, 1]) @ rows[on]
-        corner = -float(bent @ tangent[:, 1] ** 2)
-    normal = zone.gather(gradient)
-    nz = len(zone.nodes)
-    columns = [normal.T, right[:, None]] + ([border[:, None]] if border is not None else [])
-    solved = _solver(matrix)(np.concatenate(columns, axis=1))
-    compliance = normal @ solved[:, :nz]
-    free = solved[:, nz]
-    offset = gap + normal @ free
-    lever = gradient[:, 1].copy()
-    load_shift = 0.0
-    if border is not None:
-        bend = solved[:, nz + 1]
-        lever -= normal @ bend
-        corner -= float(border @ bend)
-        load_shift = float(border @ free)
-    else:
-        bend = None
-    try:
-        if depth_change is not None:
-            dd = depth_change
-            f, active, pivots = _pivot(compliance, offset + lever * dd, active)
-        else:
-            f, dd, active, pivots = _pivot_with_depth(compliance, offset, lever, corner, force - load_shift, active)
-        if border is not None and not _stable(matrix, compliance, active):
-            raise ContactError("the curved contact is not stable")
-    except ContactError:
-        if border is None:
-            lowest = float(np.linalg.eigvalsh(schur)[0])
-            if lowest > 0:
-                raise
-            # the body itself is not stable here (an element folding under an edge): stiffen it just enough to descend
-            schur, bent = schur - 2 * lowest * np.eye(len(schur)), curvature
-        elif np.abs(curvature).max() * previous_force.max() > 1e-6 * np.abs(schur).max():
-            # too curved for its own load at this linearisation: half of the geometric term is safer and still converges
-            bent = 0.5 * curvature
-        else:
-            bent = 0 * curvature
-        step = solve_contact(
-            zone, schur, right, gap, gradient, bent, previous_force, active, force=force, depth_change=depth_change
-        )
-        return replace(step, softened=True)
-    du = free + solved[:, :nz] @ f
-    if bend is not None:
-        du -= bend * dd
-    return ContactStep(du, dd, f, active, pivots)
+    softened = False
+    while True:
+        answer = respond(zone, schur, right, gradient, curvature, previous_force, [gradient])
+        offset = gap + answer.free
+        try:
+            if depth_change is not None:
+                dd = depth_change
+                f, on, pivots = _pivot(answer.compliance, offset + answer.lever * dd, active)
+            else:
+                load = force - answer.load_shift
+                f, dd, on, pivots = _pivot_with_depth(answer.compliance, offset, answer.lever, answer.corner, load, active)
+            if answer.bent and not stable(answer.matrix, answer.compliance, on):
+                raise ContactError("the curved contact is not stable")
+        except ContactError as error:
+            schur, curvature = soften(error, schur, curvature, previous_force, answer.bent)
+            softened = True
+            continue
+        return ContactStep(answer.displacement(f, dd), dd, f, on, pivots, softened)
 
 
-def _stable(matrix, compliance, active):
+def stable(matrix, compliance, active):
     """Is ``matrix`` positive definite on the displacements that keep the active gaps closed?
 
     By the inertia of the bordered matrix: the active compliance must have as many negative eigenvalues as ``matrix``.

@@ -85,6 +85,11 @@ class Record:
     work: float
     energies: tuple[float, float, float]
     dissipated: float
+    distance: float = 0.0
+    frictional: float = 0.0
+    tangential: np.ndarray | None = None  # (ns,) N/m along the tangent; the three only with friction
+    slip: np.ndarray | None = None  # (ns,) m, of the skin over the profile in this step
+    state: np.ndarray | None = None  # (ns,) 0 open, 1 sticks, 2 slips
 
 
 class QuasiStatic:
@@ -93,10 +98,12 @@ class QuasiStatic:
     Args:
         body: FiniteStrainBody or SmallStrainBody, unloaded. skin: where contact may happen. profile: the rigid shape.
         observers: callables ``(body, dt)`` run after each converged substep (receptors keep their own history so).
-        external: (n, 2) dead nodal forces, N/m, or None.
+        external: (n, 2) dead nodal forces, N/m, or None. friction: Coulomb's coefficient; None leaves friction out altogether.
     """
 
-    def __init__(self, body, skin: Skin, profile, settings: NewtonSettings | None = None, observers=(), external=None):
+    def __init__(
+        self, body, skin: Skin, profile, settings: NewtonSettings | None = None, observers=(), external=None, friction=None
+    ):
         self.body, self.skin, self.profile = body, skin, profile
         self.settings = settings or NewtonSettings()
         self.observers = observers
@@ -104,12 +111,18 @@ class QuasiStatic:
         self.points = body.space.points
         self.nodal_force = np.zeros(len(skin.nodes))
         self.active = np.zeros(len(skin.nodes), bool)
-        self.depth = 0.0
+        self.depth = self.distance = 0.0
         self.time = 0.0
         self.work = self.force = self._tangential = 0.0
         self._energies = (0.0, 0.0, 0.0)
+        self.friction = None
+        if friction is not None:
+            from fingerpad.mechanics.friction import Coulomb
+
+            self.friction = Coulomb(friction, len(skin.nodes))
         self._set_zone(*skin.start)
         self.height = self._first_touch()
+        self._unloaded = body.save()
         self._previous = None
         self.total_iterations = self.total_halvings = self.factorisations = 0
 
@@ -135,11 +148,11 @@ class QuasiStatic:
 
     def _evaluate(self, nodes):
         position = self.points[nodes] + self.body.u[nodes]
-        return self.profile.evaluate(position - np.array([0.0, self.height - self.depth]))
+        return self.profile.evaluate(position - np.array([-self.distance, self.height - self.depth]))
 
     def _first_touch(self) -> float:
         """Height of the profile's origin at which it just touches the undeformed skin."""
-        skin = self.points[self.skin.nodes]
+        skin = self.points[self.skin.nodes] + np.array([self.distance, 0.0])
         top = skin[:, 1].max()
 
         def closest(height):
@@ -153,13 +166,32 @@ class QuasiStatic:
     # -- one step ---------------------------------------------------------------------------------------------------
 
     def save(self):
-        """The state to come back to: body, contact forces, active nodes, depth."""
-        return self.body.save(), self.nodal_force.copy(), self.active.copy(), self.depth
+        """The state to come back to: body, contact forces, active nodes, depth, distance, friction."""
+        friction = self.friction and self.friction.save()
+        return self.body.save(), self.nodal_force.copy(), self.active.copy(), self.depth, self.distance, friction
 
     def restore(self, state):
         """Come back to a saved state."""
         self.body.restore(state[0])
-        self.nodal_force, self.active, self.depth = state[1].copy(), state[2].copy(), state[3]
+        self.nodal_force, self.active, self.depth, self.distance = state[1].copy(), state[2].copy(), *state[3:5]
+        if self.friction is not None:
+            self.friction.restore(state[5])
+
+    def _start_again(self, distance):
+        """Lift the profile off, let the body recover, and come down to first touch at another stroke distance (m)."""
+        self.body.restore(self._unloaded)
+        self.nodal_force[:], self.active[:] = 0, False
+        self.distance = distance
+        self.depth = self.height - self._first_touch()
+        if self.friction is not None:
+            self.friction.release()
+        for observe in self.observers:
+            observe(self.body, STEADY)
+        self.force = self._tangential = 0.0
+        # what was put in has come out again: the balance goes on from here
+        self.work = 0.0 if self.friction is None else self.friction.dissipated
+        self._energies = (0.0, 0.0, 0.0)
+        self._previous = None
 
     def _attempt(self, dt, control, target):
         """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure."""
@@ -179,7 +211,7 @@ class QuasiStatic:
                 raise _StepFailure(str(error)) from error
             if not np.isfinite(residual):
                 raise _StepFailure("the residual is not finite")
-            if residual <= 1.0 and not self._zone_is_tight():
+            if residual <= 1.0 and not self._zone_is_tight() and not self._touches_elsewhere():
                 return iteration, residual, gap, gradient
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
 
@@ -195,7 +227,11 @@ class QuasiStatic:
         load = -internal if self.external is None else self.external - internal
         reduced = self.solver.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
-        step = solve_contact(zone, schur, reduced, gap, gradient, curvature, self.nodal_force[part], self.active[part], **goal)
+        known = (schur, reduced, gap, gradient, curvature, self.nodal_force[part], self.active[part])
+        if self.friction is None:
+            step = solve_contact(zone, *known, **goal)
+        else:
+            step = self.friction.solve(zone, part, *known, self._motion(zone.nodes), **goal)
         self._softened |= step.softened
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
         u, depth = body.u, self.depth
@@ -214,8 +250,13 @@ class QuasiStatic:
         self.active[:] = False
         self.nodal_force[part], self.active[part] = step.force, step.active
         gap, gradient, _ = self._evaluate(zone.nodes)
+        push, stuck = step.force[:, None] * gradient, 0.0
+        if self.friction is not None:
+            self.friction.accept(part, step)
+            push += self.friction.pull(part, gradient)
+            stuck = self.friction.creep(part, step.active, gradient, self._motion(zone.nodes))
         unbalanced = -internal if self.external is None else self.external - internal
-        unbalanced[zone.nodes] += step.force[:, None] * gradient
+        unbalanced[zone.nodes] += push
         scale = max(step.force.sum(), np.abs(self.external).sum() if self.external is not None else 0.0)
         if scale == 0:  # nothing touches: the body must come back to rest
             scale = body.space.measure.out_of_plane_stretch * np.abs(internal).sum() + 1e-30
@@ -224,39 +265,54 @@ class QuasiStatic:
         penetration = max(0.0, -gap.min(initial=0.0))
         balance = 0.0
         if control == "force" and target > 0:
-            balance = abs(target + np.sum(step.force * gradient[:, 1])) / target
+            balance = abs(target + push[:, 1].sum()) / target
         settings = self.settings
         residual = max(
             equilibrium / settings.force_tolerance,
             balance / settings.force_tolerance,
-            max(opening, penetration) / (settings.gap_tolerance * self.skin.spacing),
+            max(opening, penetration, stuck) / (settings.gap_tolerance * self.skin.spacing),
         )
         return residual if share == 1.0 else max(residual, 2.0), gap, gradient
 
-    def _check(self):
-        """States that satisfy the equations may still be wrong; refuse them."""
-        force = -self.nodal_force[self._range] @ self._gradient[:, 1]
-        if force < -1e-9 * self.nodal_force.sum():
-            raise _StepFailure("the indenter is pulled instead of pushed")
+    def _motion(self, nodes):
+        """(nz, 2) m: how far these nodes have moved over the profile since the step began."""
+        u, depth, distance = self._begin
+        return self.body.u[nodes] - u[nodes] + np.array([self.distance - distance, self.depth - depth])
+
+    def _touches_elsewhere(self):
+        """Does skin outside the zone penetrate the profile? Then the zone has grown to it."""
         outside = np.ones(len(self.skin.nodes), bool)
         outside[self._range] = False
-        if outside.any():
-            far = self._evaluate(self.skin.nodes[outside])[0]
-            if far.min() < -self.settings.gap_tolerance * self.skin.spacing:
-                self._grow_zone()
-                raise _StepFailure("skin outside the contact zone touches the profile")
+        outside = np.flatnonzero(outside)
+        if not len(outside):
+            return False
+        deep = outside[self._evaluate(self.skin.nodes[outside])[0] < -self.settings.gap_tolerance * self.skin.spacing]
+        if not len(deep):
+            return False
+        self._set_zone(min(self._range.start, deep[0] - 8), max(self._range.stop, deep[-1] + 9))
+        return True
 
-    def _check_energy(self, work, energies):
+    def _forces(self, gradient):
+        """Force of the profile on the zone's nodes (nz, 2) N/m, and the frictional part of it (None without friction)."""
+        push = self.nodal_force[self._range, None] * gradient
+        if self.friction is None:
+            return push, None
+        pull = self.friction.pull(self._range, gradient)
+        return push + pull, pull
+
+    def _check_energy(self, work, energies, lost):
         """A false equilibrium shows: its energy is not what was put in (trapezoidal, so a large first step has a margin)."""
-        change = energies[0] + energies[2] - self._energies[0] - self._energies[2]
+        change = energies[0] + energies[2] - self._energies[0] - self._energies[2] + lost
         margin = self.settings.energy_share * (abs(work) + abs(change)) + 0.02 * abs(self.work)
         if abs(work - change) > margin:
             raise _StepFailure("the energy found is not the work that was done")
 
-    def _advance(self, dt, control, target, predict):
+    def _advance(self, dt, control, target, distance, predict):
         """One substep with predictor, check and commit."""
         state = self.save()
+        self._begin = self.body.u, self.depth, self.distance
         try:
+            self.distance = distance
             if predict is not None and self._previous is not None:
                 u, forces, depth = self._previous
                 body_u, ratio = self.body.u, predict
@@ -270,20 +326,23 @@ class QuasiStatic:
                 self.body.displace(self.body.u)
             iterations, residual, gap, gradient = self._attempt(dt, control, target)
             self._gradient, self._gap = gradient, gap
-            self._check()
-            force = float(-self.nodal_force[self._range] @ gradient[:, 1])
+            push, pull = self._forces(gradient)
+            tangential, force = -push.sum(0)
+            if force < -1e-9 * self.nodal_force.sum():
+                raise _StepFailure("the indenter is pulled instead of pushed")
             self.body.commit()
             work = 0.5 * (self.force + force) * (self.depth - state[3])
+            work += 0.5 * (self._tangential + tangential) * (distance - state[4])
+            lost = self.friction.commit(self._range, pull, self._motion(self.zone.nodes)) if self.friction else 0.0
             energies = self.body.energies()
-            self._check_energy(work, energies)
+            self._check_energy(work, energies, lost)
         except _StepFailure:
             self.restore(state)
             raise
         for observe in self.observers:
             observe(self.body, dt)
-        self.force = force
-        self._tangential = float(-self.nodal_force[self._range] @ gradient[:, 0])
-        self.work += work
+        self.force, self._tangential = float(force), float(tangential)
+        self.work += float(work)
         self._energies = energies
         self._previous = (state[0][0], state[1], state[3])
         return iterations, residual
@@ -300,14 +359,20 @@ class QuasiStatic:
             control = "force" if step.force is not None else "depth"
             target = step.force if control == "force" else step.depth
             begin = self.force if control == "force" else self.depth
-            smooth = last is not None and last.leg == step.leg and last.dt > 0
+            if step.fresh:
+                self._start_again(step.distance)
+                begin = 0.0 if control == "force" else self.depth
+            start = self.distance
+            smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh
             done, size, iterations, halvings = 0.0, 1.0, 0, 0
             ratio = step.dt / last.dt if smooth else None
             while done < 1.0:
                 size = min(size, 1.0 - done)
-                goal = target if done + size >= 1.0 else begin + (done + size) * (target - begin)
+                whole = done + size >= 1.0
+                goal = target if whole else begin + (done + size) * (target - begin)
+                place = step.distance if whole else start + (done + size) * (step.distance - start)
                 try:
-                    used, residual = self._advance(size * step.dt, control, goal, ratio if size == 1.0 else None)
+                    used, residual = self._advance(size * step.dt, control, goal, place, ratio if size == 1.0 else None)
                 except _StepFailure as failure:
                     if ratio is not None and size == 1.0:
                         ratio = None  # first doubt the predictor, then the step
@@ -348,10 +413,13 @@ class QuasiStatic:
         total = max(self.nodal_force.sum(), 1e-300)
         slack = np.abs(self._gap) * self.nodal_force[self._range]
         network, spring, branch_work = self._energies
-        balance = abs(self.work - network - branch_work) / max(abs(self.work), 1e-300)
+        friction = self.friction
+        frictional = friction.dissipated if friction else 0.0
+        balance = abs(self.work - network - branch_work - frictional) / max(abs(self.work), 1e-300)
         return Record(
             step.leg, step.time, self.depth, self.force, self._tangential, self.nodal_force.copy(), gradient, gap,
             self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,
             float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
-            float(balance) if self.work else 0.0, self.work, self._energies, branch_work - spring,
+            float(balance) if self.work else 0.0, self.work, self._energies, branch_work - spring, self.distance, frictional,
+            *(friction.record(self.active) if friction else ()),
         )  # fmt: skip

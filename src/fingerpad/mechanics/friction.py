@@ -1,0 +1,201 @@
+"""Coulomb friction, solved exactly together with unilateral contact in the condensed (Schur) system.
+
+Beside its normal multiplier ``f >= 0`` every touching node has a tangential one, ``tau`` along ``t = (-n_y, n_x)``, n the gap's
+gradient. With ``s`` the slip of the node over the profile since the step began,
+
+    |tau| <= mu f,    s = 0 where |tau| < mu f,    tau = -mu f sign(s) where s != 0,
+
+which is implicit (backward Euler) in time. Each linearised problem is solved to the end by exchanging states (open, sticking,
+slipping either way) until every node satisfies its own: the trial rule |tau - c s| <= mu f of the primal-dual active set method
+(Alart and Curnier 1991; Hueber, Stadler and Wohlmuth 2008). The global tangent stays symmetric, for friction only ever meets the
+small dense system.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fingerpad.mechanics.contact import ContactError, ContactStep, Zone, respond, soften, stable
+
+#: What :attr:`Coulomb.state` holds where there is contact: 0 sticks, +-1 slips with the friction on the skin along +-t.
+STICK = 0
+
+
+@dataclass
+class FrictionStep(ContactStep):
+    """Solution of one linearised frictional problem: also the tangential forces (nz,) N/m and the states (nz,)."""
+
+    tangential: np.ndarray | None = None
+    state: np.ndarray | None = None
+
+
+class Coulomb:
+    """Coulomb's law with one coefficient, and the state of every skin node.
+
+    Args:
+        coefficient: of friction. count: number of skin nodes.
+
+    Attributes:
+        tangential: (ns,) N/m force on the skin along the tangent. state: (ns,) -1, 0, 1. slip: (ns,) m since the step began.
+        dissipated: J/m so far.
+    """
+
+    def __init__(self, coefficient: float, count: int):
+        self.coefficient = float(coefficient)
+        self.tangential = np.zeros(count)
+        self.state = np.zeros(count, np.int8)
+        self.slip = np.zeros(count)
+        self.dissipated = 0.0
+        self._pull = np.zeros((count, 2))
+
+    def save(self):
+        """The state to come back to."""
+        return self.tangential.copy(), self.state.copy(), self._pull, self.dissipated
+
+    def restore(self, saved) -> None:
+        """Come back to a saved state."""
+        self.tangential, self.state, self._pull, self.dissipated = saved[0].copy(), saved[1].copy(), *saved[2:]
+
+    def release(self) -> None:
+        """Contact is lost altogether."""
+        self.tangential[:], self.state[:], self._pull = 0, 0, 0 * self._pull
+
+    def solve(
+        self, zone: Zone, part: slice, schur, right, gap, gradient, curvature, previous_force, active, motion, *,
+        force: float | None = None, depth_change: float | None = None,
+    ) -> FrictionStep:  # fmt: skip
+        """Solve the linearised unilateral and frictional problem exactly; arguments as of :func:`contact.solve_contact`.
+
+        Args:
+            part: the zone among the skin nodes. motion: (nz, 2) m, of the skin nodes over the profile since the step began.
+
+        Raises:
+            ContactError: no consistent set of states is found.
+        """
+        tangent = tangents(gradient)
+        moved = np.einsum("ni,ni->n", motion, tangent)
+        softened = False
+        while True:
+            answer = respond(zone, schur, right, gradient, curvature, previous_force, [gradient, tangent])
+            offset = answer.free + np.concatenate([gap, moved])
+            load = None
+            if depth_change is not None:
+                offset = offset + answer.lever * depth_change
+            else:
+                load = force - answer.load_shift
+            try:
+                found = _exchange(self.coefficient, answer, offset, load, active, self.state[part])
+                f, tau, dd, on, state, pivots = found
+                if answer.bent and not stable(answer.matrix, answer.compliance[: len(gap), : len(gap)], on):
+                    raise ContactError("the curved contact is not stable")
+            except ContactError as error:
+                schur, curvature = soften(error, schur, curvature, previous_force, answer.bent)
+                softened = True
+                continue
+            dd = depth_change if depth_change is not None else dd
+            du = answer.displacement(np.concatenate([f, tau]), dd)
+            return FrictionStep(du, dd, f, on, pivots, softened, tau, state)
+
+    def accept(self, part: slice, step: FrictionStep) -> None:
+        """Take over forces and states of a solution."""
+        self.tangential[:], self.state[:] = 0, 0
+        self.tangential[part], self.state[part] = step.tangential, step.state
+
+    def pull(self, part: slice, gradient: np.ndarray) -> np.ndarray:
+        """(nz, 2) N/m tangential force on the skin nodes of the zone, whose gap gradients (nz, 2) are."""
+        return self.tangential[part, None] * tangents(gradient)
+
+    def creep(self, part: slice, active: np.ndarray, gradient: np.ndarray, motion: np.ndarray) -> float:
+        """Record the slip; returns the largest one (m) of a node that should stick."""
+        self.slip[:] = 0
+        self.slip[part] = np.einsum("ni,ni->n", motion, tangents(gradient)) * active
+        return float(np.abs(self.slip[part][self.state[part] == STICK]).max(initial=0.0))
+
+    def commit(self, part: slice, pull: np.ndarray, motion: np.ndarray) -> float:
+        """The step has converged; returns what friction dissipated in it, J/m (trapezoidal in time)."""
+        full = np.zeros((len(self.tangential), 2))
+        full[part] = pull
+        lost = -0.5 * float(np.sum((self._pull[part] + pull) * motion))
+        self._pull = full
+        self.dissipated += lost
+        return lost
+
+    def record(self, active: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Tangential force, slip and state (0 open, 1 sticks, 2 slips) of every skin node, for the record."""
+        shown = np.where(active, 1 + np.abs(self.state), 0).astype(np.int8)
+        return self.tangential.copy(), self.slip.copy(), shown
+
+
+def tangents(gradient: np.ndarray) -> np.ndarray:
+    """(n, 2) tangents belonging to gap gradients (n, 2)."""
+    return np.column_stack([-gradient[:, 1], gradient[:, 0]])
+
+
+def _exchange(mu, answer, offset, load, active, state):
+    """Exchange states until all are consistent; returns (f, tau, depth change, active, state, pivots)."""
+    n = len(active)
+    a, lever = answer.compliance, answer.lever
+    nn, nt, tn, tt = a[:n, :n], a[:n, n:], a[n:, :n], a[n:, n:]
+    active, state = active.copy(), state.astype(int)
+    if not active.any() and load is not None:
+        active[np.argmin(offset[:n])] = True
+    stiffness = 0.5 / np.maximum(np.diag(tt), 1e-300)
+    scale = max(np.abs(offset).max(), 1e-12)
+    best, patience, seen = 2 * n + 1, 10, set()
+    for pivots in range(1, 60 + 6 * n):
+        if load is not None and not active.any():
+            raise ContactError("no node can carry the force")
+        on, stick = np.flatnonzero(active), np.flatnonzero(active & (state == STICK))
+        share = mu * state
+        i, j = len(on), len(stick)
+        size = i + j + (load is not None)
+        system, right = np.empty((size, size)), np.empty(size)
+        system[:i, :i] = nn[np.ix_(on, on)] + nt[np.ix_(on, on)] * share[on]
+        system[:i, i : i + j] = nt[np.ix_(on, stick)]
+        system[i : i + j, :i] = tn[np.ix_(stick, on)] + tt[np.ix_(stick, on)] * share[on]
+        system[i : i + j, i : i + j] = tt[np.ix_(stick, stick)]
+        right[:i], right[i : i + j] = -offset[:n][on], -offset[n:][stick]
+        if load is not None:
+            system[:i, -1], system[i : i + j, -1] = lever[:n][on], lever[n:][stick]
+            system[-1, :i] = -lever[:n][on] - share[on] * lever[n:][on]
+            system[-1, i : i + j] = -lever[n:][stick]
+            system[-1, -1], right[-1] = answer.corner, load
+        try:
+            solution = np.linalg.solve(system, right)
+        except np.linalg.LinAlgError as error:
+            raise ContactError("the frictional contact compliance is singular") from error
+        f, tau = np.zeros(n), np.zeros(n)
+        f[on] = solution[:i]
+        tau[on] = share[on] * f[on]
+        tau[stick] = solution[i : i + j]
+        dd = solution[-1] if load is not None else 0.0
+        gap = offset[:n] + nn @ f + nt @ tau + lever[:n] * dd
+        slip = offset[n:] + tn @ f + tt @ tau + lever[n:] * dd
+        tiny = 1e-12 * np.abs(f).max(initial=0.0)
+        wrong = np.where(active, f < -tiny, gap < -1e-11 * scale)
+        sliding = active & (state != STICK) & ~wrong
+        slides = active & (state == STICK) & ~wrong & (np.abs(tau) > mu * np.maximum(f, 0) * (1 + 1e-10) + tiny)
+        sticks = sliding & (state * slip > 1e-11 * scale)
+        count = int(wrong.sum() + slides.sum() + sticks.sum())
+        if not count:
+            f[~active] = tau[~active] = 0
+            return np.maximum(f, 0), tau, dd, active, np.where(active, state, 0).astype(np.int8), pivots
+        key = (active.tobytes(), state.tobytes())
+        if count < best:
+            best, patience = count, 10
+        elif patience and key not in seen:
+            patience -= 1
+        else:  # one at a time
+            last = np.flatnonzero(wrong | slides | sticks)[-1 if pivots % 2 else 0]
+            only = np.arange(n) == last
+            wrong, slides, sticks = wrong & only, slides & only, sticks & only
+        seen.add(key)
+        reverse = sticks & (stiffness * state * slip > 2 * mu * np.maximum(f, 0))
+        entering = wrong & ~active
+        state = np.where(slides, np.sign(tau), np.where(reverse, -state, np.where(sticks, STICK, state))).astype(int)
+        state = np.where(entering, -np.sign(slip), state).astype(int)  # a node that comes in slides at first
+        flipped = active ^ wrong
+        if load is not None and not flipped.any():
+            flipped[np.argmax(np.where(active, f, -np.inf))] = True
+        active = flipped
+    raise ContactError("stick and slip keep cycling")
