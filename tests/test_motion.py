@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fingerpad.scene import Hold, PressToDepth, PressToForce
+from fingerpad.scene import Hold, PressToDepth, PressToForce, Slide, StepAndRepeat
 from fingerpad.stimuli.motion import STEADY, geometric, programme
 
 pytestmark = pytest.mark.unit
@@ -62,3 +62,59 @@ def test_untimed_hold_is_one_step():
     """Where time does not matter a hold adds one step, not twenty."""
     steps = list(programme(RAMP_AND_HOLD, steps=20, contact_length=1.0, timed=False))
     assert [step.leg for step in steps].count(1) == 1
+
+
+STROKE = (PressToForce(press_to_force=0.2, rate=0.4), Slide(slide=-8e-3, speed=10e-3), Hold(hold=1.0))
+
+
+def test_slide_goes_its_way_at_its_speed_and_keeps_the_force():
+    """Equal steps of at most the longest, the distance as time goes; the hold after it stays there."""
+    steps = list(programme(STROKE, steps=4, contact_length=1.0, slide_step=0.3e-3))
+    press, slide, hold = ([step for step in steps if step.leg == leg] for leg in range(3))
+    assert (len(slide), len(hold)) == (27, 4) and {step.distance for step in press} == {0.0}
+    along = np.array([step.distance for step in slide])
+    np.testing.assert_allclose(along, -8e-3 / 27 * np.arange(1, 28), rtol=1e-12)
+    np.testing.assert_allclose([step.time - 0.5 for step in slide], -along / 10e-3, rtol=1e-9)
+    assert {(step.force, step.depth) for step in slide + hold} == {(0.2, None)} and {step.distance for step in hold} == {-8e-3}
+    assert hold[0].dt == pytest.approx(slide[0].dt) and not any(step.fresh for step in steps)
+    assert len(list(programme(STROKE, steps=4, contact_length=1.0))) == 12
+    assert len([s for s in programme(STROKE, steps=4, contact_length=1.0, slide_step=0.25e-3) if s.leg == 1]) == 32
+
+
+def test_snapshots_in_a_slide_stand_where_the_way_is_then():
+    """Two cuts of one step: distances on the straight line of the way, the force kept."""
+    steps = list(programme(STROKE, steps=1, contact_length=1.0, snapshots=(0.6, 0.9)))
+    at = {round(step.time, 9): step for step in steps}
+    assert at[0.6].distance == pytest.approx(-1e-3) and at[0.9].distance == pytest.approx(-4e-3)
+    assert {at[0.6].force, at[0.9].force, at[1.3].force} == {0.2} and at[1.3].distance == -8e-3
+    assert [step.dt for step in steps[1:4]] == pytest.approx([0.1, 0.3, 0.4])
+
+
+@pytest.mark.parametrize(("keep", "kept"), [("force", (1.5, None)), ("depth", (None, 0.7e-3))])
+def test_slide_keeps_what_is_there_when_control_changes(keep, kept):
+    """What the leg before did not prescribe is kept at the value that it reached."""
+    pressed = {"force": PressToDepth(press_to_depth=0.7e-3, speed=1.0), "depth": PressToForce(press_to_force=1.5, rate=1.0)}
+    legs = (pressed[keep], Slide(slide=1e-3, keep=keep))
+    steps = list(programme(legs, steps=3, contact_length=1.0, present=lambda: (1.5, 0.7e-3)))
+    assert {(step.force, step.depth) for step in steps[3:]} == {kept}
+    same = list(programme((pressed["depth"], Slide(slide=1e-3)), steps=3, contact_length=1.0, present=lambda: (1.4999, 0.0)))
+    assert {step.force for step in same[3:]} == {1.5}
+
+
+def test_slow_slide_takes_no_time():
+    """Without a speed every step of a slide ends relaxed."""
+    steps = list(programme((PressToForce(press_to_force=1.0), Slide(slide=1e-3)), steps=9, contact_length=1.0, slide_step=1e-4))
+    assert {step.dt for step in steps} == {STEADY} and {step.time for step in steps} == {0.0} and len(steps) == 18
+
+
+def test_step_and_repeat_presses_afresh_at_every_place():
+    """Four fresh steady indentations to the same force, one every millimetre from where the slide ended."""
+    legs = (*STROKE[:2], StepAndRepeat(step=4e-3, every=1e-3), Hold(hold=1.0))
+    steps = list(programme(legs, steps=2, contact_length=1.0))
+    fresh = [step for step in steps if step.fresh]
+    assert [step.leg for step in fresh] == [2] * 4 and {step.dt for step in fresh} == {STEADY}
+    assert [step.distance for step in fresh] == pytest.approx([-7e-3, -6e-3, -5e-3, -4e-3], abs=1e-15)
+    assert {(step.force, step.depth, step.time) for step in fresh} == {(0.2, None, steps[3].time)}
+    assert steps[-1].distance == fresh[-1].distance and steps[-1].time == pytest.approx(2.3)
+    deep = list(programme((PressToDepth(press_to_depth=1e-3), legs[2]), steps=2, contact_length=1.0))
+    assert {step.depth for step in deep if step.fresh} == {1e-3}

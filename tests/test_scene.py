@@ -1,8 +1,10 @@
 """Scenes: what is accepted, what is refused and in which words, and what comes out."""
 
 import json
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from hypothesis import HealthCheck, given, settings
@@ -20,6 +22,9 @@ from fingerpad.scene import (
     Sampled,
     Scene,
     SceneError,
+    Slide,
+    StepAndRepeat,
+    Wavy,
     load_scene,
     scene_json_schema,
     specimen_json_schema,
@@ -34,6 +39,7 @@ from wrong_scenes import (
     motion,
     pad_folder,
     specimen,
+    wavy,
     write,
 )
 
@@ -197,11 +203,21 @@ def test_no_relaxation(folder, prony):
 
 
 def test_legs(folder):
-    document = motion({"press_to_force": "20 gf"}, {"press_to_depth": "1 mm", "speed": "2 mm/s"}, {"hold": "3 s"})
+    document = motion(
+        {"press_to_force": "20 gf"},
+        {"press_to_depth": "1 mm", "speed": "2 mm/s"},
+        {"hold": "3 s"},
+        {"slide": "-80 mm", "speed": "10 mm/s", "keep": "depth"},
+        {"slide": "2 cm"},
+        {"step": "-50 mm", "every": "1 mm"},
+    )
     assert load_scene(write(folder, document)).motion == (
         PressToForce(press_to_force=20 * 9.80665e-3),
         PressToDepth(press_to_depth=1e-3, speed=2e-3),
         Hold(hold=3.0),
+        Slide(slide=-80e-3, speed=10e-3, keep="depth"),
+        Slide(slide=20e-3, speed=None, keep="force"),
+        StepAndRepeat(step=-50e-3, every=1e-3),
     )
 
 
@@ -214,6 +230,11 @@ def test_legs(folder):
         ([{"press_to_force": "20 gf"}, {"hold": "2 s"}], 2.0),
         ([FORCE, {"press_to_depth": "1 mm"}, {"hold": "2 s"}], 2.5),
         ([{"press_to_force": "20 gf"}], 0.0),
+        ([FORCE, {"slide": "-80 mm", "speed": "10 mm/s"}, {"hold": "1 s"}], 9.5),
+        ([FORCE, {"slide": "80 mm"}, {"step": "8 mm", "every": "1 mm"}], 0.5),
+        ([FORCE, {"slide": "8 mm"}, {"press_to_force": "40 gf", "rate": "40 gf/s"}], 1.0),
+        ([FORCE, {"slide": "8 mm", "keep": "depth"}, {"press_to_force": "40 gf", "rate": "40 gf/s"}], None),
+        ([DEPTH, {"slide": "8 mm", "keep": "depth"}, {"press_to_depth": "2 mm", "speed": "1 mm/s"}], 1.5),
     ],
 )
 def test_the_end_is_known_when_the_programme_alone_tells(folder, legs, end):
@@ -249,6 +270,35 @@ def test_effects_are_switches_in_any_yaml(folder, text, effects):
 )
 def test_accuracy(folder, accuracy, value):
     assert load_scene(write(folder, changed(accuracy=accuracy))).accuracy == value
+
+
+def test_the_wavy_surface_is_the_thesis_s_unless_told(folder):
+    """Eight inch radii, and a length that is that of flats and chords."""
+    inch = 25.4e-3
+    radii = [radius * inch for radius in (1.5, 1, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125)]
+    assert Wavy().curvatures == pytest.approx([1 / radius for radius in radii], rel=1e-12)
+    assert load_scene(write(folder, wavy())).stimulus == Wavy()
+    chords = 2 * math.sin(math.radians(9)) * np.array(radii)
+    assert chords[0] == pytest.approx(11.92e-3, abs=5e-6)
+    assert Wavy().length == pytest.approx(18e-3 + chords.sum() + chords[1:].sum())
+    own = {"curvatures": ["50 1/m"], "half_angle": "30 deg", "lead_in": "1 mm", "run_out": "2 mm", "fillet": "0.5 mm"}
+    stimulus = load_scene(write(folder, wavy(**own))).stimulus
+    assert stimulus == Wavy(curvatures=(50.0,), half_angle=math.pi / 6, lead_in=1e-3, run_out=2e-3, fillet=0.5e-3)
+    assert stimulus.length == pytest.approx(23e-3)
+
+
+def test_the_surface_may_be_used_to_its_ends(folder):
+    """Back and forth over all of it, but not beyond."""
+    there = {"slide": f"{Wavy().length!r} m"}
+    back = {"step": f"{-Wavy().length!r} m", "every": f"{Wavy().length!r} m"}
+    assert len(load_scene(write(folder, wavy([FORCE, there, back, there]))).motion) == 4
+
+
+def test_pressing_again_after_a_slide_at_the_other_control(folder):
+    """Once the depth was kept, the force of before is a new target."""
+    assert load_scene(write(folder, motion(FORCE, {"slide": "8 mm", "keep": "depth"}, FORCE)))
+    with pytest.raises(SceneError, match="where the leg before ended"):
+        load_scene(write(folder, motion(FORCE, {"slide": "8 mm"}, FORCE)))
 
 
 def test_another_accuracy_is_a_copy(folder):
@@ -297,7 +347,9 @@ SCHEMA_SEES = [
     "bare number",
     "no stimulus",
     "unknown shape",
-    "slide",
+    "slide without a unit",
+    "step without every",
+    "one curvature for many",
     "unknown accuracy",
     "Poisson's ratio of a half",
     "unknown effect",
@@ -328,6 +380,7 @@ leaves = (
 KEYS = """
 specimen outline mesh layers moduli prony ridges contact_length stimulus shape curvature width
 fillet csv friction motion press_to_force rate press_to_depth speed hold slide outputs receptors
+keep step every curvatures half_angle lead_in run_out
 depths offsets snapshots accuracy element skin_edge steps effects g tau fat youngs_modulus
 poisson_ratio apex_height finite_strain
 """.split()

@@ -25,6 +25,7 @@ UNITS = {
     "pressure": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "N/mm²": 1e6, "kN m^-2": 1e3},
     "speed": {"m/s": 1.0, "mm/s": 1e-3, "um/ms": 1e-3},
     "time": {"s": 1.0, "ms": 1e-3, "minute": 60.0},
+    "angle": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "degree": math.pi / 180},
     "dimensionless": {"": 1.0, "%": 1e-2, "percent": 1e-2},
 }
 EVERY_UNIT = [(kind, unit, factor) for kind, units in UNITS.items() for unit, factor in units.items()]

@@ -50,6 +50,10 @@ def motion(*legs):
     return changed(motion=list(legs))
 
 
+def wavy(legs=(), **keys):
+    return changed(stimulus={"shape": "wavy", **keys}, **({"motion": list(legs)} if legs else {}))
+
+
 def receptors(**keys):
     return changed(outputs={"receptors": keys})
 
@@ -187,7 +191,21 @@ BAD = {
     "unknown shape": (changed(stimulus={"shape": "cilinder"}), "stimulus.shape", "the nearest is 'cylinder'"),
     "shape that is no text": (changed(stimulus={"shape": [1]}), "stimulus.shape", "is not a known shape"),
     "no shape": (changed(stimulus={"curvature": "1 1/m"}), "stimulus.shape", "is missing"),
-    "wavy": (changed(stimulus={"shape": "wavy"}), "stimulus.shape", "is not in this version"),
+    "no curvatures": (wavy(curvatures=[]), "stimulus.curvatures", "is empty"),
+    "one curvature for many": (wavy(curvatures="26 1/m"), "stimulus.curvatures", "is not a list"),
+    "flat convexity": (wavy(curvatures=["26 1/m", "0 1/m"]), "stimulus.curvatures[1]", "is zero"),
+    "arcs of a right angle": (wavy(half_angle="45 deg"), "stimulus.half_angle", "'45 deg' is outside the range"),
+    "arcs of no angle": (wavy(half_angle="0 rad"), "stimulus.half_angle", "is zero"),
+    "arcs that turn back": (wavy(half_angle="-9 deg"), "stimulus.half_angle", "is negative"),
+    "angle without a unit": (wavy(half_angle="9"), "stimulus.half_angle", "has no unit"),
+    "per cent for an angle": (wavy(half_angle="9 %"), "stimulus.half_angle", "it is a number; allowed: an angle with"),
+    "fillet longer than the lead-in": (
+        wavy(fillet="40 mm", lead_in="2 mm"),
+        "stimulus.fillet",
+        "does not fit the flat beside it; allowed: 0 mm to below 29.6793 mm",
+    ),
+    "fillet longer than the run-out": (wavy(fillet="100 mm", run_out="2 mm"), "stimulus.fillet", "does not fit the flat"),
+    "no lead-in": (wavy(lead_in="0 mm"), "stimulus.lead_in", "is zero"),
     "stimulus that is a word": (changed(stimulus="flat"), "stimulus", "is not a mapping"),
     "fillet wider than the bar": (
         changed(stimulus={"shape": "bar", "width": "1 mm", "fillet": "0.6 mm"}),
@@ -231,11 +249,48 @@ BAD = {
         "motion[2].press_to_force",
         "where the leg",
     ),
-    "slide": (
-        motion(FORCE, {"slide": "80 mm", "speed": "1 mm/s"}),
-        "motion[1].slide",
-        "is not in this version",
+    "slide first": (motion({"slide": "80 mm"}, FORCE), "motion[0].slide", "before anything is pressed"),
+    "slide to nowhere": (motion(FORCE, {"slide": "0 mm"}), "motion[1].slide", "is zero; allowed: a length other than zero"),
+    "slide without a unit": (motion(FORCE, {"slide": 80}), "motion[1].slide", "has no unit"),
+    "slide at no speed": (motion(FORCE, {"slide": "1 mm", "speed": "0 mm/s"}), "motion[1].speed", "is zero"),
+    "slide back by its speed": (
+        motion(FORCE, {"slide": "1 mm", "speed": "-1 mm/s"}),
+        "motion[1].speed",
+        "is negative: the sign of slide is its direction",
     ),
+    "slide that keeps nothing known": (
+        motion(FORCE, {"slide": "1 mm", "keep": "pressure"}),
+        "motion[1].keep",
+        "'pressure' is not one of the choices; allowed: 'force' or 'depth'",
+    ),
+    "slide beyond the surface": (
+        wavy([FORCE, {"slide": "70 mm"}, {"slide": "10.6 mm"}]),
+        "motion[2].slide",
+        "'10.6 mm' leads off the surface; allowed: to stay from 0 mm to 80.5816 mm along it",
+    ),
+    "slide before the surface": (wavy([FORCE, {"slide": "-1 mm"}]), "motion[1].slide", "leads off the surface"),
+    "slide round the world": (motion(FORCE, {"slide": "40000 km"}), "motion[1].slide", "is too long a way; allowed: up to 10 m"),
+    "step first": (motion({"step": "8 mm", "every": "1 mm"}), "motion[0].step", "before anything is pressed"),
+    "step to nowhere": (motion(FORCE, {"step": "0 mm", "every": "1 mm"}), "motion[1].step", "is zero"),
+    "step without every": (motion(FORCE, {"step": "8 mm"}), "motion[1].every", "is missing"),
+    "step at a speed": (
+        motion(FORCE, {"step": "8 mm", "every": "1 mm", "speed": "1 mm/s"}),
+        "motion[1].speed",
+        "not a known key",
+    ),
+    "step backwards by every": (motion(FORCE, {"step": "8 mm", "every": "-1 mm"}), "motion[1].every", "is negative"),
+    "step smaller than every": (
+        motion(FORCE, {"step": "1 mm", "every": "2 mm"}),
+        "motion[1].every",
+        "'2 mm' is more than the whole distance; allowed: up to 1 mm",
+    ),
+    "step of no whole number": (
+        motion(FORCE, {"step": "-5 mm", "every": "2 mm"}),
+        "motion[1].every",
+        "'2 mm' does not divide the whole distance; allowed: a whole fraction of 5 mm",
+    ),
+    "step of too many": (motion(FORCE, {"step": "1 m", "every": "1 um"}), "motion[1].every", "more than 100000 indentations"),
+    "step beyond the surface": (wavy([FORCE, {"step": "90 mm", "every": "1 mm"}]), "motion[1].step", "leads off the surface"),
     "unknown leg": (motion({"pres_to_force": "1 N"}), "motion[0]", "the nearest is 'press_to_force'"),
     "leg of two kinds": (motion({**FORCE, "hold": "1 s"}), "motion[0]", "two legs in one"),
     "leg that is a word": (motion("hold"), "motion[0]", "is not a leg"),

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.estimates import ContactEstimate, PadEstimate
-from fingerpad.scene import Discretisation, Hold, PressToDepth, PressToForce, Scene
+from fingerpad.scene import Discretisation, Hold, PressToDepth, PressToForce, Scene, Slide, StepAndRepeat
 from fingerpad.specimen.external import read_pad_mesh
 from fingerpad.specimen.materials import Prony
 from fingerpad.specimen.measures import apex_edge, apex_measures
@@ -32,13 +32,17 @@ class PlanError(ValueError):
 
 @dataclass(frozen=True)
 class Preset:
-    """A discretisation: edges m, steps per leg, and the error it was measured to have (largest of the headline quantities)."""
+    """A discretisation: edges m, steps per leg, longest step of a slide m, and the error it was measured to have.
+
+    The error is the largest of the headline quantities.
+    """
 
     skin_edge: float
     layer_edge: float
     steps: int
     growth: float
     error: float
+    slide_step: float | None
 
 
 @dataclass(frozen=True)
@@ -59,9 +63,9 @@ class Rules:
 
     presets: Mapping[str, Preset] = field(
         default_factory=lambda: {
-            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06),
-            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02),
-            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007),
+            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3),
+            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3),
         }
     )
     mesh_order: float = 1.5
@@ -96,7 +100,8 @@ class Plan:
         effects: friction, viscoelasticity, finite_strain, symmetry, ridges. state: moduli used when viscosity is off
         ("long_term" or "instantaneous"). element: key of the element. mesh_size: of a built mesh, None for an external one.
         contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them.
-        timed: does time matter? nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
+        slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
+        nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
         contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities.
     """
 
@@ -106,6 +111,7 @@ class Plan:
     mesh_size: MeshSize | None
     contact: ContactEstimate
     steps_per_leg: int
+    slide_step: float | None
     steps: int
     timed: bool
     nodes: int
@@ -146,6 +152,7 @@ class Plan:
             "inertia_ratio": self.inertia_ratio,
             "contact_edge_SI": self.contact_edge,
             "steps_per_leg": self.steps_per_leg,
+            "slide_step_SI": self.slide_step,
             "timed": self.timed,
         }
 
@@ -182,10 +189,10 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     effects["viscoelasticity"], state = _viscoelasticity(scene, tolerance, rules)
     _apply_overrides(scene, effects)
     timed = effects["viscoelasticity"].on
-    steps_per_leg = preset.steps
+    steps_per_leg, slide_step = preset.steps, preset.slide_step
     if by_hand and by_hand.steps:
-        steps_per_leg = max(1, round(by_hand.steps / len(scene.motion)))
-    steps = len(list(schedule(scene, steps_per_leg, timed)))
+        steps_per_leg, slide_step = max(1, round(by_hand.steps / len(scene.motion))), None
+    steps = sum(1 for _ in schedule(scene, steps_per_leg, timed, slide_step=slide_step))
     element = _element(by_hand, external)
     if external is None:
         size = _mesh_size(scene, preset, profile, contact, rules)
@@ -199,12 +206,12 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         nodes = nodes // 2 + 1
     error = estimated_error(edge, contact.half_width, rules)
     return Plan(
-        effects, state, element, size, contact, steps_per_leg, steps, timed, nodes, smallest, inertia, edge, error,
+        effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge, error,
         _cost(nodes, steps, effects, rules),
     )  # fmt: skip
 
 
-def schedule(scene: Scene, steps_per_leg: int, timed: bool, present=None):
+def schedule(scene: Scene, steps_per_leg: int, timed: bool, present=None, slide_step: float | None = None):
     """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`)."""
     return programme(
         scene.motion,
@@ -213,6 +220,7 @@ def schedule(scene: Scene, steps_per_leg: int, timed: bool, present=None):
         timed=timed,
         snapshots=scene.outputs.snapshots,
         present=present,
+        slide_step=slide_step,
     )
 
 
@@ -225,8 +233,8 @@ def read_plan(path: str | Path) -> Plan:
     known = data["discretisation"]
     return Plan(
         {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
-        ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], known["steps"], data["timed"],
-        known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
+        ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
+        data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
         data["estimated_error"], data["predicted_cost_s"],
     )  # fmt: skip
 
@@ -296,7 +304,8 @@ def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Prese
     scale = (accuracy / estimated_error(thesis.skin_edge, contact.half_width, rules)) ** (1 / rules.mesh_order)
     scale = float(np.clip(scale, 0.15, 3.0))
     steps = int(np.clip(round(thesis.steps * (thesis.error / accuracy) ** 0.5), 6, 200))
-    return Preset(thesis.skin_edge * scale, thesis.layer_edge * scale, steps, thesis.growth, accuracy), None
+    slide_step = thesis.slide_step * thesis.steps / steps
+    return Preset(thesis.skin_edge * scale, thesis.layer_edge * scale, steps, thesis.growth, accuracy, slide_step), None
 
 
 def estimated_error(edge: float, half_width: float, rules: Rules = RULES) -> float:
@@ -314,6 +323,8 @@ def estimated_error(edge: float, half_width: float, rules: Rules = RULES) -> flo
 def _friction(scene: Scene) -> Effect:
     if scene.friction == 0:
         return Effect(False, "the coefficient is 0")
+    if any(isinstance(leg, Slide) for leg in scene.motion):
+        return Effect(True, f"the skin is stroked with a coefficient of {scene.friction:g}")
     return Effect(False, f"nothing slides, so the coefficient {scene.friction:g} is never called on")
 
 
@@ -327,6 +338,8 @@ def _finite_strain(scene, contact, tolerance, rules) -> Effect:
 def _symmetry(scene, profile, external) -> Effect:
     if not profile.symmetric:
         return Effect(False, "the stimulus is not symmetric about x = 0")
+    if any(isinstance(leg, (Slide, StepAndRepeat)) for leg in scene.motion):
+        return Effect(False, "the motion is not symmetric: the pad moves along the surface")
     if external is not None and not external.symmetric:
         return Effect(False, "the external mesh is not its own mirror image in x = 0")
     return Effect(True, "pad, stimulus and motion are mirror images in x = 0: half the unknowns suffice")
@@ -367,7 +380,7 @@ def _apply_overrides(scene: Scene, effects: dict[str, Effect]) -> None:
         effect = effects[name]
         if wanted == effect.on:
             continue
-        if wanted and name in ("friction", "ridges"):
+        if wanted and (name == "ridges" or (name == "friction" and scene.friction == 0)):
             raise PlanError(f"{scene.name}: effects.{name}: on, but {effect.why}; allowed: off or auto")
         if wanted and name == "symmetry":
             raise PlanError(f"{scene.name}: effects.symmetry: on, but {effect.why}; allowed: off or auto")

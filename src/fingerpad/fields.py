@@ -15,17 +15,18 @@ class SI(float):
     """A number already in SI that takes the place of text in a document being filled in."""
 
 
-def quantity(dimension: str, sign: Literal["positive", "non-negative", "any"] = "positive", note: str = "") -> Any:
+def quantity(dimension: str, sign: Literal["positive", "non-negative", "nonzero", "any"] = "positive", note: str = "") -> Any:
     """Field type: text with a unit in a document, an SI float in Python; `note` explains a wrong `sign`."""
 
     def parse(value: Any, info: ValidationInfo) -> float:
         in_python = info.context is None or isinstance(value, SI)
         result = parse_number(value) if in_python and not isinstance(value, str) else parse_quantity(value, dimension)
         kind = DIMENSIONS[dimension]
-        if (sign == "positive" and result <= 0) or (sign == "non-negative" and result < 0):
-            wrong = "is negative" if result < 0 else "is zero"
-            least = "above zero" if sign == "positive" else "of zero or more"
-            raise Problem(f"{wrong}{note}", f"{kind.noun} {least} such as '{kind.example}'")
+        wrong = {"positive": result <= 0, "non-negative": result < 0, "nonzero": result == 0, "any": False}[sign]
+        if wrong:
+            right = {"positive": "above zero", "non-negative": "of zero or more", "nonzero": "other than zero"}[sign]
+            what = "is negative" if result < 0 else "is zero"
+            raise Problem(f"{what}{note}", f"{kind.noun} {right} such as '{kind.example}'")
         return result
 
     surface = Annotated[
@@ -70,6 +71,13 @@ def listed(value: Any) -> Any:
     """`value` if it is a list; `Problem` otherwise."""
     if not isinstance(value, (list, tuple)):
         raise Problem("is not a list", "a list")
+    return value
+
+
+def filled(value: Any) -> Any:
+    """`value` if it is a list with something in it; `Problem` otherwise."""
+    if not listed(value):
+        raise Problem("is empty", "a list of one or more")
     return value
 
 

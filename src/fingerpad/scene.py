@@ -18,7 +18,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError
 from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
-from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity, whole
+from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, whole
 from fingerpad.scene_specimen import (
     DEFAULT_SPECIMEN,
     Layer,
@@ -34,13 +34,14 @@ from fingerpad.units import QuantityError, format_quantity, parse_number
 
 __all__ = [
     "Bar", "Cylinder", "Discretisation", "Flat", "Hold", "Layer", "Layers", "Line", "Outline", "Outputs",
-    "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Specimen",
-    "SpecimenFile", "load_scene", "scene_json_schema", "specimen_json_schema",
+    "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Slide", "Specimen",
+    "SpecimenFile", "StepAndRepeat", "Wavy", "load_scene", "scene_json_schema", "specimen_json_schema",
 ]  # fmt: skip
 
 EFFECTS = ("friction", "viscoelasticity", "finite_strain", "symmetry", "ridges")
 LEVELS = ("draft", "thesis", "fine")
 MAXIMUM_STEPS = 100_000
+MAXIMUM_STROKE = 10.0
 
 
 # --- stimulus -------------------------------------------------------------------------------------
@@ -142,15 +143,53 @@ def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return x, y
 
 
-_SHAPES = {"flat": Flat, "cylinder": Cylinder, "bar": Bar, "line": Line, "sampled": Sampled}
+class Wavy(Strict):
+    """Rigid surface of cylindrical convexities joined by concavities between two flats, after the thesis's chapter 5.
+
+    x = 0, the start of the lead-in, is over the middle of the pad when the motion begins.
+    """
+
+    shape: Literal["wavy"] = "wavy"
+    curvatures: Annotated[tuple[quantity("curvature"), ...], BeforeValidator(filled)] = tuple(
+        1e3 / radius for radius in (38.1, 25.4, 19.05, 12.7, 9.525, 6.35, 4.7625, 3.175)
+    )
+    """Curvatures of the convexities, in their order; a concavity has the radius of the convexity after it."""
+    half_angle: quantity("angle") = math.radians(9.0)
+    """Angle by which every arc turns to either side of its middle."""
+    lead_in: Length = 8e-3
+    """Length of the flat before the first convexity."""
+    run_out: Length = 10e-3
+    """Length of the flat after the last convexity."""
+    fillet: quantity("length", "non-negative") = 0.0
+    """Radius of rounding of the two reentrant corners where the flats meet the arcs."""
+
+    @model_validator(mode="after")
+    def _check(self) -> Wavy:
+        if self.half_angle >= math.radians(45.0):
+            raise Problem("is outside the range", "above 0 deg and below 45 deg", ("half_angle",))
+        # a fillet of radius r ends on the flat: (lead_in + R sin)^2 = (R + r)^2 - (R cos + r)^2 at most
+        sine, drop = math.sin(self.half_angle), 1 - math.cos(self.half_angle)
+        ends = ((self.lead_in, 1 / self.curvatures[0]), (self.run_out, 1 / self.curvatures[-1]))
+        largest = min(flat * (flat + 2 * radius * sine) / (2 * radius * drop) for flat, radius in ends)
+        if self.fillet >= largest:
+            allowed = f"0 mm to below {format_quantity(largest, 'length')}"
+            raise Problem("does not fit the flat beside it", allowed, ("fillet",))
+        return self
+
+    @property
+    def length(self) -> float:
+        """Length of the surface along x, m."""
+        first, *others = (1 / curvature for curvature in self.curvatures)
+        return self.lead_in + 2 * math.sin(self.half_angle) * (first + 2 * sum(others)) + self.run_out
+
+
+_SHAPES = {"flat": Flat, "cylinder": Cylinder, "bar": Bar, "line": Line, "sampled": Sampled, "wavy": Wavy}
 
 
 def _check_shape(value: Any) -> Any:
     if isinstance(value, Mapping):
         if "shape" not in value:
             raise Problem("is missing", ", ".join(_SHAPES), ("shape",), HIDE)
-        if value["shape"] == "wavy":
-            raise Problem("is not in this version", ", ".join(_SHAPES), ("shape",))
         if not isinstance(value["shape"], str) or value["shape"] not in _SHAPES:
             raise Problem(f"is not a known shape, {nearest(value['shape'], _SHAPES)}", ", ".join(_SHAPES), ("shape",))
     elif not isinstance(value, tuple(_SHAPES.values())):
@@ -170,7 +209,8 @@ Stimulus = Annotated[
     | Annotated[Cylinder, Tag("<cylinder>")]
     | Annotated[Bar, Tag("<bar>")]
     | Annotated[Line, Tag("<line>")]
-    | Annotated[Sampled, Tag("<sampled>")],
+    | Annotated[Sampled, Tag("<sampled>")]
+    | Annotated[Wavy, Tag("<wavy>")],
     Discriminator(_tag),
     BeforeValidator(_check_shape),
 ]
@@ -207,15 +247,51 @@ class Hold(Strict):
     """Duration."""
 
 
-_LEGS = {"press_to_force": PressToForce, "press_to_depth": PressToDepth, "hold": Hold}
+class Slide(Strict):
+    """Stroke the skin: the pad moves along the surface while force or depth is kept."""
+
+    slide: quantity("length", "nonzero")
+    """Distance the pad moves along x of the surface; negative towards its start."""
+    speed: quantity("speed", note=": the sign of slide is its direction") | None = None
+    """Speed along the surface; left out for a stroke so slow that all is relaxed."""
+    keep: Literal["force", "depth"] = "force"
+    """What is kept as it is when the stroke begins: the normal force, or the height of the surface."""
+
+
+class StepAndRepeat(Strict):
+    """Move on without stroking: lift, recover, press again to what the leg before reached, over and over."""
+
+    step: quantity("length", "nonzero")
+    """Distance covered in all; negative towards the start of the surface."""
+    every: Length
+    """Distance from one indentation to the next."""
+
+    @model_validator(mode="after")
+    def _check(self) -> StepAndRepeat:
+        whole = format_quantity(abs(self.step), "length")
+        count = abs(self.step) / self.every
+        if count < 1 - 1e-9:
+            raise Problem("is more than the whole distance", f"up to {whole}", ("every",))
+        if count > MAXIMUM_STEPS:
+            raise Problem(f"makes more than {MAXIMUM_STEPS} indentations", "a larger distance", ("every",))
+        if abs(count - round(count)) > 1e-6 * count:
+            raise Problem("does not divide the whole distance", f"a whole fraction of {whole}", ("every",))
+        return self
+
+
+_LEGS = {
+    "press_to_force": PressToForce,
+    "press_to_depth": PressToDepth,
+    "hold": Hold,
+    "slide": Slide,
+    "step": StepAndRepeat,
+}
 
 
 def _check_leg(value: Any) -> Any:
     if isinstance(value, Mapping):
         kinds = [key for key in _LEGS if key in value]
         first = next(iter(value), None)
-        if "slide" in value:
-            raise Problem("is not in this version", f"a leg of {', '.join(_LEGS)}", ("slide",))
         if not kinds:
             near = f", {nearest(first, _LEGS)}" if isinstance(first, str) else ""
             raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(_LEGS)}")
@@ -226,12 +302,19 @@ def _check_leg(value: Any) -> Any:
     return value
 
 
+def _kind(leg: Any) -> str:
+    """Key that names a leg's kind."""
+    return next(key for key, model in _LEGS.items() if isinstance(leg, model))
+
+
 _LEG_EXAMPLE = 'legs such as {press_to_force: "20 gf", rate: "40 gf/s"} and {hold: "2 s"}'
 
 Leg = Annotated[
     Annotated[PressToForce, Tag("<press_to_force>")]
     | Annotated[PressToDepth, Tag("<press_to_depth>")]
-    | Annotated[Hold, Tag("<hold>")],
+    | Annotated[Hold, Tag("<hold>")]
+    | Annotated[Slide, Tag("<slide>")]
+    | Annotated[StepAndRepeat, Tag("<step>")],
     Discriminator(_tag),
     BeforeValidator(_check_leg),
 ]
@@ -357,7 +440,7 @@ class Scene(Strict):
     specimen: Specimen
     """What is touched; parts left out are the thesis's."""
     stimulus: Stimulus
-    """What touches it: {shape: flat}, or cylinder, bar, line, sampled."""
+    """What touches it: {shape: flat}, or cylinder, bar, line, sampled, wavy."""
     friction: number("a coefficient of zero or more", 0.0, math.inf, low_included=True) = 0.0
     """Coulomb coefficient of friction."""
     motion: Annotated[tuple[Leg, ...], BeforeValidator(_check_motion)]
@@ -395,21 +478,30 @@ class Scene(Strict):
         return self
 
     def _check_programme(self) -> None:
-        if isinstance(self.motion[0], Hold):
+        if not isinstance(self.motion[0], (PressToForce, PressToDepth)):
             raise Problem(
                 "comes before anything is pressed",
                 "a press_to_force or press_to_depth leg first",
-                ("motion", 0, "hold"),
+                ("motion", 0, _kind(self.motion[0])),
             )
         last: tuple[str, float] | None = None
+        along, length = 0.0, self.stimulus.length if isinstance(self.stimulus, Wavy) else math.inf
         for i, leg in enumerate(self.motion):
-            if isinstance(leg, Hold):
-                continue
-            key = "press_to_force" if isinstance(leg, PressToForce) else "press_to_depth"
+            key = _kind(leg)
             target = (key, getattr(leg, key))
-            if target == last:
-                raise Problem("is where the leg before ended", "another target, or a hold", ("motion", i, key))
-            last = target
+            if isinstance(leg, (Slide, StepAndRepeat)):
+                along += target[1]
+                if abs(target[1]) > MAXIMUM_STROKE:
+                    raise Problem("is too long a way", f"up to {MAXIMUM_STROKE:g} m", ("motion", i, key))
+                if math.isfinite(length) and not -1e-9 <= along <= length + 1e-9:
+                    end = format_quantity(length, "length")
+                    raise Problem("leads off the surface", f"to stay from 0 mm to {end} along it", ("motion", i, key))
+                if isinstance(leg, Slide) and last and last[0] != f"press_to_{leg.keep}":
+                    last = None
+            elif not isinstance(leg, Hold):
+                if target == last:
+                    raise Problem("is where the leg before ended", "another target, or a hold", ("motion", i, key))
+                last = target
 
     def _check_inside(self, outline: Outline) -> None:
         thickness = outline.soft_thickness
@@ -443,7 +535,11 @@ class Scene(Strict):
                 if leg.rate is not None:
                     time += abs(leg.press_to_force - force) / leg.rate
                 force, depth = leg.press_to_force, math.nan
-            else:
+            elif isinstance(leg, Slide):
+                if leg.speed is not None:
+                    time += abs(leg.slide) / leg.speed
+                force, depth = (force, math.nan) if leg.keep == "force" else (math.nan, depth)
+            elif isinstance(leg, PressToDepth):
                 if leg.speed is not None:
                     time += abs(leg.press_to_depth - depth) / leg.speed
                 force, depth = math.nan, leg.press_to_depth

@@ -48,6 +48,7 @@ DIMENSIONS: dict[str, Dimension] = {
         Dimension("pressure", "Pa", "MPa", "a modulus", "0.15 MPa"),
         Dimension("speed", "m/s", "mm/s", "a speed", "2 mm/s"),
         Dimension("time", "s", "s", "a time", "0.5 s"),
+        Dimension("angle", "rad", "deg", "an angle", "9 deg"),
         Dimension("dimensionless", "1", "1", "a number", "0.02"),
     )
 }
@@ -149,7 +150,7 @@ def _factor_to_si(unit_text: str, dimension: str) -> float:
     except ValueError:
         raise QuantityError(f"has the unknown unit '{unit_text}'", allowed(dimension)) from None
     target = _unit(kind.si)
-    if unit.dimensionality != target.dimensionality:
+    if _root(unit) != _root(target):
         raise QuantityError(f"has the wrong dimension: it is {_describe(unit)}", allowed(dimension))
     ureg = registry()
     try:
@@ -158,9 +159,14 @@ def _factor_to_si(unit_text: str, dimension: str) -> float:
         raise QuantityError(f"has the unusable unit '{unit_text}'", allowed(dimension)) from None
 
 
+def _root(unit: pint.Unit) -> pint.Unit:
+    """Product of base units that tells dimensions apart, angles from plain numbers too."""
+    return registry().get_root_units(unit)[1]
+
+
 def _describe(unit: pint.Unit) -> str:
     for kind in DIMENSIONS.values():
-        if unit.dimensionality == _unit(kind.si).dimensionality:
+        if _root(unit) == _root(_unit(kind.si)):
             return kind.noun
     return f"of dimension {unit.dimensionality}"
 

@@ -1,5 +1,6 @@
 """Motion programmes: the legs of a scene turned into steps."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -14,7 +15,8 @@ STEADY = 1e9
 class Step:
     """One step: leg number, end time s, duration s (:data:`STEADY`: to the steady state), and what is reached at its end.
 
-    Exactly one of ``force`` (N per m of contact length) and ``depth`` (m) is given.
+    Exactly one of ``force`` (N per m of contact length) and ``depth`` (m) is given. ``distance`` (m) is how far the pad has come
+    along the surface. A ``fresh`` step lifts the pad, lets it recover fully and presses it there again.
     """
 
     leg: int
@@ -22,6 +24,8 @@ class Step:
     dt: float
     force: float | None = None
     depth: float | None = None
+    distance: float = 0.0
+    fresh: bool = False
 
 
 def geometric(duration: float, count: int, first: float) -> np.ndarray:
@@ -41,25 +45,40 @@ def programme(
     timed: bool = True,
     snapshots: Sequence[float] = (),
     present: Callable[[], tuple[float, float]] | None = None,
+    slide_step: float | None = None,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
     Args:
-        legs: validated legs (press_to_force/rate, press_to_depth/speed, hold), SI, newtons. steps: per leg.
-        contact_length: m, turns N into N/m. timed: does time matter? If not, a press is load increments and a hold one step.
+        legs: validated legs (press_to_force/rate, press_to_depth/speed, hold, slide/speed/keep, step/every), SI, newtons.
+        steps: per leg. contact_length: m, turns N into N/m.
+        timed: does time matter? If not, a press is load increments and a hold one step.
         snapshots: times (s) at which a step must end.
         present: asked when a leg begins for the force (N/m) and depth (m) reached so far, which a change between force and
             depth control needs; without it such a leg is taken to start from zero.
+        slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
     """
-    time, force, depth, last = 0.0, 0.0, 0.0, None
+    time, force, depth, distance, last = 0.0, 0.0, 0.0, 0.0, None
     for number, leg in enumerate(legs):
-        kind = next(key for key in ("press_to_force", "press_to_depth", "hold") if hasattr(leg, key))
+        kind = next(key for key in ("press_to_force", "press_to_depth", "hold", "slide", "step") if hasattr(leg, key))
         target = getattr(leg, kind)
+        reached = present() if present else (force or 0.0, depth or 0.0)
         if kind == "hold":
             sizes = geometric(target, steps, min(last or target / steps, target / steps)) if timed else np.array([target])
-            values = [(force, depth)] * len(sizes)
+            goals = [(force, depth, distance)] * len(sizes)
+        elif kind in ("slide", "step"):
+            if kind == "step":
+                count, speed = round(abs(target) / leg.every), None
+            else:
+                count, speed = math.ceil(abs(target) / slide_step * (1 - 1e-9)) if slide_step else steps, leg.speed
+                if leg.keep == "force":
+                    force, depth = reached[0] if force is None else force, None
+                else:
+                    force, depth = None, reached[1] if depth is None else depth
+            last = None if speed is None else abs(target) / speed / count
+            sizes = np.full(count, last or STEADY)
+            goals = [(force, depth, distance + target * k / count) for k in range(1, count + 1)]
         else:
-            reached = present() if present else (force or 0.0, depth or 0.0)
             by_force = kind == "press_to_force"
             start, end = (reached[0], target / contact_length) if by_force else (reached[1], target)
             speed = leg.rate and leg.rate / contact_length if by_force else leg.speed
@@ -68,15 +87,16 @@ def programme(
             last = None if speed is None else abs(end - start) / speed / count
             sizes = np.full(count, STEADY if speed is None else last)
             path = [start + (end - start) * k / count for k in range(1, count)] + [end]
-            values = [(value, None) if by_force else (None, value) for value in path]
-        for dt, (force_now, depth_now) in zip(sizes, values, strict=True):
+            goals = [(value, None, distance) if by_force else (None, value, distance) for value in path]
+        for dt, goal in zip(sizes, goals, strict=True):
             begin, time = time, time + (float(dt) if dt < STEADY else 0.0)
             for cut in sorted(t for t in snapshots if begin + 1e-9 * time < t < time - 1e-9 * time):
                 share = (cut - begin) / (time - begin)
-                yield Step(number, cut, cut - begin, *_between((force, depth), (force_now, depth_now), share))
+                force, depth, distance = _between((force, depth, distance), goal, share)
+                yield Step(number, cut, cut - begin, force, depth, distance)
                 begin = cut
-            yield Step(number, time, time - begin if dt < STEADY else STEADY, force_now, depth_now)
-            force, depth = force_now, depth_now
+            yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=kind == "step")
+            force, depth, distance = goal
 
 
 def _between(before, after, share):
