@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fingerpad.figures import style
+from fingerpad.figures.columns import DEPTH, FORCE, NODE, P_CENTRE, P_PEAK, RATE, RECEPTOR, SED, TIME, WIDTH, P, X, Y
 from fingerpad.figures.features import (
     ERROR,
     PHASES,
@@ -46,19 +47,7 @@ from fingerpad.figures.features import (
     surface_nodes,
     width,
 )
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
-
-TIME = "time (s)"
-X = "x (mm)"
-P = "contact_pressure (Pa)"
-SED = "strain_energy_density (Pa)"
-RATE = "strain_energy_rate (Pa/s)"
-DEPTH = "indentation_depth (mm)"
-WIDTH = "contact_width (mm)"
-FORCE = "force (gf)"
-P_CENTRE = "centre_pressure (Pa)"
-P_PEAK = "peak_pressure (Pa)"
-RECEPTOR = "receptor_depth (um)"
+from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
 
 SHOWN_DEPTH = 915e-6  # m, the receptor depth of Figs 4-21, 4-23, 4-28
 DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))
@@ -155,11 +144,6 @@ def _profile_rows(history: xr.Dataset, coarse: xr.Dataset | None, half: bool = F
     return pd.concat(parts, ignore_index=True)
 
 
-def _of(frame: pd.DataFrame, column: str, value: str) -> pd.DataFrame:
-    """Rows of one panel or trace, and the range rows that belong to every panel."""
-    return frame[(frame[column] == value) | (frame[column].isna() & ~is_simulated(frame))]
-
-
 def _draw_phases(ax: Axes, rows: pd.DataFrame, x: str, y: str, colour: object) -> None:
     """Curves of one panel, one a time, styled by phase (earlier ones below)."""
     rows = rows[is_simulated(rows)]
@@ -208,7 +192,7 @@ def frame_4_6(histories: Histories, meshes: Meshes, coarse: Histories, reference
                         "surface": label,
                         "phase": phase,
                         X: x[keep] * 1e3,
-                        "y (mm)": y[keep] * 1e3,
+                        Y: y[keep] * 1e3,
                         ERROR: error,
                     }
                 )
@@ -216,7 +200,7 @@ def frame_4_6(histories: Histories, meshes: Meshes, coarse: Histories, reference
     return assemble(
         pd.concat(parts, ignore_index=True),
         axis_rows(reference, X, "T100"),
-        axis_rows(reference, "y (mm)", "T101"),
+        axis_rows(reference, Y, "T101"),
     )
 
 
@@ -225,14 +209,14 @@ def fig_4_6(frame: pd.DataFrame) -> Figure:
     """Surface profile, nine panels."""
     title = "Skin profile at the top of the ramp and in steady state, 20 gf"
     fig = style.new_figure(frame, "4-6", title, 6.6, header=0.2)
-    axes = style.nine_panels(fig, SURFACES, "x (mm)", "y (mm)")
+    axes = style.nine_panels(fig, SURFACES, "x (mm)", Y)
     for label, ax in axes.items():
-        rows = _of(frame, "surface", label)
+        rows = rows_of(frame, "surface", label)
         for phase in (STEADY, TOP):
             curve = rows[rows["phase"] == phase]
-            ax.plot(curve[X], curve["y (mm)"], color=style.COLOURS[label], **style.PHASE_LINES[phase])
+            ax.plot(curve[X], curve[Y], color=style.COLOURS[label], **style.PHASE_LINES[phase])
         style.limit_axis(ax, rows, X, "x")
-        style.limit_axis(ax, rows[~is_simulated(rows)], "y (mm)")
+        style.limit_axis(ax, rows[~is_simulated(rows)], Y)
         ax.set(title=style.surface_name(label), xticks=[-10, 0, 10], yticks=[3, 4, 5, 6])
     style.phase_legend(fig, (TOP, STEADY))
     return fig
@@ -341,7 +325,7 @@ def fig_4_11(frame: pd.DataFrame) -> Figure:
     fig = style.new_figure(frame, "4-11", "Contact pressure across the contact region", 6.8, header=0.2)
     axes = style.nine_panels(fig, SURFACES, "horizontal location (mm)", "contact pressure (Pa)")
     for label, ax in axes.items():
-        rows = _of(frame, "surface", label)
+        rows = rows_of(frame, "surface", label)
         style.limit_axes(ax, rows, X, P)
         _draw_phases(ax, rows, X, P, style.COLOURS[label])
         ax.set_title(style.surface_name(label))
@@ -367,7 +351,7 @@ def fig_4_12(frame: pd.DataFrame) -> Figure:
     fig = style.new_figure(frame, "4-12", title, 6.3, header=0.2)
     axes = fig.subplots(2, 1)
     for ax, tag, pad in zip(axes, "ab", ("homogeneous", "layered"), strict=True):
-        rows = _of(frame, "pad", pad)
+        rows = rows_of(frame, "pad", pad)
         style.limit_axes(ax, rows, X, P)
         _draw_phases(ax, rows, X, P, style.COLOURS["flat"])
         ax.set(xlabel="x (mm)", ylabel="contact pressure (Pa)", title=f"({tag}) {pad} pad")
@@ -393,7 +377,7 @@ def fig_4_13(frame: pd.DataFrame) -> Figure:
     fig = style.new_figure(frame, "4-13", title, 6.8, header=0.2)
     axes = style.nine_panels(fig, SURFACES, "vertical displacement (mm)", "contact pressure (Pa)")
     for label, ax in axes.items():
-        rows = _of(frame, "surface", label)
+        rows = rows_of(frame, "surface", label)
         style.limit_axes(ax, rows, "vertical_displacement (mm)", P)
         _draw_phases(ax, rows, "vertical_displacement (mm)", P, style.COLOURS[label])
         ax.set(title=style.surface_name(label), xticks=np.arange(0, ax.get_xlim()[1] + 0.1, 0.5))
@@ -468,7 +452,7 @@ def frame_4_16(histories: Histories, meshes: Meshes, coarse: Histories, referenc
     nodes = surface_nodes(history)
     rows = pd.DataFrame(
         {
-            "node_x (mm)": np.repeat((history["skin_x"].values[nodes] * 1e3).round(5), history.sizes["time"]),
+            NODE: np.repeat((history["skin_x"].values[nodes] * 1e3).round(5), history.sizes["time"]),
             TIME: np.tile(history["time"].values, len(nodes)),
             P: history[PRESSURE].values[:, nodes].T.ravel(),
         }
@@ -483,7 +467,7 @@ def fig_4_16(frame: pd.DataFrame) -> Figure:
     fig = style.new_figure(frame, "4-16", "Pressure at each node of the contact region, K = 210 1/m", 4.6)
     ax = fig.subplots()
     rows = frame[is_simulated(frame)]
-    for x, trace in rows.groupby("node_x (mm)"):
+    for x, trace in rows.groupby(NODE):
         centre = abs(x) < 1e-6
         line = style.PHASE_LINES[STEADY if centre else PHASES[0]]
         ax.plot(trace[TIME], trace[P], color=style.COLOURS["210"], label="centre node" if centre else None, **line)
@@ -491,7 +475,7 @@ def fig_4_16(frame: pd.DataFrame) -> Figure:
     ax.set(xlabel="time (s)", ylabel="contact pressure (Pa)")
     handles = ax.get_legend_handles_labels()[0]
     other = ax.plot([], [], color=style.COLOURS["210"], **style.PHASE_LINES[PHASES[0]])
-    spacing = np.diff(np.sort(rows["node_x (mm)"].unique())).mean()
+    spacing = np.diff(np.sort(rows[NODE].unique())).mean()
     ax.legend(
         [*handles, *other],
         ["centre node", f"other nodes, about {spacing * 1e3:.0f} µm apart"],
@@ -557,7 +541,7 @@ def fig_4_20(frame: pd.DataFrame) -> Figure:
     }
     for row, (panel, ylabel) in zip(axes, titles.items(), strict=True):
         for ax, label in zip(row, PROFILE_SURFACES, strict=True):
-            rows = _of(_of(frame, "panel", panel), "surface", label)
+            rows = rows_of(rows_of(frame, "panel", panel), "surface", label)
             column = P if panel == "pressure" else SED
             style.limit_axis(ax, rows, column)
             _draw_phases(ax, rows, X, column, style.COLOURS[label])
@@ -593,7 +577,7 @@ def fig_4_21(frame: pd.DataFrame) -> Figure:
     fig = style.new_figure(frame, "4-21", title, 6.8, header=0.2)
     axes = style.nine_panels(fig, SURFACES, "time (s)", f"strain energy density, contact pressure × {PRESSURE_SCALE} (Pa)")
     for label, ax in axes.items():
-        rows = _of(frame, "surface", label)
+        rows = rows_of(frame, "surface", label)
         both = rows.assign(**{SED: rows[[SED, scaled]].max(axis=1)})
         style.limit_axis(ax, both, SED)
         solid, dashed = style.PHASE_LINES[STEADY], style.PHASE_LINES[TOP]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fingerpad.figures.features import SIMULATED
+from fingerpad.figures.features import SIMULATED, is_simulated
 from fingerpad.reference_data import read_force_depth, read_surface_profiles
 
 if TYPE_CHECKING:
@@ -125,3 +125,8 @@ def assemble(simulated: pd.DataFrame, *marks: pd.DataFrame) -> pd.DataFrame:
     if "source" not in simulated:
         simulated.insert(0, "source", SIMULATED)
     return pd.concat([simulated, *(m for m in marks if not m.empty)], ignore_index=True)
+
+
+def rows_of(frame: pd.DataFrame, column: str, value: str) -> pd.DataFrame:
+    """Rows of one panel or trace, and the range rows that belong to every panel."""
+    return frame[(frame[column] == value) | (frame[column].isna() & ~is_simulated(frame))]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -22,6 +21,7 @@ from fingerpad.figures.features import (
     surface_nodes,
 )
 from fingerpad.figures.numbers import CYLINDERS, Results, end_of, hold_time, ramp_time, top_of, width_mm
+from fingerpad.figures.verdicts import Trend, everywhere
 
 TWIN = 0.01
 """Least excess of an off-centre pressure peak over the centre's, relative, to count as one."""
@@ -32,15 +32,6 @@ BROAD = ("flat", "79", "105", "158", "210")
 """Surfaces whose contact is wider than twice the critical distance of 0.5 mm by half as much again."""
 
 
-@dataclass(frozen=True)
-class Trend:
-    """Outcome of a trend: whether it holds, the number shown, and a remark."""
-
-    holds: bool
-    shown: float
-    note: str = ""
-
-
 def _ordered(values: list[float], growing: bool, what: str) -> Trend:
     """Whether values of the nine surfaces, broad to sharp, only grow (or only fall)."""
     steps = np.diff(values) if growing else -np.diff(values)
@@ -49,16 +40,8 @@ def _ordered(values: list[float], growing: bool, what: str) -> Trend:
     return Trend(not wrong, len(values) - len(wrong), note + (f"; not from {', '.join(wrong)}" if wrong else ""))
 
 
-def _everywhere(outcome: dict[str, bool], what: str = "", needed: int | None = None) -> Trend:
-    """Whether something holds for every surface; the number shown counts those for which it does."""
-    failing = [label for label, holds in outcome.items() if not holds]
-    count = len(outcome) - len(failing)
-    note = "; ".join(filter(None, (what, f"not for {', '.join(failing)}" if failing else "")))
-    return Trend(count >= (needed or len(outcome)), count, note)
-
-
 def _all(check: Callable[[xr.Dataset], bool], results: Results, what: str = "") -> Trend:
-    return _everywhere({k: check(results(k)) for k in SURFACES}, what)
+    return everywhere({k: check(results(k)) for k in SURFACES}, what)
 
 
 def _decays(history: xr.Dataset, values: np.ndarray) -> bool:
@@ -93,14 +76,14 @@ def _peaks_before_top(results: Results) -> Trend:
     labels = CYLINDERS[:-2]
     times = {k: _peak_time(results(k)) for k in labels}
     note = "peak times " + ", ".join(f"{k}: {t:.2f} s" for k, t in times.items())
-    return _everywhere({k: t < ramp_time(results(k)) for k, t in times.items()}, note)
+    return everywhere({k: t < ramp_time(results(k)) for k, t in times.items()}, note)
 
 
 def _peaks_sooner(results: Results) -> Trend:
     labels = CYLINDERS[:-2]
     times = [_peak_time(results(k)) for k in labels]
     ordered = [True, *(b >= a for a, b in zip(times, times[1:], strict=False))]
-    return _everywhere(dict(zip(labels, ordered, strict=True)), f"{times[0]:.2f} s (79) to {times[-1]:.2f} s (420)")
+    return everywhere(dict(zip(labels, ordered, strict=True)), f"{times[0]:.2f} s (79) to {times[-1]:.2f} s (420)")
 
 
 def _peaks_at_top(label: str) -> Callable[[Results], Trend]:
@@ -240,7 +223,7 @@ def _smooth_profiles(results: Results) -> Trend:
             values = history["strain_energy_density"].values[[ramp_end(history), -1]][:, row]
             central = abs(offset[values.argmax(axis=1)]).max() <= np.diff(offset).max() * 1.01
             outcome[f"{label} at {depth * 1e6:.0f} um"] = bool(central)
-    return _everywhere(outcome)
+    return everywhere(outcome)
 
 
 def _energy_trend(name: str, kind: str) -> Callable[[Results], Trend]:
@@ -253,7 +236,7 @@ def _energy_trend(name: str, kind: str) -> Callable[[Results], Trend]:
             change[label] = values[-1] / values[top] - 1
             outcome[label] = bool(values.argmax() == top) if kind == "peak" else _decays(history, values)
         note = ", ".join(f"{k}: {change[k]:+.0%}" for k in ("flat", "210", "1260"))
-        return _everywhere(outcome, f"change in the hold at 915 um {note}")
+        return everywhere(outcome, f"change in the hold at 915 um {note}")
 
     return check
 

@@ -6,6 +6,8 @@ value
     inside if within the row's relative tolerance (0: equal to six digits) or the discretisation error.
 range
     inside if between low and high, give or take the discretisation error.
+value without low
+    the thesis does not state it: not judged.
 estimate
     not a number of the thesis, nor a truth: never judged, the remark says by how much the number differs.
 axis
@@ -16,6 +18,7 @@ axis
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -40,6 +43,8 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
         return "not_comparable", "the simulation does not show it"
     if entry["form"] == "estimate":
         return "not_comparable", f"an estimate to compare with, not a truth; {value / low - 1:+.0%}"
+    if entry["form"] == "value" and np.isnan(low):
+        return "not_comparable", "not stated in the thesis"
     if entry["form"] == "value":
         allowed = max(float(entry["tolerance"]) * abs(low), error, 1e-6 * abs(low))
         if abs(value - low) <= allowed:
@@ -65,3 +70,20 @@ def is_inside(value: float, error: float, entry: Mapping) -> bool:
 def significant(value: float, digits: int) -> float:
     """A number rounded to significant digits."""
     return float(f"{value:.{digits}g}")
+
+
+@dataclass(frozen=True)
+class Trend:
+    """Outcome of a trend: whether it holds, the number shown, and a remark."""
+
+    holds: bool
+    shown: float
+    note: str = ""
+
+
+def everywhere(outcome: Mapping[str, bool], what: str = "", needed: int | None = None) -> Trend:
+    """Whether something holds in every case; the number shown counts those for which it does."""
+    failing = [label for label, holds in outcome.items() if not holds]
+    count = len(outcome) - len(failing)
+    note = "; ".join(filter(None, (what, f"not for {', '.join(failing)}" if failing else "")))
+    return Trend(count >= (needed or len(outcome)), count, note)
