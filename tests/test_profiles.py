@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 
-from fingerpad.stimuli.profiles import Bar, Cylinder, Flat, Line, Sampled
+from fingerpad.scene import Wavy as WavyModel
+from fingerpad.stimuli.profiles import Bar, Curve, Cylinder, Flat, Line, Sampled, Wavy, profile_of
 
 pytestmark = pytest.mark.unit
 
@@ -17,7 +19,11 @@ PROFILES = {
     "sharp bar": Bar(1.5875e-3),
     "line": Line(),
     "sampled": Sampled(WAVE, -1e-3 * np.cos(300 * WAVE)),
+    "wavy": Wavy([400.0, 700.0], np.radians(30), 1e-3, 1e-3),
+    "wavy with fillets": Wavy([400.0, 700.0], np.radians(30), 1e-3, 1e-3, 0.5e-3),
 }
+STANDARD = profile_of(WavyModel())
+INCH_RADII = 25.4e-3 * np.array([1.5, 1, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125])
 point = st.tuples(st.floats(-5e-3, 5e-3), st.floats(-4e-3, 2e-3))
 
 
@@ -36,7 +42,7 @@ def test_gradient_is_the_derivative_of_the_distance(name, where):
         np.testing.assert_allclose(gradient[0], [slopes[:2].mean(), slopes[2:].mean()], atol=2e-3)
 
 
-@pytest.mark.parametrize("name", ["flat", "cylinder", "bar", "line"])
+@pytest.mark.parametrize("name", ["flat", "cylinder", "bar", "line", "wavy", "wavy with fillets"])
 @settings(max_examples=60, deadline=None)
 @given(where=point)
 def test_curvature_turns_the_gradient(name, where):
@@ -51,7 +57,7 @@ def test_curvature_turns_the_gradient(name, where):
         assert one == pytest.approx(curvature[0], rel=1e-3, abs=1.0)
 
 
-@pytest.mark.parametrize("name", PROFILES)
+@pytest.mark.parametrize("name", ["flat", "cylinder", "bar", "sharp bar", "line", "sampled"])
 def test_lowest_point_is_the_origin(name):
     """A profile touches from above at height zero: nothing below is inside, something just above is."""
     profile = PROFILES[name]
@@ -62,7 +68,7 @@ def test_lowest_point_is_the_origin(name):
     assert above.min() < 0
 
 
-@pytest.mark.parametrize("name", ["cylinder", "bar", "sampled"])
+@pytest.mark.parametrize("name", ["cylinder", "bar", "sampled", "wavy", "wavy with fillets"])
 def test_outline_lies_on_the_surface(name):
     """The drawn outline has distance zero."""
     profile = PROFILES[name]
@@ -98,3 +104,200 @@ def test_symmetry_of_samples_is_seen():
 def test_profile_must_be_single_valued(x):
     with pytest.raises(ValueError, match="strictly increasing"):
         Sampled(x, np.zeros(len(x)))
+
+
+# -- lines and arcs -----------------------------------------------------------------------------------------------------------
+
+
+def drawn(radii, half_angle, lead_in, run_out, spacing=1e-6):
+    """Points (n, 2) of the wavy surface, drawn as a compass would: flat, arcs, flat."""
+    x, parts = lead_in, [np.column_stack([np.arange(0, lead_in, spacing), np.zeros(len(np.arange(0, lead_in, spacing)))])]
+    arcs = [(radii[0], 1)] + [arc for radius in radii[1:] for arc in ((radius, -1), (radius, 1))]
+    for radius, convex in arcs:
+        angle = np.arange(-half_angle, half_angle, spacing / radius)
+        sagging = radius * (np.cos(angle) - np.cos(half_angle))
+        parts.append(np.column_stack([x + radius * (np.sin(half_angle) + np.sin(angle)), -convex * sagging]))
+        x += 2 * radius * np.sin(half_angle)
+    end = np.arange(x, x + run_out, spacing)
+    return np.vstack([*parts, np.column_stack([end, np.zeros(len(end))])])
+
+
+def test_wavy_surface_is_the_one_drawn():
+    """Every point of the drawing lies on the surface, the radii of inch tools on the thesis's axes."""
+    points = drawn(INCH_RADII, np.radians(9), 8e-3, 10e-3)
+    np.testing.assert_allclose(STANDARD.outline(points[:, 0]), points[:, 1], atol=1e-12)
+    np.testing.assert_allclose(STANDARD.evaluate(points)[0], 0, atol=1e-12)
+    assert 1e3 * points[:, 1].min() == pytest.approx(-0.469, abs=5e-4) and 1e3 * points[:, 1].max() == pytest.approx(
+        0.313, abs=5e-4
+    )
+    flat = STANDARD.evaluate(np.array([[-5e-3, -1e-3], [0.2, -2e-3]]))[0]
+    np.testing.assert_allclose(flat, [1e-3, 2e-3], rtol=1e-12)  # the flats go on for ever
+    assert not STANDARD.symmetric
+
+
+def test_segments_tell_where_which_curvature_is():
+    """Flat, eight convexities with seven hollows of the radius that follows, flat; lengths of the thesis's axes."""
+    segments = STANDARD.segments
+    radii = INCH_RADII
+    expected = [0, 1 / radii[0], *np.ravel([[-1 / r, 1 / r] for r in radii[1:]]), 0]
+    assert [segment.curvature for segment in segments] == pytest.approx(expected)
+    assert [before.end for before in segments[:-1]] == [after.start for after in segments[1:]]
+    length = np.array([segment.end - segment.start for segment in segments])
+    assert 1e3 * length[[0, 1, -1]] == pytest.approx([8, 11.92, 10], abs=5e-3)
+    assert 1e3 * length[1:-1].sum() == pytest.approx(62.6, abs=0.05)
+    third = next(s for s in segments if s.curvature == pytest.approx(52.5, abs=0.1))
+    assert 1e3 * third.start == pytest.approx(40, abs=2)  # "beginning near 40 mm"
+
+
+def slopes_at(profile, x, h=1e-8):
+    one, middle, two = profile.outline(np.array([x - h, x, x + h]))
+    return np.degrees(np.arctan2([middle - one, two - middle], h))
+
+
+def test_arcs_share_their_tangents_and_only_the_flats_meet_them_sharply():
+    """Slopes left and right of every join; the corners are reentrant and turn by the half angle."""
+    for k, x in enumerate(STANDARD.x[1:-1]):
+        before, after = slopes_at(STANDARD, x)
+        if k in (0, len(STANDARD.x) - 3):
+            assert after - before == pytest.approx(-9, abs=1e-3)
+        else:
+            assert after == pytest.approx(before, abs=1e-3) and abs(before) == pytest.approx(9, abs=1e-3)
+
+
+def test_fillet_is_tangent_to_flat_and_arc():
+    """Rounded corners have no kink left and the radius asked for; the solid gains there, nothing else moves."""
+    rounded = profile_of(WavyModel(fillet=2e-3))
+    assert [segment.curvature for segment in rounded.segments][1::16] == pytest.approx([-500, -500])
+    for x in rounded.x[1:-1]:
+        before, after = slopes_at(rounded, x)
+        assert after == pytest.approx(before, abs=1e-3)
+    x = np.linspace(0, STANDARD.x[-1], 20001)
+    gain = STANDARD.outline(x) - rounded.outline(x)
+    near = np.min(np.abs(x[:, None] - STANDARD.x[[1, -2]]), axis=1) < 0.4e-3
+    assert np.all(gain[near] >= -1e-15) and np.abs(gain[~near]).max() < 1e-15
+    # between tangents at 9 degrees the sharp corner stands out by r (1 / cos 4.5 - 1) at most
+    assert rounded.evaluate(np.array([[STANDARD.x[1], 0.0]]))[0][0] == pytest.approx(
+        -2e-3 * (1 / np.cos(np.radians(4.5)) - 1), rel=0.05
+    )
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.lists(st.floats(50, 800), min_size=1, max_size=3),
+    st.floats(0.05, 0.75),
+    st.lists(st.tuples(st.floats(-0.2, 1.2), st.floats(-6e-3, 3e-3)), min_size=5, max_size=5),
+)
+def test_distance_to_the_wavy_surface_is_the_closest_of_all(curvatures, half_angle, places):
+    """Against the nearest of densely drawn points, within what their spacing allows; below the surface it is positive."""
+    spacing = 2e-6
+    surface = drawn(1 / np.array(curvatures), half_angle, 8e-3, 8e-3, spacing)
+    profile = Wavy(curvatures, half_angle, 8e-3, 8e-3)
+    at = np.array(places) * [profile.x[-1], 1.0]
+    inside = (at[:, 0] > 0) & (at[:, 0] < profile.x[-1])
+    distance = profile.evaluate(at)[0]
+    nearest, index = cKDTree(surface).query(at)
+    inside &= (index > 0) & (index < len(surface) - 1)
+    assert np.all(nearest >= np.abs(distance) - 1e-12)
+    assert np.all(nearest[inside] <= np.hypot(distance, 2 * spacing)[inside])
+    assert np.all((distance > 0) == (at[:, 1] < profile.outline(at[:, 0])))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.lists(st.tuples(st.floats(0.02, 1.0), st.floats(-1.5, 1.5)), min_size=2, max_size=40),
+    st.tuples(st.floats(-0.2, 1.2), st.floats(-4.0, 4.0)),
+)
+def test_distance_to_steep_lines_is_the_closest_of_all(pieces, place):
+    """Against every segment one by one: leaving most of them out loses none that matters, however steep they are."""
+    steps = np.array(pieces)
+    profile = Sampled(np.cumsum(steps[:, 0]), np.cumsum(steps[:, 1]))
+    at = np.array([profile.x[0] + place[0] * np.ptp(profile.x), place[1]])
+    start, way = np.column_stack([profile.x, profile.y])[:-1], np.column_stack([np.diff(profile.x), np.diff(profile.y)])
+    share = np.einsum("ij,ij->i", at - start, way) / np.sum(way**2, axis=1)
+    low, high = np.zeros(len(way)), np.ones(len(way))
+    low[0], high[-1] = -np.inf, np.inf
+    expected = np.linalg.norm(at - start - np.clip(share, low, high)[:, None] * way, axis=1).min()
+    assert abs(profile.evaluate(at[None])[0][0]) == pytest.approx(expected, abs=1e-9)
+
+
+def test_work_does_not_grow_with_the_length_of_a_profile():
+    """Points near the surface look at the pieces near them, whether the profile has a thousand or a million."""
+    looked_at = []
+
+    class Counting(Sampled):
+        def _to_piece(self, points, piece):
+            looked_at.append(len(points))
+            return super()._to_piece(points, piece)
+
+    for count in (10**3, 10**6):
+        x = 1e-5 * np.arange(count)
+        at = np.column_stack([np.linspace(1e-3, 9e-3, 50), np.full(50, -0.3e-3)])
+        Counting(x, 1e-5 * np.sin(2e3 * x)).evaluate(at)
+    assert looked_at[0] == looked_at[2] < 50 * 60
+
+
+def test_reentrant_corner_has_its_fan_of_normals_in_the_solid():
+    """On the corner the bisector of both normals, above it the distance to it, below it that to the closer of the two sides."""
+    corner, half = np.array([STANDARD.x[1], 0.0]), np.radians(4.5)
+    up = np.array([np.sin(half), np.cos(half)])
+    distance, gradient, curvature = STANDARD.evaluate(np.array([corner, corner + 10e-6 * up, corner - 10e-6 * up]))
+    np.testing.assert_allclose(distance, [0, -10e-6, 10e-6 * np.cos(half)], atol=1e-10)
+    np.testing.assert_allclose(gradient[:2], [-up, -up], atol=1e-9)
+    np.testing.assert_allclose(curvature[:2], [0, -1e5], rtol=1e-6)
+    assert min(np.abs(gradient[2] - normal).max() for normal in ([0, -1], [-np.sin(2 * half), -np.cos(2 * half)])) < 1e-3
+
+
+def test_level_sets_of_arcs_and_corners():
+    """Curvature 1/(R + d) under a convexity, -1/(R - d) under a hollow, 1/d under a corner that points at the skin."""
+    x = [np.mean(STANDARD.x[k : k + 2]) for k in (1, 2)]
+    deep = np.column_stack([x, STANDARD.outline(np.array(x)) - 2e-3])
+    distance, gradient, curvature = STANDARD.evaluate(deep)
+    np.testing.assert_allclose(distance, 2e-3, rtol=1e-9)
+    np.testing.assert_allclose(gradient, [[0, -1], [0, -1]], atol=1e-9)
+    np.testing.assert_allclose(curvature, [1 / (38.1e-3 + 2e-3), -1 / (25.4e-3 - 2e-3)], rtol=1e-9)
+    tip = Sampled([-1e-3, 0, 1e-3], [1e-3, 0, 1e-3])
+    assert tip.evaluate(np.array([[0.1e-3, -0.5e-3]]))[2][0] == pytest.approx(1 / np.hypot(0.1e-3, 0.5e-3))
+    assert np.all(tip.evaluate(np.zeros((1, 2)))[1][0] == [0, -1])
+
+
+def test_arcs_on_a_smooth_join_are_not_corners():
+    """Straight below a join between arcs the curvature is that of one of them, at any distance down to none."""
+    for x in STANDARD.x[2:-2]:
+        foot = np.array([x, 0.0])
+        normal = STANDARD.evaluate(foot[None])[1][0]
+        for distance in (0.0, 1e-10, 1e-7, 1e-4):
+            found = STANDARD.evaluate((foot + distance * normal)[None])
+            assert found[0][0] == pytest.approx(distance, abs=1e-15) and abs(found[2][0]) < 350
+
+
+def test_what_planning_asks_of_a_surface():
+    """Largest slope and curvature, and how far the surface reaches below its start."""
+    assert STANDARD.steepness == pytest.approx(np.tan(np.radians(9))) and STANDARD.convexity == pytest.approx(1 / 3.175e-3)
+    assert STANDARD.dip == pytest.approx(38.1e-3 * (1 - np.cos(np.radians(9))))
+    assert (Flat().steepness, Flat().convexity, Flat().dip) == (0, 0, 0)
+    assert Cylinder(210.0).convexity == 210 and Line(0.1e-3).convexity == pytest.approx(1e4) and Bar(1e-3).convexity == 0
+    x = np.linspace(-3e-3, 3e-3, 601)
+    assert Sampled(x, Cylinder(210.0).outline(x)).convexity == pytest.approx(210, rel=0.5)
+    groove = Sampled([-2e-3, -1e-3, 0, 1e-3, 2e-3], [0, 0, 1e-3, 0, 0])
+    assert (groove.dip, groove.steepness, groove.convexity) == pytest.approx((1e-3, 1.0, np.pi / 4 / 1e-3))
+
+
+def test_symmetry_of_arcs_is_seen():
+    ends = [-3e-3, -1e-3, 1e-3, 3e-3]
+    assert Curve(ends, np.zeros(4), [0, 100, 0]).symmetric
+    assert not Curve([-3e-3, -1e-3, 0, 1e-3, 3e-3], np.zeros(5), [0, 100, -100, 0]).symmetric
+    assert not Curve(np.array(ends) + 1e-3, np.zeros(4), [0, 100, 0]).symmetric
+
+
+@pytest.mark.parametrize(
+    "bend", [[100, 0, 0], [0, 0, 100], [0, 2000, 0]], ids=["arc at the start", "arc at the end", "arc smaller than its chord"]
+)
+def test_surface_must_be_single_valued_between_lines(bend):
+    with pytest.raises(ValueError, match="single-valued"):
+        Curve([-3e-3, -1e-3, 1e-3, 3e-3], np.zeros(4), bend)
+
+
+def test_points_that_are_no_numbers_do_not_stop_a_query():
+    """Newton's method may stray; its residual then says so, not the profile."""
+    assert np.isnan(STANDARD.evaluate(np.array([[np.nan, 0.0], [0.0, np.nan]]))[0]).all()
+    assert [len(part) for part in STANDARD.evaluate(np.zeros((0, 2)))] == [0, 0, 0]

@@ -1,12 +1,13 @@
 """Rigid profiles as signed-distance functions.
 
-A profile lives in its own frame: its lowest point is the origin, the solid lies above, x is lateral. ``evaluate`` returns, at
-any points, the distance (positive outside the solid), its gradient (pointing away from the solid, towards the skin) and the
-curvature of the level set through the point (the only nonzero eigenvalue of the distance's second derivative). The contact
-problem needs no more; a new shape is one class here.
+A profile lives in its own frame: the solid lies above, x is lateral, x = 0 is over the pad's middle when a motion begins.
+``evaluate`` returns, at any points, the distance (positive outside the solid), its gradient (pointing away from the solid,
+towards the skin) and the curvature of the level set through the point (the only nonzero eigenvalue of the distance's second
+derivative). The contact problem needs no more; a new shape is one class here.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,12 @@ class Profile:
     #: positions along x (m) where the profile's own edges press; the mesh planner refines there
     edges: tuple[float, ...] = ()
     singular = False
+    #: largest slope of the surface; without bound for shapes that end beside their middle
+    steepness = np.inf
+    #: 1/m, largest curvature with which the surface bulges at the skin
+    convexity = 0.0
+    #: m, by which the surface reaches below its point at x = 0
+    dip = 0.0
 
     def evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         raise NotImplementedError
@@ -30,6 +37,8 @@ class Profile:
 @dataclass(frozen=True)
 class Flat(Profile):
     """A flat plate."""
+
+    steepness = 0.0
 
     def evaluate(self, points):
         n = len(points)
@@ -44,6 +53,10 @@ class Cylinder(Profile):
     """A cylinder of ``curvature`` 1/m with its axis along the third direction."""
 
     curvature: float
+
+    @property
+    def convexity(self):
+        return self.curvature
 
     def evaluate(self, points):
         radius = 1 / self.curvature
@@ -101,9 +114,152 @@ class Line(Bar):
     def __init__(self, tip_radius: float = 0.1e-3):
         super().__init__(2 * tip_radius, tip_radius)
 
+    @property
+    def convexity(self):
+        return 1 / self.fillet
 
-class Sampled(Profile):
-    """A single-valued profile given by samples, joined by straight lines; the distance to that polyline is exact.
+
+class Segment(NamedTuple):
+    """A piece of a curve: x of its ends (m) and its curvature (1/m), above zero where it bulges at the skin."""
+
+    start: float
+    end: float
+    curvature: float
+
+
+class Curve(Profile):
+    """A single-valued lower surface of straight lines and circular arcs; its distance is exact.
+
+    The first and the last piece are lines and go on for ever. Nothing is rounded where pieces meet at an angle: the closest
+    point may be the corner, and on the corner itself the gradient bisects the normals beside it. The work of a query grows
+    with the pieces near the point, at most those within its vertical distance from the surface, not with the length of it.
+
+    Args:
+        x, y: (m + 1,) m, ends of the pieces; x strictly increasing. curvature: (m,) 1/m, above zero for arcs that bulge at the
+            skin, below zero for hollow ones, zero for lines.
+
+    Raises:
+        ValueError: x is not strictly increasing, an end piece is no line, or an arc is not single-valued.
+    """
+
+    #: m, by which pieces reach over their ends, lest rounding leave a point between two of them
+    overlap = 1e-12
+    #: m, closer than which a point is on a corner
+    touch = 1e-9
+
+    def __init__(self, x, y, curvature):
+        self.x, self.y, self.bend = (np.asarray(values, float) for values in (x, y, curvature))
+        if not 2 <= len(self.x) == len(self.y) == len(self.bend) + 1 or not np.all(np.diff(self.x) > 0):
+            raise ValueError("a profile needs at least two points with strictly increasing x")
+        ends = np.column_stack([self.x, self.y])
+        chord = np.diff(ends, axis=0)
+        length = np.hypot(*chord.T)
+        slope, turn = np.arctan2(chord[:, 1], chord[:, 0]), np.arcsin(np.clip(self.bend * length / 2, -1, 1))
+        if self.bend[0] or self.bend[-1] or np.any(np.abs(slope) + np.abs(turn) >= np.pi / 2):
+            raise ValueError("a profile starts and ends with lines, and its arcs are single-valued")
+        #: largest slope of the surface
+        self.steepness = float(np.tan(np.max(np.abs(slope) + np.abs(turn))))
+        self._tangent = chord / length[:, None]
+        self._side = np.where(self.bend < 0, -1.0, 1.0)  # of the skin, seen from the centre of an arc
+        self._line = self.bend == 0
+        self._radius = np.abs(np.divide(1.0, self.bend, out=np.zeros(len(length)), where=~self._line))
+        to_chord = self._side * self._radius * np.cos(turn)
+        self._centre = np.where(
+            self._line[:, None], ends[:-1], (ends[:-1] + ends[1:]) / 2 - to_chord[:, None] * _normal(self._tangent)
+        )  # of a line: its start
+        self._reach = np.where(self._line, length, np.abs(turn))
+        before, after = (slope + turn)[:-1], (slope - turn)[1:]
+        self._kink = np.concatenate([[0.0], after - before])  # at the start of each piece
+        self._bisector = np.concatenate([[0.0], (before + after) / 2])
+        near = {"rtol": 0, "atol": 1e-9 * np.ptp(self.x)}
+        self.symmetric = bool(
+            np.allclose(self.x, -self.x[::-1], **near)
+            and np.allclose(self.y, self.y[::-1], **near)
+            and np.allclose(self.bend, self.bend[::-1])
+        )
+
+    @property
+    def segments(self) -> list[Segment]:
+        """The pieces from left to right; the first and the last go on beyond their ends."""
+        return [Segment(*map(float, piece)) for piece in zip(self.x, self.x[1:], self.bend, strict=False)]
+
+    @property
+    def dip(self):
+        ends = self.x[:-1], self.x[1:]
+        bottom = np.where(self.bend > 0, np.clip(self._centre[:, 0], *ends), self.x[:-1])
+        return float(self.outline(np.array([0.0]))[0] - min(self.outline(bottom).min(), self.y.min()))
+
+    @property
+    def convexity(self):
+        # a corner between two lines stands for the arc that would touch both in their middles
+        chord = np.diff(self.x)
+        corner = 2 * self._kink[1:] / (chord[:-1] + chord[1:]) * (self._line[:-1] & self._line[1:])
+        return float(max(self.bend.max(), corner.max(initial=0.0)))
+
+    def outline(self, x):
+        piece = np.searchsorted(self.x[1:-1], x, side="right")
+        (cx, cy), (tx, ty) = self._centre[piece].T, self._tangent[piece].T
+        rise = self._side[piece] * np.sqrt(np.maximum(self._radius[piece] ** 2 - (x - cx) ** 2, 0))
+        return np.where(self._line[piece], cy + (x - cx) * ty / tx, cy - rise)
+
+    def _to_piece(self, points, piece):
+        """Signed distance to a piece going on beyond its ends, arm from its centre, and by how much its ends are overshot (m)."""
+        arm, tangent, side = points - self._centre[piece], self._tangent[piece], self._side[piece]
+        along, across = np.einsum("ni,ni->n", arm, tangent), np.einsum("ni,ni->n", arm, _normal(tangent))
+        length, line, reach, radius = np.hypot(along, across), self._line[piece], self._reach[piece], self._radius[piece]
+        past = np.where(line, along - reach, radius * (np.abs(np.arctan2(along, side * across)) - reach))
+        short = np.where(line & (piece > 0), -along, -np.inf)
+        past = np.where(piece < len(self.bend) - 1, past, -np.inf)
+        return np.where(line, across, side * (length - radius)), arm, np.maximum(past, short)
+
+    def evaluate(self, points):
+        x, y = points.T
+        height = self.outline(x)
+        # farther along x than this share of the way along y, the surface cannot have come near: its slope is too small
+        slope = min(self.steepness, 1.0)
+        within = np.abs(y - height) * 2 * slope / (1 + slope**2) * (1 + 1e-9) + 2 * self.overlap
+        first = np.searchsorted(self.x[1:-1], x - within, side="left")
+        count = np.searchsorted(self.x[1:-1], x + within, side="right") + 1 - first
+        begin = np.cumsum(count) - count
+        row = np.repeat(np.arange(len(points)), count)
+        piece = np.arange(len(row)) - begin[row] + first[row]
+
+        def closest(distance):
+            least = np.minimum.reduceat(distance, begin)
+            where = np.flatnonzero(~(distance > least[row]))  # the first of equals, and anything for a point that is none
+            return least, piece[where[np.searchsorted(row[where], np.arange(len(points)))]]
+
+        distance, _, beyond = self._to_piece(points[row], piece)
+        to_piece, on = closest(np.where(beyond <= self.overlap, np.abs(distance), np.inf))
+        corner = np.hypot(x[row] - self.x[piece], y[row] - self.y[piece])
+        to_corner, at = closest(np.where(piece > 0, corner, np.inf))
+
+        distance, arm, _ = self._to_piece(points, on)
+        tangent, side, line = self._tangent[on], self._side[on], self._line[on]
+        length = np.maximum(np.hypot(*arm.T), 1e-15)
+        gradient = np.where(line[:, None], _normal(tangent), (side / length)[:, None] * arm)
+        curvature = np.where(line, 0.0, side / length)
+
+        is_corner = to_corner < to_piece - self.overlap
+        sign, length = np.where(y > height, -1.0, 1.0), np.maximum(to_corner, self.touch)
+        distance = np.where(is_corner, sign * to_corner, distance)
+        arm = points - np.column_stack([self.x[at], self.y[at]])
+        gradient = np.where(is_corner[:, None], (sign / length)[:, None] * arm, gradient)
+        curvature = np.where(is_corner, sign / length, curvature)
+
+        hit = (to_corner < self.touch) & (np.abs(self._kink[at]) > 1e-9)
+        angle = self._bisector[at]
+        gradient = np.where(hit[:, None], np.column_stack([np.sin(angle), -np.cos(angle)]), gradient)
+        return distance, gradient, np.where(hit, 0.0, curvature)
+
+
+def _normal(tangent: np.ndarray) -> np.ndarray:
+    """Unit normals (n, 2) towards the skin of a surface that runs along ``tangent`` (n, 2)."""
+    return np.column_stack([tangent[:, 1], -tangent[:, 0]])
+
+
+class Sampled(Curve):
+    """A single-valued profile given by samples, joined by straight lines.
 
     Args:
         x, y: (n,) m; x strictly increasing. The lowest point is moved to height zero.
@@ -113,40 +269,47 @@ class Sampled(Profile):
     """
 
     def __init__(self, x, y):
-        x, y = np.asarray(x, float), np.asarray(y, float)
-        if len(x) < 2 or len(x) != len(y) or np.any(np.diff(x) <= 0):
-            raise ValueError("a sampled profile needs at least two samples with strictly increasing x")
-        self.x, self.y = x, y - y.min()
-        self.symmetric = bool(
-            np.allclose(x, -x[::-1], atol=1e-9 * np.ptp(x)) and np.allclose(self.y, self.y[::-1], atol=1e-9 * np.ptp(x))
-        )
+        super().__init__(x, np.asarray(y, float) - np.min(y), np.zeros(max(len(x) - 1, 0)))
 
-    def evaluate(self, points):
-        start = np.column_stack([self.x[:-1], self.y[:-1]])
-        along = np.column_stack([np.diff(self.x), np.diff(self.y)])
-        # the first and the last segment go on for ever
-        share = np.einsum("nsi,si->ns", points[:, None] - start, along) / np.sum(along**2, 1)
-        low, high = np.zeros(len(along)), np.ones(len(along))
-        low[0], high[-1] = -np.inf, np.inf
-        inside = (share > low) & (share < high)
-        share = np.clip(share, low, high)
-        arm = points[:, None] - (start + share[..., None] * along)
-        length = np.hypot(arm[..., 0], arm[..., 1])
-        best = length.argmin(1)
-        rows = np.arange(len(points))
-        arm, length, on_segment = arm[rows, best], length[rows, best], inside[rows, best]
-        normal = np.column_stack([along[best, 1], -along[best, 0]]) / np.hypot(*along[best].T)[:, None]
-        above = points[:, 1] > np.interp(points[:, 0], self.x, self.y)
-        outside_range = (points[:, 0] < self.x[0]) | (points[:, 0] > self.x[-1])
-        above = np.where(outside_range, np.einsum("ni,ni->n", arm, normal) < 0, above)
-        sign = np.where(above, -1.0, 1.0)
-        near = length < 1e-12
-        gradient = np.where((near | on_segment)[:, None], normal, sign[:, None] * arm / np.where(near, 1, length)[:, None])
-        curvature = np.where(on_segment | near, 0.0, sign / np.where(near, 1, length))
-        return sign * length, gradient, curvature
 
-    def outline(self, x):
-        return np.interp(x, self.x, self.y)
+class Wavy(Curve):
+    """Convex arcs of given curvatures, joined by hollow ones, between two flats at height zero.
+
+    Every arc turns by ``half_angle`` to either side of its middle, so arcs share their tangents where they meet, all at height
+    zero; between two convexities the radius is that of the second. The flats meet the first and the last arc at reentrant
+    corners. x = 0 is the start of the lead-in. Inferred from the axes and the text of the thesis's chapter 5.
+
+    Args:
+        curvatures: 1/m, of the convexities. half_angle: rad. lead_in, run_out: m, the flats.
+        fillet: m, radius of a hollow arc that rounds the two corners; 0 leaves them sharp.
+    """
+
+    def __init__(self, curvatures, half_angle, lead_in, run_out, fillet=0.0):
+        radius = 1 / np.asarray(curvatures, float)
+        # convex, then hollow and convex for each further one
+        chords = 2 * np.sin(half_angle) * np.concatenate([radius[:1], np.repeat(radius[1:], 2)])
+        x = np.cumsum([0.0, lead_in, *chords, run_out])
+        y = np.zeros_like(x)
+        bends = np.concatenate([[0.0, 1 / radius[0]], *([-1 / r, 1 / r] for r in radius[1:]), [0.0]])
+        if fillet:
+            (back, on, drop), (back_last, on_last, drop_last) = (_fillet(r, half_angle, fillet) for r in radius[[0, -1]])
+            x = [x[0], x[1] - back, x[1] + on, *x[2:-2], x[-2] - on_last, x[-2] + back_last, x[-1]]
+            y = [0.0, 0.0, -drop, *y[2:-2], -drop_last, 0.0, 0.0]
+            bends = [0.0, -1 / fillet, *bends[1:-1], -1 / fillet, 0.0]
+        super().__init__(x, y, bends)
+
+
+def _fillet(radius: float, half_angle: float, fillet: float) -> tuple[float, float, float]:
+    """Where the rounding of a corner ends: m on the flat, along x on the arc and down there, all from the corner."""
+    # its centre lies below the flat, as far from the arc's centre as both radii
+    across = fillet + radius * np.cos(half_angle)
+    along = np.sqrt((radius + fillet) ** 2 - across**2)
+    share = radius / (radius + fillet)
+    return (
+        along - radius * np.sin(half_angle),
+        radius * np.sin(half_angle) - share * along,
+        share * across - radius * np.cos(half_angle),
+    )
 
 
 def profile_of(stimulus) -> Profile:
@@ -162,4 +325,6 @@ def profile_of(stimulus) -> Profile:
             return Line()
         case "sampled":
             return Sampled(stimulus.x, stimulus.y)
+        case "wavy":
+            return Wavy(stimulus.curvatures, stimulus.half_angle, stimulus.lead_in, stimulus.run_out, stimulus.fillet)
     raise ValueError(f"no profile called {stimulus.shape!r}")
