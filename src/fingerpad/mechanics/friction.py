@@ -84,7 +84,11 @@ class Coulomb:
             else:
                 load = force - answer.load_shift
             try:
-                found = _exchange(self.coefficient, answer, offset, load, active, self.state[part])
+                known = self.coefficient, answer, offset, load, active, self.state[part]
+                try:
+                    found = _exchange(*known)
+                except _Cycling:
+                    found = _exchange(*known, entering_sticks=True)
                 f, tau, dd, on, state, pivots = found
                 if answer.bent and not stable(answer.matrix, answer.compliance[: len(gap), : len(gap)], on):
                     raise ContactError("the curved contact is not stable")
@@ -131,21 +135,32 @@ def tangents(gradient: np.ndarray) -> np.ndarray:
     return np.column_stack([-gradient[:, 1], gradient[:, 0]])
 
 
-def _exchange(mu, answer, offset, load, active, state):
-    """Exchange states until all are consistent; returns (f, tau, depth change, active, state, pivots)."""
+class _Cycling(ContactError):
+    """No consistent set of states was found."""
+
+
+def _exchange(mu, answer, offset, load, active, state, entering_sticks=False):
+    """Exchange states until all are consistent; returns (f, tau, depth change, active, state, pivots).
+
+    A node that comes into contact slips at first, against its motion: entering as sticking makes the states cycle. Where friction
+    is so large that slipping nodes wedge themselves in it is the other way round: ``entering_sticks``.
+    """
     n = len(active)
     a, lever = answer.compliance, answer.lever
     nn, nt, tn, tt = a[:n, :n], a[:n, n:], a[n:, :n], a[n:, n:]
     active, state = active.copy(), state.astype(int)
     if not active.any() and load is not None:
         active[np.argmin(offset[:n])] = True
-    stiffness = 0.5 / np.maximum(np.diag(tt), 1e-300)
+    yielding = np.diag(tt)
+    held = yielding <= 1e-12 * yielding.max(initial=0.0)  # cannot move along the tangent: a wall carries its friction
+    state[held] = -np.sign(offset[n:][held])
+    stiffness = 0.5 / np.where(held, np.inf, yielding)
     scale = max(np.abs(offset).max(), 1e-12)
     best, patience, seen = 2 * n + 1, 10, set()
     for pivots in range(1, 60 + 6 * n):
         if load is not None and not active.any():
             raise ContactError("no node can carry the force")
-        on, stick = np.flatnonzero(active), np.flatnonzero(active & (state == STICK))
+        on, stick = np.flatnonzero(active), np.flatnonzero(active & (state == STICK) & ~held)
         share = mu * state
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
@@ -173,7 +188,7 @@ def _exchange(mu, answer, offset, load, active, state):
         slip = offset[n:] + tn @ f + tt @ tau + lever[n:] * dd
         tiny = 1e-12 * np.abs(f).max(initial=0.0)
         wrong = np.where(active, f < -tiny, gap < -1e-11 * scale)
-        sliding = active & (state != STICK) & ~wrong
+        sliding = active & (state != STICK) & ~wrong & ~held
         slides = active & (state == STICK) & ~wrong & (np.abs(tau) > mu * np.maximum(f, 0) * (1 + 1e-10) + tiny)
         sticks = sliding & (state * slip > 1e-11 * scale)
         count = int(wrong.sum() + slides.sum() + sticks.sum())
@@ -193,9 +208,9 @@ def _exchange(mu, answer, offset, load, active, state):
         reverse = sticks & (stiffness * state * slip > 2 * mu * np.maximum(f, 0))
         entering = wrong & ~active
         state = np.where(slides, np.sign(tau), np.where(reverse, -state, np.where(sticks, STICK, state))).astype(int)
-        state = np.where(entering, -np.sign(slip), state).astype(int)  # a node that comes in slides at first
+        state = np.where(entering, 0 if entering_sticks else -np.sign(slip), state).astype(int)
         flipped = active ^ wrong
         if load is not None and not flipped.any():
             flipped[np.argmax(np.where(active, f, -np.inf))] = True
         active = flipped
-    raise ContactError("stick and slip keep cycling")
+    raise _Cycling("stick and slip keep cycling")

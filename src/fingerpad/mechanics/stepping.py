@@ -37,7 +37,7 @@ class NewtonSettings:
     """Tolerances relative to the current contact force and to the node spacing, and limits.
 
     ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
-    only descends.
+    only descends. An iteration that ends within ``chord`` tolerances is followed by one with the same factors.
     """
 
     force_tolerance: float = 1e-4
@@ -46,6 +46,7 @@ class NewtonSettings:
     snap_iterations: int = 60
     max_halvings: int = 10
     energy_share: float = 0.35
+    chord: float = 30.0
 
 
 @dataclass(frozen=True)
@@ -198,32 +199,40 @@ class QuasiStatic:
         body, settings = self.body, self.settings
         body.begin_step(dt)
         limit, iteration = settings.max_iterations, 0
-        self._softened = False
+        self._softened, near = False, False
         while iteration < limit:
             iteration += 1
             if self._softened:
                 limit = settings.max_iterations + settings.snap_iterations
             if self._zone_is_tight():
                 self._grow_zone()
+                near = False
             try:
-                residual, gap, gradient = self.iterate(control, target)
+                residual, gap, gradient = self.iterate(control, target, reuse=near)
             except (FactorisationError, ContactError) as error:
                 raise _StepFailure(str(error)) from error
             if not np.isfinite(residual):
                 raise _StepFailure("the residual is not finite")
             if residual <= 1.0 and not self._zone_is_tight() and not self._touches_elsewhere():
                 return iteration, residual, gap, gradient
+            near = not near and 1.0 < residual <= settings.chord and not self._softened
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
 
-    def iterate(self, control, target):
-        """One Newton iteration; returns the residual over its tolerance and the new gap and gradient of the zone."""
+    def iterate(self, control, target, reuse=False):
+        """One Newton iteration; returns the residual over its tolerance and the new gap and gradient of the zone.
+
+        ``reuse``: with the factors of the one before, in the same zone.
+        """
         body, zone, part = self.body, self.zone, self._range
         space = body.space
         gap, gradient, curvature = self._evaluate(zone.nodes)
-        schur, internal = body.linearise(self.solver)
-        if not body.smallest_jacobian > 0:
-            raise _StepFailure("an element has turned inside out")
-        self.factorisations += 1
+        if reuse:
+            schur, internal = self._schur, self._internal
+        else:
+            schur, internal = body.linearise(self.solver)
+            if not body.smallest_jacobian > 0:
+                raise _StepFailure("an element has turned inside out")
+            self.factorisations += 1
         load = -internal if self.external is None else self.external - internal
         reduced = self.solver.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
@@ -245,6 +254,7 @@ class QuasiStatic:
             if share < 0.05:
                 raise _StepFailure("an element would turn inside out")
             body.displace(u)
+        self._schur, self._internal = schur, internal
         self.depth = depth + share * step.depth_change
         self.nodal_force[:] = 0
         self.active[:] = False
