@@ -294,6 +294,17 @@ def test_the_surface_may_be_used_to_its_ends(folder):
     assert len(load_scene(write(folder, wavy([FORCE, there, back, there]))).motion) == 4
 
 
+def test_snapshots_at_intervals_are_times(folder):
+    """Multiples of the interval up to the end, the end itself too; the canonical form is that of the times."""
+    every = load_scene(write(folder, changed(outputs={"snapshots": {"every": "0.5 s"}})))
+    listed = load_scene(write(folder, changed(outputs={"snapshots": ["0.5 s", "1 s", "1.5 s", "2 s", "2.5 s"]})))
+    assert every.outputs.snapshots == (0.5, 1.0, 1.5, 2.0, 2.5)
+    assert every.canonical() == listed.canonical() and every.with_accuracy("draft").outputs == every.outputs
+    stroke = wavy([FORCE, {"slide": "80 mm", "speed": "10 mm/s"}]) | {"outputs": {"snapshots": {"every": "0.1 s"}}}
+    times = load_scene(write(folder, stroke)).outputs.snapshots
+    assert len(times) == 85 and times[2] == 0.3 and times[-1] == 8.5
+
+
 def test_pressing_again_after_a_slide_at_the_other_control(folder):
     """Once the depth was kept, the force of before is a new target."""
     assert load_scene(write(folder, motion(FORCE, {"slide": "8 mm", "keep": "depth"}, FORCE)))

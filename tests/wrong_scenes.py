@@ -308,6 +308,24 @@ BAD = {
         "outputs.snapshots[0]",
         "up to 2.5 s",
     ),
+    "snapshots after the end": (changed(outputs={"snapshots": {"every": "3 s"}}), "outputs.snapshots.every", "up to 2.5 s"),
+    "snapshots of no interval": (changed(outputs={"snapshots": {"every": "0 s"}}), "outputs.snapshots.every", "is zero"),
+    "snapshots without number": (
+        changed(outputs={"snapshots": {"every": "1 ms"}}),
+        "outputs.snapshots.every",
+        "makes more than 1000 snapshots; allowed: 0.0025 s or more",
+    ),
+    "snapshots of a motion with an open end": (
+        {**motion(FORCE, DEPTH), "outputs": {"snapshots": {"every": "1 s"}}},
+        "outputs.snapshots.every",
+        "needs a motion whose end is known",
+    ),
+    "snapshots that are a word": (changed(outputs={"snapshots": "all"}), "outputs.snapshots", "is not a list"),
+    "snapshots from somewhere": (
+        changed(outputs={"snapshots": {"every": "1 s", "from": "1 s"}}),
+        "outputs.snapshots.from",
+        "is not a known key",
+    ),
     "negative snapshot": (changed(outputs={"snapshots": ["-1 s"]}), "outputs.snapshots[0]", "is negative"),
     "tolerance of zero": (
         changed(accuracy=0),

@@ -20,7 +20,7 @@ from fingerpad.specimen.materials import Prony
 from fingerpad.specimen.measures import apex_edge, apex_measures
 from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes, smallest_edge
 from fingerpad.stimuli.motion import STEADY, programme
-from fingerpad.stimuli.profiles import profile_of
+from fingerpad.stimuli.profiles import Curve, Profile, profile_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -56,9 +56,11 @@ class Rules:
         relaxation_share: viscosity is left out when what it can change is below this share of the accuracy.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
+        skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
         edges_per_half_width: a contact with less than one edge to either side gets this many under the apex.
         seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
-            finite and with small strain, and per node and step for output.
+            finite and with small strain, and per node and step for output. frictional: cost of a step with friction over one
+            without.
     """
 
     presets: Mapping[str, Preset] = field(
@@ -72,6 +74,7 @@ class Rules:
     small_strain_share: float = 1.0
     relaxation_share: float = 0.25
     fine_half_width: float = 3.4e-3
+    skin_stretch: float = 1.5e-3
     edges_per_half_width: float = 2.0
     inertia_limit: float = 0.1
     seconds_start: float = 1.2
@@ -79,6 +82,7 @@ class Rules:
     seconds_small: float = 1.0e-6
     iterations_finite: float = 2.6
     iterations_small: float = 2.0
+    frictional: float = 1.2
 
 
 RULES = Rules()
@@ -171,11 +175,15 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     """
     external = read_pad_mesh(scene.specimen.mesh).elevated() if scene.specimen.mesh else None
     profile = profile_of(scene.stimulus)
-    contact = _worst_contact(scene, profile, external)
-    inertia = _inertia_ratio(scene, contact)
+    pad = _pad(scene, external)
+    moves = _moves(scene)
+    # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
+    contact = _worst_contact(scene, pad, profile, profile.convexity if moves or not isinstance(profile, Curve) else 0.0)
+    inertia, fastest = _inertia_ratio(scene, contact)
     if inertia > rules.inertia_limit:
         raise PlanError(
-            f"motion: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); allowed: up to {rules.inertia_limit:g}"
+            f"motion[{fastest}]: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); "
+            f"allowed: up to {rules.inertia_limit:g}"
         )
     preset, by_hand = _preset(scene, rules, contact)
     tolerance = preset.error
@@ -186,7 +194,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         "symmetry": _symmetry(scene, profile, external),
         "ridges": Effect(False, "the specimen has none"),
     }
-    effects["viscoelasticity"], state = _viscoelasticity(scene, tolerance, rules)
+    effects["viscoelasticity"], state = _viscoelasticity(scene, profile, contact, tolerance, rules)
     _apply_overrides(scene, effects)
     timed = effects["viscoelasticity"].on
     steps_per_leg, slide_step = preset.steps, preset.slide_step
@@ -195,7 +203,10 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     steps = sum(1 for _ in schedule(scene, steps_per_leg, timed, slide_step=slide_step))
     element = _element(by_hand, external)
     if external is None:
-        size = _mesh_size(scene, preset, profile, contact, rules)
+        # on its way over a surface the contact is also flat
+        widest = _worst_contact(scene, pad, profile, 0.0) if moves and isinstance(profile, Curve) else contact
+        wander = _wander(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
+        size = _mesh_size(scene, preset, profile, contact, widest.half_width, wander, rules)
         nodes = count_nodes(scene.specimen.outline, size)
         smallest = smallest_edge(scene.specimen.outline, size)
         edge = min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
@@ -239,10 +250,14 @@ def read_plan(path: str | Path) -> Plan:
     )  # fmt: skip
 
 
+def _moves(scene: Scene) -> bool:
+    return any(isinstance(leg, (Slide, StepAndRepeat)) for leg in scene.motion)
+
+
 # -- the choices --------------------------------------------------------------------------------------------------------
 
 
-def _worst_contact(scene: Scene, profile, external: PadMesh | None) -> ContactEstimate:
+def _pad(scene: Scene, external: PadMesh | None) -> PadEstimate:
     specimen, layers = scene.specimen, scene.specimen.layers
 
     def plane(layer):
@@ -257,10 +272,14 @@ def _worst_contact(scene: Scene, profile, external: PadMesh | None) -> ContactEs
     relax = 1.0
     if specimen.moduli == "instantaneous" and specimen.prony:
         relax = 1 - sum(term.g for term in specimen.prony)
-    pad = PadEstimate(radius, epidermis, soft, relax * plane(layers.epidermis), relax * softest)
-    curvature = getattr(scene.stimulus, "curvature", 0.0)
-    if scene.stimulus.shape == "line":
-        curvature = 1 / profile.fillet
+    return PadEstimate(radius, epidermis, soft, relax * plane(layers.epidermis), relax * softest)
+
+
+def _worst_contact(scene: Scene, pad: PadEstimate, profile: Profile, curvature: float) -> ContactEstimate:
+    """The deepest contact of the motion with a surface of ``curvature`` 1/m."""
+    specimen = scene.specimen
+    # at a kept depth the surface comes as much deeper as it reaches below its start
+    keeps_depth = any(isinstance(leg, Slide) and leg.keep == "depth" for leg in scene.motion)
     worst = ContactEstimate(0.0, 0.0, 0.0)
     for leg in scene.motion:
         if isinstance(leg, PressToForce):
@@ -269,6 +288,8 @@ def _worst_contact(scene: Scene, profile, external: PadMesh | None) -> ContactEs
             now = pad.pressed_to(leg.press_to_depth, curvature)
         else:
             continue
+        if keeps_depth:
+            now = pad.pressed_to(now.depth + profile.dip, curvature)
         worst = max(worst, now, key=lambda estimate: estimate.depth)
     if scene.stimulus.shape == "bar":
         wide = max(worst.half_width, scene.stimulus.width / 2)
@@ -276,18 +297,19 @@ def _worst_contact(scene: Scene, profile, external: PadMesh | None) -> ContactEs
     return worst
 
 
-def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> float:
-    """rho v^2 / mu of the softest layer: what leaving inertia out of the equations neglects."""
+def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> tuple[float, int]:
+    """rho v^2 / mu of the softest layer, what leaving inertia out of the equations neglects; and the fastest leg."""
     layers = scene.specimen.layers
     softest = min(
         layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in (layers.epidermis, layers.dermis, layers.fat)
     )
-    speed = 0.0
-    for leg, duration in zip(scene.motion, leg_durations(scene), strict=True):
+    speed = [0.0] * len(scene.motion)
+    for i, (leg, duration) in enumerate(zip(scene.motion, leg_durations(scene), strict=True)):
         if duration and not isinstance(leg, Hold):
             depth = leg.press_to_depth if isinstance(leg, PressToDepth) else contact.depth
-            speed = max(speed, getattr(leg, "speed", None) or depth / duration)
-    return 1000.0 * speed**2 / softest
+            speed[i] = getattr(leg, "speed", None) or depth / duration
+    fastest = int(np.argmax(speed))
+    return 1000.0 * speed[fastest] ** 2 / softest, fastest
 
 
 def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Preset, Discretisation | None]:
@@ -338,14 +360,16 @@ def _finite_strain(scene, contact, tolerance, rules) -> Effect:
 def _symmetry(scene, profile, external) -> Effect:
     if not profile.symmetric:
         return Effect(False, "the stimulus is not symmetric about x = 0")
-    if any(isinstance(leg, (Slide, StepAndRepeat)) for leg in scene.motion):
+    if _moves(scene):
         return Effect(False, "the motion is not symmetric: the pad moves along the surface")
     if external is not None and not external.symmetric:
         return Effect(False, "the external mesh is not its own mirror image in x = 0")
     return Effect(True, "pad, stimulus and motion are mirror images in x = 0: half the unknowns suffice")
 
 
-def _viscoelasticity(scene: Scene, tolerance: float, rules: Rules) -> tuple[Effect, str]:
+def _viscoelasticity(
+    scene: Scene, profile: Profile, contact: ContactEstimate, tolerance: float, rules: Rules
+) -> tuple[Effect, str]:
     prony = Prony(tuple(t.g for t in scene.specimen.prony), tuple(t.tau for t in scene.specimen.prony))
     if not prony:
         return Effect(False, "the specimen has no Prony series"), "long_term"
@@ -358,8 +382,17 @@ def _viscoelasticity(scene: Scene, tolerance: float, rules: Rules) -> tuple[Effe
     if None not in durations and relaxed < limit:
         why = f"the motion is over before {relaxed:.2%} of the stress can relax ({limit:.2%} allowed): instantaneous moduli"
         return Effect(False, why), "instantaneous"
-    pressed = [d for d, leg in zip(durations, scene.motion, strict=True) if d is not None and not isinstance(leg, Hold)]
-    lag = max((float(np.sum(prony.beta * np.asarray(prony.tau)) / d) for d in pressed), default=0.0)
+    loading = []
+    for duration, leg in zip(durations, scene.motion, strict=True):
+        if duration is None or isinstance(leg, Hold):
+            continue
+        if isinstance(leg, Slide):
+            if profile.steepness == 0 and scene.friction == 0:
+                continue  # a smooth plate sliding changes nothing
+            # the narrowest contact is a new one, and the skin has stretched anew, after half its width
+            duration = min(duration, contact.half_width / leg.speed)
+        loading.append(duration)
+    lag = max((float(np.sum(prony.beta * np.asarray(prony.tau)) / d) for d in loading), default=0.0)
     if lag < limit:
         why = f"so slow that viscosity adds at most {lag:.2%} to the stress ({limit:.2%} allowed): long-term moduli"
         return Effect(False, why), "long_term"
@@ -399,16 +432,24 @@ def _element(by_hand: Discretisation | None, external: PadMesh | None) -> str:
     )
 
 
-def _mesh_size(scene: Scene, preset: Preset, profile, contact: ContactEstimate, rules: Rules) -> MeshSize:
+def _wander(scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, rules: Rules) -> float:
+    """How far (m) a stroke takes the contact from the middle of the pad: to where the pad is as steep as the surface."""
+    way = np.cumsum([getattr(leg, "slide", None) or getattr(leg, "step", 0.0) for leg in scene.motion])
+    return min(profile.steepness * pad.apex_radius, np.abs(way).max()) + rules.skin_stretch * friction
+
+
+def _mesh_size(
+    scene: Scene, preset: Preset, profile: Profile, contact: ContactEstimate, half_width: float, wander: float, rules: Rules
+) -> MeshSize:
     outline = scene.specimen.outline
     offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
-    fine = max(rules.fine_half_width, 1.3 * contact.half_width, offsets)
+    fine = max(max(rules.fine_half_width, 1.3 * half_width) + wander, offsets)
     focus = ()
     if profile.edges:
         fillet = getattr(profile, "fillet", 0.0)
         edge = min(preset.skin_edge / 4, fillet / 2) if fillet else preset.skin_edge / 4
         focus = tuple((x, edge) for x in sorted({abs(x) for x in profile.edges}))
-    elif not isinstance(scene.accuracy, Discretisation) and preset.skin_edge > contact.half_width:
+    elif not isinstance(scene.accuracy, Discretisation) and not _moves(scene) and preset.skin_edge > contact.half_width:
         focus = ((0.0, contact.half_width / rules.edges_per_half_width),)
     return MeshSize(
         skin_edge=preset.skin_edge,
@@ -420,6 +461,8 @@ def _mesh_size(scene: Scene, preset: Preset, profile, contact: ContactEstimate, 
 
 
 def _cost(nodes: int, steps: int, effects: dict[str, Effect], rules: Rules) -> float:
+    if effects["friction"].on:
+        nodes = nodes * rules.frictional
     if effects["finite_strain"].on:
         work = rules.seconds_finite * rules.iterations_finite
     else:

@@ -42,6 +42,7 @@ EFFECTS = ("friction", "viscoelasticity", "finite_strain", "symmetry", "ridges")
 LEVELS = ("draft", "thesis", "fine")
 MAXIMUM_STEPS = 100_000
 MAXIMUM_STROKE = 10.0
+MAXIMUM_SNAPSHOTS = 1000
 
 
 # --- stimulus -------------------------------------------------------------------------------------
@@ -319,7 +320,7 @@ Leg = Annotated[
     BeforeValidator(_check_leg),
 ]
 
-_TAGS = frozenset(f"<{key}>" for key in (*_SHAPES, *_LEGS, "level", "tolerance", "discretisation"))
+_TAGS = frozenset(f"<{key}>" for key in (*_SHAPES, *_LEGS, "level", "tolerance", "discretisation", "times", "every"))
 
 
 def _check_motion(legs: Any) -> Any:
@@ -348,13 +349,26 @@ class Receptors(Strict):
         return data
 
 
+class Every(Strict):
+    """Times at regular intervals, from one interval after the start to the end of the motion."""
+
+    every: Time
+    """Interval."""
+
+
+_Times = Annotated[tuple[quantity("time", "non-negative"), ...], BeforeValidator(listed)]
+
+
 class Outputs(Strict):
     """What a simulation records beside its history."""
 
     receptors: Receptors
     """Where strain energy is recorded."""
-    snapshots: Annotated[tuple[quantity("time", "non-negative"), ...], BeforeValidator(listed)] = ()
-    """Times of full fields."""
+    snapshots: Annotated[
+        Annotated[_Times, Tag("<times>")] | Annotated[Every, Tag("<every>")],
+        Discriminator(lambda value: "<every>" if isinstance(value, (Mapping, Every)) else "<times>"),
+    ] = ()
+    """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
@@ -468,6 +482,10 @@ class Scene(Strict):
         if outline is not None:
             self._check_inside(outline)
         end = self.end_time
+        if isinstance(self.outputs.snapshots, Every):
+            # the model is frozen, and only here is the motion known
+            times = self._times(self.outputs.snapshots.every)
+            object.__setattr__(self, "outputs", self.outputs.model_copy(update={"snapshots": times}))
         for i, time in enumerate(self.outputs.snapshots):
             if end is not None and time > end * (1 + 1e-9):
                 raise Problem(
@@ -476,6 +494,18 @@ class Scene(Strict):
                     ("outputs", "snapshots", i),
                 )
         return self
+
+    def _times(self, every: float) -> tuple[float, ...]:
+        """Multiples of an interval up to the end of the motion, s."""
+        key, end = ("outputs", "snapshots", "every"), self.end_time
+        if end is None:
+            raise Problem("needs a motion whose end is known", "a list of times", key)
+        if not every <= end * (1 + 1e-9):
+            raise Problem("is longer than the motion", f"up to {format_quantity(end, 'time')}", key)
+        if end > MAXIMUM_SNAPSHOTS * every:
+            least = format_quantity(end / MAXIMUM_SNAPSHOTS, "time")
+            raise Problem(f"makes more than {MAXIMUM_SNAPSHOTS} snapshots", f"{least} or more", key)
+        return tuple(round(k * every, 12) for k in range(1, int(end / every * (1 + 1e-9)) + 1))
 
     def _check_programme(self) -> None:
         if not isinstance(self.motion[0], (PressToForce, PressToDepth)):
