@@ -37,10 +37,10 @@ def skin_of(mesh, curve="top"):
     return Skin(nodes, edges, spacing, (0, len(nodes)))
 
 
-def walk(body, mesh, steps, profile=None, settings=TIGHT, curve="top"):
-    """Run a schedule of steps; returns the end of the run."""
+def walk(body, mesh, steps, profile=None, settings=TIGHT, curve="top", **more):
+    """Run a schedule of steps; returns the end of the run. ``more`` goes to the stepper (friction, external)."""
     skin = skin_of(mesh, curve)
-    solver = QuasiStatic(body, skin, profile or Flat(), settings)
+    solver = QuasiStatic(body, skin, profile or Flat(), settings, **more)
     records = solver.run(steps)
     return over_skin(body, skin, records, records[-1])
 
