@@ -5,18 +5,21 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.effects import PlanError, plan, read_plan
+from fingerpad.effects import RULES, PlanError, plan, read_plan
 from fingerpad.estimates import PadEstimate, layer_kernel
 from fingerpad.scene import (
     Bar,
     Cylinder,
     Discretisation,
+    Flat,
     Hold,
     Line,
     PressToDepth,
     PressToForce,
     PronyTerm,
     Sampled,
+    Slide,
+    StepAndRepeat,
     load_scene,
 )
 
@@ -90,6 +93,116 @@ def test_friction_is_not_called_on_when_nothing_slides(ramp):
     assert not effect.on and "slides" in effect.why
 
 
+@pytest.fixture(scope="module")
+def stroke():
+    return load_scene(SCENES / "stroke_10.yaml")
+
+
+def slid(scene, **slide):
+    return changed(scene, motion=(scene.motion[0], Slide(slide=80e-3, **slide)))
+
+
+def test_stroke_calls_for_friction_and_the_whole_pad(stroke):
+    """Sliding with a coefficient is frictional, without one or only step by step it is not; neither is symmetric."""
+    full = plan(stroke).effects
+    assert {name for name, effect in full.items() if effect.on} == {"friction", "viscoelasticity", "finite_strain"}
+    assert "stroked with a coefficient of 0.7" in full["friction"].why
+    smooth = plan(changed(stroke, friction=0.0)).effects
+    assert (
+        not smooth["friction"].on
+        and not smooth["symmetry"].on
+        and "motion" in plan(changed(stroke, stimulus=Flat())).effects["symmetry"].why
+    )
+    lifted = changed(stroke, stimulus=Flat(), motion=(stroke.motion[0], StepAndRepeat(step=3e-3, every=1e-3)))
+    effects = plan(lifted).effects
+    assert not effects["friction"].on and not effects["symmetry"].on and "nothing slides" in effects["friction"].why
+
+
+def test_friction_may_be_asked_for_where_there_is_a_coefficient(ramp, stroke):
+    """Pressing with friction is a choice; switching it off in a stroke too; a coefficient of zero cannot be switched on."""
+    assert plan(changed(ramp, friction=0.6, effects={"friction": True})).effects["friction"].on
+    assert not plan(changed(stroke, effects={"friction": False})).effects["friction"].on
+    with pytest.raises(PlanError, match="effects.friction: on, but the coefficient is 0"):
+        plan(changed(stroke, friction=0.0, effects={"friction": True}))
+
+
+@pytest.mark.parametrize(("accuracy", "slide_step"), [("draft", 0.5e-3), ("thesis", 0.25e-3), ("fine", 0.125e-3)])
+def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
+    """Steps of a slide follow the preset, not the speed; the cost follows the steps."""
+    chosen = plan(
+        changed(slid(stroke, speed=40e-3), accuracy=accuracy, outputs=stroke.outputs.model_copy(update={"snapshots": ()}))
+    )
+    per_leg = {"draft": 10, "thesis": 20, "fine": 40}[accuracy]
+    assert chosen.slide_step == slide_step and chosen.steps == per_leg + round(80e-3 / slide_step)
+    half = plan(changed(stroke, accuracy=accuracy, motion=(stroke.motion[0], Slide(slide=40e-3, speed=10e-3))))
+    cost, half_cost = (p.predicted_cost_s - RULES.seconds_start for p in (chosen, half))
+    assert half_cost / cost == pytest.approx(half.steps / chosen.steps)
+
+
+def test_steps_of_a_stroke_follow_tolerance_or_hand(stroke):
+    assert plan(changed(stroke, accuracy=0.005)).slide_step < plan(changed(stroke, accuracy=0.02)).slide_step
+    own = plan(changed(slid(stroke, speed=10e-3), accuracy=Discretisation(steps=100)))
+    assert own.slide_step is None and own.steps == pytest.approx(100, abs=85)
+    assert plan(changed(stroke, accuracy=Discretisation(skin_edge=0.2e-3))).slide_step == 0.25e-3
+
+
+def test_friction_costs(stroke):
+    """A frictional step costs somewhat more than one without on the same mesh."""
+    rough, smooth = plan(stroke), plan(changed(stroke, effects={"friction": False}))
+    per_node = [(chosen.predicted_cost_s - RULES.seconds_start) / chosen.nodes / chosen.steps for chosen in (rough, smooth)]
+    assert per_node[0] / per_node[1] == pytest.approx(1.2, abs=0.01)
+
+
+def test_mesh_is_fine_wherever_a_stroke_takes_the_contact(stroke, ramp):
+    """To where the pad is as steep as the surface, and by the skin's stretch more; a plate does not wander."""
+
+    def extent(scene):
+        return plan(scene).mesh_size.fine_half_width
+
+    still = extent(changed(stroke, stimulus=Flat(), friction=0.0))
+    assert still == extent(changed(ramp, stimulus=Flat()))
+    assert extent(changed(stroke, stimulus=Flat())) == pytest.approx(still + 1.5e-3)
+    radius = stroke.specimen.outline.apex_radius
+    assert extent(changed(stroke, friction=0.0)) == pytest.approx(still + 0.1584 * radius, rel=1e-3)
+    few = changed(stroke, friction=0.0, motion=(stroke.motion[0], Slide(slide=0.4e-3, speed=10e-3), Slide(slide=-0.9e-3)))
+    assert extent(few) == pytest.approx(still + 0.5e-3)
+
+
+def test_stroke_is_planned_for_its_sharpest_convexity(stroke):
+    """The narrowest contact on the way decides on strain and error; pressed in place the surface is flat."""
+    there = plan(stroke).contact
+    assert there == plan(changed(stroke, stimulus=Cylinder(curvature=1 / 3.175e-3))).contact
+    pressed = plan(changed(stroke, motion=stroke.motion[:1], outputs=stroke.outputs.model_copy(update={"snapshots": ()})))
+    assert pressed.contact == plan(changed(stroke, stimulus=Flat())).contact
+    assert pressed.estimated_error < plan(stroke).estimated_error
+    deep = changed(
+        stroke, motion=(PressToDepth(press_to_depth=0.5e-3, speed=1e-3), Slide(slide=80e-3, speed=10e-3, keep="depth"))
+    )
+    assert plan(deep).contact.depth == pytest.approx(0.5e-3 + 0.469e-3, abs=2e-6)
+
+
+def test_viscosity_follows_how_fast_the_contact_passes(stroke):
+    """A hundred seconds of stroking are still fast for a contact of a millimetre; a creeping or an untimed stroke is not."""
+    pressed = PressToForce(press_to_force=20 * GF)
+
+    def effect(scene, **slide):
+        return plan(changed(scene, motion=(pressed, Slide(slide=80e-3, **slide)), outputs=bare)).effects["viscoelasticity"]
+
+    bare = stroke.outputs.model_copy(update={"snapshots": ()})
+    assert effect(stroke, speed=0.8e-3).on
+    assert not effect(stroke, speed=1e-7).on and not effect(stroke).on
+    assert effect(changed(stroke, stimulus=Flat()), speed=10e-3).on
+    assert not effect(changed(stroke, stimulus=Flat(), friction=0.0), speed=10e-3).on
+
+
+def test_stroke_so_fast_that_inertia_matters_is_refused(stroke):
+    """The leg is named; ten times the thesis's fastest stroke is not refused."""
+    bare = changed(stroke, outputs=stroke.outputs.model_copy(update={"snapshots": ()}))
+    with pytest.raises(PlanError, match=r"motion\[1\]: so fast that inertia matters"):
+        plan(slid(bare, speed=1.0))
+    assert plan(slid(bare, speed=0.4)).inertia_ratio < 0.05
+
+
 def test_overrides_are_obeyed_and_said(ramp):
     """The user may switch effects; the reason then names the user."""
     off = plan(changed(ramp, effects={"finite_strain": False, "viscoelasticity": False, "symmetry": False}))
@@ -143,9 +256,10 @@ def test_discretisation_by_hand(ramp):
         plan(changed(ramp, accuracy=Discretisation(element="P2B", skin_edge=None, steps=None)))
 
 
-def test_plan_survives_its_file(ramp, tmp_path):
+@pytest.mark.parametrize("name", ["ramp40_k210", "stroke_40", "step_sub", "steady_bar_1_16_inch"])
+def test_plan_survives_its_file(name, tmp_path):
     """A plan read back is the plan written."""
-    written = plan(ramp)
+    written = plan(load_scene(SCENES / f"{name}.yaml"))
     written.write(tmp_path / "plan.json")
     assert read_plan(tmp_path / "plan.json").to_dict() == written.to_dict()
     keys = json.loads((tmp_path / "plan.json").read_text())

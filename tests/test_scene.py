@@ -169,6 +169,23 @@ def test_the_ramp_and_hold_scenes_are_the_eighteen():
             assert scene.stimulus.curvature == pytest.approx(float(label[1:]), rel=5e-3)
 
 
+def test_the_strokes_are_the_thesis_s():
+    """Five velocities over the whole surface, three and a stepped one over its first two convexities, to their ends."""
+    for speed in (1, 5, 10, 20, 40):
+        scene = load_scene(CONFIG / "scenes" / f"stroke_{speed}.yaml")
+        assert scene.stimulus == Wavy() and scene.friction > 0
+        assert scene.motion[1] == Slide(slide=80e-3, speed=speed / 1000, keep="force")
+        assert scene.end_time == pytest.approx(0.5 + 80 / speed)
+        assert len(scene.outputs.snapshots) == (85 if speed == 10 else 0)
+    sub = [
+        load_scene(CONFIG / "scenes" / f"{name}.yaml") for name in ("stroke_sub_1", "stroke_sub_10", "stroke_sub_40", "step_sub")
+    ]
+    for scene in sub:
+        assert scene.stimulus.curvatures == pytest.approx(Wavy().curvatures[:2], rel=1e-5) and scene.stimulus.length > 50e-3
+    assert [scene.motion[1].speed for scene in sub[:3]] == pytest.approx([1e-3, 10e-3, 40e-3])
+    assert sub[3].motion == (PressToForce(press_to_force=20 * 9.80665e-3), StepAndRepeat(step=50e-3, every=1e-3))
+
+
 def test_what_is_left_out_is_the_thesis_s(folder):
     scene = load_scene(write(folder, RAMP_AND_HOLD))
     assert scene.specimen.outline == Outline(
