@@ -126,6 +126,11 @@ class Plan:
     predicted_cost_s: float
 
     @property
+    def stepping(self) -> tuple[int, bool, float]:
+        """What :func:`schedule` needs to know: steps of each leg, does time matter, longest step of a slide (m)."""
+        return self.steps_per_leg, self.timed, self.slide_step
+
+    @property
     def discretisation(self) -> dict[str, Any]:
         """Element, nodes, smallest edge and steps, as printed and as written to plan.json."""
         out = {
@@ -222,7 +227,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     )  # fmt: skip
 
 
-def schedule(scene: Scene, steps_per_leg: int, timed: bool, present=None, slide_step: float | None = None):
+def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | None = None, present=None):
     """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`)."""
     return programme(
         scene.motion,

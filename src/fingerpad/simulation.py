@@ -147,12 +147,12 @@ class Simulation:
 
     def steps(self):
         """Steps of the motion with forces on the part of the pad that is solved."""
-        for step in schedule(self.scene, self.plan.steps_per_leg, self.plan.timed, self._present):
+        for step in schedule(self.scene, *self.plan.stepping, present=self._present):
             yield step if step.force is None else replace(step, force=step.force * self.share)
 
     def _nominal_end(self):
         last = 0.0
-        for step in schedule(self.scene, self.plan.steps_per_leg, self.plan.timed):
+        for step in schedule(self.scene, *self.plan.stepping):
             last = step.time
         return last or 1.0
 
