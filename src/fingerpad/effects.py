@@ -74,7 +74,7 @@ class Rules:
     small_strain_share: float = 1.0
     relaxation_share: float = 0.25
     fine_half_width: float = 3.4e-3
-    skin_stretch: float = 1.5e-3
+    skin_stretch: float = 1.0e-3
     edges_per_half_width: float = 2.0
     inertia_limit: float = 0.1
     seconds_start: float = 1.2
@@ -448,7 +448,7 @@ def _mesh_size(
 ) -> MeshSize:
     outline = scene.specimen.outline
     offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
-    fine = max(max(rules.fine_half_width, 1.3 * half_width) + wander, offsets)
+    fine = max(rules.fine_half_width, 1.3 * half_width, half_width + wander, offsets)
     focus = ()
     if profile.edges:
         fillet = getattr(profile, "fillet", 0.0)
