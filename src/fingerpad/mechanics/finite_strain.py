@@ -104,10 +104,14 @@ class FiniteStrainBody:
             self.branch_work += float(np.sum(self.space.weight * change))
             self._stretch = stretch
 
-    def _right_cauchy_green(self):
-        out = np.empty((*self.space.weight.shape, 3))
-        kernels.right_cauchy_green(self.u, self.space.cells, self.space.grad, out)
+    def _deformation_gradient(self):
+        out = np.empty((*self.space.weight.shape, 2, 2))
+        kernels.deformation_gradient(self.u, self.space.cells, self.space.grad, out)
         return out
+
+    def _right_cauchy_green(self):
+        f11, f12, f21, f22 = np.moveaxis(self._deformation_gradient().reshape(*self.space.weight.shape, 4), -1, 0)
+        return np.stack([f11 * f11 + f21 * f21, f12 * f12 + f22 * f22, f11 * f12 + f21 * f22], axis=-1)
 
     def isochoric_stress(self) -> np.ndarray:
         """Long-term isochoric second Piola-Kirchhoff stress (ne, nq, 4): 11, 22, 12, 33, Pa."""
@@ -137,9 +141,9 @@ class FiniteStrainBody:
         Branch work less spring energy is what the dashpots have dissipated. The work is the integral of the branches' second
         Piola-Kirchhoff stress over the Green strain, by the trapezoidal rule, so a hold of any length adds none.
         """
-        f = np.eye(2) + np.einsum("eai,eqaj->eqij", self.u[self.space.cells], self.space.grad)
+        f = self._deformation_gradient()
         jac = f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
-        i1 = np.einsum("eqij,eqij->eq", f, f) + 1
+        i1 = np.sum(f * f, axis=(2, 3)) + 1
         isochoric = 0.5 * self.shear[:, None] * (jac ** (-2 / 3) * i1 - 3)
         network = np.sum(self.space.weight * isochoric) + 0.5 * np.sum(self.bulk[:, None] * self._dilatation**2)
         if self._pointwise is not None:

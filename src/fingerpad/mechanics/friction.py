@@ -150,7 +150,8 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False):
     nn, nt, tn, tt = a[:n, :n], a[:n, n:], a[n:, :n], a[n:, n:]
     active, state = active.copy(), state.astype(int)
     if not active.any() and load is not None:
-        active[np.argmin(offset[:n])] = True
+        nearest = np.argmin(offset[:n])
+        active[nearest], state[nearest] = True, -np.sign(offset[n + nearest])
     yielding = np.diag(tt)
     held = yielding <= 1e-12 * yielding.max(initial=0.0)  # cannot move along the tangent: a wall carries its friction
     state[held] = -np.sign(offset[n:][held])
@@ -211,6 +212,7 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False):
         state = np.where(entering, 0 if entering_sticks else -np.sign(slip), state).astype(int)
         flipped = active ^ wrong
         if load is not None and not flipped.any():
-            flipped[np.argmax(np.where(active, f, -np.inf))] = True
+            only = np.argmax(np.where(active, f, -np.inf))  # someone must carry the force, if not in this state then in the next
+            flipped[only], state[only] = True, (state[only] + 2) % 3 - 1
         active = flipped
     raise _Cycling("stick and slip keep cycling")

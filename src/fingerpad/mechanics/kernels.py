@@ -286,15 +286,14 @@ def isochoric_stress(u, conn, grad, mu, out):
 
 
 @njit(**_JIT)
-def right_cauchy_green(u, conn, grad, out):
-    """F^T F (11, 22, 12) into ``out`` (ne, nq, 3)."""
+def deformation_gradient(u, conn, grad, out):
+    """F into ``out`` (ne, nq, 2, 2)."""
     ne, nen = conn.shape
     nq = grad.shape[1]
     for e in range(ne):
         for q in range(nq):
             f11, f12, f21, f22 = _gradient(u, conn[e], grad[e, q])
-            f11 += 1.0
-            f22 += 1.0
-            out[e, q, 0] = f11 * f11 + f21 * f21
-            out[e, q, 1] = f12 * f12 + f22 * f22
-            out[e, q, 2] = f11 * f12 + f21 * f22
+            out[e, q, 0, 0] = 1.0 + f11
+            out[e, q, 0, 1] = f12
+            out[e, q, 1, 0] = f21
+            out[e, q, 1, 1] = 1.0 + f22
