@@ -283,7 +283,7 @@ def test_run_for_real(tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["run", str(path), "--out", str(out), "--vtu", "--quiet"]) == 0
     assert names(out) == ["history.nc", "plan.json", "summary.json", "vtu"]
-    assert len(names(out / "vtu")) == 1
+    assert names(out / "vtu") == ["snapshot_0.vtu", "snapshots.vtu.series"]
     ramp, hold = json.loads((out / "summary.json").read_text())["legs"]
     for leg in (ramp, hold):
         assert leg["force_N_per_m"] == pytest.approx(20 * 9.80665e-3 / 0.01, rel=1e-6)

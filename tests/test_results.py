@@ -9,12 +9,14 @@ import pytest
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_atomically
-from fingerpad.results import COORDINATES, VARIABLES, read_history, summary, write_history, write_vtu
+from fingerpad.results import COORDINATES, FRICTION_VARIABLES, VARIABLES, read_history, summary, write_history, write_vtu
 from fingerpad.specimen import mesh_for
 
 pytestmark = pytest.mark.unit
 
 SCENES = Path(__file__).parents[1] / "config" / "scenes"
+
+FIELDS = ("snapshot_", "node_", "element_")
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +34,9 @@ def run():
 def test_every_variable_has_its_unit_and_name(run):
     """Nothing in a history is a bare number."""
     history = run[3]
-    for name, (dims, units, long_name) in VARIABLES.items():
+    assert set(history.data_vars) == set(VARIABLES) - set(FRICTION_VARIABLES) | {n for n in history if n.startswith(FIELDS)}
+    for name in set(VARIABLES) - set(FRICTION_VARIABLES):
+        dims, units, long_name = VARIABLES[name]
         assert history[name].dims == dims and history[name].attrs == {"units": units, "long_name": long_name}
     for name, (dim, units, _) in COORDINATES.items():
         assert history[name].dims == (dim,) and history[name].attrs["units"] == units
@@ -115,6 +119,10 @@ def test_snapshots_become_vtu(run, tmp_path):
     _, _, mesh, history, _ = run
     paths = write_vtu(history, mesh, tmp_path)
     assert [path.name for path in paths] == ["snapshot_0.vtu", "snapshot_1.vtu"]
+    series = json.loads((tmp_path / "snapshots.vtu.series").read_text())["files"]
+    assert [(frame["name"], frame["time"]) for frame in series] == [
+        (path.name, time) for path, time in zip(paths, history.snapshot_time.values, strict=True)
+    ]
     field = meshio.read(paths[1])
     assert len(field.points) == len(mesh.points) and set(np.unique(field.cell_data["layer"][0])) == {0, 1, 2}
     apex = np.argmin(np.hypot(mesh.points[:, 0], mesh.points[:, 1] - mesh.points[:, 1].max()))

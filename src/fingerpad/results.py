@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from fingerpad.files import write_atomically
+from fingerpad.files import write_atomically, write_text
 from fingerpad.provenance import digest, imported_sources
 
 #: name -> (dimensions, unit, long name)
@@ -49,11 +49,12 @@ VARIABLES = {
     "stored_energy": (("time",), "J/m", "network and Maxwell-spring energy per contact length"),
     "dissipated_energy": (("time",), "J/m", "viscous dissipation per contact length"),
     "frictional_dissipation": (("time",), "J/m", "frictional dissipation per contact length"),
-    # only with friction
     "tangential_traction": (("time", "skin_node"), "Pa", "frictional traction on the skin along the contact's tangent"),
     "slip": (("time", "skin_node"), "m", "way of the skin node over the stimulus in the step"),
     "contact_state": (("time", "skin_node"), "1", "0 no contact, 1 sticks, 2 slips"),
 }
+#: those that exist only in a history with friction
+FRICTION_VARIABLES = ("tangential_traction", "slip", "contact_state")
 COORDINATES = {
     "time": ("time", "s", "time"),
     "receptor_depth": ("receptor", "m", "receptor depth below the undeformed skin"),
@@ -175,7 +176,10 @@ def read_history(path: str | Path) -> xr.Dataset:
 
 
 def write_vtu(history: xr.Dataset, mesh, directory: str | Path) -> list[Path]:
-    """Write each snapshot as ``snapshot_<k>.vtu`` (mm, mm, kPa) for ParaView; returns the paths, none without snapshots."""
+    """Write each snapshot as ``snapshot_<k>.vtu`` (mm, mm, kPa) for ParaView; returns the paths, none without snapshots.
+
+    Beside them ``snapshots.vtu.series``, which ParaView opens as one film with its times.
+    """
     if "snapshot_time" not in history:
         return []
     import meshio
@@ -197,4 +201,7 @@ def write_vtu(history: xr.Dataset, mesh, directory: str | Path) -> list[Path]:
         path = Path(directory) / f"snapshot_{k}.vtu"
         write_atomically(path, lambda partial, field=field: field.write(partial, file_format="vtu"))
         paths.append(path)
+    frames = [{"name": path.name, "time": float(t)} for path, t in zip(paths, history.snapshot_time.values, strict=True)]
+    series = {"file-series-version": "1.0", "files": frames}
+    write_text(Path(directory) / "snapshots.vtu.series", json.dumps(series, indent=1) + "\n")
     return paths
