@@ -118,7 +118,7 @@ class Simulation:
         return Skin(chain, self.mesh.curves["skin"], spacing, start)
 
     def run(self, progress):
-        states: list[dict[str, np.ndarray]] = [self.receptors.strain_energies(self.body)]
+        states: list[dict[str, np.ndarray]] = [self.receptors.sample(self.body)]
         # one a leg and time: of the increments of a steady leg, all at one time, the last
         snapshots: dict[tuple[int, float], tuple[np.ndarray, np.ndarray]] = {}
         wanted = self.scene.outputs.snapshots
@@ -126,7 +126,7 @@ class Simulation:
         counts = {"iterations": 0, "cutbacks": 0}
 
         def after(record: Record):
-            states.append(self.receptors.strain_energies(self.body))
+            states.append(self.receptors.sample(self.body))
             if any(abs(record.time - t) <= 1e-9 * max(t, 1e-12) for t in wanted):
                 snapshots[record.leg, record.time] = record.displacement, self._element_pressure()
             if progress:

@@ -35,10 +35,14 @@ def check_hertz_energy(element, strain="small", poisson=0.4999, off_axis=0.0):
     points = np.column_stack([np.full(len(DEPTHS), off_axis), -np.array(DEPTHS)])
     receptors = MaterialPoints(body, points, body.shear)
     press(body, mesh, Cylinder(1 / radius), force=load / 2)
-    energies = receptors.strain_energies(body)
+    energies = receptors.sample(body)
     truth = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)["max_shear"] ** 2 / (2 * shear)
     for found, expected, frozen in zip(energies["strain_energy_network"], truth, HERTZ[element, strain], strict=True):
         two_numbers(found / p0**2, truth=expected / p0**2, within=0.02, frozen=frozen, tight=1e-5)
+    # incompressible and in the plane: von Mises stress is sqrt(3) times the largest shear stress
+    stresses = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)
+    np.testing.assert_allclose(energies["von_mises_stress"], 3**0.5 * stresses["max_shear"], rtol=0.02, err_msg="truth")
+    np.testing.assert_allclose(energies["compressive_strain"], stresses["max_shear"] / (2 * shear), rtol=0.04, err_msg="truth")
     for name in ("strain_energy_density", "strain_energy_recoverable"):
         np.testing.assert_allclose(energies[name], energies["strain_energy_network"], rtol=2e-3, err_msg="truth")
 
@@ -80,8 +84,12 @@ def check_shear_energies(strain, series=THESIS):
             "strain_energy_network": long_term * shear**2 / 2,
             "strain_energy_recoverable": long_term * shear**2 / 2 + springs[k],
         }
-        for name, found in receptors.strain_energies(body).items():
-            np.testing.assert_allclose(found, truth[name], rtol=1e-5, err_msg=f"truth: {name} at {time} s")
+        bend = 0.0 if strain == "small" else (1 + shear**2 / 4) ** 0.5 - 1
+        truth |= {"compressive_strain": shear / 2 - bend, "tensile_strain": shear / 2 + bend}
+        truth["von_mises_stress"] = 3**0.5 * abs(total[k])
+        found = receptors.sample(body)
+        for name in truth:
+            np.testing.assert_allclose(found[name], truth[name], rtol=1e-5, err_msg=f"truth: {name} at {time} s")
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])

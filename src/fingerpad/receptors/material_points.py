@@ -4,8 +4,9 @@ Receptor depths fall where they fall, not on quadrature points. Each receptor is
 point (of zero weight): displacement gradient and pressure are evaluated there exactly as the element interpolates them, and
 the branch stresses follow the same recurrence as in the body.
 
-Three meanings of strain energy density (per undeformed volume) are kept apart, because under constant force they disagree even
-in trend (see :func:`strain_energies`).
+What is sampled are the stimuli that receptors have been said to respond to (Phillips and Johnson 1981; Srinivasan and Dandekar
+1996). Three meanings of strain energy density (per undeformed volume) are kept apart, because under constant force they
+disagree even in trend (see :func:`strain_energies`).
 """
 
 from dataclasses import dataclass
@@ -137,21 +138,38 @@ class MaterialPoints:
             self.branches.begin(dt)
             self.branches.commit(self._isochoric(self._gradient(body)))
 
-    def strain_energies(self, body) -> dict[str, np.ndarray]:
-        """The three strain energy densities (nr,) Pa at the body's present state; see :func:`strain_energies`."""
+    def sample(self, body) -> dict[str, np.ndarray]:
+        """What a receptor could respond to, (nr,) each, at the body's present state.
+
+        The three strain energy densities (Pa, see :func:`strain_energies`), the principal strains in the plane
+        (``compressive_strain`` and ``tensile_strain``: stretch less one, positive in compression and in tension; zero if
+        there is none), ``von_mises_stress`` and ``hydrostatic_pressure`` (Cauchy, Pa, compression positive) and ``dilatation``
+        (J - 1 as the element projects it).
+        """
         gradient = self._gradient(body)
         dilatation = np.einsum("nb,nb->n", body.dilatation()[self.location.element], self.psi)
         stress = self._isochoric(gradient)
-        f = np.broadcast_to(np.eye(2), gradient.shape) if self._linear else np.eye(2) + gradient
+        branch = [] if self.branches is None else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
         if self._linear:
+            f, jac = np.broadcast_to(np.eye(2), gradient.shape), 1.0
             network = deviator_square(stress) / (4 * self.shear)
+            stretch = 1 + np.linalg.eigvalsh(0.5 * (gradient + gradient.swapaxes(1, 2)))
         else:
+            f = np.eye(2) + gradient
             jac = f[:, 0, 0] * f[:, 1, 1] - f[:, 0, 1] * f[:, 1, 0]
             i1 = np.einsum("nij,nij->n", f, f) + 1
             network = 0.5 * self.shear * (jac ** (-2 / 3) * i1 - 3)
+            stretch = np.linalg.svd(f, compute_uv=False)[:, ::-1]
         network = network + 0.5 * self.bulk * dilatation**2
-        branch = [] if self.branches is None else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
         found = strain_energies(f, stress, branch, network, self.shear, self.shear_instantaneous, self.bulk, dilatation)
+        total = stress + sum((q for _, q in branch), np.zeros_like(stress))
+        found |= {
+            "compressive_strain": np.maximum(1 - stretch[:, 0], 0),
+            "tensile_strain": np.maximum(stretch[:, 1] - 1, 0),
+            "von_mises_stress": np.sqrt(1.5 * deviator_square(push_forward(f, total))) / jac,
+            "hydrostatic_pressure": -self.bulk * dilatation,
+            "dilatation": dilatation,
+        }
         if self.recovery is None:
             return found
         return {name: self.recovery @ values for name, values in found.items()}
