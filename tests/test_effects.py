@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -186,14 +187,14 @@ def test_stroke_is_planned_for_its_sharpest_convexity(stroke):
 
 
 def test_viscosity_follows_how_fast_the_contact_passes(stroke):
-    """A hundred seconds of stroking are still fast for a contact of a millimetre; a creeping or an untimed stroke is not."""
+    """Minutes of stroking are still fast for a contact of a millimetre; a creeping or an untimed stroke is not."""
     pressed = PressToForce(press_to_force=20 * GF)
 
     def effect(scene, **slide):
         return plan(changed(scene, motion=(pressed, Slide(slide=80e-3, **slide)), outputs=bare)).effects["viscoelasticity"]
 
     bare = stroke.outputs.model_copy(update={"snapshots": ()})
-    assert effect(stroke, speed=0.8e-3).on
+    assert effect(stroke, speed=0.4e-3).on
     assert not effect(stroke, speed=1e-7).on and not effect(stroke).on
     assert effect(changed(stroke, stimulus=Flat()), speed=10e-3).on
     assert not effect(changed(stroke, stimulus=Flat(), friction=0.0), speed=10e-3).on
@@ -265,7 +266,8 @@ def test_plan_survives_its_file(name, tmp_path):
     """A plan read back is the plan written."""
     written = plan(load_scene(SCENES / f"{name}.yaml"))
     written.write(tmp_path / "plan.json")
-    assert read_plan(tmp_path / "plan.json").to_dict() == written.to_dict()
+    read = read_plan(tmp_path / "plan.json")
+    assert replace(read, predicted_cost_s=written.predicted_cost_s) == written and read.to_dict() == written.to_dict()
     keys = json.loads((tmp_path / "plan.json").read_text())
     assert set(keys["effects"]) == {"friction", "viscoelasticity", "finite_strain", "symmetry", "ridges"}
     assert {"element", "nodes", "smallest_edge_um", "steps"} <= set(keys["discretisation"]) and keys["predicted_cost_s"] > 0
