@@ -31,6 +31,7 @@ localrules:
     all,
     chapter3,
     chapter4,
+    chapter5,
     calibration,
 
 
@@ -39,6 +40,7 @@ rule all:
     default_target: True
     input:
         figures(),
+        animations(),
         tables(),
         calibration(),
         histories(config["scenes"]),
@@ -54,6 +56,13 @@ rule chapter4:
     """The figures of the thesis's chapter 4: ramp-and-hold indentation with nine surfaces."""
     input:
         figures("4-"),
+
+
+rule chapter5:
+    """The figures of the thesis's chapter 5: a wavy surface stepped and stroked over the pad, and a stroke as a moving picture."""
+    input:
+        figures("5-"),
+        animations(),
 
 
 rule calibration:

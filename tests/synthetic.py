@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
 
 from fingerpad.scene import Outline
 from fingerpad.specimen.mesh import MeshSize, PadMesh, build_pad_mesh
+from fingerpad.stimuli.profiles import profile_of
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
 CURVATURE = dict(zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True))
@@ -55,7 +57,8 @@ def all_scenes() -> list[str]:
 def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
     """Every scene's made-up history; `scale` multiplies every result (a stand-in for a coarse companion)."""
     made = {name: history(name, scale, edge) for name in all_scenes()}
-    return made | {name: pressed(name, scale, edge) for name in PRESSED}
+    made |= {name: pressed(name, scale, edge) for name in PRESSED}
+    return made | {name: stroke(name, scale, edge) for name in STROKES}
 
 
 def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
@@ -178,6 +181,92 @@ def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     coords = {"time": ("time", time), "skin_x": ("skin_node", skin_x), "skin_y": ("skin_node", skin_y)}
     scene = _scene(name, "flat", 40) | {"stimulus": stimulus, "motion": motion}
     return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(scene)})
+
+
+WAVY = {"half_angle": np.radians(9.0), "lead_in": 8e-3, "run_out": 15e-3, "fillet": 0.0}
+RADII = np.array((38.1, 25.4, 19.05, 12.7, 9.525, 6.35, 4.7625, 3.175)) * MM
+STROKES = {
+    **{f"stroke_{v}": (80, 0.25, v) for v in (1, 5, 10, 20, 40)},
+    **{f"stroke_sub_{v}": (50, 0.25, v) for v in (1, 10, 40)},
+    "step_sub": (50, 1.0, None),
+}
+"""Scenes over the wavy surface: length and step of the way in mm, velocity in mm/s (None: stepped, pressed anew each time)."""
+
+
+def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
+    """A made-up stroke: skin that lies on the surface, dragged along, pressed harder where it is more curved."""
+    way, step, speed = STROKES[name]
+    radii = RADII[:2] if "sub" in name else RADII
+    stimulus = {"shape": "wavy", "curvatures": (1 / radii).tolist(), **WAVY}
+    slid = np.arange(0, way + step / 2, step) * MM
+    start = 4  # increments of every press
+    if speed is None:
+        d = np.repeat(slid, start)
+        load = np.tile(np.linspace(0.25, 1, start), len(slid))
+        time, drag = np.zeros(len(d)), np.zeros(len(d))
+    else:
+        d = np.concatenate([np.zeros(start), slid])
+        load = np.minimum(np.arange(len(d)) / start, 1.0)
+        time = np.concatenate([np.arange(start) / start * 0.5, 0.5 + slid / (speed * MM)])
+        drag = MM * (1 - 0.04 * np.log(speed)) * (1 - np.exp(-d / (2 * MM)))
+    shape = profile_of(SimpleNamespace(**stimulus))
+    skin_x, skin_y = _skin(edge)
+    upper = skin_y > 0
+    centre = int(np.argmin(np.where(upper, abs(skin_x), np.inf)))
+    depth = 1.1 * MM * load + shape.outline(d)
+    x = skin_x - np.outer(drag, upper)
+    under = x + d[:, None]
+    surface = (6 * MM - depth)[:, None] + np.array([shape.outline(row) for row in under])
+    lost = abs(under - WAVY["lead_in"]) < 0.4 * MM  # the sharp corner
+    touches = upper & (skin_y > surface) & ~lost
+    y = np.where(touches, surface, skin_y)
+    bend = sum(np.where((under >= p.start) & (under < p.end), p.curvature, 0.0) for p in shape.segments)
+    pressure = scale * touches * load[:, None] * np.maximum(3000 + 30 * bend, 300) * np.sqrt(np.clip(1 - (x / (4 * MM)) ** 2, 0.01, 1))
+    felt = np.convolve(np.pad(pressure[:, centre], 8, mode="edge"), np.ones(17) / 17, "valid")
+    full = {
+        "force": ("time", LOAD * load, "N/m"),
+        "stroke_distance": ("time", d, "m"),
+        "indentation_depth": ("time", depth, "m"),
+        "centre_pressure": ("time", pressure[:, centre], "Pa"),
+        "peak_pressure": ("time", pressure.max(axis=1), "Pa"),
+        "contact_pressure": (("time", "skin_node"), pressure, "Pa"),
+        "centre_lateral_displacement": ("time", -scale * drag, "m"),
+        "skin_displacement_x": (("time", "skin_node"), x - skin_x, "m"),
+        "skin_displacement_y": (("time", "skin_node"), y - skin_y, "m"),
+        "strain_energy_density": (("time", "receptor"), np.outer(felt, (0.02, 0.04)), "Pa"),
+    }
+    data = {k: (dims, v, {"units": unit}) for k, (dims, v, unit) in full.items()} | {"leg": ("time", (d > 0).astype(int))}
+    if name == "stroke_10":
+        data |= _full_fields(time[start::40])
+    coords = {
+        "time": ("time", time, {"units": "s"}),
+        "receptor_depth": ("receptor", np.array([560e-6, 915e-6]), {"units": "m"}),
+        "receptor_offset": ("receptor", np.zeros(2), {"units": "m"}),
+        "skin_x": ("skin_node", skin_x, {"units": "m"}),
+        "skin_y": ("skin_node", skin_y, {"units": "m"}),
+    }
+    scene = _scene(name, "flat", 40)
+    press = {"press_to_force": scene["motion"][0]["press_to_force"], "rate": None}
+    on = {"step": way * MM, "every": MM} if speed is None else {"slide": way * MM, "speed": speed * MM, "keep": "force"}
+    scene |= {"stimulus": stimulus, "motion": [press, on], "friction": 0.0 if speed is None else 0.7}
+    return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(scene)})
+
+
+def _full_fields(times: np.ndarray) -> dict:
+    """Full fields at some times: a pad dragged along, and pressed under the middle."""
+    points, cells = mesh().points, mesh().cells
+    moved = np.zeros((len(times), *points.shape))
+    moved[..., 0] = -MM * np.clip(points[:, 1] / 6e-3, 0, 1)
+    middle = points[cells].mean(axis=1)
+    stress = -3000 * np.exp(-((middle[:, 0] / 3e-3) ** 2) - ((middle[:, 1] - 5e-3) / 3e-3) ** 2)
+    return {
+        "snapshot_time": ("snapshot", times),
+        "node_position": (("node", "axis"), points),
+        "element_nodes": (("element", "element_node"), cells),
+        "element_region": ("element", mesh().region),
+        "snapshot_displacement": (("snapshot", "node", "axis"), moved),
+        "snapshot_pressure": (("snapshot", "element"), np.tile(stress, (len(times), 1))),
+    }
 
 
 def _skin(edge: float) -> tuple[np.ndarray, np.ndarray]:

@@ -48,6 +48,8 @@ class WorkflowConfig(BaseModel):
     """Accuracy of each scene's coarser companion, from which discretisation errors follow; left out, none."""
     figure_numbers: tuple[FigureNumber, ...]
     """Figures to draw, by their number in the thesis."""
+    animations: tuple[Name, ...] = ()
+    """Scenes to make a moving picture of, animation_<scene>.gif among the studies; they need snapshots."""
     table_names: tuple[Name, ...] = ()
     """Tables to write."""
 

@@ -37,6 +37,11 @@ def figures(chapter=""):
     return [f"{config['figures']}/fig_{n}.png" for n in config["figure_numbers"] if n.startswith(chapter)]
 
 
+def animations():
+    """The moving pictures of the configuration."""
+    return [f"{config['studies']}/animation_{scene}.gif" for scene in config.get("animations", [])]
+
+
 def tables():
     """The tables of the configuration."""
     return [f"{config['tables']}/{name}.csv" for name in config["table_names"]]

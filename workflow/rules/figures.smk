@@ -1,7 +1,8 @@
 """Simulations -> figures and tables. Nothing here runs mechanics.
 
 Inputs:  <results>/{simulations,coarse}/<scene>/history.nc and mesh.msh, config/reference.
-Outputs: <figures>/fig_<number>.png beside fig_<number>.csv (the plotted data), <tables>/<name>.csv and <name>.md.
+Outputs: <figures>/fig_<number>.png beside fig_<number>.csv (the plotted data), <tables>/<name>.csv and <name>.md,
+         <studies>/animation_<scene>.gif.
 """
 
 from fingerpad.figures import FIGURES
@@ -38,6 +39,24 @@ rule figure:
     shell:
         "python workflow/scripts/figure.py {wildcards.number} {input.reference} {output.png}"
         " {input.histories} {input.meshes} {input.coarse} > {log} 2>&1"
+
+
+rule animation:
+    """The full fields of a history -> a moving picture."""
+    input:
+        sources("animation"),
+        ENVIRONMENT,
+        history=f"{RESULTS}/simulations/{{scene}}/history.nc",
+    output:
+        f"{config['studies']}/animation_{{scene}}.gif",
+    log:
+        f"{RESULTS}/logs/animation/{{scene}}.log",
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    shell:
+        "python workflow/scripts/animation.py {input.history} {output} > {log} 2>&1"
 
 
 rule table:

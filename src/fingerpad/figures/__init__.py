@@ -1,4 +1,4 @@
-"""The thesis figures of chapters 3 and 4, redrawn from simulated histories, one module a chapter.
+"""The thesis figures of chapters 3 to 5, redrawn from simulated histories, one module a chapter.
 
 A figure is a function of its data frame, and the frame is saved beside the picture::
 
@@ -8,10 +8,12 @@ A figure is a function of its data frame, and the frame is saved beside the pict
     publish(spec.draw(frame), frame, "figures/thesis/fig_4-10.png")
 """
 
-from fingerpad.figures import chapter3, chapter3_verification, chapter4
+from fingerpad.figures import chapter3, chapter3_verification, chapter4, chapter5
 from fingerpad.figures.io import publish, read_frame
 from fingerpad.figures.spec import FigureSpec, read_reference
 
-FIGURES: dict[str, FigureSpec] = {s.number: s for s in (*chapter3.FIGURES, *chapter3_verification.FIGURES, *chapter4.FIGURES)}
+FIGURES: dict[str, FigureSpec] = {
+    s.number: s for s in (*chapter3.FIGURES, *chapter3_verification.FIGURES, *chapter4.FIGURES, *chapter5.FIGURES)
+}
 
 __all__ = ["FIGURES", "FigureSpec", "publish", "read_frame", "read_reference"]

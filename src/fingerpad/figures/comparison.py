@@ -95,7 +95,7 @@ def _reason(id_: str, results: Results) -> str:
 
 
 def thesis_comparison(histories: Histories, coarse: Histories, meshes: Meshes, reference_csv: str | PathLike) -> pd.DataFrame:
-    """Compare the thesis's numbers and trends of chapters 3 and 4 with the simulated ones.
+    """Compare the thesis's numbers and trends of chapters 3 to 5 with the simulated ones.
 
     Parameters
     ----------

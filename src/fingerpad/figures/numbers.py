@@ -36,6 +36,7 @@ from fingerpad.figures.steady import (
     pressed_depths,
     steady_force,
 )
+from fingerpad.figures.stroke_numbers import STROKE_GIVEN, STROKE_NUMBERS
 from fingerpad.specimen.mesh import corner_count
 
 Number = Callable[["Results"], float]
@@ -262,6 +263,7 @@ CHAPTER3: dict[str, Number] = {
 
 GIVEN: dict[str, Number] = {
     **CHAPTER3_GIVEN,
+    **STROKE_GIVEN,
     "T031": _outline("stratum_corneum_thickness", 1e6),
     "T033": _outline("epidermis_thickness", 1e6),
     "T034": _outline("epidermis_thickness", 1e6),
@@ -309,6 +311,7 @@ GIVEN: dict[str, Number] = {
 NUMBERS: dict[str, Number] = {
     **GIVEN,
     **CHAPTER3,
+    **STROKE_NUMBERS,
     "T101": lambda r: _skin_height(r, "1260"),
     "T102": lambda r: max(end_of(r(k), "indentation_depth") for k in SURFACES) * 1e3,
     "T102a": lambda r: end_of(r("1260"), "indentation_depth") * 1e3,

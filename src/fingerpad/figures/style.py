@@ -132,13 +132,12 @@ def new_figure(
     return fig
 
 
-def footnote(frame: pd.DataFrame) -> list[str]:
-    """Lines under a picture: provenance, discretisation error, and how thesis values are marked."""
+def footnote(frame: pd.DataFrame, how: str = "") -> list[str]:
+    """Lines under a picture: provenance, discretisation error (and `how` it is taken), and how thesis values are marked."""
     first = "Simulated in plane strain, not measured."
     if frame[ERROR].notna().any():
-        first += (
-            f" Discretisation error {_error_text(frame)}: difference to a mesh of up to twice the edge and half the time steps."
-        )
+        error = f"Discretisation error {_error_text(frame)}{how and f' ({how})'}"
+        first += f" {error}: difference to a mesh of up to twice the edge and half the time steps."
     lines = [first]
     if frame.loc[~is_simulated(frame), "source"].str.contains("axis range").any():
         lines.append(

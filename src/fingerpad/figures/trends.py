@@ -21,6 +21,7 @@ from fingerpad.figures.features import (
     surface_nodes,
 )
 from fingerpad.figures.numbers import CYLINDERS, Results, end_of, hold_time, ramp_time, top_of, width_mm
+from fingerpad.figures.stroke_trends import STROKE_TRENDS
 from fingerpad.figures.verdicts import Trend, everywhere
 
 TWIN = 0.01
@@ -292,4 +293,5 @@ TRENDS: dict[str, Callable[[Results], Trend]] = {
     **{f"TR21{tag}": _energy_trend(name, "decay") for tag, name in ENERGIES.items()},
     "TR22": _difference_grows,
     "TR23": _stands_out_less,
+    **STROKE_TRENDS,
 }

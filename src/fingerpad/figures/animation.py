@@ -1,0 +1,132 @@
+"""A moving picture of one stroke: the surface slides over the pad, its layers deform, the pressure follows.
+
+Made from the full fields (snapshots) of a history, one frame each. The same history gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import io
+from os import PathLike
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+
+from fingerpad.figures import style
+from fingerpad.figures.features import PRESSURE, scene_of
+from fingerpad.figures.strokes import profile_and_height
+from fingerpad.files import write_atomically
+
+SIZE, DPI = (6.4, 6.2), 100  # inch, dots an inch
+FRAME_TIME = 100  # ms
+COLOURS = mpl.colormaps["YlOrRd"]
+SHADES, GREYS = 96, 48  # in the one palette of all frames
+HALF_WIDTH, LOW, HIGH = 10.0, -6.6, 7.4  # mm, of the section shown
+CORNERS = {9: 4, 4: 4, 8: 4, 6: 3, 7: 3, 3: 3}
+"""Corners of an element by its number of nodes."""
+
+
+def animate(history: xr.Dataset, path: str | PathLike) -> None:
+    """Write the stroke of a history with snapshots as an animated GIF. Raises ValueError for a history without snapshots."""
+    if "snapshot_time" not in history:
+        raise ValueError("the history has no snapshots to make a moving picture of")
+    with style.theme():
+        frames = _frames(history)
+    palette = _palette()
+    first, *others = (frame.quantize(palette=palette, dither=0) for frame in frames)
+    options = {"save_all": True, "append_images": others, "duration": FRAME_TIME, "loop": 0, "optimize": False}
+    stream = io.BytesIO()
+    first.save(stream, format="GIF", **options)
+    write_atomically(Path(path), lambda p: p.write_bytes(stream.getvalue()))
+
+
+def _palette():
+    """The colours of all frames: those of the map, and greys."""
+    from PIL import Image
+
+    mapped = (255 * COLOURS(np.linspace(0, 1, SHADES))[:, :3]).round().astype(np.uint8)
+    greys = np.repeat(np.linspace(0, 255, GREYS).round().astype(np.uint8)[:, None], 3, axis=1)
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(np.concatenate([mapped, greys]).tobytes())
+    return palette
+
+
+def _frames(history: xr.Dataset) -> list:
+    """One picture a snapshot."""
+    from PIL import Image
+
+    time, shape = history["time"].values, profile_and_height(history)[0]
+    at = [int(abs(time - t).argmin()) for t in history["snapshot_time"].values]
+    heights = profile_and_height(history)[1]
+    stress = -1e-3 * history["snapshot_pressure"].values
+    cells = history["element_nodes"].values[:, : CORNERS[history.sizes["element_node"]]]
+    points = history["node_position"].values + history["snapshot_displacement"].values
+    layer_lines = _borders(cells, history["element_region"].values)
+
+    fig = Figure(figsize=SIZE, dpi=DPI, layout="constrained")
+    canvas = FigureCanvasAgg(fig)
+    section, below = fig.subplots(2, 1, sharex=True, height_ratios=[3.1, 1.0])
+    low, high = 0.0, float(np.percentile(stress, 99.5))
+    body = PolyCollection(1e3 * points[0][cells], array=stress[0], cmap=COLOURS, edgecolor="face", lw=0.3)
+    body.set_clim(low, high)
+    lines = LineCollection(1e3 * points[0][layer_lines], colors=style.INK, lw=0.8)
+    section.add_collection(body)
+    section.add_collection(lines)
+    section.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(LOW, HIGH), aspect="equal", ylabel="y (mm)")
+    fig.colorbar(body, ax=section, label="mean stress, compression (kPa)", shrink=0.8, pad=0.02, extend="both")
+    x = np.linspace(-HALF_WIDTH, HALF_WIDTH, 721)
+    distance = np.interp(history["snapshot_time"].values, time, history["stroke_distance"].values)
+    top = 1.05e-3 * float(history[PRESSURE].values[at].max())
+    below.set(ylim=(0, top), xlabel="x (mm)", ylabel="contact pressure\n(kPa)")
+    (curve,) = below.plot([], [], color=style.INK)
+    title = section.set_title("", fontfamily="DejaVu Sans Mono")
+    speed = _speed(history)
+
+    frames, block = [], None
+    for k, index in enumerate(at):
+        if block is not None:
+            block.remove()
+        surface = 1e3 * (heights[index] + shape.outline(x * 1e-3 + distance[k]))
+        block = section.fill_between(x, surface, HIGH + 1, color="0.72", ec=style.INK, lw=1.0)
+        body.set_verts(1e3 * points[k][cells])
+        body.set_array(stress[k])
+        lines.set_segments(1e3 * points[k][layer_lines])
+        curve.set_data(*_profile(history, index))
+        title.set_text(f"{speed}{1e3 * distance[k]:5.1f} mm   {float(history['force'][index]) * _length(history):.2f} N")
+        canvas.draw()
+        fig.set_layout_engine("none")  # laid out once: nothing moves between frames
+        frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3]))
+    return frames
+
+
+def _profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Deformed position (mm) and pressure (kPa) of the upper skin nodes at an output."""
+    upper = history["skin_y"].values > 0
+    x = history["skin_x"].values + history["skin_displacement_x"].values[index]
+    return 1e3 * x[upper], 1e-3 * history[PRESSURE].values[index, upper]
+
+
+def _length(history: xr.Dataset) -> float:
+    return scene_of(history)["specimen"]["contact_length"]
+
+
+def _speed(history: xr.Dataset) -> str:
+    """Heading: the stroking velocity of the scene, if it states one."""
+    slides = [leg for leg in scene_of(history)["motion"] if leg.get("slide")]
+    return f"stroked at {1e3 * slides[0]['speed']:g} mm/s   " if slides and slides[0].get("speed") else ""
+
+
+def _borders(cells: np.ndarray, region: np.ndarray) -> np.ndarray:
+    """Node pairs (n, 2) of the element edges on the rim and between layers; `cells` are corner nodes."""
+    edges = np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    owner = np.repeat(region, cells.shape[1])
+    unique, inverse, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
+    inverse = inverse.ravel()
+    least, most = np.full(len(unique), 127), np.full(len(unique), -1)
+    np.minimum.at(least, inverse, owner)
+    np.maximum.at(most, inverse, owner)
+    return unique[(count == 1) | (least != most)]
