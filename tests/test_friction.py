@@ -1,0 +1,200 @@
+"""The dense frictional problem: Coulomb's and Signorini's conditions, limits, and what it costs to leave it out."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fingerpad.mechanics.contact import ContactError, Zone, solve_contact
+from fingerpad.mechanics.friction import Coulomb, tangents
+from test_contact import problem
+
+pytestmark = pytest.mark.unit
+
+COUNT = 12
+
+
+def solve(parts, coefficient, motion=None, state=None, law=None, curvature=None, previous=None, **control):
+    """Solution of the whole zone, from no contact unless a law with states is given."""
+    zone, schur, right, gap, gradient = parts
+    n = len(gap)
+    law = law or Coulomb(coefficient, n)
+    if state is not None:
+        law.state[:] = state
+    zero = np.zeros(n)
+    motion = np.zeros((n, 2)) if motion is None else motion
+    return law.solve(
+        zone, slice(0, n), schur, right, gap, gradient, zero if curvature is None else curvature,
+        zero if previous is None else previous, np.zeros(n, bool) if state is None else np.ones(n, bool), motion, **control,
+    )  # fmt: skip
+
+
+def tilted(parts, seed):
+    """The same problem under a profile whose normals vary from node to node."""
+    angle = np.random.default_rng(seed).uniform(-0.4, 0.4, len(parts[3]))
+    return (*parts[:4], np.column_stack([np.sin(angle), -np.cos(angle)]))
+
+
+def check_laws(parts, step, coefficient, motion, total):
+    """Every condition of equilibrium, contact and friction at every node; returns normal forces, friction and slip."""
+    zone, schur, right, gap, gradient = parts
+    tangent, du = tangents(gradient), step.condensed_displacement
+    f, tau = step.force, step.tangential
+    opening = gap + zone.gather(gradient) @ du + gradient[:, 1] * step.depth_change
+    slip = np.einsum("ni,ni->n", motion, tangent) + zone.gather(tangent) @ du + tangent[:, 1] * step.depth_change
+    forces = zone.gather(gradient).T @ f + zone.gather(tangent).T @ tau
+    scale = f.sum()
+    np.testing.assert_allclose(schur @ du - right, forces, atol=1e-9 * scale)
+    assert -np.sum(f * gradient[:, 1] + tau * tangent[:, 1]) == pytest.approx(total, rel=1e-8)
+    assert f.min() >= 0 and opening.min() > -1e-10 and np.abs(opening[step.active]).max() < 1e-10
+    assert np.all(f[~step.active] == 0) and np.all(tau[~step.active] == 0)
+    assert np.all(np.abs(tau) <= coefficient * f * (1 + 1e-8) + 1e-10 * scale)
+    slides = step.active & (step.state != 0)
+    np.testing.assert_allclose(tau[slides], coefficient * f[slides] * step.state[slides], atol=1e-10 * scale)
+    assert np.all(tau * slip <= 1e-10 * scale), "friction drives"
+    assert np.abs(slip[step.active & (step.state == 0)]).max(initial=0.0) < 1e-10
+    return f, tau, slip
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.floats(0.01, 1.5), st.floats(-1.0, 1.0), st.floats(0.01, 100))
+def test_every_condition_holds(seed, coefficient, shift, force):
+    """Equilibrium, no pull, no penetration, |tau| <= mu f, slip only at the limit and against friction, the load carried."""
+    parts = tilted(problem(seed, COUNT), seed)
+    motion = np.tile([shift, 0.0], (COUNT, 1))
+    step = solve(parts, coefficient, motion, force=force)
+    check_laws(parts, step, coefficient, motion, force)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.integers(0, 3**COUNT - 1), st.floats(0.05, 0.6))
+def test_solution_does_not_depend_on_the_first_guess(seed, guess, coefficient):
+    """For small coefficients there is one solution, whatever states the exchange starts from."""
+    parts = problem(seed, COUNT)
+    motion = np.tile([1e-2, 0.0], (COUNT, 1))
+    state = np.array([guess // 3**i % 3 - 1 for i in range(COUNT)], np.int8)
+    reference, other = (solve(parts, coefficient, motion, state=start, force=1.0) for start in (None, state))
+    np.testing.assert_allclose(other.force, reference.force, atol=1e-8)
+    np.testing.assert_allclose(other.tangential, reference.tangential, atol=1e-8)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from(["force", "depth_change"]))
+def test_without_friction_it_is_the_frictionless_problem(seed, control):
+    """A coefficient of zero gives what the frictionless solver gives, under force and depth control."""
+    parts = tilted(problem(seed, COUNT), seed)
+    value = 1.3 if control == "force" else 5e-3
+    step = solve(parts, 0.0, np.full((COUNT, 2), 0.1), **{control: value})
+    zone, schur, right, gap, gradient = parts
+    zero = np.zeros(COUNT)
+    plain = solve_contact(zone, schur, right, gap, gradient, zero, zero, np.zeros(COUNT, bool), **{control: value})
+    np.testing.assert_allclose(step.force, plain.force, atol=1e-9)
+    np.testing.assert_allclose(step.condensed_displacement, plain.condensed_displacement, atol=1e-9)
+    assert not step.tangential.any() and step.depth_change == pytest.approx(plain.depth_change)
+
+
+def test_a_small_shift_sticks_and_a_large_one_slides():
+    """Friction grows with the shift, up to mu times the normal force at every node, and turns with it."""
+    parts, grown = problem(3, COUNT), []
+    for shift in (-1e-6, 1e-6, 1e-3, 10.0, -10.0):
+        motion = np.tile([shift, 0.0], (COUNT, 1))
+        step = solve(parts, 0.4, motion, force=2.0)
+        f, tau, _ = check_laws(parts, step, 0.4, motion, 2.0)
+        grown.append(-tau.sum() / f.sum())
+    assert grown[3] == pytest.approx(0.4) and grown[4] == pytest.approx(-0.4)
+    assert grown[0] < grown[1] < grown[2] < grown[3] and grown[1] < 0.4
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3])
+def test_large_coefficients_stick(seed):
+    """Where nothing can slip the touching nodes go with the profile."""
+    parts = problem(seed, COUNT)
+    motion = np.tile([1e-5, 0.0], (COUNT, 1))
+    step = solve(parts, 5.0, motion, depth_change=8e-3)
+    f, _, slip = check_laws(parts, step, 5.0, motion, float(step.force.sum()))
+    assert np.all(np.abs(slip[f > 0]) < 1e-10) and np.all(step.state[f > 0] == 0)
+
+
+def test_a_wall_carries_the_friction_of_a_held_node():
+    """A node that cannot move sideways presses without moving; the problem stays regular."""
+    equation = np.arange(2 * COUNT).reshape(COUNT, 2)
+    equation[0, 0] = -1
+    equation[equation >= 0] = np.arange(2 * COUNT - 1)
+    _, schur, _, gap, gradient = problem(6, COUNT)
+    keep = np.arange(1, 2 * COUNT)
+    zone = Zone(np.arange(COUNT), equation)
+    parts = zone, schur[np.ix_(keep, keep)], np.zeros(2 * COUNT - 1), gap, gradient
+    motion = np.zeros((COUNT, 2))
+    step = solve(parts, 0.8, motion, force=5.0)
+    check_laws(parts, step, 0.8, motion, 5.0)
+    assert step.force[0] > 0 and step.tangential[0] == 0
+
+
+def test_nothing_can_carry_a_force_sideways():
+    """Without friction a profile met edge-on takes no vertical force, and says so."""
+    zone, schur, right, gap, _ = problem(7, COUNT)
+    with pytest.raises(ContactError):
+        solve((zone, schur, right, gap, np.tile([1.0, 0.0], (COUNT, 1))), 0.0, force=1.0)
+
+
+def test_states_and_forces_come_back():
+    """A saved law comes back after another solution was taken over, and released it holds nothing."""
+    parts = problem(8, COUNT)
+    law = Coulomb(0.5, COUNT)
+    everything = slice(0, COUNT)
+    motion = np.tile([0.1, 0.0], (COUNT, 1))
+    step = solve(parts, 0.5, motion, law=law, force=1.0)
+    law.accept(everything, step)
+    saved, before = law.save(), (law.tangential.copy(), law.state.copy(), law.dissipated)
+    law.commit(everything, law.pull(everything, parts[4]), motion)
+    assert law.dissipated > 0
+    law.accept(everything, solve(parts, 0.5, -motion, law=law, force=3.0))
+    assert not np.allclose(law.tangential, before[0])
+    law.restore(saved)
+    np.testing.assert_array_equal(law.tangential, before[0])
+    np.testing.assert_array_equal(law.state, before[1])
+    assert law.dissipated == before[2]
+    law.release()
+    assert not law.tangential.any() and not law.state.any()
+
+
+# -- what is not wanted costs nothing -------------------------------------------------------------------------------------
+
+SCENE = """
+stimulus: {{shape: cylinder, curvature: "210 1/m"}}
+motion: {motion}
+friction: {friction}
+accuracy: draft
+"""
+RUN = """
+import sys
+from fingerpad import load_scene, simulate
+history = simulate(load_scene(sys.argv[1]))
+print("fingerpad.mechanics.friction" in sys.modules, *sorted({"tangential_traction", "slip", "contact_state"} & set(history)))
+"""
+PRESS = '{press_to_force: "5 gf"}'
+SLIDE = '{slide: "0.5 mm", speed: "10 mm/s"}'
+
+
+@pytest.mark.parametrize(
+    "motion, friction, wanted",
+    [
+        (f"[{PRESS}]", 0.5, False),
+        (f"[{PRESS}, {SLIDE}]", 0.0, False),
+        (f"[{PRESS}, {SLIDE}]", 0.5, True),
+    ],
+    ids=["nothing slides", "no friction", "friction"],
+)
+def test_a_scene_without_friction_never_reaches_its_code(tmp_path, motion, friction, wanted):
+    """Where the plan leaves friction out its module is not even loaded, and the history carries none of its arrays."""
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE.format(motion=motion, friction=friction))
+    done = subprocess.run(
+        [sys.executable, "-c", RUN, str(path)], capture_output=True, text=True, check=True, cwd=Path(__file__).parent
+    )
+    arrays = ["contact_state", "slip", "tangential_traction"]
+    assert done.stdout.split() == [str(wanted), *(arrays if wanted else [])]
