@@ -84,6 +84,7 @@ SHOWN_DEPTH = 915e-6  # m, receptor of Figs 5-13 and 5-18
 SHALLOW_DEPTH = 560e-6  # m, receptor of Fig 5-24
 COLOURS = dict(zip(SPEEDS, mpl.colormaps["viridis"](np.linspace(0.0, 0.82, len(SPEEDS))), strict=True))
 LINES = {"1": (0, (1, 1.4)), "5": (0, (3, 1, 1, 1)), "10": "-", "20": (0, (6, 1.5)), "40": (0, (3.5, 1.5))}
+TOP_OF_STRETCH = -0.5  # mm, where the thesis's axis of Fig 5-15 begins
 HOW = "r.m.s. over the stroke"
 
 
@@ -276,7 +277,7 @@ def _draw_locations(frame: pd.DataFrame, number: str, title: str) -> Figure:
         axes[1].plot(surface[X], surface[Y], color=style.GREY, lw=0.8)
         axes[1].plot(skin[X], skin[Y], color=style.INK)
         axes[1].set(xlim=(-5, 5), ylim=(4, 6), yticks=[4, 5, 6])
-        style.limit_axis(axes[2], frame, P)
+        style.limit_axis(axes[2], frame, P, text=column == 2)
         axes[2].plot(skin[X], skin[P], color=style.INK)
         axes[2].set(xlim=(-5, 5), xlabel="x (mm)")
         if column == 0:
@@ -512,7 +513,7 @@ def _stack(frame: pd.DataFrame, number: str, title: str, column: str, ylabel: st
         series = f"{speed} mm/s"
         rows = _simulated(frame, series)
         ax.plot(rows[DISTANCE], rows[column], color=COLOURS[speed])
-        style.limit_axis(ax, frame, column)
+        style.limit_axis(ax, frame, column, text=False)
         ax.text(0.008, 0.97, f"v = {series}", transform=ax.transAxes, va="top", fontsize=8)
     style.limit_axis(axes[-1], frame, DISTANCE, "x")
     axes[len(axes) // 2].set_ylabel(ylabel)
@@ -560,11 +561,9 @@ def fig_5_15(frame: pd.DataFrame) -> Figure:
     fig, (ax,) = _below_surface(frame, "5-15", "Lateral displacement of the centre node", 4.8)
     _draw_speeds(ax, frame, LATERAL)
     style.limit_axis(ax, frame, DISTANCE, "x")
-    ends = frame[LATERAL].min(), frame[LATERAL].max()
-    shown = frame.loc[~is_simulated(frame), LATERAL].dropna()
-    if len(shown):
-        ax.axhspan(shown.min(), shown.max(), color=style.BAND, lw=0, zorder=0)
-    ax.set(xlabel="distance (mm)", ylabel="lateral displacement (mm)", ylim=(ends[0] - 0.08, max(ends[1], 0.0) + 0.04))
+    style.limit_axis(ax, frame[frame[LATERAL] <= TOP_OF_STRETCH], LATERAL)
+    ax.set(xlabel="distance (mm)", ylabel="lateral displacement (mm)", ylim=(None, TOP_OF_STRETCH))
+    ax.text(2.0, TOP_OF_STRETCH - 0.02, "from 0 at the start,\noff the axis", va="top", fontsize=7, color=style.GREY)
     ax.legend(loc="upper right", ncols=3, handlelength=2.8)
     return fig
 

@@ -48,6 +48,7 @@ def _radius(results: Results) -> str:
     return f"{reason}: {radius:.1f} mm gives {inverse:.3f} 1/mm under the flat plate (T106)"
 
 
+_LINE_LOAD = "likeliest: the load per contact length, which is not stated"
 _LENGTH = "likeliest: contact length; a constant one of 10 mm is too long for a shallow press, see table calibration"
 _BULK = "mostly the bulk modulus, which does not relax with the shear modulus as the estimate lets the whole force do"
 
@@ -70,7 +71,9 @@ REASONS: dict[str, str | Callable[[Results], str]] = {
     "T139": "5000 Pa is the last legible tick: Fig 4-11 shows the same curves up to 8000 Pa",
     **{f"T{i}": _RAMP for i in (123, 135, 140, 141, 142, 159, 170, *range(173, 180))},
     **{f"T177{tag}": _RAMP for tag in "ab"},
-    **{f"T{i}": _BENDING for i in (166, 167, 168, *range(192, 198))},
+    **{f"T{i}": _BENDING for i in (166, 167, 168, *range(192, 198), 307)},
+    "T232": "edges and peaks of the pressure lie where the surface has its arcs; what lags by a millimetre is the skin (T232a)",
+    **{f"T{i}": _LINE_LOAD for i in (240, 241, 245, 247, 250)},
 }
 """Likeliest reason of a known difference, by id; used when the row is outside."""
 

@@ -160,13 +160,13 @@ def _error_text(frame: pd.DataFrame) -> str:
     return shown(frame[ERROR].max())
 
 
-def limit_axis(ax: Axes, frame: pd.DataFrame, column: str, axis: str = "y") -> None:
+def limit_axis(ax: Axes, frame: pd.DataFrame, column: str, axis: str = "y", text: bool = True) -> None:
     """Set one axis to the thesis's range found in `frame` and extend it only if simulated data leave it.
 
-    Where it must be extended, the thesis's range is shaded and labelled. Without a range in the frame the
-    axis is left to the data.
+    Where it must be extended, the thesis's range is shaded and, with `text`, labelled (one of several alike panels
+    needs it). Without a range in the frame the axis is left to the data.
     """
-    _mark(ax, **{axis: _set_limits(ax, frame, column, axis)})
+    _mark(ax, **{axis: _set_limits(ax, frame, column, axis)}, text=text)
 
 
 def limit_axes(ax: Axes, frame: pd.DataFrame, x: str, y: str) -> None:
@@ -200,7 +200,7 @@ def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> tuple[
     return (low, high) if below or above else None
 
 
-def _mark(ax: Axes, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None) -> None:
+def _mark(ax: Axes, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None, text: bool = True) -> None:
     """Shade the thesis's range where an axis goes beyond it, with a bracket beside a vertical one."""
     band = {"color": BAND, "lw": 0, "zorder": 0}
     if x and y:
@@ -213,7 +213,8 @@ def _mark(ax: Axes, x: tuple[float, float] | None = None, y: tuple[float, float]
         bracket = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
         line = {"arrowstyle": "|-|,widthA=.2,widthB=.2", "color": GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (1.02, y[0]), (1.02, y[1]), arrowprops=line, **bracket)
-        ax.annotate("thesis axis range", (1.03, sum(y) / 2), xycoords=bracket["xycoords"], rotation=90,
+    if y and text:
+        ax.annotate("thesis axis range", (1.03, sum(y) / 2), xycoords=("axes fraction", "data"), rotation=90,
                     ha="left", va="center", fontsize=6, color=GREY)  # fmt: skip
 
 
