@@ -408,6 +408,7 @@ leaves = (
 KEYS = """
 specimen outline mesh layers moduli prony ridges contact_length stimulus shape curvature width
 fillet csv friction motion press_to_force rate press_to_depth speed hold slide outputs receptors
+inner outer pitch height phase limiting period half_width stratum_corneum epidermis
 keep step every curvatures half_angle lead_in run_out
 depths offsets snapshots accuracy element skin_edge steps effects g tau fat youngs_modulus
 poisson_ratio apex_height finite_strain

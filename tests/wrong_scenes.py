@@ -168,7 +168,42 @@ BAD = {
         "specimen.moduli",
         "'long_term' or 'instantaneous'",
     ),
-    "ridges": (specimen(ridges="inner"), "specimen.ridges", "is not in this version; allowed: none"),
+    "ridges": (specimen(ridges="outer"), "specimen.ridges", "is not the kind of ridges; allowed: none, inner, inner_and_outer"),
+    "ridges that are valleys": (
+        specimen(ridges={"inner": {"height": "-0.1 mm"}}),
+        "specimen.ridges.inner.height",
+        "is negative, which would turn ridges into valleys",
+    ),
+    "ridges through the dermis": (
+        specimen(ridges={"inner": {"height": "0.6 mm"}}),
+        "specimen.ridges.inner.height",
+        "is too high for the layers; allowed: less than 0.595 mm",
+    ),
+    "ridges through the epidermis below the stratum corneum": (
+        specimen(ridges={"inner": {"height": "0.4 mm"}}, layers={"stratum_corneum": {}}),
+        "specimen.ridges.inner.height",
+        "allowed: less than 0.35 mm",
+    ),
+    "ridge tip beyond the nearest": (
+        specimen(ridges={"inner": {"phase": "0.3 mm"}}),
+        "specimen.ridges.inner.phase",
+        "up to half a pitch, 0.24 mm",
+    ),
+    "unknown place of a ridge": (
+        specimen(ridges={"inner": {"phase": "crest"}}),
+        "specimen.ridges.inner.phase",
+        "allowed: tip or valley or a length",
+    ),
+    "limiting ridges as high as the primary ones": (
+        specimen(ridges={"inner": {"limiting": 1}}),
+        "specimen.ridges.inner.limiting",
+        "from 0 to below 1",
+    ),
+    "ridges wider than the pad": (
+        specimen(ridges={"half_width": "9 mm"}),
+        "specimen.ridges.half_width",
+        "wider than the section",
+    ),
     "negative contact length": (specimen(contact_length="-10 mm"), "specimen.contact_length", "is negative"),
     "mesh file missing": (specimen(mesh="no.msh"), "specimen.mesh", "'no.msh' is not an existing file"),
     "mesh that is no path": (specimen(mesh=3), "specimen.mesh", "is not a path"),

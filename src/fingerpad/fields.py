@@ -8,20 +8,32 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, ValidationInfo
 
 from fingerpad.documents import Problem
-from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, parse_number, parse_quantity
+from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, QuantityError, parse_number, parse_quantity
 
 
 class SI(float):
     """A number already in SI that takes the place of text in a document being filled in."""
 
 
-def quantity(dimension: str, sign: Literal["positive", "non-negative", "nonzero", "any"] = "positive", note: str = "") -> Any:
-    """Field type: text with a unit in a document, an SI float in Python; `note` explains a wrong `sign`."""
+def quantity(
+    dimension: str,
+    sign: Literal["positive", "non-negative", "nonzero", "any"] = "positive",
+    note: str = "",
+    words: tuple[str, ...] = (),
+) -> Any:
+    """Field type: text with a unit in a document, an SI float in Python; `note` explains a wrong `sign`, `words` may stay."""
 
-    def parse(value: Any, info: ValidationInfo) -> float:
+    def parse(value: Any, info: ValidationInfo) -> float | str:
+        if isinstance(value, str) and value in words:
+            return value
         in_python = info.context is None or isinstance(value, SI)
-        result = parse_number(value) if in_python and not isinstance(value, str) else parse_quantity(value, dimension)
         kind = DIMENSIONS[dimension]
+        try:
+            result = parse_number(value) if in_python and not isinstance(value, str) else parse_quantity(value, dimension)
+        except QuantityError as error:
+            if words:
+                raise Problem(error.problem, " or ".join((*words, error.allowed))) from None
+            raise
         wrong = {"positive": result <= 0, "non-negative": result < 0, "nonzero": result == 0, "any": False}[sign]
         if wrong:
             right = {"positive": "above zero", "non-negative": "of zero or more", "nonzero": "other than zero"}[sign]
@@ -37,7 +49,10 @@ def quantity(dimension: str, sign: Literal["positive", "non-negative", "nonzero"
             examples=[DIMENSIONS[dimension].example],
         ),
     ]
-    return Annotated[float, BeforeValidator(parse, json_schema_input_type=surface)]
+    kind = float
+    if words:
+        kind, surface = float | Literal[words], Literal[words] | surface
+    return Annotated[kind, BeforeValidator(parse, json_schema_input_type=surface)]
 
 
 def number(allowed: str, low: float, high: float, *, low_included: bool = False) -> Any:

@@ -633,7 +633,7 @@ def load_scene(path: str | Path) -> Scene:
 def scene_json_schema() -> dict[str, Any]:
     """JSON schema of a scene document as people write it (text with units, names of specimens)."""
     schema = Scene.model_json_schema(mode="validation")
-    for name in ("Outline", "Layers", "Layer", "Receptors", "Outputs", "Specimen"):
+    for name in ("Outline", "Layers", "Layer", "Ridges", "InnerRidges", "OuterRidges", "Receptors", "Outputs", "Specimen"):
         schema["$defs"][name].pop("required", None)
     schema["required"] = ["stimulus", "motion"]
     return _published(schema, "A fingerpad scene")
@@ -649,7 +649,7 @@ def _published(schema: dict[str, Any], title: str) -> dict[str, Any]:
 
 
 def _tidy(schema: Any) -> Any:
-    """Without generated titles, nulls and SI defaults, which documents lack; a shape is required."""
+    """Without generated titles, nulls and SI defaults, which documents lack; a stimulus's shape is required."""
     if isinstance(schema, list):
         return [_tidy(item) for item in schema if item != {"type": "null"}]
     if not isinstance(schema, dict):
@@ -659,6 +659,6 @@ def _tidy(schema: Any) -> Any:
         for key, value in schema.items()
         if not (key == "title" or (key == "default" and not isinstance(value, str)))
     }
-    if "shape" in tidy.get("properties", {}):
+    if "const" in tidy.get("properties", {}).get("shape", {}):
         tidy["required"] = ["shape", *tidy.get("required", [])]
     return tidy

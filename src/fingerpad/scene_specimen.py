@@ -7,7 +7,16 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    ValidationInfo,
+    field_serializer,
+    model_serializer,
+    model_validator,
+)
 
 from fingerpad.documents import HIDE, Problem, Strict, explain, read_yaml
 from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity
@@ -32,7 +41,7 @@ class Outline(Strict):
     dermis_thickness: Length
     """Dermis."""
     stratum_corneum_thickness: Length
-    """Outermost part of the epidermis; drawn, not modelled apart."""
+    """Outermost part of the epidermis; a layer of its own if `layers` has one."""
     bone_centre_height: SignedLength
     """Height of the centre of the bone's ellipse."""
     bone_half_width: Length
@@ -106,14 +115,79 @@ class Layer(Strict):
 
 
 class Layers(Strict):
-    """The three layers between skin and bone."""
+    """The layers between skin and bone."""
 
+    stratum_corneum: Layer | None = None
+    """Outermost part of the epidermis, if it is to be a layer of its own; keys left out are the epidermis's."""
     epidermis: Layer
     """Outermost layer."""
     dermis: Layer
     """Middle layer."""
     fat: Layer
     """From the dermis to the bone."""
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """Keys that the stratum corneum leaves out are the epidermis's."""
+        if isinstance(data.get("stratum_corneum"), Mapping):
+            below = data.get("epidermis")
+            below = _si(below) if isinstance(below, Layer) else below if isinstance(below, Mapping) else {}
+            data["stratum_corneum"] = {**below, **data["stratum_corneum"]}
+        return data
+
+    @model_serializer(mode="wrap")
+    def _without_nothing(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data = handler(self)
+        if self.stratum_corneum is None:
+            del data["stratum_corneum"]
+        return data
+
+
+Height = quantity("length", note=", which would turn ridges into valleys")
+
+
+class InnerRidges(Strict):
+    """The epidermis bulging into the dermis; its mean thickness is kept."""
+
+    pitch: Length
+    """From one primary ridge to the next, along the skin."""
+    height: Height
+    """From valley (thinnest epidermis) to tip (thickest)."""
+    shape: Literal["smooth", "sharp"]
+    """A cosine, or its square: tips of half the radius, wider valleys."""
+    phase: quantity("length", "any", words=("tip", "valley"))
+    """What is at x = 0 (valley: halfway between two primary ridges), or the lateral position of the nearest primary tip."""
+    limiting: number("a number from 0 to below 1", 0.0, 1.0, low_included=True)
+    """Height over theirs of limiting ridges halfway between the primary ones, which makes all half as wide; 0 for none."""
+
+    @model_validator(mode="after")
+    def _check(self) -> InnerRidges:
+        if not isinstance(self.phase, str) and abs(self.phase) > self.pitch / 2:
+            half = format_quantity(self.pitch / 2, "length")
+            raise Problem("is farther off than the nearest ridge tip can be", f"up to half a pitch, {half}", ("phase",))
+        return self
+
+
+class OuterRidges(Strict):
+    """The papillary ridges of the skin, whose crests lie over the tips of the inner ones; the skin's mean height is kept."""
+
+    period: Length | None = None
+    """From one ridge to the next, along the skin; the inner ridges' pitch unless given."""
+    height: Height
+    """From furrow to crest."""
+    shape: Literal["smooth", "sharp"]
+    """A cosine, or its square: crests of half the radius, wider furrows."""
+
+
+class Ridges(Strict):
+    """Ridges of the pad round its apex."""
+
+    inner: InnerRidges
+    """Of the epidermis into the dermis; keys left out are the thesis file's."""
+    outer: OuterRidges | None = None
+    """Of the skin; none unless given, keys left out are the thesis file's."""
+    half_width: Length
+    """Distance from the apex, along the skin, within which ridges stand in full; they fade out over one pitch beyond."""
 
 
 class PronyTerm(Strict):
@@ -148,6 +222,8 @@ class SpecimenFile(Strict):
     """Relaxation of the shear modulus, normalised by the instantaneous one; an empty list for none."""
     contact_length: Length | None = None
     """Out-of-plane length that turns newtons into newtons per metre."""
+    ridges: Ridges | None = None
+    """What scenes that ask for ridges get unless they say otherwise."""
     receptor_depths: Annotated[tuple[Length, ...], BeforeValidator(listed)] | None = None
     """Depths below the skin at which strain energy is recorded when a scene names none."""
 
@@ -212,7 +288,7 @@ def _read_specimen(path: Path, source: Source) -> SpecimenFile:
 def _si(model: Strict) -> dict[str, Any]:
     """Fields of a model of SI floats, marked so that a document may hold them beside text."""
     values = ((name, getattr(model, name)) for name in type(model).model_fields)
-    return {name: SI(value) if isinstance(value, float) else value for name, value in values}
+    return {name: SI(value) if isinstance(value, float) else value for name, value in values if value is not None}
 
 
 def _named(part: str, surface: Any) -> BeforeValidator:
@@ -237,6 +313,26 @@ def _merge(default: Any, given: Any) -> Any:
     return {**_si(default), **given} if isinstance(default, Strict) and isinstance(given, Mapping) else given
 
 
+_RIDGES = Literal["none", "inner", "inner_and_outer"]
+
+
+def _read_ridges(value: Any, info: ValidationInfo) -> Any:
+    """Ridges by a word or by keys; keys left out are the default specimen's, and there are outer ridges only if asked for."""
+    if value is None or isinstance(value, Ridges):
+        return value
+    if value == "none":
+        return None
+    if value in ("inner", "inner_and_outer"):
+        value = {} if value == "inner" else {"outer": {}}
+    if not isinstance(value, Mapping):
+        raise Problem("is not the kind of ridges", "none, inner, inner_and_outer, or keys inner, outer, half_width")
+    default = _si(source_of(info.context).part(DEFAULT_SPECIMEN, "ridges"))
+    filled = {**default, **{key: _merge(default.get(key), item) for key, item in value.items()}}
+    if "outer" not in value:
+        filled.pop("outer", None)
+    return filled
+
+
 class Specimen(Strict):
     """What is touched: a parametric outline or an external mesh, and the material of its layers."""
 
@@ -250,8 +346,8 @@ class Specimen(Strict):
     """State that the moduli of `layers` describe."""
     prony: Annotated[tuple[PronyTerm, ...], _named("prony", tuple[PronyTerm, ...])]
     """Relaxation of shear, normalised by the instantaneous modulus: a name, a list of terms, or none."""
-    ridges: Literal["none"] = "none"
-    """Papillary ridges; none in this version."""
+    ridges: Annotated[Ridges | None, BeforeValidator(_read_ridges, json_schema_input_type=Ridges | _RIDGES)] = None
+    """Ridges of epidermis and skin: none, inner, inner_and_outer, or keys; keys left out are the thesis file's."""
     contact_length: Length
     """Out-of-plane length that turns newtons into newtons per metre."""
 
@@ -276,8 +372,6 @@ class Specimen(Strict):
             data["moduli"] = source.specimen(named, ("layers",)).moduli or source.part(DEFAULT_SPECIMEN, "moduli")
         if "contact_length" not in data:
             data["contact_length"] = SI(source.part(DEFAULT_SPECIMEN, "contact_length"))
-        if isinstance(data.get("ridges"), str) and data["ridges"] in ("inner", "inner_and_outer"):
-            raise Problem("is not in this version", "none", ("ridges",))
         return data
 
     @model_validator(mode="after")
@@ -285,4 +379,23 @@ class Specimen(Strict):
         if (self.outline is None) == (self.mesh is None):
             raise Problem("is missing", "one of outline and mesh", ("outline",), HIDE)
         _check_prony(self.prony)
+        if self.ridges is not None:
+            self._check_ridges()
         return self
+
+    @field_serializer("ridges", mode="wrap")
+    def _named_ridges(self, ridges: Ridges | None, handler: SerializerFunctionWrapHandler) -> Any:
+        return "none" if ridges is None else handler(ridges)
+
+    def _check_ridges(self) -> None:
+        if self.outline is None:
+            raise Problem("are given beside a mesh, which has its own", "none", ("ridges",), HIDE)
+        inner, outline = self.ridges.inner, self.outline
+        room = outline.epidermis_thickness - (outline.stratum_corneum_thickness if self.layers.stratum_corneum else 0.0)
+        room = min(room, outline.dermis_thickness)
+        if inner.height >= 0.7 * room:
+            allowed = f"less than {format_quantity(0.7 * room, 'length')}, 0.7 of epidermis and dermis"
+            raise Problem("is too high for the layers", allowed, ("ridges", "inner", "height"))
+        if self.ridges.half_width + inner.pitch >= outline.half_width:
+            allowed = f"less than {format_quantity(outline.half_width - inner.pitch, 'length')}"
+            raise Problem("and a pitch are wider than the section", allowed, ("ridges", "half_width"))
