@@ -674,8 +674,9 @@ def test_mesh_for_a_scene(draft, tmp_path):
         def __init__(self, **attributes):
             self.__dict__.update(attributes)
 
-    plan = Named(mesh_size=DRAFT)
-    built = mesh_for(Named(specimen=Named(outline=OUTLINE, mesh=None)), plan)
+    plan = Named(mesh_size=DRAFT, effects={"ridges": Named(on=False)})
+    layers = Named(stratum_corneum=None)
+    built = mesh_for(Named(specimen=Named(outline=OUTLINE, mesh=None, layers=layers)), plan)
     np.testing.assert_array_equal(built.points, draft.points)
     path = write_rings(tmp_path / "rings.msh", "quad4")
     read = mesh_for(Named(specimen=Named(outline=None, mesh=path)), plan)

@@ -202,7 +202,8 @@ def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
     alone[first] = alone[second] = False
     rim = sorted(loops(_halves(sides[alone])), key=lambda loop: np.ptp(mesh.points[loop, 0]))
     lines = {"skin": rim[-1], "bone": rim[0]}
-    for index, name in ((1, "dermis"), (2, "fat")):
+    for name in ("dermis", "fat"):
+        index = mesh.regions.index(name)
         inner = ((low == index - 1) & (high == index)) | ((high == index - 1) & (low == index))
         lines[name] = max(loops(_halves(sides[first][inner])), key=len)
     return lines if as_nodes else {name: mesh.points[line] for name, line in lines.items()}

@@ -15,6 +15,8 @@ _HOME = {
     "skin_chain": "fingerpad.specimen.mesh",
     "read_pad_mesh": "fingerpad.specimen.external",
     "quality_table": "fingerpad.specimen.quality",
+    "RidgedPad": "fingerpad.specimen.ridges",
+    "ridge_resolution": "fingerpad.specimen.layered",
 }
 
 __all__ = ["mesh_for", *_HOME]
@@ -27,7 +29,7 @@ def __getattr__(name: str):
 
 
 def mesh_for(scene, plan):
-    """The mesh of a scene: its external mesh if it names one, else its outline meshed as the plan says.
+    """The mesh of a scene: its external mesh if it names one, else its outline, layers and ridges meshed as the plan says.
 
     Raises
     ------
@@ -39,4 +41,6 @@ def mesh_for(scene, plan):
         return read_pad_mesh(scene.specimen.mesh)
     from fingerpad.specimen.mesh import build_pad_mesh
 
-    return build_pad_mesh(scene.specimen.outline, plan.mesh_size)
+    specimen = scene.specimen
+    ridges = specimen.ridges if plan.effects["ridges"].on else None
+    return build_pad_mesh(specimen.outline, plan.mesh_size, ridges, specimen.layers.stratum_corneum is not None)

@@ -1,8 +1,9 @@
 """Meshes as gmsh .msh files: the built mesh is written to one, a user's own mesh is read from one.
 
 Coordinates are in mm. Physical surfaces epidermis, dermis and fat, and physical curves skin, bone and nail,
-must be there; together the curves are the whole boundary. Linear and quadratic triangles and quads are read
-(format 2.2 or 4.1); an 8-node quad is given the centre node where its own (serendipity) map puts the centre.
+must be there, a surface stratum_corneum may be; together the curves are the whole boundary. Linear and quadratic
+triangles and quads are read (format 2.2 or 4.1); an 8-node quad is given the centre node where its own
+(serendipity) map puts the centre.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fingerpad.specimen.mesh import CURVES, REGIONS, MeshError, PadMesh, element_edges
+from fingerpad.specimen.mesh import CURVES, OPTIONAL, REGIONS, MeshError, PadMesh, element_edges
 from fingerpad.specimen.quality import check_orientation
 
 _ELEMENTS = {2: "tri3", 9: "tri6", 3: "quad4", 16: "quad8", 10: "quad9"}  # by gmsh's element type
@@ -48,7 +49,7 @@ def write_pad_mesh(mesh: PadMesh, path: str | Path) -> None:
             for number, name in enumerate(mesh.curves, start=1):
                 gmsh.model.addDiscreteEntity(1, number)
                 gmsh.model.addPhysicalGroup(1, [number], number, name)
-            for number, name in enumerate(REGIONS, start=1):
+            for number, name in enumerate(mesh.regions, start=1):
                 gmsh.model.addDiscreteEntity(2, number)
                 gmsh.model.addPhysicalGroup(2, [number], number, name)
             tags = np.arange(1, len(mesh.points) + 1)
@@ -57,7 +58,7 @@ def write_pad_mesh(mesh: PadMesh, path: str | Path) -> None:
             for number, facets in enumerate(mesh.curves.values(), start=1):
                 line = _LINES[facets.shape[1]]
                 gmsh.model.mesh.addElementsByType(number, line, [], facets.ravel() + 1)
-            for number in range(1, len(REGIONS) + 1):
+            for number in range(1, len(mesh.regions) + 1):
                 cells = mesh.cells[mesh.region == number - 1]
                 gmsh.model.mesh.addElementsByType(number, _TYPES[mesh.element], [], cells.ravel() + 1)
             gmsh.model.mesh.reclassifyNodes()
@@ -81,7 +82,7 @@ def _read_groups(path: Path) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
             gmsh.open(str(path))
             tags, places, _ = gmsh.model.mesh.getNodes()
             groups: tuple[dict, dict] = ({}, {})
-            for dimension, wanted in ((1, CURVES), (2, REGIONS)):
+            for dimension, wanted in ((1, CURVES), (2, (*OPTIONAL, *REGIONS))):
                 for _, group in gmsh.model.getPhysicalGroups(dimension):
                     name = gmsh.model.getPhysicalName(dimension, group)
                     if name not in wanted:
@@ -102,10 +103,10 @@ def _require_groups(path: Path, surfaces: dict, curves: dict) -> None:
                 raise MeshError(f"{path}: {kind} {name} is missing; physical {kind}s {', '.join(wanted)} must be there")
 
 
-def _gather_cells(path: Path, surfaces: dict, count: int) -> tuple[str, np.ndarray, np.ndarray]:
-    """Element kind, node tags (elements, nodes) and region (elements,) of all three layers."""
+def _gather_cells(path: Path, surfaces: dict, regions: tuple[str, ...], count: int) -> tuple[str, np.ndarray, np.ndarray]:
+    """Element kind, node tags (elements, nodes) and region (elements,) of all layers."""
     kinds, cells, numbers, region = set(), [], [], []
-    for index, name in enumerate(REGIONS):
+    for index, name in enumerate(regions):
         for kind, tags, nodes in surfaces[name]:
             if kind not in _ELEMENTS:
                 raise MeshError(
@@ -120,9 +121,9 @@ def _gather_cells(path: Path, surfaces: dict, count: int) -> tuple[str, np.ndarr
         raise MeshError(f"{path}: mixes {' and '.join(sorted(kinds))}; one kind of element is allowed")
     tags = np.concatenate(numbers)
     if len(np.unique(tags)) < len(tags):
-        raise MeshError(f"{path}: an element is in two of {', '.join(REGIONS)}; one layer each is allowed")
+        raise MeshError(f"{path}: an element is in two of {', '.join(regions)}; one layer each is allowed")
     if len(tags) < count:
-        raise MeshError(f"{path}: {count - len(tags)} surface elements are in none of {', '.join(REGIONS)}; each must be in one")
+        raise MeshError(f"{path}: {count - len(tags)} surface elements are in none of {', '.join(regions)}; each must be in one")
     return kinds.pop(), np.concatenate(cells), np.concatenate(region)
 
 
@@ -203,6 +204,8 @@ def _is_symmetric(mesh: PadMesh) -> bool:
 def read_pad_mesh(path: str | Path) -> PadMesh:
     """Read a pad from a gmsh .msh file (mm) with physical groups epidermis, dermis, fat, skin, bone, nail.
 
+    A further group stratum_corneum is a region of its own.
+
     Returns
     -------
     PadMesh in m, with the elements of the file (quad8 becomes quad9), and `symmetric` found out.
@@ -218,7 +221,8 @@ def read_pad_mesh(path: str | Path) -> PadMesh:
         raise MeshError(f"{path}: there is no such mesh file; a gmsh .msh file is allowed")
     tags, places, surfaces, lines, count = _read_groups(path)
     _require_groups(path, surfaces, lines)
-    element, cell_tags, region = _gather_cells(path, surfaces, count)
+    regions = tuple(name for name in (*OPTIONAL, *REGIONS) if surfaces.get(name))
+    element, cell_tags, region = _gather_cells(path, surfaces, regions, count)
 
     used = np.unique(cell_tags)
     order = np.argsort(tags)
@@ -232,7 +236,7 @@ def read_pad_mesh(path: str | Path) -> PadMesh:
         points, cells = _with_centre(points, cells)
         element = "quad9"
 
-    mesh = PadMesh(points, cells, element, region, {}, symmetric=False)
+    mesh = PadMesh(points, cells, element, region, {}, symmetric=False, regions=regions)
     check_orientation(mesh, str(path))
     pairs = {}
     for name in CURVES:

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from fingerpad.specimen.mesh import MeshError, PadMesh, skin_chain
+from fingerpad.specimen.outline import OutlineCurve
+
+if TYPE_CHECKING:
+    from fingerpad.scene_specimen import Outline
 
 
 def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
@@ -39,7 +45,7 @@ def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
     if not len(under):
         raise MeshError("mesh: there is no bone below x = 0; allowed: a curve named bone under the apex")
     soft = top - under[:, 1].max()
-    layer = mesh.points[np.unique(mesh.cells[mesh.region == 0])]
+    layer = mesh.points[np.unique(mesh.cells[mesh.region < mesh.regions.index("dermis")])]
     column = layer[np.abs(layer[:, 0]) < reach]
     return float(1 / max(bend, 1e-3)), float(top - column[:, 1].min() if len(column) else soft / 4), float(soft)
 
@@ -78,3 +84,24 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     if np.any(np.abs(tree.query(found)[0] - depths) > 1e-3 * depths):
         raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")
     return found
+
+
+def below_outline(outline: Outline, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    """Points (n, 2) m at lateral position ``offsets`` whose depth below the smooth outline is ``depths`` (n,) m.
+
+    For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as :func:`below_skin`.
+
+    Raises:
+        MeshError: no point of that depth exists at that offset.
+    """
+    depths, offsets = (np.ravel(each) for each in np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float)))
+    curve = OutlineCurve(outline)
+    low, high = np.zeros(len(depths)), np.full(len(depths), np.pi / 2)
+    for _ in range(60):
+        middle = (low + high) / 2
+        left = curve.point(middle, depths)[:, 0] < np.abs(offsets)
+        low, high = np.where(left, middle, low), np.where(left, high, middle)
+    found = curve.point(np.where(offsets == 0, 0.0, high), depths)
+    if np.any(np.abs(found[:, 0] - np.abs(offsets)) > 1e-9):
+        raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")
+    return found * np.column_stack((np.where(offsets < 0, -1.0, 1.0), np.ones(len(depths))))

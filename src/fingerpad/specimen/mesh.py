@@ -1,9 +1,10 @@
 """The pad's mesh: what a mesh is (`PadMesh`), how fine it shall be (`MeshSize`) and how it is built.
 
-The built mesh is a mapped mesh: gmsh (through pygmsh) recombines three transfinite bands into second-order
+The built mesh of a plain pad is a mapped mesh: gmsh (through pygmsh) recombines three transfinite bands into second-order
 quads on the reference rectangle (column along the skin, row below it), and every node is then placed on the
 section. Rows in epidermis and dermis are exact offset curves of the skin; columns in the fat are normals of
-the bone. The left half is the mirror image of the right one, bit for bit.
+the bone. The left half is the mirror image of the right one, bit for bit. Ridges and a stratum corneum are
+meshed by `fingerpad.specimen.layered`.
 """
 
 from __future__ import annotations
@@ -21,9 +22,10 @@ import numpy as np
 from fingerpad.specimen.outline import OutlineCurve
 
 if TYPE_CHECKING:
-    from fingerpad.scene import Outline
+    from fingerpad.scene_specimen import Outline, Ridges
 
 REGIONS = ("epidermis", "dermis", "fat")
+OPTIONAL = ("stratum_corneum",)  # regions that a mesh may have besides, outside the others
 CURVES = ("skin", "bone", "nail")
 
 _MIRRORED = {  # node order of an element's mirror image that is again counter-clockwise
@@ -96,6 +98,7 @@ class PadMesh:
         "nail" and, in a half mesh, "symmetry".
     symmetric : whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from such a mesh).
     half : whether this is the right half only.
+    regions : names of the layers, outside to inside.
     """
 
     points: np.ndarray
@@ -105,11 +108,7 @@ class PadMesh:
     curves: dict[str, np.ndarray]
     symmetric: bool
     half: bool = False
-
-    @property
-    def regions(self) -> tuple[str, ...]:
-        """Names of the layers, outside to inside."""
-        return REGIONS
+    regions: tuple[str, ...] = REGIONS
 
     def right_half(self) -> PadMesh:
         """The half x >= 0 of a symmetric mesh, with the further curve "symmetry" (x = 0 exactly).
@@ -136,7 +135,7 @@ class PadMesh:
             curves[name] = facets[(facets >= 0).all(axis=1)]
         rim = element_edges(cells, self.element)
         curves["symmetry"] = rim[on_axis[rim[:, :2]].all(axis=1)][:, [1, 0, *range(2, rim.shape[1])]]
-        return PadMesh(points, cells, self.element, self.region[kept], curves, True, True)
+        return PadMesh(points, cells, self.element, self.region[kept], curves, True, True, self.regions)
 
     def elevated(self) -> PadMesh:
         """The same mesh with mid-side nodes if it is made of linear triangles (tri3 -> tri6); else itself."""
@@ -153,7 +152,7 @@ class PadMesh:
             name: np.array([(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32).reshape(-1, 3)
             for name, facets in self.curves.items()
         }
-        return PadMesh(points, cells, "tri6", self.region, curves, self.symmetric, self.half)
+        return PadMesh(points, cells, "tri6", self.region, curves, self.symmetric, self.half, self.regions)
 
     def write(self, path: str | Path) -> None:
         """Write a gmsh .msh file (4.1, mm, physical groups named as here); whole or not at all."""
@@ -267,11 +266,16 @@ def _rows(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, tuple[int, i
     epidermis = _layer_rows(0.0, middle, first, size)
     reached = min(first + np.log(size.growth) * middle, size.layer_edge)
     dermis = _layer_rows(middle, inner, reached, size)
-    fat = curve.outline.apex_height - inner - curve.bone_point(0.0)[0, 1]
-    edge = size.growth * (dermis[-1] - dermis[-2])
-    count = np.log1p((size.growth - 1.0) * fat / edge) / np.log(size.growth)
     rows = np.concatenate((epidermis[:-1], dermis))
-    return rows, (len(epidermis) - 1, len(rows) - 1), max(1, int(np.ceil(count - 1e-6))), edge
+    return rows, (len(epidermis) - 1, len(rows) - 1), *_fat_rows(curve, size, dermis[-1] - dermis[-2])
+
+
+def _fat_rows(curve: OutlineCurve, size: MeshSize, above: float) -> tuple[int, float]:
+    """Rows in the fat under the apex and their first edge, next to an edge `above` it."""
+    fat = curve.outline.apex_height - curve.layer_depths[-1] - curve.bone_point(0.0)[0, 1]
+    edge = size.growth * above
+    count = np.log1p((size.growth - 1.0) * fat / edge) / np.log(size.growth)
+    return max(1, int(np.ceil(count - 1e-6))), edge
 
 
 def _fat_fractions(thickness: np.ndarray, count: int, edge: float) -> np.ndarray:
@@ -299,16 +303,22 @@ def _with_middles(values: np.ndarray) -> np.ndarray:
     return refined
 
 
-def count_nodes(outline: Outline, size: MeshSize) -> int:
-    """Number of nodes of `build_pad_mesh(outline, size)`, without building it (and without gmsh)."""
+def count_nodes(outline: Outline, size: MeshSize, ridges: Ridges | None = None, corneum: bool = False) -> int:
+    """Number of nodes of `build_pad_mesh` with these arguments, without building it (and without gmsh)."""
+    if ridges or corneum:
+        from fingerpad.specimen.layered import count_layered_nodes
+
+        return count_layered_nodes(outline, size, ridges, corneum)
     curve = OutlineCurve(outline)
     columns, _ = _columns(curve, size)
     _, (_, skin_rows), fat_rows, _ = _rows(curve, size)
     return 4 * (len(columns) - 1) * (2 * (skin_rows + fat_rows) + 1)
 
 
-def smallest_edge(outline: Outline, size: MeshSize) -> float:
-    """Shortest element edge (m, corner to corner) of `build_pad_mesh(outline, size)`, without building it."""
+def smallest_edge(outline: Outline, size: MeshSize, ridges: Ridges | None = None, corneum: bool = False) -> float:
+    """Shortest element edge (m, corner to corner) of `build_pad_mesh` with these arguments (without gmsh)."""
+    if ridges or corneum:
+        return build_pad_mesh(outline, size, ridges, corneum).quality()["smallest_edge_m"]
     curve = OutlineCurve(outline)
     columns, _ = _columns(curve, size)
     rows, _, fat_rows, fat_edge = _rows(curve, size)
@@ -375,23 +385,29 @@ def _reference_quads(columns: int, bands: tuple[int, ...]) -> tuple[np.ndarray, 
     return steps, (np.searchsorted(ends, row, side="right") - 1).astype(np.int8)
 
 
-def build_pad_mesh(outline: Outline, size: MeshSize) -> PadMesh:
-    """Mesh the pad with second-order quads (quad9), mirror-symmetric to the last bit.
+def build_pad_mesh(outline: Outline, size: MeshSize, ridges: Ridges | None = None, corneum: bool = False) -> PadMesh:
+    """Mesh the pad with second-order quads (quad9), mirror-symmetric to the last bit where the pad is symmetric.
 
     Parameters
     ----------
     outline : the scene's outline, lengths in m.
-    size : edge lengths.
+    size : edge lengths; ridges make them smaller where they are.
+    ridges : the scene's ridges.
+    corneum : whether the stratum corneum is a region of its own.
 
     Returns
     -------
-    PadMesh, with nodes exactly at x = 0, mid-side nodes on the outline and its offset curves.
+    PadMesh, with nodes exactly at x = 0, mid-side nodes on the skin and the layers' true boundaries.
 
     Raises
     ------
     OutlineError : when the outline cannot be drawn.
-    MeshError : when an element would be inverted.
+    MeshError : when an element would be inverted, or the pad has no room for the ridges.
     """
+    if ridges or corneum:
+        from fingerpad.specimen.layered import build_layered_mesh
+
+        return build_layered_mesh(outline, size, ridges, corneum)
     curve = OutlineCurve(outline)
     columns, nail = _columns(curve, size)
     rows, (epidermis_rows, skin_rows), fat_rows, fat_edge = _rows(curve, size)
