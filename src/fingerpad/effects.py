@@ -176,9 +176,11 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     """Decide effects and discretisation of ``scene``.
 
     Raises:
-        PlanError: an override asks for what the scene cannot have. MeshError: an external mesh cannot be read.
+        PlanError: an override asks for what the scene cannot have. MeshError: an external mesh cannot be read, or the pad has no
+        room for its ridges.
     """
-    external = read_pad_mesh(scene.specimen.mesh).elevated() if scene.specimen.mesh else None
+    external = _external(scene)
+    ridges = scene.specimen.ridges if scene.effects.get("ridges", True) else None
     profile = profile_of(scene.stimulus)
     pad = _pad(scene, external)
     moves = _moves(scene)
@@ -196,8 +198,8 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         "friction": _friction(scene),
         "viscoelasticity": Effect(False, ""),
         "finite_strain": _finite_strain(scene, contact, tolerance, rules),
-        "symmetry": _symmetry(scene, profile, external),
-        "ridges": Effect(False, "the specimen has none"),
+        "symmetry": _symmetry(scene, profile, external, ridges),
+        "ridges": _ridges(scene),
     }
     effects["viscoelasticity"], state = _viscoelasticity(scene, profile, contact, tolerance, rules)
     _apply_overrides(scene, effects)
@@ -212,9 +214,11 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         widest = _worst_contact(scene, pad, profile, 0.0) if moves and isinstance(profile, Curve) else contact
         wander = _wander(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
         size = _mesh_size(scene, preset, profile, contact, widest.half_width, wander, rules)
-        nodes = count_nodes(scene.specimen.outline, size)
-        smallest = smallest_edge(scene.specimen.outline, size)
+        layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
+        nodes, smallest = count_nodes(*layered), smallest_edge(*layered)
         edge = min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
+        if ridges is not None:
+            effects["ridges"], edge = _resolved(effects["ridges"], layered, edge)
     else:
         size, nodes = None, len(external.points)
         smallest, edge = external.quality()["smallest_edge_m"], apex_edge(external)
@@ -260,6 +264,16 @@ def _moves(scene: Scene) -> bool:
 
 
 # -- the choices --------------------------------------------------------------------------------------------------------
+
+
+def _external(scene: Scene) -> PadMesh | None:
+    """The scene's own mesh, if it names one."""
+    if scene.specimen.mesh is None:
+        return None
+    mesh = read_pad_mesh(scene.specimen.mesh).elevated()
+    if scene.specimen.layers.stratum_corneum is not None and "stratum_corneum" not in mesh.regions:
+        raise PlanError("specimen.layers.stratum_corneum: is no surface of the mesh; allowed: a mesh with it, or no such layer")
+    return mesh
 
 
 def _pad(scene: Scene, external: PadMesh | None) -> PadEstimate:
@@ -362,13 +376,38 @@ def _finite_strain(scene, contact, tolerance, rules) -> Effect:
     return Effect(error > limit, number)
 
 
-def _symmetry(scene, profile, external) -> Effect:
+def _ridges(scene: Scene) -> Effect:
+    ridges = scene.specimen.ridges
+    if ridges is None:
+        return Effect(False, "the specimen has none")
+    inner, outer = ridges.inner, ridges.outer
+    why = f"the specimen has inner ridges {inner.pitch * 1e3:.3g} mm apart, {inner.height * 1e3:.3g} mm high"
+    if outer is not None:
+        why += f", and outer ones {(outer.period or inner.pitch) * 1e3:.3g} mm apart, {outer.height * 1e3:.3g} mm high"
+    return Effect(True, why)
+
+
+def _resolved(effect: Effect, layered: tuple, edge: float) -> tuple[Effect, float]:
+    """The ridges' effect with how finely they are meshed, and the skin's edge (m) under the apex; `edge` without ridges."""
+    from fingerpad.specimen.layered import ridge_resolution, skin_edge
+
+    per_ridge, per_height = ridge_resolution(*layered)
+    said = f"{per_ridge:.1f} elements from ridge to ridge, {per_height} rows within their height of the interface"
+    return replace(effect, why=f"{effect.why}: {said}"), skin_edge(*layered[:3], edge)
+
+
+def _symmetry(scene, profile, external, ridges) -> Effect:
     if not profile.symmetric:
         return Effect(False, "the stimulus is not symmetric about x = 0")
     if _moves(scene):
         return Effect(False, "the motion is not symmetric: the pad moves along the surface")
     if external is not None and not external.symmetric:
         return Effect(False, "the external mesh is not its own mirror image in x = 0")
+    if ridges is not None:
+        from fingerpad.specimen.ridges import RidgedPad
+
+        if not RidgedPad(scene.specimen.outline, ridges).symmetric:
+            return Effect(False, "the ridges are not their own mirror image in x = 0")
     return Effect(True, "pad, stimulus and motion are mirror images in x = 0: half the unknowns suffice")
 
 

@@ -83,13 +83,17 @@ def dataset(variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray]
     return xr.Dataset(data, coords, attrs)
 
 
-def add_snapshots(history: xr.Dataset, times, points, cells, region, displacement, pressure) -> xr.Dataset:
-    """Add full fields: ``snapshot_displacement`` (snapshot, node, 2) m and ``snapshot_pressure`` (snapshot, element) Pa."""
+def add_snapshots(history: xr.Dataset, times, points, cells, region, displacement, pressure, regions) -> xr.Dataset:
+    """Add full fields: ``snapshot_displacement`` (snapshot, node, 2) m and ``snapshot_pressure`` (snapshot, element) Pa.
+
+    Of the layers ``regions`` the numbers ``region`` (element,) are indices.
+    """
+    layers = ", ".join(f"{number} {name}" for number, name in enumerate(regions))
     return history.assign(
         snapshot_time=("snapshot", np.asarray(times, float), {"units": "s", "long_name": "time of the full field"}),
         node_position=(("node", "axis"), points, {"units": "m", "long_name": "undeformed node position"}),
         element_nodes=(("element", "element_node"), cells, {"units": "1", "long_name": "nodes of each element"}),
-        element_region=(("element",), region, {"units": "1", "long_name": "0 epidermis, 1 dermis, 2 fat"}),
+        element_region=(("element",), region, {"units": "1", "long_name": layers}),
         snapshot_displacement=(("snapshot", "node", "axis"), displacement, {"units": "m", "long_name": "displacement"}),
         snapshot_pressure=(
             ("snapshot", "element"), pressure, {"units": "Pa", "long_name": "mean stress kappa (J - 1), element mean"},

@@ -22,7 +22,7 @@ from fingerpad.results import add_snapshots, dataset, peak_memory_MB, provenance
 from fingerpad.scene import Scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
-from fingerpad.specimen.measures import below_skin
+from fingerpad.specimen.measures import below_outline, below_skin
 from fingerpad.specimen.mesh import PadMesh, skin_chain
 from fingerpad.stimuli.profiles import profile_of
 
@@ -85,7 +85,8 @@ class Simulation:
         if mesh.half:
             fixed[np.unique(mesh.curves["symmetry"]), 0] = True
         space = Space(mesh.points, mesh.cells, mesh.element, fixed, plan.element, PlaneStrain(specimen.contact_length))
-        layers = [getattr(specimen.layers, name) for name in mesh.regions]
+        # an external mesh may part what the scene does not
+        layers = [getattr(specimen.layers, name) or specimen.layers.epidermis for name in mesh.regions]
         known = moduli(
             [layer.youngs_modulus for layer in layers], [layer.poisson_ratio for layer in layers], self.prony, specimen.moduli
         )
@@ -101,7 +102,11 @@ class Simulation:
     def _receptors(self, instantaneous):
         receptors = self.scene.outputs.receptors
         depth, offset = (grid.ravel() for grid in np.meshgrid(receptors.depths, receptors.offsets, indexing="ij"))
-        points = below_skin(self.whole, depth, offset)
+        ridges = self.scene.specimen.ridges if self.plan.effects["ridges"].on else None
+        if ridges is not None and ridges.outer is not None:
+            points = below_outline(self.scene.specimen.outline, depth, offset)
+        else:
+            points = below_skin(self.whole, depth, offset)
         if self.mesh.half:
             points = np.abs(points * [1, 0]) + points * [0, 1]
         self.depth, self.offset = depth, offset
@@ -277,6 +282,7 @@ class Simulation:
                 self.whole.region,
                 np.array([unfold.nodes(u) for u, _ in snapshots.values()]),
                 np.array([unfold.elements(p) for _, p in snapshots.values()]),
+                self.whole.regions,
             )
         return history
 
