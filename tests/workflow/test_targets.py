@@ -22,6 +22,7 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     thesis, jobs = config(clone, "thesis"), clone.planned()
     figures = {f"figures/thesis/fig_{n}.{kind}" for n in thesis["figure_numbers"] for kind in ("png", "csv")}
     assert jobs.pop("figure") == figures
+    assert jobs.pop("animation") == {f"figures/studies/animation_{scene}.gif" for scene in thesis["animations"]}
     assert jobs.pop("table") == {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
     places = [f"{fidelity}/{scene}" for fidelity in ("simulations", "coarse") for scene in thesis["scenes"]]
     places += [f"simulations/{scene}" for scene in (*thesis["variants"], *thesis["calibration_scenes"])]
@@ -52,11 +53,12 @@ def test_a_configuration_given_replaces_the_default_and_writes_under_its_results
     assert {path.stem for path in outputs if path.suffix == ".png"} == pictures
 
 
-@pytest.mark.parametrize("chapter", ["3", "4"])
+@pytest.mark.parametrize("chapter", ["3", "4", "5"])
 def test_chapter_makes_its_figures_only(clone, chapter):
     numbers = [n for n in config(clone, "thesis")["figure_numbers"] if n.startswith(f"{chapter}-")]
     jobs = clone.planned(f"chapter{chapter}")
     assert {Path(path).stem for path in jobs["figure"]} == {f"fig_{n}" for n in numbers}
+    assert ("animation" in jobs) == (chapter == "5")
     assert "table" not in jobs
 
 
