@@ -263,7 +263,7 @@ def test_data_without_plate_forces_are_refused(data):
 @pytest.mark.parametrize("name", STUDIES)
 def test_pictures_are_functions_of_the_saved_data_and_say_where_they_are_from(name, tmp_path):
     frame = read_frame(ROOT / "figures" / "studies" / f"{name}.csv")
-    assert frame["source"].str.match("simulated|measured").all()
+    assert frame["source"].str.match("simulated|measured|stated|assumed").all()
     drawn = STUDIES[name](frame)
     words = " ".join(text.get_text() for text in drawn.texts).lower()
     assert "simulated" in words

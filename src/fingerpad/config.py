@@ -42,6 +42,10 @@ class WorkflowConfig(BaseModel):
     """Scenes simulated without a companion: those of tables of sensitivity, and coarse ones of figures."""
     calibration_scenes: tuple[Name, ...] = ()
     """Scenes of the calibration, calibration_plate among them; left out, no calibration."""
+    friction_scenes: tuple[Name, ...] = ()
+    """Strokes of the calibration of friction, stroke_sub_10 among them, and variations of it."""
+    friction_coefficients: tuple[Annotated[float, Field(gt=0)], ...] = ()
+    """Coefficients with which stroke_sub_10 is stroked, as accurately as companions; left out, friction is not calibrated."""
     accuracy: Accuracy | None = None
     """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each states."""
     companion_accuracy: Accuracy | None = None

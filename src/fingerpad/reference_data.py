@@ -92,6 +92,17 @@ SURFACE_PROFILES = {
 }
 """Deflection of the skin, downward positive, beside an indenter at a depth."""
 
+FRICTION = {
+    "kind": Column(words=("measured", "assumed")),
+    "quantity": Column(words=("coefficient", "factor")),
+    "contact": Column(text=True),
+    "condition": Column(text=True),
+    "low": Column(above=0.0),
+    "high": Column(above=0.0, optional=True),
+    **_ORIGIN,
+}
+"""Friction coefficients of fingers, single (`high` empty) or ranges, and factors by which a condition changes them."""
+
 
 def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
     """Forces over depth.
@@ -138,6 +149,15 @@ def read_relaxation(path: str | Path) -> pd.DataFrame:
 def read_surface_profiles(path: str | Path) -> pd.DataFrame:
     """Surface profiles, columns of :data:`SURFACE_PROFILES`; `ReferenceDataError` if the file is wrong."""
     return read_table(path, SURFACE_PROFILES)
+
+
+def read_friction(path: str | Path) -> pd.DataFrame:
+    """Published friction, columns of :data:`FRICTION`; `ReferenceDataError` if the file is wrong or a range is upside down."""
+    frame = read_table(path, FRICTION)
+    for row in frame.index[frame["high"] < frame["low"]]:
+        low, high = frame.loc[row, ["low", "high"]]
+        raise ReferenceDataError(f"{path}: row {row + 2}, column high: '{high:g}'; allowed: a number from {low:g} or nothing")
+    return frame
 
 
 def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:

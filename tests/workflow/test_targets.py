@@ -9,7 +9,11 @@ pytestmark = pytest.mark.workflow
 
 SMOKE = ("--configfile", "config/smoke.yaml")
 CALIBRATION = {
-    *(f"figures/studies/calibration_{n}.{k}" for n in ("fit", "identifiability", "residuals", "prony") for k in ("png", "csv")),
+    *(
+        f"figures/studies/calibration_{n}.{k}"
+        for n in ("fit", "identifiability", "residuals", "prony", "friction")
+        for k in ("png", "csv")
+    ),
     *(f"figures/tables/calibration.{kind}" for kind in ("csv", "md")),
 }
 
@@ -25,20 +29,25 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     assert jobs.pop("animation") == {f"figures/studies/animation_{scene}.gif" for scene in thesis["animations"]}
     assert jobs.pop("table") == {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
     places = [f"{fidelity}/{scene}" for fidelity in ("simulations", "coarse") for scene in thesis["scenes"]]
-    places += [f"simulations/{scene}" for scene in (*thesis["variants"], *thesis["calibration_scenes"])]
-    places += ["coarse/calibration_plate", "coarse/calibration_ramp_hold"]
+    places += [
+        f"simulations/{scene}" for scene in (*thesis["variants"], *thesis["calibration_scenes"], *thesis["friction_scenes"])
+    ]
+    places += ["coarse/calibration_plate", "coarse/calibration_ramp_hold", "coarse/stroke_sub_10"]
     assert jobs.pop("mesh") == {f"results/thesis/{place}/{name}" for place in places for name in ("plan.json", "mesh.msh")}
     assert jobs.pop("simulate") == {f"results/thesis/{place}/history.nc" for place in places}
     assert jobs.pop("calibration_figure") | jobs.pop("calibration_table") == CALIBRATION
-    outputs = jobs.pop("calibrate") | jobs.pop("calibrate_prony")
+    sweep = {f"results/thesis/friction/{coefficient}/history.nc" for coefficient in thesis["friction_coefficients"]}
+    assert jobs.pop("stroke_with_friction") == sweep
+    outputs = jobs.pop("calibrate") | jobs.pop("calibrate_prony") | jobs.pop("calibrate_friction")
     assert {path for path in outputs if not path.endswith(".csv")} == {"results/thesis/specimens"}
     assert not jobs
 
 
 def test_calibration_simulates_its_own_scenes_only(clone):
-    jobs = clone.planned("calibration")
+    thesis, jobs = config(clone, "thesis"), clone.planned("calibration")
     assert jobs["calibration_figure"] | jobs["calibration_table"] == CALIBRATION
-    assert {Path(path).parent.name for path in jobs["simulate"]} == set(config(clone, "thesis")["calibration_scenes"])
+    scenes = {*thesis["calibration_scenes"], *thesis["friction_scenes"]}
+    assert {Path(path).parent.name for path in jobs["simulate"]} == scenes
     assert not {"figure", "table"} & set(jobs)
 
 
@@ -51,6 +60,7 @@ def test_a_configuration_given_replaces_the_default_and_writes_under_its_results
         f"calibration_{n}" for n in ("fit", "identifiability", "residuals")
     }
     assert {path.stem for path in outputs if path.suffix == ".png"} == pictures
+    assert not {"calibrate_friction", "stroke_with_friction"} & set(jobs)
 
 
 @pytest.mark.parametrize("chapter", ["3", "4", "5"])

@@ -1,6 +1,7 @@
-"""Simulations and measured forces -> the moduli's constant, the Prony series, calibrated specimens.
+"""Simulations and measured forces -> the moduli's constant, the Prony series, the friction coefficient, calibrated specimens.
 
-Inputs:  config/reference/{force_depth/*.csv,relaxation.csv}, the histories of the scenes named by `calibration_scenes`.
+Inputs:  config/reference/{force_depth/*.csv,relaxation.csv,friction.csv,thesis_numbers.csv}, the histories of the scenes named by
+         `calibration_scenes` and `friction_scenes`.
 Outputs: <results>/calibration/*.csv, <results>/specimens/calibrated_*.yaml, and from the CSV files
          <studies>/calibration_*.png beside their data, <tables>/calibration.csv and calibration.md.
 
@@ -12,6 +13,9 @@ from glob import glob
 FORCES = "config/reference/force_depth"
 RAMP = "calibration_ramp_hold"
 CALIBRATION = config.get("calibration_scenes", [])
+STROKE = "stroke_sub_10"
+COEFFICIENTS = config.get("friction_coefficients", [])
+ESTIMATES = ["estimates"] + ["prony_estimates"] * (RAMP in CALIBRATION) + ["friction_estimates"] * bool(COEFFICIENTS)
 
 
 ruleorder: calibration_table > table
@@ -65,6 +69,57 @@ rule calibrate_prony:
         " {output[0]} {input.histories} > {log} 2>&1"
 
 
+rule stroke_with_friction:
+    """A stroke, its coarse mesh and a coefficient of friction -> its history with that coefficient in place of the scene's."""
+    input:
+        sources("stroke_with_friction"),
+        ENVIRONMENT,
+        "config/specimens/thesis.yaml",
+        scene=f"config/scenes/{STROKE}.yaml",
+        mesh=f"{RESULTS}/coarse/{STROKE}/mesh.msh",
+    output:
+        ensure(f"{RESULTS}/friction/{{coefficient}}/history.nc", non_empty=True),
+    params:
+        accuracy=config.get("companion_accuracy"),
+        coefficient=lambda wildcards: wildcards.coefficient,
+    wildcard_constraints:
+        coefficient=r"[0-9.]+",
+    log:
+        f"{RESULTS}/logs/stroke_with_friction/{{coefficient}}.log",
+    cache: "omit-software"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    shell:
+        "python workflow/scripts/stroke_with_friction.py {input.scene} {params.accuracy} {params.coefficient} {input.mesh} {output}"
+        " > {log} 2>&1"
+
+
+rule calibrate_friction:
+    """Strokes with several coefficients and the thesis's stretch of the skin -> the coefficient, how certain."""
+    input:
+        sources("calibrate_friction"),
+        ENVIRONMENT,
+        thesis="config/reference/thesis_numbers.csv",
+        published="config/reference/friction.csv",
+        sweep=expand(f"{RESULTS}/friction/{{coefficient}}/history.nc", coefficient=COEFFICIENTS),
+        histories=histories(config.get("friction_scenes", [])),
+        coarse=companions([STROKE]),
+    output:
+        f"{RESULTS}/calibration/friction.csv",
+        f"{RESULTS}/calibration/friction_estimates.csv",
+    log:
+        f"{RESULTS}/logs/calibrate_friction.log",
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    shell:
+        "python workflow/scripts/calibrate_friction.py {input.thesis} {input.published} {output[0]}"
+        " {input.sweep} {input.histories} {input.coarse} > {log} 2>&1"
+
+
 rule calibration_figure:
     """Data of the calibration -> a picture, and the plotted data beside it."""
     input:
@@ -96,9 +151,7 @@ rule calibration_table:
     input:
         sources("calibration_table"),
         ENVIRONMENT,
-        estimates=expand(
-            f"{RESULTS}/calibration/{{name}}.csv", name=["estimates", "prony_estimates"] if RAMP in CALIBRATION else ["estimates"]
-        ),
+        estimates=expand(f"{RESULTS}/calibration/{{name}}.csv", name=ESTIMATES),
     output:
         csv=report(
             f"{config['tables']}/calibration.csv",

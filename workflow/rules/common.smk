@@ -48,9 +48,10 @@ def tables():
 
 
 def calibration():
-    """The figures, the table and the specimens of the calibration, if the configuration has its scenes; relaxation needs a ramp and hold."""
+    """Figures, table and specimens of the calibration, if the configuration has its scenes; further parts if it has theirs."""
     scenes = config.get("calibration_scenes", [])
     names = ["fit", "identifiability", "residuals"] + (["prony"] if "calibration_ramp_hold" in scenes else [])
+    names += ["friction"] if config.get("friction_coefficients") else []
     pictures = [f"{config['studies']}/calibration_{name}.png" for name in names]
     return [*pictures, f"{config['tables']}/calibration.csv", f"{RESULTS}/specimens"] if scenes else []
 

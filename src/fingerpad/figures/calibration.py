@@ -1,4 +1,4 @@
-"""Figures of the calibration: fit, identifiability, residuals, relaxation. Each is drawn from its data frame alone."""
+"""Figures of the calibration: fit, identifiability, residuals, relaxation, friction. Each is drawn from its data frame alone."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from fingerpad.figures.columns import DISTANCE, LATERAL
 from fingerpad.figures.features import is_simulated
 from fingerpad.figures.style import GREY, INK, NOTE_WIDTH, PAGE_WIDTH, styled
 
-DEPTH, FORCE = "depth (mm)", "force (N)"
+DEPTH, FORCE, COEFFICIENT = "depth (mm)", "force (N)", "coefficient (1)"
 MARKERS = "os^Dv<>P"
 MODEL_LINES = {
     "constant length": ((0, (4, 1.8)), "#8a4fbf"),
@@ -289,10 +290,84 @@ def prony(frame: pd.DataFrame) -> Figure:
     return fig
 
 
+@styled
+def friction(frame: pd.DataFrame) -> Figure:
+    """Lateral displacement along the strokes, its mean and range over the coefficient, the thesis's stretch, published values."""
+    panels = {name: rows for name, rows in frame.groupby("panel", sort=False)}
+    published = panels["published"]
+    note = [
+        "Lines and points: simulated (2-D plane-strain finite elements; the first two convexities of the wavy surface, 20 gf, "
+        "10 mm/s unless said otherwise). Shaded blue: about 1 mm, the stretch stated in the thesis; dotted: the axis of its "
+        "Fig 5-15; it states no coefficient.",
+        "Published coefficients of fingers, at loads from 1 N on but for the model:",
+        f"{'; '.join(published['source'].unique())}.",
+    ]
+    fig = _figure("Calibration: friction from the stretch of the skin", note, 4.4)
+    grid = fig.add_gridspec(2, 2, height_ratios=(3.2, 1))
+    left, right = fig.add_subplot(grid[:, 0]), fig.add_subplot(grid[0, 1])
+    below = fig.add_subplot(grid[1, 1], sharex=right)
+    about, axis = (panels["stated"].iloc[k] for k in (0, 1))
+    for ax in (left, right):
+        ax.axhspan(about["lowest (mm)"], about["highest (mm)"], color="#1f77a4", alpha=0.15, lw=0)
+        ax.axhline(about[LATERAL], color="#1f77a4", lw=0.8)
+        for end in ("lowest (mm)", "highest (mm)"):
+            ax.axhline(axis[end], color=GREY, lw=0.8, ls=(0, (1, 1.6)))
+    courses = list(panels["course"].groupby("series", sort=False))
+    for colour, (name, rows) in zip(mpl.colormaps["viridis"](np.linspace(0.05, 0.85, len(courses))), courses, strict=True):
+        left.plot(rows[DISTANCE], rows[LATERAL], color=colour, lw=1.1)
+        left.text(rows[DISTANCE].iloc[-1] + 0.6, rows[LATERAL].iloc[-1], name, color=colour, fontsize=7, va="center")
+    start, end = panels["waves"][DISTANCE]
+    for x in (start, end):
+        left.axvline(x, color=GREY, lw=0.6)
+    left.text(
+        (start + end) / 2, 0.985, "waves", transform=left.get_xaxis_transform(), color=GREY, fontsize=7, ha="center", va="top"
+    )
+    left.set(
+        xlabel="stroke distance (mm)",
+        ylabel="lateral displacement of the centre (mm)",
+        title="strokes; number: coefficient of friction",
+        xlim=(0, 1.1 * frame[DISTANCE].max()),
+    )
+    curve, estimate = panels["stretch"], panels["estimate"].iloc[0]
+    right.fill_between(curve[COEFFICIENT], curve["lowest (mm)"], curve["highest (mm)"], color=INK, alpha=0.13, lw=0)
+    right.plot(curve[COEFFICIENT], curve[LATERAL], "o-", color=INK, ms=3, lw=1.2)
+    right.plot(estimate[COEFFICIENT], estimate[LATERAL], "*", color="#c8553d", ms=9, zorder=4)
+    for marker, row in zip("<>^v", panels.get("variations", frame.iloc[:0]).to_dict("records"), strict=False):
+        right.plot(row[COEFFICIENT], row[LATERAL], marker, color="#8a4fbf", ms=4.5, mfc="white", ls="none")
+        above = row[LATERAL] > estimate[LATERAL]
+        right.annotate(
+            textwrap.fill(row["series"], 20),
+            (row[COEFFICIENT], row[LATERAL]),
+            xytext=(6 if above else -6, 0),
+            textcoords="offset points",
+            ha="left" if above else "right",
+            va="center",
+            color="#8a4fbf",
+            fontsize=7,
+        )
+    right.margins(y=0.1)
+    right.set(ylabel="over the waves (mm)", title="mean and range; purple: one thing changed")
+    right.tick_params(labelbottom=False)
+    for k, row in enumerate(published.iloc[::-1].to_dict("records")):
+        measured = str(row["source"]).startswith("measured")
+        ends = [row["lowest_coefficient (1)"], row["highest_coefficient (1)"]]
+        below.plot(ends, [k, k], color=INK, lw=2.2)
+        below.plot(row[COEFFICIENT], k, "o", color=INK, ms=4, mfc=INK if measured else "white")
+        label = row["series"] if measured else "assumed in a model"
+        below.text(0.02, k, label, transform=below.get_yaxis_transform(), fontsize=7, va="center")
+    below.axvline(estimate[COEFFICIENT], color="#c8553d", lw=0.8)
+    below.text(estimate[COEFFICIENT] + 0.012, len(published) - 1, f"{estimate[COEFFICIENT]:.3f}", color="#c8553d", va="center")
+    below.set(
+        xlabel="coefficient of friction (1)", title="published", yticks=[], ylim=(-0.7, len(published) - 0.3), xlim=(0, 1.12)
+    )
+    return fig
+
+
 STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
     "calibration_fit": fit,
     "calibration_identifiability": identifiability,
     "calibration_residuals": residuals,
     "calibration_prony": prony,
+    "calibration_friction": friction,
 }
 """Study figure -> function of its data frame."""
