@@ -22,6 +22,7 @@ from fingerpad.figures.strokes import (
     contact_lengths,
     convexities,
     distance,
+    embedded,
     energy_at,
     lost_contacts,
     nodes_at,
@@ -77,13 +78,13 @@ def _follows_at_nodes(results: Results) -> Trend:
 
 
 def _curvature_of_surface(results: Results) -> Trend:
-    """At the middle of every convexity, where the window of the fit lies within contact, within 5 %."""
+    """On every convexity, where what the curvature is fitted through touches it, within 5 % (median)."""
     outcome, worst = {}, 0.0
     for speed, scene in FULL.items():
         stroke = stroke_of(results, scene)
         found, under = centre_curvature(stroke), place(stroke)
         for label, arc in convexities(stroke).items():
-            inner = touching(stroke) & (under > arc.start + WINDOW) & (under < arc.end - WINDOW)
+            inner = embedded(stroke) & (under > arc.start + WINDOW) & (under < arc.end - WINDOW)
             miss = abs(found[inner] / arc.curvature - 1)
             outcome[f"{label} at {speed} mm/s"] = bool(miss.size and np.median(miss) <= 0.05)
             worst = max(worst, float(np.median(miss))) if miss.size else worst

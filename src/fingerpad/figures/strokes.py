@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from fingerpad.figures.features import PRESSURE, Trace, centre_node, energy, scene_of
-from fingerpad.figures.skin import skin_curvature
+from fingerpad.figures.skin import WINDOW, skin_curvature
 from fingerpad.stimuli.profiles import Profile, Segment, profile_of
 
 SPEEDS = ("1", "5", "10", "20", "40")
@@ -85,6 +85,13 @@ def place(stroke: xr.Dataset) -> np.ndarray:
 def touching(stroke: xr.Dataset) -> np.ndarray:
     """Whether (time) the centre node touches."""
     return stroke[PRESSURE].values[:, centre_node(stroke)] > 0
+
+
+def embedded(stroke: xr.Dataset) -> np.ndarray:
+    """Whether (time) every node touches that the curvature at the centre node is fitted through."""
+    x, node = stroke["skin_x"].values, centre_node(stroke)
+    near = (abs(x - x[node]) < WINDOW) & (stroke["skin_y"].values > 0)
+    return (stroke[PRESSURE].values[:, near] > 0).all(axis=1)
 
 
 def nodes_at(history: xr.Dataset, places: tuple[float, ...] = NODES) -> list[int]:
