@@ -1,0 +1,158 @@
+"""Constants of the laws of :mod:`fingerpad.receptors.laws`, fitted to samples, with intervals that know how the samples group.
+
+Samples along one history follow one another closely and what a law leaves over is its own error, not noise: intervals from the
+scatter of samples would be far too narrow. They come from leaving out one group (a surface, a node) after the other instead
+(jackknife; Efron and Tibshirani 1993, chapter 11).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.stats import t
+
+from fingerpad.receptors.laws import SpatialSum, rectified
+
+
+@dataclass(frozen=True)
+class SkinSample:
+    """Contact pressure on the skin and the strain energy under it, through one history.
+
+    Attributes:
+        x: (time, n) m, deformed. pressure: (time, n) Pa. indentation: (time) m. energy: (time) Pa. reference: (time) m, or a
+        number.
+    """
+
+    x: np.ndarray
+    pressure: np.ndarray
+    indentation: np.ndarray
+    energy: np.ndarray
+    reference: np.ndarray | float = 0.0
+
+
+def linear(terms: np.ndarray, data: np.ndarray) -> np.ndarray:
+    """Constants (p,) of ``data = terms @ constants`` by least squares; terms (n, p) of any scales."""
+    scale = np.maximum(np.abs(terms).max(axis=0), 1e-300)
+    return np.linalg.lstsq(terms / scale, data, rcond=None)[0] / scale
+
+
+def spatial_sum(samples: Sequence[SkinSample], with_depth: bool = True, bounds: tuple[float, float] = (2e-5, 2e-2)) -> SpatialSum:
+    """Eq 4-4 closest to the strain energies of several histories: r by search, A1 and A2 exactly at every r.
+
+    Args:
+        with_depth: False leaves out A1, for a device that knows the pressure only. bounds: m, of r.
+    """
+    data = np.concatenate([sample.energy for sample in samples])
+
+    def at(log_r: float) -> tuple[np.ndarray, np.ndarray]:
+        law = SpatialSum(float(np.exp(log_r)), 0.0, 1.0)
+        columns = []
+        for sample in samples:
+            weighted = law.weighted_pressure(sample.x, sample.pressure, sample.reference)
+            columns.append(np.column_stack([weighted * sample.indentation, weighted] if with_depth else [weighted]))
+        terms = np.vstack(columns)
+        return terms, linear(terms, data)
+
+    def misfit(log_r: float) -> float:
+        terms, constants = at(log_r)
+        return float(((data - terms @ constants) ** 2).sum())
+
+    grid = np.linspace(*np.log(bounds), 15)  # the misfit may have more than one dip; the search starts in the deepest
+    best = int(np.argmin([misfit(log_r) for log_r in grid]))
+    around = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    log_r = float(minimize_scalar(misfit, bounds=around, method="bounded", options={"xatol": 1e-5}).x)
+    constants = at(log_r)[1]
+    return SpatialSum(float(np.exp(log_r)), float(constants[0]) if with_depth else 0.0, float(constants[-1]))
+
+
+def constant_shift(law: SpatialSum, sample: SkinSample, bounds: tuple[float, float] = (-3e-3, 3e-3)) -> float:
+    """The one lateral shift (m) of a receptor with which a law comes closest to the strain energy of a stroke."""
+
+    def misfit(shift: float) -> float:
+        return float(((law.strain_energy(sample.x, sample.pressure, sample.indentation, shift) - sample.energy) ** 2).sum())
+
+    grid = np.linspace(*bounds, 25)
+    best = int(np.argmin([misfit(shift) for shift in grid]))
+    around = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    return float(minimize_scalar(misfit, bounds=around, method="bounded", options={"xatol": 1e-7}).x)
+
+
+def jackknife(fit: Callable[[Sequence[Any]], np.ndarray], groups: Sequence[Any], level: float = 0.95) -> np.ndarray:
+    """Estimates and confidence intervals (p, 3), low and high last, from fits that leave out one group each.
+
+    Args:
+        fit: groups -> parameters (p,). groups: three at least, else the intervals are not a number.
+    """
+    whole = np.asarray(fit(groups), float)
+    n = len(groups)
+    if n < 3:
+        return np.column_stack([whole, np.full((len(whole), 2), np.nan)])
+    without = np.array([fit([*groups[:k], *groups[k + 1 :]]) for k in range(n)])
+    spread = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
+    half = t.ppf(0.5 + level / 2, n - 1) * spread
+    return np.column_stack([whole, whole - half, whole + half])
+
+
+def r_squared(data: np.ndarray, predicted: np.ndarray) -> float:
+    """Share of the variance that a prediction explains; negative where the mean does better."""
+    data = np.asarray(data, float)
+    spread = float(((data - data.mean()) ** 2).sum())
+    return 1 - float(((data - predicted) ** 2).sum()) / spread if spread else float("nan")
+
+
+@dataclass(frozen=True)
+class GainAndThreshold:
+    """Impulse rate ``gain * [stimulus - threshold]+``: the same two constants for every stimulus.
+
+    Attributes:
+        gain: (impulses/s) by unit of the stimulus, not negative. threshold: in the stimulus's unit; below the least stimulus it
+        stands for a discharge that needs none.
+    """
+
+    gain: float
+    threshold: float
+
+    def __call__(self, stimulus) -> np.ndarray:
+        """Impulse rate, impulses/s."""
+        return rectified(self.gain * (np.asarray(stimulus, float) - self.threshold))
+
+
+def gain_and_threshold(stimulus: np.ndarray, rate: np.ndarray) -> GainAndThreshold:
+    """The gain and threshold closest to rates by least squares, the rectified law fitted exactly.
+
+    With the k weakest stimuli below the threshold the rest is a straight line, so every k is tried. A stimulus that falls where
+    the
+    rate rises predicts the mean rate: gain 0 is not a law, so the smallest gain that a float carries stands for it.
+    """
+    stimulus, rate = np.asarray(stimulus, float), np.asarray(rate, float)
+    scale = max(float(np.ptp(stimulus)), float(np.abs(stimulus).max()) * 1e-12, 1e-300)
+    tiny = 1e-9 * max(float(np.abs(rate).max()), 1e-300) / scale
+    best = GainAndThreshold(tiny, float(stimulus.mean() - rate.mean() / tiny))
+    least = float(((rate - best(stimulus)) ** 2).sum())
+    order = np.argsort(stimulus, kind="stable")
+    for k in range(len(order) - 1):
+        s, y = stimulus[order[k:]] - stimulus.mean(), rate[order[k:]]
+        if np.ptp(s) <= 1e-12 * scale:
+            continue
+        gain, offset = np.polyfit(s, y, 1)
+        if gain <= tiny:
+            continue
+        law = GainAndThreshold(float(gain), float(stimulus.mean() - offset / gain))
+        misfit = float(((rate - law(stimulus)) ** 2).sum())
+        if misfit < least * (1 - 1e-12):
+            best, least = law, misfit
+    return best
+
+
+def leave_one_out(stimulus: np.ndarray, rate: np.ndarray, groups: np.ndarray) -> np.ndarray:
+    """Rates (n,) predicted by the gain and threshold that the other groups give. groups: (n,) labels, such as curvatures."""
+    stimulus, rate, groups = np.asarray(stimulus, float), np.asarray(rate, float), np.asarray(groups)
+    predicted = np.empty(len(rate))
+    for label in np.unique(groups):
+        out = groups == label
+        predicted[out] = gain_and_threshold(stimulus[~out], rate[~out])(stimulus[out])
+    return predicted
