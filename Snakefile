@@ -25,6 +25,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/simulations.smk"
 include: "workflow/rules/calibration.smk"
 include: "workflow/rules/figures.smk"
+include: "workflow/rules/receptors.smk"
 
 
 localrules:

@@ -27,7 +27,8 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     figures = {f"figures/thesis/fig_{n}.{kind}" for n in thesis["figure_numbers"] for kind in ("png", "csv")}
     assert jobs.pop("figure") == figures
     assert jobs.pop("animation") == {f"figures/studies/animation_{scene}.gif" for scene in thesis["animations"]}
-    assert jobs.pop("table") == {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
+    tables = {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
+    assert jobs.pop("table") | jobs.pop("receptor_table") == tables
     places = [f"{fidelity}/{scene}" for fidelity in ("simulations", "coarse") for scene in thesis["scenes"]]
     places += [
         f"simulations/{scene}" for scene in (*thesis["variants"], *thesis["calibration_scenes"], *thesis["friction_scenes"])

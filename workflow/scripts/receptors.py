@@ -1,0 +1,25 @@
+"""Tabulate what receptors make of results: receptors.py TABLE OUT.csv [RATES.csv | HISTORY.nc ...]"""
+
+import sys
+from pathlib import Path
+
+from fingerpad.figures.inputs import read_results
+from fingerpad.figures.tables import publish_table
+from fingerpad.receptors.recordings import read_rates
+from fingerpad.reference_data import ReferenceDataError
+from fingerpad.studies.receptors import candidate_stimuli, rapidly_adapting, receptor_fits, sensor_accuracy
+
+name, out, *paths = sys.argv[1:]
+try:
+    rates = read_rates(*(path for path in paths if path.endswith(".csv")))
+except ReferenceDataError as error:
+    print(error, file=sys.stderr)
+    sys.exit(2)
+histories, _, coarse = read_results(path for path in paths if path.endswith(".nc"))
+tables = {
+    "receptor_fits": lambda: receptor_fits(histories, coarse, rates),
+    "candidate_stimuli": lambda: candidate_stimuli(histories, rates),
+    "sensor_accuracy": lambda: sensor_accuracy(histories),
+    "rapidly_adapting": lambda: rapidly_adapting(histories),
+}
+publish_table(tables[name](), Path(out))
