@@ -46,7 +46,7 @@ HARDLY = 10.0
 ALIKE = 0.15
 """Largest relative difference of values that are about the same."""
 
-PROMINENCE = 0.02
+PROMINENCE = 0.005
 """Least prominence of a peak of strain energy, relative to the largest value while the convexity passes."""
 
 ENERGY, SHALLOW = energy_at(915e-6), energy_at(560e-6)
