@@ -25,6 +25,8 @@ from threadpoolctl import threadpool_limits  # noqa: E402
 from fingerpad.effects import plan  # noqa: E402
 from fingerpad.files import write_atomically  # noqa: E402
 from fingerpad.mechanics.linear_solver import condensation  # noqa: E402
+from fingerpad.receptors.laws import SpatialSum  # noqa: E402
+from fingerpad.receptors.sensor import TactileSensor  # noqa: E402
 from fingerpad.results import provenance  # noqa: E402
 from fingerpad.scene import Cylinder, Discretisation, Flat, Layer, Layers, PressToForce, Scene, load_scene  # noqa: E402
 from fingerpad.simulation import Simulation, simulate  # noqa: E402
@@ -143,6 +145,24 @@ def overhead(repeats: int = 5) -> list[list]:
     return [["process overhead per job", median, "s", "<= 1.5", median <= 1.5, repeats, how]]
 
 
+def tactile_sensor(frames: int = 20_000, repeats: int = 5) -> list[list]:
+    """Impulse rates from contact pressure, Eqs 4-4 and 5-1: a sample of one receptor, frame by frame and as a whole recording."""
+    x = np.linspace(-4e-3, 4e-3, 113)
+    time, pressure = np.arange(frames) * 1e-3, 1e4 * np.random.default_rng(0).random((frames, len(x)))
+    sensor = TactileSensor(x, SpatialSum(r=0.475e-3, per_depth=3.38e4, constant=9.85))
+
+    def step_by_step():
+        sensor.reset()
+        for t, frame in zip(time, pressure, strict=True):
+            sensor.step(t, frame, 1e-3)
+
+    rows = []
+    for way, call in (("step by step", step_by_step), ("whole recording", lambda: sensor.rates(time, pressure, 1e-3))):
+        median = 1e6 * seconds(call, repeats)[1] / frames
+        rows.append([f"tactile sensor, {way}", median, "us per sample", "", "", repeats, f"{len(x)} pressures, {frames} frames"])
+    return rows
+
+
 def workflow() -> list[list]:
     """The whole default target from nothing, on two cores (results are made again)."""
     command = [str(Path(sys.executable).parent / "snakemake"), "--workflow-profile", "workflow/profiles/default"]
@@ -158,7 +178,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "figures" / "tables" / "speed.csv")
     options = parser.parse_args()
     with threadpool_limits(1):
-        rows = [*newton_iteration(), *ramp_and_hold(), *one_step()]
+        rows = [*newton_iteration(), *ramp_and_hold(), *one_step(), *tactile_sensor()]
     rows += overhead()
     if options.workflow:
         rows += workflow()
