@@ -1,0 +1,243 @@
+"""Strokes under hard conditions converge with sound states, or fail cleanly with the last good state and a diagnosis.
+
+Draft meshes, small distances. "Sound" is what it is for pressing, and besides: friction only takes energy, stays within mu times
+the normal force at every node and opposes the slip.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_hard_cases import MM, SCENES, depth, force, scene, sound
+
+from fingerpad import load_scene, simulate
+from fingerpad.mechanics.stepping import NonConvergence
+from fingerpad.scene import Cylinder, Discretisation, Flat, Sampled, Slide, StepAndRepeat, Wavy
+
+pytestmark = pytest.mark.stability
+
+WAVY = Wavy(curvatures=(104.99, 209.97), lead_in=4 * MM, run_out=5 * MM)  # 15 mm long
+ROUND = Cylinder(curvature=104.99)
+SHALLOW = Wavy(curvatures=(104.99, 78.74), lead_in=4 * MM, run_out=5 * MM)  # its hollow is wider than the pad's apex
+PRESS = force(20, 40)
+LOAD = 19.6133
+
+
+@pytest.fixture(scope="module")
+def base():
+    return load_scene(SCENES / "ramp40_k210.yaml").with_accuracy("draft")
+
+
+def slide(millimetres, speed=10.0, keep="force"):
+    return Slide(slide=millimetres * MM, speed=None if speed is None else speed * MM, keep=keep)
+
+
+def sampled(x, y):
+    """A surface through points in mm."""
+    return Sampled(csv=Path("profile.csv"), x=tuple(MM * np.array(x)), y=tuple(MM * np.array(y)))
+
+
+def stroke(base, stimulus, friction, *motion, **more):
+    return simulate(scene(base, stimulus, motion, **more).model_copy(update={"friction": friction}))
+
+
+def sound_stroke(history, friction, **limits):
+    """Assert that every state of a stroke is sound."""
+    sound(history, **limits)
+    lost = np.diff(history.frictional_dissipation)
+    assert lost.min() > -1e-4 * max(history.frictional_dissipation.max(), 1e-12), "friction gives energy"
+    if friction == 0:
+        assert "slip" not in history and not lost.any()
+        return
+    pressure, traction, state = (history[name].values for name in ("contact_pressure", "tangential_traction", "contact_state"))
+    limit = friction * pressure
+    assert np.all(np.abs(traction) <= limit * (1 + 1e-6) + 1e-3), "friction beyond mu p"
+    slides = state == 2
+    np.testing.assert_allclose(np.abs(traction[slides]), limit[slides], rtol=1e-6, atol=1e-3)
+    assert np.all((state == 0) == (pressure == 0)) or np.mean((state == 0) != (pressure == 0)) < 1e-3
+    slip = history.slip.values
+    assert np.all(traction[slides] * slip[slides] <= 1e-6), "friction drives the skin"
+    assert np.abs(slip[state == 1]).max(initial=0.0) < 1e-6
+
+
+# -- coefficients, directions, speeds -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3, 0.7, 1.0, 1.5])
+def test_coefficients_on_a_plate(base, friction):
+    """On a plate the force ends at mu times the load, the skin trails behind, and 4 mm back turn both round."""
+    history = stroke(base, Flat(), friction, PRESS, slide(4), slide(-4))
+    sound_stroke(history, friction)
+    there, back = (history.isel(time=np.flatnonzero(history.leg == leg)) for leg in (1, 2))
+    for ends, sign in ((there, 1), (back, -1)):
+        assert float(ends.tangential_force[-1]) == pytest.approx(sign * friction * LOAD, rel=1e-3, abs=1e-6)
+        assert sign * float(ends.centre_lateral_displacement[-1]) <= (-5e-4 * friction if friction else 1e-9)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3, 0.7, 1.0, 1.5])
+def test_coefficients_on_a_wavy_surface(base, friction):
+    """Over two convexities and the hollow between no coefficient costs a cut or more than three iterations a step."""
+    history = stroke(base, WAVY, friction, PRESS, slide(14))
+    sound_stroke(history, friction)
+    assert float(history.newton_iterations[1:].mean()) <= 3
+    np.testing.assert_allclose(history.force[11:], LOAD, rtol=1e-3)
+
+
+@pytest.mark.parametrize("friction", [0.7, 1.5])
+def test_reversal_on_a_wavy_surface(base, friction):
+    """There and back from the middle of a convexity."""
+    sound_stroke(stroke(base, WAVY, friction, PRESS, slide(6.5), slide(-4), slide(4)), friction)
+
+
+@pytest.mark.parametrize("speed", [0.1, 400.0, None])
+def test_speeds_on_a_wavy_surface(base, speed):
+    """From 0.1 to 400 mm/s, and infinitely slow, without a cut."""
+    motion = PRESS if speed else force(20)
+    sound_stroke(stroke(base, WAVY, 0.7, motion, slide(14, speed)), 0.7)
+
+
+def test_faster_strokes_stretch_a_stiffer_skin_less(base):
+    """The skin trails less at 400 mm/s than at 0.1 mm/s, by no more than the Prony series allows."""
+    slow, fast = (stroke(base, Flat(), 0.7, PRESS, slide(4, speed)) for speed in (0.1, 400.0))
+    ratio = float(fast.centre_lateral_displacement[-1] / slow.centre_lateral_displacement[-1])
+    assert 0.5759 - 0.05 < ratio < 0.9
+
+
+def test_slow_strokes_are_those_without_time(base):
+    """A stroke at 1 um/s is the quasi-steady one."""
+    slow, steady = (stroke(base, WAVY, 0.7, force(20), slide(5, speed)) for speed in (1e-3, None))
+    for name in ("centre_lateral_displacement", "tangential_force", "indentation_depth"):
+        assert float(slow[name][-1]) == pytest.approx(float(steady[name][-1]), rel=1e-2)
+
+
+# -- control, loss of contact -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.7])
+def test_depth_is_kept(base, friction):
+    """With the depth kept the force follows the surface, and stays positive over this hollow."""
+    history = stroke(base, WAVY, friction, depth(0.5, 1.0), slide(14, 10, "depth"))
+    sound_stroke(history, friction)
+    kept = history.indentation_depth[history.leg == 1]
+    np.testing.assert_allclose(kept, 0.5 * MM, rtol=1e-9)
+    force_now = history.force[history.leg == 1]
+    assert float(force_now.min()) > 1 and float(force_now.max()) > 1.2 * float(force_now.min())
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.7])
+def test_contact_is_lost_and_found(base, friction):
+    """A hollow that leaves a lightly pressed pad: no force, no traction, and on the far side contact again; then back."""
+    history = stroke(base, SHALLOW, friction, depth(0.03, 1.0), slide(14, 10, "depth"), slide(-14, 10, "depth"))
+    sound_stroke(history, friction, energy=0.05)
+    for leg in (1, 2):
+        touching = (history.force[history.leg == leg] > 0).values
+        first, *_, last = np.flatnonzero(touching)
+        assert not touching[first:last].all(), "contact was never lost"
+        assert touching[-1]
+    assert np.all(history.tangential_force.values[history.force.values == 0] == 0)
+
+
+def test_a_hole_wider_than_the_contact(base):
+    """The pad hangs over a hole 2 mm deep, loses it all under depth control, and meets the far side."""
+    hole = sampled([0, 5, 7, 13, 15, 30], [0, 0, 2, 2, 0, 0])
+    history = stroke(base, hole, 0.7, depth(0.4, 1.0), slide(20, 10, "depth"))
+    sound_stroke(history, 0.7)
+    over = (np.abs(history.stroke_distance - 10 * MM) < 1e-6).values
+    assert float(history.force[over].max()) == 0 and float(history.force[-1]) > 10
+
+
+@pytest.mark.parametrize("keep", ["force", "depth"])
+def test_pulled_sideways_without_friction(base, keep):
+    """A cylinder drawn off a slippery pad: pushed on by its slope, or leaving it altogether."""
+    press = PRESS if keep == "force" else depth(0.5, 1.0)
+    history = stroke(base, ROUND, 0.0, press, slide(6 if keep == "force" else 8, 10, keep))
+    sound_stroke(history, 0.0, energy=0.03)
+    assert float(history.tangential_force.min()) < -0.04 * LOAD  # down the slope of the pad
+    assert keep == "force" or float(history.force[-1]) == 0
+
+
+def test_step_and_repeat_forgets(base):
+    """Indentations one by one leave nothing behind: each is that of a pad that was never touched before."""
+    history = stroke(base, WAVY, 0.0, force(20), StepAndRepeat(step=6 * MM, every=2 * MM))
+    sound_stroke(history, 0.0, energy=0.25)  # each in one step, of which the trapezoidal rule knows the ends alone
+    again = stroke(base, WAVY, 0.0, force(20), StepAndRepeat(step=6 * MM, every=6 * MM))
+    assert float(history.stroke_distance[-1]) == pytest.approx(6 * MM)
+    assert float(history.indentation_depth[-1]) == pytest.approx(float(again.indentation_depth[-1]), rel=1e-4)
+
+
+# -- step size ----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("step, distance", [(0.03, 1.5), (1.0, 6.0)])
+def test_step_sizes(base, step, distance):
+    """Steps of 0.03 and of 1 mm converge without cuts."""
+    by_hand = Discretisation(element=None, skin_edge=268.8e-6, steps=2 * round(distance / step))
+    history = stroke(base, WAVY, 0.7, PRESS, slide(distance), accuracy=by_hand)
+    assert np.diff(history.stroke_distance)[-1] == pytest.approx(step * MM)
+    sound_stroke(history, 0.7, energy=0.03)
+
+
+NAMES = ("tangential_force", "indentation_depth", "centre_lateral_displacement", "contact_width", "centre_pressure")
+
+
+def test_output_does_not_depend_on_the_step(base):
+    """Half the step changes no headline quantity of a stroke by more than the draft's error of 6 %."""
+    coarse, fine = (
+        stroke(base, WAVY, 0.7, PRESS, slide(8), accuracy=Discretisation(element=None, skin_edge=268.8e-6, steps=steps))
+        for steps in (32, 64)
+    )
+    common = coarse.stroke_distance.values[coarse.leg.values == 1]
+    for name in NAMES:
+        values = coarse[name].values[coarse.leg.values == 1]
+        at = fine.leg.values == 1
+        finer = np.interp(common, fine.stroke_distance.values[at], fine[name].values[at])
+        assert np.abs(values - finer).max() < 0.06 * np.abs(finer).max(), name
+
+
+# -- sharp edges --------------------------------------------------------------------------------------------------------------
+
+
+def teeth(height, land):
+    """A grating of period 2 mm in mm: lands with sharp convex edges (land > 0) or teeth that end in cusps (land = 0)."""
+    starts = 2 * np.arange(9)
+    if land:
+        x = np.concatenate([[s, s + land, s + land + 0.2, s + 1.8] for s in starts])
+        y = np.tile([0, 0, height, height], len(starts))
+    else:
+        x, y = np.concatenate([[s, s + 1] for s in starts]), np.tile([0, height], len(starts))
+    return sampled([-12, *x - 1, x[-1] + 11], [y[0], *y, y[-1]])
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.7])
+@pytest.mark.parametrize(
+    "height, land", [(0.1, 1.0), (0.3, 1.0), (0.2, 0.0), (1.0, 0.0)], ids=["low", "high", "cusps", "deep cusps"]
+)
+def test_gratings_with_sharp_edges(base, height, land, friction):
+    """Stroked over sharp convex edges a run ends soundly, or says how little it can be trusted, or fails with a diagnosis."""
+    try:
+        history = stroke(base, teeth(height, land), friction, PRESS, slide(3))
+    except NonConvergence as failure:
+        assert failure.reason and failure.advice
+        kept = failure.dataset
+        assert kept.sizes["time"] > 1 and not kept.attrs["complete"] and np.isfinite(kept.force).all()
+        assert float(kept.complementarity_error.max()) < 1e-3
+        return
+    assert float(history.complementarity_error.max()) < 1e-3 and float(history.min_detF.min()) > 0.02
+    np.testing.assert_allclose(history.force[11:], LOAD, rtol=1e-3)
+    kept = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
+    missing = (history.external_work - kept)[history.leg == 1]  # what jumps over the edges cost, or what a false state makes
+    lost = float((missing.max() - missing.min()) / np.abs(history.external_work).max())
+    assert lost < max(0.06, 1.01 * history.attrs["estimated_error"]), f"a false state: {lost:.1%} of the work is out of balance"
+
+
+# -- the whole surface --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [1.0, 40.0])
+def test_full_stroke(base, speed):
+    """80 mm over all eight convexities: no cut, three iterations a step, and no step dearer at the end than at the start."""
+    history = stroke(base, Wavy(), 0.7, PRESS, slide(80, speed))
+    sound_stroke(history, 0.7)
+    effort = history.newton_iterations.values[history.leg.values == 1]
+    assert effort.mean() <= 3 and effort[80:].mean() < 1.5 * effort[:80].mean()
