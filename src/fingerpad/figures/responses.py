@@ -224,24 +224,23 @@ def raster(frame: pd.DataFrame, repetitions: int, seed: int, variation: float = 
     return out.assign(**{DISTANCE: np.interp(out[TIME], time, frame[DISTANCE])}) if DISTANCE in frame else out
 
 
-def stroke_histogram(frame: pd.DataFrame, impulses: pd.DataFrame, bin_width: float = BIN) -> pd.DataFrame:
+def stroke_histogram(frame: pd.DataFrame, impulses: pd.DataFrame, repetitions: int, bin_width: float = BIN) -> pd.DataFrame:
     """Mean rate of a raster in bins of the stroke distance (m): columns stroke_distance (of the bin's middle), predicted_rate.
 
-    Only whole bins while the surface slides. frame: of `predicted_rate`. impulses: of `raster`.
+    Only whole bins while the surface slides. frame: of `predicted_rate`. impulses: of `raster`, of so many `repetitions`.
     """
     slides = np.concatenate([[False], np.diff(frame[DISTANCE].to_numpy()) > 0])
     slides[:-1] |= slides[1:]
     distance, time = frame[DISTANCE].to_numpy()[slides] * 1e-3, frame[TIME].to_numpy()[slides]
     edges = np.arange(distance[0], distance[-1] + 1e-9, bin_width)
-    by_trial = [train[TIME].to_numpy() for _, train in impulses.groupby("trial")]
-    rate = binned_rate(by_trial, np.interp(edges, distance, time)) * len(by_trial) / max(impulses["trial"].max(), 1)
+    rate = binned_rate([impulses[TIME].to_numpy()], np.interp(edges, distance, time)) / repetitions
     return pd.DataFrame({DISTANCE: (edges[1:] + edges[:-1]) / 2 * 1e3, IMPULSE_RATE: rate})
 
 
-def mean_frequency(impulses: pd.DataFrame, at: np.ndarray) -> pd.DataFrame:
+def mean_frequency(impulses: pd.DataFrame, repetitions: int, at: np.ndarray) -> pd.DataFrame:
     """Instantaneous frequency of a raster, mean over its trials, at times `at` (s): columns time, predicted_frequency."""
     values = [instantaneous_frequency(train[TIME].to_numpy(), at) for _, train in impulses.groupby("trial")]
-    return pd.DataFrame({TIME: at, FREQUENCY: np.mean(values, axis=0)})
+    return pd.DataFrame({TIME: at, FREQUENCY: np.sum(values, axis=0) / repetitions})
 
 
 def ramp_and_hold_rates(

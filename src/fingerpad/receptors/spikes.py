@@ -59,11 +59,11 @@ def _thresholds(total: float, variation: float, seed) -> np.ndarray:
     if seed is None:
         raise ValueError("variability needs a seed, so that the impulses can be made again")
     random, shape = np.random.default_rng(seed), variation**-2
-    due = np.array([-random.uniform()])  # the impulse before the first
+    due = np.array([random.uniform() * random.gamma(shape + 1, 1 / shape)])  # a place in the interval that is under way
     while due[-1] <= total:
         more = random.gamma(shape, 1 / shape, size=int(1.2 * total) + 16)
         due = np.concatenate([due, due[-1] + np.cumsum(more)])
-    return due[(due > 0) & (due <= total)]
+    return due[due <= total]
 
 
 def trains(time, rate, repetitions: int, seed: int, variation: float = VARIATION) -> list[np.ndarray]:
