@@ -25,7 +25,7 @@ SIZE, DPI = (6.4, 6.2), 100  # inch, dots an inch
 FRAME_TIME = 100  # ms
 COLOURS = mpl.colormaps["YlOrRd"]
 SHADES, GREYS = 96, 48  # in the one palette of all frames
-HALF_WIDTH, LOW, HIGH = 10.0, -6.6, 7.4  # mm, of the section shown
+HALF_WIDTH, LOW, HIGH = 10.5, -6.6, 7.4  # mm, of the section shown
 CORNERS = {9: 4, 4: 4, 8: 4, 6: 3, 7: 3, 3: 3}
 """Corners of an element by its number of nodes."""
 
@@ -37,28 +37,33 @@ def animate(history: xr.Dataset, path: str | PathLike) -> None:
     with style.theme():
         frames = _frames(history)
     palette = _palette()
-    first, *others = (frame.quantize(palette=palette, dither=0) for frame in frames)
+    first, *others = (_indexed(frame, palette) for frame in frames)
     options = {"save_all": True, "append_images": others, "duration": FRAME_TIME, "loop": 0, "optimize": False}
     stream = io.BytesIO()
     first.save(stream, format="GIF", **options)
     write_atomically(Path(path), lambda p: p.write_bytes(stream.getvalue()))
 
 
-def _palette():
-    """The colours of all frames: those of the map, and greys."""
+def _palette() -> np.ndarray:
+    """The colours (n, 3) of all frames: those of the map, and greys from black to white."""
+    mapped = (255 * COLOURS(np.linspace(0, 1, SHADES))[:, :3]).round()
+    return np.concatenate([mapped, np.repeat(np.linspace(0, 255, GREYS).round()[:, None], 3, axis=1)]).astype(np.uint8)
+
+
+def _indexed(frame: np.ndarray, palette: np.ndarray):
+    """A frame (height, width, 3) as an image of the palette's closest colours."""
     from PIL import Image
 
-    mapped = (255 * COLOURS(np.linspace(0, 1, SHADES))[:, :3]).round().astype(np.uint8)
-    greys = np.repeat(np.linspace(0, 255, GREYS).round().astype(np.uint8)[:, None], 3, axis=1)
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(np.concatenate([mapped, greys]).tobytes())
-    return palette
+    packed, inverse = np.unique(frame.reshape(-1, 3).astype(np.int32) @ (65536, 256, 1), return_inverse=True)
+    colours = np.stack([packed >> 16, (packed >> 8) & 255, packed & 255], axis=-1)
+    distance = ((colours[:, None] - palette[None].astype(np.int32)) ** 2).sum(axis=-1)
+    image = Image.fromarray(distance.argmin(axis=1).astype(np.uint8)[inverse.ravel()].reshape(frame.shape[:2]), "P")
+    image.putpalette(palette.tobytes())
+    return image
 
 
-def _frames(history: xr.Dataset) -> list:
-    """One picture a snapshot."""
-    from PIL import Image
-
+def _frames(history: xr.Dataset) -> list[np.ndarray]:
+    """One picture (height, width, 3) a snapshot."""
     time, shape = history["time"].values, profile_and_height(history)[0]
     at = [int(abs(time - t).argmin()) for t in history["snapshot_time"].values]
     heights = profile_and_height(history)[1]
@@ -99,7 +104,7 @@ def _frames(history: xr.Dataset) -> list:
         title.set_text(f"{speed}{1e3 * distance[k]:5.1f} mm   {float(history['force'][index]) * _length(history):.2f} N")
         canvas.draw()
         fig.set_layout_engine("none")  # laid out once: nothing moves between frames
-        frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3]))
+        frames.append(np.array(canvas.buffer_rgba())[..., :3])
     return frames
 
 
