@@ -162,12 +162,22 @@ class Simulation:
         return last or 1.0
 
     def _estimated_error(self, records, width):
-        """The plan's error law at the narrowest contact that was found at a leg's end; at least a half for a few nodes."""
+        """The plan's error law at the narrowest contact that was found at a leg's end; at least a half for a few nodes.
+
+        And at least the share of the work that has gone missing in strokes: what jumps of nodes over sharp edges have cost.
+        """
         ends = [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
         narrowest = min((width[k + 1] for k in ends), default=0.0)
         error = estimated_error(self.plan.contact_edge, narrowest / 2)
         touching = min((np.count_nonzero(records[k].nodal_force) / self.share for k in ends), default=0)
-        return float(max(error, 0.5) if touching < 4 else error)
+        missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
+        drift = [
+            abs(now - before)
+            for now, before, record, last in zip(missing[1:], missing, records[1:], records, strict=False)
+            if record.distance != last.distance and record.leg == last.leg
+        ]
+        lost = sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
+        return float(max(error, lost, 0.5 if touching < 4 else 0.0))
 
     # -- back to the whole pad --------------------------------------------------------------------------------------
 

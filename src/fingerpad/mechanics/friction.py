@@ -84,12 +84,7 @@ class Coulomb:
             else:
                 load = force - answer.load_shift
             try:
-                known = self.coefficient, answer, offset, load, active, self.state[part]
-                try:
-                    found = _exchange(*known)
-                except _Cycling:
-                    found = _exchange(*known, entering_sticks=True)
-                f, tau, dd, on, state, pivots = found
+                f, tau, dd, on, state, pivots = _solve(self.coefficient, answer, offset, load, active, self.state[part])
                 if answer.bent and not stable(answer.matrix, answer.compliance[: len(gap), : len(gap)], on):
                     raise ContactError("the curved contact is not stable")
             except ContactError as error:
@@ -139,12 +134,29 @@ class _Cycling(ContactError):
     """No consistent set of states was found."""
 
 
-def _exchange(mu, answer, offset, load, active, state, entering_sticks=False):
-    """Exchange states until all are consistent; returns (f, tau, depth change, active, state, pivots).
+def _solve(mu, answer, offset, load, active, state):
+    """States, forces and depth change of the linearised problem; returns (f, tau, depth change, active, state, pivots).
 
     A node that comes into contact slips at first, against its motion: entering as sticking makes the states cycle. Where friction
-    is so large that slipping nodes wedge themselves in it is the other way round: ``entering_sticks``.
+    is so large that slipping nodes wedge themselves in it is the other way round. If neither ends, Tresca's problem (given bounds
+    of the friction, which always has a solution) is solved again and again with the bounds that its own pressures give.
     """
+    for entering_sticks in (False, True):
+        try:
+            return _exchange(mu, answer, offset, load, active, state, entering_sticks)
+        except _Cycling:
+            pass
+    f, bound = _exchange(0.0, answer, offset, load, active, 0 * state)[0], None
+    for _ in range(60):
+        bound = mu * f if bound is None else 0.5 * (bound + mu * f)
+        f, tau, dd, active, state, pivots = _exchange(mu, answer, offset, load, active, state, bound=bound)
+        if np.abs(mu * f - bound).max() <= 1e-6 * mu * f.max():
+            return f, tau, dd, active, state, pivots
+    raise _Cycling("stick and slip keep cycling")
+
+
+def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bound=None):
+    """Exchange states until all are consistent; ``bound``: (nz,) N/m of the friction, instead of mu times the normal force."""
     n = len(active)
     a, lever = answer.compliance, answer.lever
     nn, nt, tn, tt = a[:n, :n], a[:n, n:], a[n:, :n], a[n:, n:]
@@ -157,12 +169,13 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False):
     state[held] = -np.sign(offset[n:][held])
     stiffness = 0.5 / np.where(held, np.inf, yielding)
     scale = max(np.abs(offset).max(), 1e-12)
-    best, patience, seen = 2 * n + 1, 10, set()
-    for pivots in range(1, 60 + 6 * n):
+    best, patience, seen, single = 2 * n + 1, 10, set(), set()
+    for pivots in range(1, 60 + 2 * n):
         if load is not None and not active.any():
             raise ContactError("no node can carry the force")
         on, stick = np.flatnonzero(active), np.flatnonzero(active & (state == STICK) & ~held)
-        share = mu * state
+        share = mu * state if bound is None else np.zeros(n)
+        given = np.zeros(n) if bound is None else bound * state * active
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
         system, right = np.empty((size, size)), np.empty(size)
@@ -170,19 +183,19 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False):
         system[:i, i : i + j] = nt[np.ix_(on, stick)]
         system[i : i + j, :i] = tn[np.ix_(stick, on)] + tt[np.ix_(stick, on)] * share[on]
         system[i : i + j, i : i + j] = tt[np.ix_(stick, stick)]
-        right[:i], right[i : i + j] = -offset[:n][on], -offset[n:][stick]
+        right[:i], right[i : i + j] = -(offset[:n] + nt @ given)[on], -(offset[n:] + tt @ given)[stick]
         if load is not None:
             system[:i, -1], system[i : i + j, -1] = lever[:n][on], lever[n:][stick]
             system[-1, :i] = -lever[:n][on] - share[on] * lever[n:][on]
             system[-1, i : i + j] = -lever[n:][stick]
-            system[-1, -1], right[-1] = answer.corner, load
+            system[-1, -1], right[-1] = answer.corner, load + lever[n:] @ given
         try:
             solution = np.linalg.solve(system, right)
         except np.linalg.LinAlgError as error:
             raise ContactError("the frictional contact compliance is singular") from error
         f, tau = np.zeros(n), np.zeros(n)
         f[on] = solution[:i]
-        tau[on] = share[on] * f[on]
+        tau[on] = share[on] * f[on] + given[on]
         tau[stick] = solution[i : i + j]
         dd = solution[-1] if load is not None else 0.0
         gap = offset[:n] + nn @ f + nt @ tau + lever[:n] * dd
@@ -190,7 +203,8 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False):
         tiny = 1e-12 * np.abs(f).max(initial=0.0)
         wrong = np.where(active, f < -tiny, gap < -1e-11 * scale)
         sliding = active & (state != STICK) & ~wrong & ~held
-        slides = active & (state == STICK) & ~wrong & (np.abs(tau) > mu * np.maximum(f, 0) * (1 + 1e-10) + tiny)
+        most = mu * np.maximum(f, 0) if bound is None else bound
+        slides = active & (state == STICK) & ~wrong & (np.abs(tau) > most * (1 + 1e-10) + tiny)
         sticks = sliding & (state * slip > 1e-11 * scale)
         count = int(wrong.sum() + slides.sum() + sticks.sum())
         if not count:
@@ -201,12 +215,15 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False):
             best, patience = count, 10
         elif patience and key not in seen:
             patience -= 1
-        else:  # one at a time
+        else:  # one at a time, which either ends or comes round
+            if (*key, pivots % 2) in single:
+                break
+            single.add((*key, pivots % 2))
             last = np.flatnonzero(wrong | slides | sticks)[-1 if pivots % 2 else 0]
             only = np.arange(n) == last
             wrong, slides, sticks = wrong & only, slides & only, sticks & only
         seen.add(key)
-        reverse = sticks & (stiffness * state * slip > 2 * mu * np.maximum(f, 0))
+        reverse = sticks & (stiffness * state * slip > 2 * most)
         entering = wrong & ~active
         state = np.where(slides, np.sign(tau), np.where(reverse, -state, np.where(sticks, STICK, state))).astype(int)
         state = np.where(entering, 0 if entering_sticks else -np.sign(slip), state).astype(int)
