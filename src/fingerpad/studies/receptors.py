@@ -474,15 +474,17 @@ def candidate_stimuli(histories: Histories, rates: pd.DataFrame) -> pd.DataFrame
     Returns:
         One row a set of rates, candidate and depth: gain, threshold, R2, root-mean-square error of the curvatures left out one by
         one, and the rank by that error among candidates at 915 um. Where a surface is uncertain R2 has the range of all readings.
+        The last columns need no rates: what is left at the end of the hold of what was there at its beginning, least and most
+        of the nine surfaces at 40 gf/s. The recorded rates fall.
     """
-    rows = []
+    rows, surfaces = [], pressed(histories)
     for title, group in rate_sets(rates[rates["receptor"] == "SA-I"]):
         matched = matched_histories(histories, group)
         if matched is None:
             continue
         choices = assignments(group)
         of_set = [
-            {"rates": title, "kind": _kind(group), "candidate": name} | row
+            {"rates": title, "kind": _kind(group), "candidate": name} | row | _held(surfaces, name, row["receptor_depth (um)"])
             for name, unit, depths, number in _candidates()
             for row in _judged(matched, group, choices, unit, depths and _common_depths(matched), number)
         ]
@@ -491,6 +493,14 @@ def candidate_stimuli(histories: Histories, rates: pd.DataFrame) -> pd.DataFrame
         frame["rank"] = error[~third].rank(method="min")
         rows.append(frame.iloc[np.lexsort((error, third))])
     return pd.concat(rows, ignore_index=True) if rows else pd.DataFrame()
+
+
+def _held(surfaces: Mapping[str, xr.Dataset], name: str, depth: float) -> dict[str, float]:
+    """Least and largest share of a candidate, over surfaces, that is left at the end of the hold; depth: um."""
+    if name not in CANDIDATES or not surfaces:
+        return {}
+    left = [values[-1] / values[ramp_end(h)] for h in surfaces.values() for values in [stimulus(h, name, depth * 1e-6)]]
+    return {"end of hold over its beginning, least": min(left), "end of hold over its beginning, most": max(left)}
 
 
 def _kind(group: pd.DataFrame) -> str:
@@ -524,6 +534,7 @@ def _common_depths(matched: Mapping[float, Sequence[xr.Dataset]]) -> list[float]
 
 
 def _inverse_width(history, window, depth):
+    """Inverse contact width, 1/m: over the hold, as in thesis Fig 4-9, since it has no bound at first touch; or the largest."""
     width = history["contact_width"].values
     touching = width > 0
     return windowed(history, history["time"].values[touching], 1 / width[touching], "hold" if window != "peak" else window)
