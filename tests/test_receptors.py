@@ -598,3 +598,12 @@ def test_uncertain_surfaces_are_read_in_every_way_that_rises():
         assert (np.diff(curvature[order]) > 0).all()
     certain = study.assignments(rates[rates["or_curvature_per_m"].isna()])
     assert len(certain) == 1 and set(certain[0]) == {1259.84, 629.92}
+
+
+def test_without_pressed_surfaces_nothing_is_made_up(stroke):
+    rates = read_rates(PUBLISHED)
+    table = study.receptor_fits({"stroke_10": stroke}, {}, rates)
+    assert set(table["quantity"]) <= {"A1", "A2", "threshold of the energy", "threshold of the rate", "not compared"}
+    assert study.candidate_stimuli({"stroke_10": stroke}, rates).empty
+    with pytest.raises(ValueError, match="ramp40_"):
+        study.sensor_accuracy({"stroke_10": stroke})

@@ -98,14 +98,14 @@ def receptor_fits(histories: Histories, coarse: Histories, rates: pd.DataFrame) 
         Columns `FIT_COLUMNS`. Intervals are jackknife intervals over surfaces (Eq 4-1: over nodes, rates: over rates);
         "discretisation" is by how much the estimate differs when fitted to the companions.
     """
-    table = pd.DataFrame([*_simulated_laws(histories, intervals=True), *_rate_law(histories, rates)])
-    rough = pd.DataFrame(_simulated_laws(coarse, intervals=False)) if len(pressed(coarse)) == len(pressed(histories)) else None
-    if rough is not None:
+    table = pd.DataFrame([*_simulated_laws(histories, intervals=True), *_rate_law(histories, rates)], columns=FIT_COLUMNS)
+    if len(pressed(coarse)) == len(pressed(histories)) > 1:
+        rough = pd.DataFrame(_simulated_laws(coarse, intervals=False))
         key = ["law", "scenes", "receptor_depth (um)", "quantity"]
         matched = table[key].merge(rough.drop_duplicates(key)[[*key, "estimate"]], on=key, how="left")["estimate"].to_numpy(float)
         off = 100 * np.abs(matched / table["estimate"].to_numpy(float) - 1)
         table["discretisation (%)"] = np.where(table["units"] == "%", np.nan, off)
-    return table.reindex(columns=FIT_COLUMNS)
+    return table
 
 
 def _simulated_laws(histories: Histories, intervals: bool) -> Iterator[dict]:
@@ -595,9 +595,14 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
 
     Returns:
         One row a scene and array: what the sensor knows, spacing, root-mean-square and largest error of the rate, both in
-        impulses/s, the same over the full model's, R2, and impulses of either over the scene.
+        impulses/s, the same over the full model's, and impulses of either over the scene.
+
+    Raises:
+        ValueError: no surface was pressed at 40 gf/s, so there is nothing to fit the sum to.
     """
     surfaces = pressed(histories)
+    if not surfaces:
+        raise ValueError("the sensor's constants are fitted to scenes ramp40_*; there is none among the histories")
     laws = {True: fit_sum(surfaces.values(), RECEPTOR_DEPTH), False: fit_sum(surfaces.values(), RECEPTOR_DEPTH, with_depth=False)}
     programmes = dict.fromkeys(name.split("_")[0] for name in histories if name.startswith(("ramp", "press")))
     chosen = {scene_name(p, label): history for p in programmes for label, history in pressed(histories, p).items()}
