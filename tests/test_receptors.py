@@ -24,6 +24,8 @@ from fingerpad.receptors.recordings import RATES, read_rates
 from fingerpad.receptors.sensor import TactileSensor, taxel_pressure
 from fingerpad.reference_data import ReferenceDataError
 from fingerpad.scene import Discretisation
+from fingerpad.studies import candidate_stimuli as candidates
+from fingerpad.studies import impulse_rates, sensing
 from fingerpad.studies import receptors as study
 
 pytestmark = pytest.mark.unit
@@ -452,8 +454,8 @@ def test_rates_peak_at_the_top_of_the_ramp_and_rise_with_curvature(histories):
 
 def test_rapidly_adapting_receptors_fire_at_the_ramps_beginning_if_the_skins_curvature_drives_them(histories):
     """Thesis section 4.2: at the beginning of the ramp or not at all, whatever the curvature. Of the two, the first holds."""
-    table = study.rapidly_adapting({name: histories[name] for name in PRESSED[:3]})
-    curvature, strain = (table[table["responds to the rate of"] == name] for name in study.RAPIDLY_ADAPTING)
+    table = sensing.rapidly_adapting({name: histories[name] for name in PRESSED[:3]})
+    curvature, strain = (table[table["responds to the rate of"] == name] for name in sensing.RAPIDLY_ADAPTING)
     assert (curvature["response ends (share of the ramp)"] <= 0.6).all() and (curvature["impulses in the hold"] == 0).all()
     assert (curvature["impulses in the ramp"] > 1).all()
     largest = curvature["largest rate (impulses/s)"]
@@ -462,7 +464,7 @@ def test_rapidly_adapting_receptors_fire_at_the_ramps_beginning_if_the_skins_cur
 
 
 def test_sensor_knows_less_from_pressure_alone(histories):
-    table = study.sensor_accuracy({name: histories[name] for name in PRESSED[:3]})
+    table = sensing.sensor_accuracy({name: histories[name] for name in PRESSED[:3]})
     at_nodes = table[table["spacing (mm)"] < 0.3].set_index(["knows", "scene"])["rms_error (impulses/s)"]
     assert len(at_nodes) == 6 and (at_nodes["pressure and indentation"] < at_nodes["pressure"]).all()
     assert at_nodes["pressure and indentation"].max() < 6
@@ -474,7 +476,7 @@ def test_contact_nodes_are_rows_in_contact_off_the_edge(histories):
     assert (nodes[responses.P] > 0).all() and (nodes[responses.EDGE_DISTANCE] > 0.05).all()
     assert (nodes[responses.BELOW_EDGE] > 0).all(), "skin under a cylinder is deeper than at its edge"
     assert (nodes.loc[nodes["ramp"], responses.NODE_SPEED] > 0).mean() > 0.95
-    fitted = responses.pressure_by_law("4-1", nodes, study.fit_nodes("4-1", nodes))
+    fitted = responses.pressure_by_law("4-1", nodes, responses.fit_nodes("4-1", nodes))
     assert len(fitted) < len(nodes) and fits.r_squared(fitted[responses.P], fitted[responses.P_LAW]) > 0.3
 
 
@@ -565,15 +567,15 @@ def test_a_candidate_that_made_the_rates_wins(made_up):
     histories = {name: h for name, h in made_up.items() if name.startswith("ramp40_")}
     for name, history in histories.items():
         worse = 0.5 * history["strain_energy_density"] ** 0.5
-        deep = {variable for variable, _, at_depth in study.CANDIDATES.values() if at_depth} - {"strain_energy_density"}
+        deep = {variable for variable, _, at_depth in responses.CANDIDATES.values() if at_depth} - {"strain_energy_density"}
         histories[name] = history.assign(dict.fromkeys(deep, worse))
     rows = []
     for label in ("79", "158", "315", "630", "1260"):
         history = histories[f"ramp40_k{label}"]
-        mean = study.windowed(history, history.time.values, energy(history, 915e-6), "hold")
+        mean = impulse_rates.windowed(history, history.time.values, energy(history, 915e-6), "hold")
         k = responses.curvature_of(history)
         rows.append(f"made up,SA-I,monkey,cylinder,{k},,20,40,0,hold,{max(0.1 * (mean - 50), 0)},,,none,none")
-    table = study.candidate_stimuli(histories, _read(rows))
+    table = candidates.candidate_stimuli(histories, _read(rows))
     best = table.iloc[0]
     assert best["candidate"] == "strain energy, instantaneous elastic" and best["rank"] == 1
     assert best["gain (impulses/s per unit)"] == pytest.approx(0.1, rel=1e-3) and best["threshold"] == pytest.approx(50, abs=1)
@@ -591,12 +593,12 @@ def _read(rows):
 
 def test_uncertain_surfaces_are_read_in_every_way_that_rises():
     rates = read_rates(PUBLISHED / "cysyk_1999.csv")
-    ways = study.assignments(rates)
+    ways = impulse_rates.assignments(rates)
     assert len(ways) == 6
     for curvature in ways:
         order = np.argsort(rates["rate_per_s"])
         assert (np.diff(curvature[order]) > 0).all()
-    certain = study.assignments(rates[rates["or_curvature_per_m"].isna()])
+    certain = impulse_rates.assignments(rates[rates["or_curvature_per_m"].isna()])
     assert len(certain) == 1 and set(certain[0]) == {1259.84, 629.92}
 
 
@@ -604,6 +606,6 @@ def test_without_pressed_surfaces_nothing_is_made_up(stroke):
     rates = read_rates(PUBLISHED)
     table = study.receptor_fits({"stroke_10": stroke}, {}, rates)
     assert set(table["quantity"]) <= {"A1", "A2", "threshold of the energy", "threshold of the rate", "not compared"}
-    assert study.candidate_stimuli({"stroke_10": stroke}, rates).empty
+    assert candidates.candidate_stimuli({"stroke_10": stroke}, rates).empty
     with pytest.raises(ValueError, match="ramp40_"):
-        study.sensor_accuracy({"stroke_10": stroke})
+        sensing.sensor_accuracy({"stroke_10": stroke})

@@ -7,7 +7,9 @@ from fingerpad.figures.inputs import read_results
 from fingerpad.figures.tables import publish_table
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import ReferenceDataError
-from fingerpad.studies.receptors import candidate_stimuli, rapidly_adapting, receptor_fits, sensor_accuracy
+from fingerpad.studies.candidate_stimuli import candidate_stimuli
+from fingerpad.studies.receptors import receptor_fits
+from fingerpad.studies.sensing import rapidly_adapting, sensor_accuracy
 
 name, out, *paths = sys.argv[1:]
 try:

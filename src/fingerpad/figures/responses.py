@@ -5,17 +5,27 @@ Functions take one history (see `fingerpad.results`) and return arrays in SI, or
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from fingerpad.figures.columns import CURVATURE, DISTANCE, NODE, RATE, SED, TIME, P
-from fingerpad.figures.features import PRESSURE, centre_node, energy, ramp_end, receptor_index, scene_of
+from fingerpad.figures.features import (
+    PRESSURE,
+    SURFACES,
+    Histories,
+    centre_node,
+    energy,
+    ramp_end,
+    receptor_index,
+    scene_name,
+    scene_of,
+)
 from fingerpad.figures.skin import skin_curvature
 from fingerpad.figures.strokes import arcs, convexities, place
-from fingerpad.receptors.fits import SkinSample
+from fingerpad.receptors.fits import SkinSample, linear, spatial_sum
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, pressure_terms, rate_by_leg, time_above
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_frequency, trains
@@ -42,6 +52,18 @@ def curvature_of(history: xr.Dataset) -> float:
 def is_stroke(history: xr.Dataset) -> bool:
     """Whether anything slid or was stepped."""
     return "stroke_distance" in history and bool(np.ptp(history["stroke_distance"].values) > 0)
+
+
+def pressed(histories: Histories, programme: str = "ramp40") -> dict[str, xr.Dataset]:
+    """Histories of the nine surfaces in a force programme, by label, as far as they are there."""
+    names = {label: scene_name(programme, label) for label in SURFACES}
+    return {label: histories[name] for label, name in names.items() if name in histories}
+
+
+def strokes(histories: Histories) -> dict[str, xr.Dataset]:
+    """Histories of strokes over the wavy surface, by scene, slowest first."""
+    found = {name: histories[name] for name in histories if name.startswith("stroke_") and name.split("_")[-1].isdigit()}
+    return dict(sorted(found.items(), key=lambda item: (item[0].count("_"), int(item[0].split("_")[-1]))))
 
 
 # -- pressure and strain energy ------------------------------------------------------------------------------------------
@@ -74,6 +96,11 @@ def skin_sample(history: xr.Dataset, depth: float, reference: np.ndarray | float
 def skin_shift(history: xr.Dataset) -> np.ndarray:
     """Lateral displacement (time) m of the skin over the receptor at the centre."""
     return history["centre_lateral_displacement"].values
+
+
+def fit_sum(histories: Iterable[xr.Dataset], depth: float, with_depth: bool = True) -> SpatialSum:
+    """Eq 4-4 closest to the strain energy at a depth (m) under the centre of pressed surfaces."""
+    return spatial_sum([skin_sample(history, depth) for history in histories], with_depth)
 
 
 def energy_from_pressure(history: xr.Dataset, depth: float, law: SpatialSum, shift: np.ndarray | float = 0.0) -> pd.DataFrame:
@@ -162,6 +189,12 @@ def pressure_by_law(law: str, nodes: pd.DataFrame, constants: Sequence[float]) -
     """The rows of `contact_nodes` that a law speaks of, with the pressure it gives them (Fig 4-17)."""
     spoken_of = nodes[LAW_ROWS[law](nodes)]
     return spoken_of.assign(**{P_LAW: terms_of(law, spoken_of) @ np.asarray(constants)})
+
+
+def fit_nodes(law: str, nodes: pd.DataFrame) -> np.ndarray:
+    """Constants of Eq 4-1, 4-2 or 4-3 closest to the pressures of the rows of `contact_nodes` that it speaks of."""
+    spoken_of = nodes[LAW_ROWS[law](nodes)]
+    return linear(terms_of(law, spoken_of), spoken_of[P].to_numpy())
 
 
 # -- rates and impulses ----------------------------------------------------------------------------------------------------

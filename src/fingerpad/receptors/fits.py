@@ -97,6 +97,11 @@ def jackknife(fit: Callable[[Sequence[Any]], np.ndarray], groups: Sequence[Any],
     return np.column_stack([whole, whole - half, whole + half])
 
 
+def rms(values) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
 def r_squared(data: np.ndarray, predicted: np.ndarray) -> float:
     """Share of the variance that a prediction explains; negative where the mean does better."""
     data = np.asarray(data, float)
