@@ -513,7 +513,7 @@ def _stack(frame: pd.DataFrame, number: str, title: str, column: str, ylabel: st
         series = f"{speed} mm/s"
         rows = _simulated(frame, series)
         ax.plot(rows[DISTANCE], rows[column], color=COLOURS[speed])
-        style.limit_axis(ax, frame, column, text=False)
+        style.limit_axis(ax, frame, column, text=speed == SPEEDS[len(SPEEDS) // 2])
         ax.text(0.008, 0.97, f"v = {series}", transform=ax.transAxes, va="top", fontsize=8)
     style.limit_axis(axes[-1], frame, DISTANCE, "x")
     axes[len(axes) // 2].set_ylabel(ylabel)

@@ -194,7 +194,7 @@ def _lost_at_corner(results: Results) -> Trend:
     corner = convexities(stroke)["26"].start
     index = int(abs(place(stroke) - corner).argmin())
     pressure, length = float(centre_pressure(stroke)[index]), 1e3 * _before(stroke)[0]
-    note = f"centre pressure {pressure:.0f} Pa at the corner, zero over less than {length:.1f} mm"
+    note = f"centre pressure {pressure:.0f} Pa at the corner, zero over {length:.2f} mm"
     return Trend(pressure == 0, length, note)
 
 
@@ -254,9 +254,9 @@ def _as_high(results: Results) -> Trend:
 def _falls_below(results: Results) -> Trend:
     ratios = _stroked_over_pressed(results)
     values = list(ratios.values())
-    return Trend(
-        values[-1] < 1 and bool((np.diff(values) < 0).all()), values[-1], "stroked over pressed " + _listed(ratios, "", 2)
-    )
+    below = values[next((i for i, v in enumerate(values) if v < 1), len(values)) :]
+    falls = len(below) > 1 and max(below) < 1 and bool((np.diff(below) < 0).all())
+    return Trend(falls, values[-1], "stroked over pressed " + _listed(ratios, "", 2).strip())
 
 
 def double_peak(stroke: xr.Dataset, label: str) -> float:

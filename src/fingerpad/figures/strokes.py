@@ -36,7 +36,7 @@ NODES = (-1.0, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 1.0)
 """Lateral positions (mm, undeformed) of the nine nodes of Fig 5-10."""
 
 FINE = 5e-6
-"""Stroke distance (m) that contact lengths are resolved to, between outputs."""
+"""Stroke distance (m) that the contact of the centre node is resolved to, between outputs."""
 
 
 def profile_and_height(history: xr.Dataset) -> tuple[Profile, np.ndarray]:
@@ -111,15 +111,26 @@ def scaled(values: np.ndarray, onto: np.ndarray, where: np.ndarray) -> tuple[np.
     return slope * values + offset, float(slope), float(offset), float(np.corrcoef(values[where], onto[where])[0, 1])
 
 
-def contact_lengths(stroke: xr.Dataset) -> dict[str, float]:
-    """Stroke distance (m) over which the centre node touches each convexity, by the convexity's label.
+def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Place of the centre node and whether it touches, every `FINE` of stroke distance.
 
-    Between outputs the node's place is interpolated; it counts as touching up to half-way to an output without contact.
+    Between outputs both its place and its distance from the edge of the contact, along the undeformed skin and below zero
+    outside, are interpolated: the edge passes over the node where that changes its sign.
     """
+    x, node = stroke["skin_x"].values, centre_node(stroke)
+    upper = stroke["skin_y"].values > 0
+    touches = stroke[PRESSURE].values[:, upper] > 0
+    apart = abs(x[upper] - x[node])
+    inside = touching(stroke)
+    within = np.where(touches != inside[:, None], apart, apart.max()).min(axis=1) - np.sort(apart)[1] / 2
     d = distance(stroke)
     fine = np.arange(d[0], d[-1], FINE)
-    under = np.interp(fine, d, place(stroke))
-    touches = np.interp(fine, d, touching(stroke)) > 0.5
+    return np.interp(fine, d, place(stroke)), np.interp(fine, d, np.where(inside, within, -within)) > 0
+
+
+def contact_lengths(stroke: xr.Dataset) -> dict[str, float]:
+    """Stroke distance (m) over which the centre node touches each convexity, by the convexity's label."""
+    under, touches = _finely(stroke)
     return {k: FINE * float(np.sum(touches & (under >= a.start) & (under < a.end))) for k, a in convexities(stroke).items()}
 
 
@@ -140,15 +151,10 @@ def peaks(stroke: xr.Dataset, trace: Trace) -> dict[str, float]:
 
 
 def lost_contacts(stroke: xr.Dataset) -> list[tuple[float, float]]:
-    """Stretches of the surface, m along it, that the centre node passes under without touching; the ends left out.
-
-    From the last place where it touches to the first where it does again.
-    """
-    under, touches = place(stroke), touching(stroke)
-    runs = np.flatnonzero(np.diff(touches.astype(int)))
-    leaves = [i for i in runs if touches[i]]
-    returns = [next((j + 1 for j in runs if j > i), None) for i in leaves]
-    return [(float(under[i]), float(under[j])) for i, j in zip(leaves, returns, strict=True) if j is not None]
+    """Stretches of the surface, m along it, that the centre node passes under without touching; the ends left out."""
+    under, touches = _finely(stroke)
+    changes = np.flatnonzero(np.diff(touches.astype(int)))
+    return [(float(under[i]), float(under[j])) for i, j in zip(changes, changes[1:], strict=False) if touches[i]]
 
 
 def lag(x: np.ndarray, later: np.ndarray, at: np.ndarray, earlier: np.ndarray, most: float = 3e-3) -> tuple[float, float]:
