@@ -32,26 +32,20 @@ class Location:
 
 
 def locate(space: Space, points: np.ndarray) -> Location:
-    """Find the elements and reference coordinates of physical points (nr, 2), m.
+    """Find an element and the reference coordinates there of each physical point (nr, 2), m.
 
     Raises:
         ReceptorError: a point lies in no element.
     """
     points = np.atleast_2d(points)
-    centres = space.points[space.cells].mean(1)
-    tree = cKDTree(centres)
-    _, candidates = tree.query(points, k=min(24, len(centres)))
-    candidates = np.atleast_2d(candidates)
+    candidates = _nearest(space, points, 24)
     element, xi = np.full(len(points), -1), np.zeros((len(points), 2))
     open_points = np.arange(len(points))
     for column in candidates.T:
         if not len(open_points):
             break
         trial = column[open_points]
-        local = _inverse_map(space, trial, points[open_points])
-        tolerance = 1e-6
-        inside = (local >= -tolerance).all(1)
-        inside &= local.sum(1) <= 1 + tolerance if space.element.triangle else (local <= 1 + tolerance).all(1)
+        local, inside = _coordinates(space, trial, points[open_points])
         found = open_points[inside]
         element[found], xi[found] = trial[inside], local[inside]
         open_points = open_points[~inside]
@@ -59,6 +53,39 @@ def locate(space: Space, points: np.ndarray) -> Location:
         x, y = points[open_points[0]] * 1e3
         raise ReceptorError(f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue")
     return Location(element, xi)
+
+
+def _nearest(space, points, count):
+    """(nr, count) elements by the distance of their centres."""
+    centres = space.points[space.cells].mean(1)
+    return np.atleast_2d(cKDTree(centres).query(points, k=min(count, len(centres)))[1])
+
+
+def _coordinates(space, elements, points, tolerance=1e-6):
+    """Reference coordinates (n, 2) of points in elements (n,), and whether they lie inside."""
+    local = _inverse_map(space, elements, points)
+    inside = (local >= -tolerance).all(1)
+    return local, inside & (local.sum(1) <= 1 + tolerance if space.element.triangle else (local <= 1 + tolerance).all(1))
+
+
+def _mean_of_neighbours(space, shear, hosts, points):
+    """Where points lie on the border of elements of one layer: all of these, and the matrix (nr, samples) of means over them.
+
+    Strain jumps from element to element; a value from one side would tell left from right. None where no point is shared.
+    """
+    elements, coordinates, owner = [], [], []
+    for k, (host, candidates) in enumerate(zip(hosts.element, _nearest(space, points, 24), strict=True)):
+        same = candidates[shear[candidates] == shear[host]]
+        local, inside = _coordinates(space, same, np.broadcast_to(points[k], (len(same), 2)))
+        elements.append(same[inside])
+        coordinates.append(local[inside])
+        owner.append(np.full(inside.sum(), k))
+    owner = np.concatenate(owner)
+    if len(owner) == len(points):
+        return hosts, None
+    matrix = np.zeros((len(points), len(owner)))
+    matrix[owner, np.arange(len(owner))] = 1 / np.bincount(owner)[owner]
+    return Location(np.concatenate(elements), np.concatenate(coordinates)), matrix
 
 
 def _inverse_map(space, elements, points):
@@ -96,8 +123,8 @@ class MaterialPoints:
         space = body.space
         points = np.atleast_2d(points)
         self.location, self.recovery = locate(space, points), None
-        if space.element.pressure_modes == 1:
-            self.location, self.recovery = _quadratic_recovery(space, body.shear, self.location, points)
+        recover = _quadratic_recovery if space.element.pressure_modes == 1 else _mean_of_neighbours
+        self.location, self.recovery = recover(space, body.shear, self.location, points)
         element = self.location.element
         values, slopes = space.element.shape(self.location.xi)
         self.cells = space.cells[element]
