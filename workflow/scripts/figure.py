@@ -5,8 +5,14 @@ from pathlib import Path
 
 from fingerpad.figures import FIGURES, publish, read_reference
 from fingerpad.figures.inputs import read_results
+from fingerpad.reference_data import ReferenceDataError
 
 number, reference, png, *paths = sys.argv[1:]
 spec = FIGURES[number]
-frame = spec.frame(*read_results(paths), read_reference(reference), *spec.measurements(Path(reference).parent))
+try:
+    measured = spec.measurements(Path(reference).parent)
+except ReferenceDataError as error:
+    print(error, file=sys.stderr)
+    sys.exit(2)
+frame = spec.frame(*read_results(paths), read_reference(reference), *measured)
 publish(spec.draw(frame), frame, png)

@@ -304,6 +304,18 @@ def time_mean(time, values, start: float | None = None, end: float | None = None
     return float((np.diff(t) * (y[1:] + y[:-1]) / 2).sum() / (b - a))
 
 
+def windowed(history: xr.Dataset, time, values, window: str) -> float:
+    """A trace's number for a window of `fingerpad.receptors.recordings.WINDOWS`; "steady" is the last half of the hold."""
+    time, values = np.asarray(time), np.asarray(values)
+    top, end = float(history["time"].values[ramp_end(history)]), float(history["time"].values[-1])
+    if window == "peak":
+        return float(values.max())
+    start, stop = {"hold": (top, end), "steady": ((top + end) / 2, end), "first second": (0.0, 1.0), "first 200 ms": (0.0, 0.2)}[
+        window
+    ]
+    return time_mean(time, values, start, min(stop, end))
+
+
 # -- bursts --------------------------------------------------------------------------------------------------------------------
 
 

@@ -12,6 +12,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fingerpad.figures.features import SIMULATED, is_simulated
+from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import read_force_depth, read_surface_profiles
 
 if TYPE_CHECKING:
@@ -62,7 +63,8 @@ class FigureSpec:
 
     def measured_files(self, folder: str | PathLike) -> list[Path]:
         """The files in `folder` that the measured data are read from."""
-        return sorted(Path(folder).glob(MEASURED[self.measured][0])) if self.measured else []
+        patterns = MEASURED[self.measured][0].split() if self.measured else []
+        return [path for pattern in patterns for path in sorted(Path(folder).glob(pattern))]
 
 
 def _only_file(paths: list[Path]) -> pd.DataFrame:
@@ -73,8 +75,9 @@ def _only_file(paths: list[Path]) -> pd.DataFrame:
 MEASURED: Mapping[str, tuple[str, Callable[[list[Path]], pd.DataFrame]]] = {
     "force_depth": ("force_depth/*.csv", read_force_depth),
     "surface_profiles": ("surface_profiles.csv", _only_file),
+    "impulse_rates": ("impulse_rates/*.csv recordings/*.csv", lambda paths: read_rates(*paths)),
 }
-"""Measured data by name: their files in the folder of reference data, and their reader."""
+"""Measured data by name: their files in the folder of reference data (one pattern or more), and their reader."""
 
 
 def read_reference(path: str | PathLike) -> pd.DataFrame:

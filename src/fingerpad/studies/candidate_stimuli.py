@@ -9,9 +9,9 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.figures.features import Histories, ramp_end
-from fingerpad.figures.responses import CANDIDATES, RECEPTOR_DEPTH, curvature_of, pressed, stimulus
+from fingerpad.figures.responses import CANDIDATES, RECEPTOR_DEPTH, curvature_of, pressed, stimulus, windowed
 from fingerpad.receptors.fits import gain_and_threshold, leave_one_out, r_squared, rms
-from fingerpad.studies.impulse_rates import across, assignments, kind, matched_histories, rate_sets, windowed
+from fingerpad.studies.impulse_rates import across, assignments, kind, matched_histories, rate_sets
 
 BEST_DEPTH = "best of those simulated"
 

@@ -14,8 +14,8 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from fingerpad.figures.columns import TIME
-from fingerpad.figures.features import Histories, energy, force_gf, ramp_end
-from fingerpad.figures.responses import IMPULSE_RATE, RECEPTOR_DEPTH, curvature_of, predicted_rate, pressed, time_mean
+from fingerpad.figures.features import Histories, energy, force_gf
+from fingerpad.figures.responses import IMPULSE_RATE, RECEPTOR_DEPTH, curvature_of, predicted_rate, pressed, windowed
 from fingerpad.receptors.fits import GainAndThreshold, gain_and_threshold, jackknife, linear
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
 
@@ -72,18 +72,6 @@ def matched_histories(histories: Histories, group: pd.DataFrame) -> dict[float, 
         else:
             return None
     return found
-
-
-def windowed(history: xr.Dataset, time, values, window: str) -> float:
-    """A trace's number for a window of `fingerpad.receptors.recordings.WINDOWS`; "steady" is the last half of the hold."""
-    time, values = np.asarray(time), np.asarray(values)
-    top, end = float(history["time"].values[ramp_end(history)]), float(history["time"].values[-1])
-    if window == "peak":
-        return float(values.max())
-    start, stop = {"hold": (top, end), "steady": ((top + end) / 2, end), "first second": (0.0, 1.0), "first 200 ms": (0.0, 0.2)}[
-        window
-    ]
-    return time_mean(time, values, start, min(stop, end))
 
 
 def across(matched: Mapping[float, Sequence[xr.Dataset]], group: pd.DataFrame, curvature: np.ndarray, number) -> np.ndarray:
