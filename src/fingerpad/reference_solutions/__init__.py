@@ -16,6 +16,8 @@ cook               published and recomputed numbers of Cook's membrane
 prony_point        a material point with a Prony series: relaxation, creep, strain ramps, cycles
 lee_radok          viscoelastic line contact while the contact grows
 ting               hereditary integrals for any contact with one Prony series
+phillips_johnson   the skin as an elastic half-plane: stresses and strain energy below any pressure
+waterbed           the fingertip as a fluid under a membrane, pressed by a plate or cylinder
 manufactured       displacement fields with their body forces, small and finite strain
 ================== ===========================================================================
 
