@@ -91,11 +91,12 @@ HOW = "r.m.s. over the stroke"
 # --- helpers -------------------------------------------------------------------------------------------
 
 
-def _named(scenes_by_speed: Mapping[str, str]) -> dict[str, str]:
+def by_speed(scenes_by_speed: Mapping[str, str]) -> dict[str, str]:
+    """Scenes by the name of a series: ``10 mm/s``."""
     return {f"{speed} mm/s": scene for speed, scene in scenes_by_speed.items()}
 
 
-def _surface(history: xr.Dataset, low: float, high: float) -> pd.DataFrame:
+def surface_rows(history: xr.Dataset, low: float, high: float) -> pd.DataFrame:
     """Rows of the surface's shape from `low` to `high` (mm along it): height, and curvature (0 on the flats)."""
     ends = [1e3 * a.start for a in arcs(history)] + [1e3 * arcs(history)[-1].end]
     x = np.union1d(np.arange(low, high + 1e-9, 0.1), [end for end in ends if low < end < high])
@@ -107,7 +108,7 @@ def _surface(history: xr.Dataset, low: float, high: float) -> pd.DataFrame:
     return pd.DataFrame({"source": SURFACE_SOURCE, "panel": SURFACE, DISTANCE: x, HEIGHT: heights, CURVATURE: curvature})
 
 
-def _traces(histories: Histories, coarse: Histories, names: Mapping[str, str], columns: Mapping[str, Trace]) -> pd.DataFrame:
+def stroke_rows(histories: Histories, coarse: Histories, names: Mapping[str, str], columns: Mapping[str, Trace]) -> pd.DataFrame:
     """One row a loaded output and stroke: stroke distance, the columns (SI times the column's unit), the traces' error."""
     parts = []
     for series, name in names.items():
@@ -125,7 +126,7 @@ def scaled_curvature(stroke: xr.Dataset) -> np.ndarray:
     return scaled(centre_curvature(stroke), centre_pressure(stroke), touching(stroke))[0]
 
 
-def _draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
+def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
     """The surface, solid above, with the curvature of each convexity in 1/m."""
     rows = frame[frame["source"] == SURFACE_SOURCE]
     x, y = rows[DISTANCE].to_numpy(), rows[HEIGHT].to_numpy()
@@ -138,15 +139,27 @@ def _draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
     runs = [run for _, run in rows.groupby((rows[CURVATURE].diff() != 0).cumsum()) if run[CURVATURE].iloc[0] > 0 and len(run) > 2]
     places = [(run[DISTANCE].iloc[0] + run[DISTANCE].iloc[-1]) / 2 for run in runs]
     room = 0.034 * (x[-1] - x[0])
-    for run, place in zip(runs, style.spread(places, room, x[0], x[-1]), strict=True):
+    for run, place in zip(runs, style.spread(places, room, x[0] + room / 2, x[-1] - room / 2), strict=True):
         ax.text(place, top - 0.06, f"{run[CURVATURE].iloc[0]:.0f}", ha="center", va="top", fontsize=6.5)
 
 
-def _below_surface(frame: pd.DataFrame, number: str, title: str, height: float, panels: int = 1, header: float = 0.0):
-    """A figure with the surface above and panels below that share its distances; returns figure and panels."""
-    fig = style.new_figure(frame, number, title, height, note=style.footnote(frame, HOW), header=header)
+def below_surface(
+    frame: pd.DataFrame,
+    number: str,
+    title: str,
+    height: float,
+    panels: int = 1,
+    header: float = 0.0,
+    remarks: list[str] | None = None,
+):
+    """A figure with the surface above and panels below that share its distances; returns figure and panels.
+
+    `remarks` are lines added to the note.
+    """
+    note = style.footnote(frame, HOW) + (remarks or [])
+    fig = style.new_figure(frame, number, title, height, note=note, header=header)
     top, *axes = fig.subplots(1 + panels, 1, sharex=True, height_ratios=[0.55 if panels == 1 else 0.7, *[3.0 / panels] * panels])
-    _draw_surface(top, frame)
+    draw_surface(top, frame)
     return fig, axes
 
 
@@ -169,7 +182,7 @@ def _stroke_look(series: str) -> dict:
 def frame_5_4(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Stroke distance over which the centre node touches each convexity, at every velocity."""
     parts = []
-    for series, name in _named(FULL).items():
+    for series, name in by_speed(FULL).items():
         lengths = contact_lengths(loaded(histories[name]))
         errors = label_errors(histories[name], coarse.get(name), contact_lengths)
         exact = [arc.curvature for arc in convexities(histories[name]).values()]
@@ -238,7 +251,9 @@ def _locations_frame(
     """The surface's shape, and skin and pressure at the thesis's three locations."""
     windows = {f"{location:g} mm": id_ for location, id_ in zip(LOCATIONS, ("T235", "T236", "T237"), strict=True)}
     return assemble(
-        pd.concat([_surface(histories[scene], 4, 35), _location_rows(histories[scene], coarse.get(scene))], ignore_index=True),
+        pd.concat(
+            [surface_rows(histories[scene], 4, 35), _location_rows(histories[scene], coarse.get(scene))], ignore_index=True
+        ),
         axis_rows(reference, DISTANCE, windows, key="panel"),
         axis_rows(reference, DISTANCE, {SURFACE: "T234"}, key="panel"),
         axis_rows(reference, HEIGHT, {SURFACE: "T233a", **dict.fromkeys(windows, "T238")}, key="panel"),
@@ -255,7 +270,7 @@ def _draw_locations(frame: pd.DataFrame, number: str, title: str) -> Figure:
     trace = fig.add_subplot(grid[0, :])
     shape = frame[frame["source"] == SURFACE_SOURCE]
     marks = frame[~is_simulated(frame)]
-    _draw_surface(trace, frame)
+    draw_surface(trace, frame)
     trace.tick_params(labelbottom=True)
     own = marks[marks["panel"] == SURFACE]
     trace.set(xlabel="distance (mm)", ylabel="height (mm)")
@@ -309,9 +324,9 @@ STEPPED_SERIES = "stepped"
 def frame_5_7(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Centre pressure and scaled skin curvature, stepped."""
     columns = {P_CENTRE: centre_pressure, SCALED_CURVATURE: scaled_curvature}
-    rows = _traces(histories, coarse, {STEPPED_SERIES: STEPPED}, columns)
+    rows = stroke_rows(histories, coarse, {STEPPED_SERIES: STEPPED}, columns)
     return assemble(
-        pd.concat([_surface(histories[STEPPED], 0, 50), rows], ignore_index=True),
+        pd.concat([surface_rows(histories[STEPPED], 0, 50), rows], ignore_index=True),
         axis_rows(reference, DISTANCE, "T246"),
         axis_rows(reference, P_CENTRE, "T245"),
     )
@@ -321,7 +336,7 @@ def frame_5_7(histories: Histories, meshes: Meshes, coarse: Histories, reference
 def fig_5_7(frame: pd.DataFrame) -> Figure:
     """Centre pressure (solid) and curvature (dashed), stepped."""
     title = "Centre pressure and scaled skin curvature, stepped by 1 mm"
-    fig, (ax,) = _below_surface(frame, "5-7", title, 4.6)
+    fig, (ax,) = below_surface(frame, "5-7", title, 4.6)
     rows = _simulated(frame, STEPPED_SERIES)
     _draw_scaled(ax, rows, DISTANCE)
     style.limit_axes(ax, _larger(frame), DISTANCE, P_CENTRE)
@@ -345,9 +360,9 @@ def _larger(frame: pd.DataFrame) -> pd.DataFrame:
 def frame_5_8(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Centre pressure, stepped and stroked at 10 mm/s."""
     names = {STEPPED_SERIES: STEPPED, "10 mm/s": SUB["10"]}
-    rows = _traces(histories, coarse, names, {P_CENTRE: centre_pressure})
+    rows = stroke_rows(histories, coarse, names, {P_CENTRE: centre_pressure})
     return assemble(
-        pd.concat([_surface(histories[SUB["10"]], 0, 50), rows], ignore_index=True),
+        pd.concat([surface_rows(histories[SUB["10"]], 0, 50), rows], ignore_index=True),
         axis_rows(reference, DISTANCE, "T248"),
         axis_rows(reference, P_CENTRE, "T247"),
     )
@@ -356,7 +371,7 @@ def frame_5_8(histories: Histories, meshes: Meshes, coarse: Histories, reference
 @style.styled
 def fig_5_8(frame: pd.DataFrame) -> Figure:
     """Stepped (dashed) and stroked (solid)."""
-    fig, (ax,) = _below_surface(frame, "5-8", "Centre pressure, stepped and stroked", 4.6)
+    fig, (ax,) = below_surface(frame, "5-8", "Centre pressure, stepped and stroked", 4.6)
     looks = {STEPPED_SERIES: {"color": style.COLOURS["315"], "ls": (0, (4, 1.8))}, "10 mm/s": {"color": style.INK}}
     for series, look in looks.items():
         rows = _simulated(frame, series)
@@ -370,9 +385,9 @@ def fig_5_8(frame: pd.DataFrame) -> Figure:
 
 def frame_5_9(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Centre pressure at three velocities."""
-    rows = _traces(histories, coarse, _named(SUB), {P_CENTRE: centre_pressure})
+    rows = stroke_rows(histories, coarse, by_speed(SUB), {P_CENTRE: centre_pressure})
     return assemble(
-        pd.concat([_surface(histories[SUB["10"]], 0, 50), rows], ignore_index=True),
+        pd.concat([surface_rows(histories[SUB["10"]], 0, 50), rows], ignore_index=True),
         axis_rows(reference, DISTANCE, "T248"),
         axis_rows(reference, P_CENTRE, "T250"),
     )
@@ -381,7 +396,7 @@ def frame_5_9(histories: Histories, meshes: Meshes, coarse: Histories, reference
 @style.styled
 def fig_5_9(frame: pd.DataFrame) -> Figure:
     """Three velocities."""
-    fig, (ax,) = _below_surface(frame, "5-9", "Centre pressure at three stroking velocities", 4.6)
+    fig, (ax,) = below_surface(frame, "5-9", "Centre pressure at three stroking velocities", 4.6)
     _draw_speeds(ax, frame, P_CENTRE)
     style.limit_axes(ax, frame, DISTANCE, P_CENTRE)
     ax.set(xlabel="distance (mm)", ylabel="contact pressure at the centre (Pa)")
@@ -465,9 +480,9 @@ def _both(frame: pd.DataFrame, column: str) -> tuple[float, float]:
 def frame_5_11(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Centre pressure and scaled skin curvature over time, all convexities, 10 mm/s."""
     columns = {TIME: time_of, P_CENTRE: centre_pressure, SCALED_CURVATURE: scaled_curvature}
-    rows = _traces(histories, coarse, {"10 mm/s": FULL["10"]}, columns)
+    rows = stroke_rows(histories, coarse, {"10 mm/s": FULL["10"]}, columns)
     return assemble(
-        pd.concat([_surface(histories[FULL["10"]], 0, 80), rows], ignore_index=True),
+        pd.concat([surface_rows(histories[FULL["10"]], 0, 80), rows], ignore_index=True),
         axis_rows(reference, TIME, "T257"),
         axis_rows(reference, P_CENTRE, "T256"),
     )
@@ -479,7 +494,7 @@ def fig_5_11(frame: pd.DataFrame) -> Figure:
     title = "Centre pressure and scaled skin curvature, 10 mm/s"
     fig = style.new_figure(frame, "5-11", title, 4.8, note=style.footnote(frame, HOW))
     top, ax = fig.subplots(2, 1, height_ratios=[0.55, 3.0])
-    _draw_surface(top, frame)
+    draw_surface(top, frame)
     top.set_xticks([])
     _draw_scaled(ax, _simulated(frame, "10 mm/s"), TIME)
     style.limit_axes(ax, _larger(frame), TIME, P_CENTRE)
@@ -496,11 +511,11 @@ def _speeds_frame(
     column: str, trace: Trace, ids: tuple[str, str], low: float = 0.0, names: Mapping[str, str] = FULL,
 ) -> pd.DataFrame:  # fmt: skip
     """A trace at several velocities against distance, from `low` (mm) on; `ids` are those of the two axes."""
-    rows = _traces(histories, coarse, _named(names), {column: trace})
+    rows = stroke_rows(histories, coarse, by_speed(names), {column: trace})
     if column == SED:
         rows[RECEPTOR] = SHOWN_DEPTH * 1e6 if low == 0 else SHALLOW_DEPTH * 1e6
     return assemble(
-        pd.concat([_surface(histories[names["10"]], low, 80), rows[rows[DISTANCE] >= low - 1e-9]], ignore_index=True),
+        pd.concat([surface_rows(histories[names["10"]], low, 80), rows[rows[DISTANCE] >= low - 1e-9]], ignore_index=True),
         axis_rows(reference, DISTANCE, ids[0]),
         axis_rows(reference, column, ids[1]),
     )
@@ -508,7 +523,7 @@ def _speeds_frame(
 
 def _stack(frame: pd.DataFrame, number: str, title: str, column: str, ylabel: str) -> Figure:
     """A panel a velocity under the surface."""
-    fig, axes = _below_surface(frame, number, title, 7.0, panels=len(SPEEDS))
+    fig, axes = below_surface(frame, number, title, 7.0, panels=len(SPEEDS))
     for speed, ax in zip(SPEEDS, axes, strict=True):
         series = f"{speed} mm/s"
         rows = _simulated(frame, series)
@@ -558,7 +573,7 @@ frame_5_15 = partial(
 @style.styled
 def fig_5_15(frame: pd.DataFrame) -> Figure:
     """Lateral displacement of the centre node at three velocities."""
-    fig, (ax,) = _below_surface(frame, "5-15", "Lateral displacement of the centre node", 4.8)
+    fig, (ax,) = below_surface(frame, "5-15", "Lateral displacement of the centre node", 4.8)
     _draw_speeds(ax, frame, LATERAL)
     style.limit_axis(ax, frame, DISTANCE, "x")
     style.limit_axis(ax, frame[frame[LATERAL] <= TOP_OF_STRETCH], LATERAL)

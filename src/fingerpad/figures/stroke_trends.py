@@ -97,17 +97,18 @@ def _peaks_grow(results: Results) -> Trend:
         found = list(peaks(stroke_of(results, scene), centre_pressure).values())
         outcome[f"{speed} mm/s"] = bool((np.diff(found) > 0).all())
     found = peaks(stroke_of(results, FULL["10"]), centre_pressure)
-    return everywhere(outcome, "10 mm/s: " + _listed(found, "Pa"))
+    return everywhere(outcome, "10 mm/s: " + listed(found, "Pa"))
 
 
-def _listed(values: Mapping[str, float], unit: str, digits: int = 3) -> str:
+def listed(values: Mapping[str, float], unit: str, digits: int = 3) -> str:
+    """Labelled values with their unit, to some digits."""
     return ", ".join(f"{k}: {v:.{digits}g}" for k, v in values.items()) + f" {unit}"
 
 
 # --- velocity ------------------------------------------------------------------------------------------------
 
 
-def _spreads(values: list[dict[str, float]]) -> dict[str, float]:
+def spreads(values: list[dict[str, float]]) -> dict[str, float]:
     """Spread (%) of each labelled value over the velocities: standard deviation over mean."""
     return {k: 100 * float(np.std([v[k] for v in values]) / np.mean([v[k] for v in values])) for k in values[0]}
 
@@ -116,28 +117,28 @@ def _hardly_matters(trace: Trace) -> Callable[[Results], Trend]:
     def check(results: Results) -> Trend:
         strokes = [stroke_of(results, name) for name in FULL.values()]
         found = [peaks(s, trace) for s in strokes]
-        spread, change = _spreads(found), {k: 100 * (found[-1][k] / found[0][k] - 1) for k in found[0]}
+        spread, change = spreads(found), {k: 100 * (found[-1][k] / found[0][k] - 1) for k in found[0]}
         worst = max(spread, key=spread.get)
         d = distance(strokes[0])
         traces = np.array([np.interp(d, distance(s), trace(s)) for s in strokes])
         whole = 100 * float(np.sqrt(np.mean(traces.std(axis=0) ** 2) / np.mean(traces**2)))
         note = f"peaks spread by {np.mean(list(spread.values())):.1f} % on average, at most {spread[worst]:.1f} % (K = {worst}); "
-        note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + _listed(change, "%", 2)
+        note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + listed(change, "%", 2)
         return Trend(spread[worst] <= HARDLY, spread[worst], note)
 
     return check
 
 
 def _length_hardly_varies(results: Results) -> Trend:
-    spread = _spreads([contact_lengths(stroke_of(results, FULL[v])) for v in ("5", "10", "20", "40")])
+    spread = spreads([contact_lengths(stroke_of(results, FULL[v])) for v in ("5", "10", "20", "40")])
     worst = max(spread, key=spread.get)
-    return Trend(spread[worst] <= HARDLY, spread[worst], "spread over velocities " + _listed(spread, "%", 2))
+    return Trend(spread[worst] <= HARDLY, spread[worst], "spread over velocities " + listed(spread, "%", 2))
 
 
 def _length_falls(results: Results) -> Trend:
     found = {k: 1e3 * v for k, v in contact_lengths(stroke_of(results, FULL["10"])).items()}
     falls = [True, *(b < a for a, b in pairwise(found.values()))]
-    return everywhere(dict(zip(found, falls, strict=True)), _listed(found, "mm"))
+    return everywhere(dict(zip(found, falls, strict=True)), listed(found, "mm"))
 
 
 # --- stepped and stroked ---------------------------------------------------------------------------------
@@ -234,7 +235,7 @@ def _falls_for_sharpest(results: Results) -> Trend:
     for speed, scene in FULL.items():
         *_, before, last_but_one, last = peaks(stroke_of(results, scene), ENERGY).values()
         outcome[f"{speed} mm/s"] = before > last_but_one > last
-    note = "10 mm/s: " + _listed(peaks(stroke_of(results, FULL["10"]), ENERGY), "Pa")
+    note = "10 mm/s: " + listed(peaks(stroke_of(results, FULL["10"]), ENERGY), "Pa")
     return everywhere(outcome, note)
 
 
@@ -256,7 +257,7 @@ def _falls_below(results: Results) -> Trend:
     values = list(ratios.values())
     below = values[next((i for i, v in enumerate(values) if v < 1), len(values)) :]
     falls = len(below) > 1 and max(below) < 1 and bool((np.diff(below) < 0).all())
-    return Trend(falls, values[-1], "stroked over pressed " + _listed(ratios, "", 2).strip())
+    return Trend(falls, values[-1], "stroked over pressed " + listed(ratios, "", 2).strip())
 
 
 def double_peak(stroke: xr.Dataset, label: str) -> float:
@@ -279,7 +280,7 @@ def _double(results: Results) -> Trend:
         outcome |= {f"{k} at {speed} mm/s": double_peak(stroke, k) > 0 for k in ("52", "79")}
     stroke = stroke_of(results, FULL["10"])
     apart = {k: 1e3 * double_peak(stroke, k) for k in convexities(stroke)}
-    return everywhere(outcome, "apart at 10 mm/s " + _listed({k: v for k, v in apart.items() if v > 0}, "mm"))
+    return everywhere(outcome, "apart at 10 mm/s " + listed({k: v for k, v in apart.items() if v > 0}, "mm"))
 
 
 def _closer(results: Results) -> Trend:
