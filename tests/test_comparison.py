@@ -13,6 +13,7 @@ from fingerpad.figures.numbers import GIVEN, NUMBERS, Results
 from fingerpad.figures.sensitivity import QUANTITIES, SHAPES, VARIANTS, variant_scene
 from fingerpad.figures.spec import read_reference
 from fingerpad.figures.stroke_numbers import STROKE_NUMBERS
+from fingerpad.figures.stroke_rates import STROKE_RATE_NUMBERS
 from fingerpad.figures.tables import TABLES, markdown, publish_table
 from fingerpad.figures.trends import TRENDS
 from fingerpad.figures.verdicts import judge
@@ -119,7 +120,7 @@ def test_outside_rows_quote_the_variants_and_whether_they_bring_the_number_insid
     note = rows.loc["T126", "note"]
     assert rows.loc["T126", "verdict"] == "outside"
     assert "variants (flat, 40 gf/s): fat +0%, instantaneous +29%, radius +0%; none inside" in note
-    outside = rows[rows["verdict"].eq("outside") & ~rows.index.isin([*GIVEN, *STROKE_NUMBERS])]
+    outside = rows[rows["verdict"].eq("outside") & ~rows.index.isin([*GIVEN, *STROKE_NUMBERS, *STROKE_RATE_NUMBERS])]
     assert outside["note"].str.contains("variants").all()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import xarray as xr
@@ -24,6 +25,7 @@ from fingerpad.figures.features import (
     scene_of,
     surface_nodes,
 )
+from fingerpad.figures.responses import stroke_law
 from fingerpad.figures.spec import Meshes
 from fingerpad.figures.steady import (
     BAR,
@@ -37,6 +39,8 @@ from fingerpad.figures.steady import (
     steady_force,
 )
 from fingerpad.figures.stroke_numbers import STROKE_GIVEN, STROKE_NUMBERS
+from fingerpad.figures.stroke_rates import RATE_GIVEN, RATE_NUMBERS
+from fingerpad.receptors.laws import SpatialSum
 from fingerpad.specimen.mesh import corner_count
 
 Number = Callable[["Results"], float]
@@ -58,6 +62,11 @@ class Results:
     def specimen(self) -> dict:
         """The specimen (SI) of the flat plate's scene."""
         return scene_of(self("flat"))["specimen"]
+
+    @cached_property
+    def stroke_law(self) -> tuple[SpatialSum, float]:
+        """Eq 4-4 of the pressed surfaces at 915 um, and its constant shift (m) in the stroke at 10 mm/s."""
+        return stroke_law(self.histories)
 
     def quality(self) -> dict:
         """Quality of the flat plate's mesh."""
@@ -264,6 +273,7 @@ CHAPTER3: dict[str, Number] = {
 GIVEN: dict[str, Number] = {
     **CHAPTER3_GIVEN,
     **STROKE_GIVEN,
+    **RATE_GIVEN,
     "T031": _outline("stratum_corneum_thickness", 1e6),
     "T033": _outline("epidermis_thickness", 1e6),
     "T034": _outline("epidermis_thickness", 1e6),
@@ -312,6 +322,7 @@ NUMBERS: dict[str, Number] = {
     **GIVEN,
     **CHAPTER3,
     **STROKE_NUMBERS,
+    **RATE_NUMBERS,
     "T101": lambda r: _skin_height(r, "1260"),
     "T102": lambda r: max(end_of(r(k), "indentation_depth") for k in SURFACES) * 1e3,
     "T102a": lambda r: end_of(r("1260"), "indentation_depth") * 1e3,

@@ -24,8 +24,8 @@ from fingerpad.figures.features import (
     scene_of,
 )
 from fingerpad.figures.skin import skin_curvature
-from fingerpad.figures.strokes import arcs, convexities, place
-from fingerpad.receptors.fits import SkinSample, linear, spatial_sum
+from fingerpad.figures.strokes import FULL, arcs, convexities, place
+from fingerpad.receptors.fits import SkinSample, constant_shift, linear, spatial_sum
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, pressure_terms, rate_by_leg, time_above
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_frequency, trains
@@ -101,6 +101,15 @@ def skin_shift(history: xr.Dataset) -> np.ndarray:
 def fit_sum(histories: Iterable[xr.Dataset], depth: float, with_depth: bool = True) -> SpatialSum:
     """Eq 4-4 closest to the strain energy at a depth (m) under the centre of pressed surfaces."""
     return spatial_sum([skin_sample(history, depth) for history in histories], with_depth)
+
+
+def stroke_law(histories: Histories, depth: float = RECEPTOR_DEPTH) -> tuple[SpatialSum, float]:
+    """Eq 4-4 of the nine pressed surfaces, and the constant shift (m) with which it comes closest to the stroke at 10 mm/s.
+
+    Raises KeyError if one of them was not simulated.
+    """
+    law = fit_sum([histories[scene_name("ramp40", label)] for label in SURFACES], depth)
+    return law, constant_shift(law, skin_sample(histories[FULL["10"]], depth))
 
 
 def energy_from_pressure(history: xr.Dataset, depth: float, law: SpatialSum, shift: np.ndarray | float = 0.0) -> pd.DataFrame:
