@@ -183,11 +183,11 @@ SLIDE = '{slide: "0.5 mm", speed: "10 mm/s"}'
 @pytest.mark.parametrize(
     "motion, friction, wanted",
     [
-        (f"[{PRESS}]", 0.5, False),
+        (f"[{PRESS}]", 0.02, False),
         (f"[{PRESS}, {SLIDE}]", 0.0, False),
         (f"[{PRESS}, {SLIDE}]", 0.5, True),
     ],
-    ids=["nothing slides", "no friction", "friction"],
+    ids=["too little for a press", "no friction", "friction"],
 )
 def test_a_scene_without_friction_never_reaches_its_code(tmp_path, motion, friction, wanted):
     """Where the plan leaves friction out its module is not even loaded, and the history carries none of its arrays."""

@@ -52,7 +52,10 @@ class Rules:
     Attributes:
         presets: by name; errors are measured on the ramp-and-hold family against a mesh of half the edge and steps of ``fine``.
         mesh_order: observed order with which that error falls with the skin edge.
-        small_strain_share: small strain is used when its expected error is below this share of the accuracy asked for.
+        small_strain_error: of small strain in the headline quantities, over depth / soft thickness, at most; small strain is used
+            when that is within the accuracy asked for.
+        pressing_friction: change of the headline quantities by friction in a press, over the coefficient; most_pressing_friction:
+            what it comes to where the whole contact sticks. Friction is left out of presses when that is within the accuracy.
         relaxation_share: viscosity is left out when what it can change is below this share of the accuracy.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
@@ -71,7 +74,9 @@ class Rules:
         }
     )
     mesh_order: float = 1.5
-    small_strain_share: float = 1.0
+    small_strain_error: float = 4.6
+    pressing_friction: float = 2.0
+    most_pressing_friction: float = 0.2
     relaxation_share: float = 0.25
     fine_half_width: float = 3.4e-3
     skin_stretch: float = 1.0e-3
@@ -195,9 +200,9 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     preset, by_hand = _preset(scene, rules, contact)
     tolerance = preset.error
     effects = {
-        "friction": _friction(scene),
+        "friction": _friction(scene, tolerance, rules),
         "viscoelasticity": Effect(False, ""),
-        "finite_strain": _finite_strain(scene, contact, tolerance, rules),
+        "finite_strain": _finite_strain(pad, profile, contact, tolerance, rules),
         "symmetry": _symmetry(scene, profile, external, ridges),
         "ridges": _ridges(scene),
     }
@@ -361,19 +366,23 @@ def estimated_error(edge: float, half_width: float, rules: Rules = RULES) -> flo
     return float(thesis.error * max(relative, 0.25 * edge / thesis.skin_edge) ** rules.mesh_order)
 
 
-def _friction(scene: Scene) -> Effect:
+def _friction(scene: Scene, tolerance: float, rules: Rules) -> Effect:
     if scene.friction == 0:
         return Effect(False, "the coefficient is 0")
     if any(isinstance(leg, Slide) for leg in scene.motion):
         return Effect(True, f"the skin is stroked with a coefficient of {scene.friction:g}")
-    return Effect(False, f"nothing slides, so the coefficient {scene.friction:g} is never called on")
+    worth = min(rules.pressing_friction * scene.friction, rules.most_pressing_friction)
+    number = f"in a press a coefficient of {scene.friction:g} changes up to {worth:.1%}, {tolerance:.1%} is allowed"
+    return Effect(worth > tolerance, f"nothing slides; {number}")
 
 
-def _finite_strain(scene, contact, tolerance, rules) -> Effect:
-    error = contact.strain
-    limit = rules.small_strain_share * tolerance
-    number = f"small strain would be wrong by about {error:.1%} (estimated strain), {limit:.1%} is allowed"
-    return Effect(error > limit, number)
+def _finite_strain(pad: PadEstimate, profile: Profile, contact: ContactEstimate, tolerance: float, rules: Rules) -> Effect:
+    error = rules.small_strain_error * contact.depth / pad.soft_thickness
+    if profile.singular:
+        error = max(error, contact.strain)
+    return Effect(
+        error > tolerance, f"small strain would be wrong by up to {error:.1%} (from the depth), {tolerance:.1%} is allowed"
+    )
 
 
 def _ridges(scene: Scene) -> Effect:
