@@ -101,7 +101,7 @@ def check_tangent(element, prony, lag_share=1.0):
 
 
 @pytest.mark.parametrize("prony", [None, PRONY], ids=["elastic", "viscoelastic"])
-@pytest.mark.parametrize("element", [*ELEMENTS, "Q1", "Q2", "Q2R"])
+@pytest.mark.parametrize("element", [*ELEMENTS, "Q1", "Q2", "Q2R", "P2"])
 def test_tangent_is_the_derivative_of_the_force(element, prony, must_fail):
     """With the lagged pressure at its present value the tangent equals differences of the force."""
     check_tangent(element, prony)

@@ -12,6 +12,7 @@ name       displacement        pressure modes                              use
 ``Q2``     9-node quad         9 (= pointwise, no projection)              teaching case: oscillates
 ``Q1``     4-node quad         4 (= pointwise)                             teaching case: locks
 ``Q2R``    9-node quad, 2 x 2  4 (= pointwise at the reduced points)       teaching case: may hourglass
+``P2``     6-node triangle     6 (= pointwise)                             teaching case: oscillates
 =========  ==================  ==========================================  ===================================
 
 Sources: Simo, Taylor and Pister (1985) for the three-field form; Sussman and Bathe (1987) for Q2 with linear
@@ -84,7 +85,15 @@ _QUAD4 = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
 _QUAD9 = np.vstack([_QUAD4, [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]]])
 _TRI7 = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5], [1 / 3, 1 / 3]])
 _Q1, _Q2 = _lagrange(ElementQuad1(), 4), _lagrange(ElementQuad2(), 9)
-_SHAPES = {"Q2P1": _Q2, "Q2": _Q2, "Q2R": _Q2, "Q1P0": _Q1, "Q1": _Q1, "P2B": _triangle_with_bubble}
+_SHAPES = {
+    "Q2P1": _Q2,
+    "Q2": _Q2,
+    "Q2R": _Q2,
+    "Q1P0": _Q1,
+    "Q1": _Q1,
+    "P2B": _triangle_with_bubble,
+    "P2": _lagrange(ElementTriP2(), 6),
+}
 
 
 def _build(name, kind, degree, modes, nodes):
@@ -102,6 +111,7 @@ ELEMENTS = {
     "Q2": _build("Q2", ElementQuad2, 5, 0, _QUAD9),
     "Q1": _build("Q1", ElementQuad1, 3, 0, _QUAD4),
     "Q2R": _build("Q2R", ElementQuad2, 3, 0, _QUAD9),
+    "P2": _build("P2", ElementTriP2, 4, 0, _TRI7[:6]),
 }
 
 #: Weights of a uniform line load on one edge: 1/2, 1/2 (linear) and the basis of quadratic edges (start, end, middle).
