@@ -137,8 +137,10 @@ def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
     ax.tick_params(labelbottom=False)
     ax.set_ylabel("mm")
     runs = [run for _, run in rows.groupby((rows[CURVATURE].diff() != 0).cumsum()) if run[CURVATURE].iloc[0] > 0 and len(run) > 2]
-    places = [(run[DISTANCE].iloc[0] + run[DISTANCE].iloc[-1]) / 2 for run in runs]
     room = 0.034 * (x[-1] - x[0])
+    if x[-1] in runs[-1][DISTANCE].to_numpy() and np.ptp(runs[-1][DISTANCE]) < room:  # cut off by the picture's end
+        runs.pop()
+    places = [(run[DISTANCE].iloc[0] + run[DISTANCE].iloc[-1]) / 2 for run in runs]
     for run, place in zip(runs, style.spread(places, room, x[0] + room / 2, x[-1] - room / 2), strict=True):
         ax.text(place, top - 0.06, f"{run[CURVATURE].iloc[0]:.0f}", ha="center", va="top", fontsize=6.5)
 

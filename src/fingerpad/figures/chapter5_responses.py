@@ -177,11 +177,19 @@ def frame_5_23(histories: Histories, meshes: Meshes, coarse: Histories, referenc
     )
 
 
+def _leave_room_for_brackets(fig: Figure) -> None:
+    """Narrow the panels by what the brackets beside extended axes take, which the layout does not see."""
+    engine = fig.get_layout_engine()
+    x, y, width, height = engine.get()["rect"]
+    engine.set(rect=(x, y, width - 0.02, height))
+
+
 @style.styled
 def fig_5_23(frame: pd.DataFrame) -> Figure:
     """A panel a velocity under the surface."""
     title = "Predicted instantaneous frequency of a receptor 560 µm deep, mean of 12 strokes"
     fig, axes = below_surface(frame, "5-23", title, 7.0, panels=len(SPEEDS), remarks=[_equation(SHALLOW_DEPTH)])
+    _leave_room_for_brackets(fig)
     for speed, ax in zip(SPEEDS, axes, strict=True):
         rows = rows_of(frame, "panel", f"{speed} mm/s")
         own = rows[is_simulated(rows)]
@@ -480,6 +488,7 @@ def fig_5_19(frame: pd.DataFrame) -> Figure:
     fig = style.new_figure(
         frame, "5-19", "Strain energy, its rate, and predicted impulses of 12 strokes at 10 mm/s", 6.4, note=note
     )
+    _leave_room_for_brackets(fig)
     energy, rate, bars = fig.subplots(3, 1, sharex=True)
     rows = frame[frame["source"] == SIMULATED]
     energy.plot(rows[TIME], rows[SED].clip(lower=150), color=style.INK)
