@@ -41,6 +41,7 @@ rule all:
     default_target: True
     input:
         figures(),
+        catalogue(),
         animations(),
         tables(),
         calibration(),

@@ -38,13 +38,15 @@ class Column:
         if self.words:
             return ", ".join(self.words)
         if self.text:
-            return "text"
+            return "text or nothing" if self.optional else "text"
         bound = f" above {self.above:g}" if self.above is not None else f" from {self.least:g}" if self.least is not None else ""
         return f"a number{bound}{' or nothing' if self.optional else ''}"
 
     def read(self, cell: str) -> str | float:
         """The value of a cell; ValueError if it is not allowed."""
         if self.words or self.text:
+            if self.optional and not cell:
+                return ""
             if not cell or (self.words and cell not in self.words):
                 raise ValueError
             return cell

@@ -37,6 +37,11 @@ def figures(chapter=""):
     return [f"{config['figures']}/fig_{n}.png" for n in config["figure_numbers"] if n.startswith(chapter)]
 
 
+def catalogue():
+    """The list of the thesis's figures, of the configuration that draws them all."""
+    return ["figures/README.md"] if config["name"] == "thesis" else []
+
+
 def animations():
     """The moving pictures of the configuration."""
     return [f"{config['studies']}/animation_{scene}.gif" for scene in config.get("animations", [])]

@@ -2,7 +2,7 @@
 
 Inputs:  <results>/{simulations,coarse}/<scene>/history.nc and mesh.msh, config/reference.
 Outputs: <figures>/fig_<number>.png beside fig_<number>.csv (the plotted data), <tables>/<name>.csv and <name>.md,
-         <studies>/animation_<scene>.gif.
+         <studies>/animation_<scene>.gif, figures/README.md.
 """
 
 from fingerpad.figures import FIGURES
@@ -39,6 +39,26 @@ rule figure:
     shell:
         "python workflow/scripts/figure.py {wildcards.number} {input.reference} {output.png}"
         " {input.histories} {input.meshes} {input.coarse} > {log} 2>&1"
+
+
+rule catalogue:
+    """The thesis's figures and the numbers of those drawn -> figures/README.md: which are here, and what stands in for others."""
+    input:
+        sources("catalogue"),
+        ENVIRONMENT,
+        catalogue="config/reference/figures.csv",
+    output:
+        "figures/README.md",
+    params:
+        made=" ".join(config["figure_numbers"]),
+    log:
+        f"{RESULTS}/logs/catalogue.log",
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=2,
+    shell:
+        "python workflow/scripts/catalogue.py {input.catalogue} {output} {params.made} > {log} 2>&1"
 
 
 rule animation:

@@ -1,0 +1,82 @@
+"""Every figure of the thesis: which are made here, which cannot be, and what stands in for these (``figures/README.md``)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from os import PathLike
+
+import pandas as pd
+
+from fingerpad.figures import FIGURES
+from fingerpad.reference_data import Column, read_table
+
+CATALOGUE = {
+    "number": Column(text=True),
+    "kind": Column(words=("simulation", "comparison", "recording", "photograph", "schematic")),
+    "thesis_shows": Column(text=True),
+    "stand_in": Column(text=True, optional=True),
+}
+"""Columns of ``config/reference/figures.csv``: what the thesis's figure is, and what is here in place of what is not public."""
+
+DRAWABLE = ("simulation", "comparison")
+"""Kinds that need no more than this model to be drawn, a comparison without what was recorded. So do recordings predicted."""
+
+
+def read_catalogue(path: str | PathLike) -> pd.DataFrame:
+    """The thesis's figures in its order, columns of :data:`CATALOGUE`.
+
+    Raises:
+        ReferenceDataError: a cell is wrong. ValueError: a number is given twice, or nothing stands in for a figure that cannot
+        be drawn.
+    """
+    table = read_table(path, CATALOGUE)
+    if table["number"].duplicated().any():
+        raise ValueError(f"{path}: figure {table['number'][table['number'].duplicated()].iloc[0]} is given twice")
+    bare = table[~table["kind"].isin(DRAWABLE) & (table["stand_in"] == "")]
+    if len(bare):
+        raise ValueError(f"{path}: figure {bare['number'].iloc[0]} is a {bare['kind'].iloc[0]} and nothing stands in for it")
+    return table
+
+
+def readme(catalogue: pd.DataFrame, made: Collection[str]) -> str:
+    """Text of ``figures/README.md``. made: numbers of the figures that are drawn, of ``config/thesis.yaml``."""
+    here = catalogue[catalogue["number"].isin(made)]
+    drawable = catalogue["kind"].isin(DRAWABLE) | catalogue["stand_in"].str.startswith("predicted")
+    never, missing = (catalogue[~catalogue["number"].isin(made) & which] for which in (~drawable, drawable))
+    parts = [
+        "# Figures",
+        "Written by the workflow from `config/reference/figures.csv` and the list in `config/thesis.yaml`; do not edit.",
+        f"The thesis (Cysyk 1999) has {len(catalogue)} figures. {len(here)} are drawn here from simulations, on the thesis's"
+        " axes, each with the plotted data beside it (`thesis/fig_*.csv`). None of the thesis's recordings and photographs is"
+        " public: no recording is drawn, and a figure that stands in for one says *predicted* in the picture.",
+        "## Drawn here",
+        _table(
+            ("figure", "shows", "kind in the thesis", "in place of what is not public"),
+            [
+                (f"[{row.number}](thesis/fig_{row.number}.png)", FIGURES[row.number].title, row.kind, row.stand_in)
+                for row in here.itertuples()
+            ],
+        ),
+        "## Not drawn, and what stands in",
+        _table(
+            ("figure", "thesis shows", "kind", "stands in"),
+            [(row.number, row.thesis_shows, row.kind, row.stand_in) for row in never.itertuples()],
+        ),
+    ]
+    if len(missing):
+        parts += [
+            "## Not drawn yet",
+            _table(
+                ("figure", "thesis shows", "kind"), [(row.number, row.thesis_shows, row.kind) for row in missing.itertuples()]
+            ),
+        ]
+    parts += [
+        "## Beyond the thesis",
+        "`tables/`: numbers, as CSV and Markdown. `studies/`: calibration, moving pictures and further studies.",
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in rows)])
