@@ -58,6 +58,7 @@ def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
     """Every scene's made-up history; `scale` multiplies every result (a stand-in for a coarse companion)."""
     made = {name: history(name, scale, edge) for name in all_scenes()}
     made |= {name: pressed(name, scale, edge) for name in PRESSED}
+    made |= {name: ridged(name, scale, edge) for name in RIDGED} | {name: plate_stroke(name, scale, edge) for name in PLATES}
     return made | {name: stroke(name, scale, edge) for name in STROKES}
 
 
@@ -221,7 +222,9 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     touches = upper & (skin_y > surface) & ~lost
     y = np.where(touches, surface, skin_y)
     bend = sum(np.where((under >= p.start) & (under < p.end), p.curvature, 0.0) for p in shape.segments)
-    pressure = scale * touches * load[:, None] * np.maximum(3000 + 30 * bend, 300) * np.sqrt(np.clip(1 - (x / (4 * MM)) ** 2, 0.01, 1))
+    pressure = (
+        scale * touches * load[:, None] * np.maximum(3000 + 30 * bend, 300) * np.sqrt(np.clip(1 - (x / (4 * MM)) ** 2, 0.01, 1))
+    )
     felt = np.convolve(np.pad(pressure[:, centre], 8, mode="edge"), np.ones(17) / 17, "valid")
     full = {
         "force": ("time", LOAD * load, "N/m"),
@@ -250,6 +253,73 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     on = {"step": way * MM, "every": MM} if speed is None else {"slide": way * MM, "speed": speed * MM, "keep": "force"}
     scene |= {"stimulus": stimulus, "motion": [press, on], "friction": 0.0 if speed is None else 0.7}
     return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(scene)})
+
+
+RIDGES = {
+    "inner": {"pitch": 0.48e-3, "height": 0.15e-3, "shape": "smooth", "phase": "tip", "limiting": 0.0},
+    "outer": None,
+    "half_width": 3.4e-3,
+}
+RIDGED = [f"ridged_40_{'flat' if k == 'flat' else 'k' + k}" for k in SURFACES]
+"""Ramps and holds on a pad with ridges."""
+PLATES = {
+    f"{pad}_stroke_{way}": (pad, sign)
+    for pad in ("plate", "ridged", "ridged_outer")
+    for way, sign in (("right", 1), ("left", -1))
+}
+"""Strokes of a plate: the pad, and 1 to the right."""
+
+
+def _receptors(data: xr.Dataset, depths, offsets, values) -> xr.Dataset:
+    """The dataset with other receptors; values (time, receptor)."""
+    grid = [each.ravel() for each in np.meshgrid(depths, offsets, indexing="ij")]
+    data = data.drop_vars([n for n in (*data.data_vars, *data.coords) if "receptor" in data[n].dims])
+    places = {"receptor_depth": ("receptor", grid[0]), "receptor_offset": ("receptor", grid[1])}
+    return data.assign_coords(places).assign(strain_energy_density=(("time", "receptor"), values(*grid), {"units": "Pa"}))
+
+
+def _with_ridges(data: xr.Dataset, name: str, ridges) -> xr.Dataset:
+    scene = json.loads(data.attrs["scene"])
+    scene = scene | {"name": name, "specimen": scene["specimen"] | {"ridges": ridges}}
+    return data.assign_attrs(scene=json.dumps(scene))
+
+
+def ridged(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
+    """A made-up press of a pad with ridges: that of the plain pad, twice the energy at the centre and 1.3 times beside it."""
+    plain = history("ramp40_" + name.rsplit("_", 1)[1], scale, edge)
+    trace = plain.strain_energy_density.values[:, [int(abs(DEPTHS - 915e-6).argmin())]]
+    sharp = 1.5 if name.endswith("1260") else 1.0
+    values = lambda z, x: sharp * trace * np.where(x == 0, 2.0, 1.3)  # noqa: E731
+    return _with_ridges(_receptors(plain, [915e-6], [-46e-6, 0.0, 46e-6], values), name, RIDGES)
+
+
+def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
+    """A made-up stroke of a plate: 200 Pa, with ridges three times as much on the side that the plate leaves."""
+    pad, sign = PLATES[name]
+    way = np.concatenate([np.zeros(5), np.arange(0.25, 50.1, 0.25)]) * MM
+    base = history("ramp40_flat", scale, edge).isel(time=np.minimum(np.arange(len(way)), 20))
+    time = np.minimum(np.arange(len(way)) * 0.125, 0.5) + way / (10 * MM)
+    base = base.drop_vars("leg").assign_coords(time=("time", time))
+    base = base.assign(stroke_distance=("time", -sign * way), leg=("time", (way > 0).astype(int)))
+    base = base.assign(force=("time", np.minimum(np.arange(len(way)) / 4, 1.0) * LOAD))
+    base = base.assign(cutbacks=("time", np.zeros(len(way), int)), min_detF=("time", np.full(len(way), 0.95)))
+    slid = np.minimum(way / MM, 1.0)[:, None]
+
+    def values(z, x):
+        felt = -0.5 * sign * np.clip(x / 46e-6, -1, 1) * (pad != "plate")
+        return scale * 200 * (1 + felt * slid) * np.minimum(np.arange(len(way)) / 4, 1.0)[:, None]
+
+    offsets = np.round(np.array(sorted({*range(-240, 241, 20), -46, 46})) * 1e-6, 9)
+    made = _receptors(base, [915e-6, 935e-6], offsets, values)
+    if pad == "ridged_outer":
+        bands = np.cos(2 * np.pi * made.skin_x.values / 0.48e-3) > 0
+        made["contact_pressure"] = made.contact_pressure * bands
+    ridges = {
+        "plate": "none",
+        "ridged": RIDGES,
+        "ridged_outer": RIDGES | {"outer": {"period": None, "height": 60e-6, "shape": "smooth"}},
+    }
+    return _with_ridges(made, name, ridges[pad])
 
 
 def _full_fields(times: np.ndarray) -> dict:

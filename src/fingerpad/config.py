@@ -46,6 +46,10 @@ class WorkflowConfig(BaseModel):
     """Strokes of the calibration of friction, stroke_sub_10 among them, and variations of it."""
     friction_coefficients: tuple[Annotated[float, Field(gt=0)], ...] = ()
     """Coefficients with which stroke_sub_10 is stroked, as accurately as companions; left out, friction is not calibrated."""
+    ridge_heights: tuple[Annotated[float, Field(ge=0)], ...] = ()
+    """Heights (um) of the ridges over which ridged_stroke_right is varied, 0 and 150 among them; left out, no study of ridges."""
+    ridge_frictions: tuple[Annotated[float, Field(ge=0)], ...] = ()
+    """Coefficients of friction over which ridged_stroke_right is varied."""
     accuracy: Accuracy | None = None
     """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each states."""
     companion_accuracy: Accuracy | None = None

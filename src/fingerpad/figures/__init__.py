@@ -8,7 +8,7 @@ A figure is a function of its data frame, and the frame is saved beside the pict
     publish(spec.draw(frame), frame, "figures/thesis/fig_4-10.png")
 """
 
-from fingerpad.figures import chapter3, chapter3_verification, chapter4, chapter5, chapter5_responses
+from fingerpad.figures import chapter3, chapter3_verification, chapter4, chapter5, chapter5_responses, ridges
 from fingerpad.figures.io import publish, read_frame
 from fingerpad.figures.spec import FigureSpec, read_reference
 
@@ -20,6 +20,7 @@ FIGURES: dict[str, FigureSpec] = {
         *chapter4.FIGURES,
         *chapter5.FIGURES,
         *chapter5_responses.FIGURES,
+        *ridges.FIGURES,
     )
 }
 

@@ -99,14 +99,19 @@ def _fill(ax: Axes, loops: dict[str, np.ndarray], merged: bool) -> None:
 
 def frame_3_5(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Outline of every element (one row a point) with its layer, the bone's rim, and the mesh's quality."""
+    frame = mesh_rows(meshes[SCENE], stratum_corneum(histories[SCENE]))
+    return assemble(frame, axis_rows(reference, X, "T039a"), axis_rows(reference, Y, "T040a"))
+
+
+def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
+    """Elements, rim of the bone and quality of a mesh; elements within `corneum` (m) of the skin are of the stratum corneum."""
     from scipy.spatial import cKDTree  # here, for it is slow to import
 
-    mesh = meshes[SCENE]
     corners = mesh.points[mesh.cells[:, : corner_count(mesh.element)]]
     layer = np.array(mesh.regions)[mesh.region]
     loops = boundaries(mesh)
     depth = cKDTree(densify(loops["skin"], 20e-6)).query(corners.mean(axis=1))[0]
-    layer = np.where((layer == "epidermis") & (depth < stratum_corneum(histories[SCENE])), "stratum corneum", layer)
+    layer = np.where((layer == "epidermis") & (depth < corneum), "stratum corneum", layer)
     polygons = [element_outline(mesh, nodes) for nodes in mesh.cells]
     counts = [len(p) for p in polygons]
     points = np.concatenate(polygons) * 1e3
@@ -135,7 +140,7 @@ def frame_3_5(histories: Histories, meshes: Meshes, coarse: Histories, reference
     )
     frame = pd.concat([elements, bone, quality], ignore_index=True)
     frame[ERROR] = np.nan
-    return assemble(frame, axis_rows(reference, X, "T039a"), axis_rows(reference, Y, "T040a"))
+    return frame
 
 
 @style.styled
@@ -143,15 +148,7 @@ def fig_3_5(frame: pd.DataFrame) -> Figure:
     """The mesh, layers shaded."""
     fig = style.new_figure(frame, "3-5", "Finite element mesh of the fingerpad", 5.3, note=[NOTE])
     ax = fig.subplots()
-    elements = frame[frame["series"] == "element"]
-    start = np.flatnonzero(np.diff(elements["element"].to_numpy(), prepend=-1))
-    polygons = np.split(elements[[X, Y]].to_numpy(), start[1:])
-    layers = elements["layer"].to_numpy()[start]
-    rim = frame[frame["series"] == "rim"]
-    ax.fill(rim[X], rim[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
-    ax.add_collection(
-        PolyCollection(polygons, facecolors=[style.LAYER_COLOURS[k] for k in layers], edgecolors="0.25", linewidths=0.22)
-    )
+    draw_mesh(ax, frame)
     ax.set(aspect="equal", xlim=(-10, 10), ylim=(-6.6, 6.6), xlabel="x (mm)", ylabel="y (mm)")
     ax.set(xticks=range(-10, 11, 2), yticks=range(-6, 7, 2))
     handles = [Patch(facecolor=style.LAYER_COLOURS[k], edgecolor="0.25", lw=0.4, label=k) for k in LAYERS]
@@ -164,6 +161,17 @@ def fig_3_5(frame: pd.DataFrame) -> Figure:
     )
     ax.text(9.9, 6.75, text, ha="right", va="top", fontsize=7.5, linespacing=1.4)
     return fig
+
+
+def draw_mesh(ax: Axes, frame: pd.DataFrame, line: float = 0.22) -> None:
+    """Elements in the colours of their layers, and the bone."""
+    elements = frame[frame["series"] == "element"]
+    start = np.flatnonzero(np.diff(elements["element"].to_numpy(), prepend=-1))
+    polygons = np.split(elements[[X, Y]].to_numpy(), start[1:])
+    colours = [style.LAYER_COLOURS[layer] for layer in elements["layer"].to_numpy()[start]]
+    rim = frame[frame["series"] == "rim"]
+    ax.fill(rim[X], rim[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
+    ax.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors="0.25", linewidths=line))
 
 
 def element_outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.ndarray:

@@ -52,6 +52,12 @@ def scene_of(history: xr.Dataset) -> dict[str, Any]:
     return json.loads(history.attrs["scene"])
 
 
+def ridges_of(history: xr.Dataset) -> dict[str, Any] | None:
+    """The ridges (SI) of a history's pad, None if it has none."""
+    ridges = scene_of(history)["specimen"]["ridges"]
+    return None if ridges == "none" else ridges
+
+
 def is_simulated(frame: pd.DataFrame) -> pd.Series:
     """Rows of a figure's frame that hold simulated data (the others mark thesis ranges)."""
     return frame["source"].astype(str).str.startswith(SIMULATED)

@@ -26,6 +26,7 @@ from fingerpad.figures.features import (
     surface_nodes,
 )
 from fingerpad.figures.responses import stroke_law
+from fingerpad.figures.ridge_rows import RIDGE_GIVEN, RIDGE_NUMBERS
 from fingerpad.figures.spec import Meshes
 from fingerpad.figures.steady import (
     BAR,
@@ -274,6 +275,7 @@ GIVEN: dict[str, Number] = {
     **CHAPTER3_GIVEN,
     **STROKE_GIVEN,
     **RATE_GIVEN,
+    **RIDGE_GIVEN,
     "T031": _outline("stratum_corneum_thickness", 1e6),
     "T033": _outline("epidermis_thickness", 1e6),
     "T034": _outline("epidermis_thickness", 1e6),
@@ -323,6 +325,7 @@ NUMBERS: dict[str, Number] = {
     **CHAPTER3,
     **STROKE_NUMBERS,
     **RATE_NUMBERS,
+    **RIDGE_NUMBERS,
     "T101": lambda r: _skin_height(r, "1260"),
     "T102": lambda r: max(end_of(r(k), "indentation_depth") for k in SURFACES) * 1e3,
     "T102a": lambda r: end_of(r("1260"), "indentation_depth") * 1e3,
