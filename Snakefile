@@ -26,6 +26,7 @@ include: "workflow/rules/simulations.smk"
 include: "workflow/rules/calibration.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/receptors.smk"
+include: "workflow/rules/ridges.smk"
 
 
 localrules:
@@ -34,6 +35,7 @@ localrules:
     chapter4,
     chapter5,
     calibration,
+    ridges,
 
 
 rule all:
@@ -45,6 +47,7 @@ rule all:
         animations(),
         tables(),
         calibration(),
+        ridges(),
         histories(config["scenes"]),
 
 
@@ -71,3 +74,13 @@ rule calibration:
     """The pad calibrated to measured forces: figures, table and specimens."""
     input:
         calibration(),
+
+
+rule ridges:
+    """Pads with ridges: the figures of the thesis's section 5.5 and the study of the direction of strokes."""
+    input:
+        figures("5-25"),
+        figures("5-26"),
+        figures("5-28"),
+        figures("5-29"),
+        ridges(),

@@ -16,6 +16,7 @@ CALIBRATION = {
     ),
     *(f"figures/tables/calibration.{kind}" for kind in ("csv", "md")),
 }
+RIDGES = ("offset", "height", "friction", "mesh", "outer")
 
 
 def config(project, name):
@@ -41,7 +42,22 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     assert jobs.pop("stroke_with_friction") == sweep
     outputs = jobs.pop("calibrate") | jobs.pop("calibrate_prony") | jobs.pop("calibrate_friction")
     assert {path for path in outputs if not path.endswith(".csv")} == {"results/thesis/specimens"}
+    assert jobs.pop("ridge_figure") == {f"figures/studies/ridges_{n}.{k}" for n in RIDGES for k in ("png", "csv")}
+    assert jobs.pop("ridge_data") == {f"results/thesis/ridges/{n}.csv" for n in RIDGES}
+    cases = {f"{h:g}_0.65" for h in thesis["ridge_heights"]} | {f"150_{mu:g}" for mu in thesis["ridge_frictions"]}
+    cases = {f"{case}_{mesh}" for case in cases for mesh in ("thesis", "coarse")}
+    cases |= {f"150_0.65_{mesh}" for mesh in ("fine", "curved", "straight", "shifted")}
+    assert jobs.pop("ridge_case") == {f"results/thesis/ridges/{case}/history.nc" for case in cases}
     assert not jobs
+
+
+def test_ridges_simulate_their_own_scenes_only(clone):
+    jobs = clone.planned("ridges")
+    assert {Path(path).stem for path in jobs["figure"]} == {f"fig_5-{n}" for n in (25, 26, 28, 29)}
+    assert jobs["ridge_figure"] == {f"figures/studies/ridges_{n}.{k}" for n in RIDGES for k in ("png", "csv")}
+    scenes = {Path(path).parent.name for path in jobs["simulate"]}
+    assert all(name.startswith(("ridged_", "plate_stroke_")) for name in scenes) and len(scenes) == 15
+    assert "table" not in jobs
 
 
 def test_calibration_simulates_its_own_scenes_only(clone):
@@ -61,7 +77,7 @@ def test_a_configuration_given_replaces_the_default_and_writes_under_its_results
         f"calibration_{n}" for n in ("fit", "identifiability", "residuals")
     }
     assert {path.stem for path in outputs if path.suffix == ".png"} == pictures
-    assert not {"calibrate_friction", "stroke_with_friction"} & set(jobs)
+    assert not {"calibrate_friction", "stroke_with_friction", "ridge_case", "ridge_data"} & set(jobs)
 
 
 @pytest.mark.parametrize("chapter", ["3", "4", "5"])

@@ -61,6 +61,16 @@ def calibration():
     return [*pictures, f"{config['tables']}/calibration.csv", f"{RESULTS}/specimens"] if scenes else []
 
 
+def ridge_studies():
+    """Names of the figures of the study of ridges, if the configuration varies their height."""
+    return ["offset", "height", "friction", "mesh", "outer"] if config.get("ridge_heights") else []
+
+
+def ridges():
+    """The figures of the study of ridges."""
+    return [f"{config['studies']}/ridges_{name}.png" for name in ridge_studies()]
+
+
 def histories(scenes, fidelity="simulations"):
     """The simulation results of some scenes."""
     return [f"{RESULTS}/{fidelity}/{scene}/history.nc" for scene in scenes]

@@ -101,6 +101,22 @@ def ramp_and_hold(repeats: int = 3) -> list[list]:
     return rows
 
 
+def ridges(repeats: int = 3) -> list[list]:
+    """A ramp and hold on a pad with inner ridges against the plain one: process time a node."""
+    scenes = [load_scene(SCENES / f"{name}.yaml") for name in ("ramp40_flat", "ridged_40_flat")]
+    plans = [plan(scene) for scene in scenes]
+    ratios = []
+    for _ in range(repeats):  # in pairs, so that a busy machine slows both
+        plain, ridged = (seconds(lambda s=s, p=p: simulate(s, p), 1)[1] for s, p in zip(scenes, plans, strict=True))
+        ratios.append(ridged / plain)
+    nodes = plans[1].nodes / plans[0].nodes
+    ratio = statistics.median(ratios) / nodes
+    how = (
+        f"ramp and hold, flat: {plans[0].nodes} and {plans[1].nodes} nodes (half pad), {ratio * nodes:.2f} times the process time"
+    )
+    return [["inner ridges, cost a node over the plain pad's", ratio, "1", "<= 3", ratio <= 3, repeats, how]]
+
+
 def one_step() -> list[list]:
     """The whole load in one step: Newton iterations, which no machine changes."""
     rows = []
@@ -178,7 +194,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "figures" / "tables" / "speed.csv")
     options = parser.parse_args()
     with threadpool_limits(1):
-        rows = [*newton_iteration(), *ramp_and_hold(), *one_step(), *tactile_sensor()]
+        rows = [*newton_iteration(), *ramp_and_hold(), *ridges(), *one_step(), *tactile_sensor()]
     rows += overhead()
     if options.workflow:
         rows += workflow()

@@ -1,0 +1,90 @@
+"""Strokes of a plate over ridged pads -> what ridges make of the direction of a stroke, against place, height, friction, mesh.
+
+Inputs:  config/scenes/ridged_stroke_right.yaml with the heights of `ridge_heights` and the coefficients of `ridge_frictions`, and
+         the strokes of whole scenes.
+Outputs: <results>/ridges/<height>_<friction>_<mesh>/history.nc, <results>/ridges/*.csv, and from these
+         <studies>/ridges_*.png beside their data.
+"""
+
+RIDGE_STROKE = "ridged_stroke_right"
+OUTER_STROKES = ["ridged_outer_stroke_right", "ridged_outer_stroke_left"]
+
+
+def ridge_cases():
+    """Histories of the study's cases: heights (um) at the scene's friction, frictions at its height, meshes at both."""
+    height, friction = 150, 0.65
+    cases = {(h, friction): ["thesis", "coarse"] for h in config.get("ridge_heights", [])}
+    cases |= {(height, mu): ["thesis", "coarse"] for mu in config.get("ridge_frictions", [])}
+    if (height, friction) in cases:
+        cases[height, friction] += ["fine", "curved", "straight", "shifted"]
+    return [f"{RESULTS}/ridges/{h:g}_{mu:g}_{mesh}/history.nc" for (h, mu), meshes in cases.items() for mesh in meshes]
+
+
+rule ridge_case:
+    """A stroke with another height of the ridges, coefficient of friction or mesh -> its history."""
+    input:
+        sources("ridge_case"),
+        ENVIRONMENT,
+        "config/specimens/thesis.yaml",
+        scene=f"config/scenes/{RIDGE_STROKE}.yaml",
+    output:
+        ensure(f"{RESULTS}/ridges/{{case}}/history.nc", non_empty=True),
+    params:
+        case=lambda wildcards: wildcards.case,
+    wildcard_constraints:
+        case=r"[0-9.]+_[0-9.]+_[a-z]+",
+    log:
+        f"{RESULTS}/logs/ridge_case/{{case}}.log",
+    cache: "omit-software"
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    shell:
+        "python workflow/scripts/ridge_case.py {input.scene} {params.case} {output} > {log} 2>&1"
+
+
+rule ridge_data:
+    """Cases and whole strokes -> the directional index against place, height, friction and mesh, and contact in islands."""
+    input:
+        sources("ridge_data"),
+        ENVIRONMENT,
+        cases=ridge_cases(),
+        histories=histories(OUTER_STROKES),
+        coarse=companions(OUTER_STROKES[:1]),
+    output:
+        expand(f"{RESULTS}/ridges/{{name}}.csv", name=ridge_studies()),
+    log:
+        f"{RESULTS}/logs/ridge_data.log",
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    shell:
+        "python workflow/scripts/ridge_data.py {output[0]} {input.cases} {input.histories} {input.coarse} > {log} 2>&1"
+
+
+rule ridge_figure:
+    """Data of the study -> a picture, and the plotted data beside it."""
+    input:
+        sources("ridge_figure"),
+        ENVIRONMENT,
+        data=f"{RESULTS}/ridges/{{name}}.csv",
+    output:
+        png=report(
+            f"{config['studies']}/ridges_{{name}}.png",
+            caption="../report/ridges.rst",
+            category="Ridges",
+            labels={"study": "{name}"},
+        ),
+        csv=f"{config['studies']}/ridges_{{name}}.csv",
+    wildcard_constraints:
+        name="[a-z]+",
+    log:
+        f"{RESULTS}/logs/ridge_figure/{{name}}.log",
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    shell:
+        "python workflow/scripts/ridge_figure.py {wildcards.name} {input.data} {output.png} > {log} 2>&1"
