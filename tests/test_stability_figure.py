@@ -1,0 +1,52 @@
+"""Heat map and table of the study of stability, from made-up measures."""
+
+import matplotlib
+import numpy as np
+import pandas as pd
+import pytest
+
+from fingerpad.figures.stability import METHODS, assemble, heat_map, long, table
+
+pytestmark = pytest.mark.unit
+
+
+def rows(method, depth, **changed):
+    row = {
+        "case": "a", "group": "g", "method": method, "hard": "it is", "stable": "as all", "outcome": "stable", "completed": 1.0,
+        "message": "", "saved": "", "cuts": 0.0, "iterations": 2.0, "energy": 0.003, "complementarity": 1e-9, "det_f": 0.5,
+        "checkerboard": 0.02, "halving": 0.01, "limit cuts": 0, "limit iterations": 4, "limit energy": 0.03,
+        "limit complementarity": 1e-3, "limit det_f": 0.1, "limit checkerboard": np.inf, "limit halving": 0.05, "depth_mm": depth,
+        "force_N_per_m": 19.6,
+    }  # fmt: skip
+    other = {"case": "b", "completed": 0.0, "outcome": "fails cleanly", "message": "why", "depth_mm": np.nan, "saved": "3 steps"}
+    return pd.DataFrame([row | changed, row | other])
+
+
+@pytest.fixture
+def frame():
+    return assemble([rows("default", 1.0), rows("full Q1", 0.5), rows("plain P2", 1.01), rows("plain Newton", 1.0, cuts=3.0)])
+
+
+def test_shares_of_the_limits(frame):
+    share = long(frame).set_index(["case", "method", "measure"])["share"]
+    assert share["a", "default", "energy"] == pytest.approx(0.1)
+    assert share["a", "default", "det_f"] == pytest.approx(0.2)
+    assert share["a", "default", "completed"] == 0 and share["b", "default", "completed"] == np.inf
+    assert share["a", "default", "cuts"] == 0 and share["a", "plain Newton", "cuts"] > 1
+    assert np.isnan(share["a", "default", "checkerboard"]) and np.isnan(share["a", "default", "off"])
+    assert share["a", "full Q1", "off"] == pytest.approx(10) and share["a", "plain P2", "off"] == pytest.approx(0.2)
+
+
+def test_table_tells_how_each_method_ended(frame):
+    out = table(frame).set_index("case")
+    assert out.loc["a", "full Q1"].startswith("wrong: off by 50%") and out.loc["a", "plain P2"] == "stable"
+    assert out.loc["b", "said"] == "why" and out.loc["b", "last state saved"] == "3 steps"
+
+
+def test_picture_has_a_panel_a_method_and_marks_what_did_not_complete(frame):
+    fig = heat_map(long(frame))
+    panels = [ax for ax in fig.axes if ax.get_title(loc="center")]
+    assert len(panels) == len(METHODS)
+    black = [p for p in panels[0].patches if matplotlib.colors.same_color(p.get_facecolor(), "black")]
+    assert [p.get_y() for p in black] == [0.5]
+    assert [label.get_text() for label in panels[0].get_yticklabels()] == ["a", "b"]
