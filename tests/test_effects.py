@@ -91,7 +91,7 @@ def test_lopsided_stimulus_keeps_the_whole_pad(ramp, tmp_path):
 
 
 def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):
-    """Skin that sticks presses otherwise by up to a sixth; what a small coefficient changes is left out, and the number says so."""
+    """Skin that sticks presses otherwise by up to a sixth; what a small coefficient changes is left out."""
     rough, slippery = (plan(changed(ramp, friction=coefficient)).effects["friction"] for coefficient in (0.6, 0.008))
     assert rough.on and not slippery.on
     assert "nothing slides" in slippery.why and "1.6%" in slippery.why and "20.0%" in rough.why

@@ -1,0 +1,395 @@
+"""What each effect changes in the answers and what it costs; and whether the planner's choices bear it out.
+
+An effect is simulated with and without it on the same mesh, so what differs is its own. :func:`study` does so on scenes where it
+matters and where it does not, :func:`verdicts` on scenes drawn at random, for every choice that the planner made.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from fingerpad.effects import RULES, Plan, PlanError, Rules, plan
+from fingerpad.scene import Scene
+from fingerpad.simulation import simulate
+from fingerpad.studies.hard_cases import FLAT, RAMP, TWO_WAVES, cylinder, depth, force, hold, scene_of, slide
+
+ANSWERS = {
+    "indentation_depth": "depth",
+    "force": "force",
+    "contact_width": "width",
+    "centre_pressure": "centre pressure",
+    "strain_energy_density": "strain energy",
+    "tangential_force": "tangential force",
+    "centre_lateral_displacement": "lateral displacement",
+}
+"""The headline quantities by which a change is told, as the history and as people call them."""
+SLIDES_ONLY = ("tangential_force", "centre_lateral_displacement")
+KNOWN_SAFE = 0.1
+"""An effect worth less than this share of the accuracy need not be carried where leaving it out is known to be safe."""
+SEED, SCENES = 7, 60
+"""The planner's bounds were set by scenes of another seed (1999): these are scenes that they have not seen."""
+
+
+# -- what an effect changes ---------------------------------------------------------------------------------------------------
+
+
+def changes(one: xr.Dataset, other: xr.Dataset) -> dict[str, float]:
+    """Largest change of each headline quantity, over its largest value in ``one``.
+
+    Legs of as many steps in both are compared step by step, others at their ends.
+    """
+    at, other_at = [], []
+    for leg in np.unique(one.leg.values[1:]):
+        here, there = (1 + np.flatnonzero(history.leg.values[1:] == leg) for history in (one, other))
+        if len(here) != len(there):
+            here, there = here[-1:], there[-1:]
+        at.append(here)
+        other_at.append(there)
+    at, other_at = np.concatenate(at), np.concatenate(other_at)
+    out = {}
+    for name, text in ANSWERS.items():
+        if name in SLIDES_ONLY and not np.ptp(one.stroke_distance.values):
+            continue
+        a, b = one[name].values[at], other[name].values[other_at]
+        scale = np.abs(one.force.values).max() if name == "tangential_force" else np.abs(a).max()
+        if name == "centre_lateral_displacement":
+            scale = max(scale, np.abs(one.indentation_depth.values).max())
+        out[text] = float(np.abs(a - b).max() / max(scale, 1e-300))
+    return out
+
+
+def with_effects(chosen: Plan, state: str | None = None, **switched: bool) -> Plan:
+    """A plan with effects switched, and the ``state`` of the moduli where viscosity is left out."""
+    effects = {name: replace(effect, on=switched.get(name, effect.on)) for name, effect in chosen.effects.items()}
+    timed = effects["viscoelasticity"].on
+    return replace(chosen, effects=effects, timed=timed, state="long_term" if timed else state or chosen.state)
+
+
+# -- on scenes where it matters and where it does not -------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Pair:
+    """An effect on a scene: the plans with and without it, and what is said of them."""
+
+    effect: str
+    label: str
+    matters: bool
+    document: Mapping[str, Any]
+    switch: Callable[[Scene, bool], tuple[Scene, Plan]]
+
+
+def _switched(effect: str, state: str = "long_term"):
+    def switch(scene: Scene, on: bool) -> tuple[Scene, Plan]:
+        return scene, with_effects(plan(scene), state, **{effect: on})
+
+    return switch
+
+
+def _ridged(scene: Scene, on: bool) -> tuple[Scene, Plan]:
+    scene = scene.model_copy(update={"effects": {"ridges": on}} if not on else {})
+    return scene, plan(scene)
+
+
+def _focused(scene: Scene, on: bool) -> tuple[Scene, Plan]:
+    chosen = plan(scene)
+    focus = chosen.mesh_size.focus or ((0.0, chosen.contact.half_width / RULES.edges_per_half_width),)
+    return scene, replace(chosen, mesh_size=replace(chosen.mesh_size, focus=focus if on else ()))
+
+
+def _fields(scene: Scene, on: bool) -> tuple[Scene, Plan]:
+    if not on:
+        scene = scene.model_copy(update={"outputs": scene.outputs.model_copy(update={"snapshots": ()})})
+    return scene, plan(scene)
+
+
+SHARP, MIDDLE = cylinder(1259.84), cylinder(209.97)
+STROKE = [force(20, 40), slide(4)]
+LOW_RIDGES = {"inner": {"height": "10 um"}}
+PAIRS = (
+    Pair("symmetry", "ramp and hold, 210 1/m", False, {"stimulus": MIDDLE, "motion": RAMP}, _switched("symmetry")),
+    Pair("symmetry", "ramp and hold, flat", False, {"stimulus": FLAT, "motion": RAMP}, _switched("symmetry")),
+    Pair("viscoelasticity", "ramp of 0.5 s and hold", True, {"stimulus": MIDDLE, "motion": RAMP}, _switched("viscoelasticity")),
+    Pair(
+        "viscoelasticity", "ramp of 3 ms, instantaneous moduli", False,
+        {"stimulus": MIDDLE, "motion": [force(20, 20 / 3e-3)]}, _switched("viscoelasticity", "instantaneous"),
+    ),
+    Pair(
+        "viscoelasticity", "ramp of 3 hours", False, {"stimulus": MIDDLE, "motion": [force(20, 20 / 1e4)]},
+        _switched("viscoelasticity"),
+    ),
+    Pair("finite_strain", "20 gf, 1260 1/m", True, {"stimulus": SHARP, "motion": RAMP}, _switched("finite_strain")),
+    Pair("finite_strain", "20 gf, flat", True, {"stimulus": FLAT, "motion": RAMP}, _switched("finite_strain")),
+    Pair(
+        "finite_strain", "0.02 gf, 210 1/m", False, {"stimulus": MIDDLE, "motion": [force(0.02, 0.04), hold(2)]},
+        _switched("finite_strain"),
+    ),
+    Pair(
+        "friction", "stroke of a plate, 0.7", True, {"stimulus": FLAT, "friction": 0.7, "motion": STROKE}, _switched("friction")
+    ),
+    Pair(
+        "friction", "pressed only, flat, 0.7", False, {"stimulus": FLAT, "friction": 0.7, "motion": RAMP},
+        _switched("friction"),
+    ),
+    Pair(
+        "friction", "pressed only, 210 1/m, 0.7", False, {"stimulus": MIDDLE, "friction": 0.7, "motion": RAMP},
+        _switched("friction"),
+    ),
+    Pair(
+        "ridges", "inner, 0.15 mm high", True, {"stimulus": MIDDLE, "motion": RAMP, "specimen": {"ridges": "inner"}}, _ridged
+    ),
+    Pair(
+        "ridges", "inner, 0.01 mm high", False, {"stimulus": MIDDLE, "motion": RAMP, "specimen": {"ridges": LOW_RIDGES}}, _ridged
+    ),
+    Pair("local refinement", "needle, 10,000 1/m", True, {"stimulus": cylinder(1e4), "motion": RAMP}, _focused),
+    Pair("local refinement", "210 1/m", False, {"stimulus": MIDDLE, "motion": RAMP}, _focused),
+    Pair(
+        "full-field output", "at 2 times", False,
+        {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": ["0.5 s", "2.5 s"]}}, _fields,
+    ),
+    Pair(
+        "full-field output", "every 0.05 s", False,
+        {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": {"every": "0.05 s"}}}, _fields,
+    ),
+)  # fmt: skip
+
+
+def study(pairs: tuple[Pair, ...] = PAIRS, repeats: int = 3) -> pd.DataFrame:
+    """Changes and cost ratios of every pair: one row each; costs are process times, the least of ``repeats`` runs in turn."""
+    rows = []
+    for pair in pairs:
+        scene = scene_of({"accuracy": "draft", **pair.document}, pair.label)
+        ways = [pair.switch(scene, on) for on in (True, False)]
+        seconds = [[], []]
+        for _ in range(repeats):
+            histories = [simulate(*way) for way in ways]
+            for history, taken in zip(histories, seconds, strict=True):
+                taken.append(cost_of(history)["cpu_s"])
+        found = changes(*histories)
+        with_it, without = (min(taken) for taken in seconds)
+        worst = max(found, key=found.get)
+        unknowns = [cost_of(history)["unknowns"] for history in histories]
+        rows.append(
+            {
+                "effect": pair.effect, "scene": pair.label, "expected to matter": pair.matters,
+                "planned": planned(pair.effect, scene), "change": found[worst], "of": worst,
+                "cost ratio": with_it / without, "with (s)": with_it, "without (s)": without,
+                "unknowns with": unknowns[0], "unknowns without": unknowns[1],
+            } | {f"change of {name}": value for name, value in found.items()}
+        )  # fmt: skip
+        print(pair.effect, pair.label, f"{found[worst]:.2g} ({worst})", f"{with_it / without:.2f}", flush=True)
+    return pd.DataFrame(rows)
+
+
+def cost_of(history: xr.Dataset) -> dict[str, Any]:
+    """What the run of a history took."""
+    return json.loads(history.attrs["cost"])
+
+
+def planned(effect: str, scene: Scene) -> bool:
+    """Does the planner switch the effect on for this scene?"""
+    chosen = plan(scene)
+    special = {
+        "local refinement": lambda: bool(chosen.mesh_size.focus),
+        "full-field output": lambda: bool(scene.outputs.snapshots),
+    }
+    return special.get(effect, lambda: chosen.effects[effect].on)()
+
+
+# -- on scenes drawn at random ------------------------------------------------------------------------------------------------
+
+
+def generated(count: int = SCENES, seed: int = SEED) -> Iterator[Scene]:
+    """Scenes across the planner's thresholds: presses and strokes, forces over three decades, times over six, six accuracies."""
+    draw = np.random.default_rng(seed)
+
+    def between(low, high):
+        return float(np.exp(draw.uniform(np.log(low), np.log(high))))
+
+    def pick(*values):
+        return values[draw.integers(len(values))]
+
+    made = 0
+    while made < count:
+        kind = pick("force", "force", "force", "depth", "stroke")
+        stimulus, friction = pick(FLAT, cylinder(between(20, 4000)), cylinder(between(20, 4000))), 0.0
+        load, seconds = between(0.01, 30), pick(None, *(between(3e-3, 1e4) for _ in range(5)))
+        if kind == "depth":
+            target = between(5e-3, 1.0)
+            motion = [depth(target, None if seconds is None else target / seconds)]
+        elif kind == "stroke":
+            load, friction = between(2, 25), pick(0.0, between(0.02, 1.0), between(0.02, 1.0))
+            stimulus = pick(FLAT, TWO_WAVES, cylinder(between(20, 200)))
+            way = {"slide": "3 mm", "keep": "force"} if seconds is None else slide(3, between(1e-3, 100))
+            motion = [force(load, None if seconds is None else load / seconds), way]
+        else:
+            motion = [force(load, None if seconds is None else load / seconds)]
+        if kind != "stroke":
+            friction = pick(0.0, 0.0, 0.0, between(0.1, 1.0))
+            if seconds is not None and pick(True, False):
+                motion.append(hold(between(1e-2, 1e3)))
+        share = pick(1.0, 1.0, 0.1, 0.01, 0.0)
+        prony = [{"g": share * g, "tau": f"{tau} s"} for g, tau in ((0.055, 3.25), (0.3691, 0.3414))] if share else "none"
+        document = {
+            "stimulus": stimulus, "motion": motion, "friction": friction, "accuracy": pick(0.1, 0.05, 0.03, 0.02, 0.01, 0.005),
+            "specimen": {"prony": prony},
+        }  # fmt: skip
+        scene = scene_of(document, f"{kind} {made}")
+        try:
+            plan(scene)
+        except PlanError:
+            continue  # so fast that inertia would matter
+        made += 1
+        yield scene
+
+
+def verdicts(count: int = SCENES, seed: int = SEED) -> pd.DataFrame:
+    """What each effect that the planner chose or left out would have been worth: one row a scene and effect.
+
+    The plan is made at the accuracy that the scene asks for; what is simulated is its draft, with the plan's effects and with one
+    of them the other way. "worth" is the largest change of a headline quantity, "share" that over the accuracy.
+    """
+    rows = []
+    for scene in generated(count, seed):
+        chosen = plan(scene)
+        draft = plan(scene.model_copy(update={"accuracy": "draft"}))
+        draft = replace(draft, effects=chosen.effects, state=chosen.state, timed=chosen.timed)
+        base = simulate(scene, draft)
+        for effect, ways in alternatives(scene, draft).items():
+            worth, of = min(_largest(changes(base, simulate(scene, way))) for way in ways)
+            on = chosen.effects[effect].on
+            dropped = on if effect == "symmetry" else not on
+            rows.append(
+                {
+                    "scene": scene.name, "stimulus": scene.stimulus.shape, "accuracy": scene.accuracy, "effect": effect,
+                    "planned": "on" if on else "off", "worth": worth, "of": of, "share": worth / scene.accuracy,
+                    "verdict": verdict(dropped, worth / scene.accuracy), "why": chosen.effects[effect].why,
+                }
+            )  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def _largest(found: Mapping[str, float]) -> tuple[float, str]:
+    return max((value, name) for name, value in found.items())
+
+
+def alternatives(scene: Scene, draft: Plan) -> dict[str, list[Plan]]:
+    """For each effect that can be had either way, the plans with the other choice; the best of them counts.
+
+    Symmetry is only taken away: where the planner refuses it, it is not there.
+    """
+    on = {name: effect.on for name, effect in draft.effects.items()}
+    out = {"finite_strain": [with_effects(draft, finite_strain=not on["finite_strain"])]}
+    if scene.specimen.prony:
+        states = ["long_term", "instantaneous"] if on["viscoelasticity"] else [None]
+        out["viscoelasticity"] = [with_effects(draft, state, viscoelasticity=not on["viscoelasticity"]) for state in states]
+    if scene.friction:
+        out["friction"] = [with_effects(draft, friction=not on["friction"])]
+    if on["symmetry"]:
+        out["symmetry"] = [with_effects(draft, symmetry=False)]
+    return out
+
+
+def verdict(dropped: bool, share: float) -> str:
+    """Of a choice whose effect is worth ``share`` of the accuracy."""
+    if dropped:
+        return "rightly left out" if share <= 1 else "wrongly left out"
+    return "rightly carried" if share >= KNOWN_SAFE else "carried for nothing"
+
+
+# -- rules and their evidence -------------------------------------------------------------------------------------------------
+
+
+def evidence(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
+    """Changes and costs on chosen scenes (of :func:`study`), and the planner's choices in drawn ones (of :func:`verdicts`).
+
+    One row a chosen scene, then one an effect and choice with the number of drawn scenes and the extremes of worth over accuracy.
+    """
+    chosen = pairs[["effect", "scene", "planned", "change", "of", "cost ratio"]].replace({"planned": {True: "on", False: "off"}})
+    rows = []
+    for (effect, choice), part in found.groupby(["effect", "planned"]):
+        worst = part.loc[part["share"].idxmax()]
+        rows.append(
+            {
+                "effect": effect, "scene": f"{len(part)} drawn at random", "planned": choice, "change": worst["worth"],
+                "of": worst["of"], "least worth / accuracy": part["share"].min(), "largest worth / accuracy": worst["share"],
+                "wrongly left out": int((part["verdict"] == "wrongly left out").sum()),
+                "carried for nothing": int((part["verdict"] == "carried for nothing").sum()),
+            }
+        )  # fmt: skip
+    return pd.concat([chosen, pd.DataFrame(rows)], ignore_index=True)
+
+
+DECIDES = {
+    "presets": "discretisations by name",
+    "mesh_order": "mesh for a tolerance: error ~ (edge / contact width) to this power",
+    "small_strain_error": "finite strain: on when this times depth / soft thickness exceeds the accuracy",
+    "pressing_friction": "friction of a press: on when this times the coefficient exceeds the accuracy",
+    "most_pressing_friction": "friction of a press: what that product comes to at most",
+    "relaxation_share": "viscoelasticity: off when stress can relax, or lags behind, by less than this share of the accuracy",
+    "fine_half_width": "fine skin mesh to either side of the apex, at least (m)",
+    "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
+    "edges_per_half_width": "local refinement: edges in the contact's half-width where the mesh has less than one",
+    "inertia_limit": "scenes with rho v^2 / mu above this are refused",
+    "seconds_start": "predicted cost: start of a process (s)",
+    "seconds_finite": "predicted cost: a node and Newton iteration, finite strain (s)",
+    "seconds_small": "predicted cost: a node and Newton iteration, small strain (s)",
+    "iterations_finite": "predicted cost: iterations a step, finite strain",
+    "iterations_small": "predicted cost: iterations a step, small strain",
+    "frictional": "predicted cost: a step with friction over one without",
+}
+"""What each of the planner's rules decides."""
+WHERE = {
+    "presets": "studies of accuracy",
+    "mesh_order": "studies of accuracy",
+    "fine_half_width": "contact of a plate at 20 gf reaches 2.4 mm (figures/thesis/fig_4-10.csv)",
+    "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",
+    "inertia_limit": "chosen: 1e-4 at 40 mm/s, a tenth of the elastic forces at the limit",
+}
+"""Where the evidence is that is not of this study; costs are those of figures/tables/speed.md."""
+
+
+def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) -> pd.DataFrame:
+    """Every rule of the planner: value, what it decides and its evidence. ``pairs``: of :func:`study`."""
+
+    def planner(effect: str) -> str:
+        part = found[found["effect"] == effect]
+        off, on = (part.loc[part["planned"] == choice, "share"] for choice in ("off", "on"))
+        said = [f"left out in {len(off)} scenes, worth up to {off.max():.2g} of the accuracy"] if len(off) else []
+        return "; ".join([*said, f"carried in {len(on)}, worth {on.min():.2g} of it or more"] if len(on) else said)
+
+    def pair(effect: str) -> str:
+        part = pairs[pairs["effect"] == effect]
+        return "; ".join(
+            f"{row['scene']}: changes {row['change']:.1g}, costs {row['cost ratio']:.2g} times" for row in part.to_dict("records")
+        )
+
+    own = {
+        "small_strain_error": planner("finite_strain"),
+        "pressing_friction": planner("friction"),
+        "most_pressing_friction": pair("friction"),
+        "relaxation_share": planner("viscoelasticity"),
+        "edges_per_half_width": pair("local refinement"),
+    }
+    rows = []
+    for name in (f.name for f in fields(Rules)):
+        value = getattr(rules, name)
+        if isinstance(value, Mapping):
+            value = ", ".join(f"{key}: {getattr(preset, 'skin_edge', np.nan) * 1e6:g} um" for key, preset in value.items())
+        evidence = own.get(name) or WHERE.get(name, "figures/tables/speed.md")
+        rows.append({"rule": name, "value": str(value), "decides": DECIDES.get(name, ""), "evidence": evidence})
+    fixed = {
+        "symmetry": "half the pad: whenever pad, stimulus and motion are mirror images",
+        "friction": "friction: whenever the skin is stroked with a coefficient above 0",
+        "ridges": "ridges: whenever the specimen has them",
+        "full-field output": "full fields: at the times the scene names",
+    }
+    rows += [{"rule": name, "value": "", "decides": text, "evidence": pair(name)} for name, text in fixed.items()]
+    return pd.DataFrame(rows)

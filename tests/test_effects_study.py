@@ -1,0 +1,204 @@
+"""The study of effects, and that what a plan leaves out is not executed."""
+
+import json
+import sys
+from dataclasses import fields, replace
+from itertools import islice
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+import pandas as pd
+import pytest
+
+from fingerpad import plan, simulate
+from fingerpad.effects import Rules
+from fingerpad.figures.effects import LEAST, NAMES, assemble, effects
+from fingerpad.studies.effects import (
+    DECIDES,
+    PAIRS,
+    alternatives,
+    changes,
+    evidence,
+    generated,
+    planned,
+    rules_table,
+    study,
+    verdict,
+    with_effects,
+)
+from fingerpad.studies.hard_cases import FLAT, cylinder, depth, force, hold, scene_of, slide
+
+pytestmark = pytest.mark.unit
+COARSE = {"skin_edge": "0.6 mm", "steps": 4}
+
+
+def made(*motion, stimulus=FLAT, **more):
+    return scene_of({"stimulus": stimulus, "motion": list(motion), "accuracy": COARSE} | more, "made")
+
+
+# -- what is left out costs nothing -------------------------------------------------------------------------------------------
+
+
+def executed(scene):
+    """Functions of the package that are called while a scene is planned and simulated: {(module, name)}."""
+    called = set()
+
+    def note(frame, event, _):
+        code = frame.f_code
+        if event == "call" and "fingerpad" in code.co_filename and code.co_name != "<module>":
+            called.add((Path(code.co_filename).stem, code.co_name))
+
+    before = sys.getprofile()
+    sys.setprofile(note)
+    try:
+        simulate(scene, plan(scene))
+    finally:
+        sys.setprofile(before)
+    return called
+
+
+#: Effect -> modules and functions that only it needs.
+OWN = {
+    "friction": [("friction", None)],
+    "viscoelasticity": [("viscoelasticity", None)],
+    "finite_strain": [("finite_strain", "tangent"), ("finite_strain", "begin_step")],
+    "small_strain": [("small_strain", None)],
+    "ridges": [("ridges", None), ("layered", None)],
+    "symmetry": [("mesh", "right_half")],
+    "full-field output": [("simulation", "_element_pressure"), ("results", "add_snapshots")],
+}
+ON = {"finite_strain": "on", "viscoelasticity": "off"}
+SCENES = {
+    "plain press": (made(force(2), effects=ON), {"finite_strain", "symmetry"}),
+    "small strain": (made(force(2), effects={"finite_strain": "off"}), {"small_strain", "symmetry"}),
+    "ramp": (
+        made(force(2, 4), hold(1), effects={"finite_strain": "off", "viscoelasticity": "on"}),
+        {"small_strain", "symmetry", "viscoelasticity"},
+    ),
+    "stroke": (made(force(2), slide(0.5), friction=0.5, effects=ON), {"finite_strain", "friction"}),
+    "smooth stroke": (made(force(2), slide(0.5), effects=ON), {"finite_strain"}),
+    "full fields": (
+        made(force(2, 4), effects=ON, outputs={"snapshots": ["0.25 s"]}), {"finite_strain", "symmetry", "full-field output"},
+    ),
+    "ridges": (
+        made(force(2), effects=ON, specimen={"ridges": "inner"}, accuracy="draft"), {"finite_strain", "symmetry", "ridges"},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_code_of_what_is_left_out_is_not_executed(name):
+    """Of each effect that is on something of its own is called, of each that is off nothing."""
+    scene, on = SCENES[name]
+    called = executed(scene)
+    modules = {module for module, _ in called}
+    ran = {
+        effect for effect, own in OWN.items() if any(part in called or (part[1] is None and part[0] in modules) for part in own)
+    }
+    assert ran == on
+
+
+def test_symmetry_halves_the_unknowns():
+    scene = made(force(2))
+    half, whole = (simulate(scene, with_effects(plan(scene), symmetry=on)) for on in (True, False))
+    unknowns = [json.loads(history.attrs["cost"])["unknowns"] for history in (half, whole)]
+    assert unknowns[0] / unknowns[1] == pytest.approx(0.5, abs=0.02)
+    assert max(changes(whole, half).values()) < 1e-3
+
+
+def test_steady_scene_does_no_time_stepping():
+    """Load increments, at most eight, all at time zero; a hold of a steady scene is one step, whatever its length."""
+    scene = made(force(2), accuracy="fine")
+    chosen = plan(scene)
+    assert not chosen.timed and chosen.steps <= 8
+    history = simulate(scene, replace(chosen, steps_per_leg=3))
+    assert not history.time.values.any() and not history.dissipated_energy.values.any()
+    press, held = (made(force(2), *more, accuracy="draft", effects={"viscoelasticity": "off"}) for more in ((), (hold(1e3),)))
+    assert plan(held).steps == plan(press).steps + 1
+
+
+# -- the study ----------------------------------------------------------------------------------------------------------------
+
+
+def test_changes_are_nothing_between_alike_and_something_between_others():
+    scene = made(force(2), slide(0.5), stimulus=cylinder(100), friction=0.5)
+    history = simulate(scene)
+    assert max(changes(history, history).values()) == 0
+    other = history.copy(deep=True)
+    other["tangential_force"] = other.tangential_force * 0.9
+    found = changes(history, other)
+    assert found["tangential force"] == pytest.approx(0.1 * float(np.abs(history.tangential_force).max() / history.force.max()))
+    assert sum(value > 0 for value in found.values()) == 1
+
+
+def test_legs_of_other_numbers_of_steps_are_compared_at_their_ends():
+    scene = made(depth(0.1), effects={"viscoelasticity": "off"})
+    chosen = plan(scene)
+    found = changes(*(simulate(scene, replace(chosen, steps_per_leg=steps)) for steps in (2, 3)))
+    assert max(found.values()) < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("dropped", "share", "said"),
+    [
+        (True, 0.9, "rightly left out"), (True, 1.1, "wrongly left out"), (False, 0.2, "rightly carried"),
+        (False, 0.05, "carried for nothing"),
+    ],
+)  # fmt: skip
+def test_verdicts(dropped, share, said):
+    assert verdict(dropped, share) == said
+
+
+def test_generated_scenes_are_the_same_each_time_and_can_be_planned():
+    first, second = ([scene.canonical() for scene in islice(generated(seed=3), 12)] for _ in range(2))
+    assert first == second
+    assert first != [scene.canonical() for scene in islice(generated(seed=4), 12)]
+    kinds = {scene.name.split()[0] for scene in generated(40)}
+    assert kinds == {"force", "depth", "stroke"}
+
+
+def test_alternatives_flip_one_effect_each():
+    scene = made(force(2, 4), friction=0.5)
+    draft = plan(scene)
+    for effect, ways in alternatives(scene, draft).items():
+        for way in ways:
+            flipped = [name for name in draft.effects if way.effects[name].on != draft.effects[name].on]
+            assert flipped == [effect]
+            assert way.timed == way.effects["viscoelasticity"].on
+    assert len(alternatives(scene, draft)["viscoelasticity"]) == 2
+
+
+def test_pairs_cover_every_effect_where_it_matters_or_not():
+    assert {pair.effect for pair in PAIRS} == set(NAMES)
+    for pair in PAIRS:
+        scene = scene_of({"accuracy": "draft", **pair.document}, pair.label)
+        ways = [pair.switch(scene, on) for on in (True, False)]
+        assert ways[0] != ways[1]
+        if pair.matters:
+            assert planned(pair.effect, scene)
+
+
+def test_every_rule_says_what_it_decides():
+    assert set(DECIDES) == {field.name for field in fields(Rules)}
+
+
+def test_a_small_study_is_drawn_and_tabulated():
+    """Symmetry alone, and made-up choices: markers right and left, a wrong choice in red, rules with evidence."""
+    pairs = study(PAIRS[:1], repeats=1)
+    assert pairs["change"].item() < 1e-3 and pairs["unknowns with"].item() < 0.6 * pairs["unknowns without"].item()
+    choice = {"scene": "s", "stimulus": "flat", "accuracy": 0.02, "worth": 0.1, "of": "depth", "why": ""}
+    found = pd.DataFrame(
+        [
+            choice | {"effect": "finite_strain", "planned": "on", "share": 5.0, "verdict": "rightly carried"},
+            choice | {"effect": "finite_strain", "planned": "off", "share": 5.0, "verdict": "wrongly left out"},
+        ]
+    )
+    table = evidence(pairs, found)
+    assert table["wrongly left out"].sum() == 1 and len(table) == 3
+    rules = rules_table(pairs, found).set_index("rule")
+    assert "left out in 1 scenes, worth up to 5" in rules.loc["small_strain_error", "evidence"]
+    fig = effects(assemble(pairs, found))
+    left, right = fig.axes
+    assert sum(matplotlib.colors.same_color(line.get_color(), "#c8303d") for line in right.lines) == 1
+    assert left.get_ylim()[0] < LEAST
