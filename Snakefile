@@ -27,6 +27,9 @@ include: "workflow/rules/calibration.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/receptors.smk"
 include: "workflow/rules/ridges.smk"
+include: "workflow/rules/stability.smk"
+include: "workflow/rules/effects.smk"
+include: "workflow/rules/peers.smk"
 
 
 localrules:
@@ -36,6 +39,9 @@ localrules:
     chapter5,
     calibration,
     ridges,
+    stability,
+    effects,
+    peers,
 
 
 rule all:
@@ -84,3 +90,21 @@ rule ridges:
         figures("5-28"),
         figures("5-29"),
         ridges(),
+
+
+rule stability:
+    """How stable the method is in hard cases, beside simpler methods: a heat map and a table."""
+    input:
+        f"{config['studies']}/stability.png",
+
+
+rule effects:
+    """What each effect changes and costs, and the planner's choices and rules against that: a figure and tables."""
+    input:
+        f"{config['studies']}/effects.png",
+
+
+rule peers:
+    """The same press through a public finite element package, if it is installed: a table."""
+    input:
+        peers,

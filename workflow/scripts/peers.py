@@ -1,0 +1,8 @@
+"""Compare with a public package: peers.py TABLE.csv"""
+
+import sys
+
+from fingerpad.figures.tables import publish_table
+from fingerpad.studies.peers import study
+
+publish_table(study(), sys.argv[1])
