@@ -54,6 +54,7 @@ rule all:
         tables(),
         calibration(),
         ridges(),
+        meanings(),
         histories(config["scenes"]),
 
 

@@ -49,9 +49,10 @@ def meshes(names) -> dict[str, PadMesh]:
 
 
 def all_scenes() -> list[str]:
-    """Names of the nineteen scenes."""
+    """Names of the scenes of ramps and holds."""
     names = [f"{p}_{'flat' if k == 'flat' else 'k' + k}" for p in ("ramp40", "ramp150") for k in SURFACES]
-    return [*names, "homogeneous_flat"]
+    lower = [f"press{f}_{'flat' if k == 'flat' else 'k' + k}" for f in (10, 15) for k in ("flat", "79", "158", "315", "630")]
+    return [*names, *lower, "homogeneous_flat"]
 
 
 def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:

@@ -52,6 +52,12 @@ def tables():
     return [f"{config['tables']}/{name}.csv" for name in config["table_names"]]
 
 
+def meanings():
+    """The study of the definitions of strain energy, if the configuration has the nine surfaces."""
+    nine = sum(scene.startswith("ramp40_") for scene in config["scenes"]) == 9
+    return [f"{config['studies']}/strain_energy_meanings.png"] if nine else []
+
+
 def calibration():
     """Figures, table and specimens of the calibration, if the configuration has its scenes; further parts if it has theirs."""
     scenes = config.get("calibration_scenes", [])

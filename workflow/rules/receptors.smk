@@ -2,11 +2,13 @@
 
 Inputs:  the histories of pressed surfaces and of strokes over the wavy one, config/reference/impulse_rates/*.csv (published) and
          config/reference/recordings/*.csv (the user's).
-Outputs: <tables>/{receptor_fits,candidate_stimuli,sensor_accuracy,rapidly_adapting}.csv and .md, those that `table_names` has.
+Outputs: <tables>/{receptor_fits,candidate_stimuli,sensor_accuracy,rapidly_adapting}.csv and .md, those that `table_names` has;
+         <studies>/strain_energy_meanings.png beside its data, if all nine surfaces are there.
 """
 
 from glob import glob
 
+NINE = [s for s in config["scenes"] if s.startswith("ramp40_")]
 FELT = [s for s in [*config["scenes"], *config.get("variants", [])] if s.startswith(("ramp40_", "ramp150_", "press", "stroke_"))]
 
 
@@ -40,3 +42,28 @@ rule receptor_table:
     shell:
         "python workflow/scripts/receptors.py {wildcards.table} {output.csv} {input.rates} {input.histories} {input.coarse}"
         " > {log} 2>&1"
+
+
+rule strain_energy_meanings:
+    """Histories of the nine surfaces -> the definitions of strain energy over the ramp and hold, and which fall in the hold."""
+    input:
+        sources("strain_energy_meanings"),
+        ENVIRONMENT,
+        histories=histories(NINE),
+        coarse=companions(NINE),
+    output:
+        png=report(
+            f"{config['studies']}/strain_energy_meanings.png",
+            caption="../report/strain_energy_meanings.rst",
+            category="Receptors",
+            labels={"study": "strain energy meanings"},
+        ),
+        csv=f"{config['studies']}/strain_energy_meanings.csv",
+    log:
+        f"{RESULTS}/logs/strain_energy_meanings.log",
+    threads: 1
+    resources:
+        mem_mb=1000,
+        runtime=5,
+    shell:
+        "python workflow/scripts/strain_energy_meanings.py {output.png} {input.histories} {input.coarse} > {log} 2>&1"

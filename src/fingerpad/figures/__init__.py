@@ -8,20 +8,22 @@ A figure is a function of its data frame, and the frame is saved beside the pict
     publish(spec.draw(frame), frame, "figures/thesis/fig_4-10.png")
 """
 
-from fingerpad.figures import chapter3, chapter3_verification, chapter4, chapter5, chapter5_responses, ridges
+from fingerpad.figures import (
+    chapter3,
+    chapter3_verification,
+    chapter4,
+    chapter4_responses,
+    chapter5,
+    chapter5_responses,
+    ridges,
+)
 from fingerpad.figures.io import publish, read_frame
 from fingerpad.figures.spec import FigureSpec, read_reference
 
+_MODULES = (chapter3, chapter3_verification, chapter4, chapter4_responses, chapter5, chapter5_responses, ridges)
 FIGURES: dict[str, FigureSpec] = {
-    s.number: s
-    for s in (
-        *chapter3.FIGURES,
-        *chapter3_verification.FIGURES,
-        *chapter4.FIGURES,
-        *chapter5.FIGURES,
-        *chapter5_responses.FIGURES,
-        *ridges.FIGURES,
-    )
+    spec.number: spec
+    for spec in sorted((s for module in _MODULES for s in module.FIGURES), key=lambda s: [int(n) for n in s.number.split("-")])
 }
 
 __all__ = ["FIGURES", "FigureSpec", "publish", "read_frame", "read_reference"]

@@ -48,6 +48,7 @@ def _radius(results: Results) -> str:
     return f"{reason}: {radius:.1f} mm gives {inverse:.3f} 1/mm under the flat plate (T106)"
 
 
+_RECEPTOR = "likeliest: these recordings are of another receptor than the constants of Eq 5-1, which are printed for one only"
 _LINE_LOAD = "likeliest: the load per contact length, which is not stated"
 _LENGTH = "likeliest: contact length; a constant one of 10 mm is too long for a shallow press, see table calibration"
 _BULK = "mostly the bulk modulus, which does not relax with the shear modulus as the estimate lets the whole force do"
@@ -73,6 +74,8 @@ REASONS: dict[str, str | Callable[[Results], str]] = {
     **{f"T177{tag}": _RAMP for tag in "ab"},
     **{f"T{i}": _BENDING for i in (166, 167, 168, *range(192, 198), 307)},
     "T232": "edges and peaks of the pressure lie where the surface has its arcs; what lags by a millimetre is the skin (T232a)",
+    **{f"T{i:03d}": _RECEPTOR for i in (90, 94, 95, 96, 107, 109, 111, 113, 117, 119, 121, 160, 161, 203, 204, 207)},
+    "T207a": _RECEPTOR,
     **{f"T{i}": _LINE_LOAD for i in (240, 241, 245, 247, 250)},
 }
 """Likeliest reason of a known difference, by id; used when the row is outside."""

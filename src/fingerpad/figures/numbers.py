@@ -25,6 +25,7 @@ from fingerpad.figures.features import (
     scene_of,
     surface_nodes,
 )
+from fingerpad.figures.response_numbers import RESPONSE_GIVEN, RESPONSE_NUMBERS
 from fingerpad.figures.responses import stroke_law
 from fingerpad.figures.ridge_rows import RIDGE_GIVEN, RIDGE_NUMBERS
 from fingerpad.figures.spec import Meshes
@@ -273,6 +274,7 @@ CHAPTER3: dict[str, Number] = {
 
 GIVEN: dict[str, Number] = {
     **CHAPTER3_GIVEN,
+    **RESPONSE_GIVEN,
     **STROKE_GIVEN,
     **RATE_GIVEN,
     **RIDGE_GIVEN,
@@ -325,6 +327,7 @@ NUMBERS: dict[str, Number] = {
     **CHAPTER3,
     **STROKE_NUMBERS,
     **RATE_NUMBERS,
+    **RESPONSE_NUMBERS,
     **RIDGE_NUMBERS,
     "T101": lambda r: _skin_height(r, "1260"),
     "T102": lambda r: max(end_of(r(k), "indentation_depth") for k in SURFACES) * 1e3,

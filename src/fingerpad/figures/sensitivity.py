@@ -151,6 +151,8 @@ def evidence(id_: str, value: float, error: float, fine: Results, rough: Results
     try:
         base = _Nearest({k: rough(k) for k in SHAPES})
         before, whole = number(Results(base, rough.meshes)), number(rough)
+        if not before and whole:
+            return "variants: 0 under the nearest surface of theirs"
         shown, fits = [], []
         for variant in VARIANTS:
             runs = {k: fine.histories[variant_scene(variant, k)] for k in SHAPES}

@@ -21,6 +21,7 @@ from fingerpad.figures.features import (
     surface_nodes,
 )
 from fingerpad.figures.numbers import CYLINDERS, Results, end_of, hold_time, ramp_time, top_of, width_mm
+from fingerpad.figures.response_numbers import RESPONSE_TRENDS
 from fingerpad.figures.ridge_rows import RIDGE_TRENDS
 from fingerpad.figures.stroke_rates import RATE_TRENDS
 from fingerpad.figures.stroke_trends import STROKE_TRENDS
@@ -297,5 +298,6 @@ TRENDS: dict[str, Callable[[Results], Trend]] = {
     "TR23": _stands_out_less,
     **STROKE_TRENDS,
     **RATE_TRENDS,
+    **RESPONSE_TRENDS,
     **RIDGE_TRENDS,
 }

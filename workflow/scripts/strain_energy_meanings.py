@@ -1,0 +1,12 @@
+"""Draw the definitions of strain energy over a ramp and hold: strain_energy_meanings.py FIGURE.png [HISTORY.nc ...]"""
+
+import sys
+
+from fingerpad.figures import publish
+from fingerpad.figures.inputs import read_results
+from fingerpad.figures.strain_energy_meanings import fig_meanings, frame_meanings
+
+png, *paths = sys.argv[1:]
+histories, _, coarse = read_results(paths)
+frame = frame_meanings(histories, coarse)
+publish(fig_meanings(frame), frame, png)
