@@ -27,6 +27,7 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     thesis, jobs = config(clone, "thesis"), clone.planned()
     figures = {f"figures/thesis/fig_{n}.{kind}" for n in thesis["figure_numbers"] for kind in ("png", "csv")}
     assert jobs.pop("figure") == figures
+    assert jobs.pop("catalogue") == {"figures/README.md"}
     assert jobs.pop("animation") == {f"figures/studies/animation_{scene}.gif" for scene in thesis["animations"]}
     tables = {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
     assert jobs.pop("table") | jobs.pop("receptor_table") == tables

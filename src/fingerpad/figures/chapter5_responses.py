@@ -225,7 +225,7 @@ def _burst_frame(
         ]
         with np.errstate(all="ignore"):
             error = np.fmax.reduce(np.array(errors, float))
-        part = {"source": PREDICTED, "series": series, "panel": series, SPEED: float(speed), "surface": found["convexity"]}
+        part = {"source": PREDICTED, "series": series, "panel": series, SPEED: float(speed), "convexity": found["convexity"]}
         parts.append(pd.DataFrame(part | {c: found[c] for c in (CURVATURE, *columns)} | {ERROR: error}))
     parts += [_recorded(recorded, speeds, columns)]
     return assemble(
@@ -305,7 +305,7 @@ def fig_5_3(frame: pd.DataFrame) -> Figure:
     for ax, tag, column in zip(fig.subplots(2, 1), "ab", names, strict=True):
         style.limit_axes(ax, frame, SPEED, column)
         ends = {}
-        for label, rows in frame[frame["source"] == PREDICTED].groupby("surface", sort=False):
+        for label, rows in frame[frame["source"] == PREDICTED].groupby("convexity", sort=False):
             ax.plot(rows[SPEED], rows[column], marker="o", ms=3, color=CURVE_COLOURS[label], lw=1.1)
             ends[label] = rows[column].iloc[-1]
         recorded = frame[_is_recorded(frame)]
@@ -370,7 +370,7 @@ def frame_5_17(
     burst = _burst_frame(histories, meshes, coarse, reference, recorded, speeds=("10",), columns=(BURST_RATE,), ids=()).rename(
         columns={BURST_RATE: IMPULSE_RATE}
     )
-    burst = burst.drop(columns=["panel", "surface", SPEED]).assign(series=STROKED)
+    burst = burst.drop(columns=["panel", "convexity", SPEED]).assign(series=STROKED)
     return assemble(
         pd.concat([frame, burst], ignore_index=True),
         axis_rows(reference, CURVATURE, "T275"),

@@ -54,6 +54,11 @@ _LENGTH = "likeliest: contact length; a constant one of 10 mm is too long for a 
 _BULK = "mostly the bulk modulus, which does not relax with the shear modulus as the estimate lets the whole force do"
 
 
+_BURST = "likeliest: the energy hardly passes the threshold, which is that of one receptor; a recorded burst has no threshold"
+_FIBRE = "the axis is that of another receptor's recording; the constants are those of Figs 5-20 and 5-21"
+_PEAK = "the axis is that of a recording; the thesis too finds the dynamic peak off"
+
+
 def _at_2_mm(results: Results) -> str:
     """Reason of the steady force above its axis, with the force at the depth of the last measured point."""
     return f"{steady_force(results.histories[PLATE], 2e-3):.3g} N at 2 mm; {_LENGTH}"
@@ -77,6 +82,9 @@ REASONS: dict[str, str | Callable[[Results], str]] = {
     **{f"T{i:03d}": _RECEPTOR for i in (90, 94, 95, 96, 107, 109, 111, 113, 117, 119, 121, 160, 161, 203, 204, 207)},
     "T207a": _RECEPTOR,
     **{f"T{i}": _LINE_LOAD for i in (240, 241, 245, 247, 250)},
+    **{f"T{i}": _BURST for i in (220, 221, "221a", 223, 224, 269, 270, 271, 272)},
+    "T280": _PEAK,
+    **{f"T{i}": _FIBRE for i in (304, "304a")},
 }
 """Likeliest reason of a known difference, by id; used when the row is outside."""
 

@@ -13,7 +13,7 @@ from fingerpad.files import write_atomically
 
 DPI = 200
 FLOAT_FORMAT = "%.6g"
-TEXT_COLUMNS = ("source", "surface", "phase", "layer", "panel", "series", "quantity", "pad")
+TEXT_COLUMNS = ("source", "surface", "phase", "layer", "panel", "series", "quantity", "pad", "convexity")
 
 
 def write_frame(frame: pd.DataFrame, path: Path) -> None:

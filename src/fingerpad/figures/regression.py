@@ -50,7 +50,7 @@ TOLERANCES = {
     "velocity (mm/s)": 1e-6,
     "predicted_rate (impulses/s)": 1e-2,
     "rate_from_energy (impulses/s)": 1e-2,
-    "predicted_frequency (impulses/s)": 3e-2,
+    "predicted_frequency (impulses/s)": 1e-2,
     "burst_width (mm)": 1e-2,
     "burst_duration (s)": 1e-2,
     "burst_rate (impulses/s)": 1e-2,

@@ -110,7 +110,7 @@ def listed(values: Mapping[str, float], unit: str, digits: int = 3) -> str:
 
 def spreads(values: list[dict[str, float]]) -> dict[str, float]:
     """Spread (%) of each labelled value over the velocities: standard deviation over mean."""
-    return {k: 100 * float(np.std([v[k] for v in values]) / np.mean([v[k] for v in values])) for k in values[0]}
+    return {k: 100 * float(np.std([v[k] for v in values]) / (np.mean([v[k] for v in values]) or np.nan)) for k in values[0]}
 
 
 def _hardly_matters(trace: Trace) -> Callable[[Results], Trend]:
