@@ -9,14 +9,16 @@ import pytest
 import synthetic
 from fingerpad import load_scene, plan, simulate
 from fingerpad.figures import ridge_study
-from fingerpad.figures.direction import BESIDE, DEPTH, KEY, Case, both_ways, boundary, directional_index, islands, specimen_of
+from fingerpad.figures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
 from fingerpad.figures.features import energy
 from fingerpad.figures.numbers import Results
 from fingerpad.figures.ridge_rows import RIDGE_NUMBERS, RIDGE_TRENDS
 from fingerpad.scene import Receptors, Slide
 from fingerpad.scene_specimen import Specimen
 from fingerpad.specimen import RidgedPad, mesh_for
-from fingerpad.studies.ridges import AS_DRAWN, case_scene, ridges_drawn
+from fingerpad.studies import ridge_frames
+from fingerpad.studies import ridges as cases_of
+from fingerpad.studies.ridges import AS_DRAWN, FLANK, GRID, Case, boundary, case_scene, ridges_drawn
 
 pytestmark = pytest.mark.unit
 SCENES = Path(__file__).parents[1] / "config" / "scenes"
@@ -90,6 +92,12 @@ def test_boundary_is_where_the_mesh_has_it(base):
 # -- cases -----------------------------------------------------------------------------------------
 
 
+def test_cases_and_figures_mean_the_same_receptor():
+    assert (cases_of.DEPTH, cases_of.BESIDE) == (DEPTH, BESIDE)
+    assert {name: edge * 1e6 for name, edge in cases_of.EDGES.items()} == pytest.approx(ridge_study.MESHES)
+    assert set(AS_DRAWN) == set(ridge_study.DRAWN)
+
+
 def test_cases_are_named_and_vary_what_they_say(base):
     for name in ("75_0.65_coarse", "150_1_thesis", "0_0.65_thesis"):
         assert str(Case.named(name)) == name
@@ -140,15 +148,15 @@ def test_frames_are_drawn_from_themselves(made):
             ridges = "none" if not height else synthetic.RIDGES | {"inner": inner}
             own = scene | {"specimen": scene["specimen"] | {"ridges": ridges}}
             cases[f"{height}_0.65_{mesh}"] = stroke.assign_attrs(scene=json.dumps(own), cost=json.dumps({"nodes": 10}))
-    depths = {*ridge_study.GRID[0], DEPTH}
+    depths = {*GRID[0], DEPTH}
     for history in cases.values():
-        depths |= {place(history)[0] for place in ridge_study.READ.values()}
-    offsets = sorted({*ridge_study.GRID[1], -BESIDE, BESIDE, -ridge_study.FLANK, ridge_study.FLANK})
+        depths |= {place(history)[0] for place in ridge_frames.READ.values()}
+    offsets = sorted({*GRID[1], -BESIDE, BESIDE, -FLANK, FLANK})
     for name, history in cases.items():
         felt = lambda z, x: 100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))  # noqa: E731
         cases[name] = synthetic._receptors(history, sorted(depths), offsets, felt)
-    assert specimen_of(cases["0_0.65_thesis"])[1] is None
-    frames = ridge_study.frames(cases, made.histories, {})
+    assert ridge_frames.specimen_of(cases["0_0.65_thesis"])[1] is None
+    frames = ridge_frames.frames(cases, made.histories, {})
     assert set(frames) == set(ridge_study.STUDIES)
     profile = frames["offset"][frames["offset"]["series"].eq("inner ridges") & frames["offset"]["panel"].eq("profile")]
     beside = profile.set_index(ridge_study.OFFSET).loc[-46.0, ridge_study.INDEX]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from fingerpad.figures.inputs import read_results
 from fingerpad.figures.io import write_frame
-from fingerpad.figures.ridge_study import frames
+from fingerpad.studies.ridge_frames import frames
 
 out, *paths = sys.argv[1:]
 cases = [path for path in paths if Path(path).parent.parent.name == "ridges"]

@@ -1,40 +1,21 @@
 """The study of ridges: what a receptor feels of direction, against its place, ridge height, friction and mesh; outer ridges.
 
-Each figure is drawn from its data frame alone. The directional index is that of :mod:`fingerpad.figures.direction`.
+Each figure is drawn from its data frame alone, see :mod:`fingerpad.studies.ridge_frames`. The directional index is that of
+:mod:`fingerpad.figures.direction`.
 """
 
 from __future__ import annotations
 
-import json
 import textwrap
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 
-import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from fingerpad.figures.columns import DISTANCE, SED, P, X
-from fingerpad.figures.direction import (
-    AWAY,
-    BESIDE,
-    DEPTH,
-    FLANK,
-    GRID,
-    KEY,
-    Case,
-    both_ways,
-    boundary,
-    boundary_of,
-    directional_index,
-    islands,
-    specimen_of,
-)
-from fingerpad.figures.features import PRESSURE, SIMULATED, Histories, profile
-from fingerpad.figures.strokes import loaded
+from fingerpad.figures.direction import BESIDE, DEPTH, KEY
 from fingerpad.figures.style import COLOURS, GREY, INK, LAYER_COLOURS, NOTE_WIDTH, PAGE_WIDTH, styled
 
 OFFSET, INDEX, BAND = "offset (um)", "directional_index (1)", "discretisation_error (1)"
@@ -48,135 +29,18 @@ DRAWN = {
     "shifted": "straight sides, tip amid an element",
 }
 """Meshes with ridges drawn on the thesis's own elements, which the thesis does not describe."""
-OUTER = ("ridged_outer_stroke_right", "ridged_outer_stroke_left")
-Place = Callable[[xr.Dataset], tuple[float, float]]
-READ: dict[str, Place] = {
-    "thesis's place: 915 µm deep, x = −46 µm": lambda h: (DEPTH, -BESIDE),
-    "epidermis, 25 µm above the flank": lambda h: (round(boundary_of(h, FLANK) - AWAY, 9), -FLANK),
-    "dermis, 25 µm below the flank": lambda h: (round(boundary_of(h, FLANK) + AWAY, 9), -FLANK),
-}
-"""Receptors of the sweeps: (depth, offset from a tip) m."""
-LOOKS = dict(zip(READ, ((INK, "o", "-"), ("#c8553d", "s", (0, (4, 1.8))), ("#1f77a4", "^", (0, (1, 1.2)))), strict=True))
+RECEPTORS_SWEPT = (
+    "thesis's place: 915 µm deep, x = −46 µm",
+    "epidermis, 25 µm above the flank",
+    "dermis, 25 µm below the flank",
+)
+LOOKS = dict(
+    zip(RECEPTORS_SWEPT, ((INK, "o", "-"), ("#c8553d", "s", (0, (4, 1.8))), ("#1f77a4", "^", (0, (1, 1.2)))), strict=True)
+)
 DEFINITION = (
     "Simulated in plane strain, not measured. Directional index: (right − left) / (right + left) of the strain energy while the "
     "plate moves to the right and to the left, averaged over 2 to 4 mm of stroke."
 )
-
-
-# --- frames ----------------------------------------------------------------------------------------------------
-
-
-def frames(cases: Histories, strokes: Histories, coarse: Histories) -> dict[str, pd.DataFrame]:
-    """Data of every figure, by its name.
-
-    Args:
-        cases: short strokes, by the case's name. strokes, coarse: scenes :data:`OUTER` and the companions they have.
-    """
-    return {
-        "offset": offset_frame(cases),
-        "height": sweep_frame(cases, HEIGHT),
-        "friction": sweep_frame(cases, FRICTION),
-        "mesh": mesh_frame(cases),
-        "outer": outer_frame(strokes, coarse),
-    }
-
-
-def index_and_error(fine: xr.Dataset, coarse: xr.Dataset | None, *place: float) -> tuple[float, float]:
-    """Directional index at a place, and its difference to a companion's (NaN without)."""
-    value = directional_index(fine, *place)
-    return value, abs(value - directional_index(coarse, *place)) if coarse is not None else float("nan")
-
-
-def _of(cases: Histories, height: float, mesh: str) -> xr.Dataset:
-    return cases[str(Case(height, KEY[1], mesh))]
-
-
-def offset_frame(cases: Histories) -> pd.DataFrame:
-    """Index over depth and offset round a ridge on the fine mesh, the boundary, and the profile at the thesis's depth."""
-    fine = _of(cases, KEY[0], "fine")
-    rows = [("map", "inner ridges", x, z, directional_index(fine, z, x)) for z in GRID[0] for x in GRID[1]]
-    parts = [pd.DataFrame(rows, columns=["panel", "series", OFFSET, RECEPTOR, INDEX])]
-    x = np.linspace(GRID[1][0], GRID[1][-1], 121)
-    depths = [boundary(*specimen_of(fine), at) for at in x]
-    parts.append(pd.DataFrame({"panel": "boundary", OFFSET: x, RECEPTOR: depths}))
-    pairs = {
-        "no ridges": (_of(cases, 0, "thesis"), _of(cases, 0, "coarse")),
-        "inner ridges": (fine, _of(cases, KEY[0], "thesis")),
-    }
-    for series, (history, companion) in pairs.items():
-        rows = []
-        for at in sorted({*GRID[1], -BESIDE, BESIDE}):
-            right, left = both_ways(history, DEPTH, at)
-            rows.append((at, *index_and_error(history, companion, DEPTH, at), right.mean(), left.mean()))
-        profile_rows = pd.DataFrame(rows, columns=[OFFSET, INDEX, BAND, RIGHT, LEFT])
-        parts.append(profile_rows.assign(panel="profile", series=series, **{RECEPTOR: DEPTH}))
-    frame = pd.concat(parts, ignore_index=True)
-    frame[[OFFSET, RECEPTOR]] = (frame[[OFFSET, RECEPTOR]] * 1e6).round(3)
-    frame.insert(0, "source", SIMULATED)
-    return frame
-
-
-def sweep_frame(cases: Histories, column: str) -> pd.DataFrame:
-    """Index of the receptors :data:`READ` against the height of the ridges or friction, with the layer each lies in."""
-    rows = []
-    for name, history in cases.items():
-        case = Case.named(name)
-        at, other, fixed = (case.height, case.friction, KEY[1]) if column == HEIGHT else (case.friction, case.height, KEY[0])
-        if case.mesh != "thesis" or other != fixed:
-            continue
-        coarse = cases.get(str(replace(case, mesh="coarse")))
-        for series, place in READ.items():
-            depth, offset = place(history)
-            layer = "epidermis" if depth < boundary_of(history, offset) else "dermis"
-            rows.append((SIMULATED, series, layer, at, *index_and_error(history, coarse, depth, offset)))
-    frame = pd.DataFrame(rows, columns=["source", "series", "layer", column, INDEX, BAND])
-    return frame.sort_values(["series", column], ignore_index=True)
-
-
-def mesh_frame(cases: Histories) -> pd.DataFrame:
-    """Energies both ways and the index at the thesis's place: on meshes that resolve the ridges, and drawn on its elements."""
-    rows = []
-    for mesh in (*MESHES, *DRAWN):
-        history = cases.get(str(Case(*KEY, mesh)))
-        if history is None:
-            continue
-        right, left = (values.mean() for values in both_ways(history, DEPTH, -BESIDE))
-        panel, edge = ("resolved", MESHES[mesh]) if mesh in MESHES else ("drawn", MESHES["thesis"])
-        nodes = json.loads(history.attrs["cost"])["nodes"]
-        index = directional_index(history, DEPTH, -BESIDE)
-        rows.append((SIMULATED, panel, mesh, edge, nodes, right, left, index))
-    return pd.DataFrame(rows, columns=["source", "panel", "series", EDGE, NODES, RIGHT, LEFT, INDEX])
-
-
-def outer_frame(strokes: Histories, coarse: Histories) -> pd.DataFrame:
-    """Pressure of the islands at the end of the press and of the stroke, their number on the way, and the receptors' energy."""
-    parts = []
-    for name, way in zip(OUTER, ("right", "left"), strict=True):
-        stroke = loaded(strokes[name])
-        way_mm = 1e3 * abs(stroke.stroke_distance.values)
-        for x in (-BESIDE, 0.0, BESIDE):
-            at = int(np.hypot(stroke.receptor_depth.values - DEPTH, stroke.receptor_offset.values - x).argmin())
-            rows = {
-                "panel": way,
-                "series": f"{x * 1e6:.0f} µm",
-                DISTANCE: way_mm,
-                SED: stroke.strain_energy_density.values[:, at],
-            }
-            parts.append(pd.DataFrame(rows))
-    stroke = loaded(strokes[OUTER[0]])
-    way_mm = 1e3 * abs(stroke.stroke_distance.values)
-    for series, index in {"pressed": 0, "stroked by 50 mm": -1}.items():
-        x, p = profile(stroke, index, PRESSURE)
-        shown = (abs(x) < 4.5e-3) & (stroke.skin_y.values > 0)
-        parts.append(pd.DataFrame({"panel": "pressure", "series": series, X: 1e3 * x[shown], P: p[shown]}))
-    for series, history in {"simulated mesh": stroke, "companion": coarse.get(OUTER[0])}.items():
-        if history is not None:
-            one = loaded(history)
-            rows = {DISTANCE: 1e3 * abs(one.stroke_distance.values), "islands (1)": islands(one)}
-            parts.append(pd.DataFrame({"panel": "islands", "series": series, **rows}))
-    frame = pd.concat(parts, ignore_index=True)
-    frame.insert(0, "source", SIMULATED)
-    return frame
 
 
 # --- pictures --------------------------------------------------------------------------------------------------
@@ -205,16 +69,16 @@ def offset(frame: pd.DataFrame) -> Figure:
     profile_rows = frame[frame["panel"] == "profile"]
     note = [
         DEFINITION,
-        f"Black line: boundary of epidermis and dermis; dashed: {DEPTH * 1e6:.0f} µm, circles: the thesis's three receptors. "
-        "Map on the fine mesh, no smoothing. Band: difference to a mesh of twice the edge. "
-        f"On either side of the tip ({DEPTH * 1e6:.0f} µm) the middle lies in the epidermis, the rest in the dermis.",
+        f"Black line: boundary of epidermis and dermis; dashed: {DEPTH * 1e6:.0f} µm, circles: the thesis's three receptors, the middle "
+        "one in the epidermis. Map on the fine mesh, not smoothed. Band (where wider than the line): difference to a mesh of twice "
+        "the edge.",
     ]
     fig = _figure("Ridges: directional index round a ridge", note, 6.4)
     top, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1.25, 1.0])
     grid = frame[frame["panel"] == "map"].pivot(index=RECEPTOR, columns=OFFSET, values=INDEX)
     shown = top.pcolormesh(grid.columns, grid.index, grid, cmap="RdBu_r", vmin=-0.6, vmax=0.6, shading="nearest", rasterized=True)
     bar = fig.colorbar(shown, ax=top, pad=0.015, aspect=18)
-    bar.set_label("directional index")
+    bar.set_label("directional index (red: more to the right)")
     edge = frame[frame["panel"] == "boundary"]
     top.plot(edge[OFFSET], edge[RECEPTOR], color=INK, lw=1.5)
     top.axhline(DEPTH * 1e6, color=INK, lw=0.8, ls=(0, (4, 2)))
@@ -349,7 +213,7 @@ def outer(frame: pd.DataFrame) -> Figure:
             ax.plot(rows[DISTANCE], rows[SED], color=colour, ls=line, label=f"x = {series}")
         ax.set(xlabel="stroke distance (mm)", title=f"({tag}) plate to the {way}", xlim=(0, 50), ylim=(0, top))
     axes[2].set_ylabel("strain energy density (Pa)")
-    axes[3].legend(loc="upper right")
+    axes[3].legend(loc="center right", bbox_to_anchor=(1.0, 0.52))
     return fig
 
 

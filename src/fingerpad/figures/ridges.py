@@ -63,10 +63,8 @@ def frame_5_25(histories: Histories, meshes: Meshes, coarse: Histories, referenc
 @style.styled
 def fig_5_25(frame: pd.DataFrame) -> Figure:
     """The ridged mesh, layers shaded, and a part of it enlarged."""
-    note = [
-        NOTE + " Circles: receptors of Figs 5-28 and 5-29.",
-        "The thesis states neither pitch nor height of its ridges: 0.48 mm and 0.15 mm here, sources in config/reference.",
-    ]
+    sizes = "The thesis states neither pitch nor height of its ridges: 0.48 mm and 0.15 mm here, see config/reference/ridges.csv."
+    note = [NOTE, sizes, "Circles: the receptors of Figs 5-28 and 5-29."]
     fig = style.new_figure(frame, "5-25", "Finite element mesh of the fingerpad with inner ridges", 3.75, note=note)
     axes = fig.subplots(1, 2, width_ratios=[1.32, 1.0])
     for ax, line in zip(axes, (0.12, 0.3), strict=True):

@@ -5,14 +5,13 @@ They are shorter than the scenes' strokes, what is asked for has settled by then
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
 from fingerpad.effects import plan
-from fingerpad.figures.direction import AWAY, BESIDE, DEPTH, FLANK, GRID, Case, boundary, tip_at_depth
 from fingerpad.scene import Discretisation, Receptors, Scene, Slide
 from fingerpad.simulation import simulate
 from fingerpad.specimen import OutlineCurve, RidgedPad, mesh_for
@@ -29,6 +28,46 @@ EDGES = {"coarse": 268.8e-6, "thesis": 134.4e-6, "fine": 67.2e-6}
 AS_DRAWN = {"curved": (False, 0.0), "straight": (True, 0.0), "shifted": (True, 0.5)}
 """Meshes with the ridges drawn on the thesis's own 0.12 mm elements: whether sides are straight, and elements between the ridge's
 tip and the nearest element corner (the thesis does not say how its ridges were meshed)."""
+DEPTH, BESIDE = 915e-6, 46e-6
+"""The thesis's receptor depth and offset, m (not those of the figures, which would bring all of them in)."""
+FLANK, AWAY = 120e-6, 25e-6
+"""Offset of a flank of the ridges, and how far from the boundary the receptors are that follow it, m."""
+GRID = tuple(np.round(np.arange(700, 1101, 20) * 1e-6, 9)), tuple(np.round(np.arange(-240, 241, 20) * 1e-6, 9))
+"""Depths and offsets of a map round a ridge, m."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A short stroke: ridge height in um (0: the plain pad), coefficient of friction, name of the mesh."""
+
+    height: float
+    friction: float
+    mesh: str
+
+    @classmethod
+    def named(cls, name: str) -> Case:
+        """The case that `str` names."""
+        height, friction, mesh = name.split("_")
+        return cls(float(height), float(friction), mesh)
+
+    def __str__(self) -> str:
+        return f"{self.height:g}_{self.friction:g}_{self.mesh}"
+
+
+def boundary(outline: Outline, ridges: Ridges | None, x: float) -> float:
+    """Depth (m) at which the epidermis ends at the lateral position `x` (m, near the apex, of the boundary itself)."""
+    depth = outline.epidermis_thickness
+    if ridges is None:
+        return depth
+    pad = RidgedPad(outline, ridges)
+    for _ in range(8):
+        depth = pad.interface + float(pad.interface_shift(x / (1 - depth / outline.apex_radius)))
+    return depth
+
+
+def tip_at_depth(outline: Outline, phase: float) -> float:
+    """Lateral position (m) at the thesis's depth of a ridge tip that the skin has at `phase` (m)."""
+    return phase * (1 - DEPTH / outline.apex_radius)
 
 
 def case_scene(base: Scene, case: Case) -> Scene:
