@@ -69,9 +69,9 @@ def offset(frame: pd.DataFrame) -> Figure:
     profile_rows = frame[frame["panel"] == "profile"]
     note = [
         DEFINITION,
-        f"Black line: boundary of epidermis and dermis; dashed: {DEPTH * 1e6:.0f} µm, circles: the thesis's three receptors, the middle "
-        "one in the epidermis. Map on the fine mesh, not smoothed. Band (where wider than the line): difference to a mesh of twice "
-        "the edge.",
+        f"Black line: boundary of epidermis and dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the thesis's three receptors, the "
+        "middle one in the epidermis. Map on the fine mesh, not smoothed. Band (where wider than the line): difference to a mesh "
+        "of twice the edge.",
     ]
     fig = _figure("Ridges: directional index round a ridge", note, 6.4)
     top, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1.25, 1.0])
