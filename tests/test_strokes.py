@@ -110,6 +110,8 @@ def test_error_of_a_trace_is_relative_to_the_trace_whatever_the_outputs(made):
     fine, coarse = made["stroke_10"], synthetic.stroke("stroke_10", 1.01)
     assert st.rms_error(fine, coarse, centre_pressure) == pytest.approx(1.0, rel=1e-6)
     assert np.isnan(st.rms_error(fine, None, centre_pressure))
+    back = [h.assign(stroke_distance=-h["stroke_distance"]) for h in (fine, coarse)]
+    assert st.rms_error(*back, centre_pressure) == pytest.approx(1.0, rel=1e-6)  # strokes the other way
     thinned = coarse.isel(time=np.r_[:4, 4 : coarse.sizes["time"] : 2])
     assert 1.0 < st.rms_error(fine, thinned, centre_pressure) < 30
 

@@ -178,10 +178,11 @@ def rms_error(fine: xr.Dataset, coarse: xr.Dataset | None, *traces: Trace) -> fl
     if coarse is None:
         return float("nan")
     fine, coarse = loaded(fine), loaded(coarse)
+    way = np.sign(distance(fine)[-1])  # distances grow downwards in strokes the other way
     worst = 0.0
     for trace in traces:
         own = trace(fine)
-        other = np.interp(distance(fine), distance(coarse), trace(coarse))
+        other = np.interp(way * distance(fine), way * distance(coarse), trace(coarse))
         size = float(np.sqrt(np.mean(own**2)))
         worst = max(worst, 100 * float(np.sqrt(np.mean((own - other) ** 2))) / size if size else 0.0)
     return worst
