@@ -233,6 +233,29 @@ def test_two_peaks_of_the_rate_and_their_distance(made):
     assert not _holds(twins | {"stroke_5": wider}, "TR73").holds
 
 
+def test_plate_answered_at_the_beginning_one_way_and_throughout_the_other():
+    plates = {name: synthetic.plate_stroke(name) for name in ("ridged_stroke_left", "ridged_stroke_right")}
+    d = abs(plates["ridged_stroke_right"]["stroke_distance"].values)
+
+    def felt(left, right):
+        levels = {"ridged_stroke_left": left, "ridged_stroke_right": right}
+        return {k: _scaled_to(h, levels[k]) for k, h in plates.items()}
+
+    def _scaled_to(history, trace):
+        values = np.repeat(trace[:, None], history.sizes["receptor"], axis=1)
+        return history.assign(strain_energy_density=(("time", "receptor"), values))
+
+    steady, onset = np.full(len(d), 250.0), np.where(d < 3e-3, 250.0, 100.0)
+    assert _holds(felt(steady, onset), "TR74").holds and _holds(felt(onset, steady), "TR74").holds
+    assert not _holds(felt(steady, steady), "TR74").holds
+    assert not _holds(felt(steady, np.full(len(d), 100.0)), "TR74").holds  # no response at all
+    frame = _frame(felt(steady, onset), "5-27")
+    ticks = frame[frame["panel"] == "raster"]
+    assert ticks.loc[ticks["series"] == "right", "stroke_distance (mm)"].max() < 5
+    assert ticks.loc[ticks["series"] == "left", "stroke_distance (mm)"].max() > 45
+    FIGURES["5-27"].draw(frame)
+
+
 # --- numbers -------------------------------------------------------------------------------------------
 
 

@@ -58,6 +58,7 @@ from fingerpad.figures.responses import (
     stroke_histogram,
     stroke_law,
 )
+from fingerpad.figures.ridges import RIDGED
 from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
 from fingerpad.figures.strokes import FULL, SPEEDS, distance, energy_at, label_errors, loaded, rms_error, time_of
 
@@ -70,7 +71,7 @@ TRIAL = "trial (1)"
 SEED = 1999
 """Of every predicted raster: the same pictures every time."""
 
-STROKES_SHOWN = {"5-1": 10, "5-19": 12, "5-22": 4, "5-23": 12}
+STROKES_SHOWN = {"5-1": 10, "5-19": 12, "5-22": 4, "5-23": 12, "5-27": 10}
 """Repeated strokes that the thesis's figures show or average."""
 
 BY_EQUATION = (
@@ -199,6 +200,64 @@ def fig_5_23(frame: pd.DataFrame) -> Figure:
     style.limit_axis(axes[-1], frame, DISTANCE, "x")
     axes[len(axes) // 2].set_ylabel("predicted frequency\n(impulses/s)")
     axes[-1].set_xlabel("distance (mm)")
+    return fig
+
+
+# --- 5-27 ----------------------------------------------------------------------------------------------
+
+ASIDE = 46e-6  # m, to the right of the centre, where section 5.5 has one of its receptors
+WAYS = {"right": "(a) plate stroked to the right", "left": "(b) plate stroked to the left"}
+
+
+def plate_rate(stroke: xr.Dataset, offset: float = ASIDE) -> pd.DataFrame:
+    """Predicted rate of a receptor beside the centre while a plate slides, stroke distances counted up either way."""
+    rate = predicted_rate(loaded(stroke), SHOWN_DEPTH, offset=offset)
+    return rate.assign(**{DISTANCE: rate[DISTANCE].abs()})
+
+
+def frame_5_27(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
+    """Predicted impulses of ten strokes of a plate over a pad with inner ridges, each way."""
+    parts, right = [], RIDGED["right"]
+    for way, name in RIDGED.items():
+        rate = plate_rate(histories[name])
+        ticks = raster(rate, STROKES_SHOWN["5-27"], SEED).rename(columns={"trial": TRIAL})[[TRIAL, DISTANCE]]
+        # the two ways are mirror images: one companion, read on either side, serves both
+        side = partial(_plate_trace, offset=ASIDE if way == "right" else -ASIDE)
+        error = rms_error(histories[right], coarse.get(right), side)
+        for panel, rows in ((RASTER, ticks), ("rate", rate[[DISTANCE, IMPULSE_RATE]])):
+            parts.append(
+                rows.assign(source=PREDICTED, series=way, panel=panel, **{RECEPTOR: round(SHOWN_DEPTH * 1e6), ERROR: error})
+            )
+    return assemble(pd.concat(parts, ignore_index=True))
+
+
+def _plate_trace(stroke: xr.Dataset, offset: float) -> np.ndarray:
+    """Predicted rate at every output, after a kink between legs where there is one."""
+    return predicted_rate(stroke, SHOWN_DEPTH, offset=offset).drop_duplicates(TIME, keep="last")[IMPULSE_RATE].to_numpy()
+
+
+@style.styled
+def fig_5_27(frame: pd.DataFrame) -> Figure:
+    """Ten predicted rasters each way, and their rate below."""
+    title = "Predicted impulses of a flat plate stroked both ways at 10 mm/s, inner ridges"
+    where = "The receptor lies 46 µm to the right of the centre, under the flank of a ridge."
+    most = frame.groupby("series").size().idxmax()  # an error relative to next to no response tells nothing
+    how = f"to the {most}, {HOW}"
+    note = [*style.footnote(frame[frame["series"] == most], how), _equation().replace("under the centre", "deep"), where]
+    fig = style.new_figure(frame, "5-27", title, 4.6, note=note)
+    (*ticks,), (*rates,) = fig.subplots(2, 2, sharex=True, sharey="row", height_ratios=[1.6, 1])
+    for way, top, below in zip(WAYS, ticks, rates, strict=True):
+        rows = frame[frame["series"] == way]
+        _draw_raster(top, rows, "5-27")
+        rate = rows[rows["panel"] == "rate"]
+        below.plot(rate[DISTANCE], rate[IMPULSE_RATE], color=style.INK, lw=1.2)
+        if not (rows["panel"] == RASTER).any():
+            top.text(0.5, 0.5, "no impulse predicted", transform=top.transAxes, ha="center", color=style.GREY)
+        top.set_title(WAYS[way])
+        below.set(xlabel="stroke distance (mm)", xlim=(0, 50))
+    rates[0].set_ylim(0, None)
+    ticks[1].set_ylabel("")
+    rates[0].set_ylabel("predicted rate\n(impulses/s)")
     return fig
 
 
@@ -585,5 +644,6 @@ FIGURES = (
     FigureSpec("5-22", "Predicted impulses of a shallow receptor", _TEN,
                partial(_raster_frame, number="5-22", low=40.0, high=80.0, axis="T300", depth=SHALLOW_DEPTH), fig_5_22),
     FigureSpec("5-23", "Predicted frequency of a shallow receptor", _FULL, frame_5_23, fig_5_23),
+    FigureSpec("5-27", "Predicted impulses of a plate stroked both ways", tuple(RIDGED.values()), frame_5_27, fig_5_27,
+               companions=(RIDGED["right"],)),
 )  # fmt: skip
-"""Without 5-27, which is of other strokes."""

@@ -209,14 +209,16 @@ def fit_nodes(law: str, nodes: pd.DataFrame) -> np.ndarray:
 # -- rates and impulses ----------------------------------------------------------------------------------------------------
 
 
-def predicted_rate(history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE) -> pd.DataFrame:
-    """Impulse rate of a slowly adapting receptor by Eq 4-5 or 5-1 at a depth (m) under the centre.
+def predicted_rate(
+    history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, offset: float = 0.0
+) -> pd.DataFrame:
+    """Impulse rate of a slowly adapting receptor by Eq 4-5 or 5-1 at a depth (m) under the centre, or at an offset (m) beside.
 
     Returns:
         Columns time, strain energy, its rate, what each contributes, and the rate (impulses/s); for a stroke the stroke
         distance too. The time of a kink between legs is there twice (see `fingerpad.receptors.laws.rate_by_leg`).
     """
-    return _rate_frame(history, energy(history, depth), law)
+    return _rate_frame(history, energy(history, depth, offset), law)
 
 
 def predicted_rate_from_pressure(

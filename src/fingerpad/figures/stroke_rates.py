@@ -18,6 +18,7 @@ from fingerpad.figures.chapter5_responses import (
     WITHIN_350,
     burst_values,
     impulses_of,
+    plate_rate,
 )
 from fingerpad.figures.columns import DISTANCE, RATE, SED, TIME
 from fingerpad.figures.features import scene_of
@@ -36,6 +37,7 @@ from fingerpad.figures.responses import (
     skin_sample,
     stroke_histogram,
 )
+from fingerpad.figures.ridges import RIDGED
 from fingerpad.figures.stroke_trends import ALIKE, HARDLY, PROMINENCE, listed, spreads
 from fingerpad.figures.strokes import FULL, arcs, convexities, distance, loaded, passing, place
 from fingerpad.figures.verdicts import Trend, everywhere
@@ -301,6 +303,23 @@ def _closer(results: Results) -> Trend:
     return everywhere(outcome, "mm apart from K = 52 on, " + "; ".join(notes))
 
 
+BEGINNING = 5.0
+"""Stroke distance (mm) that is the beginning of a plate's stroke."""
+
+
+def _one_way(results: Results) -> Trend:
+    """One way mostly at the beginning, the other throughout; a receptor beside the centre of a pad with inner ridges."""
+    found = {}
+    for way, name in RIDGED.items():
+        rate = plate_rate(results.histories[name])
+        grown = integrated(rate[TIME], rate[IMPULSE_RATE])
+        found[way] = float(grown[-1]), float(np.interp(BEGINNING, rate[DISTANCE], grown))
+    (few, early), (many, first) = sorted(found.values())
+    holds = few >= NONE_LEFT and early > few / 2 and many > 2 * few and first < many / 2
+    note = "; ".join(f"to the {way}: {n:.2g} impulses, {b:.2g} of them in the first 5 mm" for way, (n, b) in found.items())
+    return Trend(holds, many / max(few, 1e-9), f"{note}; mean numbers of a stroke, receptor 46 um to the right")
+
+
 RATE_TRENDS: dict[str, Callable[[Results], Trend]] = {
     "T301": _two_peaks(("10",)),
     "TR60": _agrees,
@@ -317,5 +336,6 @@ RATE_TRENDS: dict[str, Callable[[Results], Trend]] = {
     "TR71": _mostly_rate,
     "TR72": _two_peaks(FULL),
     "TR73": _closer,
+    "TR74": _one_way,
 }
 """Every trend of predicted rates that has a row, by id."""
