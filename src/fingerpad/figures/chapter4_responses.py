@@ -395,9 +395,9 @@ def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
         names = ["flat" if label == "flat" else label for label in group["surface"]]
         at = group[[x, y]].mean()
         across, up = ax.transLimits.transform(at)
-        low = up < 0.06
-        how = {"va": "bottom" if low else "top", "ha": "right" if low or across > 0.95 else "left"}
-        away = (-5 if how["ha"] == "right" else 5, 4 if low else -4)
+        left = up < 0.06 or across > 0.9  # at the floor and the right end labels are above to the left
+        how = {"va": "bottom" if left else "top", "ha": "right" if left else "left"}
+        away = (-5, 4) if left else (5, -4)
         ax.annotate(", ".join(names), at, away, textcoords="offset points", fontsize=7, color=style.GREY, **how)
 
 
@@ -517,7 +517,10 @@ def fig_4_17(frame: pd.DataFrame) -> Figure:
         "Eq 4-1, a set for each": (P_LAW, {"ls": (0, (4, 1.5)), "lw": 0.9, "color": style.GREY}),
     }
     wide = frame.assign(**{P: frame[P].fillna(frame[P_LAW])})
-    for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), frame[is_simulated(frame)].groupby(NODE), strict=True)):
+    nodes = frame[is_simulated(frame)].groupby(NODE)
+    for ax in axes.ravel()[len(nodes) :]:  # a coarse mesh has fewer nodes in contact
+        ax.set_visible(False)
+    for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), nodes, strict=False)):
         for series, (column, look) in looks.items():
             own = rows[rows["series"] == series]
             ax.plot(own[TIME], own[column], **look)
@@ -782,7 +785,7 @@ def _draw_mean_rates(frame: pd.DataFrame, number: str, depth: str) -> Figure:
         f"{LAW_NOTE}, {depth} under the centre.{more} Left: mean over the hold; the recorded rates are not public. Middle: "
         "Goodwin, "
         "Browning and Wheat (1995), digitised by a third party, impulses in the first second (force rate not stated). Right: "
-        "TouchSim (Saal et al. 2017), a half-space, last second of its hold after a ramp of 0.1 s.",
+        "TouchSim (Saal et al. 2017), a half-space, the last second of its hold.",
         how=_HOW,
     )
     title = f"Predicted mean rate of the hold from strain energy at {depth}, 40 gf/s"
