@@ -115,7 +115,15 @@ def fig_5_26(frame: pd.DataFrame) -> Figure:
             rows = frame[(frame["panel"] == panel) & (frame["surface"] == label)]
             ax.plot(rows[TIME], rows[SED], color=style.COLOURS[label])
             ends[label] = (rows[TIME].iloc[-1], rows[SED].iloc[-1])
-        style.label_ends(ax, ends, 2.6, "1/m")
+        if panel == next(iter(PLACES)):  # far below the axis's end: enlarged, in the colours of the other panel's labels
+            large = ax.inset_axes((0.16, 0.4, 0.72, 0.5))
+            for line in ax.get_lines():
+                large.plot(*line.get_data(), color=line.get_color(), lw=1.1)
+            large.set(xlim=(0, 2.6), ylim=(0, 1.06 * max(frame.loc[frame["panel"] == panel, SED])))
+            large.set_title("enlarged", fontsize=7.5)
+            large.tick_params(labelsize=7)
+        else:
+            style.label_ends(ax, ends, 2.6, "1/m")
         ax.set(xlabel="time (s)", title=f"({tag}) {panel}", xlim=(0, 3.05))
     axes[0].set_ylabel("strain energy density (Pa)")
     return fig
