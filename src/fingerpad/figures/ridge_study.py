@@ -120,10 +120,10 @@ def _sweep(frame: pd.DataFrame, column: str, title: str, xlabel: str, extra: str
         if series == next(iter(LOOKS)) and column == HEIGHT:  # its layer changes with the height
             for layer, part in rows.groupby("layer", sort=False):
                 _curve(ax, part, column, colour, marker, line, series if layer == "dermis" else "")
-                for _, row in part.iterrows():
-                    if layer == "epidermis":
-                        ax.annotate("in the epidermis", (row[column], row[INDEX]), (0, 7), textcoords="offset points",
-                                    ha="center", fontsize=7)  # fmt: skip
+                if layer == "epidermis":
+                    first = part.iloc[0]
+                    ax.annotate("in the epidermis", (first[column], first[INDEX]), (0, 7), textcoords="offset points",
+                                ha="center", fontsize=7)  # fmt: skip
         else:
             _curve(ax, rows, column, colour, marker, line, series)
     ax.axhline(0, color=GREY, lw=0.6)
