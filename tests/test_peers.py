@@ -13,7 +13,7 @@ def test_both_packages_solve_the_same_press():
     """Force, largest displacement and strain energy agree to the tolerance of the solver, and nothing is pulled."""
     scene, chosen, mesh = press(0.3)
     answer, simulation = ours(scene, chosen, mesh)
-    other, pushes = converged(scene, mesh, simulation, None)
+    other, pushes = converged(scene, mesh, simulation)
     assert other.force == pytest.approx(answer.force, rel=1e-4)
     assert other.displacement == pytest.approx(answer.displacement, rel=1e-4)
     assert other.energy == pytest.approx(answer.energy, rel=1e-5)

@@ -30,7 +30,7 @@ FAST = (
 
 def check(name, halve):
     case, done = CATALOGUE[name], run(CATALOGUE[name], halve=halve)
-    allowed = (STABLE, CLEAN) if case.hopeless else (STABLE,)
+    allowed = (STABLE, CLEAN) if case.may_fail else (STABLE,)
     assert done.outcome in allowed, f"{done.outcome}: {done.message}"
     if done.outcome == CLEAN:
         assert "try" in done.message and done.history.sizes["time"] > 1
@@ -103,7 +103,7 @@ def test_checkerboard_sees_what_alternates_and_nodes_that_lift_off():
     wave = (-1.0) ** np.arange(41)
     assert index(smooth) < 0.03
     assert index(smooth * (1 + 0.2 * wave)) > 0.1
-    assert index(smooth * (1 + wave)) > 0.3
+    assert index(smooth * (1 + wave)) > 0.25
     assert np.isnan(index(np.where(np.abs(x) < 0.12, smooth, 0)))
 
 

@@ -16,6 +16,7 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.effects import RULES, Plan, PlanError, Rules, plan
+from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.scene import Scene
 from fingerpad.simulation import simulate
 from fingerpad.studies.hard_cases import FLAT, RAMP, TWO_WAVES, cylinder, depth, force, hold, scene_of, slide
@@ -263,7 +264,7 @@ def verdicts(count: int = SCENES, seed: int = SEED) -> pd.DataFrame:
         draft = replace(draft, effects=chosen.effects, state=chosen.state, timed=chosen.timed)
         base = simulate(scene, draft)
         for effect, ways in alternatives(scene, draft).items():
-            worth, of = min(_largest(changes(base, simulate(scene, way))) for way in ways)
+            worth, of = _worth(scene, base, ways)
             on = chosen.effects[effect].on
             dropped = on if effect == "symmetry" else not on
             rows.append(
@@ -274,6 +275,17 @@ def verdicts(count: int = SCENES, seed: int = SEED) -> pd.DataFrame:
                 }
             )  # fmt: skip
     return pd.DataFrame(rows)
+
+
+def _worth(scene: Scene, base: xr.Dataset, ways: list[Plan]) -> tuple[float, str]:
+    """The change by the best of some ways, and of what; nan where none of them can be solved."""
+    found = []
+    for way in ways:
+        try:
+            found.append(_largest(changes(base, simulate(scene, way))))
+        except NonConvergence as failure:
+            print(f"{scene.name}: {failure}", flush=True)
+    return min(found, default=(np.nan, ""))
 
 
 def _largest(found: Mapping[str, float]) -> tuple[float, str]:
@@ -298,7 +310,9 @@ def alternatives(scene: Scene, draft: Plan) -> dict[str, list[Plan]]:
 
 
 def verdict(dropped: bool, share: float) -> str:
-    """Of a choice whose effect is worth ``share`` of the accuracy."""
+    """Of a choice whose effect is worth ``share`` of the accuracy; nan: the other choice could not be solved."""
+    if np.isnan(share):
+        return "no other way to compare"
     if dropped:
         return "rightly left out" if share <= 1 else "wrongly left out"
     return "rightly carried" if share >= KNOWN_SAFE else "carried for nothing"
@@ -314,7 +328,7 @@ def evidence(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
     """
     chosen = pairs[["effect", "scene", "planned", "change", "of", "cost ratio"]].replace({"planned": {True: "on", False: "off"}})
     rows = []
-    for (effect, choice), part in found.groupby(["effect", "planned"]):
+    for (effect, choice), part in found.dropna(subset="share").groupby(["effect", "planned"]):
         worst = part.loc[part["share"].idxmax()]
         rows.append(
             {

@@ -171,7 +171,7 @@ def run(case: Case, method: str = METHODS[0], halve: bool = True) -> Run | None:
     if history is None:
         return None
     measured = measures(history)
-    if case.hopeless:
+    if case.may_fail:
         error = history.attrs["estimated_error"]
         return Run(history, True, STABLE if error >= 0.5 else SILENT, f"estimated error {error:.2g}", measured)
     if halve:
