@@ -174,7 +174,7 @@ class Simulation:
         drift = [
             abs(now - before)
             for now, before, record, last in zip(missing[1:], missing, records[1:], records, strict=False)
-            if record.distance != last.distance and record.leg == last.leg
+            if record.leg == last.leg and hasattr(self.scene.motion[record.leg], "slide")
         ]
         lost = sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
         return float(max(error, lost, 0.5 if touching < 4 else 0.0))

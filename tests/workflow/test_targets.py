@@ -43,6 +43,7 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     assert jobs.pop("stroke_with_friction") == sweep
     outputs = jobs.pop("calibrate") | jobs.pop("calibrate_prony") | jobs.pop("calibrate_friction")
     assert {path for path in outputs if not path.endswith(".csv")} == {"results/thesis/specimens"}
+    assert jobs.pop("strain_energy_meanings") == {f"figures/studies/strain_energy_meanings.{k}" for k in ("png", "csv")}
     assert jobs.pop("ridge_figure") == {f"figures/studies/ridges_{n}.{k}" for n in RIDGES for k in ("png", "csv")}
     assert jobs.pop("ridge_data") == {f"results/thesis/ridges/{n}.csv" for n in RIDGES}
     cases = {f"{h:g}_0.65" for h in thesis["ridge_heights"]} | {f"150_{mu:g}" for mu in thesis["ridge_frictions"]}
