@@ -8,7 +8,7 @@ from fingerpad import load_scene, simulate
 from fingerpad.figures.direction import islands
 from fingerpad.scene import Cylinder, Flat
 from fingerpad.scene_specimen import Specimen
-from test_strokes import LOAD, slide, sound_stroke
+from test_hard_strokes import LOAD, slide, sound_stroke
 
 pytestmark = pytest.mark.stability
 PRESS = force(20, 40)
