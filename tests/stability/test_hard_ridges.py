@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from test_hard_cases import MM, SCENES, force, scene
+from test_hard_strokes import LOAD, slide, sound_stroke
 
 from fingerpad import load_scene, simulate
 from fingerpad.figures.direction import islands
 from fingerpad.scene import Cylinder, Flat
 from fingerpad.scene_specimen import Specimen
-from test_hard_strokes import LOAD, slide, sound_stroke
 
 pytestmark = pytest.mark.stability
 PRESS = force(20, 40)
