@@ -9,13 +9,14 @@ import pytest
 import synthetic
 from fingerpad.figures.comparison import COLUMNS, thesis_comparison
 from fingerpad.figures.features import centre_node, scene_name
+from fingerpad.figures.io import markdown, publish_table
 from fingerpad.figures.numbers import GIVEN, NUMBERS, Results
 from fingerpad.figures.ridge_rows import RIDGE_NUMBERS
 from fingerpad.figures.sensitivity import QUANTITIES, SHAPES, VARIANTS, variant_scene
 from fingerpad.figures.spec import read_reference
 from fingerpad.figures.stroke_numbers import STROKE_NUMBERS
 from fingerpad.figures.stroke_rates import STROKE_RATE_NUMBERS
-from fingerpad.figures.tables import TABLES, markdown, publish_table
+from fingerpad.figures.tables import TABLES
 from fingerpad.figures.trends import TRENDS
 from fingerpad.figures.verdicts import judge
 

@@ -12,7 +12,7 @@ SMOKE = ("--configfile", "config/smoke.yaml")
 HISTORY = "results/smoke/simulations/homogeneous_flat/history.nc"
 COMPANION = "results/smoke/coarse/homogeneous_flat/history.nc"
 CALIBRATION = {"calibrate", "calibration_figure", "calibration_table"}
-FIGURES = {"figure", "table", *CALIBRATION}
+FIGURES = {"figure", "table", "receptor_table", *CALIBRATION}
 
 
 def test_nothing_is_left_to_do(finished):
@@ -53,7 +53,7 @@ def test_change_in_a_figure_module_reruns_only_figures(finished, module):
 
 def test_change_in_the_comparison_reruns_only_the_table(finished):
     with finished.edited("src/fingerpad/figures/comparison.py"):
-        assert set(finished.planned(*SMOKE)) == {"table", "calibration_table"}
+        assert set(finished.planned(*SMOKE)) == {"table"}
 
 
 def test_change_of_a_scene_reruns_that_scene(finished):

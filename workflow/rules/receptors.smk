@@ -18,7 +18,7 @@ ruleorder: receptor_table > table
 rule receptor_table:
     """Histories, companions, published and recorded rates -> a table of what receptors make of them."""
     input:
-        sources("receptors"),
+        sources("receptor_table"),
         ENVIRONMENT,
         rates=sorted(glob("config/reference/impulse_rates/*.csv") + glob("config/reference/recordings/*.csv")),
         histories=histories(FELT),
@@ -40,7 +40,7 @@ rule receptor_table:
         mem_mb=2000,
         runtime=10,
     shell:
-        "python workflow/scripts/receptors.py {wildcards.table} {output.csv} {input.rates} {input.histories} {input.coarse}"
+        "python workflow/scripts/receptor_table.py {wildcards.table} {output.csv} {input.rates} {input.histories} {input.coarse}"
         " > {log} 2>&1"
 
 

@@ -5,8 +5,7 @@ import sys
 import pandas as pd
 
 from fingerpad.figures.effects import assemble, effects
-from fingerpad.figures.io import publish
-from fingerpad.figures.tables import publish_table
+from fingerpad.figures.io import publish, publish_table
 from fingerpad.studies.effects import evidence, rules_table
 
 changes, choices, png, *tables = sys.argv[1:]

@@ -3,7 +3,8 @@
 import sys
 
 from fingerpad.figures.inputs import read_results
-from fingerpad.figures.tables import TABLES, publish_table
+from fingerpad.figures.io import publish_table
+from fingerpad.figures.tables import TABLES
 
 name, reference, table, *paths = sys.argv[1:]
 histories, meshes, coarse = read_results(paths)

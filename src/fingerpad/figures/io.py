@@ -1,4 +1,4 @@
-"""Publishing a figure: the picture and its plotted data side by side, written whole or not at all."""
+"""Publishing: a picture and its plotted data, a table as CSV and as Markdown, written side by side, whole or not at all."""
 
 from __future__ import annotations
 
@@ -39,3 +39,30 @@ def publish(fig: Figure, frame: pd.DataFrame, png_path: str | os.PathLike) -> No
     png = Path(png_path)
     write_frame(frame, png.with_suffix(".csv"))
     write_picture(fig, png)
+
+
+def markdown(frame: pd.DataFrame) -> str:
+    """The table as Markdown: whole numbers in full, others to four digits, empty cells for missing values."""
+
+    def cell(value: object) -> str:
+        if isinstance(value, float):
+            if value != value:
+                return ""
+            digits = max(4, len(f"{abs(value):.0f}")) if value.is_integer() else 4
+            return f"{value:.{digits}g}"
+        return "" if value is None or value is pd.NA else str(value)
+
+    lines = ["| " + " | ".join(frame.columns) + " |", "|" + " --- |" * len(frame.columns)]
+    lines += ["| " + " | ".join(cell(v) for v in row) + " |" for row in frame.itertuples(index=False)]
+    return "\n".join(lines) + "\n"
+
+
+def publish_table(frame: pd.DataFrame, csv_path: str | os.PathLike) -> None:
+    """Write ``name.csv`` (format %s) and, beside it, ``name.md``."""
+    path = Path(csv_path)
+    write_frame(frame, path)
+    text = markdown(frame)
+    write_atomically(path.with_suffix(".md"), lambda p: p.write_text(text, encoding="utf-8"))
+
+
+publish_table.__doc__ = publish_table.__doc__ % FLOAT_FORMAT

@@ -1,10 +1,10 @@
-"""Tabulate what receptors make of results: receptors.py TABLE OUT.csv [RATES.csv | HISTORY.nc ...]"""
+"""Tabulate what receptors make of results: receptor_table.py TABLE OUT.csv [RATES.csv | HISTORY.nc ...]"""
 
 import sys
 from pathlib import Path
 
 from fingerpad.figures.inputs import read_results
-from fingerpad.figures.tables import publish_table
+from fingerpad.figures.io import publish_table
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import ReferenceDataError
 from fingerpad.studies.candidate_stimuli import candidate_stimuli
