@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,17 +33,59 @@ class PlanError(ValueError):
 
 @dataclass(frozen=True)
 class Preset:
-    """A discretisation: edges m, steps per leg, longest step of a slide m, and the error it was measured to have.
+    """A discretisation: edges m, steps per leg, longest step of a slide m.
 
-    The error is the largest of the headline quantities.
+    ``tolerance`` is what an effect left out may change; ``error`` was measured, the largest of the headline quantities under the
+    sharpest of the thesis's cylinders (None: it was not). ``focus`` is the edge m to which the mesh is refined in the contact,
+    along the skin and into it (None: not refined unless the contact is narrower than an edge).
     """
 
     skin_edge: float
     layer_edge: float
     steps: int
     growth: float
-    error: float
+    tolerance: float
     slide_step: float | None
+    error: float | None = None
+    focus: float | None = None
+
+
+@dataclass(frozen=True)
+class MeasuredErrors:
+    """Largest relative error of depth, width, centre and peak pressure and strain energies, as the study of accuracy found it.
+
+    The same numbers as figures/tables/accuracy_planner.csv. Between them errors are interpolated in logarithms.
+
+    Attributes:
+        half_widths: m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the ramp. edge: m, along the skin,
+        where 7 elements go across the epidermis. mesh: elements across the epidermis -> error (half_widths). time: steps of a leg
+        -> error (half_widths). stroke_mesh, stroke_time: those of the plate's stroke.
+    """
+
+    half_widths: tuple[float, ...] = (0.29e-3, 0.88e-3, 2.06e-3)
+    edge: float = 134.4e-6
+    mesh: Mapping[int, tuple[float, ...]] = field(
+        default_factory=lambda: {
+            1: (0.57, 0.31, 0.089),
+            2: (0.2, 0.048, 0.026),
+            4: (0.092, 0.026, 0.0077),
+            7: (0.043, 0.017, 0.0023),
+            10: (0.023, 0.0049, 0.0016),
+            14: (0.0099, 0.0049, 0.0016),
+            22: (0.0099, 0.0049, 0.0016),
+        }
+    )
+    time: Mapping[int, tuple[float, ...]] = field(
+        default_factory=lambda: {
+            5: (0.0033, 0.0066, 0.0076),
+            10: (0.0013, 0.002, 0.0027),
+            20: (0.00045, 0.00063, 0.00096),
+            40: (0.000071, 0.00029, 0.00035),
+            80: (0.000053, 0.00016, 0.00031),
+        }
+    )
+    stroke_mesh: Mapping[int, float] = field(default_factory=lambda: {1: 0.1, 2: 0.051, 4: 0.015, 7: 0.012, 10: 0.012, 14: 0.012})
+    stroke_time: Mapping[int, float] = field(default_factory=lambda: {5: 0.046, 10: 0.02, 20: 0.0099, 40: 0.0027, 80: 0.001})
 
 
 @dataclass(frozen=True)
@@ -50,8 +93,12 @@ class Rules:
     """Thresholds and measured constants of the planner.
 
     Attributes:
-        presets: by name; errors are measured on the ramp-and-hold family against a mesh of half the edge and steps of ``fine``.
-        mesh_order: observed order with which that error falls with the skin edge.
+        presets: by name.
+        errors: what a tolerance is met with, and what a run believes of itself.
+        mesh_order, time_order: with which errors are taken to go on beyond the meshes and steps that were measured.
+        edge_share: of an element's edge, by which an edge of the contact may be misplaced: a quarter of the node spacing.
+        safety: factor on both, for errors swing with where nodes happen to lie.
+        least_steps: of a leg; fewer would do for its end, but a curve of fewer is none.
         small_strain_error: of small strain in the headline quantities, over depth / soft thickness, at most; small strain is used
             when that is within the accuracy asked for.
         pressing_friction: change of the headline quantities by friction in a press, over the coefficient; most_pressing_friction:
@@ -68,12 +115,17 @@ class Rules:
 
     presets: Mapping[str, Preset] = field(
         default_factory=lambda: {
-            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3),
-            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3),
-            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3),
+            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3, 0.1),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 0.043),
+            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3, 0.0082),
         }
     )
-    mesh_order: float = 1.5
+    errors: MeasuredErrors = field(default_factory=MeasuredErrors)
+    mesh_order: float = 1.0
+    time_order: float = 1.0
+    edge_share: float = 0.125
+    safety: float = 1.5
+    least_steps: int = 10
     small_strain_error: float = 4.6
     pressing_friction: float = 2.0
     most_pressing_friction: float = 0.2
@@ -91,6 +143,7 @@ class Rules:
 
 
 RULES = Rules()
+_THESIS_ROWS = 7  # elements across the epidermis of the thesis's preset
 
 
 @dataclass(frozen=True)
@@ -111,7 +164,8 @@ class Plan:
         contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them.
         slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
         nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
-        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities.
+        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
+        part of it that small strain is to blame for.
     """
 
     effects: dict[str, Effect]
@@ -129,6 +183,7 @@ class Plan:
     contact_edge: float
     estimated_error: float
     predicted_cost_s: float
+    small_strain_error: float = 0.0
 
     @property
     def stepping(self) -> tuple[int, bool, float]:
@@ -168,6 +223,7 @@ class Plan:
             "steps_per_leg": self.steps_per_leg,
             "slide_step_SI": self.slide_step,
             "timed": self.timed,
+            "small_strain_error": self.small_strain_error,
         }
 
     def write(self, path: str | Path) -> None:
@@ -198,7 +254,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
             f"allowed: up to {rules.inertia_limit:g}"
         )
     preset, by_hand = _preset(scene, rules, contact)
-    tolerance = preset.error
+    tolerance = preset.tolerance
     effects = {
         "friction": _friction(scene, tolerance, rules),
         "viscoelasticity": Effect(False, ""),
@@ -229,10 +285,13 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         smallest, edge = external.quality()["smallest_edge_m"], apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
-    error = estimated_error(edge, contact.half_width, rules)
+    linear = 0.0 if effects["finite_strain"].on else _small_strain_error(pad, profile, contact, rules)
+    around = None if size is None else size.skin_edge
+    time = steps_per_leg if timed else None
+    error = linear + estimated_error(edge, _earliest(scene, contact, timed), time, moves, around, rules)
     return Plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge, error,
-        _cost(nodes, steps, effects, rules),
+        _cost(nodes, steps, effects, rules), linear,
     )  # fmt: skip
 
 
@@ -260,7 +319,7 @@ def read_plan(path: str | Path) -> Plan:
         {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
         ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
         data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
-        data["estimated_error"], data["predicted_cost_s"],
+        data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"],
     )  # fmt: skip
 
 
@@ -345,25 +404,94 @@ def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Prese
     if isinstance(accuracy, Discretisation):
         edge = accuracy.skin_edge or thesis.skin_edge
         scale = edge / thesis.skin_edge
-        error = estimated_error(edge, contact.half_width, rules)
-        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, error=error), accuracy
-    scale = (accuracy / estimated_error(thesis.skin_edge, contact.half_width, rules)) ** (1 / rules.mesh_order)
-    scale = float(np.clip(scale, 0.15, 3.0))
-    steps = int(np.clip(round(thesis.steps * (thesis.error / accuracy) ** 0.5), 6, 200))
-    slide_step = thesis.slide_step * thesis.steps / steps
-    return Preset(thesis.skin_edge * scale, thesis.layer_edge * scale, steps, thesis.growth, accuracy, slide_step), None
+        error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
+        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error, error=None), accuracy
+    return _cheapest(scene, accuracy, contact, rules), None
 
 
-def estimated_error(edge: float, half_width: float, rules: Rules = RULES) -> float:
-    """Expected relative error of depth, width, pressure and strain energy: the measured law error ~ (edge / width)^order.
+def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules) -> Preset:
+    """Of the measured meshes and steps those of least nodes times steps that meet it; if none does, those of least error.
+
+    A mesh that suffices for the widest contact measured is refined under a narrower one that stays where it is.
+    """
+    thesis, known = rules.presets["thesis"], rules.errors
+    timed = bool(scene.specimen.prony) and any(duration is not None for duration in leg_durations(scene))
+    moves, half_width = _moves(scene), _earliest(scene, contact, timed)
+    still = not moves and scene.specimen.mesh is None and scene.specimen.ridges is None
+    found = []
+    for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):
+        edge, growth = known.edge * _THESIS_ROWS / rows, min(thesis.growth ** (_THESIS_ROWS / rows), 3.0)
+        time = steps if timed else None
+        for finer in (1, 2, 4, 8, 16) if still else (1,):
+            error = estimated_error(edge / finer, half_width, time, moves, edge, rules)
+            # the right half has about 7 columns and 4 rows an element across the epidermis
+            more = np.log(finer) / np.log(growth)
+            wide = 1.2 * contact.half_width / edge * (finer - 1)
+            work = (7 * rows + more + wide) * (4 * rows + more) * steps
+            found.append((max(error - tolerance, 0.0), work, edge / finer, edge, growth, steps))
+    _, _, focus, edge, growth, steps = min(found)
+    outline, slide_step = scene.specimen.outline, thesis.slide_step * thesis.steps / steps
+    # so many elements across the epidermis, however thick it is
+    layer_edge = thesis.layer_edge * edge / thesis.skin_edge
+    if outline is not None:
+        layer_edge = min(layer_edge, outline.epidermis_thickness * edge / known.edge / _THESIS_ROWS)
+    return Preset(edge, layer_edge, steps, growth, tolerance, slide_step, focus=focus if focus < edge else None)
+
+
+def _earliest(scene: Scene, contact: ContactEstimate, timed: bool) -> float:
+    """Half width (m) of the contact before anything relaxes: narrower as the root of the modulus is larger."""
+    relaxes = timed and scene.specimen.moduli == "long_term"
+    share = (1 - sum(term.g for term in scene.specimen.prony)) ** 0.5 if relaxes else 1.0
+    return max(share * contact.half_width, 1e-5)
+
+
+def estimated_error(
+    edge: float,
+    half_width: float,
+    steps: int | None = None,
+    stroked: bool = False,
+    body_edge: float | None = None,
+    rules: Rules = RULES,
+) -> float:
+    """Expected relative error of depth, width, pressure and strain energy at the legs' ends, from :class:`MeasuredErrors`.
+
+    And at least what an edge of the contact between two nodes may be misplaced by.
 
     Args:
         edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
+        steps: of a leg; None when time does not matter. stroked: does the pad move along the surface?
+        body_edge: m, skin edge around the contact where that is coarser: no finer than the widest contact measured needs it.
     """
-    thesis = rules.presets["thesis"]
-    # the presets' errors were measured at the sharpest of the thesis's cylinders, contact half-width 0.35 mm
-    relative = (edge / thesis.skin_edge) * min(0.35e-3 / max(half_width, 1e-5), 10.0)
-    return float(thesis.error * max(relative, 0.25 * edge / thesis.skin_edge) ** rules.mesh_order)
+    found = [_measured_error(edge, half_width, steps, stroked, rules), rules.safety * rules.edge_share * edge / half_width]
+    if body_edge is not None and body_edge > edge:
+        found.append(_measured_error(body_edge, rules.errors.half_widths[-1], steps, stroked, rules))
+    return float(max(found))
+
+
+def _measured_error(edge: float, half_width: float, steps: int | None, stroked: bool, rules: Rules) -> float:
+    known = rules.errors
+    # narrower contacts than were measured are similar to the narrowest one on a coarser mesh
+    alike = edge * max(known.half_widths[0] / half_width, 1.0)
+    rows = known.edge * _THESIS_ROWS / alike
+
+    def between(count, table, order):
+        columns = [_read(count, tuple(table), column, order) for column in zip(*table.values(), strict=True)]
+        return float(np.exp(np.interp(np.log(half_width), np.log(known.half_widths), np.log(columns))))
+
+    def stroke(count, table, order):
+        return _read(count, tuple(table), tuple(table.values()), order) if stroked else 0.0
+
+    error = max(between(rows, known.mesh, rules.mesh_order), stroke(rows, known.stroke_mesh, rules.mesh_order))
+    if steps is not None:
+        error += max(between(steps, known.time, rules.time_order), stroke(steps, known.stroke_time, rules.time_order))
+    return rules.safety * error
+
+
+def _read(count: float, counts: tuple[int, ...], errors: tuple[float, ...], order: float) -> float:
+    """Error at ``count`` between measured ones, in logarithms; beyond them it goes on with ``order``."""
+    inside = np.clip(count, counts[0], counts[-1])
+    error = np.exp(np.interp(np.log(inside), np.log(counts), np.log(errors)))
+    return float(error * (inside / count) ** order)
 
 
 def _friction(scene: Scene, tolerance: float, rules: Rules) -> Effect:
@@ -376,10 +504,13 @@ def _friction(scene: Scene, tolerance: float, rules: Rules) -> Effect:
     return Effect(worth > tolerance, f"nothing slides; {number}")
 
 
-def _finite_strain(pad: PadEstimate, profile: Profile, contact: ContactEstimate, tolerance: float, rules: Rules) -> Effect:
+def _small_strain_error(pad: PadEstimate, profile: Profile, contact: ContactEstimate, rules: Rules) -> float:
     error = rules.small_strain_error * contact.depth / pad.soft_thickness
-    if profile.singular:
-        error = max(error, contact.strain)
+    return max(error, contact.strain) if profile.singular else error
+
+
+def _finite_strain(pad: PadEstimate, profile: Profile, contact: ContactEstimate, tolerance: float, rules: Rules) -> Effect:
+    error = _small_strain_error(pad, profile, contact, rules)
     return Effect(
         error > tolerance, f"small strain would be wrong by up to {error:.1%} (from the depth), {tolerance:.1%} is allowed"
     )
@@ -497,11 +628,15 @@ def _mesh_size(
     outline = scene.specimen.outline
     offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
     fine = max(rules.fine_half_width, 1.3 * half_width, half_width + wander, offsets)
-    focus = ()
+    focus, radial = (), None
     if profile.edges:
         fillet = getattr(profile, "fillet", 0.0)
         edge = min(preset.skin_edge / 4, fillet / 2) if fillet else preset.skin_edge / 4
         focus = tuple((x, edge) for x in sorted({abs(x) for x in profile.edges}))
+    elif preset.focus is not None:
+        # fine all over the contact, somewhat wider than it is estimated, and not at the apex only
+        places = np.linspace(0.0, 1.2 * half_width, max(2, round(1.2 * half_width / preset.focus / 2) + 1))
+        focus, radial = tuple((float(x), preset.focus) for x in places), preset.focus
     elif not isinstance(scene.accuracy, Discretisation) and not _moves(scene) and preset.skin_edge > contact.half_width:
         focus = ((0.0, contact.half_width / rules.edges_per_half_width),)
     return MeshSize(
@@ -510,6 +645,7 @@ def _mesh_size(
         layer_edge=preset.layer_edge,
         growth=preset.growth,
         focus=focus,
+        skin_radial_edge=radial,
     )
 
 

@@ -168,7 +168,11 @@ class Simulation:
         """
         ends = [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
         narrowest = min((width[k + 1] for k in ends), default=0.0)
-        error = estimated_error(self.plan.contact_edge, narrowest / 2)
+        steps = self.plan.steps_per_leg if self.plan.timed else None
+        around = self.plan.mesh_size and self.plan.mesh_size.skin_edge
+        stroked = any(record.distance for record in records)
+        error = estimated_error(self.plan.contact_edge, max(narrowest / 2, 1e-5), steps, stroked, around)
+        error += self.plan.small_strain_error
         touching = min((np.count_nonzero(records[k].nodal_force) / self.share for k in ends), default=0)
         missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
         drift = [

@@ -343,7 +343,12 @@ def evidence(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
 
 DECIDES = {
     "presets": "discretisations by name",
-    "mesh_order": "mesh for a tolerance: error ~ (edge / contact width) to this power",
+    "errors": "mesh and steps for a tolerance, and what a run believes of its error: as measured",
+    "mesh_order": "errors of meshes beyond those measured: order in the edge",
+    "time_order": "errors of steps beyond those measured: order in the step",
+    "edge_share": "error, at least: an edge of the contact is misplaced by this share of an element's edge",
+    "safety": "factor on measured errors and on that",
+    "least_steps": "steps of a leg for a tolerance, at least",
     "small_strain_error": "finite strain: on when this times depth / soft thickness exceeds the accuracy",
     "pressing_friction": "friction of a press: on when this times the coefficient exceeds the accuracy",
     "most_pressing_friction": "friction of a press: what that product comes to at most",
@@ -362,7 +367,12 @@ DECIDES = {
 """What each of the planner's rules decides."""
 WHERE = {
     "presets": "studies of accuracy",
-    "mesh_order": "studies of accuracy",
+    "errors": "figures/tables/accuracy_planner.csv",
+    "mesh_order": "figures/tables/accuracy_orders.csv",
+    "time_order": "figures/tables/accuracy_orders.csv",
+    "edge_share": "figures/tables/accuracy_belief.csv",
+    "safety": "figures/tables/accuracy_belief.csv",
+    "least_steps": "chosen: fewer would do for the end of a leg, but a curve of fewer is none",
     "fine_half_width": "contact of a plate at 20 gf reaches 2.4 mm (figures/thesis/fig_4-10.csv)",
     "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",
     "inertia_limit": "chosen: 1e-4 at 40 mm/s, a tenth of the elastic forces at the limit",
@@ -397,6 +407,8 @@ def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) 
         value = getattr(rules, name)
         if isinstance(value, Mapping):
             value = ", ".join(f"{key}: {getattr(preset, 'skin_edge', np.nan) * 1e6:g} um" for key, preset in value.items())
+        elif not isinstance(value, (float, int)):
+            value = "table"
         evidence = own.get(name) or WHERE.get(name, "figures/tables/speed.md")
         rows.append({"rule": name, "value": str(value), "decides": DECIDES.get(name, ""), "evidence": evidence})
     fixed = {
