@@ -89,8 +89,12 @@ def test_the_plane_is_complete_and_names_tell_points_apart():
     assert all(point.name == name for name, point in known.items())
     for family in study.PRESSED:
         for element in study.ELEMENTS:
-            assert len([p for p in known.values() if p == Point(family, element, p.rows)]) >= 5
+            rows = {p.rows for p in known.values() if p == Point(family, element, p.rows)}
+            assert len(rows) >= 5 and rows >= set(study.ROWS[: 7 if element in study.USED else 6])
     assert {Point("210", finite=False), Point("stroke", steps=5), Point("1260", preset="fine")} <= set(known.values())
+    assert Point("stroke", rows=study.ROWS[-1]) in known.values()
+    swept = [point for sweep in study.sweeps().values() for point in sweep]
+    assert len(swept) == len(known) and set(swept) == set(known.values())
 
 
 def test_sizes_span_what_they_should(scenes):
@@ -107,12 +111,13 @@ def test_sizes_span_what_they_should(scenes):
 @pytest.mark.parametrize("element", ["Q1P0", "Q2R"])
 def test_a_point_is_measured(scenes, element):
     """Values, process times beside a yardstick, and what made them; teaching elements have strain energies too."""
-    record = study.measure(Point("210", element, 1, steps=5), scenes["210"], most=1)
+    (record,) = study.measure_all([Point("210", element, 1, steps=5)], scenes["210"])
     assert not record["failure"] and all(np.all(np.array(v) > 0) for v in record["values"].values())
     assert set(record["values"]) == set(found.QUANTITIES) and len(record["values"]["depth"]) == 2
     cost = record["cost"]
-    assert cost["nodes"] == 396 and cost["steps"] == 10 and len(cost["cpu_s"]) == len(cost["yardstick_s"]) == 1
-    assert record["made_by"]["processor"] and study.seconds(record, cost["yardstick_s"][0]) == pytest.approx(cost["cpu_s"][0])
+    assert cost["nodes"] == 396 and cost["steps"] == 10 and len(cost["cpu_s"]) == len(cost["yardstick_s"]) == 3
+    ratios = sorted(a / b for a, b in zip(cost["cpu_s"], cost["yardstick_s"], strict=True))
+    assert record["made_by"]["processor"] and study.seconds(record, 2.0) == pytest.approx(2 * ratios[1])
 
 
 # -- errors of made-up runs --------------------------------------------------------------------------------------------------
@@ -222,13 +227,6 @@ def test_planner_has_the_committed_errors():
         assert stroked == rows["stroke"].dropna().to_dict()
 
 
-def test_presets_have_the_committed_errors():
-    kept = pd.read_csv(TABLES / "presets.csv", dtype={"scene": str})
-    for name, preset in RULES.presets.items():
-        sharpest = kept[(kept["preset"] == name) & (kept["scene"] == "1260")].iloc[0]
-        assert preset.error == pytest.approx(sharpest["error (%)"] / 100, rel=0.05)
-
-
 @pytest.mark.parametrize("curvature", [79.0, 420.0, 2500.0])
 def test_tolerance_is_met_by_the_cheapest(scenes, curvature):
     """Tighter costs more; what is chosen is believed to meet what was asked, and the next cheaper mesh is not."""
@@ -243,11 +241,6 @@ def test_tolerance_is_met_by_the_cheapest(scenes, curvature):
 # -- belief ------------------------------------------------------------------------------------------------------------------
 
 
-def covered(rows: pd.DataFrame) -> float:
-    asked = rows[rows["accuracy"] != "fine"]
-    return float((asked["believed error (%)"] >= asked["true error (%)"]).mean())
-
-
 def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
     outside = belief.outside(scenes["210"])
     assert tuple(outside) == belief.OUTSIDE and len(outside) >= 12
@@ -259,7 +252,7 @@ def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
 
 def test_committed_beliefs_cover_the_truth():
     rows = pd.read_csv(TABLES / "accuracy_belief.csv", dtype={"accuracy": str})
-    assert set(rows["scene"]) == set(belief.OUTSIDE) and covered(rows) >= 0.9
+    assert set(rows["scene"]) == set(belief.OUTSIDE) and belief.covered(rows) >= 0.9
     assert STUDIES["accuracy_belief"](rows).axes
 
 
@@ -268,11 +261,12 @@ def test_difference_names_the_worst_quantity():
     assert error == pytest.approx(0.1) and worst == "a"
 
 
-@pytest.mark.slow
-def test_beliefs_cover_the_truth(scenes):
-    """Other curvatures, forces, layers, control and a stroke: at least nine runs in ten are not wronger than they believe."""
-    rows = pd.DataFrame([row for name in belief.OUTSIDE for row in belief.beliefs(belief.prepared(name, scenes["210"]), name)])
-    assert covered(rows) >= 0.9
+@pytest.mark.parametrize("name", ["curvature_840_steady_10_gf", "curvature_210_thin_epidermis", "curvature_2500"])
+def test_beliefs_cover_the_truth(scenes, name):
+    """Of runs made now, held to a finer run of their own: a few of the study's scenes, its table has all of them."""
+    scene = belief.prepared(name, scenes["210"]).model_copy(update={"accuracy": "thesis"})
+    rows = pd.DataFrame(belief.beliefs(scene, name, ("draft", 0.05)))
+    assert belief.covered(rows) == 1 and (rows["true error (%)"].dropna() > 0).all()
 
 
 # -- figures state theirs ----------------------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.unit
 CONFIG = Path(__file__).parents[1] / "config"
 SUMMARY = {
     "legs": [{"depth_mm": 0.5, "force_N_per_m": 19.6, "contact_width_mm": 4.7}],
-    "run": {"steps": 2, "newton_iterations": 5, "wall_s": 1.5},
+    "run": {"steps": 2, "newton_iterations": 5, "wall_s": 1.5, "estimated_error": 0.043},
 }
 
 
@@ -156,7 +156,7 @@ def test_plan_as_json_and_as_a_table(scene, capsys):
 
     assert main(["plan", str(scene)]) == 0
     table = capsys.readouterr().out
-    for words in ("Plan of my_scene", "finite strain", "friction", "nodes", "predicted cost"):
+    for words in ("Plan of my_scene", "finite strain", "friction", "nodes", "expected error", "predicted cost"):
         assert words in table
 
 
@@ -177,7 +177,7 @@ def test_run_writes_three_files(tmp_path, scene, solver, capsys):
     with xr.open_dataset(out / "history.nc", engine="h5netcdf") as history:
         assert history.force[-1] == 19.6
     stdout, stderr = capsys.readouterr()
-    assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout
+    assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout and "error about 4.3%" in stdout
 
 
 def test_quiet_says_nothing_and_vtu_adds_fields(tmp_path, solver, capsys):

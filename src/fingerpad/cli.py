@@ -299,6 +299,9 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     for name, value in plan.discretisation.items():
         details.add_row(Text(name.replace("_", " ")), Text(f"{value:.4g}" if isinstance(value, float) else str(value)))
     console.print(details)
+    console.print(
+        Text(f"expected error: {plan.estimated_error:.1%} of depth, width, pressure and strain energy at the legs' ends")
+    )
     console.print(Text(f"predicted cost: {plan.predicted_cost_s:.2g} s of one core"))
 
 
@@ -342,7 +345,8 @@ def _closing_line(totals: dict[str, Any], directory: Path) -> str:
     return (
         f"depth {last['depth_mm']:.3g} mm, force {last['force_N_per_m']:.3g} N/m, "
         f"contact {last['contact_width_mm']:.3g} mm wide; {run['steps']} steps, "
-        f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s; results in {directory}"
+        f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s; "
+        f"error about {run['estimated_error']:.1%}; results in {directory}"
     )
 
 

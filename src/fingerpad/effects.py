@@ -35,8 +35,7 @@ class PlanError(ValueError):
 class Preset:
     """A discretisation: edges m, steps per leg, longest step of a slide m.
 
-    ``tolerance`` is what an effect left out may change; ``error`` was measured, the largest of the headline quantities under the
-    sharpest of the thesis's cylinders (None: it was not). ``focus`` is the edge m to which the mesh is refined in the contact,
+    ``tolerance`` is what an effect left out may change. ``focus`` is the edge m to which the mesh is refined in the contact,
     along the skin and into it (None: not refined unless the contact is narrower than an edge).
     """
 
@@ -46,7 +45,6 @@ class Preset:
     growth: float
     tolerance: float
     slide_step: float | None
-    error: float | None = None
     focus: float | None = None
 
 
@@ -115,9 +113,9 @@ class Rules:
 
     presets: Mapping[str, Preset] = field(
         default_factory=lambda: {
-            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3, 0.1),
-            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 0.043),
-            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3, 0.0082),
+            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3),
+            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3),
         }
     )
     errors: MeasuredErrors = field(default_factory=MeasuredErrors)
@@ -405,7 +403,7 @@ def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Prese
         edge = accuracy.skin_edge or thesis.skin_edge
         scale = edge / thesis.skin_edge
         error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
-        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error, error=None), accuracy
+        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), accuracy
     return _cheapest(scene, accuracy, contact, rules), None
 
 

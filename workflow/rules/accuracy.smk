@@ -1,50 +1,52 @@
 """What accuracy costs in time: scenes and discretisations -> errors and process times -> tables and figures.
 
 Inputs:  config/scenes of the study's family.
-Outputs: <results>/accuracy/points/<point>.json, a run each, and <results>/accuracy/belief/<scene>.csv, a scene each; from them
+Outputs: <results>/accuracy/<sweep>.json, runs of a scene and an element, and <results>/accuracy/belief/<scene>.csv; from them
          <tables>/accuracy.csv, accuracy_{orders,planner,belief}.csv and presets.csv with .md beside them, <studies>/accuracy_*.png
          beside their data.
 
-Times are process times, but a busy machine lengthens them too: `snakemake accuracy --cores 1` on an idle one is what to publish.
+Times are process times beside those of a yardstick, but `snakemake accuracy --cores 1` on an idle machine is what to publish.
 """
 
-from fingerpad.studies.accuracy import FAMILY, points
+from fingerpad.studies.accuracy import FAMILY, sweeps
 from fingerpad.studies.belief import OUTSIDE
 
-POINTS = points()
+SWEEPS = list(sweeps())
 ACCURACY_TABLES = ["accuracy", "accuracy_orders", "accuracy_planner", "presets"]
 
 
 ruleorder: accuracy_tables > accuracy_beliefs > table
 
 
-rule accuracy_point:
-    """A scene and a discretisation -> what they answer, and what that costs."""
+rule accuracy_sweep:
+    """A scene and an element, in many discretisations -> what they answer, and what that costs."""
     input:
-        sources("accuracy_point"),
+        sources("accuracy_sweep"),
         ENVIRONMENT,
         "config/specimens/thesis.yaml",
-        scene=lambda wildcards: f"config/scenes/{FAMILY[POINTS[wildcards.point].family]}.yaml",
+        scene=lambda wildcards: f"config/scenes/{FAMILY[wildcards.sweep.split('_')[0]]}.yaml",
     output:
-        ensure(f"{RESULTS}/accuracy/points/{{point}}.json", non_empty=True),
+        f"{RESULTS}/accuracy/{{sweep}}.json",
+    wildcard_constraints:
+        sweep="|".join(SWEEPS),
     log:
-        f"{RESULTS}/logs/accuracy/{{point}}.log",
+        f"{RESULTS}/logs/accuracy/{{sweep}}.log",
     threads: 1
     resources:
         mem_mb=3000,
-        runtime=10,
+        runtime=20,
     shell:
-        "python workflow/scripts/accuracy_point.py {wildcards.point} {input.scene} {output} > {log} 2>&1"
+        "python workflow/scripts/accuracy_sweep.py {wildcards.sweep} {input.scene} {output} > {log} 2>&1"
 
 
 rule accuracy_tables:
-    """The records of all points -> errors and costs, observed orders, the planner's error table, the presets."""
+    """The records of all runs -> errors and costs, observed orders, the planner's error table, the presets."""
     input:
         sources("accuracy_tables"),
         ENVIRONMENT,
         "config/specimens/thesis.yaml",
         scenes=[f"config/scenes/{scene}.yaml" for scene in FAMILY.values()],
-        records=expand(f"{RESULTS}/accuracy/points/{{point}}.json", point=POINTS),
+        records=expand(f"{RESULTS}/accuracy/{{sweep}}.json", sweep=SWEEPS),
     output:
         report(
             expand(f"{config['tables']}/{{name}}.csv", name=ACCURACY_TABLES),

@@ -10,7 +10,7 @@ from fingerpad.studies.accuracy import FAMILY
 from fingerpad.studies.accuracy_errors import accuracy_table, orders_table, planner_table, presets_table
 
 table, *paths = map(Path, sys.argv[1:])
-records = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in paths}
+records = {record["name"]: record for path in paths for record in json.loads(path.read_text(encoding="utf-8"))}
 scenes = {family: load_scene(f"config/scenes/{name}.yaml") for family, name in FAMILY.items()}
 accuracy = accuracy_table(records, scenes)
 publish_table(accuracy, table)

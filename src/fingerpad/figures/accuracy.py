@@ -143,7 +143,7 @@ def growth(frame: pd.DataFrame) -> Figure:
 @styled
 def belief(frame: pd.DataFrame) -> Figure:
     """What runs believe of their error against what it is, scenes outside the study."""
-    asked = frame[frame["accuracy"] != "fine"]
+    asked = frame[frame["true error (%)"].notna()]
     covered = (asked["believed error (%)"] >= asked["true error (%)"]).sum()
     fig = _figure(
         "Does a run know its error?",

@@ -13,6 +13,7 @@ import statistics
 import time
 from dataclasses import asdict, dataclass, replace
 from functools import partial
+from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,8 @@ from fingerpad.figures.features import energy, energy_rate, ramp_end
 from fingerpad.specimen.mesh import PadMesh, build_pad_mesh, count_nodes
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     import xarray as xr
 
     from fingerpad.scene import Scene
@@ -29,7 +32,9 @@ if TYPE_CHECKING:
 FAMILY = {"flat": "ramp40_flat", "210": "ramp40_k210", "1260": "ramp40_k1260", "stroke": "accuracy_stroke"}
 """Name in the study -> scene."""
 PRESSED = ("flat", "210", "1260")
-ELEMENTS = ("Q2P1", "Q1P0", "P2B", "Q1", "Q2", "Q2R")
+USED = ("Q2P1", "Q1P0", "P2B")
+ELEMENTS = (*USED, "Q1", "Q2", "Q2R")
+"""Keys of the elements; those after the ones used are for teaching."""
 ROWS = (1, 2, 4, 7, 10, 14, 22)
 """Mesh sizes: rows of elements in the epidermis. Other edges are in proportion; 7 are the default's."""
 DEFAULT_ROWS, DEFAULT_STEPS, DEFAULT_TOLERANCE = 7, 20, 1e-4
@@ -68,17 +73,23 @@ class Point:
 def points() -> dict[str, Point]:
     """Every point of the study by its name."""
     found = []
-    for family in PRESSED:
-        plane = [Point(family, element, rows) for element in ELEMENTS for rows in ROWS]
-        # the largest mesh for the elements that have a use, the largest but one is enough for the teaching cases
-        found += [p for p in plane if p.rows < ROWS[-2] or p.element == "Q2P1" or (p.rows == ROWS[-2] and p.element[-1] in "0B")]
-    found += [Point("stroke", element, rows) for element in ("Q2P1", "Q1P0", "P2B") for rows in ROWS[:-2]]
-    found += [Point("stroke", rows=ROWS[-2])]
     for family in FAMILY:
+        for element in ELEMENTS if family in PRESSED else USED:
+            # the largest meshes are for the elements that have a use, and for the default's in the stroke
+            fewer = 0 if element == "Q2P1" else 2 * (family == "stroke") + (element not in USED)
+            found += [Point(family, element, rows) for rows in ROWS[: len(ROWS) - fewer]]
         found += [Point(family, steps=steps) for steps in STEPS]
         found += [Point(family, tolerance=tolerance) for tolerance in TOLERANCES]
         found += [Point(family, finite=False)] + [Point(family, preset=preset) for preset in ("draft", "fine")]
     return {point.name: point for point in found}
+
+
+def sweeps() -> dict[str, list[Point]]:
+    """The points by scene and element, as they are run together."""
+    found: dict[str, list[Point]] = {}
+    for point in points().values():
+        found.setdefault(f"{point.family}_{point.element}", []).append(point)
+    return found
 
 
 def split(mesh: PadMesh, kind: str) -> PadMesh:
@@ -180,7 +191,27 @@ def values(history: xr.Dataset) -> dict[str, list[float]]:
     return found | {"peak energy rate": [float(rate) for rate in rates]}
 
 
-def measure(point: Point, scene: Scene, budget: float = 2.5, most: int = 3) -> dict[str, Any]:
+RULER = Point("flat", rows=2)
+"""The yardstick: a small run before each, beside whose process time others stand."""
+
+
+def measure_all(sweep: list[Point], scene: Scene) -> Iterator[dict[str, Any]]:
+    """What :func:`measure` says of each point; each in a process of its own, with the kernels loaded before."""
+    for finite in {point.finite for point in sweep}:
+        first = replace(sweep[0], rows=2, steps=5, finite=finite)
+        _run(first, *discretised(first, scene)), _run(RULER, *discretised(RULER, _plate(scene)))
+    with get_context("fork").Pool(1, maxtasksperchild=1) as pool:
+        yield from pool.imap(partial(measure, scene=scene), sweep)
+
+
+def _plate(scene: Scene) -> Scene:
+    """The yardstick's scene: pressed by a plate as far as the first leg goes."""
+    from fingerpad.scene import Flat
+
+    return scene.model_copy(update={"stimulus": Flat(), "friction": 0.0, "motion": scene.motion[:1]})
+
+
+def measure(point: Point, scene: Scene, budget: float = 4.0, most: int = 3) -> dict[str, Any]:
     """Run a point and say what it answers and costs.
 
     Args:
@@ -188,23 +219,18 @@ def measure(point: Point, scene: Scene, budget: float = 2.5, most: int = 3) -> d
 
     Returns:
         JSON-able: the point; values or the reason of failure; cost: process time of each repeat, meshing included, with that of
-        the yardstick (a fixed small run) before each; memory of the process, unknowns, iterations; machine and versions.
+        the yardstick before each; memory of the process, unknowns, iterations; machine and versions.
     """
     from threadpoolctl import threadpool_limits
 
     from fingerpad.mechanics.stepping import NonConvergence
     from fingerpad.results import peak_memory_MB, provenance
-    from fingerpad.scene import Flat
 
-    small = Point("flat", rows=2)
-    plate = scene.model_copy(update={"stimulus": Flat(), "friction": 0.0, "motion": scene.motion[:1]})
-    ruler = discretised(small, plate)
-    first = replace(small, element=point.element, finite=point.finite)
+    ruler = discretised(RULER, _plate(scene))
     seconds, yardstick, history, failure = [], [], None, ""
     with threadpool_limits(1):
-        _run(small, *ruler), _run(first, *discretised(first, plate))  # loads the compiled kernels
         while len(seconds) < most and sum(seconds) <= budget:
-            yardstick.append(_timed(lambda: _run(small, *ruler)))
+            yardstick.append(_timed(lambda: _run(RULER, *ruler)))
             start = time.process_time()
             chosen_scene, chosen = discretised(point, scene)
             try:
@@ -226,11 +252,6 @@ def measure(point: Point, scene: Scene, budget: float = 2.5, most: int = 3) -> d
         }
         found["values"] = {} if failure else values(history)
         found["believed_error"] = float(history.attrs["estimated_error"])
-        end = history.isel(time=-1)
-        found["at_end"] = {
-            "touching": int(np.count_nonzero(end.contact_pressure)),
-            "smoothed_peak_Pa": float(end.contact_pressure_smoothed.max()),
-        }
     return found | {"cost": cost, "load": os.getloadavg()[0], "made_by": provenance()}
 
 

@@ -1,8 +1,8 @@
 """Does a run know its error? Scenes that the study of accuracy has not seen, each against the same scene on the finest preset.
 
 The truth is the largest relative difference of depth, width, centre and peak pressure and strain energies at the legs' ends to
-the "fine" run, made finer in narrow contacts. The belief is what the run itself states as its error; it covers the truth when it
-is not smaller.
+the "fine" run, made finer in narrow contacts, which has an error of its own. The belief is what the run itself states as its
+error; it covers the truth when it is not smaller.
 """
 
 from __future__ import annotations
@@ -12,14 +12,17 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
-from fingerpad.effects import plan
+from fingerpad.effects import Plan, plan
 from fingerpad.scene import Cylinder, Flat, Hold, PressToDepth, PressToForce, Scene, Slide
 from fingerpad.studies.accuracy import DEPTHS
 
 GF = 9.80665e-3
 LEVELS = ("draft", 0.05, 0.02)
 """Accuracies that are asked for."""
+FINEST = "finest"
+"""Name of the run the others are held to."""
 OUTSIDE = (
     "curvature_79",
     "curvature_420",
@@ -36,6 +39,12 @@ OUTSIDE = (
     "plate_10_gf_stroked_back",
 )
 """Names of the scenes of :func:`outside`."""
+
+
+def covered(rows: pd.DataFrame) -> float:
+    """Share of the runs, of those held to a finer one, that are no wronger than they believe."""
+    asked = rows[rows["accuracy"] != FINEST]
+    return float((asked["believed error (%)"] >= asked["true error (%)"]).mean())
 
 
 def _press(grams: float, rate: float | None = 40.0, hold: float | None = 2.0) -> tuple:
@@ -103,8 +112,8 @@ def prepared(name: str, base: Scene) -> Scene:
     )
 
 
-def finest(scene: Scene):
-    """The plan of the truth: the preset fine, in the contact at least 16 elements to its half width."""
+def finest(scene: Scene) -> Plan:
+    """The plan of the truth: the scene's preset, in the contact at least 20 elements to its half width."""
     chosen = plan(scene)
     edge, reach = min(chosen.mesh_size.skin_edge, chosen.contact.half_width / 20), 1.2 * chosen.contact.half_width
     if edge == chosen.mesh_size.skin_edge:
@@ -113,15 +122,15 @@ def finest(scene: Scene):
     return replace(chosen, mesh_size=replace(chosen.mesh_size, focus=focus, skin_radial_edge=edge), contact_edge=edge)
 
 
-def beliefs(scene: Scene, name: str, truth=None) -> list[dict[str, Any]]:
-    """Run a scene at every level and finely (unless the ``truth`` is given): what each believes and how wrong it is."""
+def beliefs(scene: Scene, name: str, levels: tuple = LEVELS) -> list[dict[str, Any]]:
+    """Run a scene at every level and as :func:`finest`: what each believes and how wrong it is (of the finest: unknown)."""
     from fingerpad.simulation import simulate
 
-    truth = simulate(scene, finest(scene)) if truth is None else truth
+    truth = simulate(scene, finest(scene))
     rows = []
-    for level in (*LEVELS, "fine"):
-        run = truth if level == "fine" else simulate(scene.model_copy(update={"accuracy": level}))
-        error, worst = difference(ends(run), ends(truth))
+    for level in (*levels, FINEST):
+        run = truth if level == FINEST else simulate(scene.model_copy(update={"accuracy": level}))
+        error, worst = difference(ends(run), ends(truth)) if run is not truth else (np.nan, "")
         cost = json.loads(run.attrs["cost"])
         rows.append(
             {
