@@ -40,6 +40,7 @@ localrules:
     chapter5,
     calibration,
     ridges,
+    accuracy,
     stability,
     effects,
     peers,
@@ -92,6 +93,13 @@ rule ridges:
         figures("5-28"),
         figures("5-29"),
         ridges(),
+
+
+rule accuracy:
+    """What accuracy costs in time, and whether runs know their error: figures and tables; about twenty minutes of one core."""
+    input:
+        expand(f"{config['tables']}/{{name}}.csv", name=[*ACCURACY_TABLES, "accuracy_belief"]),
+        expand(f"{config['studies']}/accuracy_{{name}}.png", name=["error", "error_stroke", "growth", "belief"]),
 
 
 rule stability:

@@ -250,12 +250,6 @@ def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
             assert plan(scene.model_copy(update={"accuracy": accuracy})).estimated_error > 0
 
 
-def test_committed_beliefs_cover_the_truth():
-    rows = pd.read_csv(TABLES / "accuracy_belief.csv", dtype={"accuracy": str})
-    assert set(rows["scene"]) == set(belief.OUTSIDE) and belief.covered(rows) >= 0.9
-    assert STUDIES["accuracy_belief"](rows).axes
-
-
 def test_difference_names_the_worst_quantity():
     error, worst = belief.difference({"a": np.array([1.0, 2.2]), "b": [3.0]}, {"a": [1.0, 2.0], "b": [3.0]})
     assert error == pytest.approx(0.1) and worst == "a"
@@ -271,23 +265,27 @@ def test_beliefs_cover_the_truth(scenes, name):
 
 # -- figures state theirs ----------------------------------------------------------------------------------------------------
 
-GEOMETRY = {"3-4", "3-5"}
+GEOMETRY = {"3-4", "3-5", "5-25"}
 """Figures of the pad itself, for which nothing is solved."""
-ONE_CURVE = {"3-6", "3-8", "3-9", "3-11"}
+SOME_CURVES = {"3-6", "3-8", "3-9", "3-11", "4-2", "4-25", "4-26", "4-27", "4-29", "5-28", "5-29"}
 """Figures that state the error of some of their curves only: the others have no coarser companion."""
+DERIVED = "shape of the stimulus|least-squares|Eq 4-4 and"
+"""Sources of what is drawn through or from the simulated curves of the same picture, whose errors stand there."""
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "figures" / "thesis").glob("fig_*.csv")), ids=lambda path: path.stem)
 def test_every_simulated_curve_has_its_discretisation_error(path):
     frame = pd.read_csv(path, dtype=str)
-    # a stimulus's shape, and what was measured or printed, have none
-    solved = frame[frame["source"].str.startswith("simulated") & ~frame["source"].str.contains("shape of the stimulus")]
+    # what was measured or printed has none
+    solved = frame[frame["source"].str.startswith("simulated") & ~frame["source"].str.contains(DERIVED)]
     solved = solved[solved["series"] != "surface"] if "series" in solved else solved
+    # a burst that does not happen is none on the coarser mesh either
+    solved = solved[solved["burst_width (mm)"] != "0"] if "burst_width (mm)" in solved else solved
     known = pd.to_numeric(solved[ERROR]).notna()
     number = path.stem.removeprefix("fig_")
     if number in GEOMETRY:
         assert not known.any()
-    elif number in ONE_CURVE:
+    elif number in SOME_CURVES:
         assert known.any() and not known.all()
     else:
         rows = solved[~known]

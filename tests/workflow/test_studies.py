@@ -1,10 +1,26 @@
-"""Targets of the studies of stability, effects and peers: what they make, and that the default does not."""
+"""Targets of the studies of accuracy, stability, effects and peers: what they make, and that the default does not."""
 
 from importlib.util import find_spec
 
 import pytest
 
 pytestmark = pytest.mark.workflow
+
+
+def test_accuracy_sweeps_elements_of_scenes_and_asks_for_beliefs(clone):
+    jobs = clone.planned("accuracy")
+    sweeps = {
+        f"{family}_{element}" for family in ("flat", "210", "1260") for element in ("Q2P1", "Q1P0", "P2B", "Q1", "Q2", "Q2R")
+    }
+    sweeps |= {f"stroke_{element}" for element in ("Q2P1", "Q1P0", "P2B")}
+    assert jobs.pop("accuracy_sweep") == {f"results/thesis/accuracy/{sweep}.json" for sweep in sweeps}
+    assert len(jobs.pop("accuracy_belief")) == 13
+    tables = ("accuracy", "accuracy_orders", "accuracy_planner", "presets")
+    assert jobs.pop("accuracy_tables") == {f"figures/tables/{name}.{kind}" for name in tables for kind in ("csv", "md")}
+    assert jobs.pop("accuracy_beliefs") == {f"figures/tables/accuracy_belief.{kind}" for kind in ("csv", "md")}
+    names = ("error", "error_stroke", "growth", "belief")
+    assert jobs.pop("accuracy_figure") == {f"figures/studies/accuracy_{name}.{kind}" for name in names for kind in ("csv", "png")}
+    assert not jobs
 
 
 def test_stability_solves_the_catalogue_by_four_methods(clone):
@@ -38,4 +54,4 @@ def test_peers_are_skipped_with_one_clear_line_where_they_are_absent(clone):
 
 
 def test_studies_are_not_part_of_the_default(clone):
-    assert not {"stability_method", "effects_study", "peers_table"} & set(clone.planned())
+    assert not {"accuracy_sweep", "accuracy_belief", "stability_method", "effects_study", "peers_table"} & set(clone.planned())

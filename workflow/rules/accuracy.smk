@@ -128,12 +128,3 @@ rule accuracy_figure:
         runtime=5,
     shell:
         "python workflow/scripts/accuracy_figure.py accuracy_{wildcards.name} {input.table} {output.png} > {log} 2>&1"
-
-
-rule accuracy:
-    """What accuracy costs in time: tables and figures; about twenty minutes of one core."""
-    localrule: True
-    input:
-        rules.accuracy_tables.output,
-        rules.accuracy_beliefs.output,
-        expand(f"{config['studies']}/accuracy_{{name}}.png", name=["error", "error_stroke", "growth", "belief"]),
