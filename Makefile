@@ -6,6 +6,9 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed.lock
 SNAKEMAKE := $(BIN)/snakemake --workflow-profile workflow/profiles/default
 
+# Tests run in so many processes, each with whole files of them.
+WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
+
 # One thread a process: the workflow runs one process a core.
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
@@ -45,7 +48,7 @@ smoke: $(INSTALLED)
 	$(SNAKEMAKE) --configfile config/smoke.yaml
 
 test: $(INSTALLED)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
 
 bench: $(INSTALLED)
 	$(BIN)/python -m fingerpad.studies.bench

@@ -114,7 +114,7 @@ def test_deflection_is_taken_at_the_place_where_the_skin_has_gone(made):
 @pytest.mark.unit
 def test_section_moves_each_boundary_with_its_material_and_places_the_indenter(made):
     history = made[0]["steady_cylinder_1_4_inch"]
-    before, after = section(history, 0.0), section(history, 1 * MM)
+    before, after = (section(history, depth, corneum=True) for depth in (0.0, 1 * MM))
     top = {name: line[:, 1].max() for name, line in before.items() if name not in ("bone", "indenter")}
     assert top["skin"] - top["corneum"] == pytest.approx(0.35 * MM, abs=2e-6)
     assert list(sorted(top, key=top.get, reverse=True)) == ["skin", "corneum", "dermis", "fat"]

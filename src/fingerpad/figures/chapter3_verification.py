@@ -295,11 +295,11 @@ def fig_3_9(frame: pd.DataFrame) -> Figure:
 # --- 3-10, 3-11 ----------------------------------------------------------------------------------------
 
 
-def section(history: xr.Dataset, depth: float) -> dict[str, np.ndarray]:
+def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[str, np.ndarray]:
     """Layer boundaries (n, 2) in m at the end of a press to `depth` (0: undeformed), and the indenter's lower side.
 
-    Lines as in `chapter3.boundaries`, and ``corneum``, the inner side of the stratum corneum: material points at its thickness
-    under the skin, moved as the epidermis round them.
+    Lines as in `chapter3.boundaries`, and if asked ``corneum``, the inner side of the stratum corneum: material points at its
+    thickness under the skin, moved as the epidermis round them.
     """
     from scipy.interpolate import LinearNDInterpolator  # here, for it is slow to import
 
@@ -309,9 +309,12 @@ def section(history: xr.Dataset, depth: float) -> dict[str, np.ndarray]:
     numbered = boundaries(PadMesh(points, cells, kind, region, {}, True), as_nodes=True)
     moved = history["snapshot_displacement"].values[leg_of(history, depth)] if depth else np.zeros_like(points)
     lines = {name: points[nodes] + moved[nodes] for name, nodes in numbered.items()}
-    inner = inward(densify(points[numbered["skin"]], 0.1e-3), stratum_corneum(history))
-    epidermis = np.unique(cells[region == 0])
-    lines["corneum"] = inner + LinearNDInterpolator(points[epidermis], moved[epidermis])(inner)
+    if corneum:
+        inner = inward(densify(points[numbered["skin"]], 0.1e-3), stratum_corneum(history))
+        epidermis = np.unique(cells[region == 0])
+        # in mm: in m its search for triangles takes many times as long
+        motion = LinearNDInterpolator(points[epidermis] * 1e3, moved[epidermis])(inner * 1e3) if depth else 0.0
+        lines["corneum"] = inner + motion
     x = np.linspace(-4e-3, 4e-3, 801)
     height = _indenter(history).outline(x) + points[:, 1].max() - depth
     lines["indenter"] = np.column_stack((x, height))[np.isfinite(height)]
@@ -404,9 +407,11 @@ def frame_3_11(histories: Histories, meshes: Meshes, coarse: Histories, referenc
     for panel, (scene, depth) in SECTIONS.items():
         history = histories[scene]
         error = _section_error(history, coarse.get(scene))
-        parts += _lines(panel, "undeformed", section(history, 0.0), ("corneum", "dermis", "fat", "bone"), error)
+        parts += _lines(panel, "undeformed", section(history, 0.0, corneum=True), ("corneum", "dermis", "fat", "bone"), error)
         if depth:
-            parts += _lines(panel, "deformed", section(history, depth), ("corneum", "dermis", "fat", "indenter"), error)
+            parts += _lines(
+                panel, "deformed", section(history, depth, corneum=True), ("corneum", "dermis", "fat", "indenter"), error
+            )
     return assemble(pd.concat(parts, ignore_index=True))
 
 
