@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from fingerpad.figures.columns import DISTANCE, LATERAL
 from fingerpad.figures.features import is_simulated
-from fingerpad.figures.style import GREY, INK, NOTE_WIDTH, PAGE_WIDTH, styled
+from fingerpad.figures.style import GREY, INK, study_figure, styled
 
 DEPTH, FORCE, COEFFICIENT = "depth (mm)", "force (N)", "coefficient (1)"
 MARKERS = "os^Dv<>P"
@@ -21,17 +21,6 @@ MODEL_LINES = {
     "elliptical patch": ("-", "#1f77a4"),
     "plane sections": ((0, (1, 1.2)), "#c8553d"),
 }
-
-
-def _figure(title: str, note: Sequence[str], height: float) -> Figure:
-    """Empty page-wide figure (height in inch) with a bold title above and notes below."""
-    fig = Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
-    lines = [part for line in note for part in textwrap.wrap(line, NOTE_WIDTH)]
-    bottom = (0.16 * len(lines) + 0.08) / height
-    fig.get_layout_engine().set(rect=(0.005, bottom, 0.99, 1 - 0.30 / height - bottom), w_pad=0.05, h_pad=0.04)
-    fig.text(0.012, 1 - 0.09 / height, title, ha="left", va="top", fontweight="bold", fontsize=9.5)
-    fig.text(0.012, 0.06 / height, "\n".join(lines), ha="left", va="bottom", fontsize=7, color=GREY, linespacing=1.35)
-    return fig
 
 
 def _colours(names: Sequence[str]) -> dict[str, object]:
@@ -54,7 +43,7 @@ def fit(frame: pd.DataFrame) -> Figure:
         "from the misfit of each fit.",
         f"Points: {_measured(frame)}.",
     ]
-    fig = _figure("Calibration: steady force under a flat plate", note, 4.2)
+    fig = study_figure("Calibration: steady force under a flat plate", note, 4.2)
     left, right = fig.subplots(1, 2, sharey=True)
     simulated = is_simulated(frame)
     subjects = frame[frame["panel"] == "subjects"]
@@ -109,7 +98,7 @@ def identifiability(frame: pd.DataFrame) -> Figure:
         "Simulated forces against measured ones: rise of the sum of squares above its least, over the squared scatter of the "
         "fit. Along the valley nothing changes: force tells modulus x contact length and nothing of either alone.",
     ]
-    fig = _figure("Calibration: what force can tell", note, 3.7)
+    fig = study_figure("Calibration: what force can tell", note, 3.7)
     left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
     ridge = frame[frame["panel"] == "ridge"]
     grid = ridge.pivot(index="contact_length (mm)", columns="modulus_constant (1)", values="rise (1)")
@@ -181,7 +170,7 @@ def residuals(frame: pd.DataFrame) -> Figure:
         "Elliptical patch: length proportional to the simulated width. Plane sections: the pad curved along the finger, "
         "each section pressed by itself. Thin lines and points: subjects; thick: the mean. Measured forces: see the fit.",
     ]
-    fig = _figure("Calibration: a contact that grows", note, 3.9)
+    fig = study_figure("Calibration: a contact that grows", note, 3.9)
     left, right = fig.subplots(1, 2)
     residual = frame[frame["panel"] == "residuals"]
     subjects = residual["subject"].unique()
@@ -241,7 +230,7 @@ def prony(frame: pd.DataFrame) -> Figure:
         "abstract gives "
         "no amplitudes: right, the error any amplitude would have, whatever it is.",
     ]
-    fig = _figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
+    fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
     grid = fig.add_gridspec(2, 2, width_ratios=(1.35, 1), height_ratios=(1.5, 1))
     top, below, right = fig.add_subplot(grid[0, 0]), fig.add_subplot(grid[1, 0]), fig.add_subplot(grid[:, 1])
     force = frame[frame["panel"] == "force"]
@@ -302,7 +291,7 @@ def friction(frame: pd.DataFrame) -> Figure:
         "Published coefficients of fingers, at loads from 1 N on but for the model:",
         f"{'; '.join(published['source'].unique())}.",
     ]
-    fig = _figure("Calibration: friction from the stretch of the skin", note, 4.4)
+    fig = study_figure("Calibration: friction from the stretch of the skin", note, 4.4)
     grid = fig.add_gridspec(2, 2, height_ratios=(3.2, 1))
     left, right = fig.add_subplot(grid[:, 0]), fig.add_subplot(grid[0, 1])
     below = fig.add_subplot(grid[1, 1], sharex=right)

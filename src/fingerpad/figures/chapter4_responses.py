@@ -370,20 +370,24 @@ def fig_4_4(frame: pd.DataFrame) -> Figure:
     """Steady against peak rate, nine points and a line."""
     note = _note(frame, f"{LAW_NOTE}, 915 µm under the centre. Steady: mean of the last half of the hold.", how=_HOW)
     fig = style.new_figure(frame, "4-4", "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf", 4.6, note=note)
-    ax = fig.subplots()
-    _limits(ax, frame, GIVEN_RATE, STEADY_RATE)
+    _draw_points_and_line(fig.subplots(), frame, GIVEN_RATE, STEADY_RATE)
+    fig.axes[0].set(xlabel="peak rate (impulses/s)", ylabel="steady rate (impulses/s)")
+    return fig
+
+
+def _draw_points_and_line(ax: Axes, frame: pd.DataFrame, x: str, y: str) -> None:
+    """Named points of nine surfaces, the line through them, and recordings if there are any."""
+    _limits(ax, frame, x, y)
     line = frame[frame["source"].str.contains("line")]
-    ax.plot(line[GIVEN_RATE], line[STEADY_RATE], color=style.GREY, lw=1, label=_source_text(line))
+    ax.plot(line[x], line[y], color=style.GREY, lw=1, label=_source_text(line))
     points = frame[frame["source"] == SIMULATED]
-    _points(ax, points, GIVEN_RATE, STEADY_RATE)
-    _name_points(ax, points, GIVEN_RATE, STEADY_RATE)
+    _points(ax, points, x, y)
+    _name_points(ax, points, x, y)
     mine = frame[frame["source"].str.startswith("measured")]
     if len(mine):
-        ax.plot(mine[GIVEN_RATE], mine[STEADY_RATE], "D", color=style.INK, ms=4.5, label="recorded")
-    ax.set(xlabel="peak rate (impulses/s)", ylabel="steady rate (impulses/s)")
+        ax.plot(mine[x], mine[y], "D", color=style.INK, ms=4.5, label="recorded")
     ax.legend(loc="upper left")
     _stamp(ax)
-    return fig
 
 
 def _name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
@@ -592,19 +596,8 @@ def fig_4_18(frame: pd.DataFrame) -> Figure:
     """Peak rate against peak pressure, nine points and a line."""
     note = _note(frame, f"{LAW_NOTE}, 915 µm under the centre.", how=_HOW)
     fig = style.new_figure(frame, "4-18", "Predicted peak rate against peak contact pressure", 4.6, note=note)
-    ax = fig.subplots()
-    _limits(ax, frame, P_PEAK, GIVEN_RATE)
-    line = frame[frame["source"].str.contains("line")]
-    ax.plot(line[P_PEAK], line[GIVEN_RATE], color=style.GREY, lw=1, label=_source_text(line))
-    points = frame[frame["source"] == SIMULATED]
-    _points(ax, points, P_PEAK, GIVEN_RATE)
-    _name_points(ax, points, P_PEAK, GIVEN_RATE)
-    mine = frame[frame["source"].str.startswith("measured")]
-    if len(mine):
-        ax.plot(mine[P_PEAK], mine[GIVEN_RATE], "D", color=style.INK, ms=4.5, label="recorded")
-    ax.set(xlabel="peak contact pressure (Pa)", ylabel="peak rate (impulses/s)")
-    ax.legend(loc="upper left")
-    _stamp(ax)
+    _draw_points_and_line(fig.subplots(), frame, P_PEAK, GIVEN_RATE)
+    fig.axes[0].set(xlabel="peak contact pressure (Pa)", ylabel="peak rate (impulses/s)")
     return fig
 
 

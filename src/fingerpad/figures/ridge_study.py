@@ -6,9 +6,6 @@ Each figure is drawn from its data frame alone, see :mod:`fingerpad.studies.ridg
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Sequence
-
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,7 +13,7 @@ from matplotlib.ticker import MultipleLocator
 
 from fingerpad.figures.columns import DISTANCE, SED, P, X
 from fingerpad.figures.direction import BESIDE, DEPTH, KEY
-from fingerpad.figures.style import COLOURS, GREY, INK, LAYER_COLOURS, NOTE_WIDTH, PAGE_WIDTH, styled
+from fingerpad.figures.style import COLOURS, GREY, INK, LAYER_COLOURS, study_figure, styled
 
 OFFSET, INDEX, BAND = "offset (um)", "directional_index (1)", "discretisation_error (1)"
 HEIGHT, FRICTION, EDGE = "ridge_height (um)", "friction (1)", "element_edge (um)"
@@ -46,17 +43,6 @@ DEFINITION = (
 # --- pictures --------------------------------------------------------------------------------------------------
 
 
-def _figure(title: str, note: Sequence[str], height: float) -> Figure:
-    """Empty page-wide figure (height in inch) with a bold title above and notes below."""
-    fig = Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
-    lines = [part for line in note for part in textwrap.wrap(line, NOTE_WIDTH)]
-    bottom = (0.16 * len(lines) + 0.08) / height
-    fig.get_layout_engine().set(rect=(0.005, bottom, 0.99, 1 - 0.30 / height - bottom), w_pad=0.05, h_pad=0.04)
-    fig.text(0.012, 1 - 0.09 / height, title, ha="left", va="top", fontweight="bold", fontsize=9.5)
-    fig.text(0.012, 0.06 / height, "\n".join(lines), ha="left", va="bottom", fontsize=7, color=GREY, linespacing=1.35)
-    return fig
-
-
 def _curve(ax: Axes, rows: pd.DataFrame, x: str, colour: str, marker: str, line, label: str) -> None:
     """A curve with its band of discretisation error."""
     ax.fill_between(rows[x], rows[INDEX] - rows[BAND], rows[INDEX] + rows[BAND], color=colour, alpha=0.25, lw=0)
@@ -73,7 +59,7 @@ def offset(frame: pd.DataFrame) -> Figure:
         "middle one in the epidermis. Map on the fine mesh, not smoothed. Band (where wider than the line): difference to a mesh "
         "of twice the edge.",
     ]
-    fig = _figure("Ridges: directional index round a ridge", note, 6.4)
+    fig = study_figure("Ridges: directional index round a ridge", note, 6.4)
     top, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1.25, 1.0])
     grid = frame[frame["panel"] == "map"].pivot(index=RECEPTOR, columns=OFFSET, values=INDEX)
     shown = top.pcolormesh(grid.columns, grid.index, grid, cmap="RdBu_r", vmin=-0.6, vmax=0.6, shading="nearest", rasterized=True)
@@ -113,7 +99,7 @@ def offset(frame: pd.DataFrame) -> Figure:
 
 def _sweep(frame: pd.DataFrame, column: str, title: str, xlabel: str, extra: str) -> Figure:
     note = [DEFINITION, extra + " Band: difference to a mesh of up to twice the edge."]
-    fig = _figure(title, note, 4.2)
+    fig = study_figure(title, note, 4.2)
     ax = fig.subplots()
     for series, (colour, marker, line) in LOOKS.items():
         rows = frame[frame["series"] == series].sort_values(column)
@@ -157,7 +143,7 @@ def mesh(frame: pd.DataFrame) -> Figure:
         "Open symbols: the ridges drawn on elements of the thesis's size (0.12 mm wide and high: four to a pitch, about one to a "
         "height) in three ways; the thesis does not say how its own were drawn, and doubts their resolution itself.",
     ]
-    fig = _figure("Ridges: how far to believe the directional index", note, 3.9)
+    fig = study_figure("Ridges: how far to believe the directional index", note, 3.9)
     left, right = fig.subplots(1, 2)
     for column, colour, name in ((RIGHT, COLOURS["315"], "plate to the right"), (LEFT, "#1f77a4", "plate to the left")):
         left.plot(resolved[EDGE], resolved[column], "o-", color=colour, ms=4, label=name)
@@ -187,7 +173,7 @@ def outer(frame: pd.DataFrame) -> Figure:
         "150 µm and outer ones 60 µm high, 0.48 mm apart. Islands are parted by a node of the skin, or more, not touching.",
         f"Receptors {DEPTH * 1e6:.0f} µm deep; the one at 0 lies in the epidermis of the tip, the others in the dermis.",
     ]
-    fig = _figure("Ridges of the skin too: contact in islands", note, 6.0)
+    fig = study_figure("Ridges of the skin too: contact in islands", note, 6.0)
     grid = fig.add_gridspec(2, 2)
     axes = [fig.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, 0], grid[1, 1])]
     part = lambda panel, series: frame[(frame["panel"] == panel) & (frame["series"] == series)]  # noqa: E731

@@ -132,6 +132,20 @@ def new_figure(
     return fig
 
 
+def study_figure(title: str, note: Sequence[str], height: float, header: float = 0.0) -> Figure:
+    """Empty page-wide figure of a study, height in inch: a bold title above, the note's paragraphs wrapped below.
+
+    `header` (inch) leaves room under the title.
+    """
+    fig = Figure(figsize=(PAGE_WIDTH, height), layout="constrained")
+    lines = [part for line in note for part in textwrap.wrap(line, NOTE_WIDTH)]
+    top, bottom = (0.30 + header) / height, (0.16 * len(lines) + 0.08) / height
+    fig.get_layout_engine().set(rect=(0.005, bottom, 0.99, 1 - top - bottom), w_pad=0.05, h_pad=0.04)
+    fig.text(0.012, 1 - 0.09 / height, title, ha="left", va="top", fontweight="bold", fontsize=9.5)
+    fig.text(0.012, 0.06 / height, "\n".join(lines), ha="left", va="bottom", fontsize=7, color=GREY, linespacing=1.35)
+    return fig
+
+
 def footnote(frame: pd.DataFrame, how: str = "") -> list[str]:
     """Lines under a picture: provenance, discretisation error (and `how` it is taken), and how thesis values are marked."""
     first = "Simulated in plane strain, not measured."
