@@ -24,6 +24,7 @@ from fingerpad.scene import (
     StepAndRepeat,
     load_scene,
 )
+from fingerpad.studies.hard_cases import scene_of
 
 pytestmark = pytest.mark.unit
 
@@ -95,6 +96,34 @@ def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):
     rough, slippery = (plan(changed(ramp, friction=coefficient)).effects["friction"] for coefficient in (0.6, 0.008))
     assert rough.on and not slippery.on
     assert "nothing slides" in slippery.why and "1.6%" in slippery.why and "20.0%" in rough.why
+
+
+@pytest.mark.parametrize(
+    ("height", "accuracy", "more", "on"),
+    [
+        ("3 um", "draft", {}, False),
+        ("3 um", 0.01, {}, True),
+        ("0.15 mm", "draft", {}, True),
+        ("3 um", "draft", {"outer": {"height": "1 um"}}, True),
+        ("3 um", "draft", {"motion": [{"press_to_force": "20 gf"}, {"slide": "1 mm"}]}, True),
+        ("3 um", "draft", {"outputs": {"receptors": {"depths": ["853 um"]}}}, True),
+        ("3 um", "draft", {"stiff": "1 MPa"}, True),
+        ("3 um", "draft", {"effects": {"ridges": "on"}}, True),
+        ("0.15 mm", "draft", {"effects": {"ridges": "off"}}, False),
+    ],
+)
+def test_low_inner_ridges_are_left_out_of_presses(height, accuracy, more, on):
+    """What they change grows with height over pitch; whatever else they could do they are carried for."""
+    more = dict(more)
+    specimen = {"ridges": {"inner": {"height": height}} | ({"outer": more.pop("outer")} if "outer" in more else {})}
+    if "stiff" in more:
+        specimen["layers"] = {"epidermis": {"youngs_modulus": more.pop("stiff")}}
+    document = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}
+    chosen = plan(scene_of(document | {"specimen": specimen, "accuracy": accuracy} | more, "ridged"))
+    assert chosen.effects["ridges"].on == on
+    if not on and "effects" not in more:
+        assert "1.9% of a press, 6.0% is allowed" in chosen.effects["ridges"].why
+        assert chosen.nodes < plan(scene_of(document | {"accuracy": accuracy}, "plain")).nodes + 1
 
 
 @pytest.fixture(scope="module")

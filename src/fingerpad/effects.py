@@ -102,6 +102,8 @@ class Rules:
         pressing_friction: change of the headline quantities by friction in a press, over the coefficient; most_pressing_friction:
             what it comes to where the whole contact sticks. Friction is left out of presses when that is within the accuracy.
         relaxation_share: viscosity is left out when what it can change is below this share of the accuracy.
+        ridge_change: of strain energy by low inner ridges in a press, over height / pitch, at most; ridge_contrast: of epidermis
+            to dermis, up to which that holds. Ridges are left out of presses when it is within the accuracy.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
         skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
@@ -127,7 +129,9 @@ class Rules:
     small_strain_error: float = 4.6
     pressing_friction: float = 2.0
     most_pressing_friction: float = 0.2
-    relaxation_share: float = 0.25
+    relaxation_share: float = 0.15
+    ridge_change: float = 3.0
+    ridge_contrast: float = 11.0
     fine_half_width: float = 3.4e-3
     skin_stretch: float = 1.0e-3
     edges_per_half_width: float = 2.0
@@ -239,7 +243,6 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         room for its ridges.
     """
     external = _external(scene)
-    ridges = scene.specimen.ridges if scene.effects.get("ridges", True) else None
     profile = profile_of(scene.stimulus)
     pad = _pad(scene, external)
     moves = _moves(scene)
@@ -253,12 +256,14 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         )
     preset, by_hand = _preset(scene, rules, contact)
     tolerance = preset.tolerance
+    ridged = _ridges(scene, moves, tolerance, rules)
+    ridges = scene.specimen.ridges if scene.effects.get("ridges", ridged.on) else None
     effects = {
         "friction": _friction(scene, tolerance, rules),
         "viscoelasticity": Effect(False, ""),
         "finite_strain": _finite_strain(pad, profile, contact, tolerance, rules),
         "symmetry": _symmetry(scene, profile, external, ridges),
-        "ridges": _ridges(scene),
+        "ridges": ridged,
     }
     effects["viscoelasticity"], state = _viscoelasticity(scene, profile, contact, tolerance, rules)
     _apply_overrides(scene, effects)
@@ -514,15 +519,24 @@ def _finite_strain(pad: PadEstimate, profile: Profile, contact: ContactEstimate,
     )
 
 
-def _ridges(scene: Scene) -> Effect:
-    ridges = scene.specimen.ridges
+def _ridges(scene: Scene, moves: bool, tolerance: float, rules: Rules) -> Effect:
+    ridges, layers = scene.specimen.ridges, scene.specimen.layers
     if ridges is None:
         return Effect(False, "the specimen has none")
     inner, outer = ridges.inner, ridges.outer
     why = f"the specimen has inner ridges {inner.pitch * 1e3:.3g} mm apart, {inner.height * 1e3:.3g} mm high"
     if outer is not None:
         why += f", and outer ones {(outer.period or inner.pitch) * 1e3:.3g} mm apart, {outer.height * 1e3:.3g} mm high"
-    return Effect(True, why)
+    border = scene.specimen.outline.epidermis_thickness
+    known = (
+        outer is None and not moves
+        and layers.epidermis.youngs_modulus <= rules.ridge_contrast * layers.dermis.youngs_modulus
+        and min((abs(depth - border) for depth in scene.outputs.receptors.depths), default=border) > 2 * inner.height
+    )  # fmt: skip
+    worth = rules.ridge_change * inner.height / inner.pitch
+    if not known or worth > tolerance:
+        return Effect(True, why)
+    return Effect(False, f"{why}: they change up to {worth:.1%} of a press, {tolerance:.1%} is allowed")
 
 
 def _resolved(effect: Effect, layered: tuple, edge: float) -> tuple[Effect, float]:
@@ -595,7 +609,8 @@ def _apply_overrides(scene: Scene, effects: dict[str, Effect]) -> None:
         effect = effects[name]
         if wanted == effect.on:
             continue
-        if wanted and (name == "ridges" or (name == "friction" and scene.friction == 0)):
+        none = {"ridges": scene.specimen.ridges is None, "friction": scene.friction == 0}
+        if wanted and none.get(name):
             raise PlanError(f"{scene.name}: effects.{name}: on, but {effect.why}; allowed: off or auto")
         if wanted and name == "symmetry":
             raise PlanError(f"{scene.name}: effects.symmetry: on, but {effect.why}; allowed: off or auto")
