@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fingerpad.figures.stability import METHODS, assemble, heat_map, long, table
+from fingerpad.figures.stability import METHODS, assemble, heat_map, long, table, tally
 
 pytestmark = pytest.mark.unit
 
@@ -41,6 +41,15 @@ def test_table_tells_how_each_method_ended(frame):
     out = table(frame).set_index("case")
     assert out.loc["a", "full Q1"].startswith("wrong: off by 50%") and out.loc["a", "plain P2"] == "stable"
     assert out.loc["b", "said"] == "why" and out.loc["b", "last state saved"] == "3 steps"
+
+
+def test_runs_are_counted_by_how_they_ended(frame):
+    """Where the default method has no answer to be off from, none is wrong; a silent failure would be counted."""
+    frames = {method: part for method, part in long(frame).groupby("method")}
+    assert tally(frames["default"]) == ["1 stable", "1 stop and say why", "none fails silently"]
+    assert tally(frames["full Q1"]) == ["1 wrong", "1 stop and say why"]
+    frame.loc[(frame["method"] == "default") & (frame["case"] == "a"), "outcome"] = "unsound"
+    assert tally(long(frame[frame["method"] == "default"])) == ["1 outside limits", "1 stop and say why"]
 
 
 def test_picture_has_a_panel_a_method_and_marks_what_did_not_complete(frame):

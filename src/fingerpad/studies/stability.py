@@ -26,8 +26,9 @@ from fingerpad.studies.hard_cases import CATALOGUE, Case, Limits
 from fingerpad.studies.meshes import quarters, triangles
 
 METHODS = ("default", "full Q1", "plain P2", "plain Newton")
-STABLE, CLEAN, SILENT, UNCLEAN = "stable", "fails cleanly", "unsound", "breaks off"
-"""Outcomes of a run. Unsound: it completed outside its limits; breaks off: an error that is not a diagnosis."""
+STABLE, ADMITS, CLEAN, SILENT, UNCLEAN = "stable", "admits its error", "fails cleanly", "unsound", "breaks off"
+"""Outcomes of a run. Admits its error: the error that it estimates is a half or more; unsound: it completed outside its limits;
+breaks off: an error that is not a diagnosis."""
 MOST_ITERATIONS = 400
 """A teaching method is given up after so many Newton iterations; the default method is not."""
 ENDS = ("force", "indentation_depth", "stored_energy", "contact_width", "tangential_force")
@@ -173,7 +174,7 @@ def run(case: Case, method: str = METHODS[0], halve: bool = True) -> Run | None:
     measured = measures(history)
     if case.may_fail:
         error = history.attrs["estimated_error"]
-        return Run(history, True, STABLE if error >= 0.5 else SILENT, f"estimated error {error:.2g}", measured)
+        return Run(history, True, ADMITS if error >= 0.5 else SILENT, f"estimated error {error:.2g}", measured)
     if halve:
         try:
             measured["halving"] = difference(_simulate(case, method, 2), history)
