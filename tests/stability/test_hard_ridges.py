@@ -21,7 +21,6 @@ def base():
 
 CASES = {
     "as the scenes": ({"inner": {}}, 0.65),
-    "sharp, full friction": ({"inner": {"height": 0.15 * MM, "shape": "sharp"}}, 1.0),
     "high, full friction": ({"inner": {"height": 0.3 * MM}}, 1.0),
     "high and sharp, full friction": ({"inner": {"height": 0.3 * MM, "shape": "sharp"}}, 1.0),
     "high, aside, limiting": ({"inner": {"height": 0.3 * MM, "phase": 0.1 * MM, "limiting": 0.5}}, 1.0),

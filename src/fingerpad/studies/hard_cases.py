@@ -74,9 +74,14 @@ class Case:
         timed = any({"rate", "speed", "hold"} & set(leg) for leg in self.scene["motion"])
         return self.steps or (10 if timed else 4)
 
+    @property
+    def document(self) -> dict[str, Any]:
+        """The scene document: on a draft mesh and with finite strain unless it says otherwise."""
+        return {"accuracy": "draft", "effects": {"finite_strain": "on"}} | self.scene
+
     def read(self, folder: Path) -> Scene:
-        """The scene, with finite strain; its external mesh, if it has one, is written into ``folder``."""
-        document = {"accuracy": "draft", "effects": {"finite_strain": "on"}} | self.scene
+        """The scene; its external mesh, if it has one, is written into ``folder``."""
+        document = self.document
         if self.mesh is not None:
             from fingerpad.effects import plan
             from fingerpad.specimen import mesh_for
@@ -193,6 +198,11 @@ def _catalogue():
         yield Case(
             f"ridges, {kind.replace('_', ' ')}", group, hard, scene, Limits(checkerboard=np.inf if "outer" in kind else 0.05)
         )
+    scene = {
+        "stimulus": FLAT, "friction": 1, "motion": [PRESS, slide(2), slide(-1)],
+        "specimen": {"ridges": {"inner": {"height": "0.3 mm", "shape": "sharp"}}},
+    }  # fmt: skip
+    yield Case("ridges, sharp, stroked", group, "tips bent to and fro under full friction", scene, Limits(**NARROW))
 
     group = "friction"
     for name, stimulus, legs in (
@@ -228,7 +238,7 @@ def _catalogue():
         motion = [depth(1, 2), hold(3), depth(0.05, speed), hold(0.2), depth(1, speed)]
         scene = {"stimulus": cylinder(209.97), "motion": motion}
         hard = "drawn back faster than the skin can follow, and pressed on again"
-        yield Case(f"drawn off and back at {speed} mm/s", group, hard, scene, Limits(energy=0.05, **NARROW))
+        yield Case(f"unloaded to separation at {speed} mm/s", group, hard, scene, Limits(energy=0.05, **NARROW))
     motion = [force(20), {"step": "6 mm", "every": "2 mm"}]
     yield Case(
         "start with no contact, whole load at once", group, "nothing touches, no force gives a scale, the surface is not over it",
