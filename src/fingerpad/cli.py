@@ -299,9 +299,7 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     for name, value in plan.discretisation.items():
         details.add_row(Text(name.replace("_", " ")), Text(f"{value:.4g}" if isinstance(value, float) else str(value)))
     console.print(details)
-    console.print(
-        Text(f"expected error: {plan.estimated_error:.1%} of depth, width, pressure and strain energy at the legs' ends")
-    )
+    console.print(Text(f"expected error: {plan.estimated_error:.1%} (depth, width, pressure, strain energy)"))
     console.print(Text(f"predicted cost: {plan.predicted_cost_s:.2g} s of one core"))
 
 
