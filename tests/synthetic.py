@@ -114,6 +114,8 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         "strain_energy_density": (("time", "receptor"), energy, "Pa"),
         "strain_energy_network": (("time", "receptor"), network, "Pa"),
         "strain_energy_recoverable": (("time", "receptor"), network * 1.05, "Pa"),
+        "strain_energy_long_term_moduli": (("time", "receptor"), energy * 1.5, "Pa"),
+        "strain_energy_half_stress_strain": (("time", "receptor"), (energy + network) / 2, "Pa"),
     }
     data = {k: (dims, v * scale if k != "force" else v, {"units": unit}) for k, (dims, v, unit) in full.items()}
     data["leg"] = ("time", leg)

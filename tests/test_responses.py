@@ -14,7 +14,7 @@ from fingerpad.figures.numbers import Results
 from fingerpad.figures.response_numbers import RESPONSE_TRENDS, SHALLOW_DEPTH, TRIALS, rate_in, shallow_law
 from fingerpad.figures.responses import IMPULSE_RATE, P_LAW, SED_LAW, predicted_rate, pressed, skin_sample, time_mean, windowed
 from fingerpad.figures.spec import read_reference
-from fingerpad.figures.strain_energy_meanings import CHANGE, MEANINGS, fig_meanings, frame_meanings
+from fingerpad.figures.strain_energy_meanings import CHANGE, MEANINGS, fig_meanings, frame_meanings, titled
 from fingerpad.receptors.laws import SpatialSum
 from fingerpad.receptors.recordings import read_rates
 
@@ -188,7 +188,7 @@ def test_meanings_of_strain_energy_are_told_apart_by_their_change_in_the_hold(ma
     change = frame.groupby(["panel", "series", "surface"])[CHANGE].last()
     assert (change["instantaneous elastic"] < 0).all() and (change["long-term network"] > 0).all()
     assert frame.groupby("panel")[features.ERROR].max()["instantaneous elastic"] == pytest.approx(1.0)
-    assert [ax.get_title(loc="left") for ax in fig_meanings(frame).axes[:3]] == list(MEANINGS)
+    assert [ax.get_title(loc="left") for ax in fig_meanings(frame).axes[:5]] == [titled(name) for name in MEANINGS]
 
 
 # --- trends ----------------------------------------------------------------------------------------------

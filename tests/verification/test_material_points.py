@@ -5,14 +5,16 @@ import pytest
 from meshes import nodes_of, rectangle
 from pressing import press
 from problems import make_body, two_numbers
+from scipy.linalg import logm
 from strips import Layer, half_strip
 
-from fingerpad.receptors.material_points import MaterialPoints
+from fingerpad.receptors.material_points import MaterialPoints, logarithmic_strain
 from fingerpad.reference_solutions import hertz, prony_point
 from fingerpad.specimen.materials import Prony
 from fingerpad.stimuli.profiles import Cylinder
 
 THESIS = Prony((0.055, 0.3691), (3.25, 0.3414))
+ENERGIES = {f"strain_energy_{name}" for name in ("density", "long_term_moduli", "half_stress_strain", "recoverable", "network")}
 DEPTHS = (0.3, 0.786, 1.5, 2.5)  # half widths
 
 #: network energy over p0^2/G at DEPTHS
@@ -43,7 +45,7 @@ def check_hertz_energy(element, strain="small", poisson=0.4999, off_axis=0.0):
     stresses = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)
     np.testing.assert_allclose(energies["von_mises_stress"], 3**0.5 * stresses["max_shear"], rtol=0.02, err_msg="truth")
     np.testing.assert_allclose(energies["compressive_strain"], stresses["max_shear"] / (2 * shear), rtol=0.04, err_msg="truth")
-    for name in ("strain_energy_density", "strain_energy_recoverable"):
+    for name in ENERGIES:
         np.testing.assert_allclose(energies[name], energies["strain_energy_network"], rtol=2e-3, err_msg="truth")
 
 
@@ -81,6 +83,8 @@ def check_shear_energies(strain, series=THESIS):
         k = history[0].index(time)
         truth = {
             "strain_energy_density": total[k] ** 2 / (2 * instantaneous),
+            "strain_energy_long_term_moduli": total[k] ** 2 / (2 * long_term),
+            "strain_energy_half_stress_strain": total[k] * shear / 2,
             "strain_energy_network": long_term * shear**2 / 2,
             "strain_energy_recoverable": long_term * shear**2 / 2 + springs[k],
         }
@@ -93,10 +97,20 @@ def check_shear_energies(strain, series=THESIS):
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])
-def test_three_strain_energies_in_shear(strain, must_fail):
-    """A sheared point's headline energy is s^2/2G_0, its network's G y^2/2, recoverable with the springs'."""
+def test_five_strain_energies_in_shear(strain, must_fail):
+    """A sheared point's headline energy is s^2/2G_0, with long-term moduli s^2/2G, half stress times strain s y/2, its network's
+    G y^2/2, recoverable with the springs'."""
     check_shear_energies(strain)
     must_fail(check_shear_energies, strain, series=None)
+
+
+def test_logarithmic_strain_is_half_the_logarithm_of_b():
+    """Of a rotation none, of a stretch its logarithm, of any deformation that of F F^T by scipy."""
+    turn = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
+    f = np.array([turn, turn @ np.diag([1.5, 0.8]), [[1.2, 0.4], [-0.1, 0.9]], np.eye(2) + 1e-9 * turn])
+    truth = np.array([np.real(logm(one @ one.T)) / 2 for one in f])
+    np.testing.assert_allclose(truth[1], turn @ np.diag(np.log([1.5, 0.8])) @ turn.T, atol=1e-14, err_msg="truth")
+    np.testing.assert_allclose(logarithmic_strain(f), truth, atol=1e-15, rtol=1e-12, err_msg="truth")
 
 
 def test_between_elements_no_side_is_preferred():

@@ -400,8 +400,10 @@ def stimulus(history: xr.Dataset, name: str, depth: float) -> np.ndarray:
 
 CANDIDATES = {
     "strain energy, instantaneous elastic": ("strain_energy_density", "Pa", True),
-    "strain energy, long-term network": ("strain_energy_network", "Pa", True),
+    "strain energy, long-term moduli": ("strain_energy_long_term_moduli", "Pa", True),
+    "strain energy, half stress x strain": ("strain_energy_half_stress_strain", "Pa", True),
     "strain energy, recoverable": ("strain_energy_recoverable", "Pa", True),
+    "strain energy, long-term network": ("strain_energy_network", "Pa", True),
     "compressive strain": ("compressive_strain", "1", True),
     "tensile strain": ("tensile_strain", "1", True),
     "von Mises stress": ("von_mises_stress", "Pa", True),

@@ -4,6 +4,10 @@ In a viscoelastic solid under a constant force the word has several meanings, an
 
 instantaneous elastic
     that of the whole stress on the instantaneous moduli, as if nothing had relaxed; the headline `strain_energy_density`.
+long-term moduli
+    the same on the long-term moduli, as if all had relaxed.
+half stress × strain
+    half of the whole Kirchhoff stress contracted with the logarithmic strain.
 recoverable
     of the long-term network and of the springs of the Maxwell branches.
 long-term network
@@ -12,11 +16,13 @@ long-term network
 
 from __future__ import annotations
 
+import textwrap
 from functools import partial
 
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from fingerpad.figures import style
 from fingerpad.figures.columns import SED, TIME
@@ -25,6 +31,8 @@ from fingerpad.figures.responses import pressed
 
 MEANINGS = {
     "instantaneous elastic": "strain_energy_density",
+    "long-term moduli": "strain_energy_long_term_moduli",
+    "half stress × strain": "strain_energy_half_stress_strain",
     "recoverable": "strain_energy_recoverable",
     "long-term network": "strain_energy_network",
 }
@@ -32,7 +40,13 @@ MEANINGS = {
 DEPTHS = {"600 um": 600e-6, "915 um": 915e-6}
 SHOWN = "915 um"
 CHANGE = "change_in_hold (%)"
-COLOURS = dict(zip(MEANINGS, style.mpl.colormaps["viridis"](np.linspace(0.1, 0.8, 3)), strict=True))
+MARKS = {
+    panel: {"color": colour, "marker": "o", "ms": 4, "zorder": 9 - k}
+    for k, (panel, colour) in enumerate(
+        zip(MEANINGS, style.mpl.colormaps["viridis"](np.linspace(0, 0.85, len(MEANINGS))), strict=True)
+    )
+}
+MARKS["long-term moduli"] |= {"ms": 8, "mfc": "none"}  # rings: at 600 um it changes as the first does
 LINES = {"600 um": "--", "915 um": "-"}
 
 
@@ -51,6 +65,11 @@ def frame_meanings(histories: Histories, coarse: Histories) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
+def titled(panel: str) -> str:
+    """A definition's name in the lines of a narrow panel's title."""
+    return textwrap.fill(panel, 12, break_long_words=False)
+
+
 @style.styled
 def fig_meanings(frame: pd.DataFrame) -> Figure:
     """Above: each definition over time, relative to the top of the ramp; below: its change over the hold for every surface."""
@@ -58,7 +77,7 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
         *style.footnote(frame),
         "Rates recorded from slowly adapting receptors peak at the top of the ramp and fall in the hold under every surface "
         "(Cysyk 1999, section 4.2).",
-        "Grey: where a definition does so. Without viscosity the three are one.",
+        "Grey: where a definition does so. Without viscosity the five are one.",
     ]
     fig = style.new_figure(frame, "", "", 6.6, note=note)
     fig.texts[0].set_text("Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, under the centre")
@@ -72,7 +91,8 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
             ax.plot(rows[TIME], 1 + rows[CHANGE] / 100, color=style.COLOURS[label])
             ends[label] = (rows[TIME].iloc[-1], 1 + rows[CHANGE].iloc[-1] / 100)
         ax.axhspan(0, 1, color=style.BAND, lw=0, zorder=0)
-        ax.set(title=panel, xlabel="time (s)", xlim=(0, 2.5), ylim=(0, 1.08 * (1 + frame[CHANGE].max() / 100)))
+        ax.set(title=titled(panel), xlabel="time (s)", xlim=(0, 2.5), ylim=(0, 1.08 * (1 + shown[CHANGE].max() / 100)))
+        ax.tick_params(labelleft=ax is axes[0])
     axes[0].set_ylabel(f"energy over that at the top\nof the ramp, {SHOWN.replace('um', 'µm')}")
     style.label_ends(axes[-1], ends, 2.62, "curvature (1/m)")
     ax = fig.add_subplot(grid[1, :])
@@ -81,12 +101,13 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
         for series, line in LINES.items():
             rows = last[(last["panel"] == panel) & (last["series"] == series)]
             place = [SURFACES.index(label) for label in rows["surface"]]
-            name = f"{panel}, {series.replace('um', 'µm')}"
-            ax.plot(place, rows[CHANGE], line, marker="o", ms=4, color=COLOURS[panel], label=name)
+            ax.plot(place, rows[CHANGE], line, **MARKS[panel])
     ax.axhline(0, color=style.INK, lw=0.7)
     ax.axhspan(min(0.0, 1.2 * last[CHANGE].min()), 0, color=style.BAND, lw=0, zorder=0)
     ax.set(ylabel="change over the hold (%)", xlabel="curvature (1/m)", xlim=(-0.3, len(SURFACES) - 0.7))
     ax.set_xticks(range(len(SURFACES)), ["flat plate", *SURFACES[1:]])
     ax.set_ylim(top=ax.get_ylim()[0] + 1.3 * np.ptp(ax.get_ylim()))
-    ax.legend(loc="upper left", ncols=len(MEANINGS), fontsize=7)
+    handles = [Line2D([], [], **MARKS[panel], label=panel) for panel in MEANINGS]
+    handles += [Line2D([], [], color=style.INK, ls=line, label=series.replace("um", "µm")) for series, line in LINES.items()]
+    ax.legend(handles=handles, loc="upper left", ncols=3, fontsize=7)
     return fig

@@ -5,7 +5,7 @@ point (of zero weight): displacement gradient and pressure are evaluated there e
 the branch stresses follow the same recurrence as in the body.
 
 What is sampled are the stimuli that receptors have been said to respond to (Phillips and Johnson 1981; Srinivasan and Dandekar
-1996). Three meanings of strain energy density (per undeformed volume) are kept apart, because under constant force they
+1996). Five meanings of strain energy density (per undeformed volume) are kept apart, because under constant force they
 disagree even in trend (see :func:`strain_energies`).
 """
 
@@ -168,7 +168,7 @@ class MaterialPoints:
     def sample(self, body) -> dict[str, np.ndarray]:
         """What a receptor could respond to, (nr,) each, at the body's present state.
 
-        The three strain energy densities (Pa, see :func:`strain_energies`), the principal strains in the plane
+        The five strain energy densities (Pa, see :func:`strain_energies`), the principal strains in the plane
         (``compressive_strain`` and ``tensile_strain``: stretch less one, positive in compression and in tension; zero if
         there is none), ``von_mises_stress`` and ``hydrostatic_pressure`` (Cauchy, Pa, compression positive) and ``dilatation``
         (J - 1 as the element projects it).
@@ -178,17 +178,17 @@ class MaterialPoints:
         stress = self._isochoric(gradient)
         branch = [] if self.branches is None else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
         if self._linear:
-            f, jac = np.broadcast_to(np.eye(2), gradient.shape), 1.0
+            f, jac, strain = np.broadcast_to(np.eye(2), gradient.shape), 1.0, 0.5 * (gradient + gradient.swapaxes(1, 2))
             network = deviator_square(stress) / (4 * self.shear)
-            stretch = 1 + np.linalg.eigvalsh(0.5 * (gradient + gradient.swapaxes(1, 2)))
+            stretch = 1 + np.linalg.eigvalsh(strain)
         else:
             f = np.eye(2) + gradient
             jac = f[:, 0, 0] * f[:, 1, 1] - f[:, 0, 1] * f[:, 1, 0]
             i1 = np.einsum("nij,nij->n", f, f) + 1
             network = 0.5 * self.shear * (jac ** (-2 / 3) * i1 - 3)
-            stretch = np.linalg.svd(f, compute_uv=False)[:, ::-1]
-        network = network + 0.5 * self.bulk * dilatation**2
-        found = strain_energies(f, stress, branch, network, self.shear, self.shear_instantaneous, self.bulk, dilatation)
+            stretch, strain = np.linalg.svd(f, compute_uv=False)[:, ::-1], logarithmic_strain(f)
+        volumetric = 0.5 * self.bulk * dilatation**2
+        found = strain_energies(f, strain, stress, branch, network, self.shear, self.shear_instantaneous, volumetric)
         total = stress + sum((q for _, q in branch), np.zeros_like(stress))
         found |= {
             "compressive_strain": np.maximum(1 - stretch[:, 0], 0),
@@ -226,28 +226,49 @@ def _quadratic_recovery(space, shear, hosts, points, neighbours: int = 24):
     return Location(used // nq, space.element.points[used % nq]), matrix
 
 
-def strain_energies(f, stress, branches, network, shear, shear_instantaneous, bulk, dilatation):
+def logarithmic_strain(f: np.ndarray) -> np.ndarray:
+    """Spatial logarithmic (Hencky) strain ``log(F F^T) / 2`` in the plane, (nr, 2, 2), of deformation gradients (nr, 2, 2)."""
+    b = f @ f.swapaxes(1, 2)
+    mean = 0.5 * np.trace(b, axis1=1, axis2=2)
+    share = np.hypot(0.5 * (b[:, 0, 0] - b[:, 1, 1]), b[:, 0, 1]) / mean
+    factor = np.where(share > 1e-6, np.arctanh(share) / np.maximum(share, 1e-6), 1.0) / (2 * mean)
+    swelling = 0.5 * np.log(np.linalg.det(f)) - factor * mean
+    return factor[:, None, None] * b + swelling[:, None, None] * np.eye(2)
+
+
+def strain_energies(f, strain, stress, branches, network, shear, shear_instantaneous, volumetric):
     """Strain energy densities of a finite linear viscoelastic solid, Pa (J per undeformed m^3).
 
+    Of shape only; ``volumetric``, kappa/2 (J - 1)^2, which does not relax, is added to each. With tau the Kirchhoff stress:
+
     * ``strain_energy_density`` (headline): the elastic energy that the total stress stands for on the instantaneous moduli,
-      ``tau_dev : tau_dev / (4 G_0) + kappa/2 (J - 1)^2`` with tau the Kirchhoff stress without the volumetric part. Without
-      instantaneous moduli (None: no viscosity at all) it is psi(C).
-    * ``strain_energy_network``: psi(C) of the long-term network alone.
+      ``tau_dev : tau_dev / (4 G_0)``.
+    * ``strain_energy_long_term_moduli``: the same on the long-term moduli, ``tau_dev : tau_dev / (4 G_inf)``.
+    * ``strain_energy_half_stress_strain``: ``tau_dev : h / 2`` with the total stress and the logarithmic strain h.
     * ``strain_energy_recoverable``: network plus the Maxwell springs, ``tau_i : tau_i / (4 G_i)`` each.
+    * ``strain_energy_network``: psi(C) of the long-term network alone.
+
+    Without instantaneous moduli (None: no viscosity at all) there is one energy, psi(C), and all five are it.
 
     Args:
-        f: (nr, 2, 2). stress: (nr, 4) long-term isochoric second Piola-Kirchhoff stress. branches: pairs (beta, (nr, 4) stress).
-        network: (nr,) Pa. shear, shear_instantaneous, bulk: (nr,) Pa. dilatation: (nr,) projected J - 1.
+        f, strain: (nr, 2, 2), in the plane. stress: (nr, 4) long-term isochoric second Piola-Kirchhoff stress. branches: pairs
+            (beta, (nr, 4) stress). network, volumetric: (nr,) Pa, of shape and of volume. shear, shear_instantaneous: (nr,) Pa.
     """
     total, springs = stress, 0.0
     for beta, q in branches:
         total = total + q
         springs = springs + deviator_square(push_forward(f, q)) / (4 * beta * shear)
-    headline = network
+    instantaneous = long_term = half = network
     if shear_instantaneous is not None:
-        headline = deviator_square(push_forward(f, total)) / (4 * shear_instantaneous) + 0.5 * bulk * dilatation**2
-    return {
-        "strain_energy_density": headline,
-        "strain_energy_network": network,
+        tau = push_forward(f, total)
+        square, mean = deviator_square(tau), (tau[:, 0] + tau[:, 1] + tau[:, 3]) / 3
+        instantaneous, long_term = square / (4 * shear_instantaneous), square / (4 * shear)
+        half = 0.5 * ((tau[:, 0] - mean) * strain[:, 0, 0] + (tau[:, 1] - mean) * strain[:, 1, 1]) + tau[:, 2] * strain[:, 0, 1]
+    energies = {
+        "strain_energy_density": instantaneous,
+        "strain_energy_long_term_moduli": long_term,
+        "strain_energy_half_stress_strain": half,
         "strain_energy_recoverable": network + springs,
+        "strain_energy_network": network,
     }
+    return {name: energy + volumetric for name, energy in energies.items()}
