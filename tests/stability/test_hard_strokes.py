@@ -83,6 +83,19 @@ def test_coefficients_on_a_wavy_surface(base, friction):
     np.testing.assert_allclose(history.force[11:], LOAD, rtol=1e-3)
 
 
+@pytest.mark.parametrize(("curvature", "friction"), [(700, 0.25), (1333, 0.33), (2500, 0.5), (1e4, 0.3)])
+def test_sharp_surfaces_pressed_with_friction_into_a_whole_pad(base, curvature, friction):
+    """Where load on a sharp curve outweighs the skin's stiffness along it, its nodes still slip, as on half a pad."""
+    whole, half = (
+        stroke(base, Cylinder(curvature=curvature), friction, force(20), viscoelasticity=False, **effects)
+        for effects in ({"symmetry": False}, {})
+    )
+    sound(whole, energy=0.05)
+    np.testing.assert_allclose(whole.indentation_depth, half.indentation_depth, rtol=3e-4)
+    for name in ("contact_pressure", "tangential_traction"):
+        np.testing.assert_allclose(whole[name], half[name], atol=1e-3 * float(half.contact_pressure.max()), err_msg=name)
+
+
 @pytest.mark.parametrize("friction", [0.7, 1.5])
 def test_reversal_on_a_wavy_surface(base, friction):
     """There and back from the middle of a convexity."""

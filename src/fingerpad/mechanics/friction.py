@@ -164,7 +164,7 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
     if not active.any() and load is not None:
         nearest = np.argmin(offset[:n])
         active[nearest], state[nearest] = True, -np.sign(offset[n + nearest])
-    yielding = np.diag(tt)
+    yielding = np.abs(np.diag(tt))  # below zero where a load on a sharp curve outweighs the body: it yields all the same
     held = yielding <= 1e-12 * yielding.max(initial=0.0)  # cannot move along the tangent: a wall carries its friction
     state[held] = -np.sign(offset[n:][held])
     stiffness = 0.5 / np.where(held, np.inf, yielding)
