@@ -37,7 +37,8 @@ class NewtonSettings:
     """Tolerances relative to the current contact force and to the node spacing, and limits.
 
     ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
-    only descends. A first or second iteration that ends within ``chord`` tolerances is followed by one with the same factors.
+    only descends. A step of a stroke begins with the factors of the one before, if that was as long; a first or second
+    iteration with its own factors that ends within ``chord`` tolerances is followed by one with the same.
     """
 
     force_tolerance: float = 1e-4
@@ -124,7 +125,8 @@ class QuasiStatic:
         self._set_zone(*skin.start)
         self.height = self._first_touch()
         self._unloaded = body.save()
-        self._previous = None
+        self._previous = self._fitting = None
+        self._easy = False
         self.total_iterations = self.total_halvings = self.factorisations = 0
 
     # -- geometry ---------------------------------------------------------------------------------------------------
@@ -177,6 +179,7 @@ class QuasiStatic:
         self.nodal_force, self.active, self.depth, self.distance = state[1].copy(), state[2].copy(), *state[3:5]
         if self.friction is not None:
             self.friction.restore(state[5])
+        self._fitting = None
 
     def _start_again(self, distance):
         """Lift the profile off, let the body recover, and come down to first touch at another stroke distance (m)."""
@@ -192,14 +195,17 @@ class QuasiStatic:
         # what was put in has come out again: the balance goes on from here
         self.work = self._gross = 0.0 if self.friction is None else self.friction.dissipated
         self._energies = (0.0, 0.0, 0.0)
-        self._previous = None
+        self._previous = self._fitting = None
 
     def _attempt(self, dt, control, target):
         """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure."""
         body, settings = self.body, self.settings
         body.begin_step(dt)
         limit, iteration = settings.max_iterations, 0
-        self._softened, near = False, False
+        self._softened = False
+        near = self.distance != self._begin[2] and self._fitting == (self.solver, dt)
+        if near:
+            self._internal = body.internal_force()
         while iteration < limit:
             iteration += 1
             if self._softened:
@@ -214,6 +220,8 @@ class QuasiStatic:
             if not np.isfinite(residual):
                 raise _StepFailure("the residual is not finite")
             if residual <= 1.0 and not self._zone_is_tight() and not self._touches_elsewhere():
+                before, self._easy = self._easy, iteration <= 2 and not self._softened
+                self._fitting = (self.solver, dt) if before and self._easy else None
                 return iteration, residual, gap, gradient
             near = iteration <= 2 and not near and 1.0 < residual <= settings.chord and not self._softened
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
