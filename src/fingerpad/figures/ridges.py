@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from functools import partial
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
@@ -150,16 +149,18 @@ def _plate_frame(
     histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame, *, strokes: dict[str, str], axis: str
 ) -> pd.DataFrame:
     """Strain energy over time at the thesis's three receptors, and under the tip if there are ridges, both ways."""
-    traces: dict[str, Trace] = {series: receptor(DEPTH, x) for series, x in OFFSETS.items()}
+    places = {series: (DEPTH, x) for series, x in OFFSETS.items()}
     if strokes is RIDGED:
-        traces[EXTRA] = receptor(UNDER_TIP, 0.0)
-    parts = []
+        places[EXTRA] = (UNDER_TIP, 0.0)
+    parts, right = [], strokes["right"]
     for way, name in strokes.items():
         stroke = loaded(histories[name])
-        for series, read in traces.items():
-            # the companion of the stroke to the right serves both ways, which are mirror images
-            error = rms_error(histories[name], coarse.get(name), read) if way == "right" else np.nan
-            part = {"source": SIMULATED, "panel": way, "series": series, TIME: time_of(stroke), SED: read(stroke), ERROR: error}
+        for series, (depth, x) in places.items():
+            # the two ways are mirror images: the companion of the stroke to the right serves both, read on either side
+            side = receptor(depth, x if way == "right" else -x)
+            error = rms_error(histories[right], coarse.get(right), side)
+            trace = receptor(depth, x)(stroke)
+            part = {"source": SIMULATED, "panel": way, "series": series, TIME: time_of(stroke), SED: trace, ERROR: error}
             parts.append(pd.DataFrame(part))
     return assemble(pd.concat(parts, ignore_index=True), axis_rows(reference, TIME, "T318"), axis_rows(reference, SED, axis))
 
