@@ -388,7 +388,7 @@ def test_a_wrong_recording_is_refused_in_one_line(tmp_path, row, message):
 
 def test_the_script_ends_with_2_and_one_line(tmp_path):
     (tmp_path / "mine.csv").write_text(f"{HEADER}\n{WRONG['no source'][0]}\n")
-    script = ROOT / "workflow" / "scripts" / "receptors.py"
+    script = ROOT / "workflow" / "scripts" / "receptor_table.py"
     command = [sys.executable, script, "candidate_stimuli", tmp_path / "out.csv", tmp_path / "mine.csv"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and "column source" in done.stderr
