@@ -257,7 +257,7 @@ def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
         else:
             motion = [force(load, None if seconds is None else load / seconds)]
         if kind != "stroke":
-            friction = pick(0.0, 0.0, 0.0, between(0.1, 1.0))
+            friction = pick(0.0, 0.0, 0.0, between(0.003, 1.0))
             if seconds is not None and pick(True, False):
                 motion.append(hold(between(1e-2, 1e3)))
         share = pick(1.0, 1.0, 0.1, 0.01, 0.0)
@@ -400,7 +400,7 @@ DECIDES = {
     "relaxation_share": "viscoelasticity: off when stress can relax, or lags behind, by less than this share of the accuracy",
     "fine_half_width": "fine skin mesh to either side of the apex, at least (m)",
     "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
-    "edges_per_half_width": "local refinement: edges in the contact's half-width where the mesh has less than one",
+    "edges_per_half_width": "local refinement of presets: edges in the contact's half-width where the mesh has less than one",
     "inertia_limit": "scenes with rho v^2 / mu above this are refused",
     "seconds_start": "predicted cost: start of a process (s)",
     "seconds_finite": "predicted cost: a node and Newton iteration, finite strain (s)",
@@ -462,7 +462,7 @@ def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) 
         "symmetry": "half the pad: whenever pad, stimulus and motion are mirror images",
         "friction": "friction: whenever the skin is stroked with a coefficient above 0",
         "ridges": "ridges: in strokes, outer ones, and near receptors whenever the specimen has them",
-        "local refinement": "fine edges under the apex: pressed stimuli only",
+        "local refinement": "fine edges under the contact: presses whose tolerance they meet with less work",
         "full-field output": "full fields: at the times the scene names, no others",
     }
     rows += [{"rule": name, "value": "", "decides": text, "evidence": pair(name)} for name, text in fixed.items()]
