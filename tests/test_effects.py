@@ -108,6 +108,7 @@ def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):
         ("3 um", "draft", {"motion": [{"press_to_force": "20 gf"}, {"slide": "1 mm"}]}, True),
         ("3 um", "draft", {"outputs": {"receptors": {"depths": ["853 um"]}}}, True),
         ("3 um", "draft", {"stiff": "1 MPa"}, True),
+        ("3 um", "draft", {"motion": [{"press_to_force": "0.01 gf"}]}, True),
         ("3 um", "draft", {"effects": {"ridges": "on"}}, True),
         ("0.15 mm", "draft", {"effects": {"ridges": "off"}}, False),
     ],

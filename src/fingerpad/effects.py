@@ -103,7 +103,8 @@ class Rules:
             what it comes to where the whole contact sticks. Friction is left out of presses when that is within the accuracy.
         relaxation_share: viscosity is left out when what it can change is below this share of the accuracy.
         ridge_change: of strain energy by low inner ridges in a press, over height / pitch, at most; ridge_contrast: of epidermis
-            to dermis, up to which that holds. Ridges are left out of presses when it is within the accuracy.
+            to dermis, up to which that holds. Ridges are left out of presses of contacts wider than a pitch when it is within the
+            accuracy.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
         skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
@@ -256,7 +257,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         )
     preset, by_hand = _preset(scene, rules, contact)
     tolerance = preset.tolerance
-    ridged = _ridges(scene, moves, tolerance, rules)
+    ridged = _ridges(scene, moves, contact, tolerance, rules)
     ridges = scene.specimen.ridges if scene.effects.get("ridges", ridged.on) else None
     effects = {
         "friction": _friction(scene, tolerance, rules),
@@ -519,7 +520,7 @@ def _finite_strain(pad: PadEstimate, profile: Profile, contact: ContactEstimate,
     )
 
 
-def _ridges(scene: Scene, moves: bool, tolerance: float, rules: Rules) -> Effect:
+def _ridges(scene: Scene, moves: bool, contact: ContactEstimate, tolerance: float, rules: Rules) -> Effect:
     ridges, layers = scene.specimen.ridges, scene.specimen.layers
     if ridges is None:
         return Effect(False, "the specimen has none")
@@ -529,7 +530,7 @@ def _ridges(scene: Scene, moves: bool, tolerance: float, rules: Rules) -> Effect
         why += f", and outer ones {(outer.period or inner.pitch) * 1e3:.3g} mm apart, {outer.height * 1e3:.3g} mm high"
     border = scene.specimen.outline.epidermis_thickness
     known = (
-        outer is None and not moves
+        outer is None and not moves and 2 * contact.half_width >= inner.pitch
         and layers.epidermis.youngs_modulus <= rules.ridge_contrast * layers.dermis.youngs_modulus
         and min((abs(depth - border) for depth in scene.outputs.receptors.depths), default=border) > 2 * inner.height
     )  # fmt: skip

@@ -15,7 +15,7 @@ from fingerpad.figures.style import GREY, INK, NOTE_WIDTH, PAGE_WIDTH, spread, s
 LEAST = 1e-6
 """Smaller changes are drawn here."""
 DRAFT = 0.06
-"""The error that the meshes of the left panel have."""
+"""What a draft, as in the left panel, lets effects that are left out change."""
 WRONG, RED = ("wrongly left out", "carried for nothing"), "#c8303d"
 NAMES = {
     "symmetry": "symmetry (half the pad)",
@@ -78,7 +78,7 @@ def _changes(ax, rows: pd.DataFrame) -> None:
         ax.plot(row["cost ratio"], y, MARKERS[row["effect"]], color=colour, mfc=face, ms=6, mew=1.2)
     ax.axvline(1, color=GREY, lw=0.7)
     ax.axhline(DRAFT, color=GREY, lw=0.7, ls=(0, (4, 1.8)))
-    ax.text(0.11, DRAFT * 1.15, "draft's error", fontsize=6, color=GREY)
+    ax.text(0.11, DRAFT * 1.15, "a draft's accuracy", fontsize=6, color=GREY)
     ax.set(
         xscale="log", yscale="log", xlim=(0.1, 700), ylim=(LEAST / 2, 5), xlabel="cost with over cost without (1)",
         ylabel="largest change of a headline quantity (1)",
