@@ -137,7 +137,8 @@ def records():
             "cpu_s": [preset[0] ** 2 * preset[1] / 1000] * 3, "yardstick_s": [0.2] * 3, "memory_MB": 100.0, "steps": preset[1],
             "nodes": 220 * preset[0] ** 2, "unknowns": 1, "iterations": 1, "cutbacks": 0,
         }  # fmt: skip
-        made = {"processor": "abacus", "python": "3"}
+        packages = dict.fromkeys(("numpy", "numba", "mkl", "gmsh"), "1.0")
+        made = {"processor": "abacus", "python": "3", "packages": packages}
         record = {"point": vars(point), "name": name, "failure": "", "values": values, "cost": cost, "load": 0.0}
         out[name] = record | {"made_by": made, "believed_error": 0.01}
     return out
@@ -209,6 +210,7 @@ def test_figures_are_drawn_from_the_table_read_back(table, name, tmp_path):
 
 def test_presets_have_error_and_cost(table):
     presets = found.presets_table(table)
+    assert (presets["machine"] == "abacus, python 3, numpy 1.0, numba 1.0, mkl 1.0, gmsh 1.0").all()
     assert list(presets["preset"].unique()) == ["draft", "thesis", "fine"]
     worst = presets.groupby("preset", sort=False)["error (%)"].max()
     assert worst["draft"] > worst["thesis"] > worst["fine"]

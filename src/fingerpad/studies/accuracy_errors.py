@@ -99,9 +99,13 @@ def accuracy_table(records: Records, scenes: Mapping[str, Any]) -> pd.DataFrame:
         uncertain = {f"{q} (%)": 100 * float(np.max(u / np.abs(v))) for q, (v, u) in reference.items()}
         rows.append({"scene": family, "model": "uncertainty of the reference"} | uncertain)
     table = pd.DataFrame(rows)
-    machines = sorted({f"{r['made_by']['processor']}, python {r['made_by']['python']}" for r in records.values()})
-    table["machine"] = "; ".join(machines)
+    table["machine"] = "; ".join(sorted({_machine(record["made_by"]) for record in records.values()}))
     return table
+
+
+def _machine(made_by: Mapping[str, Any]) -> str:
+    versions = {"python": made_by["python"]} | {name: made_by["packages"][name] for name in ("numpy", "numba", "mkl", "gmsh")}
+    return ", ".join([made_by["processor"], *(f"{name} {version}" for name, version in versions.items())])
 
 
 def _row(record, reference, cpu, default) -> dict[str, Any]:
