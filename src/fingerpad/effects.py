@@ -68,9 +68,9 @@ class MeasuredErrors:
             2: (0.2, 0.048, 0.026),
             4: (0.092, 0.026, 0.0077),
             7: (0.043, 0.017, 0.0023),
-            10: (0.023, 0.0049, 0.0016),
-            14: (0.0099, 0.0049, 0.0016),
-            22: (0.0099, 0.0049, 0.0016),
+            10: (0.023, 0.0049, 0.0017),
+            14: (0.0099, 0.0049, 0.0017),
+            22: (0.0099, 0.0049, 0.0017),
         }
     )
     time: Mapping[int, tuple[float, ...]] = field(
@@ -82,7 +82,9 @@ class MeasuredErrors:
             80: (0.000053, 0.00016, 0.00031),
         }
     )
-    stroke_mesh: Mapping[int, float] = field(default_factory=lambda: {1: 0.1, 2: 0.051, 4: 0.015, 7: 0.012, 10: 0.012, 14: 0.012})
+    stroke_mesh: Mapping[int, float] = field(
+        default_factory=lambda: {1: 0.1, 2: 0.055, 4: 0.018, 7: 0.01, 10: 0.01, 14: 0.01, 22: 0.01}
+    )
     stroke_time: Mapping[int, float] = field(default_factory=lambda: {5: 0.046, 10: 0.02, 20: 0.0099, 40: 0.0027, 80: 0.001})
 
 

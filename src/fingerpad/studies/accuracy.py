@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.effects import RULES, Plan, plan
-from fingerpad.figures.features import energy, energy_rate, ramp_end
 from fingerpad.specimen.mesh import PadMesh, build_pad_mesh, count_nodes
 
 if TYPE_CHECKING:
@@ -173,13 +172,14 @@ def values(history: xr.Dataset) -> dict[str, list[float]]:
 
     The peak rate of strain energy is one of the ramp, at each depth.
     """
-    top, way = ramp_end(history), history.stroke_distance.values
+    top, way = int(np.flatnonzero(history.leg == history.leg[0])[-1]), history.stroke_distance.values
+    energies = history.strain_energy_density.values.T
     traces = {
         "depth": history.indentation_depth.values,
         "width": history.contact_width.values,
         "centre pressure": history.centre_pressure.values,
         "peak pressure": history.peak_pressure.values,
-    } | {f"energy {depth * 1e6:.0f} um": energy(history, depth) for depth in DEPTHS}
+    } | {f"energy {depth * 1e6:.0f} um": energy for depth, energy in zip(DEPTHS, energies, strict=True)}
 
     def looked_at(trace):
         if way[-1] == 0:
@@ -187,8 +187,8 @@ def values(history: xr.Dataset) -> dict[str, list[float]]:
         return [trace[top], *np.interp(WAY * way[-1], way[top:], trace[top:])]
 
     found = {name: [float(value) for value in looked_at(trace)] for name, trace in traces.items()}
-    rates = (energy_rate(history, depth).iloc[: top + 1, 1].abs().max() for depth in DEPTHS)
-    return found | {"peak energy rate": [float(rate) for rate in rates]}
+    rates = np.gradient(energies[:, : top + 1], history.time.values[: top + 1], axis=1)
+    return found | {"peak energy rate": np.abs(rates).max(1).tolist()}
 
 
 RULER = Point("flat", rows=2)

@@ -32,6 +32,8 @@ HEADLINE = ("depth", "width", "centre pressure", "peak pressure", "energy 600 um
 QUANTITIES = (*HEADLINE, "peak energy rate")
 HALF_PLANE, WATER_BED = "elastic half-plane", "water bed"
 FINITE_ELEMENTS = "finite elements"
+FINE_ROWS = ROWS[-2]
+"""Rows of the mesh that is like that of the preset fine, which has twice the default's steps."""
 
 
 def _series(records: Records, points: Iterable[Point], quantity: str) -> np.ndarray:
@@ -56,14 +58,30 @@ def step_limits(records: Records, family: str, quantity: str) -> list[Limit]:
     return _limits(1 / np.array(STEPS), _series(records, [Point(family, steps=n) for n in STEPS], quantity))
 
 
+def interplay(records: Records, family: str, quantity: str) -> np.ndarray:
+    """How far the preset fine is from the sum of what its mesh and its steps change by themselves, (moments,).
+
+    Where friction keeps what steps have left behind, they do not simply add.
+    """
+
+    def at(**changes):
+        return np.array(records[Point(family, **changes).name]["values"][quantity])
+
+    return np.abs(at(preset="fine") - at(rows=FINE_ROWS) - at(steps=2 * DEFAULT_STEPS) + at())
+
+
 def references(records: Records, family: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Quantity -> converged value and its uncertainty (moments,): the limit in the mesh, corrected by that in the steps."""
+    """Quantity -> converged value and its uncertainty (moments,): the limit in the mesh, corrected by that in the steps.
+
+    The uncertainty is that of both limits, and of adding them.
+    """
     found = {}
     for quantity in QUANTITIES:
         default = np.array(records[Point(family).name]["values"][quantity])
         mesh, steps = mesh_limits(records, family, quantity), step_limits(records, family, quantity)
         value = np.array([m.value + s.value for m, s in zip(mesh, steps, strict=True)]) - default
-        found[quantity] = value, np.array([m.uncertainty + s.uncertainty for m, s in zip(mesh, steps, strict=True)])
+        uncertainty = np.array([m.uncertainty + s.uncertainty for m, s in zip(mesh, steps, strict=True)])
+        found[quantity] = value, uncertainty + interplay(records, family, quantity)
     return found
 
 
@@ -242,7 +260,8 @@ def planner_table(records: Records) -> pd.DataFrame:
     """What the planner goes by: relative error of the headline quantities by mesh size, and by steps of a leg.
 
     Errors of a mesh are those to the limit in the mesh at the default's steps, errors of steps those to the limit in the steps
-    on the default's mesh; never below the limit's own uncertainty nor below those of what is finer.
+    on the default's mesh; never below the limit's own uncertainty (and, of meshes, that of adding both) nor below those of
+    what is finer.
     """
     rows = []
     for kind, counts, limits in (("mesh", ROWS, mesh_limits), ("steps", STEPS, step_limits)):
@@ -254,7 +273,8 @@ def planner_table(records: Records) -> pd.DataFrame:
             for quantity in HEADLINE:
                 known = limits(records, family, quantity)
                 value = np.array([each.value for each in known])
-                floor = np.max([each.uncertainty for each in known] / np.abs(value))
+                extra = interplay(records, family, quantity) if kind == "mesh" else 0.0
+                floor = np.max((np.array([each.uncertainty for each in known]) + extra) / np.abs(value))
                 for k, n in enumerate(counts):
                     record = records.get((Point(family, rows=n) if kind == "mesh" else Point(family, steps=n)).name)
                     if record is None or not record["values"]:
