@@ -252,6 +252,12 @@ def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
             assert plan(scene.model_copy(update={"accuracy": accuracy})).estimated_error > 0
 
 
+def test_committed_beliefs_cover_the_truth():
+    rows = pd.read_csv(TABLES / "accuracy_belief.csv", dtype={"accuracy": str})
+    assert set(rows["scene"]) == set(belief.OUTSIDE) and belief.covered(rows) >= 0.9
+    assert STUDIES["accuracy_belief"](rows).axes
+
+
 def test_difference_names_the_worst_quantity():
     error, worst = belief.difference({"a": np.array([1.0, 2.2]), "b": [3.0]}, {"a": [1.0, 2.0], "b": [3.0]})
     assert error == pytest.approx(0.1) and worst == "a"
