@@ -14,7 +14,7 @@ def test_accuracy_sweeps_elements_of_scenes_and_asks_for_beliefs(clone):
     }
     sweeps |= {f"stroke_{element}" for element in ("Q2P1", "Q1P0", "P2B")}
     assert jobs.pop("accuracy_sweep") == {f"results/thesis/accuracy/{sweep}.json" for sweep in sweeps}
-    assert len(jobs.pop("accuracy_belief")) == 13
+    assert len(jobs.pop("accuracy_belief")) == 14
     tables = ("accuracy", "accuracy_orders", "accuracy_planner", "presets")
     assert jobs.pop("accuracy_tables") == {f"figures/tables/{name}.{kind}" for name in tables for kind in ("csv", "md")}
     assert jobs.pop("accuracy_beliefs") == {f"figures/tables/accuracy_belief.{kind}" for kind in ("csv", "md")}

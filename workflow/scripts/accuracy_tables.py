@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from fingerpad import load_scene
-from fingerpad.figures.tables import publish_table
+from fingerpad.figures.io import publish_table
 from fingerpad.studies.accuracy import FAMILY
 from fingerpad.studies.accuracy_errors import accuracy_table, orders_table, planner_table, presets_table
 

@@ -37,6 +37,7 @@ OUTSIDE = (
     "curvature_840_steady_10_gf",
     "curvature_210_nearly_incompressible",
     "plate_10_gf_stroked_back",
+    "plate_30_gf_stroked_slowly",
 )
 """Names of the scenes of :func:`outside`."""
 
@@ -69,7 +70,7 @@ def outside(base: Scene) -> dict[str, Scene]:
         return {"specimen": specimen.model_copy(update={"outline": specimen.outline.model_copy(update=values)})}
 
     nearly = {"poisson_ratio": 0.4995}
-    slide = Slide(slide=-4e-3, speed=20e-3)
+    back, slowly = Slide(slide=-4e-3, speed=20e-3), Slide(slide=3e-3, speed=5e-3)
     changes = {
         "curvature_79": cylinder(78.74),
         "curvature_420": cylinder(419.95),
@@ -84,7 +85,8 @@ def outside(base: Scene) -> dict[str, Scene]:
         | {"motion": (PressToDepth(press_to_depth=1e-3, speed=8e-3), Hold(hold=1.0))},
         "curvature_840_steady_10_gf": cylinder(840.0) | {"motion": _press(10.0, rate=None, hold=None)},
         "curvature_210_nearly_incompressible": cylinder(209.97) | _layers(base, epidermis=nearly, dermis=nearly, fat=nearly),
-        "plate_10_gf_stroked_back": {"stimulus": Flat(), "friction": 0.4, "motion": (*_press(10.0, hold=None), slide)},
+        "plate_10_gf_stroked_back": {"stimulus": Flat(), "friction": 0.4, "motion": (*_press(10.0, hold=None), back)},
+        "plate_30_gf_stroked_slowly": {"stimulus": Flat(), "friction": 0.5, "motion": (*_press(30.0, hold=None), slowly)},
     }
     return {name: base.model_copy(update=update | {"accuracy": "fine"}) for name, update in changes.items()}
 
