@@ -39,7 +39,8 @@ OUTSIDE = (
     "plate_10_gf_stroked_back",
     "plate_30_gf_stroked_slowly",
 )
-"""Names of the scenes of :func:`outside`."""
+"""Names of the scenes of :func:`outside`. The last but one showed that errors of strokes add to those of presses; the last was
+added to check what the planner has made of that."""
 
 
 def covered(rows: pd.DataFrame) -> float:
