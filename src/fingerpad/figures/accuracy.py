@@ -114,8 +114,8 @@ def growth(frame: pd.DataFrame) -> Figure:
         [
             "Simulated: mean of ramp and hold by flat plate, 210 and 1260 1/m, 40 steps. Nodes: of the whole pad, half of which "
             "is solved. Time: process time with meshing. Exponents: of time, least squares over meshes of 3000 nodes and more. "
-            "Memory: of the process, the interpreter and its libraries included (the default's runs also had the kernels of small "
-            "strain loaded).",
+            "Memory: of the process, the interpreter and its libraries included, and in the default's runs the kernels of small "
+            "strain.",
         ],
         3.3,
     )
