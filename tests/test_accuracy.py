@@ -276,7 +276,7 @@ def test_beliefs_cover_the_truth(scenes, name):
 GEOMETRY = {"3-4", "3-5", "5-25"}
 """Figures of the pad itself, for which nothing is solved."""
 SOME_CURVES = {"3-6", "3-8", "3-9", "3-11", "4-2"}
-"""Figures that state the error of some of their curves only: the others have no coarser companion, or are prescribed (a force)."""
+"""Figures that state the error of some of their curves only: the others have no coarser companion, or are prescribed."""
 DERIVED = "shape of the stimulus|least-squares|Eq 4-4 and"
 """Sources of what is drawn through or from the simulated curves of the same picture, whose errors stand there."""
 
