@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fingerpad.mechanics.contact import ContactError, Zone, solve_contact
+from fingerpad.mechanics.contact import ContactError, Zone, solve_contact, stable
 from fingerpad.mechanics.linear_solver import (
     FactorisationError,
     PardisoCondensation,
@@ -91,6 +91,20 @@ def test_nothing_can_carry_a_force_sideways():
     gradient = np.tile([1.0, 0.0], (len(gap), 1))
     with pytest.raises(ContactError):
         solve((zone, schur, right, gap, gradient), force=1.0)
+
+
+@given(seed=st.integers(0, 10_000), size=st.integers(2, 30), share=st.floats(0.0, 1.0))
+def test_stable_is_positive_definite_where_gaps_stay_closed(seed, size, share):
+    """Against the smallest eigenvalue of the matrix on the null space of the active gradients."""
+    rng = np.random.default_rng(seed)
+    matrix = rng.standard_normal((size, size))
+    matrix = matrix @ matrix.T - share * size * np.diag(rng.random(size))
+    gradient = rng.standard_normal((size // 2, size))
+    active = rng.random(size // 2) < 0.7
+    compliance = gradient @ np.linalg.solve(matrix, gradient.T)
+    free = np.linalg.svd(gradient[active])[2][active.sum() :].T
+    lowest = np.linalg.eigvalsh(free.T @ matrix @ free)[0]
+    assert stable(matrix, compliance, active) == (lowest > 0)
 
 
 def test_curvature_enters_the_tangent():

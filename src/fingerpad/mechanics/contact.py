@@ -200,7 +200,15 @@ def stable(matrix, compliance, active):
     if lapack.dpotrf(matrix)[1] == 0:
         return True
     inside = compliance[np.ix_(active, active)]
-    return np.sum(np.linalg.eigvalsh(matrix) < 0) == np.sum(np.linalg.eigvalsh((inside + inside.T) / 2) < 0)
+    return _negative_eigenvalues(matrix) == _negative_eigenvalues((inside + inside.T) / 2)
+
+
+def _negative_eigenvalues(matrix):
+    """Their number, of a symmetric matrix, by Sylvester's law: the negative pivots of L D L^T, one in each block of two."""
+    if not len(matrix):
+        return 0
+    factors, pivots, _ = lapack.dsytrf(matrix, lower=1, lwork=64 * len(matrix))
+    return int(np.sum(np.diag(factors)[pivots > 0] < 0) + np.sum(pivots < 0) // 2)
 
 
 def _pivot(compliance, offset, active):
