@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from fingerpad.figures import FIGURES
+
 pytestmark = pytest.mark.workflow
 
 SMOKE = ("--configfile", "config/smoke.yaml")
@@ -23,7 +25,7 @@ def config(project, name):
     return yaml.safe_load((project.root / "config" / f"{name}.yaml").read_text())
 
 
-def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_and_variants_once(clone):
+def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_and_variants_as_often_as_they_are_drawn(clone):
     thesis, jobs = config(clone, "thesis"), clone.planned()
     figures = {f"figures/thesis/fig_{n}.{kind}" for n in thesis["figure_numbers"] for kind in ("png", "csv")}
     assert jobs.pop("figure") == figures
@@ -31,11 +33,12 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     assert jobs.pop("animation") == {f"figures/studies/animation_{scene}.gif" for scene in thesis["animations"]}
     tables = {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
     assert jobs.pop("table") | jobs.pop("receptor_table") == tables
-    places = [f"{fidelity}/{scene}" for fidelity in ("simulations", "coarse") for scene in thesis["scenes"]]
-    places += [
-        f"simulations/{scene}" for scene in (*thesis["variants"], *thesis["calibration_scenes"], *thesis["friction_scenes"])
-    ]
-    places += ["coarse/calibration_plate", "coarse/calibration_ramp_hold", "coarse/stroke_sub_10"]
+    every = (*thesis["scenes"], *thesis["variants"], *thesis["calibration_scenes"], *thesis["friction_scenes"])
+    places = {f"simulations/{scene}" for scene in every}
+    drawn = {scene for number in thesis["figure_numbers"] for scene in FIGURES[number].read_companions}
+    companions = {*thesis["scenes"], *drawn, "calibration_plate", "calibration_ramp_hold", "stroke_sub_10"}
+    assert {"ramp150_flat", "press10_flat"} <= companions < {*every}
+    places |= {f"coarse/{scene}" for scene in companions}
     assert jobs.pop("mesh") == {f"results/thesis/{place}/{name}" for place in places for name in ("plan.json", "mesh.msh")}
     assert jobs.pop("simulate") == {f"results/thesis/{place}/history.nc" for place in places}
     assert jobs.pop("calibration_figure") | jobs.pop("calibration_table") == CALIBRATION
