@@ -46,8 +46,7 @@ def imported_sources(*entries: str | Path) -> list[Path]:
         if (path, entered) in seen:
             continue
         seen.add((path, entered))
-        for name in _imports(path, module, entered):
-            todo.extend(_with_parents(name))
+        todo.extend(_imported(path, module, entered))
     return sorted(found)
 
 
@@ -98,6 +97,11 @@ def _statements(body: Iterable[ast.stmt], inside_functions: bool) -> Iterator[as
 
 def _type_checking(test: ast.expr) -> bool:
     return "TYPE_CHECKING" in (getattr(test, "id", None), getattr(test, "attr", None))
+
+
+@cache
+def _imported(path: Path, module: str | None, entered: bool) -> tuple[tuple[Path, str, bool], ...]:
+    return tuple(parent for name in _imports(path, module, entered) for parent in _with_parents(name))
 
 
 def _imports(path: Path, module: str | None, entered: bool) -> Iterator[str]:

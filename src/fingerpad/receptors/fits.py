@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize_scalar
-from scipy.stats import t
+from scipy.special import stdtrit
 
 from fingerpad.receptors.laws import SpatialSum, rectified
 
@@ -64,7 +63,7 @@ def spatial_sum(samples: Sequence[SkinSample], with_depth: bool = True, bounds: 
     grid = np.linspace(*np.log(bounds), 15)  # the misfit may have more than one dip; the search starts in the deepest
     best = int(np.argmin([misfit(log_r) for log_r in grid]))
     around = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    log_r = float(minimize_scalar(misfit, bounds=around, method="bounded", options={"xatol": 1e-5}).x)
+    log_r = _least(misfit, around, 1e-5)
     constants = at(log_r)[1]
     return SpatialSum(float(np.exp(log_r)), float(constants[0]) if with_depth else 0.0, float(constants[-1]))
 
@@ -78,7 +77,13 @@ def constant_shift(law: SpatialSum, sample: SkinSample, bounds: tuple[float, flo
     grid = np.linspace(*bounds, 25)
     best = int(np.argmin([misfit(shift) for shift in grid]))
     around = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    return float(minimize_scalar(misfit, bounds=around, method="bounded", options={"xatol": 1e-7}).x)
+    return _least(misfit, around, 1e-7)
+
+
+def _least(misfit: Callable[[float], float], bounds: tuple[float, float], tolerance: float) -> float:
+    from scipy.optimize import minimize_scalar  # here, for it is slow to import
+
+    return float(minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": tolerance}).x)
 
 
 def jackknife(fit: Callable[[Sequence[Any]], np.ndarray], groups: Sequence[Any], level: float = 0.95) -> np.ndarray:
@@ -93,7 +98,7 @@ def jackknife(fit: Callable[[Sequence[Any]], np.ndarray], groups: Sequence[Any],
         return np.column_stack([whole, np.full((len(whole), 2), np.nan)])
     without = np.array([fit([*groups[:k], *groups[k + 1 :]]) for k in range(n)])
     spread = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
-    half = t.ppf(0.5 + level / 2, n - 1) * spread
+    half = stdtrit(n - 1, 0.5 + level / 2) * spread
     return np.column_stack([whole, whole - half, whole + half])
 
 

@@ -73,19 +73,23 @@ def _mean_of_neighbours(space, shear, hosts, points):
 
     Strain jumps from element to element; a value from one side would tell left from right. None where no point is shared.
     """
-    elements, coordinates, owner = [], [], []
-    for k, (host, candidates) in enumerate(zip(hosts.element, _nearest(space, points, 24), strict=True)):
-        same = candidates[shear[candidates] == shear[host]]
-        local, inside = _coordinates(space, same, np.broadcast_to(points[k], (len(same), 2)))
-        elements.append(same[inside])
-        coordinates.append(local[inside])
-        owner.append(np.full(inside.sum(), k))
-    owner = np.concatenate(owner)
+    candidates = _nearest(space, points, 24)
+    owner, column = np.nonzero((shear[candidates] == shear[hosts.element][:, None]) & _boxed(space, candidates, points))
+    elements = candidates[owner, column]
+    coordinates, inside = _coordinates(space, elements, points[owner])
+    elements, coordinates, owner = elements[inside], coordinates[inside], owner[inside]
     if len(owner) == len(points):
         return hosts, None
     matrix = np.zeros((len(points), len(owner)))
     matrix[owner, np.arange(len(owner))] = 1 / np.bincount(owner)[owner]
-    return Location(np.concatenate(elements), np.concatenate(coordinates)), matrix
+    return Location(elements, coordinates), matrix
+
+
+def _boxed(space, candidates, points):
+    """Whether points (nr, 2) lie in boxes, wide enough for curved sides, round their candidate elements (nr, n)."""
+    nodes = space.points[space.cells[candidates]]
+    low, high = nodes.min(2), nodes.max(2)
+    return (np.abs(points[:, None] - (low + high) / 2) <= high - low).all(2)
 
 
 def _inverse_map(space, elements, points):

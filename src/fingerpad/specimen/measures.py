@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from fingerpad.specimen.mesh import MeshError, PadMesh, skin_chain
 from fingerpad.specimen.outline import OutlineCurve
@@ -68,6 +67,8 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     Raises:
         MeshError: no point of that depth exists at that offset.
     """
+    from scipy.spatial import cKDTree  # here, for it is slow to import
+
     depths, offsets = np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float))
     skin = _fine_skin(mesh)
     tree = cKDTree(skin)

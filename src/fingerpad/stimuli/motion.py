@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 #: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed after it.
 STEADY = 1e9
@@ -32,6 +31,8 @@ def geometric(duration: float, count: int, first: float) -> np.ndarray:
     """``count`` step sizes (s) that sum to ``duration``, start at ``first`` and grow by a constant ratio (never shrink)."""
     if count == 1 or first * count >= duration * (1 - 1e-9):
         return np.full(count, duration / count)
+    from scipy.optimize import brentq  # here, for it is slow to import
+
     ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, 1 + (duration / first) ** (1 / (count - 1)))
     steps = first * ratio ** np.arange(count)
     return steps * (duration / steps.sum())
