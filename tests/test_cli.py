@@ -49,7 +49,7 @@ def solver(monkeypatch):
     simulation, results = types.ModuleType("fingerpad.simulation"), types.ModuleType("fingerpad.results")
     simulation.simulate = simulate
     results.summary = lambda dataset: SUMMARY
-    results.write_history = lambda dataset, path: dataset.to_netcdf(path, engine="h5netcdf")
+    results.write_history = lambda dataset, path: dataset.to_netcdf(path, engine="netcdf4")
     results.write_vtu = lambda dataset, mesh, directory: (Path(directory) / "0.vtu").write_text("<VTKFile/>")
     monkeypatch.setitem(sys.modules, "fingerpad.simulation", simulation)
     monkeypatch.setitem(sys.modules, "fingerpad.results", results)
@@ -174,7 +174,7 @@ def test_run_writes_three_files(tmp_path, scene, solver, capsys):
     assert names(out) == ["history.nc", "plan.json", "summary.json"]
     assert json.loads((out / "summary.json").read_text()) == SUMMARY
     assert json.loads((out / "plan.json").read_text()) == json.loads(json.dumps(solver.plan.to_dict()))
-    with xr.open_dataset(out / "history.nc", engine="h5netcdf") as history:
+    with xr.open_dataset(out / "history.nc", engine="netcdf4") as history:
         assert history.force[-1] == 19.6
     stdout, stderr = capsys.readouterr()
     assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout and "error about 4.3%" in stdout

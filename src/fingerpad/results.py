@@ -178,12 +178,12 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
 def write_history(history: xr.Dataset, path: str | Path) -> None:
     """Write a history as NetCDF 4, whole or not at all."""
     encoding = {name: {"zlib": True, "complevel": 4} for name, values in history.data_vars.items() if values.ndim > 1}
-    write_atomically(path, lambda partial: history.to_netcdf(partial, engine="h5netcdf", encoding=encoding))
+    write_atomically(path, lambda partial: history.to_netcdf(partial, engine="netcdf4", encoding=encoding))
 
 
 def read_history(path: str | Path) -> xr.Dataset:
     """Read a history written by :func:`write_history`, into memory."""
-    return xr.load_dataset(path, engine="h5netcdf")
+    return xr.load_dataset(path, engine="netcdf4")
 
 
 def write_vtu(history: xr.Dataset, mesh, directory: str | Path) -> list[Path]:

@@ -36,6 +36,8 @@ rule ridge_case:
     log:
         f"{RESULTS}/logs/ridge_case/{{case}}.log",
     cache: "omit-software"
+    # The longest first, so that no core waits for it at the end.
+    priority: 1
     threads: 1
     resources:
         mem_mb=2000,

@@ -25,7 +25,7 @@ from fingerpad.specimen.mesh import (
     _limit_growth,
     _node_positions,
 )
-from fingerpad.specimen.outline import OutlineCurve
+from fingerpad.specimen.outline import OutlineCurve, curve_of
 from fingerpad.specimen.quality import check_orientation
 from fingerpad.specimen.ridges import RidgedPad
 
@@ -147,7 +147,7 @@ def _skin_rows(curve: OutlineCurve, size: MeshSize, ridged: RidgedPad | None, co
 
 def _grid(outline: Outline, size: MeshSize, ridges: Ridges | None, corneum: bool):
     """The grid, the pad's curve and its ridges."""
-    curve = OutlineCurve(outline)
+    curve = curve_of(outline)
     thick = outline.stratum_corneum_thickness if corneum else 0.0
     if thick >= outline.epidermis_thickness:
         raise MeshError("outline: the stratum corneum leaves no epidermis below it; less than epidermis_thickness is allowed")

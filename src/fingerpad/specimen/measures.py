@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fingerpad.specimen.mesh import MeshError, PadMesh, skin_chain
-from fingerpad.specimen.outline import OutlineCurve
+from fingerpad.specimen.outline import curve_of
 
 if TYPE_CHECKING:
     from fingerpad.scene_specimen import Outline
@@ -96,7 +96,7 @@ def below_outline(outline: Outline, depths: np.ndarray, offsets: np.ndarray) -> 
         MeshError: no point of that depth exists at that offset.
     """
     depths, offsets = (np.ravel(each) for each in np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float)))
-    curve = OutlineCurve(outline)
+    curve = curve_of(outline)
     low, high = np.zeros(len(depths)), np.full(len(depths), np.pi / 2)
     for _ in range(60):
         middle = (low + high) / 2

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fingerpad.specimen.outline import OutlineCurve
+from fingerpad.specimen.outline import OutlineCurve, curve_of
 
 if TYPE_CHECKING:
     from fingerpad.scene_specimen import Outline, Ridges
@@ -309,7 +309,7 @@ def count_nodes(outline: Outline, size: MeshSize, ridges: Ridges | None = None, 
         from fingerpad.specimen.layered import count_layered_nodes
 
         return count_layered_nodes(outline, size, ridges, corneum)
-    curve = OutlineCurve(outline)
+    curve = curve_of(outline)
     columns, _ = _columns(curve, size)
     _, (_, skin_rows), fat_rows, _ = _rows(curve, size)
     return 4 * (len(columns) - 1) * (2 * (skin_rows + fat_rows) + 1)
@@ -319,7 +319,7 @@ def smallest_edge(outline: Outline, size: MeshSize, ridges: Ridges | None = None
     """Shortest element edge (m, corner to corner) of `build_pad_mesh` with these arguments (without gmsh)."""
     if ridges or corneum:
         return build_pad_mesh(outline, size, ridges, corneum).quality()["smallest_edge_m"]
-    curve = OutlineCurve(outline)
+    curve = curve_of(outline)
     columns, _ = _columns(curve, size)
     rows, _, fat_rows, fat_edge = _rows(curve, size)
     corners = _node_positions(curve, columns, rows, fat_rows, fat_edge)[::2, ::2]
@@ -408,7 +408,7 @@ def build_pad_mesh(outline: Outline, size: MeshSize, ridges: Ridges | None = Non
         from fingerpad.specimen.layered import build_layered_mesh
 
         return build_layered_mesh(outline, size, ridges, corneum)
-    curve = OutlineCurve(outline)
+    curve = curve_of(outline)
     columns, nail = _columns(curve, size)
     rows, (epidermis_rows, skin_rows), fat_rows, fat_edge = _rows(curve, size)
     right = _node_positions(curve, columns, rows, fat_rows, fat_edge)

@@ -11,6 +11,7 @@ makes the half width the one asked for. Negative angles are the left half. Lengt
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -207,3 +208,9 @@ class OutlineCurve:
         room = np.hypot(*(skin - self.bone_point(self.bone_foot(skin))).T).min()
         if thickness >= room:
             raise OutlineError(f"{keys} reaches the bone, which leaves room for less than {_mm(room)}")
+
+
+@cache
+def curve_of(outline: Outline) -> OutlineCurve:
+    """The curve of an outline, made and checked once. Raises OutlineError."""
+    return OutlineCurve(outline)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fingerpad.specimen.outline import OutlineCurve
+from fingerpad.specimen.outline import curve_of
 
 if TYPE_CHECKING:
     from fingerpad.scene_specimen import Outline, Ridges
@@ -55,7 +55,7 @@ class RidgedPad:
     """
 
     def __init__(self, outline: Outline, ridges: Ridges, corneum: float = 0.0):
-        self.curve = OutlineCurve(outline)
+        self.curve = curve_of(outline)
         self.inner, self.outer, self.half_width = ridges.inner, ridges.outer, ridges.half_width
         inner = self.inner
         self.pitch, self.corneum = inner.pitch, corneum
