@@ -211,11 +211,11 @@ def _plate(scene: Scene) -> Scene:
     return scene.model_copy(update={"stimulus": Flat(), "friction": 0.0, "motion": scene.motion[:1]})
 
 
-def measure(point: Point, scene: Scene, budget: float = 2.5, most: int = 3) -> dict[str, Any]:
+def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
     """Run a point and say what it answers and costs.
 
     Args:
-        budget: s of process time after which a run is not repeated. most: repeats at most.
+        repeats: of the whole run, of which costs are medians.
 
     Returns:
         JSON-able: the point; values or the reason of failure; cost: process time of each repeat, meshing included, with that of
@@ -230,7 +230,7 @@ def measure(point: Point, scene: Scene, budget: float = 2.5, most: int = 3) -> d
     seconds, yardstick, history, failure = [], [], None, ""
     with threadpool_limits(1):
         before = _timed(lambda: _run(RULER, *ruler))
-        while len(seconds) < most and sum(seconds) <= budget:
+        for _ in range(repeats):
             start = time.process_time()
             chosen_scene, chosen = discretised(point, scene)
             try:
