@@ -52,7 +52,8 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     cases = {f"{h:g}_0.65" for h in thesis["ridge_heights"]} | {f"150_{mu:g}" for mu in thesis["ridge_frictions"]}
     cases = {f"{case}_{mesh}" for case in cases for mesh in ("thesis", "coarse")}
     cases |= {f"150_0.65_{mesh}" for mesh in ("fine", "curved", "straight", "shifted")}
-    assert jobs.pop("ridge_case") == {f"results/thesis/ridges/{case}/history.nc" for case in cases}
+    ridged = jobs.pop("ridge_case") | jobs.pop("ridge_case_fine") | jobs.pop("ridge_case_drawn")
+    assert ridged == {f"results/thesis/ridges/{case}/history.nc" for case in cases}
     assert not jobs
 
 

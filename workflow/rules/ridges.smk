@@ -21,21 +21,18 @@ def ridge_cases():
 
 
 rule ridge_case:
-    """A stroke with another height of the ridges, coefficient of friction or mesh -> its history."""
+    """A stroke with another height of the ridges or coefficient of friction -> its histories on two meshes, one after the other."""
     input:
         sources("ridge_case"),
         ENVIRONMENT,
         "config/specimens/thesis.yaml",
         scene=f"config/scenes/{RIDGE_STROKE}.yaml",
     output:
-        ensure(f"{RESULTS}/ridges/{{case}}/history.nc", non_empty=True),
-    params:
-        case=lambda wildcards: wildcards.case,
+        ensure(expand(f"{RESULTS}/ridges/{{{{case}}}}_{{mesh}}/history.nc", mesh=["thesis", "coarse"]), non_empty=True),
     wildcard_constraints:
-        case=r"[0-9.]+_[0-9.]+_[a-z]+",
+        case="[0-9.]+_[0-9.]+",
     log:
         f"{RESULTS}/logs/ridge_case/{{case}}.log",
-    cache: "omit-software"
     # The longest first, so that no core waits for it at the end.
     priority: 1
     threads: 1
@@ -43,7 +40,21 @@ rule ridge_case:
         mem_mb=2000,
         runtime=10,
     shell:
-        "python workflow/scripts/ridge_case.py {input.scene} {params.case} {output} > {log} 2>&1"
+        "python workflow/scripts/ridge_case.py {input.scene} {output} > {log} 2>&1"
+
+
+use rule ridge_case as ridge_case_fine with:
+    output:
+        ensure(f"{RESULTS}/ridges/{{case}}_fine/history.nc", non_empty=True),
+    log:
+        f"{RESULTS}/logs/ridge_case/{{case}}_fine.log",
+
+
+use rule ridge_case as ridge_case_drawn with:
+    output:
+        ensure(expand(f"{RESULTS}/ridges/{{{{case}}}}_{{mesh}}/history.nc", mesh=["curved", "straight", "shifted"]), non_empty=True),
+    log:
+        f"{RESULTS}/logs/ridge_case/{{case}}_drawn.log",
 
 
 rule ridge_data:
