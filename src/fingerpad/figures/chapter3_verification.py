@@ -7,6 +7,7 @@ in their place: Figs 3-6 and 3-7 carry published measurements of other or partly
 from __future__ import annotations
 
 import textwrap
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -22,10 +23,8 @@ from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
 from fingerpad.figures.steady import (
     BAR,
     DEPTH_SCENES,
-    LINE,
     PLATE,
     PROFILES,
-    RAMP_HOLD,
     SPEED_SCENES,
     force_N,
     leg_end,
@@ -54,7 +53,6 @@ SHADES = ("#c8553d", "#1f77a4", "#3c8d5a", "#8a4fbf")
 MARKERS = "os^D"
 STATE_LINES = {"undeformed": {"ls": (0, (3, 2)), "lw": 0.8, "color": style.GREY}, "deformed": {"ls": "-", "lw": 1.3}}
 MODEL = "Lines: simulated in plane strain, not measured."
-RESOLUTION = "the other curves are computed on the companions' mesh (edges twice as long)"
 NOT_AVAILABLE = "The recordings of subjects that Cysyk (1999) shows here are not available: the model stands alone."
 
 
@@ -133,8 +131,7 @@ def frame_3_6(
 def fig_3_6(frame: pd.DataFrame) -> Figure:
     """Surface deflection, three panels."""
     note = [
-        f"{MODEL}{_error(frame)} (line load; the cylinders' curves are computed on the coarser mesh alone). The line is a blade "
-        "with a round tip of 0.1 mm radius.",
+        f"{MODEL}{_error(frame)}. The line is a blade with a round tip of 0.1 mm radius.",
         "Points: measured under cylinders of 3.17 and 9.52 mm diameter (MIT Touch Lab, of the kind of Srinivasan 1989; mean of "
         "both sides, digitised by a third party). They stand in for the three subjects' profiles under a line load, which are "
         "not available. Grey band: axis range of Cysyk (1999) where more is shown.",
@@ -230,9 +227,11 @@ def _ramp_and_hold(scenes: dict[str, str], unit: str, until: float, histories: H
         error = error_percent(history, coarse.get(scene), *(_at(force_N, t) for t in (ramp_end, lambda d: d.sizes["time"] - 1)))
         values = np.interp(time, history["time"].values, force_N(history))
         force = pd.DataFrame({"series": series, "phase": "ramp and hold", TIME: time, FORCE: values})
-        level = steady_force(plate, max(pressed_depths(history)))
+        depth = max(pressed_depths(history))
+        level = steady_force(plate, depth)
+        level_error = error_percent(plate, coarse.get(PLATE), partial(steady_force, depth=depth))
         steady = pd.DataFrame({"series": series, "phase": "steady state", TIME: [0.0, until], FORCE: level})
-        parts += [force.assign(**{ERROR: error}), steady]
+        parts += [force.assign(**{ERROR: error}), steady.assign(**{ERROR: level_error})]
     return pd.concat(parts, ignore_index=True)
 
 
@@ -259,9 +258,9 @@ def _draw_ramp_and_hold(ax: Axes, frame: pd.DataFrame, at_curves: bool) -> None:
     ax.legend(loc="upper right")
 
 
-def _model_alone(frame: pd.DataFrame, which: str) -> list[str]:
+def _model_alone(frame: pd.DataFrame) -> list[str]:
     marks = " Grey band: axis range of Cysyk (1999) where more is shown." if (~is_simulated(frame)).any() else ""
-    return _wrapped([f"{MODEL}{_error(frame)} for {which}; {RESOLUTION}. Contact length 10 mm.", NOT_AVAILABLE + marks])
+    return _wrapped([f"{MODEL}{_error(frame)}. Contact length 10 mm.", NOT_AVAILABLE + marks])
 
 
 def frame_3_8(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
@@ -273,7 +272,7 @@ def frame_3_8(histories: Histories, meshes: Meshes, coarse: Histories, reference
 @style.styled
 def fig_3_8(frame: pd.DataFrame) -> Figure:
     """Force over time, four depths."""
-    fig = style.new_figure(frame, "3-8", "Force in ramp and hold, 2 mm/s to four depths", 4.0, note=_model_alone(frame, "1.0 mm"))
+    fig = style.new_figure(frame, "3-8", "Force in ramp and hold, 2 mm/s to four depths", 4.0, note=_model_alone(frame))
     _draw_ramp_and_hold(fig.subplots(), frame, at_curves=True)
     return fig
 
@@ -287,7 +286,7 @@ def frame_3_9(histories: Histories, meshes: Meshes, coarse: Histories, reference
 @style.styled
 def fig_3_9(frame: pd.DataFrame) -> Figure:
     """Force over time, three speeds."""
-    fig = style.new_figure(frame, "3-9", "Force in ramp and hold to 1 mm, three speeds", 4.0, note=_model_alone(frame, "2 mm/s"))
+    fig = style.new_figure(frame, "3-9", "Force in ramp and hold to 1 mm, three speeds", 4.0, note=_model_alone(frame))
     _draw_ramp_and_hold(fig.subplots(), frame, at_curves=False)
     return fig
 
@@ -365,7 +364,7 @@ def _section_note(frame: pd.DataFrame, extra: str) -> list[str]:
     error = _error(frame).strip()
     return _wrapped(
         [
-            f"Simulated in plane strain, not measured. {error} (displacement of the layers under the bar). {extra}",
+            f"Simulated in plane strain, not measured. {error} (displacement of the layers under the indenters). {extra}",
             "The MRI sections of Cysyk (1999) are not available: nothing stands in their place.",
         ]
     )
@@ -419,8 +418,8 @@ def frame_3_11(histories: Histories, meshes: Meshes, coarse: Histories, referenc
 def fig_3_11(frame: pd.DataFrame) -> Figure:
     """Six sections: boundaries undeformed (dashed) and deformed."""
     extra = (
-        "The cylinders are computed on the coarser mesh alone. The outermost line is 0.35 mm under the skin: the stratum corneum "
-        "is left out as in the thesis, so an indenter stands off by its thickness."
+        "The outermost line is 0.35 mm under the skin: the stratum corneum is left out as in the thesis, so an indenter "
+        "stands off by its thickness."
     )
     fig = style.new_figure(
         frame, "3-11", "Layer boundaries under five indentations, steady state", 4.3, _section_note(frame, extra), 0.2
@@ -445,16 +444,10 @@ def fig_3_11(frame: pd.DataFrame) -> Figure:
 
 
 FIGURES = (
-    FigureSpec(
-        "3-6", "Surface deflection", tuple(PROFILES.values()), frame_3_6, fig_3_6, companions=(LINE,), measured="surface_profiles"
-    ),
+    FigureSpec("3-6", "Surface deflection", tuple(PROFILES.values()), frame_3_6, fig_3_6, measured="surface_profiles"),
     FigureSpec("3-7", "Steady force over depth", (PLATE,), frame_3_7, fig_3_7, measured="force_depth"),
-    FigureSpec(
-        "3-8", "Ramp and hold to four depths", (PLATE, *DEPTH_SCENES.values()), frame_3_8, fig_3_8, companions=(RAMP_HOLD,)
-    ),
-    FigureSpec(
-        "3-9", "Ramp and hold at three speeds", (PLATE, *SPEED_SCENES.values()), frame_3_9, fig_3_9, companions=(RAMP_HOLD,)
-    ),
+    FigureSpec("3-8", "Ramp and hold to four depths", (PLATE, *DEPTH_SCENES.values()), frame_3_8, fig_3_8),
+    FigureSpec("3-9", "Ramp and hold at three speeds", (PLATE, *SPEED_SCENES.values()), frame_3_9, fig_3_9),
     FigureSpec("3-10", "Section under a bar", (BAR,), frame_3_10, fig_3_10),
     FigureSpec(
         "3-11",
@@ -462,6 +455,5 @@ FIGURES = (
         tuple(dict.fromkeys(scene for scene, _ in SECTIONS.values())),
         frame_3_11,
         fig_3_11,
-        companions=(BAR,),
     ),
 )
