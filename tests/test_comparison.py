@@ -220,6 +220,7 @@ def test_symmetry_of_pressure(made):
 def test_strain_energy_trends_tell_the_definitions_apart(table):
     assert table.loc["TR20a", "verdict"] == table.loc["TR21a", "verdict"] == "trend_holds"
     assert table.loc["TR20b", "verdict"] == table.loc["TR21c", "verdict"] == "trend_fails"
+    assert table.loc["TR20d", "verdict"] == table.loc["TR21d", "verdict"] == "trend_holds"
     assert table.loc["TR20b", "condition"].endswith("network energy")
 
 

@@ -159,6 +159,8 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
                 "strain_energy_Pa": end.strain_energy_density.values.tolist(),
                 "strain_energy_network_Pa": end.strain_energy_network.values.tolist(),
                 "strain_energy_recoverable_Pa": end.strain_energy_recoverable.values.tolist(),
+                "strain_energy_long_term_moduli_Pa": end.strain_energy_long_term_moduli.values.tolist(),
+                "strain_energy_half_stress_strain_Pa": end.strain_energy_half_stress_strain.values.tolist(),
             }
         )
     run = {

@@ -31,7 +31,13 @@ TWIN = 0.01
 """Least excess of an off-centre pressure peak over the centre's, relative, to count as one."""
 
 
-ENERGIES = {"a": "strain_energy_density", "b": "strain_energy_network", "c": "strain_energy_recoverable"}
+ENERGIES = {
+    "a": "strain_energy_density",
+    "b": "strain_energy_network",
+    "c": "strain_energy_recoverable",
+    "d": "strain_energy_long_term_moduli",
+    "e": "strain_energy_half_stress_strain",
+}
 BROAD = ("flat", "79", "105", "158", "210")
 """Surfaces whose contact is wider than twice the critical distance of 0.5 mm by half as much again."""
 
