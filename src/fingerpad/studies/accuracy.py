@@ -1,8 +1,8 @@
 """What accuracy costs in time: the runs of the study, one point each, and what is measured of them.
 
-A point is a scene of the family with one discretisation. The plane of elements and mesh sizes is complete for the three
-ramp-and-hold scenes; time steps, Newton tolerance, small strain and presets are varied one at a time from the default preset.
-Meshes of other elements are the default's quadratic quads split, with the same nodes, so the boundary is the same.
+A point is a scene of the family with one discretisation. The plane of elements and mesh sizes is complete; time steps, Newton
+tolerance, small strain and presets are varied one at a time from the default preset. Meshes
+of other elements are the default's quadratic quads split, with the same nodes, so the boundary is the same.
 """
 
 from __future__ import annotations
@@ -31,9 +31,8 @@ if TYPE_CHECKING:
 FAMILY = {"flat": "ramp40_flat", "210": "ramp40_k210", "1260": "ramp40_k1260", "stroke": "accuracy_stroke"}
 """Name in the study -> scene."""
 PRESSED = ("flat", "210", "1260")
-USED = ("Q2P1", "Q1P0", "P2B")
-ELEMENTS = (*USED, "Q1", "Q2", "Q2R")
-"""Keys of the elements; those after the ones used are for teaching."""
+ELEMENTS = ("Q2P1", "Q1P0", "P2B", "Q1", "Q2", "Q2R")
+"""Keys of the elements; the last three are for teaching."""
 ROWS = (1, 2, 4, 7, 10, 14, 22)
 """Mesh sizes: rows of elements in the epidermis. Other edges are in proportion; 7 are the default's."""
 DEFAULT_ROWS, DEFAULT_STEPS, DEFAULT_TOLERANCE = 7, 20, 1e-4
@@ -73,10 +72,7 @@ def points() -> dict[str, Point]:
     """Every point of the study by its name."""
     found = []
     for family in FAMILY:
-        for element in ELEMENTS if family in PRESSED else USED:
-            # the largest meshes are for the elements that have a use, and for the default's in the stroke
-            fewer = 0 if element == "Q2P1" else 2 * (family == "stroke") + (element not in USED)
-            found += [Point(family, element, rows) for rows in ROWS[: len(ROWS) - fewer]]
+        found += [Point(family, element, rows) for element in ELEMENTS for rows in ROWS]
         found += [Point(family, steps=steps) for steps in STEPS]
         found += [Point(family, tolerance=tolerance) for tolerance in TOLERANCES]
         found += [Point(family, finite=False)] + [Point(family, preset=preset) for preset in ("draft", "fine")]
