@@ -47,7 +47,7 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     outputs = jobs.pop("calibrate") | jobs.pop("calibrate_prony") | jobs.pop("calibrate_friction")
     assert {path for path in outputs if not path.endswith(".csv")} == {"results/thesis/specimens"}
     assert jobs.pop("strain_energy_meanings") == {f"figures/studies/strain_energy_meanings.{k}" for k in ("png", "csv")}
-    assert jobs.pop("ridge_figure") == {f"figures/studies/ridges_{n}.{k}" for n in RIDGES for k in ("png", "csv")}
+    assert jobs.pop("ridge_figures") == {f"figures/studies/ridges_{n}.{k}" for n in RIDGES for k in ("png", "csv")}
     assert jobs.pop("ridge_data") == {f"results/thesis/ridges/{n}.csv" for n in RIDGES}
     cases = {f"{h:g}_0.65" for h in thesis["ridge_heights"]} | {f"150_{mu:g}" for mu in thesis["ridge_frictions"]}
     cases = {f"{case}_{mesh}" for case in cases for mesh in ("thesis", "coarse")}
@@ -60,7 +60,7 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
 def test_ridges_simulate_their_own_scenes_only(clone):
     jobs = clone.planned("ridges")
     assert {Path(path).stem for path in jobs["figure"]} == {f"fig_5-{n}" for n in (25, 26, 28, 29)}
-    assert jobs["ridge_figure"] == {f"figures/studies/ridges_{n}.{k}" for n in RIDGES for k in ("png", "csv")}
+    assert jobs["ridge_figures"] == {f"figures/studies/ridges_{n}.{k}" for n in RIDGES for k in ("png", "csv")}
     scenes = {Path(path).parent.name for path in jobs["simulate"]}
     assert all(name.startswith(("ridged_", "plate_stroke_")) for name in scenes) and len(scenes) == 15
     assert "table" not in jobs

@@ -77,27 +77,24 @@ rule ridge_data:
         "python workflow/scripts/ridge_data.py {output[0]} {input.cases} {input.histories} {input.coarse} > {log} 2>&1"
 
 
-rule ridge_figure:
-    """Data of the study -> a picture, and the plotted data beside it."""
+rule ridge_figures:
+    """Data of the study -> its pictures, and the plotted data beside each."""
     input:
-        sources("ridge_figure"),
+        sources("ridge_figures"),
         ENVIRONMENT,
-        data=f"{RESULTS}/ridges/{{name}}.csv",
+        data=rules.ridge_data.output,
     output:
         png=report(
-            f"{config['studies']}/ridges_{{name}}.png",
+            expand(f"{config['studies']}/ridges_{{name}}.png", name=ridge_studies()),
             caption="../report/ridges.rst",
             category="Ridges",
-            labels={"study": "{name}"},
         ),
-        csv=f"{config['studies']}/ridges_{{name}}.csv",
-    wildcard_constraints:
-        name="[a-z]+",
+        csv=expand(f"{config['studies']}/ridges_{{name}}.csv", name=ridge_studies()),
     log:
-        f"{RESULTS}/logs/ridge_figure/{{name}}.log",
+        f"{RESULTS}/logs/ridge_figures.log",
     threads: 1
     resources:
         mem_mb=1000,
         runtime=5,
     shell:
-        "python workflow/scripts/ridge_figure.py {wildcards.name} {input.data} {output.png} > {log} 2>&1"
+        "python workflow/scripts/ridge_figures.py {output.png[0]} {input.data} > {log} 2>&1"

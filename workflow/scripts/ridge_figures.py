@@ -1,0 +1,12 @@
+"""Draw the figures of the study of ridges side by side: ridge_figures.py FOLDER/ridges_NAME.png DATA/NAME.csv ..."""
+
+import sys
+from pathlib import Path
+
+from fingerpad.figures.io import publish, read_frame
+from fingerpad.figures.ridge_study import STUDIES
+
+png, *paths = map(Path, sys.argv[1:])
+for path in paths:
+    frame = read_frame(path)
+    publish(STUDIES[path.stem](frame), frame, png.with_name(f"ridges_{path.stem}.png"))
