@@ -96,7 +96,7 @@ rule ridges:
 
 
 rule accuracy:
-    """What accuracy costs in time, and whether runs know their error: figures and tables; about half an hour of one core."""
+    """What accuracy costs in time, and whether runs know their error: figures and tables; about an hour and a half of one core."""
     input:
         expand(f"{config['tables']}/{{name}}.csv", name=[*ACCURACY_TABLES, "accuracy_belief"]),
         expand(f"{config['studies']}/accuracy_{{name}}.png", name=["error", "error_stroke", "growth", "belief"]),
