@@ -10,9 +10,10 @@ pytestmark = pytest.mark.workflow
 def test_accuracy_sweeps_elements_of_scenes_and_asks_for_beliefs(clone):
     jobs = clone.planned("accuracy")
     sweeps = {
-        f"{family}_{element}" for family in ("flat", "210", "1260") for element in ("Q2P1", "Q1P0", "P2B", "Q1", "Q2", "Q2R")
+        f"{family}_{element}"
+        for family in ("flat", "210", "1260", "stroke")
+        for element in ("Q2P1", "Q1P0", "P2B", "Q1", "Q2", "Q2R")
     }
-    sweeps |= {f"stroke_{element}" for element in ("Q2P1", "Q1P0", "P2B")}
     assert jobs.pop("accuracy_sweep") == {f"results/thesis/accuracy/{sweep}.json" for sweep in sweeps}
     assert len(jobs.pop("accuracy_belief")) == 14
     tables = ("accuracy", "accuracy_orders", "accuracy_planner", "presets")
