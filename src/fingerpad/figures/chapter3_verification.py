@@ -418,8 +418,7 @@ def frame_3_11(histories: Histories, meshes: Meshes, coarse: Histories, referenc
 def fig_3_11(frame: pd.DataFrame) -> Figure:
     """Six sections: boundaries undeformed (dashed) and deformed."""
     extra = (
-        "The outermost line is 0.35 mm under the skin: the stratum corneum is left out as in the thesis, so an indenter "
-        "stands off by its thickness."
+        "The outermost line is 0.35 mm under the skin (the stratum corneum is left out, as in the thesis): indenters stand off."
     )
     fig = style.new_figure(
         frame, "3-11", "Layer boundaries under five indentations, steady state", 4.3, _section_note(frame, extra), 0.2
@@ -433,7 +432,7 @@ def fig_3_11(frame: pd.DataFrame) -> Figure:
         _draw_indenter(ax, rows)
         for (state, layer), line in rows[rows["layer"].isin(colours)].groupby(["phase", "layer"], sort=False):
             ax.plot(line[X], line[Y], **{"color": colours[layer]} | STATE_LINES["deformed" if panel == "no load" else state])
-        ax.set(title=panel, aspect="equal", xlim=(-8, 8), ylim=(-1.5, 6.5), xticks=(-6, -3, 0, 3, 6), yticks=(0, 3, 6))
+        ax.set(title=panel, aspect="equal", xlim=(-8.4, 8.4), ylim=(-1.5, 6.5), xticks=(-6, -3, 0, 3, 6), yticks=(0, 3, 6))
     axes[1, 1].set_xlabel(X)
     axes[0, 0].set_ylabel(Y)
     axes[1, 0].set_ylabel(Y)
