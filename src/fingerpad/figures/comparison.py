@@ -4,6 +4,9 @@ Every row starts from a row of the reference table (what the thesis prints, id b
 that reads the same quantity from the simulated histories. Numbers are judged by the rules in `verdicts`; a
 trend holds or fails. `layout` rows only set axes of figures and have no row here.
 
+Every row has a role. Only a `result` and a `trend` speak for the model: an `input` is what the thesis states and the scenes
+repeat, a `count` is of the model itself, and what is `calibrated` was used to choose a parameter.
+
 A row that is outside says by how much, the likeliest reason, and what the sensitivity runs make of it.
 """
 
@@ -16,15 +19,18 @@ import numpy as np
 import pandas as pd
 
 from fingerpad.figures.features import SURFACES, Histories, peak_pressure, scene_of
-from fingerpad.figures.numbers import GIVEN, INVERSE_WIDTHS, NUMBERS, Results, end_of, top_of
+from fingerpad.figures.numbers import INVERSE_WIDTHS, NUMBERS, Results, end_of, top_of
 from fingerpad.figures.sensitivity import evidence, variant_scene
 from fingerpad.figures.spec import Meshes, read_reference
 from fingerpad.figures.steady import PLATE, steady_force
 from fingerpad.figures.trends import TRENDS
 from fingerpad.figures.verdicts import is_inside, judge, significant
 
+GIVEN = ("input", "count")
+"""Roles of what goes into the simulations: printed in full, without a discretisation error."""
+
 COLUMNS = (
-    "id", "figure", "quantity", "condition", "thesis_low", "thesis_high", "thesis_kind", "simulated",
+    "id", "figure", "quantity", "condition", "role", "thesis_low", "thesis_high", "thesis_kind", "simulated",
     "discretisation_error", "units", "verdict", "note",
 )  # fmt: skip
 
@@ -75,7 +81,7 @@ REASONS: dict[str, str | Callable[[Results], str]] = {
     **{f"T165{tag}": _settled(label, "ramp150") for tag, label in zip("abc", ("flat", "158", "1260"), strict=True)},
     **{f"T{i}": _settled("flat") for i in (136, 138)},
     "T139": "5000 Pa is the last legible tick: Fig 4-11 shows the same curves up to 8000 Pa",
-    **{f"T{i}": _RAMP for i in (123, 135, 140, 141, 142, 159, 170, *range(173, 180))},
+    **{f"T{i}": _RAMP for i in (123, 135, 140, 141, 142, 159, 170, 173, 174, 175, 176, 178, 179)},
     **{f"T177{tag}": _RAMP for tag in "ab"},
     **{f"T{i}": _BENDING for i in (166, 167, 168, *range(192, 198), 307)},
     "T232": "edges and peaks of the pressure lie where the surface has its arcs; what lags by a millimetre is the skin (T232a)",
@@ -121,12 +127,31 @@ def thesis_comparison(histories: Histories, coarse: Histories, meshes: Meshes, r
     -------
     One row an id, columns `COLUMNS`; numbers in the row's `units`. The discretisation error is the difference
     of the row's number between mesh and companion, in the same units, empty for what is `GIVEN`. Scenes that
-    were not simulated give ``not_comparable``.
+    were not simulated give ``not_comparable``. `summary` of the rows is in ``attrs["summary"]``.
     """
     reference = read_reference(reference_csv)
     fine, rough = Results(histories, meshes), Results(coarse, meshes)
     rows = [_row(id_, entry, fine, rough, reference) for id_, entry in reference.iterrows() if entry["form"] != "layout"]
-    return pd.DataFrame(rows, columns=COLUMNS)
+    table = pd.DataFrame(rows, columns=COLUMNS)
+    table.attrs["summary"] = summary(table, reference)
+    return table
+
+
+def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
+    """How many rows agree with the thesis, results and trends first, and apart from them what was put in or chosen by."""
+
+    def of(rows: pd.Series, *verdicts: str) -> str:
+        judged = table[rows & (table["verdict"] != "not_comparable")]["verdict"]
+        return f"{judged.isin(verdicts).sum()} of {len(judged)}"
+
+    role, axis = table["role"], table["id"].map(reference["form"]).eq("axis")
+    return (
+        f"**{of(role.eq('result') & ~axis, 'inside')} results are inside a value or range of the thesis, "
+        f"{of(role.eq('result') & axis, 'plausible')} are plausible on an axis of its figures "
+        f"(below its end and filling half of it), {of(role.eq('trend'), 'trend_holds')} trends hold.** "
+        f"Not counted: {of(role.isin(GIVEN), 'inside', 'plausible')} inputs and counts of the model are as in the thesis, "
+        f"{of(role.eq('calibrated'), 'inside', 'plausible')} numbers that a parameter was chosen by are inside."
+    )
 
 
 def _row(id_: str, entry: Mapping, fine: Results, rough: Results, reference: pd.DataFrame) -> dict:
@@ -135,6 +160,7 @@ def _row(id_: str, entry: Mapping, fine: Results, rough: Results, reference: pd.
         "figure": entry["figure"],
         "quantity": entry["quantity"],
         "condition": entry["condition"],
+        "role": entry["role"],
         "thesis_low": entry["low"],
         "thesis_high": entry["high"],
         "thesis_kind": entry["kind"],
@@ -151,17 +177,17 @@ def _row(id_: str, entry: Mapping, fine: Results, rough: Results, reference: pd.
     except KeyError as missing:
         return row | {"verdict": "not_comparable", "note": f"not simulated: {missing.args[0]}"}
     try:
-        error = float("nan") if id_ in GIVEN else abs(value - float(NUMBERS[id_](rough)))
+        error = float("nan") if entry["role"] in GIVEN else abs(value - float(NUMBERS[id_](rough)))
     except KeyError:
         error = float("nan")
     allowed = float(np.nan_to_num(error))
     verdict, note = judge(value, allowed, entry)
     if verdict == "outside":
-        runs = "" if id_ in GIVEN else evidence(id_, value, allowed, fine, rough, reference)
+        runs = "" if entry["role"] in GIVEN else evidence(id_, value, allowed, fine, rough, reference)
         note = "; ".join(filter(None, (note, _reason(id_, fine), runs)))
     doubt = "thesis reading uncertain" if entry["kind"] == "garbled" else ""
     note = "; ".join(filter(None, (note, _remark(id_, entry, fine), doubt)))
-    if id_ not in GIVEN:
+    if entry["role"] not in GIVEN:
         row |= {"discretisation_error": significant(error, 2)}
         value = significant(value, 4)
     return row | {"simulated": value, "verdict": verdict, "note": note}

@@ -58,10 +58,10 @@ def markdown(frame: pd.DataFrame) -> str:
 
 
 def publish_table(frame: pd.DataFrame, csv_path: str | os.PathLike) -> None:
-    """Write ``name.csv`` (format %s) and, beside it, ``name.md``."""
+    """Write ``name.csv`` (format %s) and, beside it, ``name.md``, headed by ``frame.attrs["summary"]`` if there is one."""
     path = Path(csv_path)
     write_frame(frame, path)
-    text = markdown(frame)
+    text = "".join(f"{line}\n\n" for line in [frame.attrs.get("summary")] if line) + markdown(frame)
     write_atomically(path.with_suffix(".md"), lambda p: p.write_text(text, encoding="utf-8"))
 
 

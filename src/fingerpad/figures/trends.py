@@ -268,7 +268,6 @@ def _faster_in_ramp(history: xr.Dataset) -> bool:
 
 
 TRENDS: dict[str, Callable[[Results], Trend]] = {
-    "T048": lambda r: Trend(True, float("nan"), "bone rim clamped: rigid rather than 10^8 times stiffer"),
     "T327": _plate_double_peak,
     "T328": _peaks_before_top,
     "T328a": _peaks_sooner,

@@ -11,8 +11,8 @@ value without low
 estimate
     not a number of the thesis, nor a truth: never judged, the remark says by how much the number differs.
 axis
-    the thesis shows only an axis. Inside if the largest plotted value stays below its end and fills at least
-    `FILL` of it, since a plot is drawn to be filled.
+    the thesis shows only an axis. Plausible, and no more, if the largest plotted value stays below its end and fills
+    at least `FILL` of it, since a plot is drawn to be filled.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
 
     Returns
     -------
-    ``inside``, ``outside`` or ``not_comparable`` (a number that is not finite), and a remark.
+    ``inside``, ``plausible``, ``outside`` or ``not_comparable`` (a number that is not finite), and a remark.
     """
     low, high = float(entry["low"]), float(entry["high"])
     if not np.isfinite(value):
@@ -55,7 +55,7 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
             return "outside", f"{value / high - 1:.0%} above the axis's end"
         if value < FILL * high - error:
             return "outside", f"fills only {value / high:.0%} of the axis"
-        return "inside", f"fills {value / high:.0%} of the axis"
+        return "plausible", f"fills {value / high:.0%} of the axis"
     if low - error <= value <= high + error:
         return "inside", ""
     near = low if value < low else high
@@ -63,8 +63,8 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
 
 
 def is_inside(value: float, error: float, entry: Mapping) -> bool:
-    """Whether a number is inside its reference row."""
-    return judge(value, error, entry)[0] == "inside"
+    """Whether a number is inside its reference row, or plausible on its axis."""
+    return judge(value, error, entry)[0] in ("inside", "plausible")
 
 
 def significant(value: float, digits: int) -> float:
