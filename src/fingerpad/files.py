@@ -1,4 +1,4 @@
-"""Files appear whole under their final name or not at all."""
+"""Files appear whole under their final name or not at all; and where the package's own files are."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ import os
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+
+_PACKAGE = Path(__file__).resolve().parent
+BUILT_IN = _PACKAGE / "built_in" if (_PACKAGE / "built_in").is_dir() else _PACKAGE.parents[1] / "config"
+"""Folder of the built-in `specimens`: config/ of the clone, of which an installed package carries a copy (setup.py)."""
 
 
 def write_atomically(path: str | Path, write: Callable[[Path], object]) -> None:

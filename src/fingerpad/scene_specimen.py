@@ -20,6 +20,7 @@ from pydantic import (
 
 from fingerpad.documents import HIDE, Problem, Strict, explain, read_yaml
 from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity
+from fingerpad.files import BUILT_IN
 from fingerpad.units import format_quantity
 
 DEFAULT_SPECIMEN = "thesis"
@@ -246,8 +247,9 @@ class Source:
 
     def _folders(self) -> Iterator[Path]:
         folder = self.path.absolute().parent
-        for parent in (folder, *folder.parents, Path(__file__).resolve().parents[2]):
+        for parent in (folder, *folder.parents):
             yield parent / "config" / "specimens"
+        yield BUILT_IN / "specimens"
 
     def specimen(self, name: str, key: tuple = ()) -> SpecimenFile:
         """The specimen file called `name`; raises `Problem` at `key` when there is none."""
