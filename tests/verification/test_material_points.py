@@ -1,14 +1,17 @@
 """Strain energy at receptors: against Hertz's field below the contact, and term by term in simple shear."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from meshes import nodes_of, rectangle
+from meshes import nodes_of, quarter_annulus, rectangle
 from pressing import press
 from problems import make_body, two_numbers
 from scipy.linalg import logm
+from skfem import ElementQuad1, ElementQuad2, ElementTriP2, MappingIsoparametric
 from strips import Layer, half_strip
 
-from fingerpad.receptors.material_points import MaterialPoints, logarithmic_strain
+from fingerpad.receptors.material_points import MaterialPoints, ReceptorError, locate, logarithmic_strain
 from fingerpad.reference_solutions import hertz, prony_point
 from fingerpad.specimen.materials import Prony
 from fingerpad.stimuli.profiles import Cylinder
@@ -127,3 +130,29 @@ def test_between_elements_no_side_is_preferred():
     for name, (between, left, right, _) in receptors.sample(body).items():
         np.testing.assert_allclose(between, (left + right) / 2, rtol=1e-3, err_msg=name)
         assert name == "dilatation" or abs(left - right) > 0.05 * max(abs(left), abs(right)), name
+
+
+CURVED = {"quad9": ("Q2P1", ElementQuad2), "tri6": ("P2B", ElementTriP2), "quad4": ("Q1P0", ElementQuad1)}
+
+
+@pytest.mark.parametrize("bent", [False, True], ids=["irregular", "curved"])
+@pytest.mark.parametrize("kind", CURVED)
+def test_points_are_found_where_scikit_fem_maps_them(kind, bent):
+    """Places in elements of curved sides or irregular shape, mapped by scikit-fem, are found again, and in no second element."""
+    element, shape = CURVED[kind]
+    mesh = quarter_annulus(5, 6, 1.0, 2.0, kind) if bent else rectangle(9, 8, kind=kind, distortion=0.3)
+    body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, element, "finite")
+    random = np.random.default_rng(3)
+    host, xi = random.integers(len(mesh.cells), size=2000), random.uniform(1e-3, 1 - 1e-3, (2000, 2))
+    if kind == "tri6":
+        xi = np.where(xi.sum(1, keepdims=True) < 1, xi, 1 - xi)
+    numbered = SimpleNamespace(element_dofs=mesh.cells.T)  # gmsh and scikit-fem number the nodes of these elements alike
+    mapping = MappingIsoparametric(SimpleNamespace(doflocs=mesh.points.T, dofs=numbered, dim=lambda: 2), shape())
+    mapped = mapping.F(xi.T[:, :, None], tind=host)[:, :, 0].T
+    found = locate(body.space, mapped)
+    np.testing.assert_array_equal(found.element, host)
+    np.testing.assert_allclose(found.xi, xi, atol=1e-11)
+    if kind != "quad4":
+        assert MaterialPoints(body, mapped, None).recovery is None
+    with pytest.raises(ReceptorError, match="outside"):
+        locate(body.space, np.concatenate([mapped[:3], [[3.0, 3.0]]]))

@@ -12,6 +12,7 @@ disagree even in trend (see :func:`strain_energies`).
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from fingerpad.mechanics.finite_strain import deviator_square, push_forward
@@ -32,83 +33,68 @@ class Location:
 
 
 def locate(space: Space, points: np.ndarray) -> Location:
-    """Find an element and the reference coordinates there of each physical point (nr, 2), m.
+    """The element each physical point (nr, 2), m, lies in: on a border the one with the nearest centre.
 
     Raises:
         ReceptorError: a point lies in no element.
     """
-    points = np.atleast_2d(points)
-    candidates = _nearest(space, points, 24)
-    element, xi = np.full(len(points), -1), np.zeros((len(points), 2))
-    open_points = np.arange(len(points))
-    for column in candidates.T:
-        if not len(open_points):
-            break
-        trial = column[open_points]
-        local, inside = _coordinates(space, trial, points[open_points])
-        found = open_points[inside]
-        element[found], xi[found] = trial[inside], local[inside]
-        open_points = open_points[~inside]
-    if len(open_points):
-        x, y = points[open_points[0]] * 1e3
+    owner, found = _containing(space, np.atleast_2d(points))
+    first = np.unique(owner, return_index=True)[1]
+    return Location(found.element[first], found.xi[first])
+
+
+def _containing(space, points, tolerance=1e-6):
+    """Every element that each point lies in, borders included: the points' indices (m,), ascending and for each the element with
+    the nearest centre first, and their :class:`Location` (m,). (scikit-fem has no finder for curved elements, and its inverse of
+    a curved map takes no point outside.)"""
+    nodes = space.points[space.cells]
+    centres = nodes.mean(1)
+    candidates = cKDTree(centres).query(points, k=np.arange(1, min(24, len(centres)) + 1))[1]
+    low, high = nodes.min(1)[candidates], nodes.max(1)[candidates]
+    # a quadratic side bulges beyond the box round its nodes by an eighth of it at most
+    owner, column = np.nonzero((np.abs(points[:, None] - (low + high) / 2) <= 0.65 * (high - low)).all(2))
+    element = candidates[owner, column]
+    xi = _inverse_map(space.element, nodes[element], points[owner])
+    inside = (xi >= -tolerance).all(1)
+    inside &= xi.sum(1) <= 1 + tolerance if space.element.triangle else (xi <= 1 + tolerance).all(1)
+    owner, found = owner[inside], Location(element[inside], xi[inside])
+    outside = np.setdiff1d(np.arange(len(points)), owner)
+    if len(outside):
+        x, y = points[outside[0]] * 1e3
         raise ReceptorError(f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue")
-    return Location(element, xi)
+    return owner, found
 
 
-def _nearest(space, points, count):
-    """(nr, count) elements by the distance of their centres."""
-    centres = space.points[space.cells].mean(1)
-    return np.atleast_2d(cKDTree(centres).query(points, k=min(count, len(centres)))[1])
-
-
-def _coordinates(space, elements, points, tolerance=1e-6):
-    """Reference coordinates (n, 2) of points in elements (n,), and whether they lie inside."""
-    local = _inverse_map(space, elements, points)
-    inside = (local >= -tolerance).all(1)
-    return local, inside & (local.sum(1) <= 1 + tolerance if space.element.triangle else (local <= 1 + tolerance).all(1))
-
-
-def _mean_of_neighbours(space, shear, hosts, points):
-    """Where points lie on the border of elements of one layer: all of these, and the matrix (nr, samples) of means over them.
-
-    Strain jumps from element to element; a value from one side would tell left from right. None where no point is shared.
-    """
-    candidates = _nearest(space, points, 24)
-    owner, column = np.nonzero((shear[candidates] == shear[hosts.element][:, None]) & _boxed(space, candidates, points))
-    elements = candidates[owner, column]
-    coordinates, inside = _coordinates(space, elements, points[owner])
-    elements, coordinates, owner = elements[inside], coordinates[inside], owner[inside]
-    if len(owner) == len(points):
-        return hosts, None
-    matrix = np.zeros((len(points), len(owner)))
-    matrix[owner, np.arange(len(owner))] = 1 / np.bincount(owner)[owner]
-    return Location(elements, coordinates), matrix
-
-
-def _boxed(space, candidates, points):
-    """Whether points (nr, 2) lie in boxes, wide enough for curved sides, round their candidate elements (nr, n)."""
-    nodes = space.points[space.cells[candidates]]
-    low, high = nodes.min(2), nodes.max(2)
-    return (np.abs(points[:, None] - (low + high) / 2) <= high - low).all(2)
-
-
-def _inverse_map(space, elements, points):
-    xi = np.full((len(elements), 2), 1 / 3 if space.element.triangle else 0.5)
-    nodes = space.points[space.cells[elements]]
+def _inverse_map(element, nodes, points):
+    """Reference coordinates (m, 2) of points in elements of nodes (m, nen, 2) by Newton's method; nan where it fails."""
+    xi = np.full((len(points), 2), 1 / 3 if element.triangle else 0.5)
+    moving = np.arange(len(points))
     for _ in range(12):
-        values, gradients = space.element.shape(xi)
-        residual = points - np.einsum("na,nai->ni", values, nodes)
-        jacobian = np.einsum("nai,naj->nji", gradients, nodes)
+        values, gradients = element.shape(xi[moving])
+        residual = points[moving] - np.einsum("na,nai->ni", values, nodes[moving])
+        (a, b), (c, d) = np.einsum("nai,naj->ijn", nodes[moving], gradients)
         with np.errstate(all="ignore"):
-            determinant = jacobian[:, 0, 0] * jacobian[:, 1, 1] - jacobian[:, 0, 1] * jacobian[:, 1, 0]
-            step = np.column_stack(
-                [
-                    jacobian[:, 1, 1] * residual[:, 0] - jacobian[:, 0, 1] * residual[:, 1],
-                    jacobian[:, 0, 0] * residual[:, 1] - jacobian[:, 1, 0] * residual[:, 0],
-                ]
-            )
-            xi = np.clip(np.nan_to_num(xi + step / determinant[:, None]), -2.0, 3.0)
+            step = np.stack([d * residual[:, 0] - b * residual[:, 1], a * residual[:, 1] - c * residual[:, 0]]) / (a * d - b * c)
+        before = xi[moving]
+        xi[moving] = np.clip(np.nan_to_num(before + step.T), -2.0, 3.0)
+        moving = moving[np.abs(xi[moving] - before).max(1) > 1e-12]
+    xi[moving] = np.nan
     return xi
+
+
+def _mean_of_neighbours(space, shear, points):
+    """Where points are sampled, and the sparse matrix (nr, samples) of their means; None where each is sampled once.
+
+    Strain jumps from element to element; a value from one side would tell left from right. So a point on a border takes the mean
+    over the elements there that are of one layer with the nearest.
+    """
+    owner, found = _containing(space, points)
+    layer = shear[found.element]
+    same = layer == layer[np.unique(owner, return_index=True)[1]][owner]
+    owner, found = owner[same], Location(found.element[same], found.xi[same])
+    if len(owner) == len(points):
+        return found, None
+    return found, csr_array((1 / np.bincount(owner)[owner], (owner, np.arange(len(owner)))), (len(points), len(owner)))
 
 
 class MaterialPoints:
@@ -126,9 +112,8 @@ class MaterialPoints:
     def __init__(self, body, points: np.ndarray, shear_instantaneous: np.ndarray):
         space = body.space
         points = np.atleast_2d(points)
-        self.location, self.recovery = locate(space, points), None
         recover = _quadratic_recovery if space.element.pressure_modes == 1 else _mean_of_neighbours
-        self.location, self.recovery = recover(space, body.shear, self.location, points)
+        self.location, self.recovery = recover(space, body.shear, points)
         element = self.location.element
         values, slopes = space.element.shape(self.location.xi)
         self.cells = space.cells[element]
@@ -206,27 +191,28 @@ class MaterialPoints:
         return {name: self.recovery @ values for name, values in found.items()}
 
 
-def _quadratic_recovery(space, shear, hosts, points, neighbours: int = 24):
-    """Quadrature points to sample and the matrix (nr, samples) that fits a quadratic through those of the same layer.
+def _quadratic_recovery(space, shear, points, neighbours: int = 24):
+    """Quadrature points to sample and the sparse matrix (nr, samples) that fits a quadratic through those of the same layer.
 
     Energies of linear elements are wrong by several per cent at a point but much better at their quadrature points, so each
     receptor's value is that of a least-squares quadratic through the nearest ``neighbours`` of them.
     """
-    nq = len(space.element.weights)
+    nq, hosts = len(space.element.weights), locate(space, points).element
     position = np.einsum("qa,eai->eqi", space.element.values, space.points[space.cells]).reshape(-1, 2)
     layer = np.repeat(shear, nq)
-    samples, weights = [], []
-    for host, point in zip(hosts.element, points, strict=True):
-        same = np.flatnonzero(layer == shear[host])
-        near = same[np.argsort(np.sum((position[same] - point) ** 2, axis=1))[:neighbours]]
-        x, y = ((position[near] - point) / np.sqrt(space.weight[host].sum())).T
-        basis = np.column_stack([np.ones(len(x)), x, y, x * x, x * y, y * y])
-        samples.append(near)
-        weights.append(np.linalg.pinv(basis)[0])
-    used, index = np.unique(np.concatenate(samples), return_inverse=True)
-    matrix = np.zeros((len(points), len(used)))
-    rows = np.repeat(np.arange(len(points)), [len(near) for near in samples])
-    matrix[rows, index.ravel()] = np.concatenate(weights)
+    near, weights = [None] * len(points), [None] * len(points)
+    for modulus in np.unique(shear[hosts]):
+        same, here = np.flatnonzero(layer == modulus), np.flatnonzero(shear[hosts] == modulus)
+        found = same[cKDTree(position[same]).query(points[here], k=np.arange(1, min(neighbours, len(same)) + 1))[1]]
+        x, y = np.moveaxis(
+            (position[found] - points[here, None]) / np.sqrt(space.weight[hosts[here]].sum(1))[:, None, None], -1, 0
+        )
+        fit = np.linalg.pinv(np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=2))[:, 0]
+        for k, one, weight in zip(here, found, fit, strict=True):
+            near[k], weights[k] = one, weight
+    used, index = np.unique(np.concatenate(near), return_inverse=True)
+    rows = np.repeat(np.arange(len(points)), [len(one) for one in near])
+    matrix = csr_array((np.concatenate(weights), (rows, index)), (len(points), len(used)))
     return Location(used // nq, space.element.points[used % nq]), matrix
 
 
