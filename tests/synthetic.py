@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import xarray as xr
 
-from fingerpad.scene import Outline
+from fingerpad.scenes.scene import Outline
 from fingerpad.specimen.mesh import MeshSize, PadMesh, build_pad_mesh
 from fingerpad.stimuli.profiles import profile_of
 

@@ -7,17 +7,17 @@ import pandas as pd
 import pytest
 
 from fingerpad import load_scene, plan
-from fingerpad.effects import RULES
-from fingerpad.figures.accuracy import STUDIES
-from fingerpad.figures.features import ERROR
-from fingerpad.scene import Cylinder
+from fingerpad.measures.features import ERROR
+from fingerpad.planning.plan import RULES
+from fingerpad.scenes.scene import Cylinder
 from fingerpad.specimen.mesh import MeshSize, build_pad_mesh, element_edges, skin_chain
 from fingerpad.specimen.quality import check_orientation
-from fingerpad.studies import accuracy as study
-from fingerpad.studies import accuracy_errors as found
-from fingerpad.studies import belief
-from fingerpad.studies.accuracy import FAMILY, Point, points, split
-from fingerpad.studies.convergence import fitted_order, limit, observed_order
+from fingerpad.studies.accuracy import belief
+from fingerpad.studies.accuracy import errors as found
+from fingerpad.studies.accuracy import run as study
+from fingerpad.studies.accuracy.convergence import fitted_order, limit, observed_order
+from fingerpad.studies.accuracy.picture import STUDIES
+from fingerpad.studies.accuracy.run import FAMILY, Point, points, split
 
 pytestmark = pytest.mark.unit
 

@@ -9,13 +9,12 @@ import pandas as pd
 import pytest
 
 from fingerpad import load_scene, plan, simulate
-from fingerpad.figures.calibration import STUDIES
-from fingerpad.figures.io import read_frame, write_frame, write_picture
+from fingerpad.publishing.write import read_frame, write_frame, write_picture
 from fingerpad.reference_data import read_force_depth, read_relaxation
-from fingerpad.scene import Discretisation, Hold, Layer, Layers, PressToDepth
+from fingerpad.scenes.scene import Discretisation, Hold, Layer, Layers, PressToDepth
 from fingerpad.specimen.materials import Prony
 from fingerpad.stimuli.motion import geometric
-from fingerpad.studies.calibration import (
+from fingerpad.studies.calibration.force import (
     LENGTHS,
     ElasticCurve,
     calibrate,
@@ -29,8 +28,9 @@ from fingerpad.studies.calibration import (
     specimen_name,
     write_specimens,
 )
-from fingerpad.studies.least_squares import fit, group_interval
-from fingerpad.studies.relaxation import (
+from fingerpad.studies.calibration.least_squares import fit, group_interval
+from fingerpad.studies.calibration.picture import STUDIES
+from fingerpad.studies.calibration.relaxation import (
     WRONG_START,
     RampForce,
     amplitude_design,

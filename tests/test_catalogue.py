@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fingerpad.figures import FIGURES
 from fingerpad.figures.catalogue import read_catalogue, readme
+from fingerpad.figures.registry import FIGURES
 from fingerpad.reference_data import ReferenceDataError
 
 pytestmark = pytest.mark.unit

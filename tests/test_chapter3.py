@@ -7,14 +7,14 @@ import pytest
 
 import synthetic
 from fingerpad import load_scene, plan, simulate
-from fingerpad.figures import FIGURES
+from fingerpad.claims.comparison import thesis_comparison
+from fingerpad.claims.numbers import NUMBERS, Results
 from fingerpad.figures.chapter3_verification import section, surface_deflection
-from fingerpad.figures.comparison import thesis_comparison
-from fingerpad.figures.numbers import NUMBERS, Results
+from fingerpad.figures.registry import FIGURES
 from fingerpad.figures.spec import empty_reference
-from fingerpad.figures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
+from fingerpad.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
 from fingerpad.results import summary
-from fingerpad.scene import Bar, Hold, Line, PressToDepth
+from fingerpad.scenes.scene import Bar, Hold, Line, PressToDepth
 
 ROOT = Path(__file__).parents[1]
 SCENES = ROOT / "config" / "scenes"

@@ -8,18 +8,18 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.figures.comparison import COLUMNS, REASONS, summary, thesis_comparison
-from fingerpad.figures.features import centre_node, scene_name
-from fingerpad.figures.io import markdown, publish_table
-from fingerpad.figures.numbers import NUMBERS, Results
-from fingerpad.figures.ridge_rows import RIDGE_NUMBERS
-from fingerpad.figures.sensitivity import QUANTITIES, SHAPES, VARIANTS, variant_scene
+from fingerpad.claims.comparison import COLUMNS, REASONS, summary, thesis_comparison
+from fingerpad.claims.numbers import NUMBERS, Results
+from fingerpad.claims.ridge_rows import RIDGE_NUMBERS
+from fingerpad.claims.sensitivity import QUANTITIES, SHAPES, VARIANTS, variant_scene
+from fingerpad.claims.stroke_numbers import STROKE_NUMBERS
+from fingerpad.claims.stroke_rates import STROKE_RATE_NUMBERS
+from fingerpad.claims.trends import TRENDS
+from fingerpad.claims.verdicts import judge
 from fingerpad.figures.spec import read_reference
-from fingerpad.figures.stroke_numbers import STROKE_NUMBERS
-from fingerpad.figures.stroke_rates import STROKE_RATE_NUMBERS
 from fingerpad.figures.tables import TABLES
-from fingerpad.figures.trends import TRENDS
-from fingerpad.figures.verdicts import judge
+from fingerpad.measures.features import centre_node, scene_name
+from fingerpad.publishing.write import markdown, publish_table
 
 pytestmark = pytest.mark.unit
 REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"

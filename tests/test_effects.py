@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from fingerpad.effects import RULES, PlanError, plan, read_plan
-from fingerpad.estimates import PadEstimate, layer_kernel
-from fingerpad.scene import (
+from fingerpad.planning.estimates import PadEstimate, layer_kernel
+from fingerpad.planning.plan import RULES, PlanError, plan, read_plan
+from fingerpad.scenes.scene import (
     Bar,
     Cylinder,
     Discretisation,
@@ -24,7 +24,7 @@ from fingerpad.scene import (
     StepAndRepeat,
     load_scene,
 )
-from fingerpad.studies.hard_cases import scene_of
+from fingerpad.studies.stability.hard_cases import scene_of
 
 pytestmark = pytest.mark.unit
 

@@ -12,9 +12,9 @@ import pandas as pd
 import pytest
 
 from fingerpad import plan, simulate
-from fingerpad.effects import Rules
-from fingerpad.figures.effects import LEAST, NAMES, assemble, effects
-from fingerpad.studies.effects import (
+from fingerpad.planning.plan import Rules
+from fingerpad.studies.effects.picture import LEAST, NAMES, assemble, effects
+from fingerpad.studies.effects.run import (
     DECIDES,
     PAIRS,
     alternatives,
@@ -27,7 +27,7 @@ from fingerpad.studies.effects import (
     verdict,
     with_effects,
 )
-from fingerpad.studies.hard_cases import FLAT, cylinder, depth, force, hold, scene_of, slide
+from fingerpad.studies.stability.hard_cases import FLAT, cylinder, depth, force, hold, scene_of, slide
 
 pytestmark = pytest.mark.unit
 COARSE = {"skin_edge": "0.6 mm", "steps": 4}

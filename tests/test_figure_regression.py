@@ -12,10 +12,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from fingerpad.figures import FIGURES, read_frame, read_reference
-from fingerpad.figures.inputs import read_results
-from fingerpad.figures.io import write_frame, write_picture
-from fingerpad.figures.regression import (
+from fingerpad.figures.registry import FIGURES
+from fingerpad.figures.spec import read_reference
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import read_frame, write_frame, write_picture
+from regression import (
     BASELINE_DPI,
     SIMILARITY,
     differences,

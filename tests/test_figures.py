@@ -11,11 +11,14 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import synthetic
-from fingerpad.figures import FIGURES, chapter4_responses, chapter5_responses, publish, read_frame
-from fingerpad.figures import features as ft
+from fingerpad.figures import chapter4_responses, chapter5_responses
 from fingerpad.figures.chapter3 import boundaries, inward, loops
-from fingerpad.figures.io import write_frame, write_picture
-from fingerpad.figures.regression import (
+from fingerpad.figures.registry import FIGURES
+from fingerpad.figures.spec import empty_reference, read_reference
+from fingerpad.measures import features as ft
+from fingerpad.publishing.style import COLOURS, spread, theme
+from fingerpad.publishing.write import publish, read_frame, write_frame, write_picture
+from regression import (
     BASELINE_DPI,
     SIMILARITY,
     differences,
@@ -24,8 +27,6 @@ from fingerpad.figures.regression import (
     summary_differences,
     tolerance,
 )
-from fingerpad.figures.spec import empty_reference, read_reference
-from fingerpad.figures.style import COLOURS, spread, theme
 
 pytestmark = pytest.mark.unit
 REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"

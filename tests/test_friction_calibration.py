@@ -11,7 +11,7 @@ import xarray as xr
 
 from fingerpad import load_scene
 from fingerpad.reference_data import ReferenceDataError, read_friction
-from fingerpad.studies.friction import (
+from fingerpad.studies.calibration.friction import (
     AXIS,
     STRETCH,
     STROKE,

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from fingerpad.scene import Outline
+from fingerpad.scenes.scene import Outline
 from fingerpad.specimen import (
     MeshError,
     MeshSize,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fingerpad.scene import Hold, PressToDepth, PressToForce, Slide, StepAndRepeat
+from fingerpad.scenes.scene import Hold, PressToDepth, PressToForce, Slide, StepAndRepeat
 from fingerpad.stimuli.motion import STEADY, geometric, programme
 
 pytestmark = pytest.mark.unit

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from fingerpad.scene import Wavy as WavyModel
+from fingerpad.scenes.scene import Wavy as WavyModel
 from fingerpad.stimuli.profiles import Bar, Curve, Cylinder, Flat, Line, Sampled, Wavy, profile_of
 
 pytestmark = pytest.mark.unit

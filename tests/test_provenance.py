@@ -65,9 +65,9 @@ def test_names_a_module_that_does_not_exist(toy):
 
 
 def test_figures_do_not_rest_on_the_mechanics():
-    names = {path.relative_to(provenance.PACKAGE).as_posix() for path in imported_sources("fingerpad.figures")}
-    assert "figures/__init__.py" in names and "receptors/laws.py" in names
-    assert not [name for name in names if name.startswith(("mechanics/", "effects.py", "receptors/material_points.py"))]
+    names = {path.relative_to(provenance.PACKAGE).as_posix() for path in imported_sources("fingerpad.figures.registry")}
+    assert "figures/registry.py" in names and "receptors/laws.py" in names
+    assert not [name for name in names if name.startswith(("mechanics/", "planning/plan.py", "receptors/material_points.py"))]
 
 
 def test_digest_follows_content_not_time_or_order(tmp_path):

@@ -13,20 +13,20 @@ from scipy.integrate import quad
 
 import synthetic
 from fingerpad import load_scene, simulate
-from fingerpad.figures import responses
-from fingerpad.figures.columns import DISTANCE, SED, TIME
-from fingerpad.figures.features import energy, ramp_end
-from fingerpad.figures.strokes import convexities, place
+from fingerpad.measures import responses
+from fingerpad.measures.columns import DISTANCE, SED, TIME
+from fingerpad.measures.features import energy, ramp_end
+from fingerpad.measures.strokes import convexities, place
 from fingerpad.receptors import fits, laws, spikes
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, kernel_weights
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.receptors.recordings import RATES, read_rates
 from fingerpad.receptors.sensor import TactileSensor, taxel_pressure
 from fingerpad.reference_data import ReferenceDataError
-from fingerpad.scene import Discretisation
-from fingerpad.studies import candidate_stimuli as candidates
-from fingerpad.studies import impulse_rates, sensing
-from fingerpad.studies import receptors as study
+from fingerpad.scenes.scene import Discretisation
+from fingerpad.studies.receptors import candidate_stimuli as candidates
+from fingerpad.studies.receptors import impulse_rates, sensing
+from fingerpad.studies.receptors import run as study
 
 pytestmark = pytest.mark.unit
 

@@ -7,16 +7,17 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.figures import FIGURES, features
+from fingerpad.claims.numbers import Results
+from fingerpad.claims.response_numbers import RESPONSE_TRENDS, SHALLOW_DEPTH, TRIALS, rate_in, shallow_law
 from fingerpad.figures.chapter4_responses import AVERAGED, GIVEN_RATE, IMPULSE, PRINTED
-from fingerpad.figures.columns import NODE, SED, TIME, P
-from fingerpad.figures.numbers import Results
-from fingerpad.figures.response_numbers import RESPONSE_TRENDS, SHALLOW_DEPTH, TRIALS, rate_in, shallow_law
-from fingerpad.figures.responses import IMPULSE_RATE, P_LAW, SED_LAW, predicted_rate, pressed, skin_sample, time_mean, windowed
+from fingerpad.figures.registry import FIGURES
 from fingerpad.figures.spec import read_reference
-from fingerpad.figures.strain_energy_meanings import CHANGE, MEANINGS, fig_meanings, frame_meanings, titled
+from fingerpad.measures import features
+from fingerpad.measures.columns import NODE, SED, TIME, P
+from fingerpad.measures.responses import IMPULSE_RATE, P_LAW, SED_LAW, predicted_rate, pressed, skin_sample, time_mean, windowed
 from fingerpad.receptors.laws import SpatialSum
 from fingerpad.receptors.recordings import read_rates
+from fingerpad.studies.strain_energy_meanings import CHANGE, MEANINGS, fig_meanings, frame_meanings, titled
 
 pytestmark = pytest.mark.unit
 CONFIG = Path(__file__).parents[1] / "config/reference"

@@ -8,17 +8,17 @@ import pytest
 
 import synthetic
 from fingerpad import load_scene, plan, simulate
-from fingerpad.figures import ridge_study
-from fingerpad.figures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
-from fingerpad.figures.features import energy
-from fingerpad.figures.numbers import Results
-from fingerpad.figures.ridge_rows import RIDGE_NUMBERS, RIDGE_TRENDS
-from fingerpad.scene import Receptors, Slide
-from fingerpad.scene_specimen import Specimen
+from fingerpad.claims.numbers import Results
+from fingerpad.claims.ridge_rows import RIDGE_NUMBERS, RIDGE_TRENDS
+from fingerpad.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
+from fingerpad.measures.features import energy
+from fingerpad.scenes.scene import Receptors, Slide
+from fingerpad.scenes.specimen import Specimen
 from fingerpad.specimen import RidgedPad, mesh_for
-from fingerpad.studies import ridge_frames
-from fingerpad.studies import ridges as cases_of
-from fingerpad.studies.ridges import AS_DRAWN, FLANK, GRID, Case, boundary, case_scene, ridges_drawn
+from fingerpad.studies.ridges import frames as ridge_frames
+from fingerpad.studies.ridges import picture as ridge_study
+from fingerpad.studies.ridges import run as cases_of
+from fingerpad.studies.ridges.run import AS_DRAWN, FLANK, GRID, Case, boundary, case_scene, ridges_drawn
 
 pytestmark = pytest.mark.unit
 SCENES = Path(__file__).parents[1] / "config" / "scenes"

@@ -12,9 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fingerpad import simulate
-from fingerpad.effects import PlanError, plan, read_plan
-from fingerpad.scene import Outline, Scene
-from fingerpad.scene_specimen import InnerRidges, Layers, OuterRidges, Ridges, Specimen
+from fingerpad.planning.plan import PlanError, plan, read_plan
+from fingerpad.scenes.scene import Outline, Scene
+from fingerpad.scenes.specimen import InnerRidges, Layers, OuterRidges, Ridges, Specimen
 from fingerpad.specimen import (
     MeshError,
     MeshSize,
@@ -118,7 +118,7 @@ def test_plain_mesh_is_what_it_was_before_ridges_existed():
 
 def test_plain_pad_does_not_even_import_ridges():
     code = (
-        "import sys; from fingerpad.scene_specimen import Specimen; from fingerpad.specimen import build_pad_mesh;"
+        "import sys; from fingerpad.scenes.specimen import Specimen; from fingerpad.specimen import build_pad_mesh;"
         f"from fingerpad.specimen.mesh import MeshSize; build_pad_mesh(Specimen().outline, {DRAFT!r});"
         "assert not {'fingerpad.specimen.ridges', 'fingerpad.specimen.layered'} & set(sys.modules)"
     )

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from fingerpad.scene import (
+from fingerpad.scenes.scene import (
     Cylinder,
     Discretisation,
     Flat,

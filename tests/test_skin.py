@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fingerpad.figures.features import centre_node, scene_of
-from fingerpad.figures.skin import WINDOW, local_curvature, skin_curvature
+from fingerpad.measures.features import centre_node, scene_of
+from fingerpad.measures.skin import WINDOW, local_curvature, skin_curvature
 
 SCENES = Path(__file__).parents[1] / "config" / "scenes"
 SPACINGS = (67e-6, 134e-6)  # m, nodes of the thesis's resolution and of a draft

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fingerpad.figures.stability import METHODS, assemble, heat_map, long, table, tally
+from fingerpad.studies.stability.picture import METHODS, assemble, heat_map, long, table, tally
 
 pytestmark = pytest.mark.unit
 

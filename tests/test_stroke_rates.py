@@ -5,14 +5,14 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.figures import FIGURES
-from fingerpad.figures import strokes as st
+from fingerpad.claims.numbers import Results
+from fingerpad.claims.stroke_rates import RATE_NUMBERS, RATE_TRENDS, rate_peaks_apart
 from fingerpad.figures.chapter5_responses import PREDICTED, SEED, STROKES_SHOWN, TRIAL, WITHIN_350, burst_values
-from fingerpad.figures.features import SURFACES, is_simulated, scene_name
-from fingerpad.figures.numbers import Results
-from fingerpad.figures.responses import BURST_RATE, BURST_WIDTH, IMPULSE_RATE, predicted_rate, skin_sample, stroke_law
+from fingerpad.figures.registry import FIGURES
 from fingerpad.figures.spec import empty_reference
-from fingerpad.figures.stroke_rates import RATE_NUMBERS, RATE_TRENDS, rate_peaks_apart
+from fingerpad.measures import strokes as st
+from fingerpad.measures.features import SURFACES, is_simulated, scene_name
+from fingerpad.measures.responses import BURST_RATE, BURST_WIDTH, IMPULSE_RATE, predicted_rate, skin_sample, stroke_law
 from fingerpad.receptors.laws import SpatialSum
 from fingerpad.receptors.recordings import RATES
 

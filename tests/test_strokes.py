@@ -5,12 +5,12 @@ import pytest
 from PIL import Image
 
 import synthetic
-from fingerpad.figures import strokes as st
+from fingerpad.claims.numbers import Results
+from fingerpad.claims.stroke_numbers import pressure_lag
+from fingerpad.claims.stroke_trends import STROKE_TRENDS, double_peak
 from fingerpad.figures.animation import animate
-from fingerpad.figures.features import centre_node, centre_pressure, energy
-from fingerpad.figures.numbers import Results
-from fingerpad.figures.stroke_numbers import pressure_lag
-from fingerpad.figures.stroke_trends import STROKE_TRENDS, double_peak
+from fingerpad.measures import strokes as st
+from fingerpad.measures.features import centre_node, centre_pressure, energy
 
 pytestmark = pytest.mark.unit
 

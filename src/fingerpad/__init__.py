@@ -2,8 +2,8 @@
 
 Three verbs are the whole shallow interface; each is imported at its first use.
 
-- ``load_scene(path)``: read and check a scene (`fingerpad.scene`).
-- ``plan(scene)``: choose effects and discretisation, with reasons (`fingerpad.effects`).
+- ``load_scene(path)``: read and check a scene (`fingerpad.scenes.scene`).
+- ``plan(scene)``: choose effects and discretisation, with reasons (`fingerpad.planning.plan`).
 - ``simulate(scene)``: run it; returns an `xarray.Dataset` (`fingerpad.simulation`).
 """
 
@@ -13,15 +13,15 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fingerpad.effects import plan
-    from fingerpad.scene import load_scene
+    from fingerpad.planning.plan import plan
+    from fingerpad.scenes.scene import load_scene
     from fingerpad.simulation import simulate
 
 __all__ = ["load_scene", "plan", "simulate"]
 
 _MODULES = {
-    "load_scene": "fingerpad.scene",
-    "plan": "fingerpad.effects",
+    "load_scene": "fingerpad.scenes.scene",
+    "plan": "fingerpad.planning.plan",
     "simulate": "fingerpad.simulation",
 }
 

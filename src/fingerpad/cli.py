@@ -18,16 +18,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fingerpad.effects import Plan
-    from fingerpad.scene import Scene
+    from fingerpad.planning.plan import Plan
+    from fingerpad.scenes.scene import Scene
 
 DONE, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
 RESULTS = ("plan.json", "history.nc", "summary.json", "last_converged.nc", "vtu")
 
 # errors of wrong input: where they are defined, and the key they are about when they do not name it
 _ERRORS = {
-    "SceneError": ("documents", ""),
-    "PlanError": ("effects", ""),
+    "SceneError": ("scenes.documents", ""),
+    "PlanError": ("planning.plan", ""),
     "OutlineError": ("specimen.outline", "specimen.outline"),
     "MeshError": ("specimen.mesh", "specimen.mesh"),
     "ReceptorError": ("receptors.material_points", "outputs.receptors"),
@@ -158,7 +158,7 @@ def _mesh(options: argparse.Namespace) -> int:
 
 def _prepare(options: argparse.Namespace) -> tuple[Scene, Plan]:
     """The scene, at the accuracy asked for, and its plan."""
-    from fingerpad.scene import SceneError, load_scene
+    from fingerpad.scenes.scene import SceneError, load_scene
 
     scene = load_scene(options.scene)
     if options.accuracy is not None:
@@ -167,7 +167,7 @@ def _prepare(options: argparse.Namespace) -> tuple[Scene, Plan]:
         except SceneError as error:
             raise _Refusal(str(error).replace(f"{scene.name}: accuracy", "--accuracy", 1)) from None
 
-    from fingerpad.effects import plan
+    from fingerpad.planning.plan import plan
 
     with _naming(options.scene, scene):
         return scene, plan(scene)

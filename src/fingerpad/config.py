@@ -64,7 +64,7 @@ class WorkflowConfig(BaseModel):
 
 def schemas() -> dict[str, dict]:
     """Return the JSON schema of each kind of YAML file, by the stem of its schema file."""
-    from fingerpad.scene import scene_json_schema, specimen_json_schema
+    from fingerpad.scenes.scene import scene_json_schema, specimen_json_schema
 
     dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     return {

@@ -19,7 +19,7 @@ def imported_sources(*entries: str | Path) -> list[Path]:
     """Return the files of this package that `entries` import, directly or not, and the entries themselves.
 
     Imports inside functions count; imports under ``if TYPE_CHECKING`` do not. Of a package that is only
-    passed through (``fingerpad`` on the way to ``fingerpad.scene``) no more counts than what its ``__init__``
+    passed through (``fingerpad`` on the way to ``fingerpad.scenes.scene``) no more counts than what its ``__init__``
     executes. Lazy attributes of a package are followed where a dictionary literal gives name -> module.
 
     Args:

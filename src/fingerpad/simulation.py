@@ -11,15 +11,15 @@ import numpy as np
 from scipy.spatial import cKDTree
 from threadpoolctl import threadpool_limits
 
-from fingerpad.effects import Plan, estimated_error, plan, schedule
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tributary_length
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
 from fingerpad.mechanics.stepping import NonConvergence, QuasiStatic, Record, Skin
+from fingerpad.planning.plan import Plan, estimated_error, plan, schedule
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.results import add_snapshots, dataset, peak_memory_MB, provenance
-from fingerpad.scene import Scene
+from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.measures import below_outline, below_skin

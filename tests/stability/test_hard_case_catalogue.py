@@ -7,11 +7,11 @@ import pytest
 import yaml
 
 from fingerpad.cli import main
-from fingerpad.figures import stability as figure
 from fingerpad.mechanics import stepping
 from fingerpad.results import read_history
-from fingerpad.studies.hard_cases import CATALOGUE, Limits
-from fingerpad.studies.stability import ADMITS, CLEAN, METHODS, SILENT, STABLE, checkerboard, excess, leg_ends, run
+from fingerpad.studies.stability import picture as figure
+from fingerpad.studies.stability.hard_cases import CATALOGUE, Limits
+from fingerpad.studies.stability.run import ADMITS, CLEAN, METHODS, SILENT, STABLE, checkerboard, excess, leg_ends, run
 
 pytestmark = pytest.mark.stability
 

@@ -13,7 +13,7 @@ from fingerpad import load_scene, simulate
 from fingerpad.cli import main
 from fingerpad.mechanics import stepping
 from fingerpad.results import read_history, summary
-from fingerpad.scene import Bar, Cylinder, Discretisation, Hold, Layer, Layers, Line, PressToDepth, PressToForce
+from fingerpad.scenes.scene import Bar, Cylinder, Discretisation, Hold, Layer, Layers, Line, PressToDepth, PressToForce
 
 pytestmark = pytest.mark.stability
 

@@ -6,9 +6,9 @@ from test_hard_cases import MM, SCENES, force, scene
 from test_hard_strokes import LOAD, slide, sound_stroke
 
 from fingerpad import load_scene, simulate
-from fingerpad.figures.direction import islands
-from fingerpad.scene import Cylinder, Flat
-from fingerpad.scene_specimen import Specimen
+from fingerpad.measures.direction import islands
+from fingerpad.scenes.scene import Cylinder, Flat
+from fingerpad.scenes.specimen import Specimen
 
 pytestmark = pytest.mark.stability
 PRESS = force(20, 40)

@@ -12,7 +12,7 @@ from test_hard_cases import MM, SCENES, depth, force, scene, sound
 
 from fingerpad import load_scene, simulate
 from fingerpad.mechanics.stepping import NonConvergence
-from fingerpad.scene import Cylinder, Discretisation, Flat, Sampled, Slide, StepAndRepeat, Wavy
+from fingerpad.scenes.scene import Cylinder, Discretisation, Flat, Sampled, Slide, StepAndRepeat, Wavy
 
 pytestmark = pytest.mark.stability
 

@@ -8,7 +8,7 @@ from problems import BODIES
 
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.stepping import Step
-from fingerpad.scene_specimen import Outline
+from fingerpad.scenes.specimen import Outline
 from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.mesh import MeshSize, build_pad_mesh
 from fingerpad.stimuli.profiles import Cylinder, Flat

@@ -22,7 +22,7 @@ def test_nothing_is_left_to_do(finished):
 def test_touched_files_rerun_nothing(finished):
     for path in (
         "src/fingerpad/mechanics/stepping.py",
-        "src/fingerpad/figures/style.py",
+        "src/fingerpad/publishing/style.py",
         "workflow/scripts/simulate.py",
         "config/scenes/ramp40_flat.yaml",
         "config/specimens/thesis.yaml",
@@ -42,9 +42,9 @@ def test_change_in_the_mechanics_reruns_simulations_and_what_reads_them(finished
     assert finished.planned(*SMOKE) == {}
 
 
-@pytest.mark.parametrize("module", ["style", "chapter4", "io"])
+@pytest.mark.parametrize("module", ["publishing/style", "figures/chapter4", "publishing/write"])
 def test_change_in_a_figure_module_reruns_only_figures(finished, module):
-    with finished.edited(f"src/fingerpad/figures/{module}.py"):
+    with finished.edited(f"src/fingerpad/{module}.py"):
         jobs = finished.planned(*SMOKE)
     assert "figure" in jobs
     assert set(jobs) <= FIGURES
@@ -52,7 +52,7 @@ def test_change_in_a_figure_module_reruns_only_figures(finished, module):
 
 
 def test_change_in_the_comparison_reruns_only_the_table(finished):
-    with finished.edited("src/fingerpad/figures/comparison.py"):
+    with finished.edited("src/fingerpad/claims/comparison.py"):
         assert set(finished.planned(*SMOKE)) == {"table"}
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from fingerpad.figures import FIGURES
+from fingerpad.figures.registry import FIGURES
 
 pytestmark = pytest.mark.workflow
 

@@ -8,8 +8,8 @@ Outputs: <results>/accuracy/<sweep>.json, runs of a scene and an element, and <r
 Times are process times beside those of a yardstick, but `snakemake accuracy --cores 1` on an idle machine is what to publish.
 """
 
-from fingerpad.studies.accuracy import FAMILY, sweeps
-from fingerpad.studies.belief import OUTSIDE
+from fingerpad.studies.accuracy.run import FAMILY, sweeps
+from fingerpad.studies.accuracy.belief import OUTSIDE
 
 SWEEPS = list(sweeps())
 ACCURACY_TABLES = ["accuracy", "accuracy_orders", "accuracy_planner", "presets"]

@@ -1,6 +1,6 @@
 """Scenes with and without each effect -> what it changes and costs, and whether the planner chooses well.
 
-Inputs:  none but the scenes of fingerpad.studies.effects and the thesis's specimen.
+Inputs:  none but the scenes of fingerpad.studies.effects.run and the thesis's specimen.
 Outputs: <results>/effects/{changes,choices}.csv, and from them <studies>/effects.png beside its data, and
          <tables>/{effects,planner_choices,planner_rules}.csv and .md.
 """

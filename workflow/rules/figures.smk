@@ -5,7 +5,7 @@ Outputs: <figures>/fig_<number>.png beside fig_<number>.csv (the plotted data), 
          <studies>/animation_<scene>.gif, figures/README.md.
 """
 
-from fingerpad.figures import FIGURES
+from fingerpad.figures.registry import FIGURES
 
 REFERENCE = "config/reference/thesis_numbers.csv"
 

@@ -1,10 +1,10 @@
 """Hard cases -> how stable the default method is in them, beside simpler methods.
 
-Inputs:  none but the catalogue, fingerpad.studies.hard_cases, and the thesis's specimen.
+Inputs:  none but the catalogue, fingerpad.studies.stability.hard_cases, and the thesis's specimen.
 Outputs: <results>/stability/<method>.csv, and from them <studies>/stability.png beside its data, <tables>/stability.csv and .md.
 """
 
-from fingerpad.figures.stability import METHODS
+from fingerpad.studies.stability.picture import METHODS
 
 STABILITY = [method.replace(" ", "_") for method in METHODS]
 

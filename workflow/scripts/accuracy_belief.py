@@ -6,8 +6,8 @@ from pathlib import Path
 import pandas as pd
 
 from fingerpad import load_scene
-from fingerpad.figures.io import write_frame
-from fingerpad.studies.belief import beliefs, prepared
+from fingerpad.publishing.write import write_frame
+from fingerpad.studies.accuracy.belief import beliefs, prepared
 
 name, base, out = sys.argv[1:]
 write_frame(pd.DataFrame(beliefs(prepared(name, load_scene(base)), name)), Path(out))

@@ -4,7 +4,7 @@ import sys
 
 import pandas as pd
 
-from fingerpad.figures.io import publish_table
+from fingerpad.publishing.write import publish_table
 
 table, *parts = sys.argv[1:]
 publish_table(pd.concat([pd.read_csv(part, dtype={"accuracy": str}) for part in parts], ignore_index=True), table)

@@ -4,9 +4,9 @@ import sys
 
 import pandas as pd
 
-from fingerpad.figures.accuracy import STUDIES
-from fingerpad.figures.io import publish
-from fingerpad.studies.accuracy_errors import FRAMES
+from fingerpad.publishing.write import publish
+from fingerpad.studies.accuracy.errors import FRAMES
+from fingerpad.studies.accuracy.picture import STUDIES
 
 name, data, png = sys.argv[1:]
 frame = FRAMES[name](pd.read_csv(data, dtype={"scene": str, "accuracy": str}))

@@ -5,7 +5,7 @@ import sys
 
 from fingerpad import load_scene
 from fingerpad.files import write_text
-from fingerpad.studies.accuracy import measure_all, sweeps
+from fingerpad.studies.accuracy.run import measure_all, sweeps
 
 name, scene, out = sys.argv[1:]
 records = []

@@ -5,9 +5,9 @@ import sys
 from pathlib import Path
 
 from fingerpad import load_scene
-from fingerpad.figures.io import publish_table
-from fingerpad.studies.accuracy import FAMILY
-from fingerpad.studies.accuracy_errors import accuracy_table, orders_table, planner_table, presets_table
+from fingerpad.publishing.write import publish_table
+from fingerpad.studies.accuracy.errors import accuracy_table, orders_table, planner_table, presets_table
+from fingerpad.studies.accuracy.run import FAMILY
 
 table, *paths = map(Path, sys.argv[1:])
 records = {record["name"]: record for path in paths for record in json.loads(path.read_text(encoding="utf-8"))}

@@ -7,10 +7,10 @@ import json
 import sys
 from pathlib import Path
 
-from fingerpad.figures.inputs import read_results
-from fingerpad.figures.io import write_frame
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import write_frame
 from fingerpad.reference_data import ReferenceDataError, read_force_depth
-from fingerpad.studies.calibration import calibrate, write_specimens
+from fingerpad.studies.calibration.force import calibrate, write_specimens
 
 folder, out, specimens, *paths = sys.argv[1:]
 histories, _, coarse = read_results(paths)

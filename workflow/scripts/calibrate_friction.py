@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from fingerpad.figures.inputs import read_results
-from fingerpad.figures.io import write_frame
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import write_frame
 from fingerpad.reference_data import ReferenceDataError, read_friction
-from fingerpad.studies.friction import calibrate_friction
+from fingerpad.studies.calibration.friction import calibrate_friction
 
 thesis, published, out, *paths = sys.argv[1:]
 sweep = [path for path in paths if Path(path).parent.parent.name == "friction"]

@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 
 from fingerpad import load_scene, plan, simulate
-from fingerpad.figures.inputs import read_results
-from fingerpad.figures.io import write_frame
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import write_frame
 from fingerpad.reference_data import read_relaxation
 from fingerpad.specimen import read_pad_mesh
-from fingerpad.studies.relaxation import study, with_series
+from fingerpad.studies.calibration.relaxation import study, with_series
 
 relaxation, scene_path, accuracy, mesh_path, out, *paths = sys.argv[1:]
 scene, mesh = load_scene(scene_path), read_pad_mesh(mesh_path)

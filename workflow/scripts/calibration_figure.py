@@ -2,8 +2,8 @@
 
 import sys
 
-from fingerpad.figures.calibration import STUDIES
-from fingerpad.figures.io import publish, read_frame
+from fingerpad.publishing.write import publish, read_frame
+from fingerpad.studies.calibration.picture import STUDIES
 
 name, data, png = sys.argv[1:]
 frame = read_frame(data)

@@ -4,7 +4,7 @@ import sys
 
 import pandas as pd
 
-from fingerpad.figures.io import publish_table, read_frame
+from fingerpad.publishing.write import publish_table, read_frame
 
 table, *estimates = sys.argv[1:]
 publish_table(pd.concat([read_frame(path) for path in estimates], ignore_index=True), table)

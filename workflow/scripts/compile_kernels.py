@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from fingerpad import load_scene, simulate
-from fingerpad.scene import Bar, Discretisation, PressToForce
+from fingerpad.scenes.scene import Bar, Discretisation, PressToForce
 
 scene = load_scene(Path("config/scenes/ramp40_flat.yaml"))
 scene = scene.model_copy(update={"accuracy": Discretisation(element=None, skin_edge=1e-3, steps=2)})

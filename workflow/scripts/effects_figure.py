@@ -4,9 +4,9 @@ import sys
 
 import pandas as pd
 
-from fingerpad.figures.effects import assemble, effects
-from fingerpad.figures.io import publish, publish_table
-from fingerpad.studies.effects import evidence, rules_table
+from fingerpad.publishing.write import publish, publish_table
+from fingerpad.studies.effects.picture import assemble, effects
+from fingerpad.studies.effects.run import evidence, rules_table
 
 changes, choices, png, *tables = sys.argv[1:]
 changes, choices = pd.read_csv(changes), pd.read_csv(choices)

@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from fingerpad.figures.io import write_frame
-from fingerpad.studies.effects import study, verdicts
+from fingerpad.publishing.write import write_frame
+from fingerpad.studies.effects.run import study, verdicts
 
 part, out = sys.argv[1:]
 write_frame({"changes": study, "choices": verdicts}[part](), Path(out))

@@ -3,8 +3,10 @@
 import sys
 from pathlib import Path
 
-from fingerpad.figures import FIGURES, publish, read_reference
-from fingerpad.figures.inputs import read_results
+from fingerpad.figures.registry import FIGURES
+from fingerpad.figures.spec import read_reference
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import publish
 from fingerpad.reference_data import ReferenceDataError
 
 number, reference, png, *paths = sys.argv[1:]

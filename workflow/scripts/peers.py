@@ -2,7 +2,7 @@
 
 import sys
 
-from fingerpad.figures.io import publish_table
+from fingerpad.publishing.write import publish_table
 from fingerpad.studies.peers import study
 
 publish_table(study(), sys.argv[1])

@@ -3,13 +3,13 @@
 import sys
 from pathlib import Path
 
-from fingerpad.figures.inputs import read_results
-from fingerpad.figures.io import publish_table
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import publish_table
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import ReferenceDataError
-from fingerpad.studies.candidate_stimuli import candidate_stimuli
-from fingerpad.studies.receptors import receptor_fits
-from fingerpad.studies.sensing import rapidly_adapting, sensor_accuracy
+from fingerpad.studies.receptors.candidate_stimuli import candidate_stimuli
+from fingerpad.studies.receptors.run import receptor_fits
+from fingerpad.studies.receptors.sensing import rapidly_adapting, sensor_accuracy
 
 name, out, *paths = sys.argv[1:]
 try:

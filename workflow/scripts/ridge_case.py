@@ -5,7 +5,7 @@ from pathlib import Path
 
 from fingerpad import load_scene
 from fingerpad.results import write_history
-from fingerpad.studies.ridges import Case, run_case
+from fingerpad.studies.ridges.run import Case, run_case
 
 scene, *histories = sys.argv[1:]
 for history in map(Path, histories):

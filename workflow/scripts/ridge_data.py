@@ -6,9 +6,9 @@ Writes offset.csv, height.csv, friction.csv, mesh.csv and outer.csv side by side
 import sys
 from pathlib import Path
 
-from fingerpad.figures.inputs import read_results
-from fingerpad.figures.io import write_frame
-from fingerpad.studies.ridge_frames import frames
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import write_frame
+from fingerpad.studies.ridges.frames import frames
 
 out, *paths = sys.argv[1:]
 cases = [path for path in paths if Path(path).parent.parent.name == "ridges"]

@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from fingerpad.figures.io import publish, read_frame
-from fingerpad.figures.ridge_study import STUDIES
+from fingerpad.publishing.write import publish, read_frame
+from fingerpad.studies.ridges.picture import STUDIES
 
 png, *paths = map(Path, sys.argv[1:])
 for path in paths:

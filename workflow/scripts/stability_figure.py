@@ -4,8 +4,8 @@ import sys
 
 import pandas as pd
 
-from fingerpad.figures.io import publish, publish_table
-from fingerpad.figures.stability import assemble, heat_map, long, table
+from fingerpad.publishing.write import publish, publish_table
+from fingerpad.studies.stability.picture import assemble, heat_map, long, table
 
 png, csv, *methods = sys.argv[1:]
 frame = assemble([pd.read_csv(path) for path in methods])

@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from fingerpad.figures.io import write_frame
-from fingerpad.studies.stability import study
+from fingerpad.publishing.write import write_frame
+from fingerpad.studies.stability.run import study
 
 method, out = sys.argv[1:]
 write_frame(study(method.replace("_", " ")), Path(out))

@@ -2,9 +2,9 @@
 
 import sys
 
-from fingerpad.figures import publish
-from fingerpad.figures.inputs import read_results
-from fingerpad.figures.strain_energy_meanings import fig_meanings, frame_meanings
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import publish
+from fingerpad.studies.strain_energy_meanings import fig_meanings, frame_meanings
 
 png, *paths = sys.argv[1:]
 histories, _, coarse = read_results(paths)

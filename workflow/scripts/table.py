@@ -2,9 +2,9 @@
 
 import sys
 
-from fingerpad.figures.inputs import read_results
-from fingerpad.figures.io import publish_table
 from fingerpad.figures.tables import TABLES
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import publish_table
 
 name, reference, table, *paths = sys.argv[1:]
 histories, meshes, coarse = read_results(paths)

@@ -16,10 +16,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
-from fingerpad.figures import style
-from fingerpad.figures.features import PRESSURE, scene_of
-from fingerpad.figures.strokes import profile_and_height
 from fingerpad.files import write_atomically
+from fingerpad.measures.features import PRESSURE, scene_of
+from fingerpad.measures.strokes import profile_and_height
+from fingerpad.publishing import style
 
 SIZE, DPI = (6.4, 6.2), 100  # inch, dots an inch
 FRAME_TIME = 100  # ms

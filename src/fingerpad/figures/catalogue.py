@@ -7,7 +7,7 @@ from os import PathLike
 
 import pandas as pd
 
-from fingerpad.figures import FIGURES
+from fingerpad.figures.registry import FIGURES
 from fingerpad.reference_data import Column, read_table
 
 CATALOGUE = {

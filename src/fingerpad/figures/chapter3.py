@@ -9,9 +9,9 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from fingerpad.figures import style
-from fingerpad.figures.features import ERROR, Histories, scene_of
 from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
+from fingerpad.measures.features import ERROR, Histories, scene_of
+from fingerpad.publishing import style
 from fingerpad.specimen.mesh import PadMesh, corner_count, element_edges
 
 X, Y = "x (mm)", "y (mm)"

@@ -16,11 +16,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fingerpad.figures import style
 from fingerpad.figures.chapter3 import boundaries, densify, inward, stratum_corneum
-from fingerpad.figures.features import ERROR, Histories, error_percent, is_simulated, ramp_end, scene_of
 from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
-from fingerpad.figures.steady import (
+from fingerpad.measures.features import ERROR, Histories, error_percent, is_simulated, ramp_end, scene_of
+from fingerpad.measures.steady import (
     BAR,
     DEPTH_SCENES,
     PLATE,
@@ -32,6 +31,7 @@ from fingerpad.figures.steady import (
     pressed_depths,
     steady_force,
 )
+from fingerpad.publishing import style
 from fingerpad.specimen.mesh import PadMesh
 from fingerpad.stimuli.profiles import Bar, Cylinder
 

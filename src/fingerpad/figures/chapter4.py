@@ -16,9 +16,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fingerpad.figures import style
-from fingerpad.figures.columns import DEPTH, FORCE, NODE, P_CENTRE, P_PEAK, RATE, RECEPTOR, SED, TIME, WIDTH, P, X, Y
-from fingerpad.figures.features import (
+from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
+from fingerpad.measures.columns import DEPTH, FORCE, NODE, P_CENTRE, P_PEAK, RATE, RECEPTOR, SED, TIME, WIDTH, P, X, Y
+from fingerpad.measures.features import (
     ERROR,
     PHASES,
     PRESSURE,
@@ -47,7 +47,7 @@ from fingerpad.figures.features import (
     surface_nodes,
     width,
 )
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
+from fingerpad.publishing import style
 
 SHOWN_DEPTH = 915e-6  # m, the receptor depth of Figs 4-21, 4-23, 4-28
 DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))

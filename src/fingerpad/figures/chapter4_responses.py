@@ -19,9 +19,23 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from fingerpad.figures import style
-from fingerpad.figures.columns import CURVATURE, FORCE, NODE, P_PEAK, RATE, SED, TIME, P
-from fingerpad.figures.features import (
+from fingerpad.claims.numbers import INVERSE_WIDTHS
+from fingerpad.claims.response_numbers import (
+    HELD_RATES,
+    NODE_COUNT,
+    NODE_SURFACE,
+    SHALLOW_DEPTH,
+    TRIALS,
+    Reading,
+    mean_pressure,
+    peak_energy_rate,
+    rate_in,
+    shallow_law,
+    straight_line,
+)
+from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
+from fingerpad.measures.columns import CURVATURE, FORCE, NODE, P_PEAK, RATE, SED, TIME, P
+from fingerpad.measures.features import (
     ERROR,
     PRESSURE,
     SIMULATED,
@@ -40,21 +54,7 @@ from fingerpad.figures.features import (
     surface_nodes,
     width,
 )
-from fingerpad.figures.numbers import INVERSE_WIDTHS
-from fingerpad.figures.response_numbers import (
-    HELD_RATES,
-    NODE_COUNT,
-    NODE_SURFACE,
-    SHALLOW_DEPTH,
-    TRIALS,
-    Reading,
-    mean_pressure,
-    peak_energy_rate,
-    rate_in,
-    shallow_law,
-    straight_line,
-)
-from fingerpad.figures.responses import (
+from fingerpad.measures.responses import (
     FREQUENCY,
     IMPULSE_RATE,
     P_LAW,
@@ -71,7 +71,7 @@ from fingerpad.figures.responses import (
     pressure_by_law,
     raster,
 )
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
+from fingerpad.publishing import style
 from fingerpad.receptors.fits import gain_and_threshold, r_squared
 from fingerpad.receptors.laws import THESIS_RATE, rectified
 from fingerpad.receptors.spikes import VARIATION

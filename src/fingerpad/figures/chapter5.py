@@ -18,8 +18,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fingerpad.figures import style
-from fingerpad.figures.columns import (
+from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
+from fingerpad.measures.columns import (
     CURVATURE,
     DISTANCE,
     HEIGHT,
@@ -37,7 +37,7 @@ from fingerpad.figures.columns import (
     X,
     Y,
 )
-from fingerpad.figures.features import (
+from fingerpad.measures.features import (
     ERROR,
     PRESSURE,
     SIMULATED,
@@ -51,9 +51,8 @@ from fingerpad.figures.features import (
     scene_of,
     scenes,
 )
-from fingerpad.figures.skin import skin_curvature
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
-from fingerpad.figures.strokes import (
+from fingerpad.measures.skin import skin_curvature
+from fingerpad.measures.strokes import (
     FULL,
     LOCATIONS,
     NODES,
@@ -77,6 +76,7 @@ from fingerpad.figures.strokes import (
     time_of,
     touching,
 )
+from fingerpad.publishing import style
 
 SURFACE = "surface"
 SURFACE_SOURCE = f"{SIMULATED}: shape of the stimulus"

@@ -17,7 +17,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fingerpad.figures import style
 from fingerpad.figures.chapter5 import (
     COLOURS,
     HOW,
@@ -28,8 +27,10 @@ from fingerpad.figures.chapter5 import (
     stroke_rows,
     surface_rows,
 )
-from fingerpad.figures.columns import CURVATURE, DISTANCE, RATE, RECEPTOR, SED, TIME
-from fingerpad.figures.features import (
+from fingerpad.figures.ridges import RIDGED
+from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
+from fingerpad.measures.columns import CURVATURE, DISTANCE, RATE, RECEPTOR, SED, TIME
+from fingerpad.measures.features import (
     ERROR,
     SIMULATED,
     SURFACES,
@@ -40,7 +41,7 @@ from fingerpad.figures.features import (
     scene_name,
     scenes,
 )
-from fingerpad.figures.responses import (
+from fingerpad.measures.responses import (
     BURST_RATE,
     BURST_TIME,
     BURST_WIDTH,
@@ -58,9 +59,8 @@ from fingerpad.figures.responses import (
     stroke_histogram,
     stroke_law,
 )
-from fingerpad.figures.ridges import RIDGED
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
-from fingerpad.figures.strokes import FULL, SPEEDS, distance, energy_at, label_errors, loaded, rms_error, time_of
+from fingerpad.measures.strokes import FULL, SPEEDS, distance, energy_at, label_errors, loaded, rms_error, time_of
+from fingerpad.publishing import style
 
 PREDICTED = f"{SIMULATED}: predicted by Eq 5-1"
 PREDICTED_ENERGY = {

@@ -12,11 +12,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from fingerpad.figures import style
 from fingerpad.figures.chapter3 import LAYERS, NOTE, draw_mesh, mesh_rows, stratum_corneum
-from fingerpad.figures.columns import SED, TIME, X, Y
-from fingerpad.figures.direction import BESIDE, DEPTH
-from fingerpad.figures.features import (
+from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
+from fingerpad.measures.columns import SED, TIME, X, Y
+from fingerpad.measures.direction import BESIDE, DEPTH
+from fingerpad.measures.features import (
     ERROR,
     SIMULATED,
     SURFACES,
@@ -29,8 +29,8 @@ from fingerpad.figures.features import (
     scene_name,
     scenes,
 )
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
-from fingerpad.figures.strokes import loaded, rms_error, time_of
+from fingerpad.measures.strokes import loaded, rms_error, time_of
+from fingerpad.publishing import style
 
 PRESSED = "ridged_40"
 """Programme of the nine ramps and holds."""

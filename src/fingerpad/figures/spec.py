@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fingerpad.figures.features import SIMULATED, is_simulated
+from fingerpad.measures.features import SIMULATED, is_simulated
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import read_force_depth, read_surface_profiles
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 import pandas as pd
 
-from fingerpad.figures.comparison import thesis_comparison
-from fingerpad.figures.features import Histories
-from fingerpad.figures.sensitivity import sensitivity
+from fingerpad.claims.comparison import thesis_comparison
+from fingerpad.claims.sensitivity import sensitivity
 from fingerpad.figures.spec import Meshes
+from fingerpad.measures.features import Histories
 from fingerpad.specimen.quality import quality_table
 
 

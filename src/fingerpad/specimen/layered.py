@@ -30,7 +30,7 @@ from fingerpad.specimen.quality import check_orientation
 from fingerpad.specimen.ridges import RidgedPad
 
 if TYPE_CHECKING:
-    from fingerpad.scene_specimen import Outline, Ridges
+    from fingerpad.scenes.specimen import Outline, Ridges
 
 PER_PITCH = 8  # elements from one ridge to the next, at least
 PER_HEIGHT = 4  # rows within a ridge's height of the interface, unless the ridges are low (see `_interface_edge`)

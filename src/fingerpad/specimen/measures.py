@@ -10,7 +10,7 @@ from fingerpad.specimen.mesh import MeshError, PadMesh, skin_chain
 from fingerpad.specimen.outline import curve_of
 
 if TYPE_CHECKING:
-    from fingerpad.scene_specimen import Outline
+    from fingerpad.scenes.specimen import Outline
 
 
 def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:

@@ -22,7 +22,7 @@ import numpy as np
 from fingerpad.specimen.outline import OutlineCurve, curve_of
 
 if TYPE_CHECKING:
-    from fingerpad.scene_specimen import Outline, Ridges
+    from fingerpad.scenes.specimen import Outline, Ridges
 
 REGIONS = ("epidermis", "dermis", "fat")
 OPTIONAL = ("stratum_corneum",)  # regions that a mesh may have besides, outside the others

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
-    from fingerpad.scene import Outline
+    from fingerpad.scenes.scene import Outline
 
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 _INTERVALS = 256  # of the arc-length table; even, so that theta = pi/2 is one of its points

@@ -14,7 +14,7 @@ import numpy as np
 from fingerpad.specimen.outline import curve_of
 
 if TYPE_CHECKING:
-    from fingerpad.scene_specimen import Outline, Ridges
+    from fingerpad.scenes.specimen import Outline, Ridges
 
 _POWER = {"smooth": 1, "sharp": 2}  # of cos(pi u)^2: a sharp tip has half a smooth one's radius of curvature
 _MEAN = {"smooth": 1 / 2, "sharp": 3 / 8}

@@ -22,13 +22,13 @@ import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 from threadpoolctl import threadpool_limits  # noqa: E402
 
-from fingerpad.effects import plan  # noqa: E402
 from fingerpad.files import write_atomically  # noqa: E402
 from fingerpad.mechanics.linear_solver import condensation  # noqa: E402
+from fingerpad.planning.plan import plan  # noqa: E402
 from fingerpad.receptors.laws import SpatialSum  # noqa: E402
 from fingerpad.receptors.sensor import TactileSensor  # noqa: E402
 from fingerpad.results import provenance  # noqa: E402
-from fingerpad.scene import Cylinder, Discretisation, Flat, Layer, Layers, PressToForce, Scene, load_scene  # noqa: E402
+from fingerpad.scenes.scene import Cylinder, Discretisation, Flat, Layer, Layers, PressToForce, Scene, load_scene  # noqa: E402
 from fingerpad.simulation import Simulation, simulate  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]

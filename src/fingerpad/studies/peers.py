@@ -17,12 +17,12 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-from fingerpad.effects import plan
+from fingerpad.planning.plan import plan
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
-from fingerpad.studies.hard_cases import FLAT, depth, scene_of
-from fingerpad.studies.meshes import quarters
+from fingerpad.studies.accuracy.meshes import quarters
+from fingerpad.studies.stability.hard_cases import FLAT, depth, scene_of
 
 INCREMENTS = (1, 2, 4, 8, 16, 32)
 """Load increments tried with the peer until its Newton iterations converge."""

@@ -1,0 +1,1 @@
+"""What the thesis states, judged by what is simulated."""

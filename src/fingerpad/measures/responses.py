@@ -1,0 +1,415 @@
+"""What receptors make of a history: samples for the laws, predicted rates, impulses, bursts. Nothing here computes mechanics.
+
+Functions take one history (see `fingerpad.results`) and return arrays in SI, or a tidy frame with units in the column names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from fingerpad.measures.columns import CURVATURE, DISTANCE, NODE, RATE, SED, TIME, P
+from fingerpad.measures.features import (
+    PRESSURE,
+    SURFACES,
+    Histories,
+    centre_node,
+    energy,
+    ramp_end,
+    receptor_index,
+    scene_name,
+    scene_of,
+)
+from fingerpad.measures.skin import skin_curvature
+from fingerpad.measures.strokes import FULL, arcs, convexities, place
+from fingerpad.receptors.fits import SkinSample, constant_shift, linear, spatial_sum
+from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, pressure_terms, rate_by_leg, time_above
+from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
+from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_frequency, trains
+
+RECEPTOR_DEPTH = 915e-6
+"""m; the depth that the thesis predicts impulse rates from."""
+
+IMPULSE_RATE = "predicted_rate (impulses/s)"
+STATIC, DYNAMIC = "rate_from_energy (impulses/s)", "rate_from_energy_rate (impulses/s)"
+FREQUENCY = "predicted_frequency (impulses/s)"
+SED_LAW = "strain_energy_by_eq_4_4 (Pa)"
+P_LAW = "pressure_by_law (Pa)"
+EDGE_DISTANCE, BELOW_EDGE, NODE_SPEED = "edge_distance (mm)", "displacement_below_edge (mm)", "speed (mm/s)"
+BURST_WIDTH, BURST_TIME, BURST_RATE = "burst_width (mm)", "burst_duration (s)", "burst_rate (impulses/s)"
+BIN = 0.5e-3
+"""m; bins of the thesis's histograms over a stroke."""
+
+
+def curvature_of(history: xr.Dataset) -> float:
+    """Curvature (1/m) of a flat or cylindrical stimulus."""
+    return float(scene_of(history)["stimulus"].get("curvature", 0.0))
+
+
+def is_stroke(history: xr.Dataset) -> bool:
+    """Whether anything slid or was stepped."""
+    return "stroke_distance" in history and bool(np.ptp(history["stroke_distance"].values) > 0)
+
+
+def pressed(histories: Histories, programme: str = "ramp40") -> dict[str, xr.Dataset]:
+    """Histories of the nine surfaces in a force programme, by label, as far as they are there."""
+    names = {label: scene_name(programme, label) for label in SURFACES}
+    return {label: histories[name] for label, name in names.items() if name in histories}
+
+
+def strokes(histories: Histories) -> dict[str, xr.Dataset]:
+    """Histories of strokes over the wavy surface, by scene, slowest first."""
+    found = {name: histories[name] for name in histories if name.startswith("stroke_") and name.split("_")[-1].isdigit()}
+    return dict(sorted(found.items(), key=lambda item: (item[0].count("_"), int(item[0].split("_")[-1]))))
+
+
+# -- pressure and strain energy ------------------------------------------------------------------------------------------
+
+
+def upper_skin(history: xr.Dataset) -> np.ndarray:
+    """Indices of skin nodes from left to right, as far as anything ever touches and one node more on either side."""
+    upper = np.flatnonzero(history["skin_y"].values > 0)
+    upper = upper[np.argsort(history["skin_x"].values[upper])]
+    touched = np.flatnonzero((history[PRESSURE].values[:, upper] > 0).any(axis=0))
+    return upper[max(touched[0] - 1, 0) : touched[-1] + 2] if touched.size else upper
+
+
+def sunk(history: xr.Dataset) -> np.ndarray:
+    """Downward displacement (time) m of the skin over the receptor at the centre: its indentation.
+
+    Under a pressed surface it is the indentation depth from first touch; under a stroked one it goes up and down with the
+    surface, which the depth of the surface's frame does not.
+    """
+    return -history["skin_displacement_y"].values[:, centre_node(history)]
+
+
+def skin_sample(history: xr.Dataset, depth: float, reference: np.ndarray | float = 0.0) -> SkinSample:
+    """Pressure on the skin and strain energy at a depth (m) under its centre, for Eq 4-4."""
+    nodes = upper_skin(history)
+    x = (history["skin_x"].values + history["skin_displacement_x"].values)[:, nodes]
+    return SkinSample(x, history[PRESSURE].values[:, nodes], sunk(history), energy(history, depth), reference)
+
+
+def skin_shift(history: xr.Dataset) -> np.ndarray:
+    """Lateral displacement (time) m of the skin over the receptor at the centre."""
+    return history["centre_lateral_displacement"].values
+
+
+def fit_sum(histories: Iterable[xr.Dataset], depth: float, with_depth: bool = True) -> SpatialSum:
+    """Eq 4-4 closest to the strain energy at a depth (m) under the centre of pressed surfaces."""
+    return spatial_sum([skin_sample(history, depth) for history in histories], with_depth)
+
+
+def stroke_law(histories: Histories, depth: float = RECEPTOR_DEPTH) -> tuple[SpatialSum, float]:
+    """Eq 4-4 of the nine pressed surfaces, and the constant shift (m) with which it comes closest to the stroke at 10 mm/s.
+
+    Raises KeyError if one of them was not simulated.
+    """
+    law = fit_sum([histories[scene_name("ramp40", label)] for label in SURFACES], depth)
+    return law, constant_shift(law, skin_sample(histories[FULL["10"]], depth))
+
+
+def energy_from_pressure(history: xr.Dataset, depth: float, law: SpatialSum, shift: np.ndarray | float = 0.0) -> pd.DataFrame:
+    """Strain energy density at a depth (m) as simulated and by Eq 4-4 (Figs 4-22 and 5-14).
+
+    shift: m, of the receptor to the side: a constant, or `skin_shift`.
+    """
+    sample = skin_sample(history, depth)
+    predicted = law.strain_energy(sample.x, sample.pressure, sample.indentation, shift)
+    frame = pd.DataFrame({TIME: history["time"].values, SED: sample.energy, SED_LAW: predicted})
+    return frame.assign(**{DISTANCE: history["stroke_distance"].values * 1e3}) if is_stroke(history) else frame
+
+
+# -- nodes in contact, for Eqs 4-1 to 4-3 ------------------------------------------------------------------------------
+
+
+def contact_nodes(history: xr.Dataset, count: int | None = None) -> pd.DataFrame:
+    """Every output of every node in contact, from the centre to the right: what Eqs 4-1 to 4-3 relate.
+
+    Nodes are left out while they are nearer to the contact's edge than one node spacing, since the inverse distance has no
+    bound there; the edge that the thesis sees is itself a node.
+
+    Args:
+        count: of nodes from the centre on; left out, all that ever touch.
+
+    Returns:
+        Columns time, node_x (undeformed), contact_pressure, distance to the contact's edge, displacement below that of the skin
+        at the edge, downward speed, curvature of the surface, and ``ramp`` and ``past_peak`` (bool): up to the top of the ramp,
+        and from the largest pressure of the node on.
+    """
+    nodes = upper_skin(history)
+    x_rest = history["skin_x"].values[nodes]
+    x = x_rest + history["skin_displacement_x"].values[:, nodes]
+    down = -history["skin_displacement_y"].values[:, nodes]
+    pressure, time, top = history[PRESSURE].values[:, nodes], history["time"].values, ramp_end(history)
+    speed = np.concatenate(
+        [np.gradient(down[: top + 1], time[: top + 1], axis=0), np.gradient(down[top:], time[top:], axis=0)[1:]]
+    )
+    edge = history["contact_width"].values / 2
+    at_edge = np.array([np.interp(e, row, d) for e, row, d in zip(edge, x, down, strict=True)])
+    rows = []
+    right = np.flatnonzero(x_rest > -1e-9)[:count]
+    spacing = np.diff(x_rest[right]).min()
+    for node in right:
+        on = np.flatnonzero((pressure[:, node] > 0) & (edge - x[:, node] >= spacing))
+        rows.append(
+            pd.DataFrame(
+                {
+                    TIME: time[on],
+                    NODE: x_rest[node] * 1e3,
+                    P: pressure[on, node],
+                    EDGE_DISTANCE: (edge[on] - x[on, node]) * 1e3,
+                    BELOW_EDGE: (down[on, node] - at_edge[on]) * 1e3,
+                    NODE_SPEED: speed[on, node] * 1e3,
+                    CURVATURE: curvature_of(history),
+                    "ramp": on <= top,
+                    "past_peak": on >= pressure[:, node].argmax(),
+                }
+            )
+        )
+    return pd.concat([part for part in rows if len(part)], ignore_index=True)
+
+
+def terms_of(law: str, nodes: pd.DataFrame) -> np.ndarray:
+    """Terms (n, p) of Eq 4-1, 4-2 or 4-3 in SI, of rows of `contact_nodes`."""
+    return pressure_terms(
+        law,
+        edge_distance=nodes[EDGE_DISTANCE].to_numpy() * 1e-3,
+        displacement=nodes[BELOW_EDGE].to_numpy() * 1e-3,
+        speed=nodes[NODE_SPEED].to_numpy() * 1e-3,
+        curvature=nodes[CURVATURE].to_numpy(),
+    )
+
+
+LAW_ROWS: dict[str, Callable[[pd.DataFrame], pd.Series]] = {
+    "4-1": lambda nodes: nodes["past_peak"],
+    "4-1 read without an exponent": lambda nodes: nodes["past_peak"],
+    "4-2": lambda nodes: nodes["ramp"],
+    "4-3": lambda nodes: ~nodes["ramp"] & nodes["past_peak"],
+}
+"""Rows of `contact_nodes` that a law speaks of: from each node's peak on; during the ramp; during the hold, from each node's
+peak on."""
+
+
+def pressure_by_law(law: str, nodes: pd.DataFrame, constants: Sequence[float]) -> pd.DataFrame:
+    """The rows of `contact_nodes` that a law speaks of, with the pressure it gives them (Fig 4-17)."""
+    spoken_of = nodes[LAW_ROWS[law](nodes)]
+    return spoken_of.assign(**{P_LAW: terms_of(law, spoken_of) @ np.asarray(constants)})
+
+
+def fit_nodes(law: str, nodes: pd.DataFrame) -> np.ndarray:
+    """Constants of Eq 4-1, 4-2 or 4-3 closest to the pressures of the rows of `contact_nodes` that it speaks of."""
+    spoken_of = nodes[LAW_ROWS[law](nodes)]
+    return linear(terms_of(law, spoken_of), spoken_of[P].to_numpy())
+
+
+# -- rates and impulses ----------------------------------------------------------------------------------------------------
+
+
+def predicted_rate(
+    history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, offset: float = 0.0
+) -> pd.DataFrame:
+    """Impulse rate of a slowly adapting receptor by Eq 4-5 or 5-1 at a depth (m) under the centre, or at an offset (m) beside.
+
+    Returns:
+        Columns time, strain energy, its rate, what each contributes, and the rate (impulses/s); for a stroke the stroke
+        distance too. The time of a kink between legs is there twice (see `fingerpad.receptors.laws.rate_by_leg`).
+    """
+    return _rate_frame(history, energy(history, depth, offset), law)
+
+
+def predicted_rate_from_pressure(
+    history: xr.Dataset, law: SpatialSum, shift: np.ndarray | float = 0.0, rate: ImpulseRate = THESIS_RATE
+) -> pd.DataFrame:
+    """The same from the contact pressure alone, by Eqs 4-4 and 5-1: what a tactile sensor under a skin like this would send."""
+    nodes = upper_skin(history)
+    x = (history["skin_x"].values + history["skin_displacement_x"].values)[:, nodes]
+    values = law.strain_energy(x, history[PRESSURE].values[:, nodes], sunk(history), shift)
+    return _rate_frame(history, values, rate)
+
+
+def _rate_frame(history: xr.Dataset, values: np.ndarray, law: ImpulseRate) -> pd.DataFrame:
+    time, values, rate = rate_by_leg(history["time"].values, values, history["leg"].values)
+    static, dynamic = law.terms(values, rate)
+    columns = {TIME: time, SED: values, RATE: rate, STATIC: static, DYNAMIC: dynamic, IMPULSE_RATE: law(values, rate)}
+    if is_stroke(history):
+        columns[DISTANCE] = np.interp(time, history["time"].values, history["stroke_distance"].values) * 1e3
+    return pd.DataFrame(columns)
+
+
+def rapidly_adapting_rate(
+    history: xr.Dataset, law: RapidlyAdapting, stimulus: str = "curvature", depth: float = 600e-6
+) -> pd.DataFrame:
+    """Impulse rate of a rapidly adapting receptor from the rate of the skin's curvature at the centre, or of strain energy.
+
+    Args:
+        stimulus: "curvature" (1/m, of the deformed skin) or "energy" (Pa, strain energy density at `depth`, m).
+    """
+    values = skin_curvature(history, centre_node(history)) if stimulus == "curvature" else energy(history, depth)
+    time, values, rate = rate_by_leg(history["time"].values, values, history["leg"].values)
+    unit = "1/m" if stimulus == "curvature" else "Pa"
+    return pd.DataFrame(
+        {TIME: time, f"{stimulus} ({unit})": values, f"{stimulus}_rate ({unit}/s)": rate, IMPULSE_RATE: law(rate)}
+    )
+
+
+def raster(frame: pd.DataFrame, repetitions: int, seed: int, variation: float = VARIATION) -> pd.DataFrame:
+    """Predicted impulses of repeated trials at a predicted rate: one row an impulse, columns trial (from 1), time, stroke
+    distance."""
+    time = frame[TIME].to_numpy()
+    parts = [
+        pd.DataFrame({"trial": trial, TIME: train})
+        for trial, train in enumerate(trains(time, frame[IMPULSE_RATE].to_numpy(), repetitions, seed, variation), start=1)
+    ]
+    out = pd.concat(parts, ignore_index=True)
+    return out.assign(**{DISTANCE: np.interp(out[TIME], time, frame[DISTANCE])}) if DISTANCE in frame else out
+
+
+def stroke_histogram(frame: pd.DataFrame, impulses: pd.DataFrame, repetitions: int, bin_width: float = BIN) -> pd.DataFrame:
+    """Mean rate of a raster in bins of the stroke distance (m): columns stroke_distance (of the bin's middle), predicted_rate.
+
+    Only whole bins while the surface slides. frame: of `predicted_rate`. impulses: of `raster`, of so many `repetitions`.
+    """
+    slides = np.concatenate([[False], np.diff(frame[DISTANCE].to_numpy()) > 0])
+    slides[:-1] |= slides[1:]
+    distance, time = frame[DISTANCE].to_numpy()[slides] * 1e-3, frame[TIME].to_numpy()[slides]
+    edges = np.arange(distance[0], distance[-1] + 1e-9, bin_width)
+    rate = binned_rate([impulses[TIME].to_numpy()], np.interp(edges, distance, time)) / repetitions
+    return pd.DataFrame({DISTANCE: (edges[1:] + edges[:-1]) / 2 * 1e3, IMPULSE_RATE: rate})
+
+
+def mean_frequency(impulses: pd.DataFrame, repetitions: int, at: np.ndarray) -> pd.DataFrame:
+    """Instantaneous frequency of a raster, mean over its trials, at times `at` (s): columns time, predicted_frequency."""
+    values = [instantaneous_frequency(train[TIME].to_numpy(), at) for _, train in impulses.groupby("trial")]
+    return pd.DataFrame({TIME: at, FREQUENCY: np.sum(values, axis=0) / repetitions})
+
+
+def ramp_and_hold_rates(
+    history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, first: float = 1.0
+) -> dict[str, float]:
+    """Numbers of one pressed surface: peak, mean rate of the hold, rate at its end, and impulses in the first second over it."""
+    frame, top = predicted_rate(history, depth, law), float(history["time"].values[ramp_end(history)])
+    held = frame.iloc[int(np.flatnonzero(frame[TIME] == top)[-1]) :]
+    return {
+        "peak": float(frame[IMPULSE_RATE].max()),
+        "mean of the hold": time_mean(held[TIME], held[IMPULSE_RATE]),
+        "end of the hold": float(frame[IMPULSE_RATE].iloc[-1]),
+        "first second": time_mean(frame[TIME], frame[IMPULSE_RATE], end=first),
+    }
+
+
+def time_mean(time, values, start: float | None = None, end: float | None = None) -> float:
+    """Mean over time of a trace from `start` to `end` (s; left out, its ends), linear between samples, jumps where a time is
+    twice."""
+    time, values = np.asarray(time, float), np.asarray(values, float)
+    a, b = time[0] if start is None else start, time[-1] if end is None else end
+    inside = (time > a) & (time < b)
+    t = np.concatenate([[a], time[inside], [b]])
+    # on the side of a jump that lies within the window
+    left = values[time == a][-1] if (time == a).any() else np.interp(a, time, values)
+    right = values[time == b][0] if (time == b).any() else np.interp(b, time, values)
+    y = np.concatenate([[left], values[inside], [right]])
+    return float((np.diff(t) * (y[1:] + y[:-1]) / 2).sum() / (b - a))
+
+
+def windowed(history: xr.Dataset, time, values, window: str) -> float:
+    """A trace's number for a window of `fingerpad.receptors.recordings.WINDOWS`; "steady" is the last half of the hold."""
+    time, values = np.asarray(time), np.asarray(values)
+    top, end = float(history["time"].values[ramp_end(history)]), float(history["time"].values[-1])
+    if window == "peak":
+        return float(values.max())
+    start, stop = {"hold": (top, end), "steady": ((top + end) / 2, end), "first second": (0.0, 1.0), "first 200 ms": (0.0, 0.2)}[
+        window
+    ]
+    return time_mean(time, values, start, min(stop, end))
+
+
+# -- bursts --------------------------------------------------------------------------------------------------------------------
+
+
+def bursts(
+    history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, threshold: float | None = None
+) -> pd.DataFrame:
+    """The burst that each convexity of a stroked surface makes (Figs 5-2 to 5-4, 5-16 and 5-17).
+
+    A convexity passes while the point of the skin over the receptor is between the middles of the hollows on either side of it
+    (the flats count up to where the first arc begins and the last one ends, and as far again as the half of the arc). Its burst
+    is the time in that passage during which the strain energy is above `threshold` (Pa; left out, that of the law), crossings
+    found between outputs; width is that time by the stroking velocity. The burst rate is the mean predicted rate over that
+    time: impulses over duration.
+
+    Returns:
+        One row a convexity: its label and curvature, burst width, duration and rate, the largest strain energy, energy rate and
+        impulse rate.
+    """
+    frame = predicted_rate(history, depth, law)
+    level = law.threshold if threshold is None else threshold
+    moving = frame[DISTANCE].to_numpy() > frame[DISTANCE].iloc[0]
+    frame = frame[moving]
+    time, distance = frame[TIME].to_numpy(), frame[DISTANCE].to_numpy() * 1e-3
+    speed = (distance[-1] - distance[0]) / (time[-1] - time[0])
+    under = np.interp(time, history["time"].values, place(history))
+    rows = []
+    for (label, arc), (start, end) in zip(convexities(history).items(), _passages(history), strict=True):
+        part = frame[(under >= start) & (under <= end)]
+        if len(part) < 2:
+            continue
+        t, value, rate = part[TIME].to_numpy(), part[SED].to_numpy(), part[IMPULSE_RATE].to_numpy()
+        duration = time_above(t, value, level)
+        # the rate while the energy is above the level
+        fine = np.linspace(t[0], t[-1], 20 * len(t))
+        above = np.interp(fine, t, value) > level
+        rows.append(
+            {
+                "convexity": label,
+                CURVATURE: arc.curvature,
+                BURST_TIME: duration,
+                BURST_WIDTH: duration * speed * 1e3,
+                BURST_RATE: float(np.interp(fine, t, rate)[above].mean()) if above.any() else 0.0,
+                f"largest {SED}": float(value.max()),
+                f"largest {RATE}": float(part[RATE].max()),
+                f"largest {IMPULSE_RATE}": float(rate.max()),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _passages(history: xr.Dataset) -> list[tuple[float, float]]:
+    """Start and end (m, along the surface) of the passage of every convexity."""
+    hollows = [(arc.start + arc.end) / 2 for arc in arcs(history) if arc.curvature < 0]
+    out = []
+    for arc in convexities(history).values():
+        half = (arc.end - arc.start) / 2
+        before = max((m for m in hollows if m < arc.start), default=arc.start - half)
+        after = min((m for m in hollows if m > arc.start), default=arc.end + half)
+        out.append((before, after))
+    return out
+
+
+def stimulus(history: xr.Dataset, name: str, depth: float) -> np.ndarray:
+    """A candidate stimulus (time) of a receptor at a depth (m) under the centre, or on the skin over it: see `CANDIDATES`."""
+    variable, _, _ = CANDIDATES[name]
+    values = history[variable].values
+    if values.ndim == 2:
+        values = values[:, receptor_index(history, depth)]
+    return values
+
+
+CANDIDATES = {
+    "strain energy, instantaneous elastic": ("strain_energy_density", "Pa", True),
+    "strain energy, long-term moduli": ("strain_energy_long_term_moduli", "Pa", True),
+    "strain energy, half stress x strain": ("strain_energy_half_stress_strain", "Pa", True),
+    "strain energy, recoverable": ("strain_energy_recoverable", "Pa", True),
+    "strain energy, long-term network": ("strain_energy_network", "Pa", True),
+    "compressive strain": ("compressive_strain", "1", True),
+    "tensile strain": ("tensile_strain", "1", True),
+    "von Mises stress": ("von_mises_stress", "Pa", True),
+    "hydrostatic pressure": ("hydrostatic_pressure", "Pa", True),  # and dilatation, which is a fixed multiple of it
+    "contact pressure, centre": ("centre_pressure", "Pa", False),
+    "contact pressure, peak": ("peak_pressure", "Pa", False),
+    "indentation depth": ("indentation_depth", "m", False),
+}
+"""Candidate stimuli -> variable of a history, unit, and whether it is taken at a depth."""

@@ -1,0 +1,202 @@
+"""What figures and tables read from strokes: where the surface is, its convexities, and what each does to the skin.
+
+A stroke is read at its `loaded` outputs, the last one at each stroke distance d: the point x = d of the surface is then over
+the middle of the undeformed pad. The node of the skin that lies there at rest, the centre node, is dragged along, so it
+touches the point x = d + u of the surface, u being its lateral displacement.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import SimpleNamespace
+
+import numpy as np
+import xarray as xr
+
+from fingerpad.measures.features import PRESSURE, Trace, centre_node, energy, scene_of
+from fingerpad.measures.skin import WINDOW, skin_curvature
+from fingerpad.stimuli.profiles import Profile, Segment, profile_of
+
+SPEEDS = ("1", "5", "10", "20", "40")
+"""Stroking velocities, mm/s."""
+
+FULL = {v: f"stroke_{v}" for v in SPEEDS}
+"""Strokes over all eight convexities, by velocity."""
+
+SUB = {v: f"stroke_sub_{v}" for v in ("1", "10", "40")}
+"""Strokes over the first two convexities, by velocity."""
+
+STEPPED = "step_sub"
+"""The first two convexities stepped over the pad: pressed anew every millimetre."""
+
+LOCATIONS = (8.0, 17.0, 26.0)
+"""Stroke distances (mm) of Figs 5-5 and 5-6: middles of the thesis's windows at sharp corner, convexity and concavity."""
+
+NODES = (-1.0, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 1.0)
+"""Lateral positions (mm, undeformed) of the nine nodes of Fig 5-10."""
+
+FINE = 5e-6
+"""Stroke distance (m) that the contact of the centre node is resolved to, between outputs."""
+
+
+def profile_and_height(history: xr.Dataset) -> tuple[Profile, np.ndarray]:
+    """The profile of a history's stimulus and the height (time) m of its origin above the pad's."""
+    apex = history["skin_y"].values[centre_node(history)]
+    return profile_of(SimpleNamespace(**scene_of(history)["stimulus"])), apex - history["indentation_depth"].values
+
+
+def arcs(history: xr.Dataset) -> list[Segment]:
+    """Arcs of a history's wavy surface in their order, convex (curvature above 0) and hollow ones."""
+    return [piece for piece in profile_and_height(history)[0].segments if piece.curvature]
+
+
+def convexities(history: xr.Dataset) -> dict[str, Segment]:
+    """The convex arcs of a history's wavy surface in their order, by the thesis's name: the curvature in 1/m, rounded."""
+    return {f"{piece.curvature:.0f}": piece for piece in arcs(history) if piece.curvature > 0}
+
+
+def loaded(history: xr.Dataset) -> xr.Dataset:
+    """The history at its last output of each stroke distance: at the end of the press, and of every step that follows."""
+    distance = history["stroke_distance"].values
+    return history.isel(time=np.flatnonzero(np.append(np.diff(distance) != 0, True)))
+
+
+def distance(stroke: xr.Dataset) -> np.ndarray:
+    """Stroke distance (time) m."""
+    return stroke["stroke_distance"].values
+
+
+def time_of(stroke: xr.Dataset) -> np.ndarray:
+    """Time (time) s since the surface began to slide."""
+    return stroke["time"].values - stroke["time"].values[0]
+
+
+def lateral(stroke: xr.Dataset) -> np.ndarray:
+    """Lateral displacement (time) m of the centre node."""
+    return stroke["centre_lateral_displacement"].values
+
+
+def place(stroke: xr.Dataset) -> np.ndarray:
+    """Point of the surface (time), m along it, that the centre node lies under."""
+    node = centre_node(stroke)
+    return distance(stroke) + stroke["skin_x"].values[node] + stroke["skin_displacement_x"].values[:, node]
+
+
+def touching(stroke: xr.Dataset) -> np.ndarray:
+    """Whether (time) the centre node touches."""
+    return stroke[PRESSURE].values[:, centre_node(stroke)] > 0
+
+
+def embedded(stroke: xr.Dataset) -> np.ndarray:
+    """Whether (time) every node touches that the curvature at the centre node is fitted through."""
+    x, node = stroke["skin_x"].values, centre_node(stroke)
+    near = (abs(x - x[node]) < WINDOW) & (stroke["skin_y"].values > 0)
+    return (stroke[PRESSURE].values[:, near] > 0).all(axis=1)
+
+
+def nodes_at(history: xr.Dataset, places: tuple[float, ...] = NODES) -> list[int]:
+    """Indices of the upper skin nodes nearest to lateral positions (mm, undeformed)."""
+    x = np.where(history["skin_y"].values > 0, history["skin_x"].values, np.inf)
+    return [int(np.argmin(abs(x - place * 1e-3))) for place in places]
+
+
+def centre_curvature(stroke: xr.Dataset) -> np.ndarray:
+    """Curvature (time) 1/m of the skin at the centre node."""
+    return skin_curvature(stroke, centre_node(stroke))
+
+
+def scaled(values: np.ndarray, onto: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, float, float, float]:
+    """A linear function A1 * values + A2 closest to `onto` at the outputs `where`: its values, A1, A2 and the correlation."""
+    slope, offset = np.polyfit(values[where], onto[where], 1)
+    return slope * values + offset, float(slope), float(offset), float(np.corrcoef(values[where], onto[where])[0, 1])
+
+
+def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """Place of the centre node and whether it touches, every `FINE` of stroke distance.
+
+    Between outputs both its place and its distance from the edge of the contact, along the undeformed skin and below zero
+    outside, are interpolated: the edge passes over the node where that changes its sign.
+    """
+    x, node = stroke["skin_x"].values, centre_node(stroke)
+    upper = stroke["skin_y"].values > 0
+    touches = stroke[PRESSURE].values[:, upper] > 0
+    apart = abs(x[upper] - x[node])
+    inside = touching(stroke)
+    within = np.where(touches != inside[:, None], apart, apart.max()).min(axis=1) - np.sort(apart)[1] / 2
+    d = distance(stroke)
+    fine = np.arange(d[0], d[-1], FINE)
+    return np.interp(fine, d, place(stroke)), np.interp(fine, d, np.where(inside, within, -within)) > 0
+
+
+def contact_lengths(stroke: xr.Dataset) -> dict[str, float]:
+    """Stroke distance (m) over which the centre node touches each convexity, by the convexity's label."""
+    under, touches = _finely(stroke)
+    return {k: FINE * float(np.sum(touches & (under >= a.start) & (under < a.end))) for k, a in convexities(stroke).items()}
+
+
+def passing(stroke: xr.Dataset, convexity: Segment) -> np.ndarray:
+    """Outputs (time) at which the centre node is between the middles of the concavities on either side of a convexity."""
+    middles = [(a.start + a.end) / 2 for a in arcs(stroke) if a.curvature < 0]
+    before = max((m for m in middles if m < convexity.start), default=convexity.start)
+    after = min((m for m in middles if m > convexity.start), default=convexity.end)
+    under = place(stroke)
+    return (under >= before) & (under <= after)
+
+
+def peaks(stroke: xr.Dataset, trace: Trace) -> dict[str, float]:
+    """Largest value of a trace while each convexity passes, by the convexity's label."""
+    values = trace(stroke)
+    found = {label: values[passing(stroke, arc)] for label, arc in convexities(stroke).items()}
+    return {label: float(part.max()) for label, part in found.items() if part.size}
+
+
+def lost_contacts(stroke: xr.Dataset) -> list[tuple[float, float]]:
+    """Stretches of the surface, m along it, that the centre node passes under without touching; the ends left out."""
+    under, touches = _finely(stroke)
+    changes = np.flatnonzero(np.diff(touches.astype(int)))
+    return [(float(under[i]), float(under[j])) for i, j in zip(changes, changes[1:], strict=False) if touches[i]]
+
+
+def lag(x: np.ndarray, later: np.ndarray, at: np.ndarray, earlier: np.ndarray, most: float = 3e-3) -> tuple[float, float]:
+    """Shift (m) along x by which one trace follows another most closely, and their correlation when shifted by it.
+
+    Positive where `later` (sampled at `x`, m) lies further right: later(at + shift) ~ earlier(at). The earlier trace is
+    compared at its own samples `at` (m), those farther than `most` from the ends; only the later one is interpolated.
+    """
+    inside = (at >= x[0] + most) & (at <= x[-1] - most)
+    shifts = np.arange(-most, most, 0.02e-3)
+    likeness = [np.corrcoef(np.interp(at[inside] + s, x, later), earlier[inside])[0, 1] for s in shifts]
+    best = int(np.argmax(likeness))
+    return float(shifts[best]), float(likeness[best])
+
+
+def rms_error(fine: xr.Dataset, coarse: xr.Dataset | None, *traces: Trace) -> float:
+    """Largest difference (%) of traces of a history and its companion: root mean square over the stroke, relative to the trace's.
+
+    The companion has other outputs and is interpolated at the history's stroke distances. NaN without a companion.
+    """
+    if coarse is None:
+        return float("nan")
+    fine, coarse = loaded(fine), loaded(coarse)
+    way = np.sign(distance(fine)[-1])  # distances grow downwards in strokes the other way
+    worst = 0.0
+    for trace in traces:
+        own = trace(fine)
+        other = np.interp(way * distance(fine), way * distance(coarse), trace(coarse))
+        size = float(np.sqrt(np.mean(own**2)))
+        worst = max(worst, 100 * float(np.sqrt(np.mean((own - other) ** 2))) / size if size else 0.0)
+    return worst
+
+
+def label_errors(
+    fine: xr.Dataset, coarse: xr.Dataset | None, read: Callable[[xr.Dataset], Mapping[str, float]]
+) -> dict[str, float]:
+    """Difference (%) between a history and its companion of each labelled value that `read` finds in the loaded outputs."""
+    own = read(loaded(fine))
+    other = read(loaded(coarse)) if coarse is not None else {}
+    return {k: 100 * abs(other[k] / v - 1) if k in other and v else float("nan") for k, v in own.items()}
+
+
+def energy_at(depth: float) -> Trace:
+    """Trace of the strain energy density (Pa) under the centre at a depth (m)."""
+    return lambda stroke: energy(stroke, depth)

@@ -1,0 +1,1 @@
+"""The planner: what a scene calls for, on which mesh, in which steps, why, and at what cost."""

@@ -1,0 +1,679 @@
+"""Scene -> plan: which effects the scene calls for, which discretisation, why, and what it will cost.
+
+Nothing is solved here. Every choice carries a sentence with the number that decided it, and every choice can be overridden in
+the scene. The thresholds and measured constants stand together in :class:`Rules`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field, replace
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fingerpad.planning.estimates import ContactEstimate, PadEstimate
+from fingerpad.scenes.scene import Discretisation, Hold, PressToDepth, PressToForce, Scene, Slide, StepAndRepeat
+from fingerpad.specimen.external import read_pad_mesh
+from fingerpad.specimen.materials import Prony
+from fingerpad.specimen.measures import apex_edge, apex_measures
+from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes, smallest_edge
+from fingerpad.stimuli.motion import STEADY, programme
+from fingerpad.stimuli.profiles import Curve, Profile, profile_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class PlanError(ValueError):
+    """The scene asks for a combination that cannot be planned; the message is one line."""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """A discretisation: edges m, steps per leg, longest step of a slide m.
+
+    ``tolerance`` is what an effect left out may change. ``focus`` is the edge m to which the mesh is refined in the contact,
+    along the skin and into it (None: not refined unless the contact is narrower than an edge).
+    """
+
+    skin_edge: float
+    layer_edge: float
+    steps: int
+    growth: float
+    tolerance: float
+    slide_step: float | None
+    focus: float | None = None
+
+
+@dataclass(frozen=True)
+class MeasuredErrors:
+    """Largest relative error of depth, width, centre and peak pressure and strain energies, as the study of accuracy found it.
+
+    The same numbers as figures/tables/accuracy_planner.csv. Between them errors are interpolated in logarithms.
+
+    Attributes:
+        half_widths: m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the ramp. edge: m, along the skin,
+        where 7 elements go across the epidermis. mesh: elements across the epidermis -> error (half_widths). time: steps of a leg
+        -> error (half_widths). stroke_mesh, stroke_time: those of the plate's stroke.
+    """
+
+    half_widths: tuple[float, ...] = (0.29e-3, 0.88e-3, 2.06e-3)
+    edge: float = 134.4e-6
+    mesh: Mapping[int, tuple[float, ...]] = field(
+        default_factory=lambda: {
+            1: (0.57, 0.31, 0.089),
+            2: (0.2, 0.048, 0.026),
+            4: (0.092, 0.026, 0.0077),
+            7: (0.043, 0.017, 0.0023),
+            10: (0.023, 0.0049, 0.0017),
+            14: (0.0099, 0.0049, 0.0017),
+            22: (0.0099, 0.0049, 0.0017),
+        }
+    )
+    time: Mapping[int, tuple[float, ...]] = field(
+        default_factory=lambda: {
+            5: (0.0033, 0.0066, 0.0076),
+            10: (0.0013, 0.002, 0.0027),
+            20: (0.00045, 0.00063, 0.00096),
+            40: (0.000071, 0.00029, 0.00035),
+            80: (0.000053, 0.00016, 0.00031),
+        }
+    )
+    stroke_mesh: Mapping[int, float] = field(
+        default_factory=lambda: {1: 0.1, 2: 0.055, 4: 0.018, 7: 0.01, 10: 0.01, 14: 0.01, 22: 0.01}
+    )
+    stroke_time: Mapping[int, float] = field(default_factory=lambda: {5: 0.046, 10: 0.02, 20: 0.0099, 40: 0.0027, 80: 0.001})
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Thresholds and measured constants of the planner.
+
+    Attributes:
+        presets: by name.
+        errors: what a tolerance is met with, and what a run believes of itself.
+        mesh_order, time_order: with which errors are taken to go on beyond the meshes and steps that were measured.
+        edge_share: of an element's edge, by which an edge of the contact may be misplaced: a quarter of the node spacing.
+        safety: factor on both, for errors swing with where nodes happen to lie.
+        least_steps: of a leg; fewer would do for its end, but a curve of fewer is none.
+        small_strain_error: of small strain in the headline quantities, over depth / soft thickness, at most; small strain is used
+            when that is within the accuracy asked for.
+        pressing_friction: change of the headline quantities by friction in a press, over the coefficient; most_pressing_friction:
+            what it comes to where the whole contact sticks. Friction is left out of presses when that is within the accuracy.
+        relaxation_share, lag_share: viscosity is left out when the stress that can relax, or by which it lags behind, is below
+            these shares of the accuracy; answers change by up to 2 and 7 times as much.
+        ridge_change: of strain energy by low inner ridges in a press, over height / pitch, at most; ridge_contrast: of epidermis
+            to dermis, up to which that holds; ridge_width: half width of the contact, over the pitch, below which it grows as the
+            contact is narrower. Ridges are left out of presses when it is within the accuracy.
+        fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
+        inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
+        skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
+        edges_per_half_width: a contact with less than one edge to either side gets this many under the apex.
+        seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
+            finite and with small strain, and per node and step for output. frictional: cost of a step with friction over one
+            without.
+    """
+
+    presets: Mapping[str, Preset] = field(
+        default_factory=lambda: {
+            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3),
+            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3),
+        }
+    )
+    errors: MeasuredErrors = field(default_factory=MeasuredErrors)
+    mesh_order: float = 1.0
+    time_order: float = 1.0
+    edge_share: float = 0.125
+    safety: float = 1.5
+    least_steps: int = 10
+    small_strain_error: float = 4.6
+    pressing_friction: float = 2.0
+    most_pressing_friction: float = 0.2
+    relaxation_share: float = 0.4
+    lag_share: float = 0.15
+    ridge_change: float = 3.0
+    ridge_width: float = 1 / 3
+    ridge_contrast: float = 11.0
+    fine_half_width: float = 3.4e-3
+    skin_stretch: float = 1.0e-3
+    edges_per_half_width: float = 2.0
+    inertia_limit: float = 0.1
+    seconds_start: float = 1.2
+    seconds_finite: float = 3.0e-6
+    seconds_small: float = 1.0e-6
+    iterations_finite: float = 2.6
+    iterations_small: float = 2.0
+    frictional: float = 1.2
+
+
+RULES = Rules()
+_THESIS_ROWS = 7  # elements across the epidermis of the thesis's preset
+
+
+@dataclass(frozen=True)
+class Effect:
+    """Whether an effect is simulated, and why."""
+
+    on: bool
+    why: str
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything decided about a scene before it is solved.
+
+    Attributes:
+        effects: friction, viscoelasticity, finite_strain, symmetry, ridges. state: moduli used when viscosity is off
+        ("long_term" or "instantaneous"). element: key of the element. mesh_size: of a built mesh, None for an external one.
+        contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them.
+        slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
+        nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
+        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
+        part of it that small strain is to blame for.
+    """
+
+    effects: dict[str, Effect]
+    state: str
+    element: str
+    mesh_size: MeshSize | None
+    contact: ContactEstimate
+    steps_per_leg: int
+    slide_step: float | None
+    steps: int
+    timed: bool
+    nodes: int
+    smallest_edge: float
+    inertia_ratio: float
+    contact_edge: float
+    estimated_error: float
+    predicted_cost_s: float
+    small_strain_error: float = 0.0
+
+    @property
+    def stepping(self) -> tuple[int, bool, float]:
+        """What :func:`schedule` needs to know: steps of each leg, does time matter, longest step of a slide (m)."""
+        return self.steps_per_leg, self.timed, self.slide_step
+
+    @property
+    def discretisation(self) -> dict[str, Any]:
+        """Element, nodes, smallest edge and steps, as printed and as written to plan.json."""
+        out = {
+            "element": self.element,
+            "nodes": self.nodes,
+            "smallest_edge_um": round(self.smallest_edge * 1e6, 3),
+            "steps": self.steps,
+        }
+        if self.mesh_size is not None:
+            out |= {
+                "contact_edge_um": round(self.contact_edge * 1e6, 3),
+                "skin_edge_um": round(self.mesh_size.skin_edge * 1e6, 3),
+                "fine_half_width_mm": round(self.mesh_size.fine_half_width * 1e3, 3),
+            }
+        return out
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-able description (plan.json); :func:`read_plan` reads it back."""
+        return {
+            "effects": {name: asdict(effect) for name, effect in self.effects.items()},
+            "discretisation": self.discretisation,
+            "moduli_state": self.state,
+            "estimated_error": self.estimated_error,
+            "predicted_cost_s": round(self.predicted_cost_s, 2),
+            "contact_estimate_SI": asdict(self.contact),
+            "mesh_size_SI": None if self.mesh_size is None else asdict(self.mesh_size),
+            "smallest_edge_SI": self.smallest_edge,
+            "inertia_ratio": self.inertia_ratio,
+            "contact_edge_SI": self.contact_edge,
+            "steps_per_leg": self.steps_per_leg,
+            "slide_step_SI": self.slide_step,
+            "timed": self.timed,
+            "small_strain_error": self.small_strain_error,
+        }
+
+    def write(self, path: str | Path) -> None:
+        """Write plan.json, whole or not at all."""
+        from fingerpad.files import write_text
+
+        write_text(path, json.dumps(self.to_dict(), indent=2) + "\n")
+
+
+def plan(scene: Scene, rules: Rules = RULES) -> Plan:
+    """Decide effects and discretisation of ``scene``.
+
+    Raises:
+        PlanError: an override asks for what the scene cannot have. MeshError: an external mesh cannot be read, or the pad has no
+        room for its ridges.
+    """
+    external = _external(scene)
+    profile = profile_of(scene.stimulus)
+    pad = _pad(scene, external)
+    moves = _moves(scene)
+    # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
+    contact = _worst_contact(scene, pad, profile, profile.convexity if moves or not isinstance(profile, Curve) else 0.0)
+    inertia, fastest = _inertia_ratio(scene, contact)
+    if inertia > rules.inertia_limit:
+        raise PlanError(
+            f"motion[{fastest}]: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); "
+            f"allowed: up to {rules.inertia_limit:g}"
+        )
+    preset, by_hand = _preset(scene, rules, contact)
+    tolerance = preset.tolerance
+    ridged = _ridges(scene, moves, contact, tolerance, rules)
+    ridges = scene.specimen.ridges if scene.effects.get("ridges", ridged.on) else None
+    effects = {
+        "friction": _friction(scene, tolerance, rules),
+        "viscoelasticity": Effect(False, ""),
+        "finite_strain": _finite_strain(pad, profile, contact, tolerance, rules),
+        "symmetry": _symmetry(scene, profile, external, ridges),
+        "ridges": ridged,
+    }
+    effects["viscoelasticity"], state = _viscoelasticity(scene, profile, contact, tolerance, rules)
+    _apply_overrides(scene, effects)
+    timed = effects["viscoelasticity"].on
+    steps_per_leg, slide_step = preset.steps, preset.slide_step
+    if by_hand and by_hand.steps:
+        steps_per_leg, slide_step = max(1, round(by_hand.steps / len(scene.motion))), None
+    steps = sum(1 for _ in schedule(scene, steps_per_leg, timed, slide_step=slide_step))
+    element = _element(by_hand, external)
+    if external is None:
+        # on its way over a surface the contact is also flat
+        widest = _worst_contact(scene, pad, profile, 0.0) if moves and isinstance(profile, Curve) else contact
+        wander = _wander(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
+        size = _mesh_size(scene, preset, profile, contact, widest.half_width, wander, rules)
+        layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
+        nodes, smallest = count_nodes(*layered), smallest_edge(*layered)
+        edge = min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
+        if ridges is not None:
+            effects["ridges"], edge = _resolved(effects["ridges"], layered, edge)
+    else:
+        size, nodes = None, len(external.points)
+        smallest, edge = external.quality()["smallest_edge_m"], apex_edge(external)
+    if effects["symmetry"].on:
+        nodes = nodes // 2 + 1
+    linear = 0.0 if effects["finite_strain"].on else _small_strain_error(pad, profile, contact, rules)
+    around = None if size is None else size.skin_edge
+    time = steps_per_leg if timed else None
+    error = linear + estimated_error(edge, _earliest(scene, contact, timed), time, moves, around, rules)
+    return Plan(
+        effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge, error,
+        _cost(nodes, steps, effects, rules), linear,
+    )  # fmt: skip
+
+
+def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | None = None, present=None):
+    """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`)."""
+    return programme(
+        scene.motion,
+        steps=steps_per_leg,
+        contact_length=scene.specimen.contact_length,
+        timed=timed,
+        snapshots=scene.outputs.snapshots,
+        present=present,
+        slide_step=slide_step,
+    )
+
+
+def read_plan(path: str | Path) -> Plan:
+    """The plan written to ``path`` by :meth:`Plan.write`."""
+    data = json.loads(Path(path).read_text(encoding="utf-8"))
+    size = data["mesh_size_SI"]
+    if size is not None:
+        size = MeshSize(**size | {"focus": tuple(tuple(pair) for pair in size["focus"])})
+    known = data["discretisation"]
+    return Plan(
+        {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
+        ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
+        data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
+        data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"],
+    )  # fmt: skip
+
+
+def _moves(scene: Scene) -> bool:
+    return any(isinstance(leg, (Slide, StepAndRepeat)) for leg in scene.motion)
+
+
+# -- the choices --------------------------------------------------------------------------------------------------------
+
+
+def _external(scene: Scene) -> PadMesh | None:
+    """The scene's own mesh, if it names one."""
+    if scene.specimen.mesh is None:
+        return None
+    mesh = read_pad_mesh(scene.specimen.mesh).elevated()
+    if scene.specimen.layers.stratum_corneum is not None and "stratum_corneum" not in mesh.regions:
+        raise PlanError("specimen.layers.stratum_corneum: is no surface of the mesh; allowed: a mesh with it, or no such layer")
+    return mesh
+
+
+def _pad(scene: Scene, external: PadMesh | None) -> PadEstimate:
+    specimen, layers = scene.specimen, scene.specimen.layers
+
+    def plane(layer):
+        return layer.youngs_modulus / (1 - layer.poisson_ratio**2)
+
+    if specimen.outline is not None:
+        outline = specimen.outline
+        radius, epidermis, soft = outline.apex_radius, outline.epidermis_thickness, outline.soft_thickness
+    else:
+        radius, epidermis, soft = apex_measures(external)
+    softest = min(plane(layers.dermis), plane(layers.fat))
+    relax = 1.0
+    if specimen.moduli == "instantaneous" and specimen.prony:
+        relax = 1 - sum(term.g for term in specimen.prony)
+    return PadEstimate(radius, epidermis, soft, relax * plane(layers.epidermis), relax * softest)
+
+
+def _worst_contact(scene: Scene, pad: PadEstimate, profile: Profile, curvature: float) -> ContactEstimate:
+    """The deepest contact of the motion with a surface of ``curvature`` 1/m."""
+    specimen = scene.specimen
+    # at a kept depth the surface comes as much deeper as it reaches below its start
+    keeps_depth = any(isinstance(leg, Slide) and leg.keep == "depth" for leg in scene.motion)
+    worst = ContactEstimate(0.0, 0.0, 0.0)
+    for leg in scene.motion:
+        if isinstance(leg, PressToForce):
+            now = pad.pressed(leg.press_to_force / specimen.contact_length, curvature)
+        elif isinstance(leg, PressToDepth):
+            now = pad.pressed_to(leg.press_to_depth, curvature)
+        else:
+            continue
+        if keeps_depth:
+            now = pad.pressed_to(now.depth + profile.dip, curvature)
+        worst = max(worst, now, key=lambda estimate: estimate.depth)
+    if scene.stimulus.shape == "bar":
+        wide = max(worst.half_width, scene.stimulus.width / 2)
+        worst = replace(worst, half_width=wide, strain=max(worst.strain, 0.5))
+    return worst
+
+
+def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> tuple[float, int]:
+    """rho v^2 / mu of the softest layer, what leaving inertia out of the equations neglects; and the fastest leg."""
+    layers = scene.specimen.layers
+    softest = min(
+        layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in (layers.epidermis, layers.dermis, layers.fat)
+    )
+    speed = [0.0] * len(scene.motion)
+    for i, (leg, duration) in enumerate(zip(scene.motion, leg_durations(scene), strict=True)):
+        if duration and not isinstance(leg, Hold):
+            depth = leg.press_to_depth if isinstance(leg, PressToDepth) else contact.depth
+            speed[i] = getattr(leg, "speed", None) or depth / duration
+    fastest = int(np.argmax(speed))
+    return 1000.0 * speed[fastest] ** 2 / softest, fastest
+
+
+def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Preset, Discretisation | None]:
+    """The discretisation asked for: a named one, the cheapest that meets a tolerance, or one by hand."""
+    accuracy = scene.accuracy
+    if isinstance(accuracy, str):
+        return rules.presets[accuracy], None
+    thesis = rules.presets["thesis"]
+    if isinstance(accuracy, Discretisation):
+        edge = accuracy.skin_edge or thesis.skin_edge
+        scale = edge / thesis.skin_edge
+        error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
+        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), accuracy
+    return _cheapest(scene, accuracy, contact, rules), None
+
+
+def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules) -> Preset:
+    """Of the measured meshes and steps those of least nodes times steps that meet it; if none does, those of least error.
+
+    A mesh that suffices for the widest contact measured is refined under a narrower one that stays where it is.
+    """
+    thesis, known = rules.presets["thesis"], rules.errors
+    timed = bool(scene.specimen.prony) and any(duration is not None for duration in leg_durations(scene))
+    moves, half_width = _moves(scene), _earliest(scene, contact, timed)
+    still = not moves and scene.specimen.mesh is None and scene.specimen.ridges is None
+    found = []
+    for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):
+        edge, growth = known.edge * _THESIS_ROWS / rows, min(thesis.growth ** (_THESIS_ROWS / rows), 3.0)
+        time = steps if timed else None
+        for finer in (1, 2, 4, 8, 16) if still else (1,):
+            error = estimated_error(edge / finer, half_width, time, moves, edge, rules)
+            # the right half has about 7 columns and 4 rows an element across the epidermis
+            more = np.log(finer) / np.log(growth)
+            wide = 1.2 * contact.half_width / edge * (finer - 1)
+            work = (7 * rows + more + wide) * (4 * rows + more) * steps
+            found.append((max(error - tolerance, 0.0), work, edge / finer, edge, growth, steps))
+    _, _, focus, edge, growth, steps = min(found)
+    outline, slide_step = scene.specimen.outline, thesis.slide_step * thesis.steps / steps
+    # so many elements across the epidermis, however thick it is
+    layer_edge = thesis.layer_edge * edge / thesis.skin_edge
+    if outline is not None:
+        layer_edge = min(layer_edge, outline.epidermis_thickness * edge / known.edge / _THESIS_ROWS)
+    return Preset(edge, layer_edge, steps, growth, tolerance, slide_step, focus=focus if focus < edge else None)
+
+
+def _earliest(scene: Scene, contact: ContactEstimate, timed: bool) -> float:
+    """Half width (m) of the contact before anything relaxes: narrower as the root of the modulus is larger."""
+    relaxes = timed and scene.specimen.moduli == "long_term"
+    share = (1 - sum(term.g for term in scene.specimen.prony)) ** 0.5 if relaxes else 1.0
+    return max(share * contact.half_width, 1e-5)
+
+
+def estimated_error(
+    edge: float,
+    half_width: float,
+    steps: int | None = None,
+    stroked: bool = False,
+    body_edge: float | None = None,
+    rules: Rules = RULES,
+) -> float:
+    """Expected relative error of depth, width, pressure and strain energy at the legs' ends, from :class:`MeasuredErrors`.
+
+    And at least what an edge of the contact between two nodes may be misplaced by.
+
+    Args:
+        edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
+        steps: of a leg; None when time does not matter. stroked: does the pad move along the surface?
+        body_edge: m, skin edge around the contact where that is coarser: no finer than the widest contact measured needs it.
+    """
+    found = [_measured_error(edge, half_width, steps, stroked, rules), rules.safety * rules.edge_share * edge / half_width]
+    if body_edge is not None and body_edge > edge:
+        found.append(_measured_error(body_edge, rules.errors.half_widths[-1], steps, stroked, rules))
+    return float(max(found))
+
+
+def _measured_error(edge: float, half_width: float, steps: int | None, stroked: bool, rules: Rules) -> float:
+    known = rules.errors
+    # narrower contacts than were measured are similar to the narrowest one on a coarser mesh
+    alike = edge * max(known.half_widths[0] / half_width, 1.0)
+    rows = known.edge * _THESIS_ROWS / alike
+
+    def between(count, table, order):
+        columns = [_read(count, tuple(table), column, order) for column in zip(*table.values(), strict=True)]
+        return float(np.exp(np.interp(np.log(half_width), np.log(known.half_widths), np.log(columns))))
+
+    def stroke(count, table, order):
+        return _read(count, tuple(table), tuple(table.values()), order) if stroked else 0.0
+
+    # a stroke's errors come on top of those of a press as narrow
+    error = between(rows, known.mesh, rules.mesh_order) + stroke(rows, known.stroke_mesh, rules.mesh_order)
+    if steps is not None:
+        error += between(steps, known.time, rules.time_order) + stroke(steps, known.stroke_time, rules.time_order)
+    return rules.safety * error
+
+
+def _read(count: float, counts: tuple[int, ...], errors: tuple[float, ...], order: float) -> float:
+    """Error at ``count`` between measured ones, in logarithms; beyond them it goes on with ``order``."""
+    inside = np.clip(count, counts[0], counts[-1])
+    error = np.exp(np.interp(np.log(inside), np.log(counts), np.log(errors)))
+    return float(error * (inside / count) ** order)
+
+
+def _friction(scene: Scene, tolerance: float, rules: Rules) -> Effect:
+    if scene.friction == 0:
+        return Effect(False, "the coefficient is 0")
+    if any(isinstance(leg, Slide) for leg in scene.motion):
+        return Effect(True, f"the skin is stroked with a coefficient of {scene.friction:g}")
+    worth = min(rules.pressing_friction * scene.friction, rules.most_pressing_friction)
+    number = f"in a press a coefficient of {scene.friction:g} changes up to {worth:.1%}, {tolerance:.1%} is allowed"
+    return Effect(worth > tolerance, f"nothing slides; {number}")
+
+
+def _small_strain_error(pad: PadEstimate, profile: Profile, contact: ContactEstimate, rules: Rules) -> float:
+    error = rules.small_strain_error * contact.depth / pad.soft_thickness
+    return max(error, contact.strain) if profile.singular else error
+
+
+def _finite_strain(pad: PadEstimate, profile: Profile, contact: ContactEstimate, tolerance: float, rules: Rules) -> Effect:
+    error = _small_strain_error(pad, profile, contact, rules)
+    return Effect(
+        error > tolerance, f"small strain would be wrong by up to {error:.1%} (from the depth), {tolerance:.1%} is allowed"
+    )
+
+
+def _ridges(scene: Scene, moves: bool, contact: ContactEstimate, tolerance: float, rules: Rules) -> Effect:
+    ridges, layers = scene.specimen.ridges, scene.specimen.layers
+    if ridges is None:
+        return Effect(False, "the specimen has none")
+    inner, outer = ridges.inner, ridges.outer
+    why = f"the specimen has inner ridges {inner.pitch * 1e3:.3g} mm apart, {inner.height * 1e3:.3g} mm high"
+    if outer is not None:
+        why += f", and outer ones {(outer.period or inner.pitch) * 1e3:.3g} mm apart, {outer.height * 1e3:.3g} mm high"
+    border = scene.specimen.outline.epidermis_thickness
+    known = (
+        outer is None and not moves and layers.epidermis.youngs_modulus <= rules.ridge_contrast * layers.dermis.youngs_modulus
+        and min((abs(depth - border) for depth in scene.outputs.receptors.depths), default=border) > 2 * inner.height
+    )  # fmt: skip
+    narrow = max(1.0, rules.ridge_width * inner.pitch / max(contact.half_width, 1e-6))
+    worth = rules.ridge_change * narrow * inner.height / inner.pitch
+    if not known or worth > tolerance:
+        return Effect(True, why)
+    return Effect(False, f"{why}: they change up to {worth:.1%} of a press, {tolerance:.1%} is allowed")
+
+
+def _resolved(effect: Effect, layered: tuple, edge: float) -> tuple[Effect, float]:
+    """The ridges' effect with how finely they are meshed, and the skin's edge (m) under the apex; `edge` without ridges."""
+    from fingerpad.specimen.layered import ridge_resolution, skin_edge
+
+    per_ridge, per_height = ridge_resolution(*layered)
+    said = f"{per_ridge:.1f} elements from ridge to ridge, {per_height} rows within their height of the interface"
+    return replace(effect, why=f"{effect.why}: {said}"), skin_edge(*layered[:3], edge)
+
+
+def _symmetry(scene, profile, external, ridges) -> Effect:
+    if not profile.symmetric:
+        return Effect(False, "the stimulus is not symmetric about x = 0")
+    if _moves(scene):
+        return Effect(False, "the motion is not symmetric: the pad moves along the surface")
+    if external is not None and not external.symmetric:
+        return Effect(False, "the external mesh is not its own mirror image in x = 0")
+    if ridges is not None:
+        from fingerpad.specimen.ridges import RidgedPad
+
+        if not RidgedPad(scene.specimen.outline, ridges).symmetric:
+            return Effect(False, "the ridges are not their own mirror image in x = 0")
+    return Effect(True, "pad, stimulus and motion are mirror images in x = 0: half the unknowns suffice")
+
+
+def _viscoelasticity(
+    scene: Scene, profile: Profile, contact: ContactEstimate, tolerance: float, rules: Rules
+) -> tuple[Effect, str]:
+    prony = Prony(tuple(t.g for t in scene.specimen.prony), tuple(t.tau for t in scene.specimen.prony))
+    if not prony:
+        return Effect(False, "the specimen has no Prony series"), "long_term"
+    durations = leg_durations(scene)
+    if all(d is None for d in durations):
+        return Effect(False, "no leg names a rate: steady states need the long-term moduli only"), "long_term"
+    timed = [d for d in durations if d is not None]
+    limit, relaxed = rules.relaxation_share * tolerance, 1 - float(prony.relaxation(sum(timed)))
+    if None not in durations and relaxed < limit:
+        why = f"the motion is over before {relaxed:.2%} of the stress can relax ({limit:.2%} allowed): instantaneous moduli"
+        return Effect(False, why), "instantaneous"
+    loading = []
+    for duration, leg in zip(durations, scene.motion, strict=True):
+        if duration is None or isinstance(leg, Hold):
+            continue
+        if isinstance(leg, Slide):
+            if profile.steepness == 0 and scene.friction == 0:
+                continue  # a smooth plate sliding changes nothing
+            # the narrowest contact is a new one, and the skin has stretched anew, after half its width
+            duration = min(duration, contact.half_width / leg.speed)
+        loading.append(duration)
+    limit = rules.lag_share * tolerance
+    lag = max((float(np.sum(prony.beta * np.asarray(prony.tau)) / d) for d in loading), default=0.0)
+    if lag < limit:
+        why = f"so slow that viscosity adds at most {lag:.2%} to the stress ({limit:.2%} allowed): long-term moduli"
+        return Effect(False, why), "long_term"
+    why = f"{relaxed:.0%} of the shear stress can relax within the {sum(timed):.3g} s of the motion"
+    return Effect(True, why), "long_term"
+
+
+def leg_durations(scene: Scene) -> list[float | None]:
+    """Seconds of each leg; None for steady ones."""
+    out: list[float | None] = [None] * len(scene.motion)
+    for step in schedule(scene, 1, True):
+        out[step.leg] = None if step.dt >= STEADY else (out[step.leg] or 0.0) + step.dt
+    return out
+
+
+def _apply_overrides(scene: Scene, effects: dict[str, Effect]) -> None:
+    for name, wanted in scene.effects.items():
+        effect = effects[name]
+        if wanted == effect.on:
+            continue
+        none = {"ridges": scene.specimen.ridges is None, "friction": scene.friction == 0}
+        if wanted and none.get(name):
+            raise PlanError(f"{scene.name}: effects.{name}: on, but {effect.why}; allowed: off or auto")
+        if wanted and name == "symmetry":
+            raise PlanError(f"{scene.name}: effects.symmetry: on, but {effect.why}; allowed: off or auto")
+        if wanted and name == "viscoelasticity" and not scene.specimen.prony:
+            raise PlanError(f"{scene.name}: effects.viscoelasticity: on, but {effect.why}; allowed: off or auto")
+        effects[name] = Effect(wanted, f"asked for in the scene (the planner: {'on' if effect.on else 'off'}, {effect.why})")
+
+
+def _element(by_hand: Discretisation | None, external: PadMesh | None) -> str:
+    natural = {"quad9": "Q2P1", "quad4": "Q1P0", "tri6": "P2B"}[external.element if external else "quad9"]
+    if by_hand is None or by_hand.element is None or by_hand.element == natural:
+        return natural
+    raise PlanError(
+        f"accuracy.element: {by_hand.element} does not fit the mesh of {external.element if external else 'quad9'}; "
+        f"allowed: {natural}"
+    )
+
+
+def _wander(scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, rules: Rules) -> float:
+    """How far (m) a stroke takes the contact from the middle of the pad: to where the pad is as steep as the surface."""
+    way = np.cumsum([getattr(leg, "slide", None) or getattr(leg, "step", 0.0) for leg in scene.motion])
+    return min(profile.steepness * pad.apex_radius, np.abs(way).max()) + rules.skin_stretch * friction
+
+
+def _mesh_size(
+    scene: Scene, preset: Preset, profile: Profile, contact: ContactEstimate, half_width: float, wander: float, rules: Rules
+) -> MeshSize:
+    outline = scene.specimen.outline
+    offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
+    fine = max(rules.fine_half_width, 1.3 * half_width, half_width + wander, offsets)
+    focus, radial = (), None
+    if profile.edges:
+        fillet = getattr(profile, "fillet", 0.0)
+        edge = min(preset.skin_edge / 4, fillet / 2) if fillet else preset.skin_edge / 4
+        focus = tuple((x, edge) for x in sorted({abs(x) for x in profile.edges}))
+    elif preset.focus is not None:
+        # fine all over the contact, somewhat wider than it is estimated, and not at the apex only
+        places = np.linspace(0.0, 1.2 * half_width, max(2, round(1.2 * half_width / preset.focus / 2) + 1))
+        focus, radial = tuple((float(x), preset.focus) for x in places), preset.focus
+    elif not isinstance(scene.accuracy, Discretisation) and not _moves(scene) and preset.skin_edge > contact.half_width:
+        focus = ((0.0, contact.half_width / rules.edges_per_half_width),)
+    return MeshSize(
+        skin_edge=preset.skin_edge,
+        fine_half_width=min(fine, 0.9 * outline.half_width),
+        layer_edge=preset.layer_edge,
+        growth=preset.growth,
+        focus=focus,
+        skin_radial_edge=radial,
+    )
+
+
+def _cost(nodes: int, steps: int, effects: dict[str, Effect], rules: Rules) -> float:
+    if effects["friction"].on:
+        nodes = nodes * rules.frictional
+    if effects["finite_strain"].on:
+        work = rules.seconds_finite * rules.iterations_finite
+    else:
+        work = rules.seconds_small * rules.iterations_small
+    return float(rules.seconds_start + work * nodes * steps)

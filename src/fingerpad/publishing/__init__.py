@@ -1,0 +1,1 @@
+"""What people look at: the style of pictures, and files written whole. Knows nothing of what it publishes."""

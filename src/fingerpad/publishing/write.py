@@ -1,0 +1,68 @@
+"""Publishing: a picture and its plotted data, a table as CSV and as Markdown, written side by side, whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fingerpad.files import write_atomically
+from fingerpad.publishing.style import theme
+
+DPI = 200
+FLOAT_FORMAT = "%.6g"
+TEXT_COLUMNS = ("source", "surface", "phase", "layer", "panel", "series", "quantity", "pad", "convexity")
+
+
+def write_frame(frame: pd.DataFrame, path: Path) -> None:
+    """Write a frame as CSV, six significant digits."""
+    write_atomically(path, lambda p: frame.to_csv(p, index=False, float_format=FLOAT_FORMAT, lineterminator="\n"))
+
+
+def read_frame(path: Path) -> pd.DataFrame:
+    """Read a figure's CSV back: text columns as text (surface "79" too), everything else as numbers."""
+    with open(path, encoding="utf-8") as stream:
+        header = stream.readline().strip().split(",")
+    return pd.read_csv(path, dtype={c: str for c in TEXT_COLUMNS if c in header})
+
+
+def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
+    """Write a picture as PNG at a fixed resolution and without metadata: same data, same bytes."""
+    with theme():  # ticks and the layout are made only now
+        write_atomically(path, lambda p: fig.savefig(p, format="png", dpi=dpi, metadata={"Software": None}))
+
+
+def publish(fig: Figure, frame: pd.DataFrame, png_path: str | os.PathLike) -> None:
+    """Write ``fig_X.png`` and, beside it, ``fig_X.csv`` with the plotted data."""
+    png = Path(png_path)
+    write_frame(frame, png.with_suffix(".csv"))
+    write_picture(fig, png)
+
+
+def markdown(frame: pd.DataFrame) -> str:
+    """The table as Markdown: whole numbers in full, others to four digits, empty cells for missing values."""
+
+    def cell(value: object) -> str:
+        if isinstance(value, float):
+            if value != value:
+                return ""
+            digits = max(4, len(f"{abs(value):.0f}")) if value.is_integer() else 4
+            return f"{value:.{digits}g}"
+        return "" if value is None or value is pd.NA else str(value)
+
+    lines = ["| " + " | ".join(frame.columns) + " |", "|" + " --- |" * len(frame.columns)]
+    lines += ["| " + " | ".join(cell(v) for v in row) + " |" for row in frame.itertuples(index=False)]
+    return "\n".join(lines) + "\n"
+
+
+def publish_table(frame: pd.DataFrame, csv_path: str | os.PathLike) -> None:
+    """Write ``name.csv`` (format %s) and, beside it, ``name.md``, headed by ``frame.attrs["summary"]`` if there is one."""
+    path = Path(csv_path)
+    write_frame(frame, path)
+    text = "".join(f"{line}\n\n" for line in [frame.attrs.get("summary")] if line) + markdown(frame)
+    write_atomically(path.with_suffix(".md"), lambda p: p.write_text(text, encoding="utf-8"))
+
+
+publish_table.__doc__ = publish_table.__doc__ % FLOAT_FORMAT

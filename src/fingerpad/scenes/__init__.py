@@ -1,0 +1,1 @@
+"""The scene language: documents, their fields, specimens and scenes."""

@@ -1,0 +1,664 @@
+"""A scene: specimen, stimulus, motion, outputs and accuracy, read from YAML and checked.
+
+Quantities are strings with units in a document and SI floats in the models. In Python the models are made
+with SI floats directly (``Cylinder(curvature=210.0)``).
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, model_validator
+from pydantic.json_schema import SkipJsonSchema
+
+from fingerpad.scenes.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
+from fingerpad.scenes.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, whole
+from fingerpad.scenes.specimen import (
+    DEFAULT_SPECIMEN,
+    Layer,
+    Layers,
+    Outline,
+    PronyTerm,
+    Source,
+    Specimen,
+    SpecimenFile,
+    source_of,
+)
+from fingerpad.units import QuantityError, format_quantity, parse_number
+
+__all__ = [
+    "Bar", "Cylinder", "Discretisation", "Flat", "Hold", "Layer", "Layers", "Line", "Outline", "Outputs",
+    "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Slide", "Specimen",
+    "SpecimenFile", "StepAndRepeat", "Wavy", "load_scene", "scene_json_schema", "specimen_json_schema",
+]  # fmt: skip
+
+EFFECTS = ("friction", "viscoelasticity", "finite_strain", "symmetry", "ridges")
+LEVELS = ("draft", "thesis", "fine")
+MAXIMUM_STEPS = 100_000
+MAXIMUM_STROKE = 10.0
+MAXIMUM_SNAPSHOTS = 1000
+
+
+# --- stimulus -------------------------------------------------------------------------------------
+
+
+class Flat(Strict):
+    """Rigid flat plate."""
+
+    shape: Literal["flat"] = "flat"
+
+
+class Cylinder(Strict):
+    """Rigid cylinder lying along the finger's axis."""
+
+    shape: Literal["cylinder"] = "cylinder"
+    curvature: quantity("curvature", note=": for a curvature of zero use shape: flat")
+    """Curvature, the inverse of the radius."""
+
+
+class Bar(Strict):
+    """Rigid rectangular bar lying along the finger's axis."""
+
+    shape: Literal["bar"] = "bar"
+    width: Length
+    """Width of the face."""
+    fillet: quantity("length", "non-negative") = 0.0
+    """Radius of the rounded edges."""
+
+    @model_validator(mode="after")
+    def _check(self) -> Bar:
+        if self.fillet > self.width / 2:
+            raise Problem(
+                "is more than half the width",
+                f"0 mm to {format_quantity(self.width / 2, 'length')}",
+                ("fillet",),
+            )
+        return self
+
+
+class Line(Strict):
+    """Line load: a knife edge lying along the finger's axis."""
+
+    shape: Literal["line"] = "line"
+
+
+class Sampled(Strict):
+    """Rigid profile given by points: its lower surface, y up, in the frame of the stimulus."""
+
+    internal: ClassVar = frozenset({"x", "y"})
+
+    shape: Literal["sampled"] = "sampled"
+    csv: Path
+    """File with the columns `x (mm)` and `y (mm)`, x strictly increasing."""
+    x: SkipJsonSchema[tuple[float, ...]]
+    y: SkipJsonSchema[tuple[float, ...]]
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """Reads the points from the file."""
+        if "x" not in data and "csv" in data:
+            if not isinstance(data["csv"], (str, Path)):
+                raise Problem("is not a path", "the path of a CSV file", ("csv",))
+            data["csv"] = source_of(context).resolve(data["csv"])
+            data["x"], data["y"] = _read_profile(data["csv"])
+        return data
+
+
+_COLUMNS = ("x (mm)", "y (mm)")
+
+
+def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Points of a profile, m; `Problem` unless they are numbers with x strictly increasing."""
+
+    def wrong(problem: str) -> Problem:
+        return Problem(problem, "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing", ("csv",))
+
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file, skipinitialspace=True))
+    except FileNotFoundError:
+        raise wrong("is not an existing file") from None
+    except (OSError, ValueError, csv.Error) as error:
+        raise wrong(f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})") from None
+    for name in _COLUMNS:
+        if rows and name not in rows[0]:
+            raise wrong(f"has no column '{name}'")
+    if len(rows) < 2:
+        raise wrong("has fewer than two points")
+    points = []
+    for line, row in enumerate(rows, start=2):
+        try:
+            point = tuple(1e-3 * parse_number(row[name] or "") for name in _COLUMNS)
+        except QuantityError:
+            raise wrong(f"has no finite number in row {line}") from None
+        if points and point[0] <= points[-1][0]:
+            raise wrong(f"is not single-valued: x does not increase in row {line}")
+        points.append(point)
+    x, y = zip(*points, strict=True)
+    return x, y
+
+
+class Wavy(Strict):
+    """Rigid surface of cylindrical convexities joined by concavities between two flats, after the thesis's chapter 5.
+
+    x = 0, the start of the lead-in, is over the middle of the pad when the motion begins.
+    """
+
+    shape: Literal["wavy"] = "wavy"
+    curvatures: Annotated[tuple[quantity("curvature"), ...], BeforeValidator(filled)] = tuple(
+        1e3 / radius for radius in (38.1, 25.4, 19.05, 12.7, 9.525, 6.35, 4.7625, 3.175)
+    )
+    """Curvatures of the convexities, in their order; a concavity has the radius of the convexity after it."""
+    half_angle: quantity("angle") = math.radians(9.0)
+    """Angle by which every arc turns to either side of its middle."""
+    lead_in: Length = 8e-3
+    """Length of the flat before the first convexity."""
+    run_out: Length = 10e-3
+    """Length of the flat after the last convexity."""
+    fillet: quantity("length", "non-negative") = 0.0
+    """Radius of rounding of the two reentrant corners where the flats meet the arcs."""
+
+    @model_validator(mode="after")
+    def _check(self) -> Wavy:
+        if self.half_angle >= math.radians(45.0):
+            raise Problem("is outside the range", "above 0 deg and below 45 deg", ("half_angle",))
+        # a fillet of radius r ends on the flat: (lead_in + R sin)^2 = (R + r)^2 - (R cos + r)^2 at most
+        sine, drop = math.sin(self.half_angle), 1 - math.cos(self.half_angle)
+        ends = ((self.lead_in, 1 / self.curvatures[0]), (self.run_out, 1 / self.curvatures[-1]))
+        largest = min(flat * (flat + 2 * radius * sine) / (2 * radius * drop) for flat, radius in ends)
+        if self.fillet >= largest:
+            allowed = f"0 mm to below {format_quantity(largest, 'length')}"
+            raise Problem("does not fit the flat beside it", allowed, ("fillet",))
+        return self
+
+    @property
+    def length(self) -> float:
+        """Length of the surface along x, m."""
+        first, *others = (1 / curvature for curvature in self.curvatures)
+        return self.lead_in + 2 * math.sin(self.half_angle) * (first + 2 * sum(others)) + self.run_out
+
+
+_SHAPES = {"flat": Flat, "cylinder": Cylinder, "bar": Bar, "line": Line, "sampled": Sampled, "wavy": Wavy}
+
+
+def _check_shape(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        if "shape" not in value:
+            raise Problem("is missing", ", ".join(_SHAPES), ("shape",), HIDE)
+        if not isinstance(value["shape"], str) or value["shape"] not in _SHAPES:
+            raise Problem(f"is not a known shape, {nearest(value['shape'], _SHAPES)}", ", ".join(_SHAPES), ("shape",))
+    elif not isinstance(value, tuple(_SHAPES.values())):
+        raise Problem("is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}')
+    return value
+
+
+def _tag(value: Any) -> str | None:
+    """Label of the union member that `value` is or describes."""
+    if isinstance(value, Mapping):
+        return next((f"<{key}>" for key in (value.get("shape"), *_LEGS) if key in _SHAPES or key in value), None)
+    return next((f"<{key}>" for key, model in {**_SHAPES, **_LEGS}.items() if isinstance(value, model)), None)
+
+
+Stimulus = Annotated[
+    Annotated[Flat, Tag("<flat>")]
+    | Annotated[Cylinder, Tag("<cylinder>")]
+    | Annotated[Bar, Tag("<bar>")]
+    | Annotated[Line, Tag("<line>")]
+    | Annotated[Sampled, Tag("<sampled>")]
+    | Annotated[Wavy, Tag("<wavy>")],
+    Discriminator(_tag),
+    BeforeValidator(_check_shape),
+]
+
+
+# --- motion ---------------------------------------------------------------------------------------
+
+
+_PUSH = ": the stimulus must press into the skin"
+
+
+class PressToForce(Strict):
+    """Press until the force is reached."""
+
+    press_to_force: quantity("force", note=_PUSH)
+    """Normal force at the end of the leg."""
+    rate: quantity("force_rate", note=_PUSH) | None = None
+    """Rate of the force; left out for the steady state."""
+
+
+class PressToDepth(Strict):
+    """Press until the indentation depth is reached."""
+
+    press_to_depth: quantity("length", note=_PUSH)
+    """Depth of the stimulus below first touch at the end of the leg."""
+    speed: quantity("speed", note=_PUSH) | None = None
+    """Speed of the stimulus; left out for the steady state."""
+
+
+class Hold(Strict):
+    """Keep what the leg before prescribed."""
+
+    hold: Time
+    """Duration."""
+
+
+class Slide(Strict):
+    """Stroke the skin: the pad moves along the surface while force or depth is kept."""
+
+    slide: quantity("length", "nonzero")
+    """Distance the pad moves along x of the surface; negative towards its start."""
+    speed: quantity("speed", note=": the sign of slide is its direction") | None = None
+    """Speed along the surface; left out for a stroke so slow that all is relaxed."""
+    keep: Literal["force", "depth"] = "force"
+    """What is kept as it is when the stroke begins: the normal force, or the height of the surface."""
+
+
+class StepAndRepeat(Strict):
+    """Move on without stroking: lift, recover, press again to what the leg before reached, over and over."""
+
+    step: quantity("length", "nonzero")
+    """Distance covered in all; negative towards the start of the surface."""
+    every: Length
+    """Distance from one indentation to the next."""
+
+    @model_validator(mode="after")
+    def _check(self) -> StepAndRepeat:
+        whole = format_quantity(abs(self.step), "length")
+        count = abs(self.step) / self.every
+        if count < 1 - 1e-9:
+            raise Problem("is more than the whole distance", f"up to {whole}", ("every",))
+        if count > MAXIMUM_STEPS:
+            raise Problem(f"makes more than {MAXIMUM_STEPS} indentations", "a larger distance", ("every",))
+        if abs(count - round(count)) > 1e-6 * count:
+            raise Problem("does not divide the whole distance", f"a whole fraction of {whole}", ("every",))
+        return self
+
+
+_LEGS = {
+    "press_to_force": PressToForce,
+    "press_to_depth": PressToDepth,
+    "hold": Hold,
+    "slide": Slide,
+    "step": StepAndRepeat,
+}
+
+
+def _check_leg(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        kinds = [key for key in _LEGS if key in value]
+        first = next(iter(value), None)
+        if not kinds:
+            near = f", {nearest(first, _LEGS)}" if isinstance(first, str) else ""
+            raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(_LEGS)}")
+        if len(kinds) > 1:
+            raise Problem(f"is two legs in one: {' and '.join(kinds)}", "one of them in each entry of motion")
+    elif not isinstance(value, tuple(_LEGS.values())):
+        raise Problem("is not a leg", _LEG_EXAMPLE)
+    return value
+
+
+def _kind(leg: Any) -> str:
+    """Key that names a leg's kind."""
+    return next(key for key, model in _LEGS.items() if isinstance(leg, model))
+
+
+_LEG_EXAMPLE = 'legs such as {press_to_force: "20 gf", rate: "40 gf/s"} and {hold: "2 s"}'
+
+Leg = Annotated[
+    Annotated[PressToForce, Tag("<press_to_force>")]
+    | Annotated[PressToDepth, Tag("<press_to_depth>")]
+    | Annotated[Hold, Tag("<hold>")]
+    | Annotated[Slide, Tag("<slide>")]
+    | Annotated[StepAndRepeat, Tag("<step>")],
+    Discriminator(_tag),
+    BeforeValidator(_check_leg),
+]
+
+_TAGS = frozenset(f"<{key}>" for key in (*_SHAPES, *_LEGS, "level", "tolerance", "discretisation", "times", "every"))
+
+
+def _check_motion(legs: Any) -> Any:
+    if not listed(legs):
+        raise Problem("is empty", _LEG_EXAMPLE)
+    return legs
+
+
+# --- outputs, accuracy, effects -------------------------------------------------------------------
+
+
+class Receptors(Strict):
+    """Material points at which strain energy is recorded: every depth at every offset."""
+
+    depths: Annotated[tuple[Length, ...], BeforeValidator(listed)]
+    """Depths below the skin; left out, those of the thesis's specimen."""
+    offsets: Annotated[tuple[SignedLength, ...], BeforeValidator(listed)] = (0.0,)
+    """Lateral positions."""
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """Depths left out are those of the default specimen."""
+        if "depths" not in data:
+            depths = source_of(context).part(DEFAULT_SPECIMEN, "receptor_depths")
+            data["depths"] = [SI(depth) for depth in depths]
+        return data
+
+
+class Every(Strict):
+    """Times at regular intervals, from one interval after the start to the end of the motion."""
+
+    every: Time
+    """Interval."""
+
+
+_Times = Annotated[tuple[quantity("time", "non-negative"), ...], BeforeValidator(listed)]
+
+
+class Outputs(Strict):
+    """What a simulation records beside its history."""
+
+    receptors: Receptors
+    """Where strain energy is recorded."""
+    snapshots: Annotated[
+        Annotated[_Times, Tag("<times>")] | Annotated[Every, Tag("<every>")],
+        Discriminator(lambda value: "<every>" if isinstance(value, (Mapping, Every)) else "<times>"),
+    ] = ()
+    """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """Receptors left out are those of the default specimen."""
+        data.setdefault("receptors", {})
+        return data
+
+
+class Discretisation(Strict):
+    """Accuracy by hand; what is left out is chosen by the plan."""
+
+    element: Literal["Q1P0", "Q2P1", "P2B"] | None = None
+    """Element: displacement and pressure interpolation."""
+    skin_edge: Length | None = None
+    """Length of the element edges along the skin where contact is expected."""
+    steps: whole(1, MAXIMUM_STEPS) | None = None
+    """Number of time steps of the whole motion."""
+
+
+Level = Literal["draft", "thesis", "fine"]
+_ACCURACY = f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, or a mapping of element, skin_edge, steps"
+
+
+def _check_accuracy(value: Any) -> Any:
+    if isinstance(value, str) and value not in LEVELS:
+        try:
+            return parse_number(value)
+        except QuantityError:
+            raise Problem("is not a known accuracy", _ACCURACY) from None
+    if isinstance(value, bool) or not isinstance(value, (str, int, float, Mapping, Discretisation)):
+        raise Problem("is not a known accuracy", _ACCURACY)
+    return value
+
+
+def _accuracy_tag(value: Any) -> str:
+    if isinstance(value, str):
+        return "<level>"
+    return "<tolerance>" if isinstance(value, (int, float)) else "<discretisation>"
+
+
+Accuracy = Annotated[
+    Annotated[Level, Tag("<level>")]
+    | Annotated[number("a tolerance above 0 and below 1", 0.0, 1.0), Tag("<tolerance>")]
+    | Annotated[Discretisation, Tag("<discretisation>")],
+    Discriminator(_accuracy_tag),
+    BeforeValidator(_check_accuracy),
+]
+
+_SWITCH = {True: True, False: False, "on": True, "off": False, "true": True, "false": False}
+
+
+def _read_effects(value: Any) -> dict[str, bool]:
+    if value == "auto":
+        return {}
+    choices = ", ".join(EFFECTS)
+    if not isinstance(value, Mapping):
+        raise Problem("is not a set of effects", f"auto, or on or off for {choices}")
+    effects = {}
+    for key, switch in value.items():
+        if key not in EFFECTS:
+            raise Problem(f"is not a known effect, {nearest(key, EFFECTS)}", choices, (str(key)[:60],), HIDE)
+        if not isinstance(switch, (bool, str)) or switch not in _SWITCH:
+            raise Problem("is not a switch", "on or off", (key,))
+        effects[key] = _SWITCH[switch]
+    return effects
+
+
+_EffectsSurface = (
+    Literal["auto"] | dict[Literal[EFFECTS], bool | Literal["on", "off", "true", "false"]]  # type: ignore[valid-type]
+)
+Effects = Annotated[dict[str, bool], BeforeValidator(_read_effects, json_schema_input_type=_EffectsSurface)]
+
+
+# --- scene ----------------------------------------------------------------------------------------
+
+
+class Scene(Strict):
+    """One simulation: something pressed on a fingerpad, what to record and how well."""
+
+    internal: ClassVar = frozenset({"name"})
+
+    name: SkipJsonSchema[str]
+    specimen: Specimen
+    """What is touched; parts left out are the thesis's."""
+    stimulus: Stimulus
+    """What touches it: {shape: flat}, or cylinder, bar, line, sampled, wavy."""
+    friction: number("a coefficient of zero or more", 0.0, math.inf, low_included=True) = 0.0
+    """Coulomb coefficient of friction."""
+    motion: Annotated[tuple[Leg, ...], BeforeValidator(_check_motion)]
+    """Programme of legs, one after the other."""
+    outputs: Outputs
+    """What is recorded."""
+    accuracy: Accuracy = "thesis"
+    """draft, thesis, fine, a tolerance such as 0.02, or a mapping."""
+    effects: Effects = Field(default_factory=dict)
+    """auto, or switches for effects that the plan shall not decide."""
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """The name is the file's; specimen and outputs left out are the default specimen's."""
+        if context is not None:
+            data["name"] = context.path.stem
+        data.setdefault("specimen", {})
+        data.setdefault("outputs", {})
+        return data
+
+    @model_validator(mode="after")
+    def _check(self) -> Scene:
+        self._check_programme()
+        outline = self.specimen.outline
+        if outline is not None:
+            self._check_inside(outline)
+        end = self.end_time
+        if isinstance(self.outputs.snapshots, Every):
+            # the model is frozen, and only here is the motion known
+            times = self._times(self.outputs.snapshots.every)
+            object.__setattr__(self, "outputs", self.outputs.model_copy(update={"snapshots": times}))
+        for i, time in enumerate(self.outputs.snapshots):
+            if end is not None and time > end * (1 + 1e-9):
+                raise Problem(
+                    "is after the end of the motion",
+                    f"up to {format_quantity(end, 'time')}",
+                    ("outputs", "snapshots", i),
+                )
+        return self
+
+    def _times(self, every: float) -> tuple[float, ...]:
+        """Multiples of an interval up to the end of the motion, s."""
+        key, end = ("outputs", "snapshots", "every"), self.end_time
+        if end is None:
+            raise Problem("needs a motion whose end is known", "a list of times", key)
+        if not every <= end * (1 + 1e-9):
+            raise Problem("is longer than the motion", f"up to {format_quantity(end, 'time')}", key)
+        if end > MAXIMUM_SNAPSHOTS * every:
+            least = format_quantity(end / MAXIMUM_SNAPSHOTS, "time")
+            raise Problem(f"makes more than {MAXIMUM_SNAPSHOTS} snapshots", f"{least} or more", key)
+        return tuple(round(k * every, 12) for k in range(1, int(end / every * (1 + 1e-9)) + 1))
+
+    def _check_programme(self) -> None:
+        if not isinstance(self.motion[0], (PressToForce, PressToDepth)):
+            raise Problem(
+                "comes before anything is pressed",
+                "a press_to_force or press_to_depth leg first",
+                ("motion", 0, _kind(self.motion[0])),
+            )
+        last: tuple[str, float] | None = None
+        along, length = 0.0, self.stimulus.length if isinstance(self.stimulus, Wavy) else math.inf
+        for i, leg in enumerate(self.motion):
+            key = _kind(leg)
+            target = (key, getattr(leg, key))
+            if isinstance(leg, (Slide, StepAndRepeat)):
+                along += target[1]
+                if abs(target[1]) > MAXIMUM_STROKE:
+                    raise Problem("is too long a way", f"up to {MAXIMUM_STROKE:g} m", ("motion", i, key))
+                if math.isfinite(length) and not -1e-9 <= along <= length + 1e-9:
+                    end = format_quantity(length, "length")
+                    raise Problem("leads off the surface", f"to stay from 0 mm to {end} along it", ("motion", i, key))
+                if isinstance(leg, Slide) and last and last[0] != f"press_to_{leg.keep}":
+                    last = None
+            elif not isinstance(leg, Hold):
+                if target == last:
+                    raise Problem("is where the leg before ended", "another target, or a hold", ("motion", i, key))
+                last = target
+
+    def _check_inside(self, outline: Outline) -> None:
+        thickness = outline.soft_thickness
+        below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the bone"
+        for i, leg in enumerate(self.motion):
+            if isinstance(leg, PressToDepth) and leg.press_to_depth >= thickness:
+                raise Problem("presses to the bone", below, ("motion", i, "press_to_depth"))
+        for i, depth in enumerate(self.outputs.receptors.depths):
+            if depth >= thickness:
+                raise Problem("is outside the skin", below, ("outputs", "receptors", "depths", i))
+        for i, offset in enumerate(self.outputs.receptors.offsets):
+            if abs(offset) >= outline.half_width:
+                side = f"within {format_quantity(outline.half_width, 'length')} of the middle"
+                raise Problem("is beside the pad", side, ("outputs", "receptors", "offsets", i))
+        edge = self.accuracy.skin_edge if isinstance(self.accuracy, Discretisation) else None
+        if edge is not None and edge >= outline.half_width:
+            raise Problem(
+                "is larger than the pad",
+                f"below {format_quantity(outline.half_width, 'length')}",
+                ("accuracy", "skin_edge"),
+            )
+
+    @property
+    def end_time(self) -> float | None:
+        """Duration of the motion, s, steady legs taking none; None if a change of control leaves it open."""
+        time, force, depth = 0.0, 0.0, 0.0
+        for leg in self.motion:
+            if isinstance(leg, Hold):
+                time += leg.hold
+            elif isinstance(leg, PressToForce):
+                if leg.rate is not None:
+                    time += abs(leg.press_to_force - force) / leg.rate
+                force, depth = leg.press_to_force, math.nan
+            elif isinstance(leg, Slide):
+                if leg.speed is not None:
+                    time += abs(leg.slide) / leg.speed
+                force, depth = (force, math.nan) if leg.keep == "force" else (math.nan, depth)
+            elif isinstance(leg, PressToDepth):
+                if leg.speed is not None:
+                    time += abs(leg.press_to_depth - depth) / leg.speed
+                force, depth = math.nan, leg.press_to_depth
+        return None if math.isnan(time) else time
+
+    def with_accuracy(self, accuracy: Any) -> Scene:
+        """Copy of the scene at another accuracy.
+
+        Args:
+            accuracy: draft, thesis, fine, a tolerance as number or text, or a `Discretisation`.
+
+        Raises:
+            SceneError: it is none of these.
+        """
+        fields = {name: getattr(self, name) for name in type(self).model_fields}
+        try:
+            return Scene(**{**fields, "accuracy": accuracy})
+        except ValidationError as error:
+            raise explain(error, self.name, {"accuracy": accuracy}, _TAGS) from None
+
+    def canonical(self) -> dict[str, Any]:
+        """The scene as plain data for provenance: SI numbers, names and content hashes in place of paths.
+
+        Equal scenes give equal dictionaries, in the same order of keys; `json.dumps` takes them as they are.
+        """
+        data = self.model_dump(mode="json")
+        mesh, stimulus = self.specimen.mesh, self.stimulus
+        if mesh is not None:
+            data["specimen"]["mesh"] = {"name": mesh.name, "sha256": _sha256(mesh.read_bytes())}
+        if isinstance(stimulus, Sampled):
+            points = json.dumps([stimulus.x, stimulus.y]).encode()
+            data["stimulus"] = {"shape": "sampled", "csv": stimulus.csv.name, "sha256": _sha256(points)}
+        return json.loads(json.dumps(data, sort_keys=True))
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Read and check a scene.
+
+    Args:
+        path: YAML file. Paths in it are relative to it, and names of specimens are looked up in
+            config/specimens of its folder, of the folders above, and of the repository.
+
+    Returns:
+        The scene, every quantity an SI float.
+
+    Raises:
+        SceneError: the file cannot be read or anything in it is wrong; its text is one line.
+    """
+    path = Path(path)
+    document = read_yaml(path)
+    try:
+        return Scene.model_validate(document, context=Source(path))
+    except ValidationError as error:
+        raise explain(error, path, document, _TAGS) from None
+
+
+def scene_json_schema() -> dict[str, Any]:
+    """JSON schema of a scene document as people write it (text with units, names of specimens)."""
+    schema = Scene.model_json_schema(mode="validation")
+    for name in ("Outline", "Layers", "Layer", "Ridges", "InnerRidges", "OuterRidges", "Receptors", "Outputs", "Specimen"):
+        schema["$defs"][name].pop("required", None)
+    schema["required"] = ["stimulus", "motion"]
+    return _published(schema, "A fingerpad scene")
+
+
+def specimen_json_schema() -> dict[str, Any]:
+    """JSON schema of a specimen file as people write it."""
+    return _published(SpecimenFile.model_json_schema(mode="validation"), "A fingerpad specimen")
+
+
+def _published(schema: dict[str, Any], title: str) -> dict[str, Any]:
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": title, **_tidy(schema)}
+
+
+def _tidy(schema: Any) -> Any:
+    """Without generated titles, nulls and SI defaults, which documents lack; a stimulus's shape is required."""
+    if isinstance(schema, list):
+        return [_tidy(item) for item in schema if item != {"type": "null"}]
+    if not isinstance(schema, dict):
+        return schema
+    tidy = {
+        key: _tidy(value)
+        for key, value in schema.items()
+        if not (key == "title" or (key == "default" and not isinstance(value, str)))
+    }
+    if "const" in tidy.get("properties", {}).get("shape", {}):
+        tidy["required"] = ["shape", *tidy.get("required", [])]
+    return tidy

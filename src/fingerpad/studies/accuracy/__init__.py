@@ -1,0 +1,1 @@
+"""What accuracy costs in time, and whether runs know their error."""

@@ -1,0 +1,150 @@
+"""Does a run know its error? Scenes that the study of accuracy has not seen, each against the same scene on the finest preset.
+
+The truth is the largest relative difference of depth, width, centre and peak pressure and strain energies at the legs' ends to
+the "fine" run, made finer in narrow contacts, which has an error of its own. The belief is what the run itself states as its
+error; it covers the truth when it is not smaller.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from fingerpad.planning.plan import Plan, plan
+from fingerpad.scenes.scene import Cylinder, Flat, Hold, PressToDepth, PressToForce, Scene, Slide
+from fingerpad.studies.accuracy.run import DEPTHS
+
+GF = 9.80665e-3
+LEVELS = ("draft", 0.05, 0.02)
+"""Accuracies that are asked for."""
+FINEST = "finest"
+"""Name of the run the others are held to."""
+OUTSIDE = (
+    "curvature_79",
+    "curvature_420",
+    "curvature_2500",
+    "plate_5_gf",
+    "curvature_315_at_50_gf",
+    "curvature_630_at_5_gf_in_33_ms",
+    "curvature_157_stiff_epidermis",
+    "curvature_210_thin_epidermis",
+    "plate_soft_fat",
+    "curvature_105_to_1_mm_at_8_mm_per_s",
+    "curvature_840_steady_10_gf",
+    "curvature_210_nearly_incompressible",
+    "plate_10_gf_stroked_back",
+    "plate_30_gf_stroked_slowly",
+)
+"""Names of the scenes of :func:`outside`. The last but one showed that errors of strokes add to those of presses; the last was
+added to check what the planner has made of that."""
+
+
+def covered(rows: pd.DataFrame) -> float:
+    """Share of the runs, of those held to a finer one, that are no wronger than they believe."""
+    asked = rows[rows["accuracy"] != FINEST]
+    return float((asked["believed error (%)"] >= asked["true error (%)"]).mean())
+
+
+def _press(grams: float, rate: float | None = 40.0, hold: float | None = 2.0) -> tuple:
+    first = PressToForce(press_to_force=grams * GF, rate=rate and rate * GF)
+    return (first, Hold(hold=hold)) if hold else (first,)
+
+
+def _layers(scene: Scene, **changes: dict[str, float]) -> dict[str, Any]:
+    layers = scene.specimen.layers
+    update = {name: getattr(layers, name).model_copy(update=values) for name, values in changes.items()}
+    return {"specimen": scene.specimen.model_copy(update={"layers": layers.model_copy(update=update)})}
+
+
+def outside(base: Scene) -> dict[str, Scene]:
+    """Scenes outside the study by what is different in them: curvature, force, speed, layers, depth control, a stroke."""
+
+    def cylinder(curvature):
+        return {"stimulus": Cylinder(curvature=curvature)}
+
+    def outline(**values):
+        specimen = base.specimen
+        return {"specimen": specimen.model_copy(update={"outline": specimen.outline.model_copy(update=values)})}
+
+    nearly = {"poisson_ratio": 0.4995}
+    back, slowly = Slide(slide=-4e-3, speed=20e-3), Slide(slide=3e-3, speed=5e-3)
+    changes = {
+        "curvature_79": cylinder(78.74),
+        "curvature_420": cylinder(419.95),
+        "curvature_2500": cylinder(2500.0),
+        "plate_5_gf": {"stimulus": Flat(), "motion": _press(5.0)},
+        "curvature_315_at_50_gf": cylinder(314.96) | {"motion": _press(50.0)},
+        "curvature_630_at_5_gf_in_33_ms": cylinder(629.92) | {"motion": _press(5.0, rate=150.0)},
+        "curvature_157_stiff_epidermis": cylinder(157.48) | _layers(base, epidermis={"youngs_modulus": 0.45e6}),
+        "curvature_210_thin_epidermis": cylinder(209.97) | outline(epidermis_thickness=0.5e-3),
+        "plate_soft_fat": {"stimulus": Flat()} | _layers(base, fat={"youngs_modulus": 5e3}),
+        "curvature_105_to_1_mm_at_8_mm_per_s": cylinder(104.99)
+        | {"motion": (PressToDepth(press_to_depth=1e-3, speed=8e-3), Hold(hold=1.0))},
+        "curvature_840_steady_10_gf": cylinder(840.0) | {"motion": _press(10.0, rate=None, hold=None)},
+        "curvature_210_nearly_incompressible": cylinder(209.97) | _layers(base, epidermis=nearly, dermis=nearly, fat=nearly),
+        "plate_10_gf_stroked_back": {"stimulus": Flat(), "friction": 0.4, "motion": (*_press(10.0, hold=None), back)},
+        "plate_30_gf_stroked_slowly": {"stimulus": Flat(), "friction": 0.5, "motion": (*_press(30.0, hold=None), slowly)},
+    }
+    return {name: base.model_copy(update=update | {"accuracy": "fine"}) for name, update in changes.items()}
+
+
+def ends(history) -> dict[str, np.ndarray]:
+    """Headline quantities at the end of every leg, (legs,) or (legs, receptors)."""
+    leg = history.leg.values
+    last = [int(np.flatnonzero(leg == number)[-1]) for number in np.unique(leg[1:])]
+    names = ("indentation_depth", "contact_width", "centre_pressure", "peak_pressure", "strain_energy_density")
+    return {name: history[name].values[last] for name in names}
+
+
+def difference(found: dict[str, Any], truth: dict[str, Any]) -> tuple[float, str]:
+    """Largest relative difference and the quantity that has it."""
+    off = {name: float(np.max(np.abs(np.asarray(found[name]) / np.asarray(truth[name]) - 1))) for name in truth}
+    worst = max(off, key=off.get)
+    return off[worst], worst
+
+
+def prepared(name: str, base: Scene) -> Scene:
+    """One scene of :func:`outside` with the receptors that are looked at, to be run finely."""
+    receptors = base.outputs.receptors.model_copy(update={"depths": DEPTHS, "offsets": (0.0,)})
+    return outside(base)[name].model_copy(
+        update={"outputs": base.outputs.model_copy(update={"receptors": receptors, "snapshots": ()})}
+    )
+
+
+def finest(scene: Scene) -> Plan:
+    """The plan of the truth: the scene's preset, in the contact at least 20 elements to its half width."""
+    chosen = plan(scene)
+    edge, reach = min(chosen.mesh_size.skin_edge, chosen.contact.half_width / 20), 1.2 * chosen.contact.half_width
+    if edge == chosen.mesh_size.skin_edge:
+        return chosen
+    focus = tuple((float(x), edge) for x in np.linspace(0.0, reach, 13))
+    return replace(chosen, mesh_size=replace(chosen.mesh_size, focus=focus, skin_radial_edge=edge), contact_edge=edge)
+
+
+def beliefs(scene: Scene, name: str, levels: tuple = LEVELS) -> list[dict[str, Any]]:
+    """Run a scene at every level and as :func:`finest`: what each believes and how wrong it is (of the finest: unknown)."""
+    from fingerpad.simulation import simulate
+
+    truth = simulate(scene, finest(scene))
+    rows = []
+    for level in (*levels, FINEST):
+        run = truth if level == FINEST else simulate(scene.model_copy(update={"accuracy": level}))
+        error, worst = difference(ends(run), ends(truth)) if run is not truth else (np.nan, "")
+        cost = json.loads(run.attrs["cost"])
+        rows.append(
+            {
+                "scene": name,
+                "accuracy": str(level),
+                "believed error (%)": 100 * float(run.attrs["estimated_error"]),
+                "true error (%)": 100 * error,
+                "worst quantity": worst,
+                "nodes": cost["nodes"],
+                "steps": int(run.sizes["time"] - 1),
+                "process time (s)": cost["cpu_s"],
+            }
+        )
+    return rows

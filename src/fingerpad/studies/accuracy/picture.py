@@ -1,0 +1,183 @@
+"""Figures of the study of accuracy: error and cost, growth of cost, belief and truth. Each is drawn from its data frame."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fingerpad.publishing.style import GREY, INK, study_figure, styled
+
+COST, CHANGE, TIME = "cost (1 = default)", "error (%)", "process time (s)"
+LOOKS = {
+    "Q2P1": ("o", "#1f77a4"), "Q1P0": ("s", "#c8553d"), "P2B": ("^", "#3d8f57"),
+    "Q1": ("s", "0.62"), "Q2": ("o", "0.62"), "Q2R": ("D", "0.62"),
+}  # fmt: skip
+MODELS = {"elastic half-plane": ("P", "#8a4fbf"), "water bed": ("X", "#b8860b")}
+EDGE = 0.012
+"""Where models are drawn that cost less than the axis shows, in costs of the default."""
+KINDS = {
+    "Q2P1": "nine-node quads, mixed", "Q1P0": "four-node quads, mixed", "P2B": "triangles, mixed",
+    "Q1": "four-node quads, full", "Q2": "nine-node quads, full", "Q2R": "nine-node quads, reduced",
+}  # fmt: skip
+"""Words for the elements; the last three, displacements only with full or reduced integration, are for teaching."""
+
+
+def _error(frame: pd.DataFrame, title: str, note: list[str]) -> Figure:
+    fig = study_figure(title, note, 6.4)
+    axes = fig.subplots(2, 4, sharex=True, sharey=True).ravel()
+    elements = frame["model"] == "finite elements"
+    for ax, (quantity, rows) in zip(axes, frame.groupby("quantity", sort=False), strict=False):
+        here = elements[rows.index]
+        others = rows[here & ((rows["strain"] == "small") | (rows["tolerance"] != "0.0001"))]
+        ax.loglog(others[COST], others[CHANGE], "+", color=GREY, ms=4.5, mew=0.9)
+        for element, (marker, colour) in LOOKS.items():
+            part = rows[here & (rows["element"] == element)].drop(others.index, errors="ignore")
+            filled = colour if colour[0] == "#" else "white"
+            ax.loglog(part[COST], part[CHANGE], marker, color=colour, mfc=filled, ms=3.6, mew=0.7)
+        for preset in ("draft", "thesis", "fine"):
+            part = rows[rows["preset"] == preset]
+            ax.loglog(part[COST], part[CHANGE], "o", mfc="none", mec=INK, ms=8, mew=0.9)
+            for x, y in zip(part[COST], part[CHANGE], strict=True):
+                ax.annotate(preset, (x, y), xytext=(5, 4), textcoords="offset points", fontsize=6.5)
+        front = rows[rows["pareto"] & here].sort_values(COST)
+        ax.loglog(front[COST], front[CHANGE], color=INK, lw=0.9, drawstyle="steps-post", zorder=0)
+        for model, (marker, colour) in MODELS.items():
+            part = rows[rows["model"] == model].dropna(subset=[CHANGE])
+            if len(part):
+                ax.loglog(np.full(len(part), EDGE), part[CHANGE], marker, color=colour, ms=6, clip_on=False, zorder=5)
+        ax.axhspan(1e-6, rows["uncertainty (%)"].iloc[0], color="0.93", lw=0, zorder=-1)
+        ax.set_title(
+            quantity.replace("energy 6", "strain energy, 6").replace("energy 9", "strain energy, 9").replace(" um", " µm")
+        )
+    values = frame.loc[frame[CHANGE] > 0, CHANGE]
+    axes[0].set_ylim(max(values.min() / 2, 3e-3), values.max() * 2)
+    axes[0].set_xlim(EDGE, frame[COST].max() * 2.5)
+    for ax in axes[::4]:
+        ax.set_ylabel("error (%)")
+    axes[3].tick_params(labelbottom=True)
+    axes[5].set_xlabel("process time (default preset: 1)")
+    axes[7].axis("off")
+    looks = [
+        Line2D([], [], ls="", marker=marker, color=colour, mfc=colour if colour[0] == "#" else "white", label=KINDS[element])
+        for element, (marker, colour) in LOOKS.items()
+        if (frame["element"] == element).any()
+    ]
+    looks += [Line2D([], [], ls="", marker="+", color=GREY, label="small strain or other tolerance")]
+    looks += [Line2D([], [], color=INK, lw=0.9, label="Pareto front")]
+    if not frame[~elements].empty:
+        costs = frame[~elements].groupby("model")[COST].mean()
+        for model, cost in costs.items():
+            marker, colour = MODELS[model]
+            looks.append(Line2D([], [], ls="", marker=marker, color=colour, label=f"{model} (cost {cost:.1g})"))
+    axes[7].legend(handles=looks, loc="upper left", fontsize=6.5, handletextpad=0.3)
+    return fig
+
+
+@styled
+def error(frame: pd.DataFrame) -> Figure:
+    """Error against cost, ramp and hold by three surfaces."""
+    return _error(
+        frame,
+        "What accuracy costs: ramp and hold",
+        [
+            "Simulated. Error: the largest of flat plate, 210 and 1260 1/m, at the top of the ramp and the end of the hold, to a "
+            "limit extrapolated in mesh and time steps (grey: its own uncertainty). Cost: process time, mean of the three, one "
+            "thread. The two historical models (Phillips and Johnson's half-plane, Srinivasan's water bed) stand on the left "
+            "edge, end of the hold only, fitted to the width of the contact with the plate. Front: of finite elements.",
+        ],
+    )
+
+
+@styled
+def error_stroke(frame: pd.DataFrame) -> Figure:
+    """Error against cost, a stroke."""
+    return _error(
+        frame,
+        "What accuracy costs: a stroke by a flat plate",
+        [
+            "Simulated. Error: the largest of the top of the ramp and four places of a stroke of 6 mm with a coefficient of "
+            "friction of 0.65, against a limit extrapolated in mesh and steps (grey: its own uncertainty). The peak rate of "
+            "strain energy is that of the press before."
+        ],
+    )
+
+
+@styled
+def growth(frame: pd.DataFrame) -> Figure:
+    """Process time, iterations and memory against nodes, with fitted exponents."""
+    fig = study_figure(
+        "How cost grows with the mesh",
+        [
+            "Simulated: mean of ramp and hold by flat plate, 210 and 1260 1/m, 40 steps. Nodes: of the whole pad, half of which "
+            "is solved. Time: process time with meshing. Exponents: of time, least squares over meshes of 3000 nodes and more. "
+            "Memory: of the process, the interpreter and its libraries included, and in the default's runs the kernels of small "
+            "strain.",
+        ],
+        3.3,
+    )
+    axes = fig.subplots(1, 3)
+    for element, (marker, colour) in LOOKS.items():
+        part = frame[frame["element"] == element]
+        exponent = part["exponent"].dropna()
+        label = KINDS[element] + (f": {exponent.iloc[0]:.2f}" if len(exponent) else "")
+        style = {"marker": marker, "color": colour, "ms": 4, "lw": 1, "mfc": colour if colour[0] == "#" else "white"}
+        for ax, column in zip(axes, (TIME, "memory (MB)", "iterations"), strict=True):
+            ax.plot(part["nodes"], part[column], label=label, **style)
+    for ax, label in zip(axes, ("process time (s)", "peak memory (MB)", "Newton iterations of 40 steps"), strict=True):
+        ax.set(xscale="log", xlabel="nodes", ylabel=label)
+    axes[0].set_yscale("log")
+    axes[1].set_ylim(0)
+    axes[2].set_ylim(0)
+    axes[2].legend(fontsize=6.5, loc="lower right", handlelength=1.4, title="exponent of time", title_fontsize=6.5)
+    return fig
+
+
+@styled
+def belief(frame: pd.DataFrame) -> Figure:
+    """What runs believe of their error against what it is, scenes outside the study."""
+    asked, own = frame[frame["true error (%)"].notna()], frame.loc[frame["true error (%)"].isna(), "believed error (%)"]
+    covered = (asked["believed error (%)"] >= asked["true error (%)"]).sum()
+    fig = study_figure(
+        "Does a run know its error?",
+        [
+            f"Simulated: {asked['scene'].nunique()} scenes outside the study, each at three accuracies. Truth: the largest "
+            "difference of depth, width, centre and peak pressure and strain energies at the legs' ends to a run on the preset "
+            f"fine, refined in the contact, which believes in an error of {own.min():.1f} to {own.max():.1f} % itself. Below the "
+            f"line the belief covers the truth: {covered} of {len(asked)} runs.",
+        ],
+        3.9,
+    )
+    left, right = fig.subplots(1, 2, width_ratios=(1, 0.9))
+    ends = np.array([0.08, 100.0])
+    left.fill_between(ends, ends, 1e-3, color="0.95", lw=0)
+    left.loglog(ends, ends, color=GREY, lw=0.8)
+    scenes = list(asked["scene"].unique())
+    groups = asked.groupby("accuracy", sort=False)
+    for (accuracy, part), marker, colour in zip(groups, "osD", ("#c8553d", "#1f77a4", "#3d8f57"), strict=True):
+        believed, true = part["believed error (%)"], part["true error (%)"]
+        name = accuracy if accuracy == "draft" else f"accuracy: {accuracy}"
+        left.loglog(believed, true, marker, color=colour, ms=4.5, label=name)
+        right.semilogx(true / believed, [scenes.index(scene) for scene in part["scene"]], marker, color=colour, ms=4)
+        if accuracy != "draft":
+            left.axvline(100 * float(accuracy), color=colour, lw=0.6, ls=(0, (1, 2)))
+    left.set(xlabel="believed error (%)", ylabel="true error (%)", xlim=ends, ylim=ends)
+    left.legend(loc="upper left")
+    right.set_xlim(right=max(2.0, right.get_xlim()[1]))
+    right.axvline(1, color=GREY, lw=0.8)
+    right.set_yticks(range(len(scenes)), [scene.replace("_", " ") for scene in scenes], fontsize=6.5)
+    right.invert_yaxis()
+    right.set_xlabel("truth / belief")
+    return fig
+
+
+STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
+    "accuracy_error": error,
+    "accuracy_error_stroke": error_stroke,
+    "accuracy_growth": growth,
+    "accuracy_belief": belief,
+}
+"""Figure name -> drawing function of its data frame."""

@@ -1,0 +1,1 @@
+"""Moduli, relaxation and friction from what was measured."""

@@ -1,0 +1,362 @@
+"""Figures of the calibration: fit, identifiability, residuals, relaxation, friction. Each is drawn from its data frame alone."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Sequence
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from fingerpad.measures.columns import DISTANCE, LATERAL
+from fingerpad.measures.features import is_simulated
+from fingerpad.publishing.style import GREY, INK, study_figure, styled
+
+DEPTH, FORCE, COEFFICIENT = "depth (mm)", "force (N)", "coefficient (1)"
+MARKERS = "os^Dv<>P"
+MODEL_LINES = {
+    "constant length": ((0, (4, 1.8)), "#8a4fbf"),
+    "elliptical patch": ("-", "#1f77a4"),
+    "plane sections": ((0, (1, 1.2)), "#c8553d"),
+}
+
+
+def _colours(names: Sequence[str]) -> dict[str, object]:
+    """Colour of each subject; the mean in ink."""
+    subjects = [name for name in names if name != "mean"]
+    shades = mpl.colormaps["viridis"](np.linspace(0.05, 0.8, max(len(subjects), 1)))
+    return dict(zip(subjects, shades, strict=False)) | {"mean": INK}
+
+
+def _title_of(who: str) -> str:
+    return who if who == "mean" else f"subject {who}"
+
+
+@styled
+def fit(frame: pd.DataFrame) -> Figure:
+    """Measured steady forces, fitted curves with 95 % bands and the thesis's constant; the mean with the bone moved."""
+    note = [
+        "Lines: simulated (2-D plane-strain finite elements, steady state, contact length of the default specimen); moduli times "
+        "a fitted constant, but for the one line with the moduli stated in the thesis. Bands: 95 % confidence of the constant, "
+        "from the misfit of each fit.",
+        f"Points: {_measured(frame)}.",
+    ]
+    fig = study_figure("Calibration: steady force under a flat plate", note, 4.2)
+    left, right = fig.subplots(1, 2, sharey=True)
+    simulated = is_simulated(frame)
+    subjects = frame[frame["panel"] == "subjects"]
+    names = list(subjects.loc[~simulated, "series"].unique())
+    colours = _colours(names)
+    for k, who in enumerate(names):
+        rows = subjects[subjects["series"] == who]
+        line, points = rows[is_simulated(rows)], rows[~is_simulated(rows)]
+        mean = who == "mean"
+        left.fill_between(line[DEPTH], line["force_low (N)"], line["force_high (N)"], color=colours[who], alpha=0.13, lw=0)
+        left.plot(line[DEPTH], line[FORCE], color=colours[who], lw=1.8 if mean else 1.1)
+        marker = "*" if mean else MARKERS[k % len(MARKERS)]
+        left.plot(points[DEPTH], points[FORCE], marker, color=colours[who], ms=8 if mean else 4.5, label=_title_of(who))
+    stated = subjects[subjects["series"] == "thesis"]
+    left.plot(stated[DEPTH], stated[FORCE], color=GREY, ls=(0, (4, 1.8)))
+    top = max(1.6, 1.1 * float(frame.loc[~simulated, FORCE].max()))
+    inside = stated[stated[FORCE] < 0.93 * top].iloc[-1]
+    left.annotate(
+        "moduli stated\nin the thesis",
+        (inside[DEPTH], inside[FORCE]),
+        xytext=(-14, 0),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+        color=GREY,
+        fontsize=7.5,
+    )
+    left.set(
+        xlabel="indentation depth (mm)", ylabel="force (N)", title="each subject, and the mean", ylim=(0, top), xlim=(0, 2.5)
+    )
+    left.legend(title="measured", loc="upper left", title_fontsize=8, alignment="left")
+    bone = frame[frame["panel"] == "bone"]
+    styles = ((0, (4, 1.8)), "-", (0, (1, 1.2)))
+    for style, (name, rows) in zip(styles, bone.groupby("series", sort=False), strict=False):
+        right.plot(rows[DEPTH], rows[FORCE], color=INK, ls=style, lw=1.3, label=name)
+    last = subjects[(subjects["series"] == names[-1]) & ~is_simulated(subjects)]
+    right.plot(last[DEPTH], last[FORCE], "*" if names[-1] == "mean" else "o", color=INK, ms=8)
+    right.set(xlabel="indentation depth (mm)", title=f"{_title_of(names[-1])}, the bone moved, the same constant", xlim=(0, 2.5))
+    right.legend(loc="upper left", title="fat under the apex", title_fontsize=8, alignment="left")
+    return fig
+
+
+def _measured(frame: pd.DataFrame) -> str:
+    sources = frame.loc[~is_simulated(frame), "source"].drop_duplicates()
+    return "; ".join(sources)
+
+
+@styled
+def identifiability(frame: pd.DataFrame) -> Figure:
+    """The valley of equal misfit over constant and contact length, and the profiles along each and across."""
+    note = [
+        "Simulated forces against measured ones: rise of the sum of squares above its least, over the squared scatter of the "
+        "fit. Along the valley nothing changes: force tells modulus x contact length and nothing of either alone.",
+    ]
+    fig = study_figure("Calibration: what force can tell", note, 3.7)
+    left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
+    ridge = frame[frame["panel"] == "ridge"]
+    grid = ridge.pivot(index="contact_length (mm)", columns="modulus_constant (1)", values="rise (1)")
+    filled = left.contourf(
+        grid.columns, grid.index, np.log10(grid.to_numpy() + 0.1), levels=np.linspace(-1, 3.2, 22), cmap="viridis_r", extend="max"
+    )
+    filled.set_edgecolor("face")
+    lines = left.contour(
+        grid.columns, grid.index, grid.to_numpy(), levels=[3, 10, 30, 100, 300, 1000], colors="white", linewidths=0.6
+    )
+    left.clabel(lines, lines.levels[1:], fmt="%g", fontsize=6.5)
+    s, length = (np.sqrt(axis[0] * axis[-1]) for axis in (grid.columns, grid.index))
+    left.plot(grid.columns, s * length / grid.columns, color=INK, lw=1.2)
+    left.plot([1.0], [length], "X", color="#c8553d", ms=8, mec="white", mew=0.8)
+    left.annotate(
+        "stated in the thesis\n(the length inferred)",
+        (1.0, length),
+        xytext=(0.97, 0.95),
+        textcoords="axes fraction",
+        fontsize=7,
+        color="white",
+        ha="right",
+        va="top",
+        arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.6},
+    )
+    left.set(
+        xscale="log",
+        yscale="log",
+        xlabel="modulus constant (1)",
+        ylabel="contact length (mm)",
+        title="misfit over both; line: their best product",
+        xlim=(grid.columns[0], grid.columns[-1]),
+        ylim=(grid.index[0], grid.index[-1]),
+    )
+    for axis in (left.xaxis, left.yaxis):
+        axis.set_major_locator(mpl.ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
+        axis.set_minor_formatter(mpl.ticker.NullFormatter())
+    profile = frame[frame["panel"] == "profile"]
+    styles = {
+        "modulus constant x contact length": ("-", 1.6),
+        "contact length": ((0, (4, 1.8)), 1.8),
+        "modulus constant": ((0, (1, 1.2)), 1.8),
+    }
+    for name, (style, width) in styles.items():
+        rows = profile[profile["series"] == name]
+        right.plot(rows["relative (1)"], rows["rise (1)"], color=INK, ls=style, lw=width, label=name)
+    for row in frame[frame["panel"] == "level"].itertuples():
+        level = frame.loc[row.Index, "rise (1)"]
+        right.axhline(level, color=GREY, lw=0.7)
+        right.text(1.49, level + 0.3, textwrap.fill(row.series, 16), color=GREY, fontsize=7, ha="right", va="bottom")
+    right.set(
+        xlabel="value over best value (1)",
+        ylabel="rise of the misfit (1)",
+        title="profiles, the other refitted",
+        ylim=(-0.8, 25),
+        xlim=(0.5, 1.5),
+    )
+    right.text(1.0, 18, "modulus constant\nx contact length", ha="center", va="center", fontsize=8)
+    right.text(0.52, 0.5, "either alone", va="bottom", fontsize=8)
+    return fig
+
+
+@styled
+def residuals(frame: pd.DataFrame) -> Figure:
+    """Misfit by depth with a constant contact length and with two that grow, and the effective length that force asks for."""
+    note = [
+        "Each model of the contact's length has one parameter, fitted to each subject with the thesis's moduli. "
+        "Elliptical patch: length proportional to the simulated width. Plane sections: the pad curved along the finger, "
+        "each section pressed by itself. Thin lines and points: subjects; thick: the mean. Measured forces: see the fit.",
+    ]
+    fig = study_figure("Calibration: a contact that grows", note, 3.9)
+    left, right = fig.subplots(1, 2)
+    residual = frame[frame["panel"] == "residuals"]
+    subjects = residual["subject"].unique()
+    thick = "mean" if "mean" in subjects else subjects[0]
+    for model, (style, colour) in MODEL_LINES.items():
+        for who, rows in residual[residual["series"] == model].groupby("subject"):
+            mean = who == thick
+            left.plot(
+                rows[DEPTH],
+                1e3 * rows["residual (N)"],
+                color=colour,
+                ls=style,
+                lw=2.0 if mean else 0.7,
+                alpha=1 if mean else 0.75,
+                marker="o",
+                ms=3.5 if mean else 2,
+                label=model if mean else None,
+            )
+    left.axhline(0, color=GREY, lw=0.7)
+    left.set(xlabel="indentation depth (mm)", ylabel="measured less simulated (mN)", title="residuals")
+    low, high = left.get_ylim()
+    left.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
+    left.legend(loc="upper left")
+    length = frame[frame["panel"] == "length"]
+    needed, fitted = length[length["series"] == "needed"], length[length["series"] != "needed"]
+    colours = _colours(list(needed["subject"].unique()))
+    for k, (who, rows) in enumerate(needed.groupby("subject", sort=False)):
+        marker = "*" if who == "mean" else MARKERS[k % len(MARKERS)]
+        right.plot(
+            rows[DEPTH],
+            rows["effective_length (mm)"],
+            marker,
+            color=colours[who],
+            ms=8 if who == "mean" else 4.5,
+            label=_title_of(who),
+        )
+    for model, rows in fitted.groupby("series", sort=False):
+        style, colour = MODEL_LINES[model]
+        right.plot(rows[DEPTH], rows["effective_length (mm)"], color=colour, ls=style)
+    right.set(
+        xlabel="indentation depth (mm)",
+        ylabel="effective length (mm)",
+        title="measured force / simulated force per length",
+        ylim=(0, None),
+        xlim=(0, 2.5),
+    )
+    right.legend(loc="upper left", ncols=2, fontsize=7)
+    return fig
+
+
+@styled
+def prony(frame: pd.DataFrame) -> Figure:
+    """Ramp-and-hold force and its fits, their errors, and how well amplitudes of the measured time constants could be told."""
+    note = [
+        "Simulated throughout: no measured time courses are at hand. The force is that of the pad with the series stated in the "
+        "thesis, with known noise; fits start far from it. Time constants of Pawluk and Howe (1999) are measured, their "
+        "abstract gives "
+        "no amplitudes: right, the error any amplitude would have, whatever it is.",
+    ]
+    fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
+    grid = fig.add_gridspec(2, 2, width_ratios=(1.35, 1), height_ratios=(1.5, 1))
+    top, below, right = fig.add_subplot(grid[0, 0]), fig.add_subplot(grid[1, 0]), fig.add_subplot(grid[:, 1])
+    force = frame[frame["panel"] == "force"]
+    noisy = force[force["series"] == "with noise"]
+    top.plot(noisy["time (s)"], noisy[FORCE], ".", color=GREY, ms=4, label="simulated, with noise")
+    styles = {
+        "thesis's series, hereditary": ((0, (1, 1.2)), "#8a4fbf"),
+        "fitted, hereditary": ((0, (4, 1.8)), "#c8553d"),
+        "fitted, corrected": ("-", INK),
+        "Pawluk and Howe's constants": ((0, (3, 1.2, 1, 1.2)), "#1f77a4"),
+    }
+    for name, (style, colour) in styles.items():
+        rows = force[force["series"] == name]
+        top.plot(rows["time (s)"], rows[FORCE], color=colour, ls=style, lw=1.2, label=name)
+        below.plot(rows["time (s)"], rows["difference (% of the peak)"], color=colour, ls=style, lw=1.2)
+    for ax in (top, below):
+        ax.set(xscale="log", xlim=(0.015, 10.5))
+        ax.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
+    top.tick_params(labelbottom=False)
+    top.set(ylabel="force (N)", ylim=(0, 1.6 * noisy[FORCE].max()))
+    top.legend(loc="upper left", fontsize=7, ncols=2, columnspacing=1.2, handlelength=1.8)
+    below.axhline(0, color=GREY, lw=0.7)
+    below.set(xlabel="time (s)", ylabel="off the simulation\n(% of the peak)")
+    told = frame[frame["panel"] == "amplitudes"]
+    for marker, (speed, rows) in zip(MARKERS, told.groupby("series", sort=False), strict=False):
+        right.plot(
+            rows["tau (s)"],
+            rows["half_width (1)"],
+            marker=marker,
+            color=INK,
+            lw=0.9,
+            ms=5,
+            mfc="white" if marker == "o" else INK,
+            label=f"ramp of {speed}",
+        )
+    right.set(
+        xscale="log",
+        yscale="log",
+        xlabel="time constant (s)",
+        ylabel="95 % half-width of an amplitude\nover the steady force (1)",
+        title="error of an amplitude",
+    )
+    right.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
+    right.yaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
+    right.legend(loc="upper right")
+    return fig
+
+
+@styled
+def friction(frame: pd.DataFrame) -> Figure:
+    """Lateral displacement along the strokes, its mean and range over the coefficient, the thesis's stretch, published values."""
+    panels = {name: rows for name, rows in frame.groupby("panel", sort=False)}
+    published = panels["published"]
+    note = [
+        "Lines and points: simulated (2-D plane-strain finite elements; the first two convexities of the wavy surface, 20 gf, "
+        "10 mm/s unless said otherwise). Shaded blue: about 1 mm, the stretch stated in the thesis; dotted: the axis of its "
+        "Fig 5-15; it states no coefficient.",
+        "Published coefficients of fingers, at loads from 1 N on but for the model:",
+        f"{'; '.join(published['source'].unique())}.",
+    ]
+    fig = study_figure("Calibration: friction from the stretch of the skin", note, 4.4)
+    grid = fig.add_gridspec(2, 2, height_ratios=(3.2, 1))
+    left, right = fig.add_subplot(grid[:, 0]), fig.add_subplot(grid[0, 1])
+    below = fig.add_subplot(grid[1, 1], sharex=right)
+    about, axis = (panels["stated"].iloc[k] for k in (0, 1))
+    for ax in (left, right):
+        ax.axhspan(about["lowest (mm)"], about["highest (mm)"], color="#1f77a4", alpha=0.15, lw=0)
+        ax.axhline(about[LATERAL], color="#1f77a4", lw=0.8)
+        for end in ("lowest (mm)", "highest (mm)"):
+            ax.axhline(axis[end], color=GREY, lw=0.8, ls=(0, (1, 1.6)))
+    courses = list(panels["course"].groupby("series", sort=False))
+    for colour, (name, rows) in zip(mpl.colormaps["viridis"](np.linspace(0.05, 0.85, len(courses))), courses, strict=True):
+        left.plot(rows[DISTANCE], rows[LATERAL], color=colour, lw=1.1)
+        left.text(rows[DISTANCE].iloc[-1] + 0.6, rows[LATERAL].iloc[-1], name, color=colour, fontsize=7, va="center")
+    start, end = panels["waves"][DISTANCE]
+    for x in (start, end):
+        left.axvline(x, color=GREY, lw=0.6)
+    left.text(
+        (start + end) / 2, 0.985, "waves", transform=left.get_xaxis_transform(), color=GREY, fontsize=7, ha="center", va="top"
+    )
+    left.set(
+        xlabel="stroke distance (mm)",
+        ylabel="lateral displacement of the centre (mm)",
+        title="strokes; number: coefficient of friction",
+        xlim=(0, 1.1 * frame[DISTANCE].max()),
+    )
+    curve, estimate = panels["stretch"], panels["estimate"].iloc[0]
+    right.fill_between(curve[COEFFICIENT], curve["lowest (mm)"], curve["highest (mm)"], color=INK, alpha=0.13, lw=0)
+    right.plot(curve[COEFFICIENT], curve[LATERAL], "o-", color=INK, ms=3, lw=1.2)
+    right.plot(estimate[COEFFICIENT], estimate[LATERAL], "*", color="#c8553d", ms=9, zorder=4)
+    for marker, row in zip("<>^v", panels.get("variations", frame.iloc[:0]).to_dict("records"), strict=False):
+        right.plot(row[COEFFICIENT], row[LATERAL], marker, color="#8a4fbf", ms=4.5, mfc="white", ls="none")
+        above = row[LATERAL] > estimate[LATERAL]
+        right.annotate(
+            textwrap.fill(row["series"], 20),
+            (row[COEFFICIENT], row[LATERAL]),
+            xytext=(6 if above else -6, 0),
+            textcoords="offset points",
+            ha="left" if above else "right",
+            va="center",
+            color="#8a4fbf",
+            fontsize=7,
+        )
+    right.margins(y=0.1)
+    right.set(ylabel="over the waves (mm)", title="mean and range; purple: one thing changed")
+    right.tick_params(labelbottom=False)
+    for k, row in enumerate(published.iloc[::-1].to_dict("records")):
+        measured = str(row["source"]).startswith("measured")
+        ends = [row["lowest_coefficient (1)"], row["highest_coefficient (1)"]]
+        below.plot(ends, [k, k], color=INK, lw=2.2)
+        below.plot(row[COEFFICIENT], k, "o", color=INK, ms=4, mfc=INK if measured else "white")
+        label = row["series"] if measured else "assumed in a model"
+        below.text(0.02, k, label, transform=below.get_yaxis_transform(), fontsize=7, va="center")
+    below.axvline(estimate[COEFFICIENT], color="#c8553d", lw=0.8)
+    below.text(estimate[COEFFICIENT] + 0.012, len(published) - 1, f"{estimate[COEFFICIENT]:.3f}", color="#c8553d", va="center")
+    below.set(
+        xlabel="coefficient of friction (1)", title="published", yticks=[], ylim=(-0.7, len(published) - 0.3), xlim=(0, 1.12)
+    )
+    return fig
+
+
+STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
+    "calibration_fit": fit,
+    "calibration_identifiability": identifiability,
+    "calibration_residuals": residuals,
+    "calibration_prony": prony,
+    "calibration_friction": friction,
+}
+"""Study figure -> function of its data frame."""

@@ -1,0 +1,1 @@
+"""What each effect changes and costs, and what the planner makes of it."""

@@ -1,0 +1,125 @@
+"""Figure of the study of effects: what each changes and costs, and the planner's choices against that."""
+
+from __future__ import annotations
+
+import textwrap
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fingerpad.publishing.style import GREY, INK, NOTE_WIDTH, PAGE_WIDTH, spread, styled
+
+LEAST = 1e-6
+"""Smaller changes are drawn here."""
+DRAFT = 0.06
+"""What a draft, as in the left panel, lets effects that are left out change."""
+WRONG, RED = ("wrongly left out", "carried for nothing"), "#c8303d"
+NAMES = {
+    "symmetry": "symmetry (half the pad)",
+    "viscoelasticity": "viscoelasticity",
+    "finite_strain": "finite strain",
+    "friction": "friction",
+    "ridges": "ridges",
+    "local refinement": "local refinement",
+    "full-field output": "full-field output",
+}
+MARKERS = dict(zip(NAMES, "so^DvPX", strict=True))
+COLOURS = dict(zip(NAMES, mpl.colormaps["viridis"](np.linspace(0, 0.85, len(NAMES))), strict=True))
+
+
+def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
+    """Plotted rows: panel changes (of :func:`fingerpad.studies.effects.run.study`) and panel planner (of ``verdicts``)."""
+    return pd.concat([pairs.assign(panel="changes"), found.assign(panel="planner")], ignore_index=True)
+
+
+@styled
+def effects(frame: pd.DataFrame) -> Figure:
+    """Left, change over cost ratio of each effect; right, what each choice of the planner is worth over the accuracy."""
+    height = 5.6
+    fig = Figure(figsize=(PAGE_WIDTH, height))
+    fig.text(0.012, 1 - 0.09 / height, "What effects change and cost", ha="left", va="top", fontweight="bold", fontsize=9.5)
+    scenes = len(frame.loc[frame["panel"] == "planner", ["seed", "scene"]].drop_duplicates())
+    note = (
+        "Simulated. Change: largest of depth, force, width, centre pressure, strain energy and, in strokes, tangential force and "
+        "lateral displacement, each over its largest value; with and without the effect on the same draft mesh (symmetry: half "
+        f"the pad). Cost: process time with over without. Right: {scenes} scenes drawn at random, planned at the accuracy each "
+        "asks for (0.5 % to 10 %), one effect flipped at a time. What is left out may be worth up to that accuracy (line); what "
+        "is carried should be worth a tenth of it or more (dashed). Symmetry leaves half the pad out."
+    )
+    note = textwrap.fill(note, NOTE_WIDTH - 12)
+    fig.text(0.012, 0.06 / height, note, ha="left", va="bottom", fontsize=7, color=GREY, linespacing=1.35)
+    grid = fig.add_gridspec(
+        1, 2, left=0.1, right=0.985, top=1 - 0.72 / height, bottom=1.45 / height, wspace=0.42, width_ratios=(1.35, 1)
+    )
+    _changes(fig.add_subplot(grid[0, 0]), frame[frame["panel"] == "changes"])
+    _planner(fig.add_subplot(grid[0, 1]), frame[frame["panel"] == "planner"], scenes)
+    return fig
+
+
+def _dot(label: str, **style) -> Line2D:
+    return Line2D([], [], ls="", marker="o", label=label, **{"color": GREY, "ms": 4} | style)
+
+
+def _legend(ax, handles: list[Line2D]) -> None:
+    ax.legend(
+        handles=handles, loc="lower left", bbox_to_anchor=(-0.02, 0.985), ncols=3, fontsize=6.5, handletextpad=0.1,
+        columnspacing=0.8,
+    )  # fmt: skip
+
+
+def _changes(ax, rows: pd.DataFrame) -> None:
+    change = rows["change"].clip(lower=LEAST)
+    for row, y in zip(rows.to_dict("records"), change, strict=True):
+        colour = COLOURS[row["effect"]]
+        face = colour if str(row["planned"]) == "True" else "white"
+        ax.plot(row["cost ratio"], y, MARKERS[row["effect"]], color=colour, mfc=face, ms=6, mew=1.2)
+    ax.axvline(1, color=GREY, lw=0.7)
+    ax.axhline(DRAFT, color=GREY, lw=0.7, ls=(0, (4, 1.8)))
+    ax.text(0.11, DRAFT * 1.15, "a draft's accuracy", fontsize=6, color=GREY)
+    ax.set(
+        xscale="log", yscale="log", xlim=(0.1, 700), ylim=(LEAST / 2, 5), xlabel="cost with over cost without (1)",
+        ylabel="largest change of a headline quantity (1)",
+    )  # fmt: skip
+    ax.set_title("on scenes where it matters, and where it does not", pad=18)
+    _legend(ax, [_dot("planned"), _dot("not planned", mfc="white")])
+    ax.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
+    ax.set_xticks([0.2, 0.5, 1, 2, 5])
+    ax.xaxis.set_minor_locator(mpl.ticker.NullLocator())
+    ax.xaxis.set_label_coords(0.23, -0.075)
+    _floor(ax.yaxis)
+    logs = np.log10(change.to_numpy())
+    places = 10 ** spread(logs, 0.33, np.log10(LEAST / 2) + 0.1, 0.62)
+    for row, y, place in zip(rows.to_dict("records"), change, places, strict=True):
+        ax.plot([row["cost ratio"], 12], [y, place], color=COLOURS[row["effect"]], lw=0.4, alpha=0.6, zorder=0)
+        name = NAMES[row["effect"]].split(" (")[0]
+        ax.text(12.8, place, f"{name}: {row['scene']}", fontsize=5.6, va="center", color=INK, clip_on=False)
+
+
+def _floor(axis) -> None:
+    """Powers of ten from LEAST, which stands for all below it, too."""
+    ticks = np.arange(round(np.log10(LEAST)), 1, 2 if axis.axis_name == "x" else 1)
+    axis.set_ticks(10.0**ticks, labels=[("$\\leq$" if k == 0 else "") + f"$10^{{{tick}}}$" for k, tick in enumerate(ticks)])
+
+
+def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
+    names = [name for name in NAMES if name in set(rows["effect"])]
+    shift = np.random.default_rng(0)
+    for k, name in enumerate(names):
+        for row in rows[rows["effect"] == name].dropna(subset="share").to_dict("records"):
+            wrong = row["verdict"] in WRONG
+            carried = "carried" in row["verdict"]
+            ax.plot(
+                max(row["share"], LEAST), k + (0.2 if carried else -0.2) + shift.uniform(-0.13, 0.13), MARKERS[name], ms=4,
+                mew=0.9, color=RED if wrong else COLOURS[name], mfc=COLOURS[name] if carried and not wrong else "white",
+            )  # fmt: skip
+    ax.axvline(1, color=INK, lw=0.9)
+    ax.axvline(0.1, color=GREY, lw=0.9, ls=(0, (4, 1.8)))
+    ax.set(xscale="log", xlim=(LEAST / 2, 200), ylim=(-0.6, len(names) - 0.4), xlabel="worth over accuracy (1)")
+    _floor(ax.xaxis)
+    ax.set_yticks(range(len(names)), [NAMES[name].replace(" (", "\n(") for name in names], fontsize=7)
+    ax.set_title(f"the planner's choices in {scenes} scenes", pad=18)
+    wrong = int(rows["verdict"].isin(WRONG).sum())
+    _legend(ax, [_dot("carried"), _dot("left out", mfc="white"), _dot(f"wrong ({wrong})", color=RED, mfc="white")])

@@ -1,0 +1,1 @@
+"""What receptors respond to, and how well a sensor can know it."""

@@ -1,0 +1,1 @@
+"""Strokes over pads with ridges."""

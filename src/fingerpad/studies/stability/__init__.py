@@ -1,0 +1,1 @@
+"""How stable the method is in hard cases."""

@@ -1,0 +1,188 @@
+"""Figure regression: plotted data compared tightly, pictures loosely, with the committed ones.
+
+Two kinds of baselines, both committed:
+
+- ``tests/baselines/fig_<number>.csv`` and ``.png``: every figure from simulations on coarse meshes, which the
+  tests run afresh. They catch a change of the mechanics, of a figure's data or of its drawing.
+- ``tests/baselines/thesis.csv``: a summary of every curve in ``figures/thesis/*.csv``. It catches a change of
+  the published data even where the thesis-resolution results are not at hand, or were overwritten.
+
+A deliberate change is accepted by ``make regression-update``, then committed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from fingerpad.publishing.write import TEXT_COLUMNS
+
+TOLERANCES = {
+    "time (s)": 1e-5,
+    "indentation_depth (mm)": 1e-3,
+    "vertical_displacement (mm)": 1e-3,
+    "contact_width (mm)": 3e-3,
+    "force (gf)": 1e-5,
+    "force (N)": 2e-3,
+    "deflection (mm)": 1e-3,
+    "centre_pressure (Pa)": 3e-3,
+    "peak_pressure (Pa)": 3e-3,
+    "contact_pressure (Pa)": 5e-3,
+    "scaled_centre_pressure (Pa)": 3e-3,
+    "strain_energy_density (Pa)": 2e-3,
+    "strain_energy_rate (Pa/s)": 5e-3,
+    "x (mm)": 1e-3,
+    "y (mm)": 1e-3,
+    "node_x (mm)": 1e-6,
+    "receptor_depth (um)": 1e-6,
+    "stroke_distance (mm)": 1e-4,
+    "height (mm)": 1e-4,
+    "curvature (1/m)": 1e-4,
+    "radius (mm)": 1e-4,
+    "skin_curvature (1/mm)": 2e-2,
+    "scaled_skin_curvature (Pa)": 1e-2,
+    "lateral_displacement (mm)": 2e-3,
+    "contact_length (mm)": 1e-2,
+    "trial (1)": 1e-6,
+    "velocity (mm/s)": 1e-6,
+    "predicted_rate (impulses/s)": 1e-2,
+    "rate_from_energy (impulses/s)": 1e-2,
+    "predicted_frequency (impulses/s)": 1e-2,
+    "burst_width (mm)": 1e-2,
+    "burst_duration (s)": 1e-2,
+    "burst_rate (impulses/s)": 1e-2,
+    "impulse_time (s)": 1e-3,
+    "impulse_rate (impulses/s)": 1e-2,
+    "steady_rate (impulses/s)": 1e-2,
+    "inverse_contact_width (1/mm)": 3e-3,
+    "mean_centre_pressure (Pa)": 3e-3,
+    "pressure_by_law (Pa)": 5e-3,
+    "strain_energy_by_eq_4_4 (Pa)": 5e-3,
+    "surface_may_be (1/m)": 1e-4,
+    "element": 1e-5,
+    "value": 1e-3,
+}
+"""Largest difference allowed in a column, relative to the largest value of the curve. Pressure and width
+carry the jumps of single nodes entering contact; everything else is smooth."""
+
+ERROR_TOLERANCE = 0.2
+"""The same for the columns ``discretisation_error (...)``, small differences of large numbers."""
+
+SIMILARITY = 0.98
+"""Least structural similarity of two pictures, averaged where either has ink (1: the same)."""
+
+BASELINE_DPI = 60
+"""Resolution of the baseline pictures."""
+
+
+def tolerance(column: str) -> float:
+    """Relative tolerance of a column. Raises KeyError for a column without one."""
+    return ERROR_TOLERANCE if column.startswith("discretisation_error") else TOLERANCES[column]
+
+
+def split_curves(frame: pd.DataFrame) -> Iterable[tuple[str, pd.DataFrame]]:
+    """Curves of a frame: rows equal in every text column, with a name made of them."""
+    keys = [c for c in TEXT_COLUMNS if c in frame]
+    keys += [c for c in ("receptor_depth (um)", "node_x (mm)") if c in frame]
+    for names, rows in frame.groupby(keys, dropna=False, sort=False):
+        yield ", ".join(str(n) for n in names if n == n), rows.drop(columns=keys)
+
+
+def differences(frame: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:
+    """What differs between two frames of a figure by more than the tolerances; empty if nothing does.
+
+    Columns, curves and the number of points must be the same; numbers are compared point by point, relative
+    to the largest magnitude in the curve.
+    """
+    if list(frame.columns) != list(baseline.columns):
+        return [f"columns {list(frame.columns)}, baseline {list(baseline.columns)}"]
+    ours, theirs = (dict(split_curves(f)) for f in (frame, baseline))
+    found = [f"{name}: only in the new data" for name in ours.keys() - theirs.keys()]
+    found += [f"{name}: only in the baseline" for name in theirs.keys() - ours.keys()]
+    for name in theirs.keys() & ours.keys():
+        new, old = ours[name], theirs[name]
+        if len(new) != len(old):
+            found.append(f"{name}: {len(new)} points, baseline {len(old)}")
+            continue
+        for column in old.columns:
+            a, b = new[column].to_numpy(float), old[column].to_numpy(float)
+            if (np.isnan(a) != np.isnan(b)).any():
+                found.append(f"{name}: {column} is missing in one and not in the other")
+                continue
+            scale = np.nanmax(abs(b), initial=0.0)
+            worst = np.nanmax(abs(a - b), initial=0.0)
+            if worst > tolerance(column) * scale + 1e-12:
+                share = worst / scale if scale else np.inf
+                found.append(f"{name}: {column} differs by {share:.2%} of its largest")
+    return sorted(found)
+
+
+def summary(frames: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Every curve of several figures in five numbers a column: count, least, largest, mean, rms."""
+    rows = []
+    for number, frame in frames.items():
+        for name, curve in split_curves(frame):
+            for column in curve.columns:
+                values = curve[column].dropna().to_numpy(float)
+                if values.size:
+                    rows.append(
+                        {
+                            "figure": number,
+                            "curve": name,
+                            "column": column,
+                            "count": values.size,
+                            "least": values.min(),
+                            "largest": values.max(),
+                            "mean": values.mean(),
+                            "rms": np.sqrt(np.mean(values**2)),
+                        }
+                    )
+    return pd.DataFrame(rows)
+
+
+def summary_differences(new: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:
+    """What differs between two summaries by more than the tolerances; empty if nothing does."""
+    keys = ["figure", "curve", "column"]
+    both = new.merge(baseline, on=keys, how="outer", suffixes=("", "_old"), indicator=True)
+    found = []
+    for row in both.to_dict("records"):
+        name = f"Fig. {row['figure']}, {row['curve']}, {row['column']}"
+        if row["_merge"] != "both":
+            found.append(f"{name}: only in the {'new data' if row['_merge'] == 'left_only' else 'baseline'}")
+        elif row["count"] != row["count_old"]:
+            found.append(f"{name}: {row['count']:.0f} points, baseline {row['count_old']:.0f}")
+        else:
+            allowed = tolerance(row["column"]) * max(abs(row["least_old"]), abs(row["largest_old"])) + 1e-12
+            for what in ("least", "largest", "mean", "rms"):
+                if abs(row[what] - row[f"{what}_old"]) > allowed:
+                    found.append(f"{name}: {what} {row[what]:.6g}, baseline {row[f'{what}_old']:.6g}")
+    return found
+
+
+def similarity(first: Path, second: Path, shrink: int = 1) -> float:
+    """Structural similarity (Wang et al. 2004) of two grey pictures over the inked part; 0 if sizes differ.
+
+    `shrink` averages blocks of that many pixels first. White paper is left out of the mean: in a line drawing
+    it would hide a missing curve.
+    """
+    from scipy.ndimage import maximum_filter
+    from skimage.metrics import structural_similarity
+
+    one, two = (_grey(p, shrink) for p in (first, second))
+    if one.shape != two.shape:
+        return 0.0
+    _, local = structural_similarity(one, two, data_range=1.0, full=True)
+    ink = maximum_filter(np.maximum(1 - one, 1 - two) > 0.1, size=3)
+    return float(local[ink].mean()) if ink.any() else 1.0
+
+
+def _grey(path: Path, shrink: int) -> np.ndarray:
+    from PIL import Image
+
+    with Image.open(path) as picture:
+        grey = np.asarray(picture.convert("L"), float) / 255
+    high, wide = (n // shrink * shrink for n in grey.shape)
+    return grey[:high, :wide].reshape(high // shrink, shrink, wide // shrink, shrink).mean(axis=(1, 3))
