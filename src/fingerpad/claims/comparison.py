@@ -20,9 +20,6 @@ import pandas as pd
 
 from fingerpad.claims.numbers import INVERSE_WIDTHS, NUMBERS, Results, end_of, top_of
 from fingerpad.claims.sensitivity import evidence, variant_scene
-from fingerpad.figures.spec import Meshes, read_reference
-from fingerpad.claims.numbers import INVERSE_WIDTHS, NUMBERS, Results, end_of, top_of
-from fingerpad.claims.sensitivity import evidence, variant_scene
 from fingerpad.claims.trends import TRENDS
 from fingerpad.claims.verdicts import is_inside, judge, significant
 from fingerpad.figures.spec import Meshes, read_reference
