@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 # The lock file as it was installed: a target of this Makefile and the environment the workflow's rules depend on.
 INSTALLED := $(VENV)/installed.lock
-SNAKEMAKE := $(BIN)/snakemake --workflow-profile workflow/profiles/default
+SNAKEMAKE := $(BIN)/snakemake
 
 # Tests run in so many processes, each with whole files of them.
 WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
@@ -13,7 +13,7 @@ WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help setup figures smoke test bench lint report specimens regression-update lock schemas clean
+.PHONY: help setup figures smoke test bench lint report specimens regression-update schemas adopt unlock clean
 
 help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
@@ -25,6 +25,8 @@ help:
 	@echo "make regression-update  accept a deliberate change of the figures"
 	@echo "make lint               style, formatting and the import contracts"
 	@echo "make schemas            write workflow/schemas from the typed models"
+	@echo "make adopt              take copied results for finished ones: nothing is made again for being newer or older"
+	@echo "make unlock             let go of a locked working directory whose run is dead (done by itself where that can be told)"
 	@echo "make clean              remove the results (not the environment, not the committed figures)"
 
 setup: $(INSTALLED)
@@ -70,6 +72,12 @@ specimens: $(INSTALLED)
 
 schemas: $(INSTALLED)
 	$(BIN)/python -m fingerpad.config schemas
+
+adopt: $(INSTALLED)
+	$(SNAKEMAKE) --touch
+
+unlock: $(INSTALLED)
+	$(SNAKEMAKE) --unlock
 
 clean:
 	rm -rf results .snakemake

@@ -4,13 +4,22 @@ Inputs:  config/thesis.yaml (or the file given with --configfile), config/scenes
 Outputs: the figures, tables and results that the configuration names.
 
     make figures                                       everything of config/thesis.yaml
-    .venv/bin/snakemake --workflow-profile workflow/profiles/default chapter4
-    .venv/bin/snakemake --workflow-profile workflow/profiles/default figures/thesis/fig_4-10.png
+    .venv/bin/snakemake chapter4
+    .venv/bin/snakemake figures/thesis/fig_4-10.png
+
+The profile is found by itself, through the link `profiles` beside this file.
 """
+
+import sys
 
 from snakemake.utils import min_version, validate
 
+from fingerpad.workflow.lock import take_over
+
 min_version("9.3")
+
+if workflow.is_main_process and (stale := take_over()):
+    print(f"took over {stale} locks of a run that has died", file=sys.stderr)
 
 # Not an unconditional default: Snakemake would merge its keys into those of a file given on the command line.
 if not workflow.overwrite_configfiles:

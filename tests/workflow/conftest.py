@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TREE = ("Snakefile", "config", "pyproject.toml", "requirements.lock", "src", "workflow")
-PROFILE = ("--workflow-profile", "workflow/profiles/default", "--quiet", "host")
+TREE = ("Snakefile", "config", "profiles", "pyproject.toml", "requirements.lock", "src", "workflow")
+QUIET = ("--quiet", "host")
 SMOKE = ("--configfile", "config/smoke.yaml")
 
 
@@ -37,7 +37,7 @@ class Project:
     def snakemake(self, *arguments: str, **environment: str) -> subprocess.CompletedProcess:
         path = os.pathsep.join([str(self.root / "src"), str(Path(__file__).parent / "trace")])
         return subprocess.run(
-            [sys.executable, "-m", "snakemake", *PROFILE, *arguments],
+            [sys.executable, "-m", "snakemake", *QUIET, *arguments],
             cwd=self.root,
             env=os.environ | {"PYTHONPATH": path} | self.environment | environment,
             stdin=subprocess.DEVNULL,
