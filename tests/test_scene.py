@@ -26,6 +26,7 @@ from fingerpad.scenes.scene import (
     StepAndRepeat,
     Wavy,
     load_scene,
+    recorded_scene,
     scene_json_schema,
     specimen_json_schema,
 )
@@ -361,6 +362,52 @@ def test_canonical_has_no_paths_and_follows_the_contents(folder):
     meshed = load_scene(write(folder, specimen(mesh="my.msh"))).canonical()
     assert meshed["specimen"]["mesh"]["name"] == "my.msh" and len(meshed["specimen"]["mesh"]["sha256"]) == 64
     assert str(folder) not in json.dumps(meshed)
+
+
+@pytest.mark.parametrize(
+    "name", ["ramp40_k210", "ridged_stroke_left", "step_sub", "steady_line", "calibration_less_fat"]
+)
+def test_a_scene_is_found_again_in_what_it_recorded(name):
+    scene = load_scene(CONFIG / "scenes" / f"{name}.yaml")
+    assert recorded_scene(json.loads(json.dumps(scene.canonical()))) == scene
+
+
+def test_a_recorded_scene_needs_none_of_its_files(folder):
+    (folder / "p.csv").write_text("x (mm),y (mm)\n-1,1\n0,0\n1,1\n")
+    (folder / "my.msh").write_text("nodes")
+    scene = load_scene(write(folder, specimen(mesh="my.msh") | {"stimulus": {"shape": "sampled", "csv": "p.csv"}}))
+    data = scene.canonical()
+    (folder / "p.csv").unlink(), (folder / "my.msh").unlink()
+    again = recorded_scene(data)
+    assert (again.stimulus.x, again.stimulus.y) == (scene.stimulus.x, scene.stimulus.y)
+    assert again.specimen.mesh == Path("my.msh") and again.motion == scene.motion
+
+
+def test_a_varied_scene_is_checked_like_one_that_was_read():
+    scene = load_scene(CONFIG / "scenes" / "ridged_40_k210.yaml")
+    assert scene.varied({}) is scene and scene.varied({"name": scene.name}) == scene
+    softer = scene.varied({"specimen.layers.fat.youngs_modulus": "10 kPa", "motion[0].rate": 0.5, "specimen.ridges": "none"})
+    assert softer.specimen.layers.fat.youngs_modulus == 10e3 and softer.motion[0].rate == 0.5
+    assert softer.specimen.ridges is None and softer.specimen.layers.dermis == scene.specimen.layers.dermis
+    assert scene.varied({"stimulus": Flat()}).stimulus == scene.varied({"stimulus": {"shape": "flat"}}).stimulus == Flat()
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"specimen.layers.fat.youngs_modulus": -1.0}, "specimen.layers.fat.youngs_modulus: -1.0 is negative"),
+        ({"specimen.layers.fat.youngs_modulus": "0.1 N"}, "has the wrong dimension"),
+        ({"specimen.layer.fat": 1.0}, "specimen.layer.fat: layer is not a known key; allowed: outline, mesh, layers"),
+        ({"motion[7].rate": 1.0}, "motion[7].rate: there is no such entry; allowed: 0 to 1"),
+        ({"motion[0].rate.x": 1.0}, "there is no such key"),
+        ({"stimulus.slope": 1.0}, "stimulus.slope: is not a known key"),
+        ({"motion": ()}, "motion"),
+    ],
+)
+def test_a_scene_cannot_be_varied_into_a_wrong_one(changes, said):
+    with pytest.raises(SceneError) as caught:
+        load_scene(CONFIG / "scenes" / "ridged_40_k210.yaml").varied(changes)
+    assert said in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_specimen_files_fit_their_schema():

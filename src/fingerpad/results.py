@@ -11,6 +11,7 @@ import json
 import os
 import platform
 import sys
+from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ import xarray as xr
 
 from fingerpad.files import write_atomically, write_text
 from fingerpad.provenance import digest, imported_sources
+from fingerpad.scenes.scene import Scene, recorded_scene
 
 #: name -> (dimensions, unit, long name)
 VARIABLES = {
@@ -137,6 +139,19 @@ def peak_memory_MB() -> float:
 
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / 1e6 if sys.platform == "darwin" else peak / 1024
+
+
+def scene_of(history: xr.Dataset) -> Scene:
+    """The scene a history was simulated from: its models know the profile, the outline and the schedule.
+
+    An external mesh is known by its name only. Asked for again, the same scene is not read again.
+    """
+    return _scene(history.attrs["scene"])
+
+
+@lru_cache(maxsize=256)
+def _scene(text: str) -> Scene:
+    return recorded_scene(json.loads(text))
 
 
 def summary(history: xr.Dataset) -> dict[str, Any]:

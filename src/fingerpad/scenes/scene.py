@@ -10,6 +10,7 @@ import csv
 import hashlib
 import json
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
@@ -35,7 +36,7 @@ from fingerpad.units import QuantityError, format_quantity, parse_number
 __all__ = [
     "Bar", "Cylinder", "Discretisation", "Flat", "Hold", "Layer", "Layers", "Line", "Outline", "Outputs",
     "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Slide", "Specimen",
-    "SpecimenFile", "StepAndRepeat", "Wavy", "load_scene", "scene_json_schema", "specimen_json_schema",
+    "SpecimenFile", "StepAndRepeat", "Wavy", "load_scene", "recorded_scene", "scene_json_schema", "specimen_json_schema",
 ]  # fmt: skip
 
 EFFECTS = ("friction", "viscoelasticity", "finite_strain", "symmetry", "ridges")
@@ -575,20 +576,34 @@ class Scene(Strict):
                 force, depth = math.nan, leg.press_to_depth
         return None if math.isnan(time) else time
 
-    def with_accuracy(self, accuracy: Any) -> Scene:
-        """Copy of the scene at another accuracy.
+    def varied(self, changes: Mapping[str, Any]) -> Scene:
+        """Copy of the scene with some of its keys changed, checked like a scene that was read.
 
         Args:
-            accuracy: draft, thesis, fine, a tolerance as number or text, or a `Discretisation`.
+            changes: dotted key -> value, such as ``{"specimen.layers.fat.youngs_modulus": "20 kPa", "motion[0].rate": 0.4}``:
+                text with a unit, an SI number, or a whole part (a model, or a mapping of its keys).
+
+        Raises:
+            SceneError: there is no such key, or the scene would be wrong; one line.
+        """
+        data: Any = self
+        for key, value in changes.items():
+            path = tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", key))
+            data = _changed(data, path, value, f"{self.name}: {key}")
+        if data is self:
+            return self
+        try:
+            return type(self).model_validate(data)
+        except ValidationError as error:
+            raise explain(error, self.name, data, _TAGS) from None
+
+    def with_accuracy(self, accuracy: Any) -> Scene:
+        """Copy of the scene at another accuracy: draft, thesis, fine, a tolerance as number or text, or a `Discretisation`.
 
         Raises:
             SceneError: it is none of these.
         """
-        fields = {name: getattr(self, name) for name in type(self).model_fields}
-        try:
-            return Scene(**{**fields, "accuracy": accuracy})
-        except ValidationError as error:
-            raise explain(error, self.name, {"accuracy": accuracy}, _TAGS) from None
+        return self.varied({"accuracy": accuracy})
 
     def canonical(self) -> dict[str, Any]:
         """The scene as plain data for provenance: SI numbers, names and content hashes in place of paths.
@@ -601,8 +616,43 @@ class Scene(Strict):
             data["specimen"]["mesh"] = {"name": mesh.name, "sha256": _sha256(mesh.read_bytes())}
         if isinstance(stimulus, Sampled):
             points = json.dumps([stimulus.x, stimulus.y]).encode()
-            data["stimulus"] = {"shape": "sampled", "csv": stimulus.csv.name, "sha256": _sha256(points)}
+            data["stimulus"] |= {"csv": stimulus.csv.name, "sha256": _sha256(points)}
         return json.loads(json.dumps(data, sort_keys=True))
+
+
+def recorded_scene(data: Mapping[str, Any]) -> Scene:
+    """The scene that `Scene.canonical` described; files it named need not be there any more.
+
+    Raises:
+        SceneError: the description is not of a scene this version knows.
+    """
+    data = dict(data)
+    mesh, stimulus = data["specimen"]["mesh"], data["stimulus"]
+    if mesh is not None:
+        data["specimen"] = data["specimen"] | {"mesh": Path(mesh["name"])}
+    data["stimulus"] = {key: value for key, value in stimulus.items() if key != "sha256"}
+    try:
+        return Scene.model_validate(data)
+    except ValidationError as error:
+        raise explain(error, data.get("name", "scene"), data, _TAGS) from None
+
+
+def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> Any:
+    """`part`, a model, mapping or list of them, as plain data with the value at `path` below it replaced."""
+    if not path:
+        return value
+    key, *rest = path
+    if isinstance(part, Strict):
+        part = {name: getattr(part, name) for name in type(part).model_fields}
+    if isinstance(part, (list, tuple)):
+        if not isinstance(key, int) or key >= len(part):
+            raise SceneError(f"{where}: there is no such entry; allowed: 0 to {len(part) - 1}")
+        return tuple(_changed(item, tuple(rest), value, where) if i == key else item for i, item in enumerate(part))
+    if not isinstance(part, Mapping):
+        raise SceneError(f"{where}: there is no such key")
+    if rest and key not in part:
+        raise SceneError(f"{where}: {key} is not a known key; allowed: {', '.join(part)}")
+    return {**part, key: _changed(part.get(key), tuple(rest), value, where)}
 
 
 def _sha256(content: bytes) -> str:

@@ -362,8 +362,10 @@ class Specimen(Strict):
                 raise Problem("is given beside an outline", "one of mesh and outline", ("mesh",))
             if not isinstance(data["mesh"], (str, Path)):
                 raise Problem("is not a path", "the path of a .msh file", ("mesh",))
+            # in Python a path may be one that a result remembers: whether it is there turns out when it is read
+            in_document = context is not None or isinstance(data["mesh"], str)
             data["mesh"] = source.resolve(data["mesh"])
-            if not data["mesh"].is_file():
+            if in_document and not data["mesh"].is_file():
                 raise Problem("is not an existing file", "the path of a .msh file, relative to the scene", ("mesh",))
         else:
             data.setdefault("outline", DEFAULT_SPECIMEN)
