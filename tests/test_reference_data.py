@@ -62,6 +62,17 @@ def test_a_subject_is_added_by_adding_a_file(tmp_path):
     assert data.loc[data["subject"] == "me", "force_N"].tolist() == [0.2]
 
 
+def test_a_subject_of_the_same_name_in_another_file_is_another_subject(tmp_path):
+    folder = shutil.copytree(REFERENCE / "force_depth", tmp_path / "force_depth")
+    row = "1,flat plate,{},0,0.5,a source,measured"
+    for stem, depth in (("anna", 1.0), ("bert", 1.0)):
+        (folder / f"{stem}.csv").write_text("\n".join([HEADER, row.format(depth), row.format(2.0)]))
+    data = read_force_depth(folder)
+    assert set(data["subject"]) == {"1 (anna)", "1 (bert)", "1 (dandekar_2003)", "2", "3", "4"}
+    counts = data["subject"].value_counts()
+    assert counts["1 (anna)"] == counts["1 (bert)"] == 2 and counts["1 (dandekar_2003)"] == counts["2"]
+
+
 def test_order_of_columns_and_trailing_lines_do_not_matter(tmp_path):
     path = tmp_path / "data.csv"
     path.write_text("how_obtained,force_N,subject,indenter,depth_mm,speed_mm_per_s,source\nscale,0.2,me,flat plate,1,0,me\n\n\n")
@@ -85,7 +96,7 @@ WRONG = {
     "no source": (f"{HEADER}\n{ROW.replace('my notebook', ' ')}", "column source: ''; allowed: text"),
     "long row": (f"{HEADER}\n{ROW},more", "row 2: has 8 cells; allowed: 7"),
     "gap": (f"{HEADER}\n\n{ROW}", "row 2: is empty"),
-    "twice": (f"{HEADER}\n{ROW}\n{ROW}", "row 3: subject 'me', flat plate, 1 mm, 0 mm/s is in data.csv row 2 already"),
+    "twice": (f"{HEADER}\n{ROW}\n{ROW}", "row 3: subject 'me', flat plate, 1 mm, 0 mm/s is in row 2 already"),
 }
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -113,10 +114,11 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         paths: a folder, all of whose CSV files are read, or files.
 
     Returns:
-        Columns of :data:`FORCE_DEPTH`, the files one after the other in the order of their names.
+        Columns of :data:`FORCE_DEPTH`, the files one after the other in the order of their names. A subject is a file and a
+        name: a name that is in several files stands with its file, ``1 (dandekar_2003)``.
 
     Raises:
-        ReferenceDataError: a file is wrong, there is none, or a subject's depth under an indenter at a speed is given twice.
+        ReferenceDataError: a file is wrong, there is none, or it gives a subject's depth under an indenter at a speed twice.
     """
     if isinstance(paths, (str, Path)) and Path(paths).is_dir():
         files = sorted(Path(paths).glob("*.csv"))
@@ -124,17 +126,19 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         files = sorted(map(Path, [paths] if isinstance(paths, (str, Path)) else paths))
     if not files:
         raise ReferenceDataError(f"{paths}: holds no CSV file; allowed: at least one with columns {', '.join(FORCE_DEPTH)}")
-    seen: dict[tuple, str] = {}
-    frames = []
-    for file in files:
-        frame = read_table(file, FORCE_DEPTH)
+    frames = [read_table(file, FORCE_DEPTH) for file in files]
+    for file, frame in zip(files, frames, strict=True):
+        seen: dict[tuple, int] = {}
         for row, record in enumerate(frame.itertuples(index=False), start=2):
             key = (record.subject, record.indenter, record.depth_mm, record.speed_mm_per_s)
             if key in seen:
                 what = f"subject '{key[0]}', {key[1]}, {key[2]:g} mm, {key[3]:g} mm/s"
-                raise ReferenceDataError(f"{file}: row {row}: {what} is in {seen[key]} already; allowed: each once")
-            seen[key] = f"{file.name} row {row}"
-        frames.append(frame)
+                raise ReferenceDataError(f"{file}: row {row}: {what} is in row {seen[key]} already; allowed: each once")
+            seen[key] = row
+    files_of = Counter(subject for frame in frames for subject in frame["subject"].unique())
+    for file, frame in zip(files, frames, strict=True):
+        named = {subject: f"{subject} ({file.stem})" for subject, count in files_of.items() if count > 1}
+        frame["subject"] = frame["subject"].replace(named)
     return pd.concat(frames, ignore_index=True)
 
 

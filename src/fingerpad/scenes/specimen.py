@@ -307,7 +307,7 @@ def _named(part: str, surface: Any) -> BeforeValidator:
             return {**default, **{key: _merge(default.get(key), item) for key, item in value.items()}}
         return value
 
-    name = Annotated[str, Field(pattern="^[A-Za-z0-9][A-Za-z0-9_-]*$", description="name in config/specimens")]
+    name = Annotated[str, Field(pattern=r"^[^\s/.][^\s/]*$", description="name in config/specimens")]
     return BeforeValidator(read, json_schema_input_type=name | surface)
 
 

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+import re
+import unicodedata
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -37,7 +39,6 @@ ESTIMATE_COLUMNS = (
     "data",
     "rss (N2)",
     "aicc",
-    "evaluations",
     "note",
 )
 
@@ -334,7 +335,7 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
         row = {"study": study, "subject": who, "quantity": quantity, "estimate": value, "low_95": low, "high_95": high}
         row |= {"units": units, "note": note}
         if found is not None:
-            row |= {"data": found.count, "rss (N2)": found.rss, "aicc": found.aicc, "evaluations": found.evaluations}
+            row |= {"data": found.count, "rss (N2)": found.rss, "aicc": found.aicc}
         rows.append(row)
 
     add(
@@ -492,16 +493,22 @@ def specimen_text(who: str, found: Fit, specimen: Mapping, data: pd.DataFrame) -
     return "\n".join([*lines, f"moduli: {specimen['moduli']}"]) + "\n"
 
 
-def specimen_name(who: str) -> str:
-    """Name of a calibrated specimen: ``calibrated_subject_1``, ``calibrated_mean``."""
-    kept = "".join(c if c.isascii() and c.isalnum() else "_" for c in who)
-    return "calibrated_mean" if who == MEAN else f"calibrated_subject_{kept}"
+def specimen_names(subjects: Iterable[str]) -> dict[str, str]:
+    """Names of calibrated specimens, each once: ``calibrated_subject_1``, ``calibrated_subject_Anna_Müller``."""
+    names: dict[str, str] = {}
+    for who in subjects:
+        kept = re.sub(r"[^\w-]+", "_", unicodedata.normalize("NFC", who)).strip("_") or "_"
+        stem = name = "calibrated_mean" if who == MEAN else f"calibrated_subject_{kept}"
+        taken, count = {other.casefold() for other in names.values()}, 1
+        while name.casefold() in taken:
+            name = f"{stem}_{(count := count + 1)}"
+        names[who] = name
+    return names
 
 
 def write_specimens(directory: str | Path, result: Calibration, specimen: Mapping, data: pd.DataFrame) -> list[Path]:
     """Write the calibrated specimen of every subject and of the mean; returns the paths."""
-    paths = []
-    for who, found in result.constants.items():
-        paths.append(Path(directory) / f"{specimen_name(who)}.yaml")
-        write_text(paths[-1], specimen_text(who, found, specimen, data))
+    paths = [Path(directory) / f"{name}.yaml" for name in specimen_names(result.constants).values()]
+    for path, (who, found) in zip(paths, result.constants.items(), strict=True):
+        write_text(path, specimen_text(who, found, specimen, data))
     return paths

@@ -308,7 +308,7 @@ def _estimates(model, clean, truth, found, told, amplitudes, fixed, noisy, sigma
         row = {"study": study, "subject": subject, "quantity": quantity, "estimate": value, "low_95": low, "high_95": high}
         row |= {"units": units, "note": note}
         if used is not None:
-            row |= {"data": used.count, "rss (N2)": used.rss, "evaluations": used.evaluations}
+            row |= {"data": used.count, "rss (N2)": used.rss}
         rows.append(row)
 
     for k, (g, tau) in enumerate(zip(truth.g, truth.tau, strict=True), start=1):
@@ -362,13 +362,6 @@ def _estimates(model, clean, truth, found, told, amplitudes, fixed, noisy, sigma
         share = record["largest share of force (1)"]
         note = f"for noise of {NOISE:.1%}; a branch of unit strength adds at most {share:.3g} of the held force"
         add(study, quantity, record["half_width (1)"], "1", note=note)
-    add(
-        "cost",
-        "evaluations of the hereditary integral for the series",
-        float(found.hereditary.evaluations + found.corrected.evaluations),
-        "1",
-        subject="",
-    )
     add(
         "cost",
         "finite element simulations for the series",
