@@ -18,55 +18,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from fingerpad.measures.quantities import QUANTITIES
 from fingerpad.publishing.write import TEXT_COLUMNS
 
-TOLERANCES = {
-    "time (s)": 1e-5,
-    "indentation_depth (mm)": 1e-3,
-    "vertical_displacement (mm)": 1e-3,
-    "contact_width (mm)": 3e-3,
-    "force (gf)": 1e-5,
-    "force (N)": 2e-3,
-    "deflection (mm)": 1e-3,
-    "centre_pressure (Pa)": 3e-3,
-    "peak_pressure (Pa)": 3e-3,
-    "contact_pressure (Pa)": 5e-3,
-    "scaled_centre_pressure (Pa)": 3e-3,
-    "strain_energy_density (Pa)": 2e-3,
-    "strain_energy_rate (Pa/s)": 5e-3,
-    "x (mm)": 1e-3,
-    "y (mm)": 1e-3,
-    "node_x (mm)": 1e-6,
-    "receptor_depth (um)": 1e-6,
-    "stroke_distance (mm)": 1e-4,
-    "height (mm)": 1e-4,
-    "curvature (1/m)": 1e-4,
-    "radius (mm)": 1e-4,
-    "skin_curvature (1/mm)": 2e-2,
-    "scaled_skin_curvature (Pa)": 1e-2,
-    "lateral_displacement (mm)": 2e-3,
-    "contact_length (mm)": 1e-2,
-    "trial (1)": 1e-6,
-    "velocity (mm/s)": 1e-6,
-    "predicted_rate (impulses/s)": 1e-2,
-    "rate_from_energy (impulses/s)": 1e-2,
-    "predicted_frequency (impulses/s)": 1e-2,
-    "burst_width (mm)": 1e-2,
-    "burst_duration (s)": 1e-2,
-    "burst_rate (impulses/s)": 1e-2,
-    "impulse_time (s)": 1e-3,
-    "impulse_rate (impulses/s)": 1e-2,
-    "steady_rate (impulses/s)": 1e-2,
-    "inverse_contact_width (1/mm)": 3e-3,
-    "mean_centre_pressure (Pa)": 3e-3,
-    "pressure_by_law (Pa)": 5e-3,
-    "strain_energy_by_eq_4_4 (Pa)": 5e-3,
-    "surface_may_be (1/m)": 1e-4,
-    "element": 1e-5,
-    "value": 1e-3,
-}
-"""Largest difference allowed in a column, relative to the largest value of the curve. Pressure and width
-carry the jumps of single nodes entering contact; everything else is smooth."""
+TOLERANCES = {name: q.tolerance for name, q in QUANTITIES.items() if q.tolerance} | {"element": 1e-5, "value": 1e-3}
+"""Largest difference allowed in a column, relative to the largest value of the curve."""
 
 ERROR_TOLERANCE = 0.2
 """The same for the columns ``discretisation_error (...)``, small differences of large numbers."""

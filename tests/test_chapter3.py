@@ -11,8 +11,8 @@ from fingerpad.claims.comparison import thesis_comparison
 from fingerpad.claims.numbers import NUMBERS, Results
 from fingerpad.figures.chapter3_verification import section, surface_deflection
 from fingerpad.figures.registry import FIGURES
-from fingerpad.figures.spec import empty_reference
 from fingerpad.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
+from fingerpad.reference_data import empty_reference
 from fingerpad.results import summary
 from fingerpad.scenes.scene import Bar, Hold, Line, PressToDepth
 

@@ -14,12 +14,12 @@ from fingerpad.claims.ridge_rows import RIDGE_NUMBERS
 from fingerpad.claims.sensitivity import QUANTITIES, SHAPES, VARIANTS, variant_scene
 from fingerpad.claims.stroke_numbers import STROKE_NUMBERS
 from fingerpad.claims.stroke_rates import STROKE_RATE_NUMBERS
+from fingerpad.claims.tables import TABLES
 from fingerpad.claims.trends import TRENDS
 from fingerpad.claims.verdicts import judge
-from fingerpad.figures.spec import read_reference
-from fingerpad.figures.tables import TABLES
 from fingerpad.measures.features import centre_node, scene_name
 from fingerpad.publishing.write import markdown, publish_table
+from fingerpad.reference_data import read_reference
 
 pytestmark = pytest.mark.unit
 REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"

@@ -13,9 +13,9 @@ import pandas as pd
 import pytest
 
 from fingerpad.figures.registry import FIGURES
-from fingerpad.figures.spec import read_reference
 from fingerpad.measures.inputs import read_results
 from fingerpad.publishing.write import read_frame, write_frame, write_picture
+from fingerpad.reference_data import read_reference
 from regression import (
     BASELINE_DPI,
     SIMILARITY,

@@ -14,10 +14,10 @@ import synthetic
 from fingerpad.figures import chapter4_responses, chapter5_responses
 from fingerpad.figures.chapter3 import boundaries, inward, loops
 from fingerpad.figures.registry import FIGURES
-from fingerpad.figures.spec import empty_reference, read_reference
 from fingerpad.measures import features as ft
 from fingerpad.publishing.style import COLOURS, spread, theme
 from fingerpad.publishing.write import publish, read_frame, write_frame, write_picture
+from fingerpad.reference_data import empty_reference, read_reference
 from regression import (
     BASELINE_DPI,
     SIMILARITY,

@@ -14,8 +14,8 @@ from scipy.integrate import quad
 import synthetic
 from fingerpad import load_scene, simulate
 from fingerpad.measures import responses
-from fingerpad.measures.columns import DISTANCE, SED, TIME
 from fingerpad.measures.features import energy, ramp_end
+from fingerpad.measures.quantities import DISTANCE, SED, TIME
 from fingerpad.measures.strokes import convexities, place
 from fingerpad.receptors import fits, laws, spikes
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, kernel_weights

@@ -8,15 +8,27 @@ import pytest
 
 import synthetic
 from fingerpad.claims.numbers import Results
-from fingerpad.claims.response_numbers import RESPONSE_TRENDS, SHALLOW_DEPTH, TRIALS, rate_in, shallow_law
+from fingerpad.claims.response_numbers import RESPONSE_TRENDS, TRIALS
 from fingerpad.figures.chapter4_responses import AVERAGED, GIVEN_RATE, IMPULSE, PRINTED
 from fingerpad.figures.registry import FIGURES
-from fingerpad.figures.spec import read_reference
 from fingerpad.measures import features
-from fingerpad.measures.columns import NODE, SED, TIME, P
-from fingerpad.measures.responses import IMPULSE_RATE, P_LAW, SED_LAW, predicted_rate, pressed, skin_sample, time_mean, windowed
+from fingerpad.measures.quantities import NODE, SED, TIME, P
+from fingerpad.measures.responses import (
+    IMPULSE_RATE,
+    P_LAW,
+    SED_LAW,
+    SHALLOW_DEPTH,
+    predicted_rate,
+    pressed,
+    rate_in,
+    shallow_law,
+    skin_sample,
+    time_mean,
+    windowed,
+)
 from fingerpad.receptors.laws import SpatialSum
 from fingerpad.receptors.recordings import read_rates
+from fingerpad.reference_data import read_reference
 from fingerpad.studies.strain_energy_meanings import CHANGE, MEANINGS, fig_meanings, frame_meanings, titled
 
 pytestmark = pytest.mark.unit

@@ -7,14 +7,26 @@ import pytest
 import synthetic
 from fingerpad.claims.numbers import Results
 from fingerpad.claims.stroke_rates import RATE_NUMBERS, RATE_TRENDS, rate_peaks_apart
-from fingerpad.figures.chapter5_responses import PREDICTED, SEED, STROKES_SHOWN, TRIAL, WITHIN_350, burst_values
+from fingerpad.figures.chapter5_responses import PREDICTED
 from fingerpad.figures.registry import FIGURES
-from fingerpad.figures.spec import empty_reference
 from fingerpad.measures import strokes as st
 from fingerpad.measures.features import SURFACES, is_simulated, scene_name
-from fingerpad.measures.responses import BURST_RATE, BURST_WIDTH, IMPULSE_RATE, predicted_rate, skin_sample, stroke_law
+from fingerpad.measures.quantities import TRIAL
+from fingerpad.measures.responses import (
+    BURST_RATE,
+    BURST_WIDTH,
+    IMPULSE_RATE,
+    SEED,
+    STROKES_SHOWN,
+    burst_values,
+    predicted_rate,
+    skin_sample,
+    stroke_law,
+)
+from fingerpad.measures.runs import WITHIN_350
 from fingerpad.receptors.laws import SpatialSum
 from fingerpad.receptors.recordings import RATES
+from fingerpad.reference_data import empty_reference
 
 pytestmark = pytest.mark.unit
 CURVATURES = ("26", "39", "52", "79", "105", "157", "210", "315")
@@ -75,7 +87,7 @@ def test_raster_is_seeded_and_counts_the_integral_of_the_rate(made, number, low,
 def test_another_seed_makes_other_impulses(made, monkeypatch):
     felt = _felt(made, lambda k: 400)
     before = _frame(felt, "5-22")
-    monkeypatch.setattr("fingerpad.figures.chapter5_responses.SEED", SEED + 1)
+    monkeypatch.setattr("fingerpad.measures.responses.SEED", SEED + 1)
     assert not _frame(felt, "5-22").equals(before)
 
 

@@ -4,10 +4,9 @@ import sys
 from pathlib import Path
 
 from fingerpad.figures.registry import FIGURES
-from fingerpad.figures.spec import read_reference
 from fingerpad.measures.inputs import read_results
 from fingerpad.publishing.write import publish
-from fingerpad.reference_data import ReferenceDataError
+from fingerpad.reference_data import ReferenceDataError, read_reference
 
 number, reference, png, *paths = sys.argv[1:]
 spec = FIGURES[number]

@@ -2,7 +2,7 @@
 
 import sys
 
-from fingerpad.figures.tables import TABLES
+from fingerpad.claims.tables import TABLES
 from fingerpad.measures.inputs import read_results
 from fingerpad.publishing.write import publish_table
 

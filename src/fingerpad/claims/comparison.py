@@ -22,9 +22,9 @@ from fingerpad.claims.numbers import INVERSE_WIDTHS, NUMBERS, Results, end_of, t
 from fingerpad.claims.sensitivity import evidence, variant_scene
 from fingerpad.claims.trends import TRENDS
 from fingerpad.claims.verdicts import is_inside, judge, significant
-from fingerpad.figures.spec import Meshes, read_reference
-from fingerpad.measures.features import SURFACES, Histories, peak_pressure, scene_of
+from fingerpad.measures.features import SURFACES, Histories, Meshes, peak_pressure, scene_of
 from fingerpad.measures.steady import PLATE, steady_force
+from fingerpad.reference_data import read_reference
 
 GIVEN = ("input", "count")
 """Roles of what goes into the simulations: printed in full, without a discretisation error."""

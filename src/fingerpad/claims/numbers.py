@@ -13,12 +13,12 @@ from fingerpad.claims.response_numbers import RESPONSE_GIVEN, RESPONSE_NUMBERS
 from fingerpad.claims.ridge_rows import RIDGE_GIVEN, RIDGE_NUMBERS
 from fingerpad.claims.stroke_numbers import STROKE_GIVEN, STROKE_NUMBERS
 from fingerpad.claims.stroke_rates import RATE_GIVEN, RATE_NUMBERS
-from fingerpad.figures.spec import Meshes
 from fingerpad.measures.features import (
     PRESSURE,
     PRESSURE_SCALE,
     SURFACES,
     Histories,
+    Meshes,
     centre_node,
     centre_pressure,
     energy,

@@ -2,36 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from fingerpad.claims.verdicts import Trend, everywhere
-from fingerpad.measures.columns import RATE, SED, TIME
-from fingerpad.measures.features import SURFACES, centre_pressure, energy, peak_pressure, ramp_end, scene_name
+from fingerpad.measures.features import SURFACES, peak_pressure, ramp_end, scene_name
+from fingerpad.measures.quantities import SED, TIME
 from fingerpad.measures.responses import (
     IMPULSE_RATE,
     RECEPTOR_DEPTH,
     SED_LAW,
+    SHALLOW_DEPTH,
     curvature_of,
     energy_from_pressure,
     fit_sum,
+    peak_energy_rate,
     predicted_rate,
-    windowed,
+    rate_in,
+    shallow_law,
+    straight_line,
 )
-from fingerpad.receptors.fits import r_squared, rms
-from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
+from fingerpad.receptors.fits import rms
 from fingerpad.receptors.spikes import impulses
 
 if TYPE_CHECKING:
     from fingerpad.claims.numbers import Results
 
-Reading = Callable[[xr.Dataset], float]
-
-SHALLOW_DEPTH = 600e-6
-"""m; the depth that the thesis predicts the receptor of Fig 4-3 from."""
 NODE_SURFACE, NODE_COUNT = "210", 12
 """Surface and number of nodes of Fig 4-17."""
 TRIALS = 4
@@ -42,48 +40,6 @@ DELAY = 0.02
 """s; least time to the first impulse to call it delayed: a fraction of what a raster of 2.4 s lets one see."""
 AGREES = 0.1
 """Largest root-mean-square residual, relative, to call traces in agreement."""
-
-
-# --- what is read of a history ---------------------------------------------------------------------------
-
-
-def rate_in(history: xr.Dataset, window: str, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE) -> float:
-    """Predicted impulse rate (impulses/s) in a window of `fingerpad.receptors.recordings.WINDOWS`."""
-    frame = predicted_rate(history, depth, law)
-    return windowed(history, frame[TIME], frame[IMPULSE_RATE], window)
-
-
-def peak_energy_rate(history: xr.Dataset, depth: float) -> float:
-    """Largest rate of the strain energy, Pa/s."""
-    return float(predicted_rate(history, depth)[RATE].max())
-
-
-def mean_pressure(history: xr.Dataset, window: str = "hold") -> float:
-    """Mean pressure at the centre (Pa) in a window."""
-    return windowed(history, history["time"].values, centre_pressure(history), window)
-
-
-def shallow_law(histories: Mapping[str, xr.Dataset]) -> tuple[ImpulseRate, float]:
-    """Eq 5-1 for the shallow depth, and the factor its energies are multiplied by.
-
-    The thesis's constants belong to 915 um and it prints none for 600 um. Energies there are scaled by one number, with which the
-    mean over surfaces of the mean energy in the hold is the same at both depths: what differs is how they depend on curvature.
-    """
-    deep, shallow = (
-        np.mean([windowed(h, h["time"].values, energy(h, z), "hold") for h in histories.values()])
-        for z in (RECEPTOR_DEPTH, SHALLOW_DEPTH)
-    )
-    factor, law = float(deep / shallow), THESIS_RATE
-    return (
-        ImpulseRate(law.per_energy * factor, law.per_rate * factor, law.threshold / factor, law.rate_threshold / factor),
-        factor,
-    )
-
-
-def straight_line(x, y) -> tuple[float, float, float]:
-    """Slope, intercept and R2 of the least-squares line."""
-    slope, offset = np.polyfit(x, y, 1)
-    return float(slope), float(offset), r_squared(np.asarray(y), slope * np.asarray(x) + offset)
 
 
 # --- numbers ---------------------------------------------------------------------------------------------

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from fingerpad.claims.verdicts import Trend, everywhere
-from fingerpad.figures.ridges import OFFSETS, PLAIN, PRESSED, RIDGED, UNDER_TIP
-from fingerpad.measures.direction import BESIDE, DEPTH, directional_index, islands
+from fingerpad.measures.direction import BESIDE, DEPTH, OFFSETS, UNDER_TIP, directional_index, islands
 from fingerpad.measures.features import SURFACES, energy, force_gf, ramp_end, receptor_index, scene_name
+from fingerpad.measures.runs import PLAIN, RIDGED
 from fingerpad.measures.strokes import distance, loaded, time_of
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def _highest(name: str) -> Number:
 
 
 def _ridged(results: Results, label: str) -> xr.Dataset:
-    return results.histories[scene_name(PRESSED, label)]
+    return results.histories[scene_name("ridged_40", label)]
 
 
 RIDGE_GIVEN: dict[str, Number] = {
@@ -139,7 +139,7 @@ def _index_at(results: Results, strokes: dict[str, str]) -> float:
 
 
 def _unfelt(results: Results) -> Trend:
-    index = _index_at(results, PLAIN)
+    index = _index_at(results, PLAIN.scenes)
     stroke = _stroke(results, PLAIN["right"])
     late = abs(distance(stroke)) >= SETTLED
     values = [energy(stroke, DEPTH, x)[late] for x in OFFSETS.values()]
@@ -179,7 +179,7 @@ def _felt(strokes: dict[str, str]) -> Callable[[Results], Trend]:
 def _one_way_only(results: Results) -> Trend:
     """Whether a receptor at -46 um responds throughout one way and only at the start the other way."""
     start, late = {}, {}
-    for way, name in RIDGED.items():
+    for way, name in RIDGED.scenes.items():
         stroke = _stroke(results, name)
         settled = abs(distance(stroke)) >= SETTLED
         values = energy(stroke, DEPTH, -BESIDE)
@@ -211,7 +211,7 @@ def _islands(results: Results) -> Trend:
 
 
 RIDGE_TRENDS: dict[str, Callable[[Results], Trend]] = {
-    "T321": _felt(RIDGED),
+    "T321": _felt(RIDGED.scenes),
     "TR43": _same_rise_and_fall,
     "TR44": _same_order,
     "TR45": _stands_out,

@@ -22,15 +22,16 @@ import xarray as xr
 
 from fingerpad.claims.numbers import INVERSE_WIDTHS, NUMBERS, Results, end_of, highest_pressure, top_of
 from fingerpad.claims.verdicts import is_inside, significant
-from fingerpad.figures.spec import Meshes, read_reference
 from fingerpad.measures.features import (
     SURFACES,
     Histories,
+    Meshes,
     energy,
     peak_pressure,
     ramp_end,
     scene_name,
 )
+from fingerpad.reference_data import read_reference
 
 VARIANTS = ("fat", "instantaneous", "radius")
 SHAPES = ("flat", "210", "1260")

@@ -14,17 +14,8 @@ import xarray as xr
 
 from fingerpad.claims.stroke_trends import ALIKE, HARDLY, PROMINENCE, listed, spreads
 from fingerpad.claims.verdicts import Trend, everywhere
-from fingerpad.figures.chapter5_responses import (
-    PRESSED,
-    STROKES_SHOWN,
-    WITHIN_350,
-    burst_values,
-    impulses_of,
-    plate_rate,
-)
-from fingerpad.figures.ridges import RIDGED
-from fingerpad.measures.columns import DISTANCE, RATE, SED, TIME
 from fingerpad.measures.features import scene_of
+from fingerpad.measures.quantities import DISTANCE, RATE, SED, TIME
 from fingerpad.measures.responses import (
     BIN,
     BURST_RATE,
@@ -34,12 +25,17 @@ from fingerpad.measures.responses import (
     FREQUENCY,
     IMPULSE_RATE,
     RECEPTOR_DEPTH,
+    STROKES_SHOWN,
+    burst_values,
+    impulses_of,
     mean_frequency,
+    plate_rate,
     predicted_rate,
     ramp_and_hold_rates,
     skin_sample,
     stroke_histogram,
 )
+from fingerpad.measures.runs import CYLINDERS, RIDGED, WITHIN_350
 from fingerpad.measures.strokes import FULL, arcs, convexities, distance, loaded, passing, place
 from fingerpad.receptors.fits import r_squared, rms
 from fingerpad.receptors.laws import THESIS_RATE
@@ -157,7 +153,7 @@ STROKE_RATE_NUMBERS: dict[str, Number] = {
 
 RATE_NUMBERS: dict[str, Number] = {
     **STROKE_RATE_NUMBERS,
-    **{f"T{289 + k}": _pressed_peak(label) for k, label in enumerate(PRESSED)},
+    **{f"T{289 + k}": _pressed_peak(label) for k, label in enumerate(CYLINDERS)},
 }
 """Every number of predicted rates that has a row, by id."""
 
@@ -310,7 +306,7 @@ BEGINNING = 5.0
 def _one_way(results: Results) -> Trend:
     """One way mostly at the beginning, the other throughout; a receptor beside the centre of a pad with inner ridges."""
     found = {}
-    for way, name in RIDGED.items():
+    for way, name in RIDGED.scenes.items():
         rate = plate_rate(results.histories[name])
         grown = integrated(rate[TIME], rate[IMPULSE_RATE])
         found[way] = float(grown[-1]), float(np.interp(BEGINNING, rate[DISTANCE], grown))

@@ -9,8 +9,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
-from fingerpad.measures.features import ERROR, Histories, scene_of
+from fingerpad.figures.spec import FigureSpec, assemble, axis_rows
+from fingerpad.measures.features import ERROR, Histories, Meshes, scene_of
 from fingerpad.publishing import style
 from fingerpad.specimen.mesh import PadMesh, corner_count, element_edges
 

@@ -17,8 +17,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fingerpad.figures.chapter3 import boundaries, densify, inward, stratum_corneum
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
-from fingerpad.measures.features import ERROR, Histories, error_percent, is_simulated, ramp_end, scene_of
+from fingerpad.figures.spec import FigureSpec, assemble, axis_rows
+from fingerpad.measures.features import ERROR, Histories, Meshes, error_percent, is_simulated, ramp_end, scene_of
 from fingerpad.measures.steady import (
     BAR,
     DEPTH_SCENES,

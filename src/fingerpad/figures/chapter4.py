@@ -16,8 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
-from fingerpad.measures.columns import DEPTH, FORCE, NODE, P_CENTRE, P_PEAK, RATE, RECEPTOR, SED, TIME, WIDTH, P, X, Y
+from fingerpad.figures.spec import FigureSpec, assemble, axis_rows, rows_of
 from fingerpad.measures.features import (
     ERROR,
     PHASES,
@@ -28,6 +27,7 @@ from fingerpad.measures.features import (
     TOP,
     Feature,
     Histories,
+    Meshes,
     at_ends,
     centre_node,
     centre_pressure,
@@ -47,6 +47,7 @@ from fingerpad.measures.features import (
     surface_nodes,
     width,
 )
+from fingerpad.measures.quantities import DEPTH, FORCE, NODE, P_CENTRE, P_PEAK, RATE, RECEPTOR, SED, TIME, WIDTH, P, X, Y
 from fingerpad.publishing import style
 
 SHOWN_DEPTH = 915e-6  # m, the receptor depth of Figs 4-21, 4-23, 4-28

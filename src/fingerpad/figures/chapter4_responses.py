@@ -9,38 +9,25 @@ another model's in panels of their own. A user's recordings under the same proto
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from fingerpad.claims.numbers import INVERSE_WIDTHS
-from fingerpad.claims.response_numbers import (
-    HELD_RATES,
-    NODE_COUNT,
-    NODE_SURFACE,
-    SHALLOW_DEPTH,
-    TRIALS,
-    Reading,
-    mean_pressure,
-    peak_energy_rate,
-    rate_in,
-    shallow_law,
-    straight_line,
-)
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
-from fingerpad.measures.columns import CURVATURE, FORCE, NODE, P_PEAK, RATE, SED, TIME, P
+from fingerpad.figures.spec import FigureSpec, assemble, axis_rows, rows_of
 from fingerpad.measures.features import (
     ERROR,
     PRESSURE,
     SIMULATED,
     SURFACES,
     Histories,
+    Meshes,
     at_ends,
     centre_pressure,
     energy,
@@ -54,28 +41,40 @@ from fingerpad.measures.features import (
     surface_nodes,
     width,
 )
+from fingerpad.measures.quantities import CURVATURE, FORCE, NODE, P_PEAK, RATE, SED, TIME, P
 from fingerpad.measures.responses import (
     FREQUENCY,
     IMPULSE_RATE,
     P_LAW,
     RECEPTOR_DEPTH,
     SED_LAW,
+    SHALLOW_DEPTH,
     contact_nodes,
     curvature_of,
     energy_from_pressure,
     fit_nodes,
     fit_sum,
     mean_frequency,
+    mean_pressure,
+    peak_energy_rate,
     predicted_rate,
     pressed,
     pressure_by_law,
     raster,
+    rate_in,
+    shallow_law,
+    straight_line,
 )
 from fingerpad.publishing import style
 from fingerpad.receptors.fits import gain_and_threshold, r_squared
 from fingerpad.receptors.laws import THESIS_RATE, rectified
 from fingerpad.receptors.spikes import VARIATION
 
+Reading = Callable[[xr.Dataset], float]
+NODE_SURFACE, NODE_COUNT = "210", 12
+TRIALS = 4
+INVERSE_WIDTHS = dict(zip(SURFACES, ("T106", "T108", "T110", "T112", "T114", "T115", "T116", "T118", "T120"), strict=True))
+HELD_RATES = {"flat": "T107", "79": "T109", "105": "T111", "158": "T113", "420": "T117", "630": "T119", "1260": "T121"}
 AVERAGED, SEED = 100, 1999
 """Trials that the frequency of Fig 4-3 is the mean of, and the seed of every variability."""
 

@@ -18,8 +18,23 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
-from fingerpad.measures.columns import (
+from fingerpad.figures.spec import FigureSpec, assemble, axis_rows, rows_of
+from fingerpad.measures.features import (
+    ERROR,
+    PRESSURE,
+    SIMULATED,
+    SURFACES,
+    Histories,
+    Meshes,
+    Trace,
+    centre_pressure,
+    error_percent,
+    is_simulated,
+    profile,
+    scene_of,
+    scenes,
+)
+from fingerpad.measures.quantities import (
     CURVATURE,
     DISTANCE,
     HEIGHT,
@@ -37,20 +52,6 @@ from fingerpad.measures.columns import (
     X,
     Y,
 )
-from fingerpad.measures.features import (
-    ERROR,
-    PRESSURE,
-    SIMULATED,
-    SURFACES,
-    Histories,
-    Trace,
-    centre_pressure,
-    error_percent,
-    is_simulated,
-    profile,
-    scene_of,
-    scenes,
-)
 from fingerpad.measures.skin import skin_curvature
 from fingerpad.measures.strokes import (
     FULL,
@@ -60,7 +61,6 @@ from fingerpad.measures.strokes import (
     STEPPED,
     SUB,
     arcs,
-    centre_curvature,
     contact_lengths,
     convexities,
     distance,
@@ -72,9 +72,8 @@ from fingerpad.measures.strokes import (
     peaks,
     profile_and_height,
     rms_error,
-    scaled,
+    scaled_curvature,
     time_of,
-    touching,
 )
 from fingerpad.publishing import style
 
@@ -119,11 +118,6 @@ def stroke_rows(histories: Histories, coarse: Histories, names: Mapping[str, str
         part[ERROR] = rms_error(histories[name], coarse.get(name), *checked)
         parts.append(pd.DataFrame(part))
     return pd.concat(parts, ignore_index=True)
-
-
-def scaled_curvature(stroke: xr.Dataset) -> np.ndarray:
-    """Curvature of the skin at the centre node as a linear function that fits the pressure there in contact (time), Pa."""
-    return scaled(centre_curvature(stroke), centre_pressure(stroke), touching(stroke))[0]
 
 
 def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:

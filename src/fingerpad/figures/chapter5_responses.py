@@ -27,30 +27,35 @@ from fingerpad.figures.chapter5 import (
     stroke_rows,
     surface_rows,
 )
-from fingerpad.figures.ridges import RIDGED
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows, rows_of
-from fingerpad.measures.columns import CURVATURE, DISTANCE, RATE, RECEPTOR, SED, TIME
+from fingerpad.figures.spec import FigureSpec, assemble, axis_rows, rows_of
 from fingerpad.measures.features import (
     ERROR,
     SIMULATED,
-    SURFACES,
     Histories,
+    Meshes,
     Trace,
     error_percent,
     is_simulated,
     scene_name,
     scenes,
 )
+from fingerpad.measures.quantities import CURVATURE, DISTANCE, RATE, RECEPTOR, SED, SPEED, TIME, TRIAL
 from fingerpad.measures.responses import (
+    ASIDE,
     BURST_RATE,
     BURST_TIME,
     BURST_WIDTH,
     FREQUENCY,
     IMPULSE_RATE,
+    SEED,
     STATIC,
+    STROKES_SHOWN,
+    burst_values,
     bursts,
     curvature_of,
+    impulses_of,
     mean_frequency,
+    plate_rate,
     predicted_rate,
     ramp_and_hold_rates,
     raster,
@@ -59,6 +64,7 @@ from fingerpad.measures.responses import (
     stroke_histogram,
     stroke_law,
 )
+from fingerpad.measures.runs import CYLINDERS, RIDGED, WITHIN_350
 from fingerpad.measures.strokes import FULL, SPEEDS, distance, energy_at, label_errors, loaded, rms_error, time_of
 from fingerpad.publishing import style
 
@@ -67,17 +73,9 @@ PREDICTED_ENERGY = {
     "constant shift": f"{SIMULATED}: Eq 4-4 and a constant shift",
     "shift of the skin": f"{SIMULATED}: Eq 4-4 and the shift of the skin",
 }
-TRIAL = "trial (1)"
-SEED = 1999
-"""Of every predicted raster: the same pictures every time."""
-
-STROKES_SHOWN = {"5-1": 10, "5-19": 12, "5-22": 4, "5-23": 12, "5-27": 10}
-"""Repeated strokes that the thesis's figures show or average."""
-
 BY_EQUATION = (
     "Predicted, nothing recorded: Eq 5-1 with the thesis's constants and the simulated strain energy {} µm under the centre."
 )
-PRESSED = SURFACES[1:]
 CURVES = ("26", "39", "52", "79", "105", "157", "210", "315")
 CURVE_COLOURS = dict(zip(CURVES, mpl.colormaps["plasma"](np.linspace(0.0, 0.82, len(CURVES))), strict=True))
 RASTER, HISTOGRAM = "raster", "histogram"
@@ -97,12 +95,6 @@ def _rate_error(histories: Histories, coarse: Histories, name: str, depth: float
 
 
 # --- impulses: 5-1, 5-22, 5-23 -------------------------------------------------------------------------
-
-
-def impulses_of(history: xr.Dataset, repetitions: int, depth: float = SHOWN_DEPTH) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Predicted rate of a stroke from where it begins to slide, and the impulses of some repetitions of it."""
-    frame = predicted_rate(loaded(history), depth)
-    return frame, raster(frame, repetitions, SEED)
 
 
 def _raster_frame(
@@ -205,20 +197,13 @@ def fig_5_23(frame: pd.DataFrame) -> Figure:
 
 # --- 5-27 ----------------------------------------------------------------------------------------------
 
-ASIDE = 46e-6  # m, to the right of the centre, where section 5.5 has one of its receptors
 WAYS = {"right": "(a) plate stroked to the right", "left": "(b) plate stroked to the left"}
-
-
-def plate_rate(stroke: xr.Dataset, offset: float = ASIDE) -> pd.DataFrame:
-    """Predicted rate of a receptor beside the centre while a plate slides, stroke distances counted up either way."""
-    rate = predicted_rate(loaded(stroke), SHOWN_DEPTH, offset=offset)
-    return rate.assign(**{DISTANCE: rate[DISTANCE].abs()})
 
 
 def frame_5_27(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Predicted impulses of ten strokes of a plate over a pad with inner ridges, each way."""
     parts, right = [], RIDGED["right"]
-    for way, name in RIDGED.items():
+    for way, name in RIDGED.scenes.items():
         rate = plate_rate(histories[name])
         ticks = raster(rate, STROKES_SHOWN["5-27"], SEED).rename(columns={"trial": TRIAL})[[TRIAL, DISTANCE]]
         # the two ways are mirror images: one companion, read on either side, serves both
@@ -264,12 +249,6 @@ def fig_5_27(frame: pd.DataFrame) -> Figure:
 # --- bursts: 5-2, 5-3, 5-16, 5-17 ----------------------------------------------------------------------
 
 
-def burst_values(stroke: xr.Dataset, column: str) -> dict[str, float]:
-    """A column of `bursts` by the convexity's label."""
-    found = bursts(stroke)
-    return dict(zip(found["convexity"], found[column], strict=True))
-
-
 def _burst_frame(
     histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame, recorded: pd.DataFrame | None = None, *,
     speeds: Sequence[str], columns: Sequence[str], ids: Iterable[tuple],
@@ -291,9 +270,6 @@ def _burst_frame(
         pd.concat([part for part in parts if len(part)], ignore_index=True),
         *(axis_rows(reference, column, id_, key="panel") for column, id_ in ids),
     )
-
-
-SPEED = "velocity (mm/s)"
 
 
 def _recorded(rates: pd.DataFrame | None, speeds: Sequence[str], columns: Sequence[str]) -> pd.DataFrame:
@@ -411,7 +387,6 @@ def fig_5_16(frame: pd.DataFrame) -> Figure:
 
 RESPONSES = {"peak": "ramp and hold, peak", "end of the hold": "ramp and hold, steady state"}
 STROKED = "stroked at 10 mm/s"
-WITHIN_350 = tuple(label for label in SURFACES if label == "flat" or float(label) <= 350)
 
 
 def frame_5_17(
@@ -594,7 +569,7 @@ def _draw_rate(ax: Axes, rows: pd.DataFrame) -> None:
 def frame_5_21(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Rate by Eq 5-1 over time for eight cylinders pressed at 40 gf/s and held."""
     parts = []
-    for label in PRESSED:
+    for label in CYLINDERS:
         name = scene_name("ramp40", label)
         error = error_percent(histories[name], coarse.get(name), lambda d: ramp_and_hold_rates(d)["peak"])
         part = predicted_rate(histories[name])[[TIME, IMPULSE_RATE, STATIC]]
@@ -602,7 +577,7 @@ def frame_5_21(histories: Histories, meshes: Meshes, coarse: Histories, referenc
     return assemble(
         pd.concat(parts, ignore_index=True)[["source", "surface", TIME, IMPULSE_RATE, STATIC, ERROR]],
         axis_rows(reference, TIME, "T297"),
-        axis_rows(reference, IMPULSE_RATE, {label: f"T{289 + k}" for k, label in enumerate(PRESSED)}),
+        axis_rows(reference, IMPULSE_RATE, {label: f"T{289 + k}" for k, label in enumerate(CYLINDERS)}),
     )
 
 
@@ -612,7 +587,7 @@ def fig_5_21(frame: pd.DataFrame) -> Figure:
     note = [*style.footnote(frame, "largest rate"), _equation()]
     fig = style.new_figure(frame, "5-21", "Predicted impulse rate of eight ramps and holds", 7.2, note=note)
     axes = fig.subplots(4, 2, sharex=True)
-    for label, ax in zip(PRESSED, axes.ravel(), strict=True):
+    for label, ax in zip(CYLINDERS, axes.ravel(), strict=True):
         rows = rows_of(frame, "surface", label)
         _draw_rate(ax, rows[rows["source"] == PREDICTED])
         style.limit_axis(ax, rows, IMPULSE_RATE, text=False)
@@ -640,10 +615,10 @@ FIGURES = (
                (*scenes("ramp40", WITHIN_350), *_TEN), frame_5_17, fig_5_17, measured="impulse_rates"),
     FigureSpec("5-19", "Strain energy, its rate and predicted impulses", _TEN, frame_5_19, fig_5_19),
     FigureSpec("5-20", "Predicted rate of a stroke", _TEN, frame_5_20, fig_5_20),
-    FigureSpec("5-21", "Predicted rates of ramps and holds", scenes("ramp40", PRESSED), frame_5_21, fig_5_21),
+    FigureSpec("5-21", "Predicted rates of ramps and holds", scenes("ramp40", CYLINDERS), frame_5_21, fig_5_21),
     FigureSpec("5-22", "Predicted impulses of a shallow receptor", _TEN,
                partial(_raster_frame, number="5-22", low=40.0, high=80.0, axis="T300", depth=SHALLOW_DEPTH), fig_5_22),
     FigureSpec("5-23", "Predicted frequency of a shallow receptor", _FULL, frame_5_23, fig_5_23),
-    FigureSpec("5-27", "Predicted impulses of a plate stroked both ways", tuple(RIDGED.values()), frame_5_27, fig_5_27,
+    FigureSpec("5-27", "Predicted impulses of a plate stroked both ways", tuple(RIDGED.scenes.values()), frame_5_27, fig_5_27,
                companions=(RIDGED["right"],)),
 )  # fmt: skip

@@ -13,14 +13,14 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from fingerpad.figures.chapter3 import LAYERS, NOTE, draw_mesh, mesh_rows, stratum_corneum
-from fingerpad.figures.spec import FigureSpec, Meshes, assemble, axis_rows
-from fingerpad.measures.columns import SED, TIME, X, Y
-from fingerpad.measures.direction import BESIDE, DEPTH
+from fingerpad.figures.spec import FigureSpec, assemble, axis_rows
+from fingerpad.measures.direction import BESIDE, DEPTH, OFFSETS, UNDER_TIP
 from fingerpad.measures.features import (
     ERROR,
     SIMULATED,
     SURFACES,
     Histories,
+    Meshes,
     Trace,
     at_ends,
     energy,
@@ -29,16 +29,11 @@ from fingerpad.measures.features import (
     scene_name,
     scenes,
 )
+from fingerpad.measures.quantities import SED, TIME, X, Y
+from fingerpad.measures.runs import PLAIN, RIDGED, Runs
 from fingerpad.measures.strokes import loaded, rms_error, time_of
 from fingerpad.publishing import style
 
-PRESSED = "ridged_40"
-"""Programme of the nine ramps and holds."""
-PLAIN = {"right": "plate_stroke_right", "left": "plate_stroke_left"}
-RIDGED = {"right": "ridged_stroke_right", "left": "ridged_stroke_left"}
-"""Strokes of a flat plate over a plain and a ridged pad, by the way it moves; the thesis strokes to the right."""
-UNDER_TIP = 935e-6
-"""Depth (m) of the receptor in the dermis just under the ridge's tip."""
 WAYS = {"right": "(a) plate to the right (thesis)", "left": "(b) plate to the left"}
 LAYERED = "The tip of a ridge is at x = 0, 925 µm deep: at 915 µm the centre lies in the epidermis, x = ±46 µm in the dermis."
 
@@ -51,7 +46,7 @@ DETAIL = (-0.85, 0.85, 4.15, 6.05)  # mm
 
 def frame_5_25(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
     """Elements of the ridged pad within the thesis's window."""
-    name = scene_name(PRESSED, "flat")
+    name = scene_name("ridged_40", "flat")
     rows = mesh_rows(meshes[name], stratum_corneum(histories[name]))
     rows = rows[(rows["series"] != "element") | (rows[X].abs().le(WINDOW[0] + 0.4) & rows[Y].ge(-1.5))]
     whole = rows.groupby("element")[Y].transform("size") >= 4  # those cut by the window's edge are left out
@@ -93,7 +88,7 @@ def frame_5_26(histories: Histories, meshes: Meshes, coarse: Histories, referenc
     for panel, offset in PLACES.items():
         read = partial(energy, depth=DEPTH, offset=offset)
         for label in SURFACES:
-            name = scene_name(PRESSED, label)
+            name = scene_name("ridged_40", label)
             history = histories[name]
             part = {"panel": panel, "surface": label, TIME: history["time"].values, SED: read(history)}
             parts.append(pd.DataFrame(part | {ERROR: error_percent(history, coarse.get(name), *at_ends(read))}))
@@ -130,7 +125,6 @@ def fig_5_26(frame: pd.DataFrame) -> Figure:
 
 # --- 5-28, 5-29 ----------------------------------------------------------------------------------------
 
-OFFSETS = {"x = −46 µm": -BESIDE, "centre": 0.0, "x = 46 µm": BESIDE}
 EXTRA = "centre, 935 µm (dermis)"
 LOOKS = {
     "x = −46 µm": {"color": style.COLOURS["315"], "ls": "-"},
@@ -146,14 +140,14 @@ def receptor(depth: float, offset: float) -> Trace:
 
 
 def _plate_frame(
-    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame, *, strokes: dict[str, str], axis: str
+    histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame, *, strokes: Runs, axis: str
 ) -> pd.DataFrame:
     """Strain energy over time at the thesis's three receptors, and under the tip if there are ridges, both ways."""
     places = {series: (DEPTH, x) for series, x in OFFSETS.items()}
     if strokes is RIDGED:
         places[EXTRA] = (UNDER_TIP, 0.0)
     parts, right = [], strokes["right"]
-    for way, name in strokes.items():
+    for way, name in strokes.scenes.items():
         stroke = loaded(histories[name])
         for series, (depth, x) in places.items():
             # the two ways are mirror images: the companion of the stroke to the right serves both, read on either side
@@ -203,10 +197,10 @@ def fig_5_29(frame: pd.DataFrame) -> Figure:
 
 
 FIGURES = (
-    FigureSpec("5-25", "Mesh with inner ridges", (scene_name(PRESSED, "flat"),), frame_5_25, fig_5_25, companions=()),
-    FigureSpec("5-26", "Strain energy over time, inner ridges", scenes(PRESSED), frame_5_26, fig_5_26),
-    FigureSpec("5-28", "Flat plate stroked, no ridges", tuple(PLAIN.values()),
+    FigureSpec("5-25", "Mesh with inner ridges", (scene_name("ridged_40", "flat"),), frame_5_25, fig_5_25, companions=()),
+    FigureSpec("5-26", "Strain energy over time, inner ridges", scenes("ridged_40"), frame_5_26, fig_5_26),
+    FigureSpec("5-28", "Flat plate stroked, no ridges", tuple(PLAIN.scenes.values()),
                partial(_plate_frame, strokes=PLAIN, axis="T317"), fig_5_28, companions=(PLAIN["right"],)),
-    FigureSpec("5-29", "Flat plate stroked, inner ridges", tuple(RIDGED.values()),
+    FigureSpec("5-29", "Flat plate stroked, inner ridges", tuple(RIDGED.scenes.values()),
                partial(_plate_frame, strokes=RIDGED, axis="T319"), fig_5_29, companions=(RIDGED["right"],)),
 )  # fmt: skip

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -15,10 +14,6 @@ from fingerpad.measures.features import SIMULATED, is_simulated
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import read_force_depth, read_surface_profiles
 
-if TYPE_CHECKING:
-    from fingerpad.specimen.mesh import PadMesh
-
-Meshes = Mapping[str, "PadMesh"]
 FrameFunction = Callable[..., pd.DataFrame]
 
 
@@ -78,39 +73,6 @@ MEASURED: Mapping[str, tuple[str, Callable[[list[Path]], pd.DataFrame]]] = {
     "impulse_rates": ("impulse_rates/*.csv recordings/*.csv", lambda paths: read_rates(*paths)),
 }
 """Measured data by name: their files in the folder of reference data (one pattern or more), and their reader."""
-
-
-def read_reference(path: str | PathLike) -> pd.DataFrame:
-    """Table of numbers printed in the thesis, indexed by id.
-
-    Columns figure, quantity, condition, low, high, units, kind (stated | axis_range | garbled), form (value |
-    range | axis | estimate | trend | layout), tolerance, role (input: stated by the thesis and by the scenes; count: of the
-    model itself; calibrated: a parameter was chosen by it; result; trend; empty for a layout), source. Raises ValueError for a
-    repeated id or an unknown kind, form or role.
-    """
-    table = pd.read_csv(path, dtype={"id": str, "figure": str, "condition": str, "units": str}).set_index("id")
-    table["role"] = table["role"].fillna("")
-    if not table.index.is_unique:
-        raise ValueError(f"{path}: repeated id {table.index[table.index.duplicated()][0]}")
-    for column, allowed in {
-        "kind": {"stated", "axis_range", "garbled"},
-        "form": {"value", "range", "axis", "estimate", "trend", "layout"},
-        "role": {"input", "count", "calibrated", "result", "trend", ""},
-    }.items():
-        unknown = set(table[column]) - allowed
-        if unknown:
-            raise ValueError(f"{path}: unknown {column} {sorted(map(str, unknown))}, allowed {sorted(allowed)}")
-    wrong = table.index[(table["role"] == "trend") != (table["form"] == "trend")]
-    wrong = wrong.union(table.index[(table["role"] == "") != (table["form"] == "layout")])
-    if len(wrong):
-        role, form = table.loc[wrong[0], ["role", "form"]]
-        raise ValueError(f"{path}: {wrong[0]}: role '{role}' does not go with form '{form}'")
-    return table
-
-
-def empty_reference() -> pd.DataFrame:
-    """A reference table without rows: figures then carry no thesis ranges."""
-    return pd.DataFrame(columns=["low", "high", "kind"])
 
 
 def axis_rows(reference: pd.DataFrame, column: str, ids: str | Mapping[str, str], key: str = "surface") -> pd.DataFrame:

@@ -17,6 +17,10 @@ STEADY = 2e-3
 """Where the mean of the index begins, m of stroke."""
 DEPTH, BESIDE = 915e-6, 46e-6
 """The thesis's receptor depth and offset, m."""
+OFFSETS = {"x = −46 µm": -BESIDE, "centre": 0.0, "x = 46 µm": BESIDE}
+"""Offsets (m) of the thesis's three receptors, by the name of their curves."""
+UNDER_TIP = 935e-6
+"""Depth (m) of the receptor in the dermis just under the ridge's tip."""
 KEY = (150, 0.65)
 """Height (um) and coefficient of the scenes."""
 

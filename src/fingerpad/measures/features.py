@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from fingerpad.units import parse_quantity
+
+if TYPE_CHECKING:
+    from fingerpad.specimen.mesh import PadMesh
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
 """Labels of the nine surfaces, broad to sharp: curvature in 1/m as the thesis rounds it."""
@@ -26,6 +29,7 @@ SIMULATED = "simulated"
 RAMP_FRACTIONS = (0.2, 0.4, 0.6, 0.8)
 
 Histories = Mapping[str, xr.Dataset]
+Meshes = Mapping[str, "PadMesh"]
 Trace = Callable[[xr.Dataset], np.ndarray]
 Feature = Callable[[xr.Dataset], float]
 

@@ -5,27 +5,48 @@ Functions take one history (see `fingerpad.results`) and return arrays in SI, or
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from fingerpad.measures.columns import CURVATURE, DISTANCE, NODE, RATE, SED, TIME, P
 from fingerpad.measures.features import (
     PRESSURE,
     SURFACES,
     Histories,
     centre_node,
+    centre_pressure,
     energy,
     ramp_end,
     receptor_index,
     scene_name,
     scene_of,
 )
+from fingerpad.measures.quantities import (
+    BELOW_EDGE,
+    BURST_RATE,
+    BURST_TIME,
+    BURST_WIDTH,
+    CURVATURE,
+    DISTANCE,
+    DYNAMIC,
+    EDGE_DISTANCE,
+    FREQUENCY,
+    IMPULSE_RATE,
+    NODE,
+    NODE_SPEED,
+    P_LAW,
+    RATE,
+    SED,
+    SED_LAW,
+    STATIC,
+    TIME,
+    P,
+)
 from fingerpad.measures.skin import skin_curvature
-from fingerpad.measures.strokes import FULL, arcs, convexities, place
-from fingerpad.receptors.fits import SkinSample, constant_shift, linear, spatial_sum
+from fingerpad.measures.strokes import FULL, arcs, convexities, loaded, place
+from fingerpad.receptors.fits import SkinSample, constant_shift, linear, r_squared, spatial_sum
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, pressure_terms, rate_by_leg, time_above
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_frequency, trains
@@ -33,13 +54,14 @@ from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_fre
 RECEPTOR_DEPTH = 915e-6
 """m; the depth that the thesis predicts impulse rates from."""
 
-IMPULSE_RATE = "predicted_rate (impulses/s)"
-STATIC, DYNAMIC = "rate_from_energy (impulses/s)", "rate_from_energy_rate (impulses/s)"
-FREQUENCY = "predicted_frequency (impulses/s)"
-SED_LAW = "strain_energy_by_eq_4_4 (Pa)"
-P_LAW = "pressure_by_law (Pa)"
-EDGE_DISTANCE, BELOW_EDGE, NODE_SPEED = "edge_distance (mm)", "displacement_below_edge (mm)", "speed (mm/s)"
-BURST_WIDTH, BURST_TIME, BURST_RATE = "burst_width (mm)", "burst_duration (s)", "burst_rate (impulses/s)"
+SHALLOW_DEPTH = 600e-6
+"""m; the depth that the thesis predicts the receptor of Fig 4-3 from."""
+SEED = 1999
+"""Of every predicted raster: the same pictures every time."""
+ASIDE = 46e-6
+"""m; to the right of the centre, where section 5.5 has one of its receptors."""
+STROKES_SHOWN = {"5-1": 10, "5-19": 12, "5-22": 4, "5-23": 12, "5-27": 10}
+"""Repeated strokes that the thesis's figures show or average."""
 BIN = 0.5e-3
 """m; bins of the thesis's histograms over a stroke."""
 
@@ -268,6 +290,18 @@ def raster(frame: pd.DataFrame, repetitions: int, seed: int, variation: float = 
     return out.assign(**{DISTANCE: np.interp(out[TIME], time, frame[DISTANCE])}) if DISTANCE in frame else out
 
 
+def impulses_of(history: xr.Dataset, repetitions: int, depth: float = RECEPTOR_DEPTH) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Predicted rate of a stroke from where it begins to slide, and the impulses of some repetitions of it."""
+    frame = predicted_rate(loaded(history), depth)
+    return frame, raster(frame, repetitions, SEED)
+
+
+def plate_rate(stroke: xr.Dataset, offset: float = ASIDE) -> pd.DataFrame:
+    """Predicted rate of a receptor beside the centre while a plate slides, stroke distances counted up either way."""
+    rate = predicted_rate(loaded(stroke), RECEPTOR_DEPTH, offset=offset)
+    return rate.assign(**{DISTANCE: rate[DISTANCE].abs()})
+
+
 def stroke_histogram(frame: pd.DataFrame, impulses: pd.DataFrame, repetitions: int, bin_width: float = BIN) -> pd.DataFrame:
     """Mean rate of a raster in bins of the stroke distance (m): columns stroke_distance (of the bin's middle), predicted_rate.
 
@@ -327,6 +361,45 @@ def windowed(history: xr.Dataset, time, values, window: str) -> float:
     return time_mean(time, values, start, min(stop, end))
 
 
+def rate_in(history: xr.Dataset, window: str, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE) -> float:
+    """Predicted impulse rate (impulses/s) in a window of `fingerpad.receptors.recordings.WINDOWS`."""
+    frame = predicted_rate(history, depth, law)
+    return windowed(history, frame[TIME], frame[IMPULSE_RATE], window)
+
+
+def peak_energy_rate(history: xr.Dataset, depth: float) -> float:
+    """Largest rate of the strain energy, Pa/s."""
+    return float(predicted_rate(history, depth)[RATE].max())
+
+
+def mean_pressure(history: xr.Dataset, window: str = "hold") -> float:
+    """Mean pressure at the centre (Pa) in a window."""
+    return windowed(history, history["time"].values, centre_pressure(history), window)
+
+
+def shallow_law(histories: Mapping[str, xr.Dataset]) -> tuple[ImpulseRate, float]:
+    """Eq 5-1 for the shallow depth, and the factor its energies are multiplied by.
+
+    The thesis's constants belong to 915 um and it prints none for 600 um. Energies there are scaled by one number, with which the
+    mean over surfaces of the mean energy in the hold is the same at both depths: what differs is how they depend on curvature.
+    """
+    deep, shallow = (
+        np.mean([windowed(h, h["time"].values, energy(h, z), "hold") for h in histories.values()])
+        for z in (RECEPTOR_DEPTH, SHALLOW_DEPTH)
+    )
+    factor, law = float(deep / shallow), THESIS_RATE
+    return (
+        ImpulseRate(law.per_energy * factor, law.per_rate * factor, law.threshold / factor, law.rate_threshold / factor),
+        factor,
+    )
+
+
+def straight_line(x, y) -> tuple[float, float, float]:
+    """Slope, intercept and R2 of the least-squares line."""
+    slope, offset = np.polyfit(x, y, 1)
+    return float(slope), float(offset), r_squared(np.asarray(y), slope * np.asarray(x) + offset)
+
+
 # -- bursts --------------------------------------------------------------------------------------------------------------------
 
 
@@ -375,6 +448,12 @@ def bursts(
             }
         )
     return pd.DataFrame(rows)
+
+
+def burst_values(stroke: xr.Dataset, column: str) -> dict[str, float]:
+    """A column of `bursts` by the convexity's label."""
+    found = bursts(stroke)
+    return dict(zip(found["convexity"], found[column], strict=True))
 
 
 def _passages(history: xr.Dataset) -> list[tuple[float, float]]:

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import numpy as np
 import xarray as xr
 
-from fingerpad.measures.features import PRESSURE, Trace, centre_node, energy, scene_of
+from fingerpad.measures.features import PRESSURE, Trace, centre_node, centre_pressure, energy, scene_of
 from fingerpad.measures.skin import WINDOW, skin_curvature
 from fingerpad.stimuli.profiles import Profile, Segment, profile_of
 
@@ -109,6 +109,11 @@ def scaled(values: np.ndarray, onto: np.ndarray, where: np.ndarray) -> tuple[np.
     """A linear function A1 * values + A2 closest to `onto` at the outputs `where`: its values, A1, A2 and the correlation."""
     slope, offset = np.polyfit(values[where], onto[where], 1)
     return slope * values + offset, float(slope), float(offset), float(np.corrcoef(values[where], onto[where])[0, 1])
+
+
+def scaled_curvature(stroke: xr.Dataset) -> np.ndarray:
+    """Curvature of the skin at the centre node as a linear function that fits the pressure there in contact (time), Pa."""
+    return scaled(centre_curvature(stroke), centre_pressure(stroke), touching(stroke))[0]
 
 
 def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:

@@ -24,7 +24,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fingerpad.measures.columns import SED, TIME
 from fingerpad.measures.features import (
     ERROR,
     SIMULATED,
@@ -36,6 +35,7 @@ from fingerpad.measures.features import (
     ramp_end,
     scene_name,
 )
+from fingerpad.measures.quantities import SED, TIME
 from fingerpad.measures.responses import pressed
 from fingerpad.publishing import style
 

@@ -16,8 +16,8 @@ import pandas as pd
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from fingerpad.measures.columns import DISTANCE, LATERAL
 from fingerpad.measures.features import scene_of
+from fingerpad.measures.quantities import DISTANCE, LATERAL
 from fingerpad.scenes.scene import Wavy
 from fingerpad.studies.calibration.force import ESTIMATE_COLUMNS
 

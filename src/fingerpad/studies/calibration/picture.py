@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fingerpad.measures.columns import DISTANCE, LATERAL
 from fingerpad.measures.features import is_simulated
+from fingerpad.measures.quantities import DISTANCE, LATERAL
 from fingerpad.publishing.style import GREY, INK, study_figure, styled
 
 DEPTH, FORCE, COEFFICIENT = "depth (mm)", "force (N)", "coefficient (1)"

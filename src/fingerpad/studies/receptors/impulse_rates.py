@@ -13,8 +13,8 @@ import pandas as pd
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from fingerpad.measures.columns import TIME
 from fingerpad.measures.features import Histories, energy, force_gf
+from fingerpad.measures.quantities import TIME
 from fingerpad.measures.responses import IMPULSE_RATE, RECEPTOR_DEPTH, curvature_of, predicted_rate, pressed, windowed
 from fingerpad.receptors.fits import GainAndThreshold, gain_and_threshold, jackknife, linear
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate

@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from fingerpad.measures.columns import NODE, P
 from fingerpad.measures.features import Histories, scene_name
+from fingerpad.measures.quantities import NODE, P
 from fingerpad.measures.responses import (
     P_LAW,
     RECEPTOR_DEPTH,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from fingerpad.measures.columns import TIME
 from fingerpad.measures.features import Histories, ramp_end, scene_name
+from fingerpad.measures.quantities import TIME
 from fingerpad.measures.responses import (
     IMPULSE_RATE,
     RECEPTOR_DEPTH,

@@ -13,9 +13,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from fingerpad.measures.columns import DISTANCE, SED, P, X
 from fingerpad.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
 from fingerpad.measures.features import PRESSURE, SIMULATED, Histories, profile, ridges_of, scene_of
+from fingerpad.measures.quantities import DISTANCE, SED, P, X
 from fingerpad.measures.strokes import loaded
 from fingerpad.scenes.specimen import Outline, Ridges
 from fingerpad.studies.ridges.picture import (

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from fingerpad.measures.columns import DISTANCE, SED, P, X
 from fingerpad.measures.direction import BESIDE, DEPTH, KEY
+from fingerpad.measures.quantities import DISTANCE, SED, P, X
 from fingerpad.publishing.style import COLOURS, GREY, INK, LAYER_COLOURS, study_figure, styled
 
 OFFSET, INDEX, BAND = "offset (um)", "directional_index (1)", "discretisation_error (1)"

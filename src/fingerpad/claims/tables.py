@@ -9,8 +9,7 @@ import pandas as pd
 
 from fingerpad.claims.comparison import thesis_comparison
 from fingerpad.claims.sensitivity import sensitivity
-from fingerpad.figures.spec import Meshes
-from fingerpad.measures.features import Histories
+from fingerpad.measures.features import Histories, Meshes
 from fingerpad.specimen.quality import quality_table
 
 
