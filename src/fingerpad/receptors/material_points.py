@@ -113,8 +113,19 @@ class MaterialPoints:
         space = body.space
         points = np.atleast_2d(points)
         recover = _quadratic_recovery if space.element.pressure_modes == 1 else _mean_of_neighbours
-        self.location, self.recovery = recover(space, body.shear, points)
-        element = self.location.element
+        self._place(body, *recover(space, body.shear, points), shear_instantaneous)
+
+    @classmethod
+    def centres(cls, body, shear_instantaneous: np.ndarray) -> "MaterialPoints":
+        """A point in the middle of every element, in their order: the fields of a body as its receptors see them."""
+        made, count = cls.__new__(cls), len(body.space.cells)
+        middle = np.full((count, 2), 1 / 3 if body.space.element.triangle else 0.5)
+        made._place(body, Location(np.arange(count), middle), None, shear_instantaneous)
+        return made
+
+    def _place(self, body, location, recovery, shear_instantaneous):
+        space, element = body.space, location.element
+        self.location, self.recovery = location, recovery
         values, slopes = space.element.shape(self.location.xi)
         self.cells = space.cells[element]
         nodes = space.points[self.cells]
@@ -162,8 +173,7 @@ class MaterialPoints:
         there is none), ``von_mises_stress`` and ``hydrostatic_pressure`` (Cauchy, Pa, compression positive) and ``dilatation``
         (J - 1 as the element projects it).
         """
-        gradient = self._gradient(body)
-        dilatation = np.einsum("nb,nb->n", body.dilatation()[self.location.element], self.psi)
+        gradient, dilatation = self._gradient(body), self._dilatation(body)
         stress = self._isochoric(gradient)
         branch = [] if self.branches is None else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
         if self._linear:
@@ -186,9 +196,26 @@ class MaterialPoints:
             "hydrostatic_pressure": -self.bulk * dilatation,
             "dilatation": dilatation,
         }
-        if self.recovery is None:
-            return found
-        return {name: self.recovery @ values for name, values in found.items()}
+        return self._recovered(found)
+
+    def stress_and_strain(self, body) -> dict[str, np.ndarray]:
+        """``cauchy_stress`` (nr, 4: xx, yy, xy, zz) Pa and ``principal_strains`` (nr, 2: stretches less one, rising)."""
+        gradient = self._gradient(body)
+        if self._linear:
+            f, jac = np.broadcast_to(np.eye(2), gradient.shape), np.ones(len(gradient))
+            strains = np.linalg.eigvalsh(0.5 * (gradient + gradient.swapaxes(1, 2)))
+        else:
+            f = np.eye(2) + gradient
+            jac, strains = np.linalg.det(f), np.linalg.svd(f, compute_uv=False)[:, ::-1] - 1
+        total = self._isochoric(gradient) + (0.0 if self.branches is None else self.branches.q.sum(0))
+        stress = push_forward(f, total) / jac[:, None] + (self.bulk * self._dilatation(body))[:, None] * [1, 1, 0, 1]
+        return self._recovered({"cauchy_stress": stress, "principal_strains": strains})
+
+    def _dilatation(self, body):
+        return np.einsum("nb,nb->n", body.dilatation()[self.location.element], self.psi)
+
+    def _recovered(self, found):
+        return found if self.recovery is None else {name: self.recovery @ values for name, values in found.items()}
 
 
 def _quadratic_recovery(space, shear, points, neighbours: int = 24):
