@@ -1,15 +1,28 @@
 """Histories: labelled, with units and provenance, whole on disk, and of the whole pad whatever was solved."""
 
+import errno
 import json
+import shutil
+import types
 from pathlib import Path
+from xml.etree import ElementTree
 
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
 import meshio
 import numpy as np
 import pytest
+import xarray as xr
+from scipy.spatial import cKDTree
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_atomically
+from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.results import COORDINATES, FRICTION_VARIABLES, VARIABLES, read_history, summary, write_history, write_vtu
+from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
 
 pytestmark = pytest.mark.unit
@@ -28,7 +41,7 @@ def run():
     chosen = plan(scene)
     mesh = mesh_for(scene, chosen)
     calls = []
-    return scene, chosen, mesh, simulate(scene, chosen, mesh, calls.append), calls
+    return scene, chosen, mesh, simulate(scene, chosen, mesh, calls.append, fields=True), calls
 
 
 def test_every_variable_has_its_unit_and_name(run):
@@ -117,7 +130,7 @@ def test_round_trip(run, tmp_path):
 def test_snapshots_become_vtu(run, tmp_path):
     """Full fields open in ParaView: whole pad, moved nodes, layers, mean stress."""
     _, _, mesh, history, _ = run
-    paths = write_vtu(history, mesh, tmp_path)
+    paths = write_vtu(history, tmp_path)
     assert [path.name for path in paths] == ["snapshot_0.vtu", "snapshot_1.vtu"]
     series = json.loads((tmp_path / "snapshots.vtu.series").read_text())["files"]
     assert [(frame["name"], frame["time"]) for frame in series] == [
@@ -127,6 +140,113 @@ def test_snapshots_become_vtu(run, tmp_path):
     assert len(field.points) == len(mesh.points) and set(np.unique(field.cell_data["layer"][0])) == {0, 1, 2}
     apex = np.argmin(np.hypot(mesh.points[:, 0], mesh.points[:, 1] - mesh.points[:, 1].max()))
     assert field.point_data["displacement (mm)"][apex, 1] == pytest.approx(-float(history.indentation_depth[-1]) * 1e3, rel=1e-3)
+    pressure = field.point_data["contact pressure (kPa)"]
+    assert pressure[apex] == pytest.approx(float(history.centre_pressure[-1]) * 1e-3)
+    assert np.count_nonzero(pressure) == np.count_nonzero(history.contact_pressure[-1])
+    assert "layer (0 epidermis, 1 dermis, 2 fat)" in field.cell_data
+    outline = meshio.read(tmp_path / "indenter_1.vtu")
+    assert outline.points[:, 1].min() == pytest.approx(6 - float(history.indentation_depth[-1]) * 1e3, abs=1e-4)
+    film = ElementTree.parse(tmp_path / "snapshots.pvd").getroot().findall("Collection/DataSet")
+    assert [part.get("file") for part in film] == [f"{kind}_{k}.vtu" for k in (0, 1) for kind in ("snapshot", "indenter")]
+
+
+def test_fields_are_consistent(run, tmp_path):
+    """Stress, its invariants and the energy of the total stress belong together; a mirror turns the shear stress round."""
+    _, _, mesh, history, _ = run
+    write_vtu(history, tmp_path)
+    cells = {name: values[0] for name, values in meshio.read(tmp_path / "snapshot_1.vtu").cell_data.items()}
+    stress = cells["cauchy stress (kPa)"].reshape(-1, 3, 3)
+    mean = np.trace(stress, axis1=1, axis2=2) / 3
+    deviator = stress - mean[:, None, None] * np.eye(3)
+    square = np.einsum("nij,nij->n", deviator, deviator)
+    np.testing.assert_allclose(cells["von mises stress (kPa)"], np.sqrt(1.5 * square), rtol=1e-4, atol=1e-6)
+    large = np.abs(mean) > 0.1 * np.abs(mean).max()
+    np.testing.assert_allclose(mean[large], cells["mean stress (kPa)"][large], rtol=0.02)
+    youngs = np.array([0.15e3, 0.015e3, 0.015e3])[cells["layer"]]
+    shear, bulk = youngs / 2.96 / (1 - 0.055 - 0.3691), youngs / (3 * 0.04)
+    energy = 1e3 * (square / (4 * shear) + mean**2 / (2 * bulk))  # but for det F, which is one within some per cent
+    np.testing.assert_allclose(cells["strain energy density (Pa)"], energy, rtol=0.12, atol=1e-3 * energy.max())
+    assert (cells["smallest principal strain (1)"] <= cells["largest principal strain (1)"]).all()
+    centre = mesh.points[mesh.cells].mean(1)
+    twin = cKDTree(centre).query(centre * [-1, 1])[1]
+    np.testing.assert_allclose(stress[twin], stress * [[1, -1, 1], [-1, 1, 1], [1, 1, 1]], rtol=1e-12, atol=1e-15)
+    assert np.abs(stress[:, 0, 1]).max() > 1
+
+
+def test_fields_are_what_receptors_see(run):
+    """A receptor in the middle of an element has the element's values, to the last bits."""
+    simulation = Simulation(*run[:3], fields=True)
+    body, space = simulation.body, simulation.body.space
+    body.displace(np.where(space.fixed, 0, 1e-6 * np.sin(4000 * space.points[:, ::-1])))
+    some = np.arange(0, len(space.cells), 37)
+    middle = np.einsum("a,nai->ni", space.element.shape(np.array([[0.5, 0.5]]))[0][0], space.points[space.cells[some]])
+    receptors = MaterialPoints(body, middle, simulation.fields.shear_instantaneous)
+    there, here = receptors.sample(body), simulation.fields.sample(body)
+    for name in there:
+        np.testing.assert_allclose(here[name][some], there[name], rtol=1e-8, err_msg=name)
+
+
+def test_the_last_state_is_the_field_when_no_snapshot_is_named():
+    """Whatever has no snapshots has one of its end when fields are asked for, and none when they are not."""
+    scene = load_scene(SCENES / "ramp40_flat.yaml").with_accuracy("draft")
+    scene = scene.model_copy(update={"motion": (scene.motion[0].model_copy(update={"rate": None}),)})
+    assert "snapshot_time" not in simulate(scene)
+    history = simulate(scene, fields=True)
+    assert history.snapshot_time.values == [float(history.time[-1])]
+    apex = int(np.argmin(np.hypot(*(history.node_position.values - [0, 6e-3]).T)))
+    assert history.snapshot_displacement[0, apex, 1] == pytest.approx(-float(history.indentation_depth[-1]), rel=1e-6)
+
+
+def test_skin_is_indexed_by_the_way_along_it(run, tmp_path):
+    """Pressure over place and time plots; the middle is found by its place; a file that was read again has it too."""
+    write_history(run[3], tmp_path / "history.nc")
+    for history in (run[3], read_history(tmp_path / "history.nc")):
+        assert history.contact_pressure.dims == ("time", "skin_node") and np.all(np.diff(history.skin_arc) > 0)
+        middle = history.contact_pressure.sel(skin_arc=0, method="nearest")
+        np.testing.assert_array_equal(middle, history.centre_pressure)
+        drawn = history.contact_pressure.plot(x="skin_arc", y="time")
+        assert drawn.get_array().size == history.contact_pressure.size
+        plt.close("all")
+        history.contact_pressure.isel(time=-1).plot(x="skin_x")
+        plt.close("all")
+
+
+def test_a_summary_names_its_receptors(run):
+    """Every energy of a summary stands beside depth and offset; of very many receptors only the history speaks."""
+    history = run[3]
+    leg = summary(history)["legs"][-1]
+    assert [(r["depth_mm"], r["offset_mm"]) for r in leg["receptors"]] == [(d, x) for d in (0.6, 0.915) for x in (-0.5, 0, 0.5)]
+    for name in ("strain_energy_Pa", "strain_energy_network_Pa"):
+        assert leg[name] == [r[name] for r in leg["receptors"]]
+    assert leg["force_gf"] == pytest.approx(20, rel=1e-6) and leg["force_N"] == pytest.approx(0.196133, rel=1e-6)
+    many = summary(history.isel(receptor=np.zeros(2000, int)))["legs"][-1]
+    assert "2000 receptor points" in many["receptors"] and len(json.dumps(many)) < 1000
+
+
+def test_an_interrupted_simulation_keeps_what_had_converged(run):
+    """Ctrl-C in the middle of a run: the history up to there rides on the exception."""
+    scene, chosen, mesh, whole, _ = run
+    calls = []
+
+    def press_the_key(state):
+        calls.append(state)
+        if len(calls) == 5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        simulate(scene, chosen, mesh, press_the_key)
+    history = caught.value.dataset
+    assert history.sizes["time"] == 6 and not history.attrs["complete"]
+    np.testing.assert_array_equal(history.force, whole.force[:6])
+
+
+def test_a_full_disk_is_an_error_of_the_system(run, tmp_path, monkeypatch):
+    """What netCDF calls an HDF error becomes one that says what the disk says, and nothing is left."""
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: types.SimpleNamespace(free=0))
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", lambda *_, **__: (_ for _ in ()).throw(RuntimeError("NetCDF: HDF error")))
+    with pytest.raises(OSError, match="No space left") as caught:
+        write_history(run[3], tmp_path / "history.nc")
+    assert caught.value.errno == errno.ENOSPC and not list(tmp_path.iterdir())
 
 
 def test_nothing_half_written(tmp_path):

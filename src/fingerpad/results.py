@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from fingerpad.files import write_atomically, write_text
+from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.provenance import digest, imported_sources
 from fingerpad.scenes.scene import Scene, recorded_scene
 
@@ -70,7 +70,18 @@ COORDINATES = {
     "receptor_offset": ("receptor", "m", "lateral receptor position, undeformed"),
     "skin_x": ("skin_node", "m", "lateral position of the skin node, undeformed"),
     "skin_y": ("skin_node", "m", "height of the skin node, undeformed"),
+    "skin_arc": ("skin_node", "m", "way along the undeformed skin from the apex, positive to the right"),
 }
+#: what a full field holds beside displacement and mean stress: name -> (unit in files, in vtu files, factor, long name)
+ENERGIES = [name for name in VARIABLES if name.startswith("strain_energy")]
+FIELDS = {
+    **{name: ("Pa", "Pa", 1.0, VARIABLES[name][2]) for name in ENERGIES},
+    "principal_strains": ("1", "1", 1.0, "principal stretches in the plane less one, rising"),
+    "cauchy_stress": ("Pa", "kPa", 1e-3, "Cauchy stress xx, yy, xy, zz"),
+    "von_mises_stress": ("Pa", "kPa", 1e-3, VARIABLES["von_mises_stress"][2]),
+}
+#: of a leg's entry in a summary with more receptors than this, the energies are in the history only
+MOST_RECEPTORS = 100
 
 
 def dataset(variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray], attributes: dict[str, Any]) -> xr.Dataset:
@@ -84,15 +95,36 @@ def dataset(variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray]
         for name, values in coordinates.items()
     }
     attrs = {k: json.dumps(v, sort_keys=True) if isinstance(v, (dict, list)) else v for k, v in attributes.items()}
-    return xr.Dataset(data, coords, attrs)
+    return _indexed(xr.Dataset(data, coords, attrs))
 
 
-def add_snapshots(history: xr.Dataset, times, points, cells, region, displacement, pressure, regions) -> xr.Dataset:
+def _indexed(history: xr.Dataset) -> xr.Dataset:
+    """The history with its skin indexed by the way along it, which grows where x turns back under the pad."""
+    return history.set_xindex("skin_arc") if "skin_arc" in history.coords else history
+
+
+def skin_arc(x: np.ndarray, y: np.ndarray, apex: int) -> np.ndarray:
+    """Way (ns,) m along the chain of skin nodes at x, y (ns,) m, zero at the node ``apex`` and growing from left to right."""
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    return way - way[apex]
+
+
+def add_snapshots(
+    history: xr.Dataset, times, points, cells, region, displacement, pressure, regions, indenter=None, fields=None
+) -> xr.Dataset:
     """Add full fields: ``snapshot_displacement`` (snapshot, node, 2) m and ``snapshot_pressure`` (snapshot, element) Pa.
 
-    Of the layers ``regions`` the numbers ``region`` (element,) are indices.
+    Of the layers ``regions`` the numbers ``region`` (element,) are indices. ``indenter`` (snapshot, n, 2) m, outlines of the
+    stimulus. ``fields``: more of the elements (snapshot, element[, components]), named as in :data:`FIELDS`.
     """
     layers = ", ".join(f"{number} {name}" for number, name in enumerate(regions))
+    if indenter is not None:
+        outline = {"units": "m", "long_name": "outline of the stimulus"}
+        history = history.assign(snapshot_indenter=(("snapshot", "outline_point", "axis"), indenter, outline))
+    for name, values in (fields or {}).items():
+        dims = ("snapshot", "element", *((f"component_of_{name}",) if values.ndim == 3 else ()))
+        attributes = {"units": FIELDS[name][0], "long_name": f"{FIELDS[name][3]}, middle of the element"}
+        history[f"snapshot_{name}"] = (dims, values, attributes)
     return history.assign(
         snapshot_time=("snapshot", np.asarray(times, float), {"units": "s", "long_name": "time of the full field"}),
         node_position=(("node", "axis"), points, {"units": "m", "long_name": "undeformed node position"}),
@@ -155,29 +187,41 @@ def _scene(text: str) -> Scene:
 
 
 def summary(history: xr.Dataset) -> dict[str, Any]:
-    """The summary of a history: the state at the end of each leg, and what the run took."""
-    cost = json.loads(history.attrs["cost"])
+    """The summary of a history: the state at the end of each leg, and what the run took.
+
+    Energies are lists, one entry a receptor point, and once more in ``receptors`` with the place of each; of more than
+    :data:`MOST_RECEPTORS` points ``receptors`` says that they are in the history.
+    """
+    cost, length = json.loads(history.attrs["cost"]), json.loads(history.attrs["scene"])["specimen"]["contact_length"]
+    places = [
+        {"depth_mm": round(depth * 1e3, 9), "offset_mm": round(offset * 1e3, 9)}
+        for depth, offset in zip(history.receptor_depth.values.tolist(), history.receptor_offset.values.tolist(), strict=True)
+    ]
     legs = []
     for leg in np.unique(history.leg.values[1:]):
         end = history.isel(time=int(np.flatnonzero(history.leg.values == leg)[-1]))
-        legs.append(
-            {
-                "time_s": float(end.time),
-                "depth_mm": float(end.indentation_depth) * 1e3,
-                "force_N_per_m": float(end.force),
-                "tangential_force_N_per_m": float(end.tangential_force),
-                "contact_width_mm": float(end.contact_width) * 1e3,
-                "peak_pressure_Pa": float(end.peak_pressure),
-                "centre_pressure_Pa": float(end.centre_pressure),
-                "centre_lateral_displacement_mm": float(end.centre_lateral_displacement) * 1e3,
-                "stroke_distance_mm": float(end.stroke_distance) * 1e3,
-                "strain_energy_Pa": end.strain_energy_density.values.tolist(),
-                "strain_energy_network_Pa": end.strain_energy_network.values.tolist(),
-                "strain_energy_recoverable_Pa": end.strain_energy_recoverable.values.tolist(),
-                "strain_energy_long_term_moduli_Pa": end.strain_energy_long_term_moduli.values.tolist(),
-                "strain_energy_half_stress_strain_Pa": end.strain_energy_half_stress_strain.values.tolist(),
-            }
-        )
+        force = float(end.force)
+        entry = {
+            "time_s": float(end.time),
+            "depth_mm": float(end.indentation_depth) * 1e3,
+            "force_N_per_m": force,
+            "force_N": force * length,
+            "force_gf": force * length / 9.80665e-3,
+            "tangential_force_N_per_m": float(end.tangential_force),
+            "contact_width_mm": float(end.contact_width) * 1e3,
+            "peak_pressure_Pa": float(end.peak_pressure),
+            "centre_pressure_Pa": float(end.centre_pressure),
+            "centre_lateral_displacement_mm": float(end.centre_lateral_displacement) * 1e3,
+            "stroke_distance_mm": float(end.stroke_distance) * 1e3,
+        }
+        if len(places) > MOST_RECEPTORS:
+            entry["receptors"] = f"{len(places)} receptor points: their strain energies are in the history"
+        else:
+            energies = {_energy_key(name): end[name].values.tolist() for name in ENERGIES}
+            each = [dict(zip(energies, values, strict=True)) for values in zip(*energies.values(), strict=True)]
+            entry |= energies
+            entry["receptors"] = [place | values for place, values in zip(places, each, strict=True)]
+        legs.append(entry)
     run = {
         "steps": int(history.sizes["time"] - 1),
         "newton_iterations": int(history.newton_iterations.sum()),
@@ -192,44 +236,96 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
     return {"legs": legs, "run": run}
 
 
+def _energy_key(name: str) -> str:
+    return "strain_energy_Pa" if name == "strain_energy_density" else f"{name}_Pa"
+
+
 def write_history(history: xr.Dataset, path: str | Path) -> None:
-    """Write a history as NetCDF 4, whole or not at all."""
+    """Write a history as NetCDF 4, whole or not at all.
+
+    Raises:
+        OSError: it cannot be written, on a full disk for example.
+    """
     encoding = {name: {"zlib": True, "complevel": 4} for name, values in history.data_vars.items() if values.ndim > 1}
-    write_atomically(path, lambda partial: history.to_netcdf(partial, engine="netcdf4", encoding=encoding))
+
+    def write(partial: Path) -> None:
+        try:
+            history.to_netcdf(partial, engine="netcdf4", encoding=encoding)
+        except RuntimeError as error:  # what netCDF makes of an error of the disk
+            raise disk_is_full(partial.parent) or OSError(f"{error}") from error
+
+    write_atomically(path, write)
 
 
 def read_history(path: str | Path) -> xr.Dataset:
     """Read a history written by :func:`write_history`, into memory."""
-    return xr.load_dataset(path, engine="netcdf4")
+    return _indexed(xr.load_dataset(path, engine="netcdf4"))
 
 
-def write_vtu(history: xr.Dataset, mesh, directory: str | Path) -> list[Path]:
-    """Write each snapshot as ``snapshot_<k>.vtu`` (mm, mm, kPa) for ParaView; returns the paths, none without snapshots.
+def write_vtu(history: xr.Dataset, directory: str | Path) -> list[Path]:
+    """Write each full field of a history for ParaView; returns the paths of the pad's, none without full fields.
 
-    Beside them ``snapshots.vtu.series``, which ParaView opens as one film with its times.
+    ``snapshot_<k>.vtu`` is the pad (undeformed, mm) with displacement (mm), contact pressure and traction on its skin (kPa) at
+    nodes; layer, mean stress and whatever else the history holds of :data:`FIELDS` in elements. ``indenter_<k>.vtu`` is the
+    outline of the stimulus. ``snapshots.pvd`` opens all of them as one film, ``snapshots.vtu.series`` the pad alone.
     """
     if "snapshot_time" not in history:
         return []
     import meshio
+    from scipy.spatial import cKDTree
 
+    directory, nodes = Path(directory), history.sizes["node"]
     kind = {4: "quad", 9: "quad9", 6: "triangle6", 7: "triangle7", 3: "triangle"}[history.sizes["element_node"]]
-    points = np.column_stack([history.node_position.values * 1e3, np.zeros(history.sizes["node"])])
-    paths = []
-    for k in range(history.sizes["snapshot"]):
-        moved = np.column_stack([history.snapshot_displacement.values[k] * 1e3, np.zeros(history.sizes["node"])])
-        field = meshio.Mesh(
-            points,
-            [(kind, history.element_nodes.values)],
-            point_data={"displacement (mm)": moved},
-            cell_data={
-                "mean stress (kPa)": [history.snapshot_pressure.values[k] * 1e-3],
-                "layer": [history.element_region.values.astype(np.int32)],
-            },
-        )
-        path = Path(directory) / f"snapshot_{k}.vtu"
-        write_atomically(path, lambda partial, field=field: field.write(partial, file_format="vtu"))
-        paths.append(path)
-    frames = [{"name": path.name, "time": float(t)} for path, t in zip(paths, history.snapshot_time.values, strict=True)]
+    position, region = history.node_position.values, history.element_region
+    skin = cKDTree(position).query(np.column_stack([history.skin_x, history.skin_y]))[1]
+    times = history.snapshot_time.values.tolist()
+    paths, parts = [], []
+    for k, time in enumerate(times):
+        now = history.isel(snapshot=k)
+        state = history.isel(time=int(np.flatnonzero(np.isclose(history.time.values, time, rtol=1e-9, atol=1e-12))[-1]))
+        on_skin = {"contact pressure (kPa)": state.contact_pressure}
+        if "tangential_traction" in state:
+            on_skin["frictional traction (kPa)"] = state.tangential_traction
+        point_data = {"displacement (mm)": _in_space(now.snapshot_displacement.values * 1e3)}
+        for name, values in on_skin.items():
+            point_data[name] = np.zeros(nodes)
+            point_data[name][skin] = values.values * 1e-3
+        cell_data = {"mean stress (kPa)": now.snapshot_pressure.values * 1e-3, "layer": region.values.astype(np.int32)}
+        cell_data[f"layer ({region.attrs['long_name']})"] = cell_data["layer"]
+        for name, (_, unit, factor, _) in FIELDS.items():
+            if f"snapshot_{name}" in now:
+                cell_data |= _named(name, unit, factor * now[f"snapshot_{name}"].values)
+        blocks = {name: [values] for name, values in cell_data.items()}
+        field = meshio.Mesh(_in_space(position * 1e3), [(kind, history.element_nodes.values)], point_data, blocks)
+        paths.append(directory / f"snapshot_{k}.vtu")
+        made = {paths[-1].name: field}
+        if "snapshot_indenter" in now:
+            outline = now.snapshot_indenter.values
+            outline = outline[np.isfinite(outline).all(1)] * 1e3
+            line = np.column_stack([np.arange(len(outline) - 1), np.arange(1, len(outline))])
+            made[f"indenter_{k}.vtu"] = meshio.Mesh(_in_space(outline), [("line", line)])
+        for part, (name, mesh) in enumerate(made.items()):
+            write_atomically(directory / name, lambda partial, mesh=mesh: mesh.write(partial, file_format="vtu"))
+            parts.append(f'<DataSet timestep="{time!r}" part="{part}" file="{name}"/>')
+    film = "\n".join(['<VTKFile type="Collection" version="0.1"><Collection>', *parts, "</Collection></VTKFile>\n"])
+    write_text(directory / "snapshots.pvd", film)
+    frames = [{"name": path.name, "time": time} for path, time in zip(paths, times, strict=True)]
     series = {"file-series-version": "1.0", "files": frames}
-    write_text(Path(directory) / "snapshots.vtu.series", json.dumps(series, indent=1) + "\n")
+    write_text(directory / "snapshots.vtu.series", json.dumps(series, indent=1) + "\n")
     return paths
+
+
+def _in_space(plane: np.ndarray) -> np.ndarray:
+    return np.column_stack([plane, np.zeros(len(plane))])
+
+
+def _named(name: str, unit: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    """The arrays of a field as ParaView shows them: scalars by their name, a tensor with its nine components."""
+    label = name.replace("_", " ")
+    if name == "cauchy_stress":
+        xx, yy, xy, zz = values.T
+        zero = np.zeros_like(xx)
+        return {f"{label} ({unit})": np.column_stack([xx, xy, zero, xy, yy, zero, zero, zero, zz])}
+    if name == "principal_strains":
+        return {f"smallest principal strain ({unit})": values[:, 0], f"largest principal strain ({unit})": values[:, 1]}
+    return {f"{label} ({unit})": values}

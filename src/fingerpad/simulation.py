@@ -18,7 +18,7 @@ from fingerpad.mechanics.space import PlaneStrain, Space
 from fingerpad.mechanics.stepping import NonConvergence, QuasiStatic, Record, Skin
 from fingerpad.planning.plan import Plan, estimated_error, plan, schedule
 from fingerpad.receptors.material_points import MaterialPoints
-from fingerpad.results import add_snapshots, dataset, peak_memory_MB, provenance
+from fingerpad.results import FIELDS, add_snapshots, dataset, peak_memory_MB, provenance, skin_arc
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
@@ -40,12 +40,14 @@ def simulate(
     plan: Plan | None = None,
     mesh: PadMesh | None = None,
     progress: Callable[[dict[str, Any]], None] | None = None,
+    fields: bool = False,
 ) -> xr.Dataset:
     """Simulate a scene.
 
     Args:
         scene: a checked scene. plan: how (default: ``fingerpad.plan(scene)``). mesh: the whole pad's mesh (default: built or
         read as the plan says). progress: called after each step with time_s, end_time_s, contact_width_mm, iterations, cutbacks.
+        fields: full fields of strain energy, strain and stress as well, at the scene's snapshots, or of the last state.
 
     Returns:
         The history of the whole pad (see :mod:`fingerpad.results`).
@@ -53,16 +55,17 @@ def simulate(
     Raises:
         PlanError, MeshError, OutlineError: the input cannot be meshed or planned (before anything is solved).
         ReceptorError: a receptor lies outside the soft tissue.
-        NonConvergence: a step failed for good; its ``dataset`` is the history up to the last converged step.
+        NonConvergence: a step failed for good; its ``dataset`` is the history up to the last converged step. A
+        KeyboardInterrupt has the same ``dataset``, if a step had converged.
     """
     with threadpool_limits(1):
-        return Simulation(scene, plan or _plan(scene), mesh).run(progress)
+        return Simulation(scene, plan or _plan(scene), mesh, fields).run(progress)
 
 
 class Simulation:
     """The parts of one simulation, composed by its plan, and their way back to the whole pad."""
 
-    def __init__(self, scene: Scene, plan: Plan, mesh: PadMesh | None):
+    def __init__(self, scene: Scene, plan: Plan, mesh: PadMesh | None, fields: bool = False):
         self.cpu, self.wall = time.process_time(), time.perf_counter()
         self.scene, self.plan = scene, plan
         self.whole = (mesh or mesh_for(scene, plan)).elevated()
@@ -74,8 +77,10 @@ class Simulation:
         self.body, instantaneous = self._body()
         self.receptors = self._receptors(instantaneous)
         self.skin = self._skin()
+        self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None) if fields else None
         friction = scene.friction if plan.effects["friction"].on else None
-        self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=(self.receptors,), friction=friction)
+        observers = (self.receptors, self.fields) if fields else (self.receptors,)
+        self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=observers, friction=friction)
 
     def _body(self):
         specimen, plan, mesh = self.scene.specimen, self.plan, self.mesh
@@ -124,16 +129,18 @@ class Simulation:
 
     def run(self, progress):
         states: list[dict[str, np.ndarray]] = [self.receptors.sample(self.body)]
+        done: list[Record] = []
         # one a leg and time: of the increments of a steady leg, all at one time, the last
-        snapshots: dict[tuple[int, float], tuple[np.ndarray, np.ndarray]] = {}
+        snapshots: dict[tuple[int, float], dict[str, np.ndarray]] = {}
         wanted = self.scene.outputs.snapshots
         total = self._nominal_end()
         counts = {"iterations": 0, "cutbacks": 0}
 
         def after(record: Record):
             states.append(self.receptors.sample(self.body))
+            done.append(record)
             if any(abs(record.time - t) <= 1e-9 * max(t, 1e-12) for t in wanted):
-                snapshots[record.leg, record.time] = record.displacement, self._element_pressure()
+                snapshots[record.leg, record.time] = self._full_field(record)
             if progress:
                 counts["iterations"] += record.iterations
                 counts["cutbacks"] += record.halvings
@@ -142,9 +149,11 @@ class Simulation:
 
         try:
             records = self.stepper.run(self.steps(), after)
-        except NonConvergence as failure:
-            failure.dataset = self._history(failure.records, states, snapshots, complete=False) if failure.records else None
+        except (NonConvergence, KeyboardInterrupt) as stop:
+            stop.dataset = self._history(done, states[: len(done) + 1], snapshots, complete=False) if done else None
             raise
+        if self.fields is not None and not snapshots and not wanted:
+            snapshots[records[-1].leg, records[-1].time] = self._full_field(records[-1])
         return self._history(records, states, snapshots, complete=True)
 
     def _present(self):
@@ -184,6 +193,21 @@ class Simulation:
         return float(max(error, lost, 0.5 if touching < 4 else 0.0))
 
     # -- back to the whole pad --------------------------------------------------------------------------------------
+
+    def _full_field(self, record: Record) -> dict[str, np.ndarray]:
+        """What a snapshot holds of the body that is solved, and the outline of the stimulus."""
+        field = {"displacement": record.displacement, "pressure": self._element_pressure(), "indenter": self._outline(record)}
+        if self.fields is not None:
+            found = self.fields.sample(self.body) | self.fields.stress_and_strain(self.body)
+            field |= {name: found[name] for name in FIELDS}
+        return field
+
+    def _outline(self, record: Record, points: int = 801) -> np.ndarray:
+        """(n, 2) m, the stimulus where it is over the pad; NaN where there is none."""
+        low, high = self.whole.points.min(0), self.whole.points.max(0)
+        x = np.linspace(low[0], high[0], points)
+        y = self.profile.outline(x + record.distance) + self.stepper.height - record.depth
+        return np.column_stack([x, np.where(y <= high[1] + np.ptp([low[1], high[1]]), y, np.nan)])
 
     def _element_pressure(self):
         modes = self.body.dilatation()
@@ -262,6 +286,7 @@ class Simulation:
             "receptor_offset": self.offset,
             "skin_x": self.whole.points[chain, 0],
             "skin_y": self.whole.points[chain, 1],
+            "skin_arc": skin_arc(*self.whole.points[chain].T, apex),
         }
         cost = {
             "cpu_s": round(time.process_time() - self.cpu, 4),
@@ -287,16 +312,18 @@ class Simulation:
             },
         )
         if snapshots:
-            cells = self.whole.cells
+            found = {name: [field[name] for field in snapshots.values()] for name in next(iter(snapshots.values()))}
             history = add_snapshots(
                 history,
                 [when for _, when in snapshots],
                 self.whole.points,
-                cells,
+                self.whole.cells,
                 self.whole.region,
-                np.array([unfold.nodes(u) for u, _ in snapshots.values()]),
-                np.array([unfold.elements(p) for _, p in snapshots.values()]),
+                np.array([unfold.nodes(u) for u in found.pop("displacement")]),
+                np.array([unfold.elements(p) for p in found.pop("pressure")]),
                 self.whole.regions,
+                np.array(found.pop("indenter")),
+                {name: np.array([unfold.elements(values, name) for values in each]) for name, each in found.items()},
             )
         return history
 
@@ -312,6 +339,7 @@ class _Unfolding:
 
     def __init__(self, whole: PadMesh, solved: PadMesh, skin_nodes: np.ndarray):
         self.left = whole.points[:, 0] < 0 if solved.half else np.zeros(len(whole.points), bool)
+        self._mirrored = whole.points[whole.cells].mean(1)[:, 0] < 0 if solved.half else np.zeros(len(whole.cells), bool)
         if not solved.half:
             self.node = np.arange(len(whole.points))
             self.element = np.arange(len(whole.cells))
@@ -328,8 +356,11 @@ class _Unfolding:
         out[self.left, 0] *= -1
         return out
 
-    def elements(self, values):
-        return values[self.element]
+    def elements(self, values, name=""):
+        out = values[self.element]
+        if name == "cauchy_stress":  # the shear stress xy changes its sign in a mirror
+            out[self._mirrored, 2] *= -1
+        return out
 
     def skin(self, values, odd=False):
         out = values[self._skin]
