@@ -3,7 +3,9 @@
 import json
 import subprocess
 import sys
+import tempfile
 import types
+import warnings
 from pathlib import Path
 
 import pytest
@@ -11,13 +13,14 @@ import xarray as xr
 import yaml
 
 from fingerpad.cli import main
+from fingerpad.files import write_text
 from wrong_scenes import BAD, RAMP_AND_HOLD, changed, pad_folder, specimen, write
 
 pytestmark = pytest.mark.unit
 
 CONFIG = Path(__file__).parents[1] / "config"
 SUMMARY = {
-    "legs": [{"depth_mm": 0.5, "force_N_per_m": 19.6, "contact_width_mm": 4.7}],
+    "legs": [{"depth_mm": 0.5, "force_N_per_m": 19.6133, "force_N": 0.196133, "contact_width_mm": 4.7}],
     "run": {"steps": 2, "newton_iterations": 5, "wall_s": 1.5, "estimated_error": 0.043},
 }
 
@@ -37,7 +40,7 @@ def solver(monkeypatch):
     solver = types.SimpleNamespace(fails=None, progress=None, plan=None)
     dataset = xr.Dataset({"force": ("time", [0.0, 19.6])})
 
-    def simulate(scene, plan=None, mesh=None, progress=None):
+    def simulate(scene, plan=None, mesh=None, progress=None, fields=False):
         solver.progress, solver.plan = progress, plan
         if solver.fails is not None:
             raise solver.fails
@@ -50,7 +53,7 @@ def solver(monkeypatch):
     simulation.simulate = simulate
     results.summary = lambda dataset: SUMMARY
     results.write_history = lambda dataset, path: dataset.to_netcdf(path, engine="netcdf4")
-    results.write_vtu = lambda dataset, mesh, directory: (Path(directory) / "0.vtu").write_text("<VTKFile/>")
+    results.write_vtu = lambda dataset, directory: write_text(directory / "snapshot_0.vtu", "<VTKFile/>")
     monkeypatch.setitem(sys.modules, "fingerpad.simulation", simulation)
     monkeypatch.setitem(sys.modules, "fingerpad.results", results)
     monkeypatch.setattr(fingerpad.specimen, "mesh_for", lambda scene, plan: object())
@@ -129,7 +132,7 @@ def test_a_plan_that_cannot_be_made_names_the_key(tmp_path, capsys):
     assert refused(capsys, ["plan", path]).startswith(f"{path}: effects.ridges: ")
 
 
-@pytest.mark.parametrize("arguments", [[], ["fly"], ["run", "a.yaml"], ["plan"], ["plan", "a.yaml", "--fast"]])
+@pytest.mark.parametrize("arguments", [[], ["fly"], ["mesh", "a.yaml"], ["plan"], ["plan", "a.yaml", "--fast"]])
 def test_usage_errors_exit_2(arguments, capsys):
     with pytest.raises(SystemExit) as caught:
         main(arguments)
@@ -173,24 +176,35 @@ def test_run_writes_three_files(tmp_path, scene, solver, capsys):
     assert main(["run", str(scene), "--out", str(out)]) == 0
     assert names(out) == ["history.nc", "plan.json", "summary.json"]
     assert json.loads((out / "summary.json").read_text()) == SUMMARY
-    assert json.loads((out / "plan.json").read_text()) == json.loads(json.dumps(solver.plan.to_dict()))
+    plan = json.loads((out / "plan.json").read_text())
+    assert (plan.pop("scene"), plan.pop("files")) == ("my_scene", names(out))
+    assert plan == json.loads(json.dumps(solver.plan.to_dict()))
     with xr.open_dataset(out / "history.nc", engine="netcdf4") as history:
         assert history.force[-1] == 19.6
     stdout, stderr = capsys.readouterr()
     assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout and "error about 4.3%" in stdout
+    assert "force 20.0 gf (19.6 N/m)" in stdout
+
+
+def test_force_is_said_in_the_unit_it_came_in(tmp_path, solver, capsys):
+    scene = write(tmp_path, changed(motion=[{"press_to_force": "196.133 mN"}]))
+    assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 0
+    assert "force 196. mN (19.6 N/m)" in capsys.readouterr().out
+
+
+def test_results_without_out_go_to_a_folder_of_the_scene_s_name(tmp_path, scene, solver, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", scene.name]) == 0
+    assert names("results/my_scene") == ["history.nc", "plan.json", "summary.json"]
+    assert capsys.readouterr().out.endswith("results in results/my_scene\n")
 
 
 def test_quiet_says_nothing_and_vtu_adds_fields(tmp_path, solver, capsys):
     scene = write(tmp_path, changed(outputs={"snapshots": ["1 s"]}))
     assert main(["run", str(scene), "--out", str(tmp_path / "out"), "--quiet", "--vtu"]) == 0
     assert names(tmp_path / "out") == ["history.nc", "plan.json", "summary.json", "vtu"]
-    assert names(tmp_path / "out" / "vtu") == ["0.vtu"]
+    assert names(tmp_path / "out" / "vtu") == ["snapshot_0.vtu"]
     assert capsys.readouterr() == ("", "") and solver.progress is None
-
-
-def test_vtu_without_snapshots_is_said(tmp_path, scene, solver, capsys):
-    assert main(["run", str(scene), "--out", str(tmp_path / "out"), "--vtu"]) == 0
-    assert "no vtu" in capsys.readouterr().out and "vtu" not in names(tmp_path / "out")
 
 
 def test_results_of_two_runs_do_not_mix(tmp_path, solver):
@@ -198,10 +212,54 @@ def test_results_of_two_runs_do_not_mix(tmp_path, solver):
     out = tmp_path / "out"
     arguments = ["run", str(scene), "--out", str(out), "--quiet"]
     assert main([*arguments, "--vtu"]) == 0
-    (out / "last_converged.nc").write_text("old")
     (out / "notes.txt").write_text("a user's own")
+    (out / "vtu" / "view.pvsm").write_text("a user's own")
     assert main(arguments) == 0
+    assert names(out) == ["history.nc", "notes.txt", "plan.json", "summary.json", "vtu"]
+    assert names(out / "vtu") == ["view.pvsm"]
+    (out / "vtu" / "view.pvsm").unlink()
+    assert main([*arguments, "--vtu"]) == main(arguments) == 0
     assert names(out) == ["history.nc", "notes.txt", "plan.json", "summary.json"]
+
+
+def test_files_of_a_user_s_under_the_names_of_results_are_replaced_by_force_only(tmp_path, scene, solver, capsys):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "summary.json").write_text("a user's own")
+    (out / "plan.json").write_text('{"files": ["../../my_scene.yaml", "summary.json.bak", 5]}')
+    line = refused(capsys, ["run", scene, "--out", out])
+    assert str(out / "plan.json") in line and "--force" in line and (out / "summary.json").read_text() == "a user's own"
+    assert main(["run", str(scene), "--out", str(out), "--force", "--quiet"]) == 0
+    assert json.loads((out / "summary.json").read_text()) == SUMMARY and scene.exists()
+
+
+def test_results_of_another_scene_are_replaced_by_force_only(tmp_path, scene, solver, capsys):
+    other, out = write(tmp_path, changed(), "other.yaml"), tmp_path / "out"
+    assert main(["run", str(scene), "--out", str(out), "--quiet"]) == 0
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    assert "the scene 'my_scene'" in refused(capsys, ["run", other, "--out", out])
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+    assert main(["run", str(other), "--out", str(out), "--quiet", "--force"]) == 0
+    assert json.loads((out / "plan.json").read_text())["scene"] == "other"
+
+
+def test_a_second_run_into_one_folder_is_refused_while_the_first_lives(tmp_path, scene, solver, capsys):
+    """The lock is a process's: it goes when that is killed, and leaves nothing."""
+    out = tmp_path / "out"
+    out.mkdir()
+    code = f"import pathlib, time; from fingerpad.files import locked\nwith locked(pathlib.Path({str(out)!r})):"
+    code += " print(flush=True); time.sleep(60)"
+    other = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
+    try:
+        other.stdout.readline()
+        assert "another run" in refused(capsys, ["run", scene, "--out", out])
+        assert names(out) == []
+    finally:
+        other.kill()
+        other.wait()
+    (out / ".fingerpad-leftover").mkdir()
+    assert main(["run", str(scene), "--out", str(out), "--quiet"]) == 0
+    assert names(out) == ["history.nc", "plan.json", "summary.json"]
 
 
 def test_progress_on_a_terminal(tmp_path, scene, solver, monkeypatch, capsys):
@@ -240,27 +298,80 @@ def test_non_convergence_before_the_first_step(tmp_path, scene, solver, capsys):
     assert "no step had converged" in capsys.readouterr().err
 
 
-def test_interrupt_leaves_nothing(tmp_path, scene, solver, capsys):
+def test_interrupt_before_anything_has_converged_leaves_nothing(tmp_path, scene, solver, capsys):
     solver.fails = KeyboardInterrupt()
     assert main(["run", str(scene), "--out", str(tmp_path / "new" / "out")]) == 130
     assert names(tmp_path) == ["my_scene.yaml"]
     assert capsys.readouterr().err == "fingerpad: interrupted\n"
 
 
-@pytest.mark.parametrize(("error", "code"), [(KeyboardInterrupt(), 130), (OSError(28, "No space left"), 2)])
-def test_a_run_stopped_while_writing_leaves_the_old_results(tmp_path, scene, solver, monkeypatch, error, code):
-    out = tmp_path / "out"
+def test_interrupt_keeps_what_had_converged_beside_the_results_there_are(tmp_path, scene, solver, capsys):
+    out, stop = tmp_path / "out", KeyboardInterrupt()
+    stop.dataset = xr.Dataset({"force": ("time", [0.0, 9.8])}, {"time": [0.0, 0.25]})
     arguments = ["run", str(scene), "--out", str(out), "--quiet"]
     assert main(arguments) == 0
-    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    before = (out / "history.nc").read_bytes()
+    solver.fails = stop
+    assert main(arguments) == 130
+    err = capsys.readouterr().err
+    assert "interrupted after t = 0.25 s" in err and str(out / "last_converged.nc") in err and err.count("\n") == 1
+    assert names(out) == ["history.nc", "last_converged.nc", "plan.json", "summary.json"]
+    assert (out / "history.nc").read_bytes() == before
+    solver.fails = None
+    assert main(arguments) == 0
+    assert names(out) == ["history.nc", "plan.json", "summary.json"]
+
+
+@pytest.mark.parametrize(
+    ("error", "code"), [(KeyboardInterrupt(), 130), (OSError(28, "No space left on device"), 3), (RuntimeError("NetCDF"), 1)]
+)
+@pytest.mark.parametrize("writer", ["write_history", "write_vtu"])
+def test_a_run_stopped_while_writing_leaves_the_old_results(tmp_path, scene, solver, monkeypatch, capsys, error, code, writer):
+    out = tmp_path / "out"
+    arguments = ["run", str(scene), "--out", str(out), "--quiet", "--vtu"]
+    assert main(arguments) == 0
+    before = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
 
     def fail(dataset, path):
-        Path(path).write_text("half")
+        write_text(Path(path) / "half" if writer == "write_vtu" else path, "half")
         raise error
 
-    monkeypatch.setattr(sys.modules["fingerpad.results"], "write_history", fail)
+    monkeypatch.setattr(sys.modules["fingerpad.results"], writer, fail)
     assert main(arguments) == code
-    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+    assert {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()} == before
+    line = capsys.readouterr().err
+    assert line.count("\n") == 1 and "Traceback" not in line
+    assert code != 3 or (str(out) in line and "No space left" in line)
+
+
+def test_an_unforeseen_error_is_one_line_and_a_file(tmp_path, scene, solver, monkeypatch, capsys):
+    """No traceback reaches the user, nor a warning of a library; both are in the file that the line names."""
+    import fingerpad.specimen
+
+    def broken(scene, plan):
+        warnings.warn("a library's warning", RuntimeWarning, stacklevel=1)
+        raise ZeroDivisionError("nobody has thought\nof this")
+
+    monkeypatch.setattr(fingerpad.specimen, "mesh_for", broken)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 1
+    out, err = capsys.readouterr()
+    assert out == "" and err.count("\n") == 1 and "internal error, ZeroDivisionError: nobody has thought of this" in err
+    (report,) = tmp_path.glob("fingerpad-error-*.txt")
+    assert str(report) in err and not (tmp_path / "out").exists()
+    for words in ("Traceback", "in broken", "a library's warning", "Python 3"):
+        assert words in report.read_text()
+
+
+def test_no_memory_is_one_line(tmp_path, scene, solver, capsys):
+    solver.fails = MemoryError("Unable to allocate 30.7 GiB")
+    assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 3
+    assert capsys.readouterr().err.startswith("fingerpad: not enough memory: Unable to allocate 30.7 GiB; try ")
+
+
+def test_an_output_that_is_no_path(tmp_path, scene, capsys):
+    assert "File name too long" in refused(capsys, ["run", scene, "--out", "a" * 300])
+    assert "File name too long" in refused(capsys, ["mesh", scene, "--out", "a" * 300 + ".msh"])
 
 
 # --- for real -------------------------------------------------------------------------------------
@@ -283,7 +394,7 @@ def test_run_for_real(tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["run", str(path), "--out", str(out), "--vtu", "--quiet"]) == 0
     assert names(out) == ["history.nc", "plan.json", "summary.json", "vtu"]
-    assert names(out / "vtu") == ["snapshot_0.vtu", "snapshots.vtu.series"]
+    assert names(out / "vtu") == ["indenter_0.vtu", "snapshot_0.vtu", "snapshots.pvd", "snapshots.vtu.series"]
     ramp, hold = json.loads((out / "summary.json").read_text())["legs"]
     for leg in (ramp, hold):
         assert leg["force_N_per_m"] == pytest.approx(20 * 9.80665e-3 / 0.01, rel=1e-6)

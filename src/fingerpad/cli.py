@@ -1,28 +1,31 @@
 """The command ``fingerpad``: plan, run or mesh one scene, without the workflow.
 
-Exit codes: 0 done; 2 the input is wrong (one line on standard error: file, key, what is wrong, what is
-allowed); 3 the simulation could not be completed (its last converged state is saved); 130 interrupted.
+Exit codes: 0 done; 1 an error of the program (one line; the details are in a file); 2 the input is wrong (one line on
+standard error: file, key, what is wrong, what is allowed); 3 the simulation could not be completed (its last converged state
+is saved) or its results could not be written (those there are as they were); 130 interrupted (what had converged is saved).
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
+import errno
 import json
 import os
-import shutil
 import sys
-import tempfile
-from collections.abc import Callable, Iterator
-from pathlib import Path
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fingerpad.planning.plan import Plan
     from fingerpad.scenes.scene import Scene
 
-DONE, WRONG_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
-RESULTS = ("plan.json", "history.nc", "summary.json", "last_converged.nc", "vtu")
+DONE, UNFORESEEN, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
+#: what a run may write into its folder; plan.json names what it did write, and nothing else is ever removed
+RESULTS = ("plan.json", "history.nc", "summary.json", "last_converged.nc")
+FIELDS = ("vtu/*.vtu", "vtu/*.series", "vtu/*.pvd")
 
 # errors of wrong input: where they are defined, and the key they are about when they do not name it
 _ERRORS = {
@@ -38,6 +41,10 @@ class _Refusal(ValueError):
     """A request that cannot be met; its text is the one line shown."""
 
 
+class _NotWritten(OSError):
+    """Results that could not be written; its text is the one line shown."""
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit code.
 
@@ -47,19 +54,71 @@ def main(arguments: list[str] | None = None) -> int:
     Raises:
         SystemExit: by argparse, with code 2 for a wrong command line and 0 after help and version.
     """
-    options = _parser().parse_args(arguments)
+    for stream in (sys.stdout, sys.stderr):  # any name of a file can be printed
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+    # what libraries warn of is for the file of an unforeseen error, not for the user
+    with warnings.catch_warnings(record=not sys.warnoptions) as heard:
+        if not sys.warnoptions:
+            warnings.simplefilter("default")
+        return _guarded(arguments, heard)
+
+
+def _guarded(arguments: list[str] | None, heard: list[warnings.WarningMessage] | None) -> int:
+    """The exit code of a command, whatever becomes of it."""
     try:
-        code = options.command(options)
-        sys.stdout.flush()
-        return code
+        try:
+            options = _parser().parse_args(arguments)
+            return options.command(options)
+        finally:
+            sys.stdout.flush()
     except KeyboardInterrupt:
         return _say("interrupted", INTERRUPTED)
     except BrokenPipeError:
-        # the reader of a pipe has gone; leave nothing for the interpreter to flush into it
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return DONE
+        return _deaf()
     except _input_errors() as error:
         return _say(str(error), WRONG_INPUT)
+    except _NotWritten as error:
+        return _say(str(error), NOT_COMPLETED)
+    except MemoryError as error:
+        return _say(f"not enough memory: {error or 'out of memory'}; try a coarser accuracy or fewer receptors", NOT_COMPLETED)
+    except Exception as error:
+        if getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT):  # of standard output, or of a scratch folder
+            _deaf()
+            return _say(f"output cannot be written: {error.strerror}", NOT_COMPLETED)
+        return _unforeseen(error, heard)
+
+
+def _deaf() -> int:
+    """The reader of standard output has gone: leave nothing for the interpreter to flush into it."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return DONE
+
+
+def _unforeseen(error: Exception, heard: list[warnings.WarningMessage] | None) -> int:
+    """One line for an error nobody has thought of; everything that helps to find it goes into a file."""
+    import platform
+    import tempfile
+    import traceback
+    from importlib.metadata import version
+
+    warned = "".join(f"{w.category.__name__}: {w.message} ({w.filename}:{w.lineno})\n" for w in heard or ())
+    lines = (
+        f"fingerpad {version('fingerpad')}, Python {platform.python_version()}, {platform.platform()}",
+        f"arguments: {sys.argv[1:]}",
+        "".join(traceback.format_exception(error)),
+        warned and f"warnings:\n{warned}",
+    )
+    try:
+        handle, name = tempfile.mkstemp(prefix="fingerpad-error-", suffix=".txt")
+        with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
+            file.write("\n".join(lines))
+    except OSError as reason:
+        name = f"no file ({reason.strerror})"
+    said = " ".join(str(error).split())
+    said = said if len(said) <= 200 else said[:200] + " ..."
+    cause = ": ".join(filter(None, [type(error).__name__, said]))
+    return _say(f"internal error, {cause}: details in {name}, please report it with the scene", UNFORESEEN)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -72,8 +131,11 @@ def _parser() -> argparse.ArgumentParser:
     plan.set_defaults(command=_plan)
 
     run = commands.add_parser("run", help="simulate a scene: history.nc, summary.json, plan.json")
-    run.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the results go")
-    run.add_argument("--vtu", action="store_true", help="also write the scene's snapshots for ParaView, in DIR/vtu")
+    run.add_argument("--out", metavar="DIR", type=Path, help="where the results go (default: results/SCENE)")
+    run.add_argument("--force", action="store_true", help="replace what is in DIR under the names of the results")
+    run.add_argument(
+        "--vtu", action="store_true", help="also write fields for ParaView, in DIR/vtu: snapshots, or the last state"
+    )
     run.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
     run.set_defaults(command=_run)
 
@@ -112,42 +174,43 @@ def _plan(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    _check_writable(options.out, directory=True)
+    out = options.out or Path("results") / options.scene.stem
+    _check_writable(out, directory=True)
     scene, plan = _prepare(options)
-    mesh = _mesh_for(options.scene, scene, plan)
+    mesh, unit = _mesh_for(options.scene, scene, plan), _force_unit(options.scene)
 
     import fingerpad
     from fingerpad.mechanics.stepping import NonConvergence
     from fingerpad.results import summary, write_history, write_vtu
 
-    with _directory(options.out) as directory:
+    with _folder(out, scene, plan, options) as folder:
         try:
             with _naming(options.scene, scene), _progress(scene.name, quiet=options.quiet) as progress:
-                dataset = fingerpad.simulate(scene, plan=plan, mesh=mesh, progress=progress)
+                dataset = fingerpad.simulate(scene, plan=plan, mesh=mesh, progress=progress, fields=options.vtu)
         except NonConvergence as error:
-            return _say(_rescue(error, plan, directory), NOT_CONVERGED)
-        with _staged(directory, replacing=RESULTS) as stage:
-            _write_json(plan.to_dict(), stage / "plan.json")
+            return _say(folder.rescue(error), NOT_COMPLETED)
+        except KeyboardInterrupt as stop:
+            return _say(folder.keep(stop), INTERRUPTED)
+        with folder.writing() as stage:
             write_history(dataset, stage / "history.nc")
             totals = summary(dataset)
             _write_json(totals, stage / "summary.json")
-            if options.vtu and scene.outputs.snapshots:
-                (stage / "vtu").mkdir()
-                write_vtu(dataset, mesh, stage / "vtu")
+            if options.vtu:
+                write_vtu(dataset, stage / "vtu")
     if not options.quiet:
-        if options.vtu and not scene.outputs.snapshots:
-            print("no vtu: the scene has no outputs.snapshots")
-        print(_closing_line(totals, directory))
+        print(_closing_line(totals, out, unit))
     return DONE
 
 
 def _mesh(options: argparse.Namespace) -> int:
+    from fingerpad.files import write_atomically
+
     if options.out.suffix != ".msh":
         raise _Refusal(f"--out: '{options.out}' is not a mesh file; allowed: a name ending in .msh")
     _check_writable(options.out, directory=False)
     mesh = _mesh_for(options.scene, *_prepare(options))
-    with _directory(options.out.parent) as directory, _staged(directory) as stage:
-        mesh.write(stage / options.out.name)
+    with _directory(options.out.parent), _unwritable(options.out):
+        write_atomically(options.out, mesh.write)
     for name, value in mesh.quality().items():
         print(f"{name}: {value:.6g}" if isinstance(value, float) else f"{name}: {value}")
     return DONE
@@ -205,11 +268,14 @@ def _naming(path: Path, scene: Scene) -> Iterator[None]:
 
 def _check_writable(path: Path, directory: bool) -> None:
     """Refuses an output path that cannot be written, without writing anything."""
-    if path.is_dir() != directory and (path.exists() or path.is_symlink()):
-        raise _Refusal(f"--out: '{path}' is {'not ' if directory else ''}a directory")
-    nearest = path.absolute() if directory else path.absolute().parent
-    while not nearest.exists():
-        nearest = nearest.parent
+    try:
+        if path.is_dir() != directory and (path.exists() or path.is_symlink()):
+            raise _Refusal(f"--out: '{path}' is {'not ' if directory else ''}a directory")
+        nearest = path.absolute() if directory else path.absolute().parent
+        while not nearest.exists():
+            nearest = nearest.parent
+    except OSError as error:
+        raise _Refusal(f"--out: '{path}' cannot be used: {error.strerror}; allowed: a path") from None
     if not nearest.is_dir() or not os.access(nearest, os.W_OK | os.X_OK):
         raise _Refusal(f"--out: '{path}' cannot be written; allowed: a path in a directory that can")
 
@@ -231,48 +297,101 @@ def _directory(path: Path) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def _staged(directory: Path, replacing: tuple[str, ...] = ()) -> Iterator[Path]:
-    """A scratch directory whose content appears in `directory` only when everything was written.
+def _unwritable(path: Path) -> Iterator[None]:
+    """Turns an error of writing into the line of :class:`_NotWritten`."""
+    try:
+        yield
+    except OSError as error:
+        what = error.strerror or error
+        raise _NotWritten(f"'{path}' cannot be written: {what}; what was there is as it was; try another --out") from None
 
-    What is there already under the names `replacing` then goes, so that results of two runs never mix.
-    """
-    try:
-        stage = Path(tempfile.mkdtemp(prefix=".fingerpad-", dir=directory))
-    except OSError as error:
-        raise _Refusal(f"--out: '{directory}' cannot be written: {error.strerror}") from None
-    try:
-        yield stage
-        written = sorted(item.name for item in stage.iterdir())
-        for name in {*replacing, *written}:
-            target = directory / name
-            if target.is_dir() and not target.is_symlink():
-                shutil.rmtree(target)
-            elif name not in written:
-                target.unlink(missing_ok=True)
-        for name in written:
-            os.replace(stage / name, directory / name)
-    except OSError as error:
-        raise _Refusal(f"--out: '{directory}' cannot be written: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(stage, ignore_errors=True)
+
+@contextlib.contextmanager
+def _folder(path: Path, scene: Scene, plan: Plan, options: argparse.Namespace) -> Iterator[_Folder]:
+    """The folder of the results, held for this process alone; refused if it holds what is not this scene's."""
+    from fingerpad.files import locked
+
+    with _directory(path), contextlib.ExitStack() as held:
+        try:
+            held.enter_context(locked(path))
+        except BlockingIOError:
+            raise _Refusal(f"--out: '{path}' is being written by another run; allowed: another folder, or later") from None
+        folder = _Folder(path, scene.name, plan.to_dict())
+        if not options.force:
+            folder.check(RESULTS + FIELDS if options.vtu else RESULTS)
+        yield folder
+
+
+class _Folder:
+    """The folder of a run: what the run before wrote there, and how this one writes into it."""
+
+    def __init__(self, path: Path, scene: str, plan: dict[str, Any]) -> None:
+        self.path, self.scene, self.plan = path, scene, plan
+        try:
+            self.before = json.loads((path / "plan.json").read_text(encoding="utf-8"))
+            listed = [str(name) for name in self.before["files"]]
+        except (OSError, ValueError, LookupError, TypeError):
+            self.before, listed = {}, []
+        self.files = [name for name in listed if _is_result(name)]
+
+    def check(self, patterns: Iterable[str]) -> None:
+        """Refuses to replace results of another scene, and files that no run has written."""
+        cure = "allowed: another --out, or --force to replace"
+        if self.files and self.before.get("scene") != self.scene:
+            raise _Refusal(f"--out: '{self.path}' holds the results of the scene '{self.before.get('scene')}'; {cure} them")
+        for found in sorted(file for pattern in patterns for file in self.path.glob(pattern)):
+            if found.relative_to(self.path).as_posix() not in self.files:
+                raise _Refusal(f"--out: '{found}' was not written by a run that is known here; {cure} it")
+
+    @contextlib.contextmanager
+    def writing(self, keeping: bool = False) -> Iterator[Path]:
+        """A scratch folder for results; they replace those of the run before, or come beside them when ``keeping``."""
+        from fingerpad.files import staged
+
+        with _unwritable(self.path), staged(self.path, "plan.json", () if keeping else self.files) as stage:
+            yield stage
+            kept = self.files if keeping else []
+            written = {item.relative_to(stage).as_posix() for item in stage.rglob("*") if item.is_file()}
+            plan = self.before if kept else self.plan
+            files = sorted({*kept, *written, "plan.json"})
+            _write_json({**plan, "scene": self.scene, "files": files}, stage / "plan.json")
+
+    def rescue(self, error: Any) -> str:
+        """Saves what converged before ``error`` (its ``dataset``); returns the message that says where."""
+        dataset = getattr(error, "dataset", None)
+        try:
+            self._last_converged(dataset)
+        except _NotWritten as reason:
+            return f"{error}; the last converged state is lost: {reason}"
+        if dataset is None:
+            return f"{error}; no step had converged, so there is no state to save"
+        return f"{error}; the last converged state is saved in {self.path / 'last_converged.nc'}"
+
+    def keep(self, stop: KeyboardInterrupt) -> str:
+        """Saves what had converged when the run was interrupted beside the results there are; returns the message."""
+        dataset = getattr(stop, "dataset", None)
+        if dataset is None:
+            return "interrupted"
+        self._last_converged(dataset, keeping=True)
+        when = f"interrupted after t = {float(dataset.time[-1]):.6g} s"
+        return f"{when}; what had converged is saved in {self.path / 'last_converged.nc'}"
+
+    def _last_converged(self, dataset: Any, keeping: bool = False) -> None:
+        from fingerpad.results import write_history
+
+        with self.writing(keeping) as stage:
+            if dataset is not None:
+                write_history(dataset, stage / "last_converged.nc")
+
+
+def _is_result(name: str) -> bool:
+    """Could a run have written a file of this (relative) name?"""
+    path = PurePosixPath(name)
+    return name in RESULTS or (len(path.parts) == 2 and any(path.match(pattern) for pattern in FIELDS))
 
 
 def _write_json(data: Any, path: Path) -> None:
     path.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
-
-
-def _rescue(error: Any, plan: Plan, directory: Path) -> str:
-    """Saves what converged before `error` (its ``dataset``); returns the message that says where."""
-    from fingerpad.results import write_history
-
-    dataset = getattr(error, "dataset", None)
-    with _staged(directory, replacing=RESULTS) as stage:
-        _write_json(plan.to_dict(), stage / "plan.json")
-        if dataset is not None:
-            write_history(dataset, stage / "last_converged.nc")
-    if dataset is None:
-        return f"{error}; no step had converged, so there is no state to save"
-    return f"{error}; the last converged state is saved in {directory / 'last_converged.nc'}"
 
 
 # --- what a person sees ---------------------------------------------------------------------------
@@ -338,10 +457,26 @@ def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], Non
         yield show
 
 
-def _closing_line(totals: dict[str, Any], directory: Path) -> str:
+def _force_unit(path: Path) -> str:
+    """The unit in which a scene file states a force, or gf."""
+    from fingerpad.scenes.documents import SceneError, read_yaml
+    from fingerpad.units import unit_of
+
+    try:
+        document = read_yaml(path) if path.is_file() else {}  # a pipe cannot be read again
+    except SceneError:
+        document = {}
+    legs = document.get("motion", ())
+    return next((unit_of(leg["press_to_force"]) for leg in legs if "press_to_force" in leg), "gf")
+
+
+def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
+    from fingerpad.units import parse_quantity
+
     last, run = totals["legs"][-1], totals["run"]
+    force = last["force_N"] / parse_quantity(f"1 {unit}", "force")
     return (
-        f"depth {last['depth_mm']:.3g} mm, force {last['force_N_per_m']:.3g} N/m, "
+        f"depth {last['depth_mm']:.3g} mm, force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "
         f"contact {last['contact_width_mm']:.3g} mm wide; {run['steps']} steps, "
         f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s; "
         f"error about {run['estimated_error']:.1%}; results in {directory}"

@@ -231,6 +231,18 @@ def parse_quantity(text: Any, dimension: str) -> float:
     return value
 
 
+def unit_of(text: str) -> str:
+    """The unit of a quantity as it is written: ``"gf"`` of ``"20 gf"``.
+
+    Raises:
+        QuantityError: the text does not start with a number.
+    """
+    match = _QUANTITY.fullmatch(text.strip())
+    if not match:
+        raise QuantityError("does not start with a finite number", "a number with its unit")
+    return match["unit"].strip()
+
+
 def format_quantity(value: float, dimension: str) -> str:
     """Text of an SI value in the unit the field uses, such as ``"20 gf"``; `parse_quantity` reads it back."""
     kind = DIMENSIONS[dimension]
