@@ -364,9 +364,7 @@ def test_canonical_has_no_paths_and_follows_the_contents(folder):
     assert str(folder) not in json.dumps(meshed)
 
 
-@pytest.mark.parametrize(
-    "name", ["ramp40_k210", "ridged_stroke_left", "step_sub", "steady_line", "calibration_less_fat"]
-)
+@pytest.mark.parametrize("name", ["ramp40_k210", "ridged_stroke_left", "step_sub", "steady_line", "calibration_less_fat"])
 def test_a_scene_is_found_again_in_what_it_recorded(name):
     scene = load_scene(CONFIG / "scenes" / f"{name}.yaml")
     assert recorded_scene(json.loads(json.dumps(scene.canonical()))) == scene

@@ -48,7 +48,7 @@ def seconds(call, repeats: int) -> tuple[float, float, float]:
 
 def newton_iteration(repeats: int = 15) -> list[list]:
     """One Newton iteration of the whole pad against factorisation and solution of the same matrix."""
-    scene = load_scene(SCENES / "ramp40_k210.yaml").model_copy(update={"effects": {"symmetry": False}})
+    scene = load_scene(SCENES / "ramp40_k210.yaml").varied({"effects": {"symmetry": False}})
     run = Simulation(scene, plan(scene), None)
     stepper, body = run.stepper, run.body
     steps = list(run.steps())
@@ -153,9 +153,9 @@ def _steady(base: Scene, stimulus, nu: float) -> Scene:
         name: Layer(youngs_modulus=layer.youngs_modulus, poisson_ratio=nu)
         for name, layer in ((name, getattr(base.specimen.layers, name)) for name in ("epidermis", "dermis", "fat"))
     })  # fmt: skip
-    return base.model_copy(
-        update={
-            "specimen": base.specimen.model_copy(update={"layers": layers}),
+    return base.varied(
+        {
+            "specimen.layers": layers,
             "stimulus": stimulus,
             "motion": (PressToForce(press_to_force=20 * 9.80665e-3, rate=None),),
             "accuracy": Discretisation(element=None, skin_edge=None, steps=1),

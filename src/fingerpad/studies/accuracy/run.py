@@ -111,10 +111,11 @@ def split(mesh: PadMesh, kind: str) -> PadMesh:
 
 def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
     """The scene with the receptors that are looked at, and the plan of the point."""
-    receptors = scene.outputs.receptors.model_copy(update={"depths": DEPTHS, "offsets": (0.0,)})
+    from fingerpad.scenes.scene import Receptors
+
+    receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
     effects = scene.effects | {"finite_strain": point.finite}
-    outputs = scene.outputs.model_copy(update={"receptors": receptors})
-    scene = scene.model_copy(update={"outputs": outputs, "effects": effects, "accuracy": point.preset or "thesis"})
+    scene = scene.varied({"outputs.receptors": receptors, "effects": effects, "accuracy": point.preset or "thesis"})
     chosen = plan(scene)
     if point.preset:
         return scene, chosen
@@ -204,7 +205,7 @@ def _plate(scene: Scene) -> Scene:
     """The yardstick's scene: pressed by a plate as far as the first leg goes."""
     from fingerpad.scenes.scene import Flat
 
-    return scene.model_copy(update={"stimulus": Flat(), "friction": 0.0, "motion": scene.motion[:1]})
+    return scene.varied({"stimulus": Flat(), "friction": 0.0, "motion": scene.motion[:1]})
 
 
 def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:

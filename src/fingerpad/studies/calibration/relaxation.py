@@ -196,7 +196,7 @@ def fit_series(
 def with_series(scene: Scene, prony: Prony) -> Scene:
     """The scene with another Prony series, its long-term moduli kept."""
     terms = tuple(PronyTerm(g=g, tau=tau) for g, tau in zip(prony.g, prony.tau, strict=True))
-    return scene.model_copy(update={"specimen": scene.specimen.model_copy(update={"prony": terms})})
+    return scene.varied({"specimen.prony": terms})
 
 
 def amplitude_design(

@@ -107,9 +107,7 @@ def _ridged(scene: Scene, on: bool) -> tuple[Scene, Plan]:
 
 def flattened(scene: Scene) -> Scene:
     """A scene whose inner ridges are next to nothing, on a mesh that could resolve them."""
-    ridges = scene.specimen.ridges
-    ridges = ridges.model_copy(update={"inner": ridges.inner.model_copy(update={"height": FLATTENED})})
-    return scene.model_copy(update={"specimen": scene.specimen.model_copy(update={"ridges": ridges})})
+    return scene.varied({"specimen.ridges.inner.height": FLATTENED})
 
 
 def _focused(scene: Scene, on: bool) -> tuple[Scene, Plan]:
@@ -124,7 +122,7 @@ def _focused(scene: Scene, on: bool) -> tuple[Scene, Plan]:
 
 def _fields(scene: Scene, on: bool) -> tuple[Scene, Plan]:
     if not on:
-        scene = scene.model_copy(update={"outputs": scene.outputs.model_copy(update={"snapshots": ()})})
+        scene = scene.varied({"outputs.snapshots": ()})
     return scene, plan(scene)
 
 
@@ -307,7 +305,7 @@ def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
 
 def trials(scene: Scene, chosen: Plan) -> Iterator[tuple[str, xr.Dataset, list[tuple[Scene, Plan]]]]:
     """Each effect of a plan that can be had either way: its name, what is compared with, and the other ways."""
-    draft = plan(scene.model_copy(update={"accuracy": "draft"}))
+    draft = plan(scene.varied({"accuracy": "draft"}))
     draft = replace(draft, effects=chosen.effects, state=chosen.state, timed=chosen.timed)
     smooth, ridged = (with_effects(draft, ridges=on) for on in (False, True))
     base = simulate(scene, smooth)

@@ -74,23 +74,23 @@ def case_scene(base: Scene, case: Case) -> Scene:
     """The scene of a stroke with another height, coefficient, mesh and shorter way."""
     drawn = AS_DRAWN.get(case.mesh)
     edge = EDGES["thesis"] if drawn else EDGES[case.mesh]
-    outline, inner = base.specimen.outline, base.specimen.ridges.inner
+    outline = base.specimen.outline
     phase = drawn[1] * edge if drawn else 0.0
-    inner = inner.model_copy(update={"height": case.height * 1e-6, "phase": phase or "tip"})
-    ridges, tip = base.specimen.ridges.model_copy(update={"inner": inner}), tip_at_depth(outline, phase)
-    flank = boundary(outline, ridges if case.height else None, tip + FLANK)
+    ridges, tip = None, tip_at_depth(outline, phase)
+    if case.height:
+        changes = {"height": case.height * 1e-6, "phase": phase or "tip"}
+        ridges = base.varied({f"specimen.ridges.inner.{key}": value for key, value in changes.items()}).specimen.ridges
+    flank = boundary(outline, ridges, tip + FLANK)
     depths = sorted({*GRID[0], DEPTH, round(flank - AWAY, 9), round(flank + AWAY, 9)})
     offsets = sorted({*GRID[1], -BESIDE, BESIDE})
     press, slide, *_ = base.motion
-    return base.model_copy(
-        update={
+    return base.varied(
+        {
             "name": f"ridges_{case}",
-            "specimen": base.specimen.model_copy(update={"ridges": ridges if case.height else None}),
+            "specimen.ridges": ridges,
             "friction": case.friction,
             "motion": (press, Slide(slide=-WAY, speed=slide.speed)),
-            "outputs": base.outputs.model_copy(
-                update={"receptors": Receptors(depths=tuple(depths), offsets=tuple(round(tip + x, 9) for x in offsets))}
-            ),
+            "outputs.receptors": Receptors(depths=tuple(depths), offsets=tuple(round(tip + x, 9) for x in offsets)),
             "accuracy": Discretisation(skin_edge=edge, steps=STEPS),
             "effects": {"ridges": False} if drawn else {},
         }

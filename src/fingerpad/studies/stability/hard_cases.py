@@ -96,7 +96,7 @@ class Case:
 def scene_of(document: dict[str, Any], name: str) -> Scene:
     """The scene of a document written here; names and paths in it are as in config/scenes."""
     scene = Scene.model_validate(document, context=Source(SCENES / "case.yaml"))
-    return scene.model_copy(update={"name": name})
+    return scene.varied({"name": name})
 
 
 # -- words of the scenes ------------------------------------------------------------------------------------------------------
