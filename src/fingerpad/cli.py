@@ -29,7 +29,7 @@ FIELDS = ("vtu/*.vtu", "vtu/*.series", "vtu/*.pvd")
 
 # errors of wrong input: where they are defined, and the key they are about when they do not name it
 _ERRORS = {
-    "SceneError": ("scenes.documents", ""),
+    "SceneError": ("documents", ""),
     "PlanError": ("planning.plan", ""),
     "OutlineError": ("specimen.outline", "specimen.outline"),
     "MeshError": ("specimen.mesh", "specimen.mesh"),
@@ -459,7 +459,7 @@ def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], Non
 
 def _force_unit(path: Path) -> str:
     """The unit in which a scene file states a force, or gf."""
-    from fingerpad.scenes.documents import SceneError, read_yaml
+    from fingerpad.documents import SceneError, read_yaml
     from fingerpad.units import unit_of
 
     try:

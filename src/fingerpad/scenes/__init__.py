@@ -1,1 +1,1 @@
-"""The scene language: documents, their fields, specimens and scenes."""
+"""The scene language: specimens and scenes as people write them."""

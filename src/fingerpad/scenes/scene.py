@@ -18,8 +18,8 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from fingerpad.scenes.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
-from fingerpad.scenes.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, whole
+from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
+from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, whole
 from fingerpad.scenes.specimen import (
     DEFAULT_SPECIMEN,
     Layer,

@@ -18,9 +18,9 @@ from pydantic import (
     model_validator,
 )
 
+from fingerpad.documents import HIDE, Problem, Strict, explain, read_yaml
+from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity
 from fingerpad.files import BUILT_IN
-from fingerpad.scenes.documents import HIDE, Problem, Strict, explain, read_yaml
-from fingerpad.scenes.fields import SI, Length, SignedLength, Time, listed, number, quantity
 from fingerpad.units import format_quantity
 
 DEFAULT_SPECIMEN = "thesis"

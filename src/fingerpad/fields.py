@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, ValidationInfo
 
-from fingerpad.scenes.documents import Problem
+from fingerpad.documents import Problem
 from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, QuantityError, parse_number, parse_quantity
 
 
