@@ -384,6 +384,23 @@ def test_failed_writing_leaves_the_old_file(draft, tmp_path):
     assert not gmsh.isInitialized()
 
 
+def test_a_full_disk_is_said(draft, tmp_path, monkeypatch):
+    """gmsh does not say that its file was cut; nothing is left of it then, and what was there before stays."""
+    path = tmp_path / "pad.msh"
+    path.write_text("old")
+    write = gmsh.write
+
+    def cut(name):
+        write(name)
+        with open(name, "r+b") as file:
+            file.truncate(65536)
+
+    monkeypatch.setattr(gmsh, "write", cut)
+    with pytest.raises(OSError, match="No space left on device"):
+        draft.write(path)
+    assert path.read_text() == "old" and [each.name for each in tmp_path.iterdir()] == ["pad.msh"]
+
+
 KINDS = ["tri3", "tri6", "quad4", "quad8", "quad9"]
 
 
@@ -549,17 +566,57 @@ def test_file_that_is_no_mesh(tmp_path):
     refused(tmp_path / "cut.msh")
 
 
-@pytest.mark.parametrize("name", [*REGIONS, *CURVES])
-def test_missing_group(name, tmp_path):
+def test_skin_must_be_there(tmp_path):
     def edit(groups):
-        return [(d, tags, "other" if label == name else label) for d, tags, label in groups]
+        return [(d, tags, "other" if label == "skin" else label) for d, tags, label in groups]
 
-    kind = "surface" if name in REGIONS else "curve"
-    refused(write_rings(tmp_path / "pad.msh", edit=edit), f"{kind} {name} is missing", "must be there")
+    refused(write_rings(tmp_path / "pad.msh", edit=edit), "curve skin is missing", "among other, nail, bone")
+
+
+def test_something_must_be_held(tmp_path):
+    def edit(groups):
+        return [(d, tags, {"bone": "hole", "nail": "rest"}.get(label, label)) for d, tags, label in groups]
+
+    path = write_rings(tmp_path / "pad.msh", edit=edit)
+    refused(path, "no curve is held", "bone or nail", "specimen.fixed", "among rest, hole")
+    mesh = read_pad_mesh(path, fixed=("hole",))
+    assert mesh.fixed == ("hole",) and {name: len(facets) for name, facets in mesh.curves.items()} == {
+        "skin": 12, "hole": 24, "unnamed": 12,
+    }  # fmt: skip
+    with pytest.raises(MeshError, match="fixed: core is no curve of the mesh; its physical curves are skin, rest, hole"):
+        read_pad_mesh(path, fixed=("core",))
+
+
+@pytest.mark.parametrize("name", ["bone", "nail"])
+def test_one_of_bone_and_nail_is_enough(name, tmp_path):
+    path = write_rings(tmp_path / "pad.msh", edit=lambda groups: [group for group in groups if group[2] != name])
+    mesh = read_pad_mesh(path)
+    assert mesh.fixed == tuple({"bone", "nail"} - {name}) and len(mesh.curves["unnamed"]) in (12, 24)
+    assert read_pad_mesh(write_rings(tmp_path / "both.msh"), free=("nail",)).fixed == ("bone",)
+
+
+def test_surfaces_have_names_of_their_own(tmp_path):
+    def edit(groups):
+        return [(d, tags, {"epidermis": "cover", "dermis": "foam", "fat": "core"}.get(label, label)) for d, tags, label in groups]
+
+    path = write_rings(tmp_path / "pad.msh", edit=edit)
+    assert read_pad_mesh(path).regions == ("cover", "foam", "core")
+    assert read_pad_mesh(path, layers=("core", "foam", "cover")).regions == ("core", "foam", "cover")
+    with pytest.raises(MeshError, match="layer gel is no surface of the mesh; its physical surfaces are cover, foam, core"):
+        read_pad_mesh(path, layers=("cover", "gel"))
+    with pytest.raises(MeshError, match=r"48 surface elements are in none of cover, foam; each must be in one .*also has core"):
+        read_pad_mesh(path, layers=("cover", "foam"))
 
 
 def test_no_groups_at_all(tmp_path):
-    refused(write_rings(tmp_path / "pad.msh", edit=lambda groups: []), "surface epidermis is missing")
+    refused(write_rings(tmp_path / "pad.msh", edit=lambda groups: []), "no surface is named")
+
+
+@pytest.mark.parametrize(("factor", "words"), [(1e-3, "0.016 mm wide: coordinates must be mm; metres?"), (1e3, "micrometres?")])
+def test_units_are_guessed(factor, words, tmp_path):
+    mesh = read_pad_mesh(write_rings(tmp_path / "mm.msh", "tri3"))
+    replace(mesh, points=mesh.points * factor).write(tmp_path / "pad.msh")
+    refused(tmp_path / "pad.msh", words)
 
 
 def test_cubic_elements(tmp_path):
@@ -627,10 +684,12 @@ def test_not_a_number(draft, tmp_path):
     refused(path)
 
 
-def test_boundary_without_a_name(draft, tmp_path):
+def test_boundary_without_a_name_is_free(draft, tmp_path):
     curves = {**draft.curves, "nail": draft.curves["nail"][1:]}
     replace(draft, curves=curves).write(tmp_path / "pad.msh")
-    refused(tmp_path / "pad.msh", "1 boundary edges", "in none of skin, bone, nail")
+    mesh = read_pad_mesh(tmp_path / "pad.msh")
+    assert mesh.fixed == ("bone", "nail")
+    np.testing.assert_allclose(mesh.points[mesh.curves["unnamed"]], draft.points[draft.curves["nail"][:1]], atol=1e-12)
 
 
 def test_layers_that_are_not_joined(draft, tmp_path):
@@ -676,8 +735,9 @@ def test_mesh_for_a_scene(draft, tmp_path):
 
     plan = Named(mesh_size=DRAFT, effects={"ridges": Named(on=False)})
     layers = Named(stratum_corneum=None)
-    built = mesh_for(Named(specimen=Named(outline=OUTLINE, mesh=None, layers=layers)), plan)
+    built = mesh_for(Named(specimen=Named(outline=OUTLINE, mesh=None, stack=None, layers=layers)), plan)
     np.testing.assert_array_equal(built.points, draft.points)
     path = write_rings(tmp_path / "rings.msh", "quad4")
-    read = mesh_for(Named(specimen=Named(outline=None, mesh=path)), plan)
+    materials = {name: None for name in REGIONS}
+    read = mesh_for(Named(specimen=Named(outline=None, mesh=path, materials=materials, stated=(), fixed=(), free=())), plan)
     assert read.element == "quad4" and corner_count(read.element) == 4

@@ -395,7 +395,7 @@ def test_a_varied_scene_is_checked_like_one_that_was_read():
     [
         ({"specimen.layers.fat.youngs_modulus": -1.0}, "specimen.layers.fat.youngs_modulus: -1.0 is negative"),
         ({"specimen.layers.fat.youngs_modulus": "0.1 N"}, "has the wrong dimension"),
-        ({"specimen.layer.fat": 1.0}, "specimen.layer.fat: layer is not a known key; allowed: outline, mesh, layers"),
+        ({"specimen.layer.fat": 1.0}, "specimen.layer.fat: layer is not a known key; allowed: outline, mesh, slab"),
         ({"motion[7].rate": 1.0}, "motion[7].rate: there is no such entry; allowed: 0 to 1"),
         ({"motion[0].rate.x": 1.0}, "there is no such key"),
         ({"stimulus.slope": 1.0}, "stimulus.slope: is not a known key"),

@@ -125,7 +125,7 @@ BAD = {
         "outside the section",
     ),
     "stratum corneum too thick": (
-        specimen(outline={"stratum_corneum_thickness": "1 mm"}),
+        specimen(outline={"stratum_corneum_thickness": "1 mm"}, layers={"stratum_corneum": {}}),
         "specimen.outline.stratum_corneum_thickness",
         "up to 0.85 mm",
     ),
@@ -210,7 +210,7 @@ BAD = {
     "mesh beside an outline": (
         specimen(mesh="no.msh", outline="thesis"),
         "specimen.mesh",
-        "one of mesh and outline",
+        "one of outline and mesh",
     ),
     "cylinder with zero curvature": (
         changed(stimulus={"shape": "cylinder", "curvature": "0 1/m"}),

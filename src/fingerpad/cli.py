@@ -258,7 +258,7 @@ def _naming(path: Path, scene: Scene) -> Iterator[None]:
         message = str(error).removeprefix(f"{scene.name}: ")
         key = _ERRORS.get(type(error).__name__, ("", ""))[1]
         if key == "specimen.mesh" and scene.specimen.mesh is None:
-            key = "specimen.outline"
+            key = next(f"specimen.{shape}" for shape in ("outline", "slab", "half_round") if getattr(scene.specimen, shape))
         message = message.removeprefix(f"{key.rpartition('.')[2]}: ")
         raise _Refusal(": ".join(filter(None, [str(path), key, message]))) from None
 
@@ -418,6 +418,8 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     for name, value in plan.discretisation.items():
         details.add_row(Text(name.replace("_", " ")), Text(f"{value:.4g}" if isinstance(value, float) else str(value)))
     console.print(details)
+    for line in plan.specimen:
+        console.print(Text(f"specimen: {line}"), soft_wrap=True)
     console.print(Text(f"expected error: {plan.estimated_error:.1%} (depth, width, pressure, strain energy)"))
     console.print(Text(f"predicted cost: {plan.predicted_cost_s:.2g} s of one core"))
 

@@ -16,13 +16,13 @@ from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tribu
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
 from fingerpad.mechanics.stepping import NonConvergence, QuasiStatic, Record, Skin
-from fingerpad.planning.plan import Plan, estimated_error, plan, schedule
+from fingerpad.planning.plan import Plan, PlanError, estimated_error, plan, schedule
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.results import FIELDS, add_snapshots, dataset, peak_memory_MB, provenance, skin_arc
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
-from fingerpad.specimen.measures import below_outline, below_skin
+from fingerpad.specimen.measures import below_outline, below_skin, touched_side
 from fingerpad.specimen.mesh import PadMesh, skin_chain
 from fingerpad.stimuli.profiles import profile_of
 
@@ -81,17 +81,17 @@ class Simulation:
         friction = scene.friction if plan.effects["friction"].on else None
         observers = (self.receptors, self.fields) if fields else (self.receptors,)
         self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=observers, friction=friction)
+        self._require_room()
 
     def _body(self):
         specimen, plan, mesh = self.scene.specimen, self.plan, self.mesh
         fixed = np.zeros(mesh.points.shape, bool)
-        for name in ("bone", "nail"):
+        for name in mesh.fixed:
             fixed[np.unique(mesh.curves[name])] = True
         if mesh.half:
             fixed[np.unique(mesh.curves["symmetry"]), 0] = True
         space = Space(mesh.points, mesh.cells, mesh.element, fixed, plan.element, PlaneStrain(specimen.contact_length))
-        # an external mesh may part what the scene does not
-        layers = [getattr(specimen.layers, name) or specimen.layers.epidermis for name in mesh.regions]
+        layers = [specimen.material(name) for name in mesh.regions]
         known = moduli(
             [layer.youngs_modulus for layer in layers], [layer.poisson_ratio for layer in layers], self.prony, specimen.moduli
         )
@@ -123,9 +123,24 @@ class Simulation:
         apex = _apex(self.mesh.points[chain])
         spacing = float(np.hypot(np.diff(x), np.diff(y)).min())
         reach = 1.4 * self.plan.contact.half_width
-        near = np.flatnonzero((np.abs(x - x[apex]) <= reach) & (y > y.max() - np.ptp(y) / 2))
+        near = np.flatnonzero((np.abs(x - x[apex]) <= reach) & touched_side(y))
         start = (int(near.min()) - 8, int(near.max()) + 9)
         return Skin(chain, self.mesh.curves["skin"], spacing, start)
+
+    def _require_room(self):
+        """The stimulus must not come down on what is held: ends of the skin that are part of a fixed curve."""
+        mesh = self.mesh
+        held = np.intersect1d(self.skin.nodes, np.concatenate([np.unique(mesh.curves[name]) for name in mesh.fixed]))
+        if not len(held):
+            return
+        depth = max((getattr(leg, "press_to_depth", 0.0) for leg in self.scene.motion), default=0.0)
+        room = self.profile.evaluate(mesh.points[held] - [0.0, self.stepper.height - depth])[0]
+        if room.min() <= 1e-9 * np.ptp(mesh.points[:, 0]):
+            x = 1e3 * mesh.points[held[np.argmin(room)], 0]
+            raise PlanError(
+                f"stimulus: comes down on the end of the skin at x = {x:.3g} mm, which is held; allowed: a narrower or more "
+                "curved one, less depth, or a pad that is free there"
+            )
 
     def run(self, progress):
         states: list[dict[str, np.ndarray]] = [self.receptors.sample(self.body)]
@@ -331,7 +346,7 @@ class Simulation:
 def _apex(skin: np.ndarray) -> int:
     """Index of the skin node (ns, 2) nearest to x = 0 on the side that is touched."""
     x, y = skin.T
-    return int(np.argmin(np.where(y > y.max() - np.ptp(y) / 2, np.abs(x), np.inf)))
+    return int(np.argmin(np.where(touched_side(y), np.abs(x), np.inf)))
 
 
 class _Unfolding:

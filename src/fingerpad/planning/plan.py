@@ -15,11 +15,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
+from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.scenes.scene import Discretisation, Hold, PressToDepth, PressToForce, Scene, Slide, StepAndRepeat
-from fingerpad.specimen.external import read_pad_mesh
+from fingerpad.specimen import counted
+from fingerpad.specimen.external import read_specimen_mesh
 from fingerpad.specimen.materials import Prony
-from fingerpad.specimen.measures import apex_edge, apex_measures
-from fingerpad.specimen.mesh import MeshSize, PadMesh, count_nodes, smallest_edge
+from fingerpad.specimen.measures import apex_edge
+from fingerpad.specimen.mesh import MeshSize, PadMesh
 from fingerpad.stimuli.motion import STEADY, programme
 from fingerpad.stimuli.profiles import Curve, Profile, profile_of
 
@@ -173,7 +175,7 @@ class Plan:
         slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
         nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
         contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
-        part of it that small strain is to blame for.
+        part of it that small strain is to blame for. specimen: sentences on what is touched, and what of it the scene left out.
     """
 
     effects: dict[str, Effect]
@@ -192,6 +194,7 @@ class Plan:
     estimated_error: float
     predicted_cost_s: float
     small_strain_error: float = 0.0
+    specimen: tuple[str, ...] = ()
 
     @property
     def stepping(self) -> tuple[int, bool, float]:
@@ -232,6 +235,7 @@ class Plan:
             "slide_step_SI": self.slide_step,
             "timed": self.timed,
             "small_strain_error": self.small_strain_error,
+            "specimen": list(self.specimen),
         }
 
     def write(self, path: str | Path) -> None:
@@ -250,7 +254,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     """
     external = _external(scene)
     profile = profile_of(scene.stimulus)
-    pad = _pad(scene, external)
+    pad = pad_estimate(scene.specimen, external, scene.stimulus.width / 2 if scene.stimulus.shape == "bar" else np.inf)
     moves = _moves(scene)
     # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
     contact = _worst_contact(scene, pad, profile, profile.convexity if moves or not isinstance(profile, Curve) else 0.0)
@@ -284,10 +288,10 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         widest = _worst_contact(scene, pad, profile, 0.0) if moves and isinstance(profile, Curve) else contact
         wander = _wander(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
         size = _mesh_size(scene, preset, profile, contact, widest.half_width, wander, rules)
-        layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
-        nodes, smallest = count_nodes(*layered), smallest_edge(*layered)
+        nodes, smallest = counted(scene.specimen, size, ridges)
         edge = min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
         if ridges is not None:
+            layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
             effects["ridges"], edge = _resolved(effects["ridges"], layered, edge)
     else:
         size, nodes = None, len(external.points)
@@ -300,7 +304,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     error = linear + estimated_error(edge, _earliest(scene, contact, timed), time, moves, around, rules)
     return Plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge, error,
-        _cost(nodes, steps, effects, rules), linear,
+        _cost(nodes, steps, effects, rules), linear, specimen=specimen_said(scene.specimen, external),
     )  # fmt: skip
 
 
@@ -328,7 +332,7 @@ def read_plan(path: str | Path) -> Plan:
         {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
         ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
         data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
-        data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"],
+        data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], specimen=tuple(data["specimen"]),
     )  # fmt: skip
 
 
@@ -341,30 +345,7 @@ def _moves(scene: Scene) -> bool:
 
 def _external(scene: Scene) -> PadMesh | None:
     """The scene's own mesh, if it names one."""
-    if scene.specimen.mesh is None:
-        return None
-    mesh = read_pad_mesh(scene.specimen.mesh).elevated()
-    if scene.specimen.layers.stratum_corneum is not None and "stratum_corneum" not in mesh.regions:
-        raise PlanError("specimen.layers.stratum_corneum: is no surface of the mesh; allowed: a mesh with it, or no such layer")
-    return mesh
-
-
-def _pad(scene: Scene, external: PadMesh | None) -> PadEstimate:
-    specimen, layers = scene.specimen, scene.specimen.layers
-
-    def plane(layer):
-        return layer.youngs_modulus / (1 - layer.poisson_ratio**2)
-
-    if specimen.outline is not None:
-        outline = specimen.outline
-        radius, epidermis, soft = outline.apex_radius, outline.epidermis_thickness, outline.soft_thickness
-    else:
-        radius, epidermis, soft = apex_measures(external)
-    softest = min(plane(layers.dermis), plane(layers.fat))
-    relax = 1.0
-    if specimen.moduli == "instantaneous" and specimen.prony:
-        relax = 1 - sum(term.g for term in specimen.prony)
-    return PadEstimate(radius, epidermis, soft, relax * plane(layers.epidermis), relax * softest)
+    return None if scene.specimen.mesh is None else read_specimen_mesh(scene.specimen).elevated()
 
 
 def _worst_contact(scene: Scene, pad: PadEstimate, profile: Profile, curvature: float) -> ContactEstimate:
@@ -391,10 +372,8 @@ def _worst_contact(scene: Scene, pad: PadEstimate, profile: Profile, curvature: 
 
 def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> tuple[float, int]:
     """rho v^2 / mu of the softest layer, what leaving inertia out of the equations neglects; and the fastest leg."""
-    layers = scene.specimen.layers
-    softest = min(
-        layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in (layers.epidermis, layers.dermis, layers.fat)
-    )
+    layers = scene.specimen.materials.values()
+    softest = min(layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in layers)
     speed = [0.0] * len(scene.motion)
     for i, (leg, duration) in enumerate(zip(scene.motion, leg_durations(scene), strict=True)):
         if duration and not isinstance(leg, Hold):
@@ -645,7 +624,6 @@ def _wander(scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, ru
 def _mesh_size(
     scene: Scene, preset: Preset, profile: Profile, contact: ContactEstimate, half_width: float, wander: float, rules: Rules
 ) -> MeshSize:
-    outline = scene.specimen.outline
     offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
     fine = max(rules.fine_half_width, 1.3 * half_width, half_width + wander, offsets)
     focus, radial = (), None
@@ -661,7 +639,7 @@ def _mesh_size(
         focus = ((0.0, contact.half_width / rules.edges_per_half_width),)
     return MeshSize(
         skin_edge=preset.skin_edge,
-        fine_half_width=min(fine, 0.9 * outline.half_width),
+        fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
         layer_edge=preset.layer_edge,
         growth=preset.growth,
         focus=focus,

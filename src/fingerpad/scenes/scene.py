@@ -22,10 +22,12 @@ from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, near
 from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, whole
 from fingerpad.scenes.specimen import (
     DEFAULT_SPECIMEN,
+    HalfRound,
     Layer,
     Layers,
     Outline,
     PronyTerm,
+    Slab,
     Source,
     Specimen,
     SpecimenFile,
@@ -34,8 +36,8 @@ from fingerpad.scenes.specimen import (
 from fingerpad.units import QuantityError, format_quantity, parse_number
 
 __all__ = [
-    "Bar", "Cylinder", "Discretisation", "Flat", "Hold", "Layer", "Layers", "Line", "Outline", "Outputs",
-    "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Slide", "Specimen",
+    "Bar", "Cylinder", "Discretisation", "Flat", "HalfRound", "Hold", "Layer", "Layers", "Line", "Outline", "Outputs",
+    "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Slab", "Slide", "Specimen",
     "SpecimenFile", "StepAndRepeat", "Wavy", "load_scene", "recorded_scene", "scene_json_schema", "specimen_json_schema",
 ]  # fmt: skip
 
@@ -321,7 +323,9 @@ Leg = Annotated[
     BeforeValidator(_check_leg),
 ]
 
-_TAGS = frozenset(f"<{key}>" for key in (*_SHAPES, *_LEGS, "level", "tolerance", "discretisation", "times", "every"))
+_TAGS = frozenset(
+    f"<{key}>" for key in (*_SHAPES, *_LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own")
+)
 
 
 def _check_motion(legs: Any) -> Any:
@@ -474,14 +478,17 @@ class Scene(Strict):
             data["name"] = context.path.stem
         data.setdefault("specimen", {})
         data.setdefault("outputs", {})
+        depths = _middles(data["specimen"], context)
+        outputs = data["outputs"]
+        if depths and isinstance(outputs, Mapping) and isinstance(receptors := outputs.get("receptors", {}), Mapping):
+            data["outputs"] = {**outputs, "receptors": {"depths": [SI(depth) for depth in depths], **receptors}}
         return data
 
     @model_validator(mode="after")
     def _check(self) -> Scene:
         self._check_programme()
-        outline = self.specimen.outline
-        if outline is not None:
-            self._check_inside(outline)
+        if self.specimen.mesh is None:
+            self._check_inside()
         end = self.end_time
         if isinstance(self.outputs.snapshots, Every):
             # the model is frozen, and only here is the motion known
@@ -534,26 +541,30 @@ class Scene(Strict):
                     raise Problem("is where the leg before ended", "another target, or a hold", ("motion", i, key))
                 last = target
 
-    def _check_inside(self, outline: Outline) -> None:
-        thickness = outline.soft_thickness
-        below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the bone"
+    def _check_inside(self) -> None:
+        thickness, half_width = self.specimen.soft_thickness, self.specimen.half_width
+        below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the {self._ground}"
         for i, leg in enumerate(self.motion):
             if isinstance(leg, PressToDepth) and leg.press_to_depth >= thickness:
-                raise Problem("presses to the bone", below, ("motion", i, "press_to_depth"))
+                raise Problem(f"presses to the {self._ground}", below, ("motion", i, "press_to_depth"))
         for i, depth in enumerate(self.outputs.receptors.depths):
             if depth >= thickness:
                 raise Problem("is outside the skin", below, ("outputs", "receptors", "depths", i))
         for i, offset in enumerate(self.outputs.receptors.offsets):
-            if abs(offset) >= outline.half_width:
-                side = f"within {format_quantity(outline.half_width, 'length')} of the middle"
+            if abs(offset) >= half_width:
+                side = f"within {format_quantity(half_width, 'length')} of the middle"
                 raise Problem("is beside the pad", side, ("outputs", "receptors", "offsets", i))
         edge = self.accuracy.skin_edge if isinstance(self.accuracy, Discretisation) else None
-        if edge is not None and edge >= outline.half_width:
+        if edge is not None and edge >= half_width:
             raise Problem(
                 "is larger than the pad",
-                f"below {format_quantity(outline.half_width, 'length')}",
+                f"below {format_quantity(half_width, 'length')}",
                 ("accuracy", "skin_edge"),
             )
+
+    @property
+    def _ground(self) -> str:
+        return "bone" if self.specimen.stack is None else "base"
 
     @property
     def end_time(self) -> float | None:
@@ -653,6 +664,19 @@ def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> 
     if rest and key not in part:
         raise SceneError(f"{where}: {key} is not a known key; allowed: {', '.join(part)}")
     return {**part, key: _changed(part.get(key), tuple(rest), value, where)}
+
+
+def _middles(specimen: Any, context: Any) -> tuple[float, ...]:
+    """Where receptors of a slab or a half-round are unless the scene says: in the middles of its layers, m."""
+    shapes = {"slab": Slab, "half_round": HalfRound}
+    given = specimen.get if isinstance(specimen, Mapping) else lambda key: getattr(specimen, key, None)
+    for key, model in shapes.items():
+        if given(key) is not None:
+            try:
+                return model.model_validate(given(key), context=context).receptor_depths
+            except ValidationError:
+                break  # said where the specimen is read
+    return ()
 
 
 def _sha256(content: bytes) -> str:

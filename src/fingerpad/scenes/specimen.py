@@ -4,22 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     BeforeValidator,
+    Discriminator,
     Field,
     SerializerFunctionWrapHandler,
+    Tag,
     ValidationError,
     ValidationInfo,
     field_serializer,
     model_serializer,
     model_validator,
 )
+from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, Strict, explain, read_yaml
-from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity
+from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity
 from fingerpad.files import BUILT_IN
 from fingerpad.units import format_quantity
 
@@ -81,12 +85,6 @@ class Outline(Strict):
                 f"less than the {mm(self.soft_thickness)} from the skin to the bone",
                 (key,),
             )
-        if self.stratum_corneum_thickness > self.epidermis_thickness:
-            raise Problem(
-                "is more than the epidermis it belongs to",
-                f"up to {mm(self.epidermis_thickness)}",
-                ("stratum_corneum_thickness",),
-            )
         if self.bone_half_width >= self.half_width - layers:
             raise Problem(
                 "leaves no fat beside the bone",
@@ -142,6 +140,124 @@ class Layers(Strict):
         if self.stratum_corneum is None:
             del data["stratum_corneum"]
         return data
+
+
+class Material(Layer):
+    """Isotropic elasticity of a layer that has a name of its own."""
+
+    hints: ClassVar = {"thickness": "is not a key of a layer of a mesh, which has its own"}
+
+    poisson_ratio: number("a number above -1 and below 0.5", -1.0, 0.5) = 0.48
+    """Poisson's ratio, in the state named by `moduli`; 0.48 unless given, and the plan says so."""
+
+
+def _name(value: Any) -> Any:
+    if not isinstance(value, str) or not 0 < len(value) <= 40 or not value.isprintable() or value != value.strip():
+        raise Problem("is not a name", "a word such as cover")
+    return value
+
+
+Name = Annotated[str, BeforeValidator(_name)]
+
+
+class StackLayer(Material):
+    """One layer of a slab or a half-round."""
+
+    hints: ClassVar = {}
+
+    name: Name
+    """Name of the layer."""
+    thickness: Length | None = None
+    """Thickness; that of the innermost layer of a half-round may be left out, it then fills it."""
+
+
+class Stack(Strict):
+    """Bonded layers on a fixed base."""
+
+    layers: Annotated[tuple[StackLayer, ...], BeforeValidator(filled)]
+    """Layers from the outside to the inside."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the layers, outside to inside."""
+        return tuple(layer.name for layer in self.layers)
+
+    @property
+    def thicknesses(self) -> tuple[float, ...]:
+        """Of the layers, m."""
+        return tuple(layer.thickness for layer in self.layers)
+
+    @property
+    def soft_thickness(self) -> float:
+        """From the middle of the surface to the base, m."""
+        return math.fsum(self.thicknesses)
+
+    @property
+    def receptor_depths(self) -> tuple[float, ...]:
+        """Depths (m) of the middles of the layers."""
+        ends = list(accumulate(self.thicknesses, initial=0.0))
+        return tuple((above + below) / 2 for above, below in pairwise(ends))
+
+    def _check_layers(self, optional: int) -> None:
+        """Names differ, and thicknesses are given but for the last ``optional`` layers."""
+        for i, layer in enumerate(self.layers):
+            if layer.name in self.names[:i]:
+                raise Problem("is the name of two layers", "a name of its own for each", ("layers", i, "name"))
+            if layer.thickness is None and i < len(self.layers) - optional:
+                raise Problem("is missing", "a length such as '1 mm'", ("layers", i, "thickness"), HIDE)
+
+
+class Slab(Stack):
+    """A flat slab of bonded layers on a fixed base, free at its sides: a robot's skin, a phantom."""
+
+    radius: ClassVar = None
+
+    width: Length
+    """Width; the middle of the surface is at x = 0."""
+
+    @property
+    def half_width(self) -> float:
+        """m."""
+        return self.width / 2
+
+    @model_validator(mode="after")
+    def _check(self) -> Slab:
+        self._check_layers(0)
+        return self
+
+
+class HalfRound(Stack):
+    """Half of a cylinder of bonded layers on a fixed base, its top at x = 0; what the layers leave of it is a rigid core."""
+
+    radius: Length
+    """Radius of the surface."""
+
+    @property
+    def half_width(self) -> float:
+        """m."""
+        return self.radius
+
+    @property
+    def thicknesses(self) -> tuple[float, ...]:
+        """Of the layers, m."""
+        given = [layer.thickness for layer in self.layers]
+        return tuple(given) if given[-1] is not None else (*given[:-1], self.radius - math.fsum(given[:-1]))
+
+    @property
+    def solid(self) -> bool:
+        """Whether the layers fill it."""
+        return self.soft_thickness > self.radius * (1 - 1e-9)
+
+    @model_validator(mode="after")
+    def _check(self) -> HalfRound:
+        self._check_layers(1)
+        given = math.fsum(layer.thickness or 0.0 for layer in self.layers)
+        if given > self.radius * (1 + 1e-9) or (self.layers[-1].thickness is None and given >= self.radius):
+            thick = format_quantity(given, "length")
+            raise Problem(
+                f"are {thick} thick together", f"up to the radius, {format_quantity(self.radius, 'length')}", ("layers",), HIDE
+            )
+        return self
 
 
 Height = quantity("length", note=", which would turn ridges into valleys")
@@ -234,6 +350,14 @@ class SpecimenFile(Strict):
         return self
 
 
+def _article(shape: str) -> str:
+    return "an outline" if shape == "outline" else f"a {shape}"
+
+
+def _lacks(layer: Any, key: str) -> bool:
+    return isinstance(layer, Mapping) and key not in layer
+
+
 class Source:
     """Where a document comes from: finds the files it names and the specimens it refers to."""
 
@@ -302,7 +426,7 @@ def _named(part: str, surface: Any) -> BeforeValidator:
             return () if (part, value) == ("prony", "none") else source.part(value, part)
         if part == "prony":
             return listed(value)
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping) and not isinstance(value, _Own):
             default = _si(source.part(DEFAULT_SPECIMEN, part))
             return {**default, **{key: _merge(default.get(key), item) for key, item in value.items()}}
         return value
@@ -335,15 +459,46 @@ def _read_ridges(value: Any, info: ValidationInfo) -> Any:
     return filled
 
 
+class _Own(dict):
+    """Layers under names of their own."""
+
+
+def _layers_tag(value: Any) -> str:
+    read = isinstance(value, dict) and value and all(isinstance(layer, Material) for layer in value.values())
+    return "<own>" if isinstance(value, _Own) or read else "<finger>"
+
+
+_FINGER = tuple(Layers.model_fields)
+_SHAPES = ("outline", "mesh", "slab", "half_round")
+Names = Annotated[tuple[Name, ...], BeforeValidator(listed)]
+
+
 class Specimen(Strict):
-    """What is touched: a parametric outline or an external mesh, and the material of its layers."""
+    """What is touched: a finger's outline, an external mesh, a slab or a half-round, and the material of its layers."""
+
+    internal: ClassVar = frozenset({"assumed", "stated"})
 
     outline: Annotated[Outline, _named("outline", Outline)] | None = None
     """Section of the pad, by name or by keys; keys left out are the thesis's."""
     mesh: Path | None = None
-    """External mesh in mm with surfaces epidermis, dermis, fat and curves skin, bone, nail; or an outline."""
-    layers: Annotated[Layers, _named("layers", Layers)]
-    """Elasticity of the layers, by name or by keys; keys left out are the thesis's."""
+    """External mesh in mm instead of an outline: surfaces are layers, a curve skin is touched, bone and nail are held."""
+    slab: Slab | None = None
+    """A flat slab instead of an outline."""
+    half_round: HalfRound | None = None
+    """A half-round instead of an outline."""
+    fixed: Names = ()
+    """Further curves of the mesh that are held."""
+    free: Names = ()
+    """Curves of the mesh that are free; so are boundary edges in no curve."""
+    layers: (
+        Annotated[
+            Annotated[Layers, Tag("<finger>")] | Annotated[dict[Name, Material], Tag("<own>")],
+            Discriminator(_layers_tag),
+            _named("layers", Layers | dict[str, Material]),
+        ]
+        | None
+    ) = None
+    """Elasticity of the layers, by name or by keys; keys left out are the thesis's. Of a mesh: a material for each surface."""
     moduli: Moduli
     """State that the moduli of `layers` describe."""
     prony: Annotated[tuple[PronyTerm, ...], _named("prony", tuple[PronyTerm, ...])]
@@ -352,14 +507,26 @@ class Specimen(Strict):
     """Ridges of epidermis and skin: none, inner, inner_and_outer, or keys; keys left out are the thesis file's."""
     contact_length: Length
     """Out-of-plane length that turns newtons into newtons per metre."""
+    assumed: SkipJsonSchema[tuple[str, ...]] = Field((), exclude=True, repr=False)
+    """What the scene left out and where it was taken from, in words."""
+    stated: SkipJsonSchema[tuple[str, ...]] = Field((), exclude=True, repr=False)
+    """Layers that the scene gives by their names."""
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
         """Parts left out are the default specimen's; `moduli` comes with the file that names `layers`."""
         source = source_of(context)
-        if data.get("mesh") is not None:
-            if data.get("outline") is not None:
-                raise Problem("is given beside an outline", "one of mesh and outline", ("mesh",))
+        given = {key for key, value in data.items() if value is not None}
+        shapes = [key for key in _SHAPES if key in given]
+        if len(shapes) > 1:
+            raise Problem(f"is given beside {_article(shapes[0])}", f"one of {' and '.join(shapes)}", (shapes[-1],))
+        if shapes != ["mesh"]:
+            for key in ("fixed", "free"):
+                if data.get(key):
+                    raise Problem("names curves of no mesh", "a mesh beside it", (key,))
+        if shapes in (["slab"], ["half_round"]):
+            return cls._fill_stack(data, shapes[0], source)
+        if shapes == ["mesh"]:
             if not isinstance(data["mesh"], (str, Path)):
                 raise Problem("is not a path", "the path of a .msh file", ("mesh",))
             # in Python a path may be one that a result remembers: whether it is there turns out when it is read
@@ -367,8 +534,20 @@ class Specimen(Strict):
             data["mesh"] = source.resolve(data["mesh"])
             if in_document and not data["mesh"].is_file():
                 raise Problem("is not an existing file", "the path of a .msh file, relative to the scene", ("mesh",))
+            layers = data.get("layers")
+            if isinstance(layers, Mapping) and not set(layers) <= set(_FINGER):
+                data["layers"] = _Own(layers)
+                left_out = [f"poisson_ratio of {name}: 0.48" for name, layer in layers.items() if _lacks(layer, "poisson_ratio")]
+                return cls._fill_plain(data, left_out, source)
         else:
             data.setdefault("outline", DEFAULT_SPECIMEN)
+        taken = [key for key in ("layers", "outline", "prony", "contact_length") if key not in given]
+        if shapes == ["mesh"]:
+            taken.remove("outline")
+        if isinstance(data.get("layers"), Mapping):
+            data.setdefault("stated", tuple(data["layers"]))
+            taken = [name for name in _FINGER[1:] if name not in data["layers"]] + taken
+        data.setdefault("assumed", (f"{', '.join(taken)}: {DEFAULT_SPECIMEN}",) if taken else ())
         data.setdefault("layers", DEFAULT_SPECIMEN)
         data.setdefault("prony", DEFAULT_SPECIMEN)
         if "moduli" not in data:
@@ -378,14 +557,88 @@ class Specimen(Strict):
             data["contact_length"] = SI(source.part(DEFAULT_SPECIMEN, "contact_length"))
         return data
 
+    @classmethod
+    def _fill_stack(cls, data: dict[str, Any], shape: str, source: Source) -> dict[str, Any]:
+        """What a slab or a half-round leaves out; nothing but the contact length is the thesis's."""
+        for key in ("layers", "ridges"):
+            if data.get(key) not in (None, "none"):
+                raise Problem(f"is given beside {_article(shape)}, which has its own layers", f"{shape}.layers", (key,), HIDE)
+        stack = data[shape]
+        layers = (stack.get("layers") if isinstance(stack, Mapping) else None) or ()
+        named = [layer for layer in layers if isinstance(layer, Mapping)] if isinstance(layers, (list, tuple)) else []
+        left_out = [f"poisson_ratio of {layer.get('name')}: 0.48" for layer in named if _lacks(layer, "poisson_ratio")]
+        return cls._fill_plain(data, left_out, source)
+
+    @classmethod
+    def _fill_plain(cls, data: dict[str, Any], left_out: list[str], source: Source) -> dict[str, Any]:
+        """Layers under names of their own do not relax unless told, and their moduli are then those of the long term."""
+        if data.get("prony") is None:
+            data["prony"] = ()
+            left_out.append("prony: none, elastic")
+        elif "moduli" not in data:
+            left_out.append("moduli: long_term")
+        data.setdefault("moduli", "long_term")
+        if data.get("contact_length") is None:
+            data["contact_length"] = SI(source.part(DEFAULT_SPECIMEN, "contact_length"))
+            left_out.append(f"contact_length: {format_quantity(data['contact_length'], 'length')}, {DEFAULT_SPECIMEN}")
+        data.setdefault("assumed", tuple(left_out))
+        return data
+
+    def __eq__(self, other: object) -> bool:
+        """Equal specimens may have been said in other words: what was left out is no part of it."""
+        return type(self) is type(other) and self.model_dump() == other.model_dump()
+
+    @property
+    def stack(self) -> Stack | None:
+        """The slab or the half-round, if it is one."""
+        return self.slab or self.half_round
+
+    @property
+    def materials(self) -> dict[str, Layer]:
+        """Material of each layer by its name, outside to inside."""
+        if self.stack is not None:
+            return {layer.name: layer for layer in self.stack.layers}
+        if isinstance(self.layers, Layers):
+            return {name: layer for name in _FINGER if (layer := getattr(self.layers, name)) is not None}
+        return self.layers
+
+    def material(self, name: str) -> Layer:
+        """Material of a layer; an external mesh may part the stratum corneum where the scene does not."""
+        known = self.materials
+        return known["epidermis"] if name == "stratum_corneum" and name not in known else known[name]
+
+    @property
+    def soft_thickness(self) -> float | None:
+        """From the middle of the skin to the bone or the base, m; None for a mesh."""
+        shape = self.outline or self.stack
+        return None if shape is None else shape.soft_thickness
+
+    @property
+    def half_width(self) -> float | None:
+        """m; None for a mesh."""
+        shape = self.outline or self.stack
+        return None if shape is None else shape.half_width
+
     @model_validator(mode="after")
     def _check(self) -> Specimen:
-        if (self.outline is None) == (self.mesh is None):
-            raise Problem("is missing", "one of outline and mesh", ("outline",), HIDE)
+        if sum(getattr(self, shape) is not None for shape in _SHAPES) != 1 or (self.layers is None) != (self.stack is not None):
+            raise Problem("is missing", "one of outline, mesh, slab and half_round", ("outline",), HIDE)
+        if self.outline is not None and self.layers.stratum_corneum is not None:
+            outline = self.outline
+            if outline.stratum_corneum_thickness > outline.epidermis_thickness:
+                allowed = f"up to {format_quantity(outline.epidermis_thickness, 'length')}"
+                raise Problem("is more than the epidermis it belongs to", allowed, ("outline", "stratum_corneum_thickness"))
         _check_prony(self.prony)
         if self.ridges is not None:
             self._check_ridges()
         return self
+
+    @model_serializer(mode="wrap")
+    def _without_nothing(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data = handler(self)
+        return {
+            key: value for key, value in data.items() if value or key not in ("slab", "half_round", "fixed", "free", "layers")
+        }
 
     @field_serializer("ridges", mode="wrap")
     def _named_ridges(self, ridges: Ridges | None, handler: SerializerFunctionWrapHandler) -> Any:

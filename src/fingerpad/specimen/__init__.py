@@ -28,17 +28,34 @@ def __getattr__(name: str):
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
+def counted(specimen, size, ridges) -> tuple[int, float]:
+    """Nodes and shortest edge (m) of the mesh of such a size of an outline (with `ridges` or None), a slab or a half-round."""
+    from fingerpad.specimen.mesh import count_nodes, smallest_edge
+
+    if specimen.stack is not None:
+        from fingerpad.specimen.stacks import build_stack_mesh
+
+        quality = build_stack_mesh(specimen.stack, size).quality()
+        return quality["nodes"], quality["smallest_edge_m"]
+    layered = specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None
+    return count_nodes(*layered), smallest_edge(*layered)
+
+
 def mesh_for(scene, plan):
-    """The mesh of a scene: its external mesh if it names one, else its outline, layers and ridges meshed as the plan says.
+    """The mesh of a scene: its external mesh if it names one, else its outline, slab or half-round meshed as the plan says.
 
     Raises
     ------
-    OutlineError, MeshError : see `build_pad_mesh` and `read_pad_mesh`.
+    OutlineError, MeshError : see `build_pad_mesh`, `build_stack_mesh` and `read_pad_mesh`.
     """
     if scene.specimen.mesh is not None:
-        from fingerpad.specimen.external import read_pad_mesh
+        from fingerpad.specimen.external import read_specimen_mesh
 
-        return read_pad_mesh(scene.specimen.mesh)
+        return read_specimen_mesh(scene.specimen)
+    if scene.specimen.stack is not None:
+        from fingerpad.specimen.stacks import build_stack_mesh
+
+        return build_stack_mesh(scene.specimen.stack, plan.mesh_size)
     from fingerpad.specimen.mesh import build_pad_mesh
 
     specimen = scene.specimen

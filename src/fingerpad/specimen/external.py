@@ -1,28 +1,31 @@
 """Meshes as gmsh .msh files: the built mesh is written to one, a user's own mesh is read from one.
 
-Coordinates are in mm. Physical surfaces epidermis, dermis and fat, and physical curves skin, bone and nail,
-must be there, a surface stratum_corneum may be; together the curves are the whole boundary. Linear and quadratic
-triangles and quads are read (format 2.2 or 4.1); an 8-node quad is given the centre node where its own
-(serendipity) map puts the centre.
+Coordinates are in mm. Physical surfaces are the layers, under any names; a mesh with epidermis, dermis and fat (and
+stratum_corneum, if it has it) is a finger. A physical curve skin is what may be touched; at least one more is held: bone,
+nail, or what the scene says. Boundary edges in none of them are free. Linear and quadratic triangles and quads are read
+(format 2.2 or 4.1); an 8-node quad is given the centre node where its own (serendipity) map puts the centre.
 """
 
 from __future__ import annotations
 
+import errno
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from fingerpad.specimen.mesh import CURVES, OPTIONAL, REGIONS, MeshError, PadMesh, element_edges
+from fingerpad.files import write_atomically
+from fingerpad.specimen.mesh import FIXED, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
 from fingerpad.specimen.quality import check_orientation
 
 _ELEMENTS = {2: "tri3", 9: "tri6", 3: "quad4", 16: "quad8", 10: "quad9"}  # by gmsh's element type
 _TYPES = {element: number for number, element in _ELEMENTS.items()}
 _LINES = {2: 1, 3: 8}  # gmsh's element type of a line, by its number of nodes
 _SAME_PLACE = 1e-6  # of the pad's width: two nodes closer than this are mirror images of each other
+_WIDTHS = (0.1, 1000.0)  # mm, between which the width of a pad is believed
 
 
 @contextmanager
@@ -38,41 +41,45 @@ def _quiet_gmsh() -> Iterator[object]:
 
 
 def write_pad_mesh(mesh: PadMesh, path: str | Path) -> None:
-    """Write `mesh` to a gmsh .msh file (version 4.1, mm), whole or not at all."""
-    path = Path(path)
-    partial = path.with_name(f".{path.stem}.{os.getpid()}.msh")
-    partial.touch()
-    try:
-        with _quiet_gmsh() as gmsh:
-            gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
-            gmsh.option.setNumber("Mesh.Binary", 0)
-            for number, name in enumerate(mesh.curves, start=1):
-                gmsh.model.addDiscreteEntity(1, number)
-                gmsh.model.addPhysicalGroup(1, [number], number, name)
-            for number, name in enumerate(mesh.regions, start=1):
-                gmsh.model.addDiscreteEntity(2, number)
-                gmsh.model.addPhysicalGroup(2, [number], number, name)
-            tags = np.arange(1, len(mesh.points) + 1)
-            places = np.column_stack((mesh.points * 1e3, np.zeros(len(tags))))
-            gmsh.model.mesh.addNodes(2, 1, tags, places.ravel())
-            for number, facets in enumerate(mesh.curves.values(), start=1):
-                line = _LINES[facets.shape[1]]
-                gmsh.model.mesh.addElementsByType(number, line, [], facets.ravel() + 1)
-            for number in range(1, len(mesh.regions) + 1):
-                cells = mesh.cells[mesh.region == number - 1]
-                gmsh.model.mesh.addElementsByType(number, _TYPES[mesh.element], [], cells.ravel() + 1)
-            gmsh.model.mesh.reclassifyNodes()
-            gmsh.write(str(partial))
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    """Write `mesh` to a gmsh .msh file (version 4.1, mm), whole or not at all.
+
+    Raises
+    ------
+    OSError : the file cannot be written, or not to its end (gmsh itself does not say that a disk is full).
+    """
+    write_atomically(path, lambda partial: _write(mesh, partial, path))
+
+
+def _write(mesh: PadMesh, partial: Path, path: str | Path) -> None:
+    with _quiet_gmsh() as gmsh:
+        gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+        gmsh.option.setNumber("Mesh.Binary", 0)
+        for number, name in enumerate(mesh.curves, start=1):
+            gmsh.model.addDiscreteEntity(1, number)
+            gmsh.model.addPhysicalGroup(1, [number], number, name)
+        for number, name in enumerate(mesh.regions, start=1):
+            gmsh.model.addDiscreteEntity(2, number)
+            gmsh.model.addPhysicalGroup(2, [number], number, name)
+        tags = np.arange(1, len(mesh.points) + 1)
+        places = np.column_stack((mesh.points * 1e3, np.zeros(len(tags))))
+        gmsh.model.mesh.addNodes(2, 1, tags, places.ravel())
+        for number, facets in enumerate(mesh.curves.values(), start=1):
+            line = _LINES[facets.shape[1]]
+            gmsh.model.mesh.addElementsByType(number, line, [], facets.ravel() + 1)
+        for number in range(1, len(mesh.regions) + 1):
+            cells = mesh.cells[mesh.region == number - 1]
+            gmsh.model.mesh.addElementsByType(number, _TYPES[mesh.element], [], cells.ravel() + 1)
+        gmsh.model.mesh.reclassifyNodes()
+        gmsh.write(str(partial))
+    if not partial.read_bytes().rstrip().endswith(b"$EndElements"):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
 
 
 def _read_groups(path: Path) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
     """What is in the file, nodes by their tags.
 
     Node tags (n,), their places (n, 3) in mm, surfaces as {name: [(gmsh's type, element tags, node tags)]},
-    curves likewise, and the number of all surface elements, named or not.
+    curves likewise, and the number of all surface elements, in a group or not. A group without a name has its number.
     """
     with path.open("rb") as file:
         if file.read(11) != b"$MeshFormat":
@@ -82,11 +89,9 @@ def _read_groups(path: Path) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
             gmsh.open(str(path))
             tags, places, _ = gmsh.model.mesh.getNodes()
             groups: tuple[dict, dict] = ({}, {})
-            for dimension, wanted in ((1, CURVES), (2, (*OPTIONAL, *REGIONS))):
+            for dimension in (1, 2):
                 for _, group in gmsh.model.getPhysicalGroups(dimension):
-                    name = gmsh.model.getPhysicalName(dimension, group)
-                    if name not in wanted:
-                        continue
+                    name = gmsh.model.getPhysicalName(dimension, group) or str(group)
                     for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
                         blocks = zip(*gmsh.model.mesh.getElements(dimension, entity), strict=True)
                         groups[dimension - 1].setdefault(name, []).extend(blocks)
@@ -96,11 +101,38 @@ def _read_groups(path: Path) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
     return tags, places.reshape(-1, 3), groups[1], groups[0], count
 
 
-def _require_groups(path: Path, surfaces: dict, curves: dict) -> None:
-    for kind, wanted, found in (("surface", REGIONS, surfaces), ("curve", CURVES, curves)):
-        for name in wanted:
-            if not found.get(name):
-                raise MeshError(f"{path}: {kind} {name} is missing; physical {kind}s {', '.join(wanted)} must be there")
+def _listed(names) -> str:
+    return ", ".join(names) or "none"
+
+
+def _layers(path: Path, surfaces: dict, wanted: Sequence[str]) -> tuple[str, ...]:
+    """Names of the layers: the wanted ones, or else a finger's, or else all there are."""
+    for name in wanted:
+        if name not in surfaces:
+            raise MeshError(f"{path}: layer {name} is no surface of the mesh; its physical surfaces are {_listed(surfaces)}")
+    if not surfaces:
+        raise MeshError(f"{path}: no surface is named; each layer must be a physical surface")
+    finger = all(name in surfaces for name in REGIONS)
+    known = tuple(name for name in (*OPTIONAL, *REGIONS) if name in surfaces)
+    return tuple(wanted) or (known if finger else tuple(surfaces))
+
+
+def _held(path: Path, curves: dict, fixed: Sequence[str], free: Sequence[str]) -> tuple[str, ...]:
+    """Names of the curves that are held."""
+    if SKIN not in curves:
+        raise MeshError(f"{path}: curve {SKIN} is missing; a physical curve {SKIN} must be there, among {_listed(curves)}")
+    for key, names in (("fixed", fixed), ("free", free)):
+        for name in names:
+            if name not in curves:
+                raise MeshError(f"{path}: {key}: {name} is no curve of the mesh; its physical curves are {_listed(curves)}")
+    held = tuple(dict.fromkeys([*(name for name in FIXED if name in curves and name not in free), *fixed]))
+    if not held:
+        others = _listed(name for name in curves if name != SKIN)
+        raise MeshError(
+            f"{path}: no curve is held; a physical curve {' or '.join(FIXED)}, or one named by specimen.fixed, must be there, "
+            f"among {others}"
+        )
+    return held
 
 
 def _gather_cells(path: Path, surfaces: dict, regions: tuple[str, ...], count: int) -> tuple[str, np.ndarray, np.ndarray]:
@@ -123,7 +155,11 @@ def _gather_cells(path: Path, surfaces: dict, regions: tuple[str, ...], count: i
     if len(np.unique(tags)) < len(tags):
         raise MeshError(f"{path}: an element is in two of {', '.join(regions)}; one layer each is allowed")
     if len(tags) < count:
-        raise MeshError(f"{path}: {count - len(tags)} surface elements are in none of {', '.join(regions)}; each must be in one")
+        others = [name for name in surfaces if name not in regions]
+        more = f" (the mesh also has {', '.join(others)})" if others else ""
+        raise MeshError(
+            f"{path}: {count - len(tags)} surface elements are in none of {', '.join(regions)}; each must be in one{more}"
+        )
     return kinds.pop(), np.concatenate(cells), np.concatenate(region)
 
 
@@ -158,11 +194,24 @@ def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str
         facets = edges[chosen]
         curves[name] = facets[:, [1, 0, *range(2, facets.shape[1])]]
     if boundary:
-        raise MeshError(
-            f"{path}: {len(boundary)} boundary edges, the first at {place(next(iter(boundary)))}, are in "
-            f"none of {', '.join(pairs)}; each must be in one (are the layers joined?)"
-        )
+        _require_joined(path, mesh, boundary, place)
+        facets = edges[list(boundary.values())]
+        curves[UNNAMED] = facets[:, [1, 0, *range(2, facets.shape[1])]]
     return curves
+
+
+def _require_joined(path: Path, mesh: PadMesh, boundary: dict, place) -> None:
+    """Two edges at one place are no boundary but a gap between elements that do not share their nodes."""
+    from scipy.spatial import cKDTree
+
+    pairs = list(boundary)
+    middles = mesh.points[np.array(pairs)].mean(axis=1)
+    twins = cKDTree(middles).query_pairs(_SAME_PLACE * np.ptp(mesh.points[:, 0]), output_type="ndarray")
+    if len(twins):
+        raise MeshError(
+            f"{path}: {2 * len(twins)} edges, the first at {place(pairs[twins[0, 0]])}, lie twice at the same place; "
+            "elements must share their nodes (are the layers joined?)"
+        )
 
 
 def _in_order(path: Path, skin: np.ndarray) -> np.ndarray:
@@ -175,7 +224,7 @@ def _in_order(path: Path, skin: np.ndarray) -> np.ndarray:
         order.append(follows.pop(node))
         node = int(skin[order[-1], 1])
     if len(first) != 1 or follows:
-        raise MeshError(f"{path}: curve skin must be one line with two ends, from nail to nail")
+        raise MeshError(f"{path}: curve skin must be one line with two ends")
     return skin[order]
 
 
@@ -201,10 +250,46 @@ def _is_symmetric(mesh: PadMesh) -> bool:
     )
 
 
-def read_pad_mesh(path: str | Path) -> PadMesh:
-    """Read a pad from a gmsh .msh file (mm) with physical groups epidermis, dermis, fat, skin, bone, nail.
+def _require_mm(path: Path, places: np.ndarray) -> None:
+    width, low, high = float(np.ptp(places[:, 0])), *_WIDTHS
+    if not low <= width <= high:
+        guess = "metres?" if width < low else "micrometres?"
+        raise MeshError(f"{path}: the pad is {width:.3g} mm wide: coordinates must be mm; {guess}")
 
-    A further group stratum_corneum is a region of its own.
+
+def read_specimen_mesh(specimen) -> PadMesh:
+    """The mesh a scene's specimen names, its surfaces checked against the layers' names, both ways.
+
+    Parameters
+    ----------
+    specimen : has `mesh`, `materials` (by name), `stated` (names of the layers the scene gives), `fixed` and `free`.
+
+    Raises
+    ------
+    MeshError : see `read_pad_mesh`, or a surface has no material, or a layer is no surface.
+    """
+    names = tuple(specimen.materials)
+    own = () if set(names) <= {*OPTIONAL, *REGIONS} else names
+    mesh = read_pad_mesh(specimen.mesh, own, specimen.fixed, specimen.free)
+    bare = [name for name in mesh.regions if name not in (*names, *OPTIONAL)]
+    if bare:
+        raise MeshError(f"{specimen.mesh}: no material for {', '.join(bare)}; specimen.layers must name each surface of the mesh")
+    for name in specimen.stated:
+        if name not in mesh.regions:
+            known = ", ".join(mesh.regions)
+            raise MeshError(f"{specimen.mesh}: layer {name} is no surface of the mesh; its physical surfaces are {known}")
+    return mesh
+
+
+def read_pad_mesh(path: str | Path, layers: Sequence[str] = (), fixed: Sequence[str] = (), free: Sequence[str] = ()) -> PadMesh:
+    """Read a pad from a gmsh .msh file (mm).
+
+    Parameters
+    ----------
+    layers : names of its physical surfaces, outside to inside. Left out they are stratum_corneum (if it is there), epidermis,
+        dermis and fat where the mesh has these three, else whatever surfaces it has.
+    fixed : names of the physical curves that are held, beside bone and nail. free : of those that are not (bone and nail
+        may be among them). Boundary edges in none of these and not in the skin are free, as the curve "unnamed".
 
     Returns
     -------
@@ -212,16 +297,16 @@ def read_pad_mesh(path: str | Path) -> PadMesh:
 
     Raises
     ------
-    MeshError : one line naming the file, what is wrong and what is allowed, when the file is missing or
-        unreadable, a group is missing, an element is of another kind, in no layer, in two, or not
-        counter-clockwise, the mesh is not plane, or the curves are not the whole boundary.
+    MeshError : one line naming the file, what is wrong and what is allowed, when the file is missing or unreadable, it has no
+        skin or nothing that is held, a name is none of its own, an element is of another kind, in no layer, in two, or not
+        counter-clockwise, the mesh is not plane, a curve is not on the boundary, or coordinates cannot be mm.
     """
     path = Path(path)
     if not path.is_file():
         raise MeshError(f"{path}: there is no such mesh file; a gmsh .msh file is allowed")
     tags, places, surfaces, lines, count = _read_groups(path)
-    _require_groups(path, surfaces, lines)
-    regions = tuple(name for name in (*OPTIONAL, *REGIONS) if surfaces.get(name))
+    regions = _layers(path, surfaces, layers)
+    held = _held(path, lines, fixed, free)
     element, cell_tags, region = _gather_cells(path, surfaces, regions, count)
 
     used = np.unique(cell_tags)
@@ -230,22 +315,23 @@ def read_pad_mesh(path: str | Path) -> PadMesh:
     size = np.ptp(places, axis=0).max()
     if not np.isfinite(places).all() or np.ptp(places[:, 2]) > _SAME_PLACE * size:
         raise MeshError(f"{path}: nodes must be finite and lie in one plane, z = constant")
+    _require_mm(path, places)
     points = places[:, :2] / 1e3
     cells = np.searchsorted(used, cell_tags).astype(np.int32)
     if element == "quad8":
         points, cells = _with_centre(points, cells)
         element = "quad9"
 
-    mesh = PadMesh(points, cells, element, region, {}, symmetric=False, regions=regions)
+    mesh = PadMesh(points, cells, element, region, {}, symmetric=False, regions=regions, fixed=held)
     check_orientation(mesh, str(path))
     pairs = {}
-    for name in CURVES:
+    for name in dict.fromkeys((SKIN, *held, *free)):
         ends = np.concatenate([nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]])
         stray = ~np.isin(ends, used)
         if stray.any():
             raise MeshError(f"{path}: curve {name} has an edge of no element; curves follow the elements' edges")
         pairs[name] = np.searchsorted(used, ends)
     curves = _facets(path, mesh, pairs)
-    curves["skin"] = _in_order(path, curves["skin"])
+    curves[SKIN] = _in_order(path, curves[SKIN])
     mesh = replace(mesh, curves=curves)
     return replace(mesh, symmetric=_is_symmetric(mesh))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fingerpad.specimen.mesh import MeshError, PadMesh, skin_chain
+from fingerpad.specimen.mesh import MeshError, PadMesh, element_edges, skin_chain
 from fingerpad.specimen.outline import curve_of
 
 if TYPE_CHECKING:
@@ -25,6 +25,48 @@ def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
     return np.vstack([fine, fine * [-1, 1]]) if mesh.half else fine
 
 
+def touched_side(y: np.ndarray) -> np.ndarray:
+    """Whether heights ``y`` (n,) of a skin are of the half that is touched; of a flat skin all are."""
+    return y >= y.max() - 0.5 * np.ptp(y)
+
+
+def layers_below(mesh: PadMesh) -> list[tuple[str, float]]:
+    """Names and thicknesses (m) of the layers straight below the skin at x = 0, down to the first gap or the base.
+
+    Raises:
+        MeshError: the skin does not cross x = 0.
+    """
+    x, y = mesh.points[skin_chain(mesh)].T
+    if not (x.min() <= 0 <= x.max()):
+        raise MeshError("mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0")
+    at = 1e-6 * np.ptp(mesh.points[:, 0])  # beside the middle, where nodes often are
+    start, end = mesh.points[element_edges(mesh.cells, mesh.element)[:, :2].T]
+    count = len(mesh.cells)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (at - start[:, 0]) / (end[:, 0] - start[:, 0])
+    height = np.where((share >= 0) & (share <= 1), start[:, 1] + share * (end[:, 1] - start[:, 1]), np.nan).reshape(-1, count)
+    crossed = np.count_nonzero(np.isfinite(height), axis=0) >= 2
+    low, high = np.nanmin(height[:, crossed], axis=0), np.nanmax(height[:, crossed], axis=0)
+    near = 1e-6 * np.ptp(mesh.points[:, 1])
+    found: dict[str, float] = {}
+    bottom = None
+    for k in np.argsort(-high):
+        if bottom is not None and high[k] < bottom - near:
+            break
+        name = mesh.regions[mesh.region[crossed][k]]
+        found[name] = found.get(name, 0.0) + float(high[k] - low[k])
+        bottom = low[k]
+    return list(found.items())
+
+
+def apex_radius(mesh: PadMesh) -> float:
+    """Radius of curvature (m) of the skin at x = 0; 1000 m for a flat or hollow one."""
+    x, y = mesh.points[skin_chain(mesh)].T
+    reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
+    near = np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min())
+    return float(1 / max(-2 * np.polyfit(x[near], y[near], 2)[0], 1e-3))
+
+
 def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
     """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft tissue to the bone, m.
 
@@ -36,9 +78,7 @@ def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
     if not (x.min() <= 0 <= x.max()):
         raise MeshError("mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0")
     reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
-    near = np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min())
-    bend = -2 * np.polyfit(x[near], y[near], 2)[0]
-    top = y[near].max()
+    top = y[np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min())].max()
     bone = mesh.points[np.unique(mesh.curves["bone"])]
     under = bone[(np.abs(bone[:, 0]) <= np.abs(bone[:, 0]).min() + reach) & (bone[:, 1] < top)]
     if not len(under):
@@ -46,13 +86,13 @@ def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
     soft = top - under[:, 1].max()
     layer = mesh.points[np.unique(mesh.cells[mesh.region < mesh.regions.index("dermis")])]
     column = layer[np.abs(layer[:, 0]) < reach]
-    return float(1 / max(bend, 1e-3)), float(top - column[:, 1].min() if len(column) else soft / 4), float(soft)
+    return apex_radius(mesh), float(top - column[:, 1].min() if len(column) else soft / 4), float(soft)
 
 
 def apex_edge(mesh: PadMesh) -> float:
     """Length (m) of the skin's element edges around x = 0 on the side that is touched."""
     ends = mesh.points[mesh.curves["skin"][:, :2]]
-    high = ends[..., 1].mean(1) > ends[..., 1].max() - 0.5 * np.ptp(ends[..., 1])
+    high = ends[..., 1].mean(1) >= ends[..., 1].max() - 0.5 * np.ptp(ends[..., 1])  # of a flat skin: all
     lengths = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     nearest = np.argsort(np.where(high, np.abs(ends[..., 0].mean(1)), np.inf))[:4]
     return float(lengths[nearest].mean())
@@ -69,12 +109,18 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     """
     from scipy.spatial import cKDTree  # here, for it is slow to import
 
-    depths, offsets = np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float))
+    depths, offsets = np.broadcast_arrays(np.atleast_1d(np.asarray(depths, float)), np.asarray(offsets, float))
     skin = _fine_skin(mesh)
     tree = cKDTree(skin)
     order = np.argsort(skin[:, 0])
     upper = skin[order]
-    upper = upper[upper[:, 1] > mesh.points[:, 1].max() - 0.5 * np.ptp(mesh.points[:, 1])]
+    upper = upper[touched_side(upper[:, 1])]
+    beside = offsets[(offsets < upper[0, 0]) | (offsets > upper[-1, 0])]
+    if len(beside):
+        raise MeshError(
+            f"receptors: there is no skin over x = {beside[0] * 1e3:.3g} mm; allowed: offsets from {upper[0, 0] * 1e3:.3g} mm to "
+            f"{upper[-1, 0] * 1e3:.3g} mm"
+        )
     high = np.interp(offsets, upper[:, 0], upper[:, 1])
     low = high - 4 * depths
     for _ in range(60):

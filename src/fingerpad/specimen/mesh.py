@@ -12,7 +12,7 @@ from __future__ import annotations
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 
 REGIONS = ("epidermis", "dermis", "fat")
 OPTIONAL = ("stratum_corneum",)  # regions that a mesh may have besides, outside the others
-CURVES = ("skin", "bone", "nail")
+SKIN = "skin"  # the curve that may be touched
+FIXED = ("bone", "nail")  # curves that hold the pad unless a scene names others
+UNNAMED = "unnamed"  # boundary edges in no curve that a scene or a finger names: free
+CURVES = (SKIN, *FIXED)
 
 _MIRRORED = {  # node order of an element's mirror image that is again counter-clockwise
     "tri3": (1, 0, 2),
@@ -94,11 +97,12 @@ class PadMesh:
     element : "quad9", "quad4", "tri6" or "tri3".
     region : (elements,) int8, index into `regions`.
     curves : name -> (facets, 2 or 3) int32 node numbers (start, end[, middle]), the material on the right of
-        the way from start to end. "skin" runs from left to right, facet after facet; the others are "bone",
-        "nail" and, in a half mesh, "symmetry".
+        the way from start to end. "skin" runs from left to right, facet after facet; a finger's others are "bone"
+        and "nail"; in a half mesh there is "symmetry".
     symmetric : whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from such a mesh).
     half : whether this is the right half only.
     regions : names of the layers, outside to inside.
+    fixed : names of the curves that are held; the others, the skin among them, are free.
     """
 
     points: np.ndarray
@@ -109,6 +113,7 @@ class PadMesh:
     symmetric: bool
     half: bool = False
     regions: tuple[str, ...] = REGIONS
+    fixed: tuple[str, ...] = FIXED
 
     def right_half(self) -> PadMesh:
         """The half x >= 0 of a symmetric mesh, with the further curve "symmetry" (x = 0 exactly).
@@ -135,7 +140,7 @@ class PadMesh:
             curves[name] = facets[(facets >= 0).all(axis=1)]
         rim = element_edges(cells, self.element)
         curves["symmetry"] = rim[on_axis[rim[:, :2]].all(axis=1)][:, [1, 0, *range(2, rim.shape[1])]]
-        return PadMesh(points, cells, self.element, self.region[kept], curves, True, True, self.regions)
+        return replace(self, points=points, cells=cells, region=self.region[kept], curves=curves, half=True)
 
     def elevated(self) -> PadMesh:
         """The same mesh with mid-side nodes if it is made of linear triangles (tri3 -> tri6); else itself."""
@@ -152,7 +157,7 @@ class PadMesh:
             name: np.array([(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32).reshape(-1, 3)
             for name, facets in self.curves.items()
         }
-        return PadMesh(points, cells, "tri6", self.region, curves, self.symmetric, self.half, self.regions)
+        return replace(self, points=points, cells=cells, element="tri6", curves=curves)
 
     def write(self, path: str | Path) -> None:
         """Write a gmsh .msh file (4.1, mm, physical groups named as here); whole or not at all."""

@@ -1,0 +1,162 @@
+"""What the planner knows of the contact with any stack of bonded layers on a rigid base before anything is solved.
+
+The pressure is taken to be Hertz's, or uniform where the profile or the surface ends before the contact would; the stack sinks
+under it as its Fourier compliance says (:func:`fingerpad.reference_solutions.layered.stack_compliance`), as if it went on for
+ever to both sides. Half widths of flat stacks come out within about a tenth, depths within a few per cent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fingerpad.planning.estimates import ContactEstimate, PadEstimate
+from fingerpad.reference_solutions.layered import Layer, stack_compliance
+from fingerpad.specimen import measures
+from fingerpad.specimen.mesh import REGIONS, SKIN, UNNAMED, PadMesh
+
+_NARROWEST = 1e-4  # half width of a contact, in thicknesses
+_FLAT = 5.0  # apex radius, in half widths, beyond which a pad is a flat one
+
+
+def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
+    """What a specimen is made of, held by and free at, and what its scene left out, in words; nothing of a thesis's outline."""
+    lines = []
+    if external is not None:
+        wide, high = (np.ptp(external.points, axis=0) * 1e3).tolist()
+        free = [name for name in external.curves if name not in (SKIN, UNNAMED, *external.fixed)]
+        if UNNAMED in external.curves:
+            free.append(f"{len(external.curves[UNNAMED])} boundary edges in none of these curves")
+        lines.append(
+            f"a mesh of {external.element}, {wide:.3g} mm wide and {high:.3g} mm high: {', '.join(external.regions)}; "
+            f"held: {', '.join(external.fixed)}; free: {', '.join([SKIN, *free])}"
+        )
+    elif specimen.stack is not None:
+        stack = specimen.stack
+        layers = ", ".join(f"{name} {thick * 1e3:.3g} mm" for name, thick in zip(stack.names, stack.thicknesses, strict=True))
+        if stack.radius is None:
+            lines.append(f"a slab {stack.width * 1e3:.3g} mm wide: {layers}; held: base; free: {SKIN}, sides")
+        else:
+            core = "" if stack.solid else f" and the core of radius {(stack.radius - stack.soft_thickness) * 1e3:.3g} mm"
+            lines.append(f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; free: {SKIN}")
+    return (*lines, *(f"not given: {left_out}" for left_out in specimen.assumed))
+
+
+def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> PadEstimate:
+    """What is known of a scene's specimen; ``external`` is its own mesh, the stimulus ends ``reach`` m beside its middle.
+
+    A finger is judged by the thesis's measures, any other stack of layers by the layers below its middle.
+
+    Raises:
+        MeshError: the skin of the mesh does not cross x = 0.
+    """
+    relax = 1.0
+    if specimen.moduli == "instantaneous" and specimen.prony:
+        relax = 1 - sum(term.g for term in specimen.prony)
+    known = specimen.materials
+
+    def plane(name):
+        return known[name].youngs_modulus / (1 - known[name].poisson_ratio ** 2)
+
+    if external is not None:
+        radius, half_width = measures.apex_radius(external), 0.5 * float(np.ptp(external.points[external.curves["skin"], 0]))
+        below = measures.layers_below(external)
+    elif specimen.stack is not None:
+        stack = specimen.stack
+        radius, half_width, below = stack.radius or 1e3, stack.half_width, list(zip(stack.names, stack.thicknesses, strict=True))
+    if specimen.outline is None and not (
+        external is not None and {*REGIONS} <= {*external.regions} and "bone" in external.curves and radius < _FLAT * half_width
+    ):
+        layers = [(thickness, specimen.material(name)) for name, thickness in below]
+        first, softest = layers[0], min(layer.youngs_modulus / (1 - layer.poisson_ratio**2) for _, layer in layers)
+        return StackEstimate(
+            radius,
+            first[0],
+            sum(thickness for thickness, _ in layers),
+            relax * first[1].youngs_modulus / (1 - first[1].poisson_ratio ** 2),
+            relax * softest,
+            min(half_width, reach),
+            tuple((thickness, relax * layer.youngs_modulus, layer.poisson_ratio) for thickness, layer in layers),
+        )
+    if external is None:
+        outline = specimen.outline
+        radius, epidermis, soft = outline.apex_radius, outline.epidermis_thickness, outline.soft_thickness
+    else:
+        radius, epidermis, soft = measures.apex_measures(external)
+    return PadEstimate(radius, epidermis, soft, relax * plane("epidermis"), relax * min(plane("dermis"), plane("fat")))
+
+
+@dataclass(frozen=True)
+class StackEstimate(PadEstimate):
+    """A stack of layers, SI; ``apex_radius`` is 1000 m for a flat one, ``epidermis_thickness`` that of the outermost layer.
+
+    Args:
+        half_width: m, of the surface, or of the face that is pressed on it. layers: (thickness m, Young's modulus Pa, Poisson's
+            ratio) of each, outside to inside.
+    """
+
+    half_width: float = np.inf
+    layers: tuple[tuple[float, float, float], ...] = ()
+
+    @cached_property
+    def _spectrum(self) -> tuple[np.ndarray, np.ndarray]:
+        """Wavenumbers (n,) 1/m, and the sinking under a cosine pressure of each of them, m/Pa, times its step of ln k over pi."""
+        layers = [Layer(thickness, e / (2 * (1 + nu)), nu) for thickness, e, nu in self.layers]
+        scaled = np.geomspace(1e-3, 30 / _NARROWEST, 160)
+        k = scaled / self.soft_thickness
+        top = layers[0]
+        half_plane = (1 - top.poisson_ratio) / (top.shear_modulus * k)
+        compliance = [
+            stack_compliance(each, layers) if each * top.thickness < 30 else limit
+            for each, limit in zip(k, half_plane, strict=True)
+        ]
+        return k, k * np.array(compliance) * np.log(scaled[1] / scaled[0]) / np.pi
+
+    def _under_hertz(self, half_width: float) -> tuple[float, float]:
+        """Sinking (m) in the middle of a Hertzian pressure of 1 N/m, and how much less its edge sinks."""
+        from scipy.special import j1  # here, for it is slow to import
+
+        k, sinking = self._spectrum
+        load = 2 * j1(k * half_width) / (k * half_width) * sinking
+        return float(load.sum()), float((load * (1 - np.cos(k * half_width))).sum())
+
+    def _under_plate(self, half_width: float) -> float:
+        """Mean sinking (m) under a uniform pressure of 1 N/m."""
+        k, sinking = self._spectrum
+        return float((np.sinc(k * half_width / np.pi) ** 2 * sinking).sum())
+
+    def _curved(self, half_width: float, curvature: float) -> tuple[float, float]:
+        """Force (N/m) and depth (m) of a contact of a half width."""
+        middle, less = self._under_hertz(half_width)
+        force = half_width**2 * (1 / self.apex_radius + max(curvature, 0.0)) / 2 / less
+        return force, force * middle
+
+    def _found(self, wanted: float, which: int, curvature: float) -> ContactEstimate:
+        """The contact whose force (``which`` 0) or depth (1) is the ``wanted`` one."""
+        from scipy.optimize import brentq  # here, for it is slow to import
+
+        limit, thick = self.half_width, self.soft_thickness
+        narrowest = min(_NARROWEST * thick, 0.1 * limit)
+        bend = 1 / self.apex_radius + max(curvature, 0.0)
+        if self._curved(limit, curvature)[which] <= wanted:
+            half_width, sinking = limit, self._under_plate(limit)
+            depth = wanted if which else wanted * sinking
+        elif self._curved(narrowest, curvature)[which] >= wanted:
+            half_width = narrowest
+            depth = wanted if which else self._curved(narrowest, curvature)[1]
+        else:
+            half_width = np.exp(
+                brentq(lambda a: self._curved(np.exp(a), curvature)[which] - wanted, np.log(narrowest), np.log(limit), xtol=1e-4)
+            )
+            depth = self._curved(half_width, curvature)[1]
+        return ContactEstimate(float(half_width), float(depth), float(max(0.65 * half_width * bend, depth / thick)))
+
+    def pressed(self, force: float, curvature: float) -> ContactEstimate:
+        """Contact under ``force`` N/m by a profile of ``curvature`` 1/m at its lowest point."""
+        return self._found(force, 0, curvature)
+
+    def pressed_to(self, depth: float, curvature: float) -> ContactEstimate:
+        """Contact at ``depth`` m."""
+        return self._found(depth, 1, curvature)
