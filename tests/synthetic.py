@@ -322,7 +322,10 @@ def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Datas
         "ridged": RIDGES,
         "ridged_outer": RIDGES | {"outer": {"period": None, "height": 60e-6, "shape": "smooth"}},
     }
-    return _with_ridges(made, name, ridges[pad])
+    made = _with_ridges(made, name, ridges[pad])
+    scene = json.loads(made.attrs["scene"])
+    slide = {"slide": -sign * 50 * MM, "speed": 10 * MM, "keep": "force"}
+    return made.assign_attrs(scene=json.dumps(scene | {"motion": [scene["motion"][0], slide], "friction": 0.65}))
 
 
 def _full_fields(times: np.ndarray) -> dict:

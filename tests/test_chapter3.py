@@ -8,17 +8,19 @@ import pytest
 import synthetic
 from fingerpad import load_scene, plan, simulate
 from fingerpad.claims.comparison import thesis_comparison
-from fingerpad.claims.numbers import NUMBERS, Results
+from fingerpad.claims.rows import numbers
 from fingerpad.figures.chapter3_verification import section, surface_deflection
 from fingerpad.figures.registry import FIGURES
 from fingerpad.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
-from fingerpad.reference_data import empty_reference
+from fingerpad.measures.table import Measures
+from fingerpad.reference_data import empty_reference, read_reference
 from fingerpad.results import summary
 from fingerpad.scenes.scene import Bar, Hold, Line, PressToDepth
 
 ROOT = Path(__file__).parents[1]
 SCENES = ROOT / "config" / "scenes"
 REFERENCE = ROOT / "config" / "reference"
+NUMBERS = numbers(read_reference(REFERENCE / "thesis_numbers.csv"))
 STEADY = sorted(path.stem for path in SCENES.glob("steady_*.yaml"))
 MM = 1e-3
 
@@ -167,10 +169,10 @@ def test_a_subject_added_to_the_folder_is_drawn(made, tmp_path):
 
 @pytest.mark.unit
 def test_peak_over_steady_force_is_compared_with_its_estimate_and_never_judged(made):
-    results = Results(*made)
-    assert NUMBERS["E048c"](results) == pytest.approx(1.5)
+    m = Measures.of(*made)
+    assert NUMBERS["E048c"](m) == pytest.approx(1.5)
     assert steady_force(made[0]["calibration_plate"], 1 * MM) == pytest.approx(0.2)
-    rows = thesis_comparison(*made[:1], {}, made[1], REFERENCE / "thesis_numbers.csv").set_index("id")
+    rows = thesis_comparison(m, Measures.of({}), REFERENCE / "thesis_numbers.csv").set_index("id")
     estimates = rows[rows.index.str.startswith("E04")]
     assert len(estimates) == 7 and set(estimates["verdict"]) == {"not_comparable"}
     assert estimates["note"].str.contains("an estimate to compare with, not a truth").all()
@@ -181,6 +183,6 @@ def test_peak_over_steady_force_is_compared_with_its_estimate_and_never_judged(m
 def test_no_figure_or_row_needs_a_peak_pressure_of_the_bar_or_the_line(made):
     """The made-up histories have none, and every figure and number of theirs is made all the same."""
     assert all("peak_pressure" not in made[0][name] for name in ("steady_line", "steady_bar_1_16_inch"))
-    assert np.isfinite([NUMBERS[i](Results(*made)) for i in ("T029", "T030a", "T057", "T058", "T072")]).all()
+    assert np.isfinite([NUMBERS[i](Measures.of(*made)) for i in ("T029", "T030a", "T057", "T058", "T072")]).all()
     for number in ("3-6", "3-10", "3-11"):
         assert not any("pressure" in column for column in FIGURES[number].frame(*made, {}, empty_reference()))

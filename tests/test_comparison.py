@@ -8,21 +8,23 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.claims.comparison import COLUMNS, REASONS, summary, thesis_comparison
-from fingerpad.claims.numbers import NUMBERS, Results
-from fingerpad.claims.ridge_rows import RIDGE_NUMBERS
-from fingerpad.claims.sensitivity import QUANTITIES, SHAPES, VARIANTS, variant_scene
-from fingerpad.claims.stroke_numbers import STROKE_NUMBERS
-from fingerpad.claims.stroke_rates import STROKE_RATE_NUMBERS
+from fingerpad.claims.comparison import COLUMNS, GIVEN, TRENDS, summary, thesis_comparison
+from fingerpad.claims.reasons import REASONS, reason
+from fingerpad.claims.rows import SETS, Number, numbers
+from fingerpad.claims.sensitivity import NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
 from fingerpad.claims.tables import TABLES
-from fingerpad.claims.trends import TRENDS
 from fingerpad.claims.verdicts import judge
 from fingerpad.measures.features import centre_node, scene_name
+from fingerpad.measures.table import COLUMNS as MEASURE_COLUMNS
+from fingerpad.measures.table import MEASURES, Measures, measures_table, read_measures, write_measures
 from fingerpad.publishing.write import markdown, publish_table
 from fingerpad.reference_data import read_reference
+from fingerpad.scenes.scene import load_scene
+from fingerpad.specimen.quality import quality_table
 
 pytestmark = pytest.mark.unit
-REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"
+CONFIG = Path(__file__).parents[1] / "config"
+REFERENCE, SCENES = CONFIG / "reference/thesis_numbers.csv", CONFIG / "scenes"
 
 
 @pytest.fixture(scope="module")
@@ -31,16 +33,107 @@ def made():
     return histories, synthetic.histories(1.01), synthetic.meshes(histories)
 
 
+def _compared(histories, coarse, meshes):
+    return thesis_comparison(Measures.of(histories, meshes), Measures.of(coarse), REFERENCE).set_index("id")
+
+
+def _sensitivity(histories, coarse, meshes):
+    return TABLES["sensitivity"](Measures.of(histories, meshes), Measures.of(coarse), REFERENCE)
+
+
 @pytest.fixture(scope="module")
 def table(made):
-    return thesis_comparison(*made, REFERENCE).set_index("id")
+    return _compared(*made)
 
 
-def test_every_number_of_the_reference_is_answered_and_no_other():
+def test_every_row_is_answered_by_a_measure_or_a_trend_and_every_measure_is_used():
     reference = read_reference(REFERENCE)
-    trends = set(reference.index[reference["form"] == "trend"])
-    numbers = set(reference.index[reference["form"].isin(["value", "range", "axis", "estimate"])])
-    assert set(TRENDS) == trends and set(NUMBERS) == numbers and set(REASONS) <= numbers
+    assert set(TRENDS) == set(reference.index[reference["form"] == "trend"])
+    answered = numbers(reference)  # each measure is known and has the row's unit
+    assert set(answered) == set(reference.index[~reference["form"].isin(["trend", "layout"])])
+    layouts = reference[reference["form"] == "layout"]
+    assert layouts[["measure", "at", "of", "reason"]].eq("").all(axis=None)
+    assert set(reference["reason"]) - {""} == set(REASONS)
+    sets = {name for row in reference["of"] for name in row.split()} & set(SETS)
+    assert sets == set(SETS)
+
+
+class Asked(Measures):
+    """Measures that remember what they were asked for."""
+
+    def __init__(self, find):
+        self.asked = set()
+        super().__init__(lambda quantity, scene: self.asked.add(quantity) or find(quantity, scene))
+
+
+def test_every_measure_is_asked_for(with_variants):
+    histories, coarse, meshes = with_variants
+    fine, rough = Asked(Measures.of(histories, meshes).find), Measures.of(coarse)
+    thesis_comparison(fine, rough, REFERENCE)
+    reference = read_reference(REFERENCE)
+    for id_, number in numbers(reference).items():
+        reason(reference.loc[id_, "reason"], fine, number)
+    assert set(MEASURES) - fine.asked == set()
+
+
+def test_an_input_is_what_a_scene_alone_tells():
+    """No mesh, no history: what these rows say is known before anything is simulated, and of no other row that is judged."""
+    reference = read_reference(REFERENCE)
+    for id_, number in numbers(reference).items():
+        found = []
+        for name in number.scenes:
+            scene = load_scene(SCENES / f"{name}.yaml")
+            if MEASURES[number.measure].of == "scene" and id_ != "T061":
+                assert MEASURES[number.measure].where(scene), id_
+                found += MEASURES[number.measure](scene).values()
+        assert (reference.loc[id_, "role"] == "input") == bool(found) or id_ == "T061", id_
+        assert np.isfinite(found).all(), id_
+
+
+@pytest.mark.parametrize(
+    "change, wrong",
+    [
+        ({"measure": "wdth"}, "measure 'wdth' is not one of"),
+        ({"units": "mm"}, "units 'mm', its measure centre_pressure has 'Pa'"),
+        ({"of": "most of nine"}, "'most of nine' begins with none of"),
+    ],
+)
+def test_a_row_that_cannot_be_answered_is_refused(change, wrong):
+    row = read_reference(REFERENCE).loc["T123"]
+    with pytest.raises(ValueError, match=f"T123: .*{wrong}"):
+        Number.of(pd.Series(row.to_dict() | change, name="T123"))
+
+
+def test_numbers_are_made_of_the_scenes_and_conditions_that_a_row_names():
+    values = {("width", "a"): {"top": 1.0, "end": 2.0}, ("width", "b"): {"top": 3.0, "end": 6.0}}
+    m = Measures(lambda quantity, scene: values[quantity, scene])
+
+    def number(of, at=""):
+        return Number.of(pd.Series({"measure": "width", "at": at, "of": of, "units": "mm"}, name="T1"))(m)
+
+    assert (number("a b"), number("a b", "top"), number("least of a b"), number("mean of a b", "end")) == (6, 3, 1, 4)
+    assert number("sum of a b", "end") == 8 and number("number of a b c", "end") == 2
+    with pytest.raises(KeyError):
+        number("a c")
+
+
+def test_the_table_says_what_the_histories_do(made, tmp_path):
+    histories, coarse, meshes = made
+    names = ["ramp40_flat", "stroke_sub_10", "step_sub", "steady_line", "ramp150_k79"]
+    few = {name: histories[name] for name in names}
+    rough = {name: coarse[name] for name in names[:2]}
+    write_measures(measures_table(few, rough, {"ramp40_flat": meshes["ramp40_flat"]}), tmp_path / "measures.csv")
+    rows = read_measures(tmp_path / "measures.csv")
+    assert list(rows.columns) == list(MEASURE_COLUMNS) and rows["unit"].eq(rows["quantity"].map(lambda q: MEASURES[q].unit)).all()
+    assert not rows.duplicated(["scene", "quantity", "condition"]).any()
+    for column, live in (("value", Measures.of(few, meshes)), ("companion", Measures.of(rough))):
+        kept = Measures.in_table(rows, column)
+        for quantity, scene in {(r.quantity, r.scene) for r in rows.itertuples() if np.isfinite(getattr(r, column))}:
+            assert kept.find(quantity, scene) == pytest.approx(live.find(quantity, scene), rel=0, abs=0, nan_ok=True)
+    with pytest.raises(KeyError, match="ramp40_k79"):
+        kept("width", "ramp40_k79", "end")
+    with pytest.raises(KeyError, match="steady_line"):
+        kept("deflection", "steady_line")  # no companion
 
 
 def test_columns_kinds_and_verdicts_are_those_asked_for(table):
@@ -90,11 +183,11 @@ def test_the_error_is_the_difference_to_the_companion_in_the_rows_units(table):
 
 def test_only_results_have_a_discretisation_error(table):
     numbers = table[table["verdict"].isin(["inside", "plausible", "outside"])]
-    assert numbers["discretisation_error"].isna().equals(numbers["role"].isin(["input", "count"]))
+    assert numbers["discretisation_error"].isna().equals(numbers["role"].isin(GIVEN))
 
 
 def test_results_are_given_in_four_digits_and_inputs_in_full(table):
-    results = table[~table["role"].isin(["input", "count"])]
+    results = table[~table["role"].isin(GIVEN)]
     assert all(float(f"{v:.4g}") == v for v in results["simulated"].dropna())
     assert table.loc["T037", "simulated"] == len(synthetic.mesh().points)
 
@@ -126,7 +219,7 @@ def test_rules_of_judgement(form, low, high, tolerance, value, error, verdict):
 def test_what_was_not_simulated_is_not_comparable(made):
     histories, coarse, meshes = made
     few = {"ramp40_flat": histories["ramp40_flat"]}
-    rows = thesis_comparison(few, {}, meshes, REFERENCE).set_index("id")
+    rows = _compared(few, {}, meshes)
     assert rows.loc["T106", "verdict"] == "inside"
     assert rows.loc["T133", "verdict"] == "not_comparable"
     assert "ramp40_k1260" in rows.loc["T133", "note"]
@@ -143,7 +236,7 @@ def with_variants(made):
 
 
 def test_outside_rows_quote_the_variants_and_whether_they_bring_the_number_inside(with_variants):
-    rows = thesis_comparison(*with_variants, REFERENCE).set_index("id")
+    rows = _compared(*with_variants)
     assert (
         "variants: fat 0.837, instantaneous 1.08 (inside, widths outside), radius 0.837; thesis reading"
         in rows.loc["T102a", "note"]
@@ -151,17 +244,13 @@ def test_outside_rows_quote_the_variants_and_whether_they_bring_the_number_insid
     note = rows.loc["T126", "note"]
     assert rows.loc["T126", "verdict"] == "outside"
     assert "variants (flat, 40 gf/s): fat +0%, instantaneous +29%, radius +0%; none inside" in note
-    outside = rows[
-        rows["verdict"].eq("outside")
-        & ~rows["role"].isin(["input", "count"])
-        & ~rows.index.isin([*STROKE_NUMBERS, *STROKE_RATE_NUMBERS, *RIDGE_NUMBERS])
-    ]
+    pressed = {id_ for id_, number in numbers(read_reference(REFERENCE)).items() if set(number.scenes) <= set(NEAREST)}
+    outside = rows[rows["verdict"].eq("outside") & ~rows["role"].isin(GIVEN) & rows.index.isin(pressed)]
     assert outside["note"].str.contains("variants").all()
 
 
 def test_sensitivity_table(with_variants):
-    histories, coarse, meshes = with_variants
-    rows = TABLES["sensitivity"](histories, coarse, meshes, REFERENCE).set_index(["quantity", "surface"])
+    rows = _sensitivity(*with_variants).set_index(["quantity", "surface"])
     assert len(rows) == len(QUANTITIES) * len(SHAPES)
     depth = rows.loc[("indentation depth at the end of the hold", "1260")]
     assert depth[["base", "fat", "instantaneous"]].tolist() == pytest.approx([0.829, 0.838, 1.078], abs=1e-3)
@@ -174,7 +263,7 @@ def test_sensitivity_table(with_variants):
 
 
 def test_sensitivity_table_without_variants_leaves_their_cells_empty(made):
-    rows = TABLES["sensitivity"](*made, REFERENCE)
+    rows = _sensitivity(*made)
     assert rows[list(VARIANTS)].isna().all(axis=None) and rows["base"].notna().all()
 
 
@@ -192,7 +281,7 @@ def _set_centre(history, values):
 
 def _trend(made, id_, changes):
     """A trend on histories of which some are changed."""
-    return TRENDS[id_](Results(made[0] | changes, made[2]))
+    return TRENDS[id_](Measures.of(made[0] | changes))
 
 
 def test_order_of_surfaces_fails_when_two_are_exchanged(made):
@@ -287,6 +376,6 @@ def test_markdown_escapes_nothing_it_should_not():
 
 
 def test_mesh_quality_has_a_row_a_scene(made):
-    rows = TABLES["mesh_quality"](*made, REFERENCE)
+    rows = quality_table(made[2])
     assert len(rows) == len(made[2])
     assert rows["nodes"].eq(len(synthetic.mesh().points)).all()

@@ -7,11 +7,11 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.claims.numbers import Results
-from fingerpad.claims.response_numbers import RESPONSE_TRENDS, TRIALS
+from fingerpad.claims.comparison import TRENDS
 from fingerpad.figures.chapter4_responses import AVERAGED, GIVEN_RATE, IMPULSE, PRINTED
 from fingerpad.figures.registry import FIGURES
 from fingerpad.measures import features
+from fingerpad.measures.of_scenes import TRIALS
 from fingerpad.measures.quantities import NODE, SED, TIME, P
 from fingerpad.measures.responses import (
     IMPULSE_RATE,
@@ -26,6 +26,7 @@ from fingerpad.measures.responses import (
     time_mean,
     windowed,
 )
+from fingerpad.measures.table import Measures
 from fingerpad.receptors.laws import SpatialSum
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import read_reference
@@ -208,7 +209,7 @@ def test_meanings_of_strain_energy_are_told_apart_by_their_change_in_the_hold(ma
 
 
 def _holds(made, id_, **changed):
-    return RESPONSE_TRENDS[id_](Results(made | changed, {})).holds
+    return TRENDS[id_](Measures.of(made | changed)).holds
 
 
 def _exchanged(made, programme):

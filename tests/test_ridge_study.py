@@ -8,10 +8,10 @@ import pytest
 
 import synthetic
 from fingerpad import load_scene, plan, simulate
-from fingerpad.claims.numbers import Results
-from fingerpad.claims.ridge_rows import RIDGE_NUMBERS, RIDGE_TRENDS
+from fingerpad.claims.comparison import TRENDS
 from fingerpad.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
 from fingerpad.measures.features import energy
+from fingerpad.measures.table import Measures
 from fingerpad.scenes.scene import Receptors, Slide
 from fingerpad.scenes.specimen import Specimen
 from fingerpad.specimen import RidgedPad, mesh_for
@@ -32,8 +32,7 @@ def base():
 
 @pytest.fixture(scope="module")
 def made():
-    histories = synthetic.histories()
-    return Results(histories, synthetic.meshes(histories))
+    return synthetic.histories()
 
 
 # -- the index -------------------------------------------------------------------------------------
@@ -41,11 +40,11 @@ def made():
 
 def test_index_is_the_contrast_of_the_two_ways(made):
     """Made up: 300 Pa one way, 100 Pa the other at 46 um; the same both ways without ridges."""
-    ridged = made.histories["ridged_stroke_right"]
+    ridged = made["ridged_stroke_right"]
     assert directional_index(ridged, DEPTH, -BESIDE) == pytest.approx(0.5)
     assert directional_index(ridged, DEPTH, BESIDE) == pytest.approx(-0.5)
     assert directional_index(ridged, DEPTH, 0.0) == 0.0
-    assert directional_index(made.histories["plate_stroke_right"], DEPTH, -BESIDE) == 0.0
+    assert directional_index(made["plate_stroke_right"], DEPTH, -BESIDE) == 0.0
     with pytest.raises(KeyError, match="no receptor 800 um deep"):
         directional_index(ridged, 800e-6, 0.0)
 
@@ -68,7 +67,7 @@ def test_strokes_to_either_side_are_mirror_images(base):
 
 
 def test_islands_are_counted(made):
-    history = made.histories["ridged_40_flat"].isel(time=[-1])
+    history = made["ridged_40_flat"].isel(time=[-1])
     pressure = history.contact_pressure.values
     for touching, count in (([], 0), ([5, 6], 1), ([0, 5, 6, 8], 3)):
         pressure[:] = 0
@@ -139,7 +138,7 @@ def test_ridges_drawn_on_the_thesiss_elements(base, name):
 
 def test_frames_are_drawn_from_themselves(made):
     """Made-up cases of every kind: each frame has its curves, and each picture is drawn."""
-    stroke = made.histories["ridged_stroke_right"]
+    stroke = made["ridged_stroke_right"]
     scene = json.loads(stroke.attrs["scene"])
     cases = {}
     for height in (0, 150, 300):
@@ -156,7 +155,7 @@ def test_frames_are_drawn_from_themselves(made):
         felt = lambda z, x: 100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))  # noqa: E731
         cases[name] = synthetic._receptors(history, sorted(depths), offsets, felt)
     assert ridge_frames.specimen_of(cases["0_0.65_thesis"])[1] is None
-    frames = ridge_frames.frames(cases, made.histories, {})
+    frames = ridge_frames.frames(cases, made, {})
     assert set(frames) == set(ridge_study.STUDIES)
     profile = frames["offset"][frames["offset"]["series"].eq("inner ridges") & frames["offset"]["panel"].eq("profile")]
     beside = profile.set_index(ridge_study.OFFSET).loc[-46.0, ridge_study.INDEX]
@@ -170,9 +169,10 @@ def test_frames_are_drawn_from_themselves(made):
 
 
 def test_rows_hold_for_what_was_made_up_to_show_them(made):
-    for id_, trend in RIDGE_TRENDS.items():
-        assert trend(made).holds, id_
-    assert RIDGE_NUMBERS["T319"](made) == pytest.approx(300) and RIDGE_NUMBERS["T313"](made) == 10
+    m = Measures.of(made)
+    for id_ in ("T321", "TR43", "TR44", "TR45", "TR46", "TR47", "TR48", "TR49", "TR50", "TR51"):
+        assert TRENDS[id_](m).holds, id_
+    assert m("highest_of_three", "ridged_stroke_right") == pytest.approx(300) and m("held_force", "ridged_stroke_right") == 20
 
 
 def _backwards(history):
@@ -198,5 +198,4 @@ def _backwards(history):
     ],
 )
 def test_rows_fail_for_mutants(made, id_, scene, mutant):
-    changed = Results({**made.histories, scene: mutant(made.histories[scene])}, made.meshes)
-    assert not RIDGE_TRENDS[id_](changed).holds
+    assert not TRENDS[id_](Measures.of(made | {scene: mutant(made[scene])})).holds

@@ -1,12 +1,14 @@
 """Rates predicted of strokes: figures, numbers and claims of chapter 5 on made-up histories, and a mutant of each claim."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.claims.numbers import Results
-from fingerpad.claims.stroke_rates import RATE_NUMBERS, RATE_TRENDS, rate_peaks_apart
+from fingerpad.claims.comparison import TRENDS
+from fingerpad.claims.rows import numbers
 from fingerpad.figures.chapter5_responses import PREDICTED
 from fingerpad.figures.registry import FIGURES
 from fingerpad.measures import strokes as st
@@ -24,11 +26,13 @@ from fingerpad.measures.responses import (
     stroke_law,
 )
 from fingerpad.measures.runs import WITHIN_350
+from fingerpad.measures.table import MEASURES, Measures
 from fingerpad.receptors.laws import SpatialSum
 from fingerpad.receptors.recordings import RATES
-from fingerpad.reference_data import empty_reference
+from fingerpad.reference_data import empty_reference, read_reference
 
 pytestmark = pytest.mark.unit
+NUMBERS = numbers(read_reference(Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"))
 CURVATURES = ("26", "39", "52", "79", "105", "157", "210", "315")
 
 
@@ -56,11 +60,11 @@ def _felt(made, height, width=0.3, at=st.place):
 
 
 def _holds(histories, id_):
-    return RATE_TRENDS[id_](Results(histories, {}))
+    return TRENDS[id_](Measures.of(histories))
 
 
 def _number(histories, id_):
-    return RATE_NUMBERS[id_](Results(histories, {}))
+    return NUMBERS[id_](Measures.of(histories))
 
 
 # --- figures -------------------------------------------------------------------------------------------
@@ -200,8 +204,7 @@ def test_burst_rate_grows_with_velocity_and_width_does_not(made):
 
 
 def test_stroked_rates_against_pressed_ones(made):
-    pressed = Results(made, {})
-    peaks = [RATE_NUMBERS[f"T{289 + k}"](pressed) for k in range(8)]
+    peaks = [NUMBERS[f"T{289 + k}"](Measures.of(made)) for k in range(8)]
     assert (np.diff(peaks) > 0).all() and _number(made, "T274") >= peaks[WITHIN_350.index("315") - 1]
     low, high = _felt(made, lambda k: 131), _felt(made, lambda k: 1500)
     assert _holds(high, "TR68").holds and not _holds(low, "TR68").holds
@@ -238,7 +241,7 @@ def test_two_peaks_of_the_rate_and_their_distance(made):
     twins = {name: _twin(made[name], lambda chord: 0.8 * chord) for name in st.FULL.values()}
     assert all(_holds(twins, id_).holds for id_ in ("T301", "TR72", "TR73"))
     arc = st.convexities(made["stroke_10"])["52"]
-    assert rate_peaks_apart(st.loaded(twins["stroke_10"]), "52") == pytest.approx(0.8 * (arc.end - arc.start), abs=0.5e-3)
+    assert MEASURES["rate_peaks_apart"](twins["stroke_10"])["52"] == pytest.approx(0.8e3 * (arc.end - arc.start), abs=0.5)
     single = _with_energy(made["stroke_10"], _bumps(made["stroke_10"], lambda k: 400))
     assert not any(_holds(twins | {"stroke_10": single}, id_).holds for id_ in ("T301", "TR72"))
     wider = _twin(made["stroke_5"], lambda chord: 3e-3 * 6e-3 / chord)
@@ -295,8 +298,3 @@ def test_number_of_impulses_is_that_of_the_sharpest_convexity(made):
     expected = np.trapezoid(whole[IMPULSE_RATE], whole["time (s)"])
     assert _number(only, "T305") == pytest.approx(expected, rel=0.15) and expected > 0.5
     assert _number(_felt(made, lambda k: 0), "T305") == 0
-
-
-def test_every_claim_is_tested_here(request):
-    text = request.path.read_text(encoding="utf-8")
-    assert all(f'"{id_}"' in text for id_ in RATE_TRENDS)

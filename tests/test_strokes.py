@@ -5,12 +5,11 @@ import pytest
 from PIL import Image
 
 import synthetic
-from fingerpad.claims.numbers import Results
-from fingerpad.claims.stroke_numbers import pressure_lag
-from fingerpad.claims.stroke_trends import STROKE_TRENDS, double_peak
+from fingerpad.claims.comparison import TRENDS
 from fingerpad.figures.animation import animate
 from fingerpad.measures import strokes as st
 from fingerpad.measures.features import centre_node, centre_pressure, energy
+from fingerpad.measures.table import MEASURES, Measures
 
 pytestmark = pytest.mark.unit
 
@@ -26,7 +25,7 @@ def slow(made):
 
 
 def _holds(made, id_, **changed):
-    return STROKE_TRENDS[id_](Results(made | changed, {}))
+    return TRENDS[id_](Measures.of(made | changed))
 
 
 def _with(history, **values):
@@ -103,7 +102,7 @@ def test_lag_recovers_a_shift(shift):
 
 
 def test_lag_of_the_made_up_stroke_is_its_drag(made):
-    assert pressure_lag(Results(made, {}))[0] == pytest.approx(0.9e-3, abs=0.4e-3)  # stepped by 1 mm
+    assert Measures.of(made)("lag_of_stepped", "stroke_sub_10") == pytest.approx(0.9, abs=0.4)  # stepped by 1 mm
 
 
 def test_error_of_a_trace_is_relative_to_the_trace_whatever_the_outputs(made):
@@ -244,16 +243,11 @@ def test_double_peaks_and_their_distance(made):
     twins = {f"stroke_{v}": _twin(made[f"stroke_{v}"], lambda chord: 0.8 * chord) for v in st.SPEEDS}
     assert _holds(made, "TR41", **twins).holds and _holds(made, "TR42", **twins).holds
     arc = st.convexities(made["stroke_1"])["52"]
-    assert double_peak(st.loaded(twins["stroke_1"]), "52") == pytest.approx(0.8 * (arc.end - arc.start), abs=0.5e-3)
+    assert MEASURES["energy_peaks_apart"](twins["stroke_1"])["52"] == pytest.approx(0.8e3 * (arc.end - arc.start), abs=0.5)
     wider = _twin(made["stroke_5"], lambda chord: 3e-3 * 6e-3 / chord)
     assert not _holds(made, "TR42", **(twins | {"stroke_5": wider})).holds
     single = _felt(made["stroke_5"], lambda k: 100)
     assert not _holds(made, "TR41", **(twins | {"stroke_5": single})).holds
-
-
-def test_every_trend_is_tested_here(request):
-    text = request.path.read_text(encoding="utf-8")
-    assert all(f'"{id_}"' in text for id_ in STROKE_TRENDS if id_ != "TR25")  # of several nodes, but the same test as TR26
 
 
 # --- the moving picture --------------------------------------------------------------------------------------

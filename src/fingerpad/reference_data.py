@@ -215,11 +215,14 @@ def read_reference(path: str | PathLike) -> pd.DataFrame:
 
     Columns figure, quantity, condition, low, high, units, kind (stated | axis_range | garbled), form (value |
     range | axis | estimate | trend | layout), tolerance, role (input: stated by the thesis and by the scenes; count: of the
-    model itself; calibrated: a parameter was chosen by it; result; trend; empty for a layout), source. Raises ValueError for a
-    repeated id or an unknown kind, form or role.
+    model itself; calibrated: a parameter was chosen by it; result; trend; empty for a layout), source; and how this model
+    answers: measure (a name of `fingerpad.measures.table.MEASURES`), at (its condition), of (scenes), reason (of a known
+    difference). Raises ValueError for a repeated id or an unknown kind, form or role.
     """
-    table = pd.read_csv(path, dtype={"id": str, "figure": str, "condition": str, "units": str}).set_index("id")
-    table["role"] = table["role"].fillna("")
+    words = ["role", "measure", "at", "of", "reason"]
+    text = dict.fromkeys(["id", "figure", "condition", "units", *words], str)
+    table = pd.read_csv(path, dtype=text).set_index("id")
+    table[words] = table[words].fillna("")
     if not table.index.is_unique:
         raise ValueError(f"{path}: repeated id {table.index[table.index.duplicated()][0]}")
     for column, allowed in {

@@ -12,7 +12,7 @@ SMOKE = ("--configfile", "config/smoke.yaml")
 HISTORY = "results/smoke/simulations/homogeneous_flat/history.nc"
 COMPANION = "results/smoke/coarse/homogeneous_flat/history.nc"
 CALIBRATION = {"calibrate", "calibration_figure", "calibration_table"}
-FIGURES = {"figure", "table", "receptor_table", *CALIBRATION}
+FIGURES = {"figure", "measures", "table", "receptor_table", *CALIBRATION}
 
 
 def test_nothing_is_left_to_do(finished):
@@ -47,13 +47,21 @@ def test_change_in_a_figure_module_reruns_only_figures(finished, module):
     with finished.edited(f"src/fingerpad/{module}.py"):
         jobs = finished.planned(*SMOKE)
     assert "figure" in jobs
-    assert set(jobs) <= FIGURES
+    assert set(jobs) <= FIGURES | {"mesh_quality"}
     assert finished.planned(*SMOKE) == {}
 
 
-def test_change_in_the_comparison_reruns_only_the_table(finished):
-    with finished.edited("src/fingerpad/claims/comparison.py"):
-        assert set(finished.planned(*SMOKE)) == {"table"}
+@pytest.mark.parametrize(
+    ("path", "jobs"),
+    [
+        ("src/fingerpad/claims/comparison.py", {"table"}),
+        ("src/fingerpad/claims/trends_pressing.py", {"table"}),
+        ("src/fingerpad/measures/of_presses.py", {"measures", "table"}),
+    ],
+)
+def test_change_of_a_claim_or_a_measure_reruns_only_the_tables(finished, path, jobs):
+    with finished.edited(path):
+        assert set(finished.planned(*SMOKE)) == jobs
 
 
 def test_change_of_a_scene_reruns_that_scene(finished):

@@ -32,7 +32,8 @@ def test_default_makes_every_figure_and_table_and_simulates_every_scene_twice_an
     assert jobs.pop("catalogue") == {"figures/README.md"}
     assert jobs.pop("animation") == {f"figures/studies/animation_{scene}.gif" for scene in thesis["animations"]}
     tables = {f"figures/tables/{name}.{kind}" for name in thesis["table_names"] for kind in ("csv", "md")}
-    assert jobs.pop("table") | jobs.pop("receptor_table") == tables
+    assert jobs.pop("table") | jobs.pop("mesh_quality") | jobs.pop("receptor_table") == tables
+    assert jobs.pop("measures") == {"results/thesis/measures.csv"}
     every = (*thesis["scenes"], *thesis["variants"], *thesis["calibration_scenes"], *thesis["friction_scenes"])
     places = {f"simulations/{scene}" for scene in every}
     drawn = {scene for number in thesis["figure_numbers"] for scene in FIGURES[number].read_companions}

@@ -15,7 +15,7 @@ SWEEPS = list(sweeps())
 ACCURACY_TABLES = ["accuracy", "accuracy_orders", "accuracy_planner", "presets"]
 
 
-ruleorder: accuracy_tables > accuracy_beliefs > table
+ruleorder: accuracy_tables > accuracy_beliefs
 
 
 rule accuracy_sweep:

@@ -18,9 +18,6 @@ COEFFICIENTS = config.get("friction_coefficients", [])
 ESTIMATES = ["estimates"] + ["prony_estimates"] * (RAMP in CALIBRATION) + ["friction_estimates"] * bool(COEFFICIENTS)
 
 
-ruleorder: calibration_table > table
-
-
 rule calibrate:
     """Steady forces of subjects and the elastic curve -> the constant of each, how certain, and a specimen of each."""
     input:

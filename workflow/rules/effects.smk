@@ -8,9 +8,6 @@ Outputs: <results>/effects/{changes,choices}.csv, and from them <studies>/effect
 EFFECT_TABLES = ["effects", "planner_choices", "planner_rules"]
 
 
-ruleorder: effects_figure > table
-
-
 rule effects_study:
     """A part of the study (changes: of chosen scenes, choices: of the planner in scenes drawn at random) -> its rows."""
     input:

@@ -79,15 +79,33 @@ rule animation:
         "python workflow/scripts/animation.py {input.history} {output} > {log} 2>&1"
 
 
+rule measures:
+    """Every number that is read of a scene, its mesh, its history and its companion -> one long table."""
+    input:
+        sources("measures"),
+        ENVIRONMENT,
+        histories=histories([*config["scenes"], *config.get("variants", []), *CALIBRATION]),
+        meshes=meshes(config["scenes"]),
+        coarse=companions([*config["scenes"], *(["calibration_plate", RAMP] if RAMP in CALIBRATION else [])]),
+    output:
+        f"{RESULTS}/measures.csv",
+    log:
+        f"{RESULTS}/logs/measures.log",
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
+    shell:
+        "python workflow/scripts/measures.py {output} {input.histories} {input.meshes} {input.coarse} > {log} 2>&1"
+
+
 rule table:
-    """All histories, and the meshes of the scenes, -> a table, for programs (CSV) and for people (Markdown)."""
+    """The measures of all scenes and the thesis's numbers -> a table, for programs (CSV) and for people (Markdown)."""
     input:
         sources("table"),
         ENVIRONMENT,
         reference=REFERENCE,
-        histories=histories([*config["scenes"], *config.get("variants", []), *CALIBRATION]),
-        meshes=meshes(config["scenes"]),
-        coarse=companions([*config["scenes"], *(["calibration_plate", RAMP] if RAMP in CALIBRATION else [])]),
+        measures=f"{RESULTS}/measures.csv",
     output:
         csv=report(
             f"{config['tables']}/{{table}}.csv",
@@ -96,12 +114,37 @@ rule table:
             labels={"table": "{table}"},
         ),
         md=f"{config['tables']}/{{table}}.md",
+    wildcard_constraints:
+        table="thesis_comparison|sensitivity",
     log:
         f"{RESULTS}/logs/table/{{table}}.log",
     threads: 1
     resources:
-        mem_mb=1000,
-        runtime=5,
+        mem_mb=500,
+        runtime=2,
     shell:
-        "python workflow/scripts/table.py {wildcards.table} {input.reference} {output.csv}"
-        " {input.histories} {input.meshes} {input.coarse} > {log} 2>&1"
+        "python workflow/scripts/table.py {wildcards.table} {input.reference} {input.measures} {output.csv} > {log} 2>&1"
+
+
+rule mesh_quality:
+    """The meshes of the scenes -> a table of their quality."""
+    input:
+        sources("mesh_quality"),
+        ENVIRONMENT,
+        meshes=meshes(config["scenes"]),
+    output:
+        csv=report(
+            f"{config['tables']}/mesh_quality.csv",
+            caption="../report/table.rst",
+            category="Tables",
+            labels={"table": "mesh_quality"},
+        ),
+        md=f"{config['tables']}/mesh_quality.md",
+    log:
+        f"{RESULTS}/logs/table/mesh_quality.log",
+    threads: 1
+    resources:
+        mem_mb=500,
+        runtime=2,
+    shell:
+        "python workflow/scripts/mesh_quality.py {output.csv} {input.meshes} > {log} 2>&1"

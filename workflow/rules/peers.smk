@@ -7,9 +7,6 @@ Outputs: <tables>/peers.csv and .md.
 from importlib.util import find_spec
 
 
-ruleorder: peers_table > table
-
-
 def peers(wildcards):
     """The table, or nothing but a line that says why."""
     if find_spec("felupe"):

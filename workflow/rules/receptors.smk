@@ -12,9 +12,6 @@ NINE = [s for s in config["scenes"] if s.startswith("ramp40_")]
 FELT = [s for s in [*config["scenes"], *config.get("variants", [])] if s.startswith(("ramp40_", "ramp150_", "press", "stroke_"))]
 
 
-ruleorder: receptor_table > table
-
-
 rule receptor_table:
     """Histories, companions, published and recorded rates -> a table of what receptors make of them."""
     input:

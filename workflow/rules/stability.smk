@@ -9,9 +9,6 @@ from fingerpad.studies.stability.picture import METHODS
 STABILITY = [method.replace(" ", "_") for method in METHODS]
 
 
-ruleorder: stability_figure > table
-
-
 rule stability_method:
     """A method -> every hard case solved with it, and what was measured."""
     input:

@@ -13,24 +13,16 @@ radius
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
 from os import PathLike
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
-from fingerpad.claims.numbers import INVERSE_WIDTHS, NUMBERS, Results, end_of, highest_pressure, top_of
+from fingerpad.claims.rows import Number
 from fingerpad.claims.verdicts import is_inside, significant
-from fingerpad.measures.features import (
-    SURFACES,
-    Histories,
-    Meshes,
-    energy,
-    peak_pressure,
-    ramp_end,
-    scene_name,
-)
+from fingerpad.measures.features import SURFACES, scene_name
+from fingerpad.measures.runs import FAST, NINE, PADS, RIDGED_NINE
+from fingerpad.measures.table import Measures
 from fingerpad.reference_data import read_reference
 
 VARIANTS = ("fat", "instantaneous", "radius")
@@ -42,27 +34,21 @@ COLUMNS = (
     *VARIANTS, "inside",
 )  # fmt: skip
 
-_WIDTHS = {label: INVERSE_WIDTHS[label] for label in SHAPES}
-_PRESSURES = dict(zip(SHAPES, ("T125", "T129", "T133"), strict=True))
+_WIDTHS = {"flat": "T106", "210": "T114", "1260": "T120"}
+_PRESSURES = {"flat": "T125", "210": "T129", "1260": "T133"}
 
-QUANTITIES: tuple[tuple[str, str, dict[str, str], Callable[[xr.Dataset], float]], ...] = (
-    ("indentation depth at the end of the hold", "mm", {"flat": "T143", "1260": "T102a"},
-     lambda d: end_of(d, "indentation_depth") * 1e3),
-    ("contact width at the end of the ramp", "mm", _WIDTHS, lambda d: top_of(d, "contact_width") * 1e3),
-    ("contact width at the end of the hold", "mm", _WIDTHS, lambda d: end_of(d, "contact_width") * 1e3),
-    ("highest pressure", "Pa", _PRESSURES, highest_pressure),
-    ("highest pressure at the end of the hold", "Pa", _PRESSURES, lambda d: float(peak_pressure(d)[-1])),
-    *(
-        (f"strain energy density at {z} um at the end of the ramp", "Pa", ids,
-         lambda d, z=z: float(energy(d, z * 1e-6)[ramp_end(d)]))
-        for z, ids in (
-            (600, {"1260": "T193"}),
-            (800, {"1260": "T196"}),
-            (915, {"flat": "T181", "210": "T185", "1260": "T187c"}),
-        )
-    ),
+QUANTITIES: tuple[tuple[str, str, str, str, dict[str, str]], ...] = (
+    ("indentation depth at the end of the hold", "mm", "depth", "end", {"flat": "T143", "1260": "T102a"}),
+    ("contact width at the end of the ramp", "mm", "width", "top", _WIDTHS),
+    ("contact width at the end of the hold", "mm", "width", "end", _WIDTHS),
+    ("highest pressure", "Pa", "highest_pressure", "highest", _PRESSURES),
+    ("highest pressure at the end of the hold", "Pa", "highest_pressure", "end", _PRESSURES),
+    ("strain energy density at 600 um at the end of the ramp", "Pa", "energy_at_top", "600 um", {"1260": "T193"}),
+    ("strain energy density at 800 um at the end of the ramp", "Pa", "energy_at_top", "800 um", {"1260": "T196"}),
+    ("strain energy density at 915 um at the end of the ramp", "Pa", "energy_at_top", "915 um",
+     {"flat": "T181", "210": "T185", "1260": "T187c"}),
 )  # fmt: skip
-"""Quantity, its unit, the ids of its thesis range by surface, and how it is read from a history."""
+"""Quantity, its unit, measure and condition, and the ids of its thesis range by surface."""
 
 
 def variant_scene(variant: str, label: str) -> str:
@@ -78,20 +64,29 @@ def thesis_range(id_: str, units: str, reference: pd.DataFrame) -> dict:
     return entry
 
 
-def sensitivity(histories: Histories, coarse: Histories, meshes: Meshes, reference_csv: str | PathLike) -> pd.DataFrame:
-    """Each quantity under each surface: thesis range, this model (as published and as coarse), the variants.
+def sensitivity(fine: Measures, rough: Measures, reference_csv: str | PathLike) -> pd.DataFrame:
+    """What the variants make of widths, depths, pressures and strain energies.
 
-    Parameters are those of `thesis_comparison`. The column `inside` names what lies within the thesis's range,
-    judged as there, with the difference of base and base_draft as discretisation error; it is empty where the
-    thesis gives no range. Scenes that were not simulated leave their cells empty.
+    Parameters
+    ----------
+    fine, rough : measures of the histories, and of their companions on coarser meshes.
+    reference_csv : the table of printed numbers.
+
+    Returns
+    -------
+    One row a quantity and surface, columns `COLUMNS`: the thesis's range, the base, the base's companion, the
+    variants, and which of base and variants are inside the range, give or take the difference of base and
+    companion. Cells of scenes that were not simulated are empty.
     """
     reference = read_reference(reference_csv)
     rows = []
-    for quantity, units, ids, read in QUANTITIES:
+    for quantity, units, measure, at, ids in QUANTITIES:
         for label in SHAPES:
-            base = scene_name("ramp40", label)
-            values = {"base": _read(read, histories, base), "base_draft": _read(read, coarse, base)}
-            values |= {v: _read(read, histories, variant_scene(v, label)) for v in VARIANTS}
+            values = {
+                "base": _read(fine, measure, NINE[label], at),
+                "base_draft": _read(rough, measure, NINE[label], at),
+                **{v: _read(fine, measure, variant_scene(v, label), at) for v in VARIANTS},
+            }
             row = {"quantity": quantity, "surface": label, "thesis_ids": ids.get(label, ""), "units": units}
             if label in ids:
                 entry = thesis_range(ids[label], units, reference)
@@ -105,67 +100,59 @@ def sensitivity(histories: Histories, coarse: Histories, meshes: Meshes, referen
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _read(read: Callable[[xr.Dataset], float], histories: Histories, scene: str) -> float:
-    return read(histories[scene]) if scene in histories else float("nan")
+def _read(measures: Measures, quantity: str, scene: str, at: str) -> float:
+    try:
+        return measures(quantity, scene, at)
+    except KeyError:
+        return float("nan")
 
 
-def widths_fit(runs: Histories, reference: pd.DataFrame) -> bool:
+def _widths_fit(fine: Measures, variant: str, reference: pd.DataFrame) -> bool:
     """Whether the contact widths at the end of the hold, by surface, are within the thesis's ranges."""
-    widths = {k: end_of(runs[k], "contact_width") * 1e3 for k in _WIDTHS}
+    widths = {k: fine("width", variant_scene(variant, k), "end") for k in SHAPES}
     return all(is_inside(widths[k], 0.0, thesis_range(id_, "mm", reference)) for k, id_ in _WIDTHS.items())
 
 
 # --- evidence for the notes of the comparison ----------------------------------------------------------
 
 
-class _Nearest(Mapping):
-    """Histories of the three surfaces, standing in for those of the nearest of the nine."""
-
-    def __init__(self, histories: Mapping[str, xr.Dataset]) -> None:
-        self._histories = histories
-        self.used: set[str] = set()
-
-    def __getitem__(self, scene: str) -> xr.Dataset:
-        label = scene.rsplit("_", 1)[1].removeprefix("k")
-        if label not in SURFACES:
-            raise KeyError(scene)
-        place = SURFACES.index(label)
-        nearest = min(SHAPES, key=lambda k: (abs(SURFACES.index(k) - place), k != "210"))
-        self.used.add(nearest)
-        return self._histories[nearest]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._histories)
-
-    def __len__(self) -> int:
-        return len(self._histories)
+def _nearest(label: str) -> str:
+    """Of the surfaces that the variants are pressed by the nearest to one of the nine."""
+    place = SURFACES.index(label)
+    return min(SHAPES, key=lambda k: (abs(SURFACES.index(k) - place), k != "210"))
 
 
-def evidence(id_: str, value: float, error: float, fine: Results, rough: Results, reference: pd.DataFrame) -> str:
+NEAREST = {scene: _nearest(label) for runs in (NINE, FAST, RIDGED_NINE) for label, scene in runs.scenes.items()}
+NEAREST[PADS["homogeneous"]] = "flat"
+"""Scene of one of the nine surfaces -> the surface of the variants that stands in for it."""
+
+
+def evidence(
+    id_: str, number: Number, value: float, error: float, fine: Measures, rough: Measures, reference: pd.DataFrame
+) -> str:
     """What the variants make of a number of the comparison that is outside, and which of them bring it inside.
 
     A number of surfaces that the variants were not pressed by is given as the change in per cent that the
     variant makes on the nearest ones. A variant that brings the number inside but moves a contact width at
     the end of the hold outside is marked. Empty if the variants or the companions were not simulated.
     """
-    number, entry = NUMBERS[id_], reference.loc[id_]
+    entry = reference.loc[id_]
     try:
-        base = _Nearest({k: rough(k) for k in SHAPES})
-        before, whole = number(Results(base, rough.meshes)), number(rough)
+        before = number(rough.standing_in({scene: NINE[k] for scene, k in NEAREST.items()}))
+        whole = number(rough)
         if not before and whole:
             return "variants: 0 under the nearest surface of theirs"
-        shown, fits = [], []
+        shown, fits, exact = [], [], before == whole
         for variant in VARIANTS:
-            runs = {k: fine.histories[variant_scene(variant, k)] for k in SHAPES}
-            after = number(Results(_Nearest(runs), fine.meshes))
-            exact = before == whole
+            after = number(fine.standing_in({scene: variant_scene(variant, k) for scene, k in NEAREST.items()}))
             fits.append(is_inside(after if exact else value * after / before, error, entry))
             text = f"{significant(after, 3):g}" if exact else f"{after / before - 1:+.0%}"
             if fits[-1]:
-                text += " (inside)" if widths_fit(runs, reference) else " (inside, widths outside)"
+                text += " (inside)" if _widths_fit(fine, variant, reference) else " (inside, widths outside)"
             shown.append(f"{variant} {text}")
     except KeyError:
         return ""
-    surfaces = " and ".join(k if k == "flat" else f"K = {k}" for k in SHAPES if k in base.used)
+    used = {NEAREST[scene] for scene in number.scenes}
+    surfaces = " and ".join(k if k == "flat" else f"K = {k}" for k in SHAPES if k in used)
     where = "" if exact else f" ({surfaces}, 40 gf/s)"
     return f"variants{where}: {', '.join(shown)}{'' if any(fits) else '; none inside'}"

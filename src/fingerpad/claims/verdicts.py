@@ -18,7 +18,6 @@ axis
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -70,20 +69,3 @@ def is_inside(value: float, error: float, entry: Mapping) -> bool:
 def significant(value: float, digits: int) -> float:
     """A number rounded to significant digits."""
     return float(f"{value:.{digits}g}")
-
-
-@dataclass(frozen=True)
-class Trend:
-    """Outcome of a trend: whether it holds, the number shown, and a remark."""
-
-    holds: bool
-    shown: float
-    note: str = ""
-
-
-def everywhere(outcome: Mapping[str, bool], what: str = "", needed: int | None = None) -> Trend:
-    """Whether something holds in every case; the number shown counts those for which it does."""
-    failing = [label for label, holds in outcome.items() if not holds]
-    count = len(outcome) - len(failing)
-    note = "; ".join(filter(None, (what, f"not for {', '.join(failing)}" if failing else "")))
-    return Trend(count >= (needed or len(outcome)), count, note)

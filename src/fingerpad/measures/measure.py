@@ -1,0 +1,135 @@
+"""What a measure is: a number with a unit, or one under each of some conditions, that is read of a scene.
+
+What it is read of says what it can tell. A measure of the *scene* alone is an input: it is known before anything is simulated.
+One of the *mesh* counts parts of the model. Only one of the *history* is a result.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import xarray as xr
+
+from fingerpad.scenes.scene import Scene
+from fingerpad.specimen.mesh import PadMesh
+
+Values = Mapping[str, float]
+"""Condition -> value; the condition of a single number is empty."""
+
+
+class Together(Mapping):
+    """Histories of many scenes by name, and what takes several of them, made once."""
+
+    def __init__(self, histories: Mapping[str, xr.Dataset]) -> None:
+        self._histories = histories
+        self._made: dict[Callable, Any] = {}
+
+    def __getitem__(self, scene: str) -> xr.Dataset:
+        return self._histories[scene]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._histories)
+
+    def __len__(self) -> int:
+        return len(self._histories)
+
+    def once(self, make: Callable[[Together], Any]) -> Any:
+        """``make(self)``, made when first asked for. Raises KeyError, each time, if a scene was not simulated."""
+        if make not in self._made:
+            self._made[make] = make(self)
+        return self._made[make]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A measure, called with a scene, a mesh or a history.
+
+    Attributes
+    ----------
+    name, unit
+        As in the measures table.
+    of
+        What `read` takes.
+    read
+        A number, or a mapping condition -> number, in `unit`. Raises KeyError where the scene does not show it.
+    where
+        Whether a scene has it.
+    beside
+        Whether `read` takes, as second argument, all histories `Together`.
+    """
+
+    name: str
+    unit: str
+    of: Literal["scene", "mesh", "history"]
+    read: Callable[..., float | Values]
+    where: Callable[[Scene], bool]
+    beside: bool = False
+
+    def __call__(self, subject: Scene | PadMesh | xr.Dataset, runs: Together | None = None) -> dict[str, float]:
+        found = self.read(subject, runs) if self.beside else self.read(subject)
+        return {k: float(v) for k, v in found.items()} if isinstance(found, Mapping) else {"": float(found)}
+
+
+def measure(
+    unit: str,
+    where: Callable[[Scene], bool] = lambda scene: True,
+    of: Literal["scene", "mesh", "history"] = "history",
+    beside: bool = False,
+) -> Callable[[Callable[..., float | Values]], Measure]:
+    """Decorator: the function is the measure of its name."""
+    return lambda read: Measure(read.__name__, unit, of, read, where, beside)
+
+
+# --- kinds of scenes -------------------------------------------------------------------------------------
+
+
+def named(scenes: Iterable[str]) -> Callable[[Scene], bool]:
+    """These scenes only, for what compares two of them."""
+    names = frozenset(scenes)
+    return lambda scene: scene.name in names
+
+
+def strokes(scene: Scene) -> bool:
+    """Something slides or is stepped over the pad."""
+    return any(hasattr(leg, "slide") or hasattr(leg, "step") for leg in scene.motion)
+
+
+def cylinders(scene: Scene) -> bool:
+    return scene.stimulus.shape == "cylinder"
+
+
+def slides(scene: Scene) -> bool:
+    """Something slides over the pad at a speed."""
+    return any(getattr(leg, "slide", None) and leg.speed for leg in scene.motion)
+
+
+def waves(scene: Scene) -> bool:
+    """Strokes of the wavy surface at a speed."""
+    return wavy(scene) and slides(scene)
+
+
+def wavy(scene: Scene) -> bool:
+    """Strokes of the wavy surface."""
+    return scene.stimulus.shape == "wavy"
+
+
+def plates(scene: Scene) -> bool:
+    """Strokes of a flat plate."""
+    return scene.stimulus.shape == "flat" and strokes(scene)
+
+
+def held(scene: Scene) -> bool:
+    """Presses to a force at a rate, and held."""
+    return getattr(scene.motion[0], "rate", None) is not None and not strokes(scene)
+
+
+def forced(scene: Scene) -> bool:
+    """Presses to a force."""
+    return hasattr(scene.motion[0], "press_to_force")
+
+
+def deep(scene: Scene) -> bool:
+    """Presses to a depth."""
+    return hasattr(scene.motion[0], "press_to_depth")

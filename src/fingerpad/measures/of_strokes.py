@@ -1,0 +1,495 @@
+"""Measures of strokes, of the wavy surface and of a plate, read of their `loaded` outputs. "26" names the convexity of 26 1/m."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import xarray as xr
+
+from fingerpad.measures import features
+from fingerpad.measures.direction import BESIDE, DEPTH, OFFSETS, directional_index, islands
+from fingerpad.measures.features import PRESSURE, energy, profile, receptor_index
+from fingerpad.measures.measure import Together, measure, named, plates, strokes, waves, wavy
+from fingerpad.measures.quantities import (
+    BURST_RATE,
+    BURST_TIME,
+    BURST_WIDTH,
+    DISTANCE,
+    DYNAMIC,
+    FREQUENCY,
+    IMPULSE_RATE,
+    RATE,
+    TIME,
+)
+from fingerpad.measures.responses import (
+    RECEPTOR_DEPTH,
+    STROKES_SHOWN,
+    burst_values,
+    impulses_of,
+    mean_frequency,
+    plate_rate,
+    predicted_rate,
+    skin_sample,
+    stroke_histogram,
+    stroke_law,
+)
+from fingerpad.measures.skin import WINDOW, skin_curvature
+from fingerpad.measures.strokes import (
+    FULL,
+    LOCATIONS,
+    NODES,
+    STEPPED,
+    SUB,
+    arcs,
+    centre_curvature,
+    contact_lengths,
+    convexities,
+    distance,
+    embedded,
+    energy_at,
+    lag,
+    lateral,
+    loaded,
+    lost_contacts,
+    nodes_at,
+    passing,
+    peaks,
+    place,
+    scaled,
+    touching,
+)
+from fingerpad.receptors.fits import r_squared, rms
+from fingerpad.receptors.spikes import integrated
+
+SHALLOW = 560e-6
+"""Depth (m) of the double peaks of Figs 5-22 to 5-24."""
+PROMINENCE = 0.005
+"""Least prominence of a peak of strain energy or rate, relative to the largest value while the convexity passes."""
+SETTLED, BEGINNING = 2e-3, 5.0
+"""Stroke of a plate (m) after which its start is over, and the part of it (mm) that is its beginning."""
+
+in_full, in_part = named(FULL.values()), named([*SUB.values(), STEPPED])
+
+
+# --- contact and pressure --------------------------------------------------------------------------------
+
+
+@measure("mm", wavy)
+def contact_length(history):
+    """Stroke distance over which the centre node touches each convexity."""
+    return {k: 1e3 * v for k, v in contact_lengths(loaded(history)).items()}
+
+
+@measure("Pa", wavy)
+def convexity_pressure(history):
+    """Largest centre pressure while each convexity passes."""
+    return peaks(loaded(history), features.centre_pressure)
+
+
+@measure("Pa", wavy)
+def convexity_energy(history):
+    """Largest strain energy at 915 um while each convexity passes."""
+    return peaks(loaded(history), energy_at(RECEPTOR_DEPTH))
+
+
+def _at_location(stroke: xr.Dataset, location: float) -> int:
+    return int(abs(distance(stroke) - location * 1e-3).argmin())
+
+
+@measure("Pa", in_part)
+def location_pressure(history):
+    """Largest pressure of any node at the three locations of Figs 5-5 and 5-6."""
+    stroke = loaded(history)
+    return {f"{at:g} mm": stroke[PRESSURE].values[_at_location(stroke, at)].max() for at in LOCATIONS}
+
+
+@measure("Pa", in_part)
+def node_pressure(history):
+    """Largest pressure of the nine nodes of Fig 5-10."""
+    stroke = loaded(history)
+    return {f"{at:g} mm": stroke[PRESSURE].values[:, n].max() for at, n in zip(NODES, nodes_at(stroke), strict=True)}
+
+
+@measure("Pa", wavy)
+def start_pressure(history):
+    """Largest centre pressure over the first third of each arc, hollows with a negative sign."""
+    stroke, found = loaded(history), {}
+    under, pressure = place(stroke), features.centre_pressure(stroke)
+    for arc in arcs(stroke):
+        values = pressure[(under >= arc.start) & (under <= arc.start + (arc.end - arc.start) / 3)]
+        if values.size:
+            found[f"{arc.curvature:.0f}"] = values.max()
+    return found
+
+
+@measure("Pa", wavy)
+def corner_pressure(history):
+    """Centre pressure at the sharp corner, where the first convexity begins."""
+    stroke = loaded(history)
+    corner = next(iter(convexities(stroke).values())).start
+    return features.centre_pressure(stroke)[int(abs(place(stroke) - corner).argmin())]
+
+
+@measure("mm", wavy)
+def lost_contact(history):
+    """Length of surface without contact: before the first convexity and before the second, and where the first loss is.
+
+    Before the first: within 2 mm of the sharp corner; before the second: from the middle of the hollow to a quarter into it.
+    """
+    stroke = loaded(history)
+    first, second = list(convexities(stroke).values())[:2]
+    free = distance(stroke)[~touching(stroke)]
+    near = free[abs(free - first.start) < 4e-3]
+    return {
+        "corner": 1e3 * _lost(stroke, first.start - 2e-3, first.start + 2e-3),
+        "second": 1e3 * _lost(stroke, (first.end + second.start) / 2, second.start + (second.end - second.start) / 4),
+        "at": 1e3 * near.mean() if near.size else np.nan,
+    }
+
+
+def _lost(stroke: xr.Dataset, low: float, high: float) -> float:
+    return sum(max(0.0, min(b, high) - max(a, low)) for a, b in lost_contacts(stroke))
+
+
+@measure("mm", wavy)
+def skin_drag(history):
+    """Lateral displacement of the centre node under the arcs, from the first corner to the second: mean and least."""
+    stroke = loaded(history)
+    ends, under = list(convexities(stroke).values()), place(stroke)
+    over = 1e3 * lateral(stroke)[(under >= ends[0].start) & (under <= ends[-1].end)]
+    return {"mean": over.mean(), "least": over.min()}
+
+
+# --- pressure and curvature ------------------------------------------------------------------------------
+
+
+@measure("1", wavy)
+def curvature_correlation(history):
+    """Of pressure with the curvature of the skin while it touches: at the centre, and at the nine nodes of Fig 5-10."""
+    stroke = loaded(history)
+    found = {"centre": _scaled_curvature(stroke)[3]}
+    for at, node in zip(NODES, nodes_at(stroke), strict=True):
+        pressure = stroke[PRESSURE].values[:, node]
+        if (pressure > 0).sum() > 2:
+            found[f"{at:g} mm"] = scaled(skin_curvature(stroke, node), pressure, pressure > 0)[3]
+    return found
+
+
+def _scaled_curvature(stroke: xr.Dataset) -> tuple[np.ndarray, float, float, float]:
+    return scaled(centre_curvature(stroke), features.centre_pressure(stroke), touching(stroke))
+
+
+@measure("Pa m", wavy)
+def curvature_factor(history):
+    return _scaled_curvature(loaded(history))[1]
+
+
+@measure("Pa", wavy)
+def curvature_fit(history):
+    """Pressure at no curvature, and the root mean square misfit."""
+    stroke = loaded(history)
+    fit, _, offset, _ = _scaled_curvature(stroke)
+    misfit = (fit - features.centre_pressure(stroke))[touching(stroke)]
+    return {"offset": offset, "misfit": np.sqrt(np.mean(misfit**2))}
+
+
+@measure("1", wavy)
+def curvature_miss(history):
+    """Median difference of the skin's curvature from each convexity's, where what it is fitted through touches it."""
+    stroke = loaded(history)
+    found, under, all_touch = centre_curvature(stroke), place(stroke), embedded(stroke)
+    out = {}
+    for label, arc in convexities(stroke).items():
+        inner = all_touch & (under > arc.start + WINDOW) & (under < arc.end - WINDOW)
+        out[label] = np.median(abs(found[inner] / arc.curvature - 1)) if inner.any() else np.nan
+    return out
+
+
+# --- stepped and stroked, and the velocities -------------------------------------------------------------
+
+
+@measure("mm", named([SUB["10"]]), beside=True)
+def profile_shift(history, runs):
+    """Shift to the left of the pressure profile at each location against the stepped surface."""
+    found, x = {}, np.arange(-8e-3, 8e-3, 0.02e-3)
+    for location in LOCATIONS:
+        both = []
+        for stroke in (loaded(history), loaded(runs[STEPPED])):
+            index, upper = _at_location(stroke, location), stroke["skin_y"].values > 0
+            at, pressure = profile(stroke, index)
+            both.append(np.interp(x, at[upper], pressure[upper]))
+        found[f"{location:g} mm"] = -1e3 * lag(x, both[0], x, both[1])[0]
+    return found
+
+
+def pressure_lag(stroke: xr.Dataset, stepped: xr.Dataset) -> tuple[float, float]:
+    """Lag (m) of the centre pressure of a stroke behind that of the stepped surface, and their correlation when shifted."""
+    stroke, stepped = loaded(stroke), loaded(stepped)
+    return lag(distance(stroke), features.centre_pressure(stroke), distance(stepped), features.centre_pressure(stepped))
+
+
+@measure("mm", named([SUB["10"]]), beside=True)
+def lag_of_stepped(history, runs):
+    return 1e3 * pressure_lag(history, runs[STEPPED])[0]
+
+
+@measure("1", named([SUB["10"]]), beside=True)
+def likeness_of_stepped(history, runs):
+    return pressure_lag(history, runs[STEPPED])[1]
+
+
+@measure("%", named([FULL["1"]]), beside=True)
+def spread_of_traces(history, runs):
+    """Standard deviation of whole traces over the velocities, root mean square, over the mean square root of the traces."""
+    strokes, found = [loaded(runs[name]) for name in FULL.values()], {}
+    for label, trace in (("pressure", features.centre_pressure), ("energy", energy_at(RECEPTOR_DEPTH))):
+        d = distance(strokes[0])
+        traces = np.array([np.interp(d, distance(s), trace(s)) for s in strokes])
+        found[label] = 100 * np.sqrt(np.mean(traces.std(axis=0) ** 2) / np.mean(traces**2))
+    return found
+
+
+# --- strain energy ---------------------------------------------------------------------------------------
+
+
+@measure("Pa", in_full)
+def late_energy(history):
+    """Largest strain energy at 560 um from 40 mm on."""
+    stroke = loaded(history)
+    return energy(stroke, SHALLOW)[distance(stroke) >= 40e-3 - 1e-9].max()
+
+
+def peaks_apart(d: np.ndarray, values: np.ndarray) -> float:
+    """Distance between the two most prominent peaks of a trace; NaN with fewer."""
+    from scipy.signal import find_peaks  # here, for it is slow to import
+
+    found, properties = find_peaks(values, prominence=max(PROMINENCE * values.max(), 1e-9))
+    if len(found) < 2:
+        return float("nan")
+    first, second = sorted(found[np.argsort(properties["prominences"])[-2:]])
+    return float(d[second] - d[first])
+
+
+def _double_peaks(history: xr.Dataset, trace: features.Trace) -> dict[str, float]:
+    stroke = loaded(history)
+    values, d = trace(stroke), 1e3 * distance(stroke)
+    inside = {k: passing(stroke, arc) for k, arc in convexities(stroke).items()}
+    return {k: peaks_apart(d[where], values[where]) for k, where in inside.items() if where.any()}
+
+
+@measure("mm", in_full)
+def energy_peaks_apart(history):
+    """Distance between the two peaks of strain energy at 560 um while each convexity passes; NaN where there are not two."""
+    return _double_peaks(history, energy_at(SHALLOW))
+
+
+@measure("mm", in_full)
+def rate_peaks_apart(history):
+    """The same of the rate predicted from 560 um."""
+    return _double_peaks(history, lambda stroke: predicted_rate(stroke, SHALLOW)[IMPULSE_RATE].to_numpy())
+
+
+def _by_eq_4_4(history: xr.Dataset, runs: Together) -> tuple[np.ndarray, np.ndarray]:
+    """Strain energy (time) Pa at 915 um as simulated and by Eq 4-4 with a constant shift of the receptor."""
+    law, shift = runs.once(stroke_law)
+    s = skin_sample(history, RECEPTOR_DEPTH)
+    return s.energy, law.strain_energy(s.x, s.pressure, s.indentation, shift)
+
+
+@measure("Pa", in_full, beside=True)
+def energy_by_eq_4_4(history, runs):
+    return _by_eq_4_4(loaded(history), runs)[1].max()
+
+
+@measure("mm", named([FULL["10"]]), beside=True)
+def receptor_shift(history, runs):
+    """Constant lateral shift with which Eq 4-4 comes closest to the stroke at 10 mm/s."""
+    return 1e3 * runs.once(stroke_law)[1]
+
+
+@measure("1", in_full, beside=True)
+def departure_of_eq_4_4(history, runs):
+    """Residual of Eq 4-4 over the strain energy, and the share of variance it explains, at all outputs."""
+    felt, by_law = _by_eq_4_4(history, runs)
+    return {"residual": rms(by_law - felt) / rms(felt), "R2": r_squared(felt, by_law)}
+
+
+# --- predicted rates -------------------------------------------------------------------------------------
+
+
+@measure("mm", waves)
+def burst_width(history):
+    return burst_values(loaded(history), BURST_WIDTH)
+
+
+@measure("s", waves)
+def burst_time(history):
+    return burst_values(loaded(history), BURST_TIME)
+
+
+@measure("impulses/s", waves)
+def burst_rate(history):
+    """Mean rate of the burst that each convexity makes."""
+    return burst_values(loaded(history), BURST_RATE)
+
+
+@measure("impulses/s", waves)
+def convexity_rate(history):
+    """Largest rate while each convexity passes."""
+    return burst_values(loaded(history), f"largest {IMPULSE_RATE}")
+
+
+@measure("Pa/s", waves)
+def convexity_energy_rate(history):
+    """Largest rate of the strain energy while each convexity passes."""
+    return burst_values(loaded(history), f"largest {RATE}")
+
+
+@measure("impulses/s", named([FULL["10"]]))
+def histogram_bin(history):
+    """Highest bin of the histogram of repeated strokes, Fig 5-19."""
+    count = STROKES_SHOWN["5-19"]
+    return stroke_histogram(*impulses_of(history, count), count)[IMPULSE_RATE].max()
+
+
+@measure("impulses/s", in_full)
+def highest_frequency(history):
+    """Largest mean frequency of a receptor at 560 um from 40 mm on, as Fig 5-23 shows it."""
+    count = STROKES_SHOWN["5-23"]
+    rate, impulses = impulses_of(history, count, SHALLOW)
+    at = np.interp(np.arange(40, 80.01, 0.1), rate[DISTANCE], rate[TIME])
+    return mean_frequency(impulses, count, at)[FREQUENCY].max()
+
+
+def _impulses(
+    stroke: xr.Dataset, where: Mapping[str, np.ndarray], column: str = IMPULSE_RATE, depth: float = RECEPTOR_DEPTH
+) -> dict[str, float]:
+    """Mean numbers of impulses while conditions (time) hold at both ends of a step."""
+    frame = predicted_rate(stroke, depth)
+    steps = np.diff(integrated(frame[TIME], frame[column]))
+    return {k: float(steps[w[1:] & w[:-1]].sum()) for k, w in where.items()}
+
+
+def _passages(stroke: xr.Dataset) -> dict[str, np.ndarray]:
+    return {k: passing(stroke, arc) for k, arc in convexities(stroke).items()}
+
+
+@measure("impulses", in_full)
+def impulses_at_560_um(history):
+    """Mean number of impulses while each convexity passes."""
+    stroke = loaded(history)
+    return _impulses(stroke, _passages(stroke), depth=SHALLOW)
+
+
+def _in_hollows(history: xr.Dataset, under: Callable[[xr.Dataset], np.ndarray]) -> dict[str, float]:
+    stroke = loaded(history)
+    labels, hollows, at = list(convexities(stroke)), [arc for arc in arcs(stroke) if arc.curvature < 0], under(stroke)
+    pairs = zip(labels, labels[1:], hollows, strict=False)
+    return _impulses(stroke, {f"{a} to {b}": (at >= arc.start) & (at <= arc.end) for a, b, arc in pairs})
+
+
+@measure("impulses", in_full)
+def impulses_in_hollows(history):
+    """Mean number of impulses at the distances of each hollow."""
+    return _in_hollows(history, distance)
+
+
+@measure("impulses", in_full)
+def impulses_under_hollows(history):
+    """The same while the centre of the skin, which is dragged back, is under it."""
+    return _in_hollows(history, place)
+
+
+@measure("%", in_full)
+def dynamic_share(history):
+    """Share of the impulses of each convexity that comes from the rate of the strain energy."""
+    stroke = loaded(history)
+    where = _passages(stroke)
+    whole, part = _impulses(stroke, where), _impulses(stroke, where, DYNAMIC)
+    return {k: 100 * part[k] / max(whole[k], 1e-12) for k in where}
+
+
+@measure("mm", in_full)
+def rate_after_energy_rate(history):
+    """Stroke distance from the peak of the energy's rate to that of the predicted rate, while each convexity passes."""
+    stroke = loaded(history)
+    frame, apart = predicted_rate(stroke), {}
+    for label, where in _passages(stroke).items():
+        part = frame[where]
+        first, second = (part[DISTANCE].loc[part[column].idxmax()] for column in (RATE, IMPULSE_RATE))
+        apart[label] = second - first
+    return apart
+
+
+# --- strokes of a plate, and ridges ----------------------------------------------------------------------
+
+
+def _three(history: xr.Dataset) -> dict[str, np.ndarray]:
+    """Strain energy (time) Pa at the thesis's three receptors."""
+    stroke = loaded(history)
+    return {k: energy(stroke, DEPTH, x) for k, x in OFFSETS.items()}
+
+
+@measure("count", plates)
+def receptors_in_three_places(history):
+    return sum(receptor_index(history, DEPTH, x) >= 0 for x in OFFSETS.values())
+
+
+@measure("1", plates)
+def direction(history):
+    """Directional index of the receptor at -46 um."""
+    return directional_index(history, DEPTH, -BESIDE)
+
+
+@measure("%", plates)
+def spread_of_three(history):
+    """Largest range of the three receptors over their mean, once the stroke is settled."""
+    late = abs(distance(loaded(history))) >= SETTLED
+    values = [v[late] for v in _three(history).values()]
+    return 100 * np.max(np.ptp(values, axis=0) / np.mean(values, axis=0))
+
+
+@measure("Pa", plates)
+def energy_beside(history):
+    """Strain energy at -46 um: the highest at the start of the stroke, the highest and the least once it is settled."""
+    stroke = loaded(history)
+    settled, values = abs(distance(stroke)) >= SETTLED, energy(loaded(history), DEPTH, -BESIDE)
+    return {"start": values[~settled].max(), "highest late": values[settled].max(), "least late": values[settled].min()}
+
+
+@measure("count", plates)
+def islands_of_contact(history):
+    """Once the stroke is settled: the fewest, the most, and the most at the end."""
+    found = islands(history)
+    late = found[abs(history["stroke_distance"].values) >= SETTLED]
+    return {"fewest": late.min(), "most": late.max(), "median": np.median(late), "end": found[-1]}
+
+
+@measure("count", strokes)
+def steps_cut(history):
+    if "cutbacks" not in history:
+        raise KeyError("cutbacks")
+    return history["cutbacks"].sum()
+
+
+@measure("1", strokes)
+def smallest_volume(history):
+    """Smallest det F of the body at any time."""
+    if "min_detF" not in history:
+        raise KeyError("min_detF")
+    return history["min_detF"].min()
+
+
+@measure("impulses", plates)
+def plate_impulses(history):
+    """Mean number of impulses of a receptor 46 um to the right, in the whole stroke and at its beginning."""
+    rate = plate_rate(history)
+    grown = integrated(rate[TIME], rate[IMPULSE_RATE])
+    return {"whole": grown[-1], "beginning": np.interp(BEGINNING, rate[DISTANCE], grown)}
+
+
+@measure("Pa", plates)
+def highest_of_three(history):
+    """Largest strain energy of the three receptors."""
+    return max(v.max() for v in _three(history).values())

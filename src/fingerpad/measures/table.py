@@ -1,0 +1,122 @@
+"""The measures of all scenes as one long table: what claims, sensitivities and figures of numbers rest on.
+
+The workflow writes it (``<results>/measures.csv``) from every history, its companion on a coarser mesh, and the meshes. A row is
+a number: scene, quantity, condition, unit, value, companion. The discretisation error of anything made of these numbers is what
+it changes by when the column ``companion`` is read instead of ``value``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from fingerpad.files import write_atomically
+from fingerpad.measures import of_presses, of_scenes, of_strokes
+from fingerpad.measures.features import Histories, Meshes
+from fingerpad.measures.measure import Measure, Together
+from fingerpad.results import scene_of
+
+COLUMNS = ("scene", "quantity", "condition", "unit", "value", "companion")
+
+MEASURES: dict[str, Measure] = {
+    each.name: each
+    for module in (of_scenes, of_presses, of_strokes)
+    for each in vars(module).values()
+    if isinstance(each, Measure)
+}
+"""Every measure by its name."""
+
+Find = Callable[[str, str], Mapping[str, float]]
+"""find(quantity, scene): condition -> value. Raises KeyError."""
+
+
+class Measures:
+    """Numbers by quantity, scene and condition, from a table or, when first asked for, from histories."""
+
+    def __init__(self, find: Find) -> None:
+        self.find = find
+
+    def __call__(self, quantity: str, scene: str, condition: str = "") -> float:
+        """One number. Raises KeyError saying what was not simulated."""
+        found = self.find(quantity, scene)
+        if condition not in found:
+            raise KeyError(f"{quantity} ({condition}) of {scene}")
+        return found[condition]
+
+    def standing_in(self, scenes: Mapping[str, str]) -> Measures:
+        """The same with other scenes in the place of some; all others are missing."""
+        return Measures(lambda quantity, scene: self.find(quantity, scenes[scene]))
+
+    @classmethod
+    def of(cls, histories: Histories, meshes: Meshes | None = None) -> Measures:
+        """Read of histories and meshes, each number once, when it is asked for."""
+        runs, seen = Together(histories), {}
+
+        def find(quantity: str, scene: str) -> Mapping[str, float]:
+            if (quantity, scene) not in seen:
+                seen[quantity, scene] = read(MEASURES[quantity], scene, runs, meshes or {})
+            return seen[quantity, scene]
+
+        return cls(find)
+
+    @classmethod
+    def in_table(cls, table: pd.DataFrame, column: str = "value") -> Measures:
+        """Of a column of the measures table, ``value`` or ``companion``; what has a value but no companion is missing there."""
+        rows = table[table[column].notna() | table["value"].isna()] if column != "value" else table
+        seen: dict[tuple[str, str], dict[str, float]] = {}
+        for row in rows.itertuples(index=False):
+            seen.setdefault((row.quantity, row.scene), {})[row.condition] = getattr(row, column)
+        scenes = set(rows["scene"])
+
+        def find(quantity: str, scene: str) -> Mapping[str, float]:
+            if (quantity, scene) not in seen:
+                raise KeyError(scene if scene not in scenes else f"{quantity} of {scene}")
+            return seen[quantity, scene]
+
+        return cls(find)
+
+
+def read(measure: Measure, scene: str, runs: Together, meshes: Meshes) -> dict[str, float]:
+    """A measure of a scene. Raises KeyError where the scene has none, or it was not simulated."""
+    history = runs[scene]
+    described = scene_of(history)
+    if not measure.where(described):
+        raise KeyError(f"{measure.name} of {scene}")
+    if measure.of == "scene":
+        return measure(described)
+    return measure(meshes[scene]) if measure.of == "mesh" else measure(history, runs)
+
+
+def measures_table(histories: Histories, coarse: Histories, meshes: Meshes) -> pd.DataFrame:
+    """Every measure of every scene, columns `COLUMNS`; `companion` is empty where nothing was simulated on a coarser mesh."""
+    fine, rough, rows = Together(histories), Together(coarse), []
+    for scene in histories:
+        for measure in MEASURES.values():
+            values = _read(measure, scene, fine, meshes)
+            others = _read(measure, scene, rough, {}) if measure.of == "history" and values else {}
+            for condition, value in values.items():
+                rows.append((scene, measure.name, condition, measure.unit, value, others.get(condition, np.nan)))
+    return pd.DataFrame(rows, columns=COLUMNS)
+
+
+def _read(measure: Measure, scene: str, runs: Together, meshes: Meshes) -> dict[str, float]:
+    try:
+        return read(measure, scene, runs, meshes)
+    except KeyError:
+        return {}
+
+
+def write_measures(table: pd.DataFrame, path: str | PathLike) -> None:
+    """Write the table with all digits."""
+    write_atomically(Path(path), lambda p: table.to_csv(p, index=False, lineterminator="\n"))
+
+
+def read_measures(path: str | PathLike) -> pd.DataFrame:
+    """The table that `write_measures` wrote."""
+    table = pd.read_csv(path, dtype=str, keep_default_na=False)
+    numbers = {column: [float(v) if v else np.nan for v in table[column]] for column in ("value", "companion")}
+    return table.assign(**numbers)
