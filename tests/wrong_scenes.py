@@ -63,6 +63,20 @@ DEPTH = {"press_to_depth": "1 mm", "speed": "2 mm/s"}
 
 # name: document, key the message names, words it contains
 BAD = {
+    "lift before a press": (motion({"lift": "steady"}, FORCE), "motion[0].lift", "before anything is pressed"),
+    "lift twice": (motion(FORCE, {"lift": "steady"}, {"lift": "1 mm/s"}), "motion[2].lift", "nothing is pressed any more"),
+    "slide after a lift": (
+        motion(FORCE, {"lift": "1 mm/s"}, {"hold": "1 s"}, {"slide": "1 mm"}),
+        "motion[3].slide",
+        "nothing is pressed any more",
+    ),
+    "lift without a unit": (motion(FORCE, {"lift": "slow"}), "motion[1].lift", "steady"),
+    "unknown kind of receptor": (changed(outputs={"responses": ["rapid_adapting"]}), "outputs.responses[0]", "rapidly_adapting"),
+    "responses of a steady scene": (
+        changed(motion=[{"press_to_force": "20 gf"}], outputs={"responses": True}),
+        "outputs.responses",
+        "takes time",
+    ),
     "unknown key": (changed(moton=[]), "moton", "the nearest is 'motion'"),
     "unknown key in a leg": (motion({**FORCE, "rat": "1 N/s"}), "motion[0].rat", "the nearest is 'rate'"),
     "unknown key in specimen": (specimen(outlin="thesis"), "specimen.outlin", "the nearest is 'outline'"),

@@ -1,10 +1,11 @@
 """The human fingerpad in touch: skin, contact and the strain energy that receptors see.
 
-Three verbs are the whole shallow interface; each is imported at its first use.
+Four verbs are the whole shallow interface; each is imported at its first use.
 
-- ``load_scene(path)``: read and check a scene (`fingerpad.scenes.scene`).
+- ``load_scene(path)``: read and check a scene, a file or a dictionary; it gives a ``Scene`` (`fingerpad.scenes.scene`).
 - ``plan(scene)``: choose effects and discretisation, with reasons (`fingerpad.planning.plan`).
 - ``simulate(scene)``: run it; returns an `xarray.Dataset` (`fingerpad.simulation`).
+- ``respond(history)``: impulse rates and impulses of its receptors (`fingerpad.receptors.respond`).
 """
 
 from __future__ import annotations
@@ -14,14 +15,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from fingerpad.planning.plan import plan
-    from fingerpad.scenes.scene import load_scene
+    from fingerpad.receptors.respond import respond
+    from fingerpad.scenes.scene import Scene, load_scene
     from fingerpad.simulation import simulate
 
-__all__ = ["load_scene", "plan", "simulate"]
+__all__ = ["Scene", "load_scene", "plan", "respond", "simulate"]
 
 _MODULES = {
+    "Scene": "fingerpad.scenes.scene",
     "load_scene": "fingerpad.scenes.scene",
     "plan": "fingerpad.planning.plan",
+    "respond": "fingerpad.receptors.respond",
     "simulate": "fingerpad.simulation",
 }
 

@@ -233,7 +233,24 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
     } | cost
     if history.attrs.get("singular"):
         run["peak_pressure_singular"] = True
-    return {"legs": legs, "run": run}
+    totals = {"legs": legs, "run": run}
+    if "impulse_rate" in history:
+        totals["responses"] = _responses(history, places)
+    return totals
+
+
+def _responses(history: xr.Dataset, places: list[dict[str, float]]) -> list[dict[str, Any]] | str:
+    """What each receptor sends: how many impulses, the highest rate, and when the first impulse comes (None: never)."""
+    if len(places) > MOST_RECEPTORS:
+        return f"{len(places)} receptor points: their impulses are in the history"
+    out = []
+    for afferent in history.afferent.values.tolist():
+        for number, place in enumerate(places):
+            one = history.sel(afferent=afferent).isel(receptor=number)
+            count = int(one.impulses)
+            sent = {"impulses": count, "peak_rate_per_s": float(one.impulse_rate.max())}
+            out.append({"afferent": afferent} | place | sent | {"first_impulse_s": float(one.impulse_time[0]) if count else None})
+    return out
 
 
 def _energy_key(name: str) -> str:

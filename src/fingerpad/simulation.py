@@ -18,6 +18,7 @@ from fingerpad.mechanics.space import PlaneStrain, Space
 from fingerpad.mechanics.stepping import NonConvergence, QuasiStatic, Record, Skin
 from fingerpad.planning.plan import Plan, PlanError, estimated_error, plan, schedule
 from fingerpad.receptors.material_points import MaterialPoints
+from fingerpad.receptors.respond import respond
 from fingerpad.results import FIELDS, add_snapshots, dataset, peak_memory_MB, provenance, skin_arc
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for
@@ -172,7 +173,7 @@ class Simulation:
         return self._history(records, states, snapshots, complete=True)
 
     def _present(self):
-        return self.stepper.force / self.share, self.stepper.depth
+        return self.stepper.force / self.share, self.stepper.depth, self.stepper.touching_depth()
 
     def steps(self):
         """Steps of the motion with forces on the part of the pad that is solved."""
@@ -188,9 +189,12 @@ class Simulation:
     def _estimated_error(self, records, width):
         """The plan's error law at the narrowest contact that was found at a leg's end; at least a half for a few nodes.
 
-        And at least the share of the work that has gone missing in strokes: what jumps of nodes over sharp edges have cost.
+        A leg that ends with the finger let go has no contact to ask for. And at least the share of the work that has gone
+        missing in strokes: what jumps of nodes over sharp edges have cost.
         """
         ends = [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
+        most = max((record.force for record in records), default=0.0)
+        ends = [k for k in ends if records[k].force > 1e-6 * most] or ends
         narrowest = min((width[k + 1] for k in ends), default=0.0)
         steps = self.plan.steps_per_leg if self.plan.timed else None
         around = self.plan.mesh_size and self.plan.mesh_size.skin_edge
@@ -340,6 +344,9 @@ class Simulation:
                 np.array(found.pop("indenter")),
                 {name: np.array([unfold.elements(values, name) for values in each]) for name, each in found.items()},
             )
+        wanted = self.scene.outputs.responses
+        if wanted and out["leg"].size > 1 and history.time.values[-1] > 0:
+            history = history.merge(respond(history, wanted))
         return history
 
 

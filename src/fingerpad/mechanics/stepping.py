@@ -36,12 +36,14 @@ class _StepFailure(RuntimeError):
 class NewtonSettings:
     """Tolerances relative to the current contact force and to the node spacing, and limits.
 
+    A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was.
     ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
     only descends. A step of a stroke begins with the factors of the one before, if that was as long; a first or second
     iteration with its own factors that ends within ``chord`` tolerances is followed by one with the same.
     """
 
     force_tolerance: float = 1e-4
+    least_scale: float = 1e-3
     gap_tolerance: float = 1e-3
     max_iterations: int = 14
     snap_iterations: int = 60
@@ -116,6 +118,7 @@ class QuasiStatic:
         self.depth = self.distance = 0.0
         self.time = 0.0
         self.work = self._gross = self._missing = self.force = self._tangential = 0.0
+        self._most_force = self._most_work = 0.0
         self._energies = (0.0, 0.0, 0.0)
         self.friction = None
         if friction is not None:
@@ -166,6 +169,10 @@ class QuasiStatic:
             return top
         return brentq(closest, top - span, top + span, xtol=1e-15 * span, rtol=1e-15)
 
+    def touching_depth(self) -> float:
+        """Depth (m) at which the profile just touches the undeformed skin where it is now; zero where it came down first."""
+        return self.height - self._first_touch()
+
     # -- one step ---------------------------------------------------------------------------------------------------
 
     def save(self):
@@ -186,14 +193,14 @@ class QuasiStatic:
         self.body.restore(self._unloaded)
         self.nodal_force[:], self.active[:] = 0, False
         self.distance = distance
-        self.depth = self.height - self._first_touch()
+        self.depth = self.touching_depth()
         if self.friction is not None:
             self.friction.release()
         for observe in self.observers:
             observe(self.body, STEADY)
         self.force = self._tangential = 0.0
         # what was put in has come out again: the balance goes on from here
-        self.work = self._gross = 0.0 if self.friction is None else self.friction.dissipated
+        self.work = self._gross = self._most_work = 0.0 if self.friction is None else self.friction.dissipated
         self._energies = (0.0, 0.0, 0.0)
         self._previous = self._fitting = None
 
@@ -231,7 +238,7 @@ class QuasiStatic:
 
         ``reuse``: with the factors of the one before, in the same zone.
         """
-        body, zone, part = self.body, self.zone, self._range
+        body, zone, part, settings = self.body, self.zone, self._range, self.settings
         space = body.space
         gap, gradient, curvature = self._evaluate(zone.nodes)
         if reuse:
@@ -276,6 +283,7 @@ class QuasiStatic:
         unbalanced = -internal if self.external is None else self.external - internal
         unbalanced[zone.nodes] += push
         scale = max(step.force.sum(), np.abs(self.external).sum() if self.external is not None else 0.0)
+        scale = max(scale, settings.least_scale * self._most_force)
         if scale == 0:  # nothing touches: the body must come back to rest
             scale = body.space.measure.out_of_plane_stretch * np.abs(internal).sum() + 1e-30
         equilibrium = np.linalg.norm(space.to_equations(unbalanced)) / scale
@@ -284,7 +292,6 @@ class QuasiStatic:
         balance = 0.0
         if control == "force" and target > 0:
             balance = abs(target + push[:, 1].sum()) / target
-        settings = self.settings
         residual = max(
             equilibrium / settings.force_tolerance,
             balance / settings.force_tolerance,
@@ -370,6 +377,7 @@ class QuasiStatic:
         self.force, self._tangential = float(force), float(tangential)
         self.work += float(work)
         self._gross += abs(float(work))
+        self._most_force, self._most_work = max(self._most_force, self.force), max(self._most_work, abs(self.work))
         self._energies = energies
         self._previous = (state[0][0], state[1], state[3])
         return iterations, residual
@@ -444,7 +452,8 @@ class QuasiStatic:
         network, spring, branch_work = self._energies
         friction = self.friction
         frictional = friction.dissipated if friction else 0.0
-        balance = abs(self.work - network - branch_work - frictional) / max(abs(self.work), 1e-300)
+        # a body that is let go gives the work back: there is nothing left to relate an error to
+        balance = abs(self.work - network - branch_work - frictional) / max(abs(self.work), 0.1 * self._most_work, 1e-300)
         return Record(
             step.leg, step.time, self.depth, self.force, self._tangential, self.nodal_force.copy(), gradient, gap,
             self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,

@@ -16,7 +16,7 @@ import numpy as np
 
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
-from fingerpad.scenes.scene import Discretisation, Hold, PressToDepth, PressToForce, Scene, Slide, StepAndRepeat
+from fingerpad.scenes.scene import Discretisation, Hold, Lift, PressToDepth, PressToForce, Scene, Slide, StepAndRepeat
 from fingerpad.specimen import counted
 from fingerpad.specimen.external import read_specimen_mesh
 from fingerpad.specimen.materials import Prony
@@ -376,9 +376,9 @@ def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> tuple[float, int]:
     softest = min(layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in layers)
     speed = [0.0] * len(scene.motion)
     for i, (leg, duration) in enumerate(zip(scene.motion, leg_durations(scene), strict=True)):
-        if duration and not isinstance(leg, Hold):
+        if (duration or isinstance(leg, Lift)) and not isinstance(leg, Hold):
             depth = leg.press_to_depth if isinstance(leg, PressToDepth) else contact.depth
-            speed[i] = getattr(leg, "speed", None) or depth / duration
+            speed[i] = getattr(leg, "speed", None) or (depth / duration if duration else 0.0)
     fastest = int(np.argmax(speed))
     return 1000.0 * speed[fastest] ** 2 / softest, fastest
 
@@ -555,7 +555,10 @@ def _viscoelasticity(
     prony = Prony(tuple(t.g for t in scene.specimen.prony), tuple(t.tau for t in scene.specimen.prony))
     if not prony:
         return Effect(False, "the specimen has no Prony series"), "long_term"
-    durations = leg_durations(scene)
+    durations = [
+        contact.depth / leg.speed if isinstance(leg, Lift) and leg.speed else duration
+        for leg, duration in zip(scene.motion, leg_durations(scene), strict=True)
+    ]
     if all(d is None for d in durations):
         return Effect(False, "no leg names a rate: steady states need the long-term moduli only"), "long_term"
     timed = [d for d in durations if d is not None]

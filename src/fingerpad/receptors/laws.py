@@ -148,20 +148,20 @@ THESIS_RATE = ImpulseRate(per_energy=0.081, per_rate=0.0182, threshold=150.0, ra
 
 
 def rate_by_leg(time, values, leg) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A trace and its rate, differentiated leg by leg: times, values and rates, (m,) each.
+    """A trace and its rate, differentiated leg by leg: times (m,), values and rates (m, ...).
 
     Second-order differences within a leg (numpy.gradient). A kink between two legs, such as the top of a ramp, stays a jump of
-    the
-    rate: that time is there twice, with the rate of either leg, so an integral over time sees the jump where it is.
+    the rate: that time is there twice, with the rate of either leg, so an integral over time sees the jump where it is. A leg
+    that takes no time has no rate and is left out.
 
     Args:
-        time: (n,) s, increasing. values: (n,). leg: (n,) whole numbers that do not fall; the first sample of a leg belongs to
-        the leg before it as well.
+        time: (n,) s, not falling. values: (n, ...). leg: (n,) whole numbers that do not fall; the first sample of a leg
+        belongs to the leg before it as well.
     """
     time, values, leg = np.asarray(time, float), np.asarray(values, float), np.asarray(leg)
     ends = np.flatnonzero(np.diff(leg) > 0)
-    pieces = [slice(a, b + 1) for a, b in zip([0, *ends], [*ends, len(time) - 1], strict=True) if b > a]
-    rates = [np.gradient(values[piece], time[piece]) for piece in pieces]
+    pieces = [slice(a, b + 1) for a, b in zip([0, *ends], [*ends, len(time) - 1], strict=True) if time[b] > time[a]]
+    rates = [np.gradient(values[piece], time[piece], axis=0) for piece in pieces]
     return (
         np.concatenate([time[piece] for piece in pieces]),
         np.concatenate([values[piece] for piece in pieces]),

@@ -13,7 +13,7 @@ import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, model_validator
 from pydantic.json_schema import SkipJsonSchema
@@ -36,9 +36,10 @@ from fingerpad.scenes.specimen import (
 from fingerpad.units import QuantityError, format_quantity, parse_number
 
 __all__ = [
-    "Bar", "Cylinder", "Discretisation", "Flat", "HalfRound", "Hold", "Layer", "Layers", "Line", "Outline", "Outputs",
-    "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Slab", "Slide", "Specimen",
-    "SpecimenFile", "StepAndRepeat", "Wavy", "load_scene", "recorded_scene", "scene_json_schema", "specimen_json_schema",
+    "Bar", "Cylinder", "Discretisation", "Flat", "HalfRound", "Hold", "Layer", "Layers", "Lift", "Line", "Outline",
+    "Outputs", "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Slab", "Slide",
+    "Specimen", "SpecimenFile", "StepAndRepeat", "Wavy", "load_scene", "recorded_scene", "scene_json_schema",
+    "specimen_json_schema",
 ]  # fmt: skip
 
 EFFECTS = ("friction", "viscoelasticity", "finite_strain", "symmetry", "ridges")
@@ -262,6 +263,18 @@ class Slide(Strict):
     """What is kept as it is when the stroke begins: the normal force, or the height of the surface."""
 
 
+class Lift(Strict):
+    """Let the finger go: raise the stimulus to where it no more than touches the undeformed skin; a hold then is recovery."""
+
+    lift: quantity("speed", note=_PUSH, words=("steady",))
+    """Speed of the stimulus, or steady for a release so slow that all is relaxed."""
+
+    @property
+    def speed(self) -> float | None:
+        """Speed of the stimulus, m/s; None for the steady state."""
+        return None if self.lift == "steady" else self.lift
+
+
 class StepAndRepeat(Strict):
     """Move on without stroking: lift, recover, press again to what the leg before reached, over and over."""
 
@@ -287,6 +300,7 @@ _LEGS = {
     "press_to_force": PressToForce,
     "press_to_depth": PressToDepth,
     "hold": Hold,
+    "lift": Lift,
     "slide": Slide,
     "step": StepAndRepeat,
 }
@@ -317,6 +331,7 @@ Leg = Annotated[
     Annotated[PressToForce, Tag("<press_to_force>")]
     | Annotated[PressToDepth, Tag("<press_to_depth>")]
     | Annotated[Hold, Tag("<hold>")]
+    | Annotated[Lift, Tag("<lift>")]
     | Annotated[Slide, Tag("<slide>")]
     | Annotated[StepAndRepeat, Tag("<step>")],
     Discriminator(_tag),
@@ -364,6 +379,20 @@ class Every(Strict):
 _Times = Annotated[tuple[quantity("time", "non-negative"), ...], BeforeValidator(listed)]
 
 
+Afferent = Literal["slowly_adapting", "rapidly_adapting"]
+_ResponsesSurface = bool | list[Afferent]
+
+
+def _read_responses(value: Any) -> Any:
+    known = get_args(Afferent)
+    if isinstance(value, bool):
+        return known[:1] if value else ()
+    for i, name in enumerate(listed(value)):
+        if name not in known:
+            raise Problem(f"is not a kind of receptor, {nearest(name, known)}", ", ".join(known), (i,))
+    return tuple(dict.fromkeys(value))
+
+
 class Outputs(Strict):
     """What a simulation records beside its history."""
 
@@ -374,6 +403,8 @@ class Outputs(Strict):
         Discriminator(lambda value: "<every>" if isinstance(value, (Mapping, Every)) else "<times>"),
     ] = ()
     """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
+    responses: Annotated[tuple[Afferent, ...], BeforeValidator(_read_responses, json_schema_input_type=_ResponsesSurface)] = ()
+    """Impulses predicted for the receptors: true (slowly adapting), or a list of slowly_adapting and rapidly_adapting."""
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
@@ -490,6 +521,8 @@ class Scene(Strict):
         if self.specimen.mesh is None:
             self._check_inside()
         end = self.end_time
+        if self.outputs.responses and end == 0:
+            raise Problem("needs a motion that takes time", "a rate, a speed or a hold in it", ("outputs", "responses"))
         if isinstance(self.outputs.snapshots, Every):
             # the model is frozen, and only here is the motion known
             times = self._times(self.outputs.snapshots.every)
@@ -523,11 +556,17 @@ class Scene(Strict):
                 ("motion", 0, _kind(self.motion[0])),
             )
         last: tuple[str, float] | None = None
+        lifted = False
         along, length = 0.0, self.stimulus.length if isinstance(self.stimulus, Wavy) else math.inf
         for i, leg in enumerate(self.motion):
             key = _kind(leg)
             target = (key, getattr(leg, key))
-            if isinstance(leg, (Slide, StepAndRepeat)):
+            if lifted and isinstance(leg, (Slide, StepAndRepeat, Lift)):
+                raise Problem("comes when nothing is pressed any more", "a press before it, or a hold", ("motion", i, key))
+            lifted = isinstance(leg, Lift) or (lifted and isinstance(leg, Hold))
+            if isinstance(leg, Lift):
+                last = None
+            elif isinstance(leg, (Slide, StepAndRepeat)):
                 along += target[1]
                 if abs(target[1]) > MAXIMUM_STROKE:
                     raise Problem("is too long a way", f"up to {MAXIMUM_STROKE:g} m", ("motion", i, key))
@@ -569,8 +608,9 @@ class Scene(Strict):
     @property
     def end_time(self) -> float | None:
         """Duration of the motion, s, steady legs taking none; None if a change of control leaves it open."""
-        time, force, depth = 0.0, 0.0, 0.0
+        time, force, depth, moved = 0.0, 0.0, 0.0, False
         for leg in self.motion:
+            moved = moved or isinstance(leg, (Slide, StepAndRepeat))
             if isinstance(leg, Hold):
                 time += leg.hold
             elif isinstance(leg, PressToForce):
@@ -585,6 +625,11 @@ class Scene(Strict):
                 if leg.speed is not None:
                     time += abs(leg.press_to_depth - depth) / leg.speed
                 force, depth = math.nan, leg.press_to_depth
+            elif isinstance(leg, Lift):
+                left = math.nan if moved else 0.0  # where the skin is touched depends on the surface there
+                if leg.speed is not None:
+                    time += abs(depth - left) / leg.speed
+                force, depth = 0.0, left
         return None if math.isnan(time) else time
 
     def varied(self, changes: Mapping[str, Any]) -> Scene:
@@ -683,12 +728,14 @@ def _sha256(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def load_scene(path: str | Path) -> Scene:
+def load_scene(source: str | Path | Mapping[str, Any], name: str = "scene") -> Scene:
     """Read and check a scene.
 
     Args:
-        path: YAML file. Paths in it are relative to it, and names of specimens are looked up in
-            config/specimens of its folder, of the folders above, and of the repository.
+        source: YAML file, or what would be in one as a dictionary. Paths in it are relative to the file (of a dictionary: to the
+            working directory), and names of specimens are looked up in config/specimens of that folder, of the folders above,
+            and of the package.
+        name: of the scene of a dictionary; a file's is the file's.
 
     Returns:
         The scene, every quantity an SI float.
@@ -696,12 +743,13 @@ def load_scene(path: str | Path) -> Scene:
     Raises:
         SceneError: the file cannot be read or anything in it is wrong; its text is one line.
     """
-    path = Path(path)
-    document = read_yaml(path)
+    given = isinstance(source, Mapping)
+    path = Path(f"{name}.yaml") if given else Path(source)
+    document = source if given else read_yaml(path)
     try:
         return Scene.model_validate(document, context=Source(path))
     except ValidationError as error:
-        raise explain(error, path, document, _TAGS) from None
+        raise explain(error, name if given else path, document, _TAGS) from None
 
 
 def scene_json_schema() -> dict[str, Any]:

@@ -45,25 +45,26 @@ def programme(
     contact_length: float,
     timed: bool = True,
     snapshots: Sequence[float] = (),
-    present: Callable[[], tuple[float, float]] | None = None,
+    present: Callable[[], tuple[float, float, float]] | None = None,
     slide_step: float | None = None,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
     Args:
-        legs: validated legs (press_to_force/rate, press_to_depth/speed, hold, slide/speed/keep, step/every), SI, newtons.
+        legs: validated legs (press_to_force/rate, press_to_depth/speed, hold, lift, slide/speed/keep, step/every), SI, newtons.
         steps: per leg. contact_length: m, turns N into N/m.
         timed: does time matter? If not, a press is load increments and a hold one step.
         snapshots: times (s) at which a step must end.
         present: asked when a leg begins for the force (N/m) and depth (m) reached so far, which a change between force and
-            depth control needs; without it such a leg is taken to start from zero.
+            depth control needs, and for the depth (m) at which the undeformed skin is no more than touched, where a lift ends;
+            without it such a leg is taken to start from zero, and a lift to end there.
         slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
     """
     time, force, depth, distance, last = 0.0, 0.0, 0.0, 0.0, None
     for number, leg in enumerate(legs):
-        kind = next(key for key in ("press_to_force", "press_to_depth", "hold", "slide", "step") if hasattr(leg, key))
+        kind = next(key for key in ("press_to_force", "press_to_depth", "hold", "lift", "slide", "step") if hasattr(leg, key))
         target = getattr(leg, kind)
-        reached = present() if present else (force or 0.0, depth or 0.0)
+        reached = present() if present else (force or 0.0, depth or 0.0, 0.0)
         if kind == "hold":
             sizes = geometric(target, steps, min(last or target / steps, target / steps)) if timed else np.array([target])
             goals = [(force, depth, distance)] * len(sizes)
@@ -81,7 +82,8 @@ def programme(
             goals = [(force, depth, distance + target * k / count) for k in range(1, count + 1)]
         else:
             by_force = kind == "press_to_force"
-            start, end = (reached[0], target / contact_length) if by_force else (reached[1], target)
+            start, end = reached[0 if by_force else 1], target / contact_length if by_force else target
+            end = reached[2] if kind == "lift" else end
             speed = leg.rate and leg.rate / contact_length if by_force else leg.speed
             # a steady press is path-independent: increments only guide Newton's method and let the energy be balanced
             count = min(steps, 8) if speed is None else steps

@@ -20,7 +20,7 @@ from fingerpad.measures.responses import (
 )
 from fingerpad.receptors.fits import constant_shift
 from fingerpad.receptors.laws import THESIS_RATE, SpatialSum
-from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
+from fingerpad.receptors.rapidly_adapting import ASSUMED_RATE, RapidlyAdapting
 from fingerpad.receptors.sensor import TactileSensor, taxel_pressure
 from fingerpad.receptors.spikes import integrated
 
@@ -105,7 +105,7 @@ def _sensed(sample, time, law: SpatialSum, with_depth: bool, pitch: float | None
 
 RAPIDLY_ADAPTING = {
     "curvature of the skin": ("curvature", RapidlyAdapting(threshold=500.0, scale=500.0, highest=100.0)),
-    "strain energy at 600 um": ("energy", RapidlyAdapting(threshold=100.0, scale=500.0, highest=100.0)),
+    "strain energy at 600 um": ("energy", ASSUMED_RATE),
 }
 """Stimulus whose rate drives the receptor -> its key and law; thresholds, scales and the highest rate are assumed, nothing at
 hand states them."""

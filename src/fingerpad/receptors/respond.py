@@ -1,0 +1,75 @@
+"""From a simulated history to what its receptors would send: impulse rates and impulses, by one call."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+import xarray as xr
+
+from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, rate_by_leg
+from fingerpad.receptors.rapidly_adapting import ASSUMED_RATE, RapidlyAdapting
+from fingerpad.receptors.spikes import impulses
+
+AFFERENTS: dict[str, ImpulseRate | RapidlyAdapting] = {"slowly_adapting": THESIS_RATE, "rapidly_adapting": ASSUMED_RATE}
+"""Kinds of receptor and their laws: Eq 5-1 with the thesis's own constants; saturating in the rate, its constants assumed."""
+
+
+def respond(
+    history: xr.Dataset,
+    afferents: Iterable[str] | Mapping[str, ImpulseRate | RapidlyAdapting] = ("slowly_adapting",),
+    variation: float = 0.0,
+    seed: int | None = None,
+) -> xr.Dataset:
+    """Impulse rates and impulses of all receptors of a history, predicted from their strain energy density and its rate.
+
+    Args:
+        history: as `fingerpad.simulate` returns it. afferents: keys of :data:`AFFERENTS`, or laws by a name of one's own.
+        variation: coefficient of variation of the intervals (0: none). seed: of that variability.
+
+    Returns:
+        ``impulse_rate`` (afferent, response_time, receptor), impulses/s; ``impulses`` (afferent, receptor), how many;
+        ``impulse_time`` (afferent, receptor, impulse), s, NaN after the last. Rates are differences within a leg, so the time
+        of a kink between legs is there twice (see :func:`fingerpad.receptors.laws.rate_by_leg`).
+
+    Raises:
+        ValueError: nothing in the history takes time, there is no such afferent, or there is variability without a seed.
+    """
+    laws = dict(afferents) if isinstance(afferents, Mapping) else {name: _law(name) for name in afferents}
+    time, leg = history["time"].values, history["leg"].values
+    if not time[-1] > time[0]:
+        raise ValueError("nothing in this history takes time, so it has no rates: give a leg a rate, a speed or a hold")
+    at, energy, change = rate_by_leg(time, history["strain_energy_density"].values, leg)
+    rates = np.array([law(energy, change) if isinstance(law, ImpulseRate) else law(change) for law in laws.values()])
+    children = iter(np.random.SeedSequence(seed).spawn(rates.shape[0] * rates.shape[2]))
+    trains = [
+        [impulses(at, rate, variation, None if seed is None else np.random.default_rng(next(children))) for rate in each.T]
+        for each in rates
+    ]
+    most = max((len(train) for each in trains for train in each), default=0)
+    times = np.full((*rates.shape[::2], most), np.nan)
+    for place, train in zip(np.ndindex(times.shape[:2]), (train for each in trains for train in each), strict=True):
+        times[place][: len(train)] = train
+    return xr.Dataset(
+        {
+            "impulse_rate": (("afferent", "response_time", "receptor"), rates, _named("1/s", "predicted impulse rate")),
+            "impulses": (("afferent", "receptor"), np.isfinite(times).sum(2), _named("1", "predicted number of impulses")),
+            "impulse_time": (("afferent", "receptor", "impulse"), times, _named("s", "times of the predicted impulses")),
+        },
+        {
+            "afferent": list(laws),
+            "response_time": ("response_time", at, _named("s", "time; twice where legs meet")),
+            **{name: history.coords[name] for name in ("receptor_depth", "receptor_offset")},
+        },
+        {"laws": "; ".join(f"{name}: {law}" for name, law in laws.items())},
+    )
+
+
+def _law(name: str) -> ImpulseRate | RapidlyAdapting:
+    if name not in AFFERENTS:
+        raise ValueError(f"no afferent called {name!r}; known: {', '.join(AFFERENTS)}")
+    return AFFERENTS[name]
+
+
+def _named(units: str, long_name: str) -> dict[str, str]:
+    return {"units": units, "long_name": long_name}
