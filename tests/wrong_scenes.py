@@ -90,6 +90,22 @@ BAD = {
         "specimen.layers.fat.thickness",
         "epidermis_thickness",
     ),
+    "unknown law": (specimen(layers={"fat": {"law": "neohooke"}}), "specimen.layers.fat.law", "neo_hooke, yeoh"),
+    "unknown law in a mapping": (
+        specimen(layers={"fat": {"law": {"name": "ogden"}}}),
+        "specimen.layers.fat.law.name",
+        "neo_hooke, yeoh",
+    ),
+    "constant of another law": (
+        specimen(layers={"fat": {"law": {"name": "neo_hooke", "second": 1}}}),
+        "specimen.layers.fat.law.second",
+        "none",
+    ),
+    "constant of a law outside its range": (
+        specimen(layers={"fat": {"law": {"name": "yeoh", "second": -1}}}),
+        "specimen.layers.fat.law.second",
+        "-1 is outside the range",
+    ),
     "unknown key in a stimulus": (
         changed(stimulus={"shape": "flat", "curvature": "1 1/m"}),
         "stimulus.curvature",

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from threadpoolctl import threadpool_limits
 
+from fingerpad.laws import assign
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tributary_length
 from fingerpad.mechanics.small_strain import SmallStrainBody
@@ -98,11 +99,12 @@ class Simulation:
         )
         shear = known.shear_long_term if plan.state == "long_term" else known.shear_instantaneous
         prony = self.prony if plan.effects["viscoelasticity"].on else None
+        laws = assign([(layer.law.law, layer.law.constants) for layer in layers], mesh.region)
         args = (space, shear[mesh.region], known.bulk[mesh.region], prony)
         if plan.effects["finite_strain"].on:
-            body = FiniteStrainBody(*args, pointwise=EDGE_STIFFNESS if self.profile.singular else None)
+            body = FiniteStrainBody(*args, pointwise=EDGE_STIFFNESS if self.profile.singular else None, laws=laws)
         else:
-            body = SmallStrainBody(*args)
+            body = SmallStrainBody(*args, laws=laws)
         return body, known.shear_instantaneous[mesh.region]
 
     def _receptors(self, instantaneous):

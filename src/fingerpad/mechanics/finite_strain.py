@@ -1,12 +1,13 @@
-"""The finite-strain body: nearly incompressible neo-Hooke, total Lagrangian, with or without Prony branches.
+"""The finite-strain body: nearly incompressible, hyperelastic, total Lagrangian, with or without Prony branches.
 
-psi = mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2 with the plane-strain I1 = tr C + 1; the dilatation is projected on the
+To the isochoric energy of its laws (:mod:`fingerpad.laws`) comes kappa/2 (J - 1)^2, whose dilatation is projected on the
 element's pressure modes and condensed (Simo, Taylor and Pister 1985). The tangent's geometric part uses the pressure that the
 last linear step predicted (Magisano, Leonetti and Garcea 2017), which lets a whole load go on in one step.
 """
 
 import numpy as np
 
+from fingerpad.laws import NEO_HOOKE, Assigned
 from fingerpad.mechanics import kernels
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import Branches
@@ -21,6 +22,7 @@ class FiniteStrainBody:
         prony: None leaves viscoelasticity out altogether.
         pointwise: volumetric modulus in units of ``shear`` that is not projected on the pressure modes; a few of them keep
             elements under an edge from folding, where det F varies wildly within one element. None leaves it out.
+        laws: what the elements answer to a change of shape; None: neo-Hooke.
 
     Attributes:
         u: (n, 2) displacement, m; smallest_jacobian: min det F of the last evaluation.
@@ -36,10 +38,13 @@ class FiniteStrainBody:
         prony: Prony | None = None,
         lagged=True,
         pointwise: float | None = None,
+        laws: tuple[Assigned, ...] | None = None,
     ):
         self.space, self.shear, self.bulk = space, np.asarray(shear, float), np.asarray(bulk, float)
         self.u = np.zeros(space.points.shape)
         self.lagged = lagged
+        self.laws = laws or everywhere_neo_hooke(len(space.cells))
+        self._loops = [(kernels.loops(part.law), part.constants, part.elements) for part in self.laws]
         self._dilatation = np.zeros((len(space.cells), space.psi.shape[2]))
         self._lag = self._dilatation.copy()
         self._mesh = (space.cells, space.grad, space.weight, space.psi)
@@ -66,9 +71,13 @@ class FiniteStrainBody:
     def internal_force(self) -> np.ndarray:
         """(n, 2) N/m at the current displacement."""
         force = np.zeros_like(self.u)
-        self.smallest_jacobian = kernels.internal_force(
-            self.u, *self._mesh, self.shear, self.bulk, self._history, self._factor, self._pointwise, force, self._dilatation
-        )
+        self.smallest_jacobian = min(
+            loops.internal_force(
+                self.u, *self._mesh, self.shear, self.bulk, *part, self._history, self._factor, self._pointwise, force,
+                self._dilatation,
+            )
+            for loops, *part in self._loops
+        )  # fmt: skip
         return force
 
     def tangent(self) -> tuple[np.ndarray, np.ndarray]:
@@ -78,9 +87,12 @@ class FiniteStrainBody:
         self._data[:] = 0
         force = np.zeros_like(self.u)
         lag = self._lag if self.lagged else self._dilatation
-        self.smallest_jacobian = kernels.assemble_tangent(
-            self.u, *self._mesh, self.shear, self.bulk, lag, self._history, self._factor, self._pointwise,
-            self.space.pattern.scatter, self._data, force,
+        self.smallest_jacobian = min(
+            loops.assemble_tangent(
+                self.u, *self._mesh, self.shear, self.bulk, *part, lag, self._history, self._factor, self._pointwise,
+                self.space.pattern.scatter, self._data, force,
+            )
+            for loops, *part in self._loops
         )  # fmt: skip
         return self._data, force
 
@@ -115,9 +127,7 @@ class FiniteStrainBody:
 
     def isochoric_stress(self) -> np.ndarray:
         """Long-term isochoric second Piola-Kirchhoff stress (ne, nq, 4): 11, 22, 12, 33, Pa."""
-        out = np.empty((*self.space.weight.shape, 4))
-        kernels.isochoric_stress(self.u, self.space.cells, self.space.grad, self.shear, out)
-        return out
+        return isochoric_stress(self.laws, self.u, self.space.cells, self.space.grad, self.shear)
 
     def dilatation(self) -> np.ndarray:
         """(ne, nm) modes of J - 1; the pressure is kappa times them."""
@@ -143,8 +153,7 @@ class FiniteStrainBody:
         """
         f = self._deformation_gradient()
         jac = f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
-        i1 = np.sum(f * f, axis=(2, 3)) + 1
-        isochoric = 0.5 * self.shear[:, None] * (jac ** (-2 / 3) * i1 - 3)
+        isochoric = isochoric_energy(self.laws, f, self.shear[:, None])
         network = np.sum(self.space.weight * isochoric) + 0.5 * np.sum(self.bulk[:, None] * self._dilatation**2)
         if self._pointwise is not None:
             network += 0.5 * np.sum(self.space.weight * self._pointwise[:, None] * (jac - 1) ** 2)
@@ -154,6 +163,34 @@ class FiniteStrainBody:
                 square = deviator_square(push_forward(f, q)) / self.shear[:, None]
                 spring += float(np.sum(self.space.weight * square)) / (4 * beta)
         return float(network), spring, self.branch_work
+
+
+def everywhere_neo_hooke(count: int) -> tuple[Assigned, ...]:
+    """The law of ``count`` elements of which nothing else is said."""
+    return (Assigned(NEO_HOOKE, np.zeros((count, 0)), np.ones(count, bool)),)
+
+
+def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.ndarray:
+    """Isochoric second Piola-Kirchhoff stress (ne, nq, 4): 11, 22, 12, 33, Pa.
+
+    Args:
+        laws: of the elements. u: (n, 2) m. cells: (ne, nen). grad: (ne, nq, nen, 2) 1/m. shear: (ne,) long-term moduli, Pa.
+    """
+    out = np.empty((*grad.shape[:2], 4))
+    for part in laws:
+        kernels.loops(part.law).isochoric_stress(u, cells, grad, shear, part.constants, part.elements, out)
+    return out
+
+
+def isochoric_energy(laws: tuple[Assigned, ...], f: np.ndarray, shear: np.ndarray) -> np.ndarray:
+    """Energy density of shape (ne, ...), Pa, at deformation gradients (ne, ..., 2, 2); shear: (ne,) or (ne, 1), Pa."""
+    i1, jac = np.sum(f * f, axis=(-2, -1)) + 1, f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
+    out = np.zeros(i1.shape)
+    for part in laws:
+        here = part.elements
+        constants = part.constants[here].T.reshape(len(part.law.constants), *shear[here].shape)
+        out[here] = part.law.energy(i1[here], jac[here], shear[here], constants)
+    return out
 
 
 def push_forward(f: np.ndarray, s: np.ndarray) -> np.ndarray:

@@ -7,7 +7,9 @@ times the deviatoric stress of v.
 
 import numpy as np
 
+from fingerpad.laws import Assigned
 from fingerpad.mechanics import kernels
+from fingerpad.mechanics.finite_strain import everywhere_neo_hooke
 from fingerpad.mechanics.linear_solver import SymmetricPattern
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import step_coefficients
@@ -20,8 +22,16 @@ class SmallStrainBody:
     geometrically_linear = True
     smallest_jacobian = 1.0
 
-    def __init__(self, space: Space, shear: np.ndarray, bulk: np.ndarray, prony: Prony | None = None):
+    def __init__(
+        self,
+        space: Space,
+        shear: np.ndarray,
+        bulk: np.ndarray,
+        prony: Prony | None = None,
+        laws: tuple[Assigned, ...] | None = None,
+    ):
         self.space, self.shear, self.bulk, self.prony = space, np.asarray(shear, float), np.asarray(bulk, float), prony
+        self.laws = laws or everywhere_neo_hooke(len(space.cells))
         self.u = np.zeros(space.points.shape)
         self.v = np.zeros((len(prony.tau) if prony else 0, *self.u.shape))
         self._last = self.u.copy()
@@ -38,10 +48,11 @@ class SmallStrainBody:
         space, data = self.space, pattern.new_data()
         zero = np.zeros_like(self.u)
         no_lag = np.zeros((len(space.cells), space.psi.shape[2]))
-        kernels.assemble_tangent(
-            zero, space.cells, space.grad, space.weight, space.psi, deviatoric * self.shear, volumetric * self.bulk,
-            no_lag, None, 1.0, None, pattern.scatter, data, zero.copy(),
-        )  # fmt: skip
+        for part in self.laws:
+            kernels.loops(part.law).assemble_tangent(
+                zero, space.cells, space.grad, space.weight, space.psi, deviatoric * self.shear, volumetric * self.bulk,
+                part.constants, part.elements, no_lag, None, 1.0, None, pattern.scatter, data, zero.copy(),
+            )  # fmt: skip
         return data
 
     def _begin(self, factor, history):

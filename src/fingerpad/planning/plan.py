@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fingerpad.laws import departure
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.scenes.scene import Discretisation, Hold, Lift, PressToDepth, PressToForce, Scene, Slide, StepAndRepeat
@@ -266,12 +267,14 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         )
     preset, by_hand = _preset(scene, rules, contact)
     tolerance = preset.tolerance
+    chosen = (layer.law for layer in scene.specimen.materials.values())
+    laws = max(departure(one.law, one.constants, contact.strain) for one in chosen)
     ridged = _ridges(scene, moves, contact, tolerance, rules)
     ridges = scene.specimen.ridges if scene.effects.get("ridges", ridged.on) else None
     effects = {
         "friction": _friction(scene, tolerance, rules),
         "viscoelasticity": Effect(False, ""),
-        "finite_strain": _finite_strain(pad, profile, contact, tolerance, rules),
+        "finite_strain": _finite_strain(pad, profile, contact, laws, tolerance, rules),
         "symmetry": _symmetry(scene, profile, external, ridges),
         "ridges": ridged,
     }
@@ -298,7 +301,7 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         smallest, edge = external.quality()["smallest_edge_m"], apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
-    linear = 0.0 if effects["finite_strain"].on else _small_strain_error(pad, profile, contact, rules)
+    linear = 0.0 if effects["finite_strain"].on else _small_strain_error(pad, profile, contact, rules) + laws
     around = None if size is None else size.skin_edge
     time = steps_per_leg if timed else None
     error = linear + estimated_error(edge, _earliest(scene, contact, timed), time, moves, around, rules)
@@ -498,11 +501,12 @@ def _small_strain_error(pad: PadEstimate, profile: Profile, contact: ContactEsti
     return max(error, contact.strain) if profile.singular else error
 
 
-def _finite_strain(pad: PadEstimate, profile: Profile, contact: ContactEstimate, tolerance: float, rules: Rules) -> Effect:
-    error = _small_strain_error(pad, profile, contact, rules)
-    return Effect(
-        error > tolerance, f"small strain would be wrong by up to {error:.1%} (from the depth), {tolerance:.1%} is allowed"
-    )
+def _finite_strain(
+    pad: PadEstimate, profile: Profile, contact: ContactEstimate, laws: float, tolerance: float, rules: Rules
+) -> Effect:
+    error = _small_strain_error(pad, profile, contact, rules) + laws
+    source = "from the depth and the layers' laws" if laws else "from the depth"
+    return Effect(error > tolerance, f"small strain would be wrong by up to {error:.1%} ({source}), {tolerance:.1%} is allowed")
 
 
 def _ridges(scene: Scene, moves: bool, contact: ContactEstimate, tolerance: float, rules: Rules) -> Effect:

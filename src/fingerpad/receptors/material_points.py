@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from fingerpad.mechanics.finite_strain import deviator_square, push_forward
+from fingerpad.mechanics.finite_strain import deviator_square, isochoric_energy, isochoric_stress, push_forward
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import Branches
 
@@ -82,14 +82,20 @@ def _inverse_map(element, nodes, points):
     return xi
 
 
-def _mean_of_neighbours(space, shear, points):
+def _layers(body):
+    """(ne,) number of the material that each element is of: its shear modulus and its law."""
+    laws = [part.elements[:, None] * np.column_stack([np.ones(len(part.constants)), part.constants]) for part in body.laws]
+    return np.unique(np.column_stack([body.shear, *laws]), axis=0, return_inverse=True)[1].ravel()
+
+
+def _mean_of_neighbours(space, layers, points):
     """Where points are sampled, and the sparse matrix (nr, samples) of their means; None where each is sampled once.
 
     Strain jumps from element to element; a value from one side would tell left from right. So a point on a border takes the mean
     over the elements there that are of one layer with the nearest.
     """
     owner, found = _containing(space, points)
-    layer = shear[found.element]
+    layer = layers[found.element]
     same = layer == layer[np.unique(owner, return_index=True)[1]][owner]
     owner, found = owner[same], Location(found.element[same], found.xi[same])
     if len(owner) == len(points):
@@ -113,7 +119,7 @@ class MaterialPoints:
         space = body.space
         points = np.atleast_2d(points)
         recover = _quadratic_recovery if space.element.pressure_modes == 1 else _mean_of_neighbours
-        self._place(body, *recover(space, body.shear, points), shear_instantaneous)
+        self._place(body, *recover(space, _layers(body), points), shear_instantaneous)
 
     @classmethod
     def centres(cls, body, shear_instantaneous: np.ndarray) -> "MaterialPoints":
@@ -130,9 +136,10 @@ class MaterialPoints:
         self.cells = space.cells[element]
         nodes = space.points[self.cells]
         jacobian = np.einsum("nai,naj->nij", slopes, nodes)
-        self.grad = np.einsum("nij,naj->nai", np.linalg.inv(jacobian), slopes)
+        self.grad = np.ascontiguousarray(np.einsum("nij,naj->nai", np.linalg.inv(jacobian), slopes))
         self.psi = space.pressure_modes(element, np.einsum("na,nai->ni", values, nodes))
         self.shear, self.bulk = body.shear[element], body.bulk[element]
+        self.laws = tuple(part.at(element) for part in body.laws)
         self.shear_instantaneous = None if shear_instantaneous is None else np.asarray(shear_instantaneous)[element]
         self._linear = body.geometrically_linear
         prony = body.prony if self._linear else body.branches and body.branches.prony
@@ -141,8 +148,9 @@ class MaterialPoints:
     def _gradient(self, body):
         return np.einsum("nai,naj->nij", body.u[self.cells], self.grad)
 
-    def _isochoric(self, gradient):
+    def _isochoric(self, body):
         if self._linear:
+            gradient = self._gradient(body)
             strain = 0.5 * (gradient + gradient.swapaxes(1, 2))
             mean = np.trace(strain, axis1=1, axis2=2) / 3
             return (
@@ -150,20 +158,13 @@ class MaterialPoints:
                 * self.shear[:, None]
                 * np.stack([strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], -mean], axis=1)
             )
-        f = np.eye(2) + gradient
-        c = np.einsum("nki,nkj->nij", f, f)
-        det = c[:, 0, 0] * c[:, 1, 1] - c[:, 0, 1] ** 2
-        i1 = c[:, 0, 0] + c[:, 1, 1] + 1
-        modulus, third = self.shear * det ** (-1 / 3), i1 / 3 / det
-        return modulus[:, None] * np.stack(
-            [1 - third * c[:, 1, 1], 1 - third * c[:, 0, 0], third * c[:, 0, 1], 1 - i1 / 3], axis=1
-        )
+        return isochoric_stress(self.laws, body.u, self.cells, self.grad[:, None], self.shear)[:, 0]
 
     def __call__(self, body, dt: float) -> None:
         """Follow one converged substep of ``dt`` seconds."""
         if self.branches is not None:
             self.branches.begin(dt)
-            self.branches.commit(self._isochoric(self._gradient(body)))
+            self.branches.commit(self._isochoric(body))
 
     def sample(self, body) -> dict[str, np.ndarray]:
         """What a receptor could respond to, (nr,) each, at the body's present state.
@@ -174,7 +175,7 @@ class MaterialPoints:
         (J - 1 as the element projects it).
         """
         gradient, dilatation = self._gradient(body), self._dilatation(body)
-        stress = self._isochoric(gradient)
+        stress = self._isochoric(body)
         branch = [] if self.branches is None else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
         if self._linear:
             f, jac, strain = np.broadcast_to(np.eye(2), gradient.shape), 1.0, 0.5 * (gradient + gradient.swapaxes(1, 2))
@@ -183,8 +184,7 @@ class MaterialPoints:
         else:
             f = np.eye(2) + gradient
             jac = f[:, 0, 0] * f[:, 1, 1] - f[:, 0, 1] * f[:, 1, 0]
-            i1 = np.einsum("nij,nij->n", f, f) + 1
-            network = 0.5 * self.shear * (jac ** (-2 / 3) * i1 - 3)
+            network = isochoric_energy(self.laws, f, self.shear)
             stretch, strain = np.linalg.svd(f, compute_uv=False)[:, ::-1], logarithmic_strain(f)
         volumetric = 0.5 * self.bulk * dilatation**2
         found = strain_energies(f, strain, stress, branch, network, self.shear, self.shear_instantaneous, volumetric)
@@ -207,7 +207,7 @@ class MaterialPoints:
         else:
             f = np.eye(2) + gradient
             jac, strains = np.linalg.det(f), np.linalg.svd(f, compute_uv=False)[:, ::-1] - 1
-        total = self._isochoric(gradient) + (0.0 if self.branches is None else self.branches.q.sum(0))
+        total = self._isochoric(body) + (0.0 if self.branches is None else self.branches.q.sum(0))
         stress = push_forward(f, total) / jac[:, None] + (self.bulk * self._dilatation(body))[:, None] * [1, 1, 0, 1]
         return self._recovered({"cauchy_stress": stress, "principal_strains": strains})
 
@@ -218,7 +218,7 @@ class MaterialPoints:
         return found if self.recovery is None else {name: self.recovery @ values for name, values in found.items()}
 
 
-def _quadratic_recovery(space, shear, points, neighbours: int = 24):
+def _quadratic_recovery(space, layers, points, neighbours: int = 24):
     """Quadrature points to sample and the sparse matrix (nr, samples) that fits a quadratic through those of the same layer.
 
     Energies of linear elements are wrong by several per cent at a point but much better at their quadrature points, so each
@@ -226,10 +226,10 @@ def _quadratic_recovery(space, shear, points, neighbours: int = 24):
     """
     nq, hosts = len(space.element.weights), locate(space, points).element
     position = np.einsum("qa,eai->eqi", space.element.values, space.points[space.cells]).reshape(-1, 2)
-    layer = np.repeat(shear, nq)
+    layer = np.repeat(layers, nq)
     near, weights = [None] * len(points), [None] * len(points)
-    for modulus in np.unique(shear[hosts]):
-        same, here = np.flatnonzero(layer == modulus), np.flatnonzero(shear[hosts] == modulus)
+    for number in np.unique(layers[hosts]):
+        same, here = np.flatnonzero(layer == number), np.flatnonzero(layers[hosts] == number)
         found = same[cKDTree(position[same]).query(points[here], k=np.arange(1, min(neighbours, len(same)) + 1))[1]]
         x, y = np.moveaxis(
             (position[found] - points[here, None]) / np.sqrt(space.weight[hosts[here]].sum(1))[:, None, None], -1, 0

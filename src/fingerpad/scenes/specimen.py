@@ -25,7 +25,8 @@ from pydantic.json_schema import SkipJsonSchema
 from fingerpad.documents import HIDE, Problem, Strict, explain, read_yaml
 from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity
 from fingerpad.files import BUILT_IN
-from fingerpad.units import format_quantity
+from fingerpad.laws import LAWS, Law
+from fingerpad.units import QuantityError, format_quantity, parse_number
 
 DEFAULT_SPECIMEN = "thesis"
 
@@ -102,6 +103,54 @@ class Outline(Strict):
         return self
 
 
+class ChosenLaw(Strict):
+    """A law of fingerpad.laws by its name, with its constants."""
+
+    name: str
+    constants: tuple[float, ...] = ()
+
+    @property
+    def law(self) -> Law:
+        """The law itself."""
+        return LAWS[self.name]
+
+    @model_serializer
+    def _as_read(self) -> Any:
+        return {"name": self.name, **dict(zip(self.law.constants, self.constants, strict=True))} if self.constants else self.name
+
+
+def _read_law(value: Any) -> Any:
+    """A law by its name, or by a mapping with the name and any of its constants."""
+    if isinstance(value, ChosenLaw):
+        return value
+    given = dict(value) if isinstance(value, Mapping) else {"name": value}
+    name, key = given.pop("name", None), ("name",) if isinstance(value, Mapping) else ()
+    if not isinstance(name, str) or name not in LAWS:
+        raise Problem("is not the name of a law" if name is not None else "is missing", ", ".join(LAWS), key)
+    known, constants = LAWS[name].constants, []
+    for key in given:
+        if key not in known:
+            raise Problem(f"is no constant of {name}", ", ".join(known) or "none", (str(key)[:60],), HIDE)
+    for key, constant in known.items():
+        try:
+            value = parse_number(given.get(key, constant.default))
+        except QuantityError as error:
+            raise Problem(error.problem, error.allowed, (key,)) from None
+        if not constant.low <= value <= constant.high:
+            raise Problem("is outside the range", f"a number from {constant.low:g} to {constant.high:g}", (key,))
+        constants.append(value)
+    return ChosenLaw(name=name, constants=tuple(constants))
+
+
+_LAW_SURFACE = (
+    Literal[tuple(LAWS)]
+    | Annotated[
+        dict[str, float | str],
+        Field(description="name of a law and its constants, such as {name: yeoh, second: 0.5, third: 0.1}"),
+    ]
+)
+
+
 class Layer(Strict):
     """Isotropic elasticity of one layer."""
 
@@ -111,6 +160,15 @@ class Layer(Strict):
     """Young's modulus, in the state named by `moduli`."""
     poisson_ratio: number("a number above -1 and below 0.5", -1.0, 0.5)
     """Poisson's ratio, in the state named by `moduli`."""
+    law: Annotated[ChosenLaw, BeforeValidator(_read_law, json_schema_input_type=_LAW_SURFACE)] = ChosenLaw(name="neo_hooke")
+    """How it stiffens when strained: the name of a law, or keys name and its constants; neo_hooke unless given."""
+
+    @model_serializer(mode="wrap")
+    def _without_default(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        data = handler(self)
+        if self.law == type(self).model_fields["law"].default:
+            del data["law"]
+        return data
 
 
 class Layers(Strict):
