@@ -39,6 +39,10 @@ class Problem(ValueError):
         super().__init__(": ".join(filter(None, [dotted(key), problem])) + _or_allowed(allowed))
         self.problem, self.allowed, self.key, self.value = problem, allowed, tuple(key), value
 
+    def below(self, *key: str | int) -> Problem:
+        """The same problem met at a place further up, `key`, whose part it was raised about."""
+        return Problem(self.problem, self.allowed, key + self.key, self.value)
+
 
 class _Short(reprlib.Repr):
     """Short representation of anything a document can hold, however nested or long."""

@@ -33,6 +33,19 @@ from fingerpad.scenes.specimen import (
     SpecimenFile,
     source_of,
 )
+from fingerpad.stimuli.motion import (
+    LEGS,
+    MAXIMUM_STEPS,
+    Hold,
+    Lift,
+    Motion,
+    PressToDepth,
+    PressToForce,
+    Slide,
+    StepAndRepeat,
+    check_programme,
+    end_time,
+)
 from fingerpad.units import QuantityError, format_quantity, parse_number
 
 __all__ = [
@@ -44,8 +57,6 @@ __all__ = [
 
 EFFECTS = ("friction", "viscoelasticity", "finite_strain", "symmetry", "ridges")
 LEVELS = ("draft", "thesis", "fine")
-MAXIMUM_STEPS = 100_000
-MAXIMUM_STROKE = 10.0
 MAXIMUM_SNAPSHOTS = 1000
 
 
@@ -205,8 +216,8 @@ def _check_shape(value: Any) -> Any:
 def _tag(value: Any) -> str | None:
     """Label of the union member that `value` is or describes."""
     if isinstance(value, Mapping):
-        return next((f"<{key}>" for key in (value.get("shape"), *_LEGS) if key in _SHAPES or key in value), None)
-    return next((f"<{key}>" for key, model in {**_SHAPES, **_LEGS}.items() if isinstance(value, model)), None)
+        return next((f"<{key}>" for key in _SHAPES if key == value.get("shape")), None)
+    return next((f"<{key}>" for key, model in _SHAPES.items() if isinstance(value, model)), None)
 
 
 Stimulus = Annotated[
@@ -221,132 +232,9 @@ Stimulus = Annotated[
 ]
 
 
-# --- motion ---------------------------------------------------------------------------------------
-
-
-_PUSH = ": the stimulus must press into the skin"
-
-
-class PressToForce(Strict):
-    """Press until the force is reached."""
-
-    press_to_force: quantity("force", note=_PUSH)
-    """Normal force at the end of the leg."""
-    rate: quantity("force_rate", note=_PUSH) | None = None
-    """Rate of the force; left out for the steady state."""
-
-
-class PressToDepth(Strict):
-    """Press until the indentation depth is reached."""
-
-    press_to_depth: quantity("length", note=_PUSH)
-    """Depth of the stimulus below first touch at the end of the leg."""
-    speed: quantity("speed", note=_PUSH) | None = None
-    """Speed of the stimulus; left out for the steady state."""
-
-
-class Hold(Strict):
-    """Keep what the leg before prescribed."""
-
-    hold: Time
-    """Duration."""
-
-
-class Slide(Strict):
-    """Stroke the skin: the pad moves along the surface while force or depth is kept."""
-
-    slide: quantity("length", "nonzero")
-    """Distance the pad moves along x of the surface; negative towards its start."""
-    speed: quantity("speed", note=": the sign of slide is its direction") | None = None
-    """Speed along the surface; left out for a stroke so slow that all is relaxed."""
-    keep: Literal["force", "depth"] = "force"
-    """What is kept as it is when the stroke begins: the normal force, or the height of the surface."""
-
-
-class Lift(Strict):
-    """Let the finger go: raise the stimulus to where it no more than touches the undeformed skin; a hold then is recovery."""
-
-    lift: quantity("speed", note=_PUSH, words=("steady",))
-    """Speed of the stimulus, or steady for a release so slow that all is relaxed."""
-
-    @property
-    def speed(self) -> float | None:
-        """Speed of the stimulus, m/s; None for the steady state."""
-        return None if self.lift == "steady" else self.lift
-
-
-class StepAndRepeat(Strict):
-    """Move on without stroking: lift, recover, press again to what the leg before reached, over and over."""
-
-    step: quantity("length", "nonzero")
-    """Distance covered in all; negative towards the start of the surface."""
-    every: Length
-    """Distance from one indentation to the next."""
-
-    @model_validator(mode="after")
-    def _check(self) -> StepAndRepeat:
-        whole = format_quantity(abs(self.step), "length")
-        count = abs(self.step) / self.every
-        if count < 1 - 1e-9:
-            raise Problem("is more than the whole distance", f"up to {whole}", ("every",))
-        if count > MAXIMUM_STEPS:
-            raise Problem(f"makes more than {MAXIMUM_STEPS} indentations", "a larger distance", ("every",))
-        if abs(count - round(count)) > 1e-6 * count:
-            raise Problem("does not divide the whole distance", f"a whole fraction of {whole}", ("every",))
-        return self
-
-
-_LEGS = {
-    "press_to_force": PressToForce,
-    "press_to_depth": PressToDepth,
-    "hold": Hold,
-    "lift": Lift,
-    "slide": Slide,
-    "step": StepAndRepeat,
-}
-
-
-def _check_leg(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        kinds = [key for key in _LEGS if key in value]
-        first = next(iter(value), None)
-        if not kinds:
-            near = f", {nearest(first, _LEGS)}" if isinstance(first, str) else ""
-            raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(_LEGS)}")
-        if len(kinds) > 1:
-            raise Problem(f"is two legs in one: {' and '.join(kinds)}", "one of them in each entry of motion")
-    elif not isinstance(value, tuple(_LEGS.values())):
-        raise Problem("is not a leg", _LEG_EXAMPLE)
-    return value
-
-
-def _kind(leg: Any) -> str:
-    """Key that names a leg's kind."""
-    return next(key for key, model in _LEGS.items() if isinstance(leg, model))
-
-
-_LEG_EXAMPLE = 'legs such as {press_to_force: "20 gf", rate: "40 gf/s"} and {hold: "2 s"}'
-
-Leg = Annotated[
-    Annotated[PressToForce, Tag("<press_to_force>")]
-    | Annotated[PressToDepth, Tag("<press_to_depth>")]
-    | Annotated[Hold, Tag("<hold>")]
-    | Annotated[Lift, Tag("<lift>")]
-    | Annotated[Slide, Tag("<slide>")]
-    | Annotated[StepAndRepeat, Tag("<step>")],
-    Discriminator(_tag),
-    BeforeValidator(_check_leg),
-]
-
 _TAGS = frozenset(
-    f"<{key}>" for key in (*_SHAPES, *_LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own")
+    f"<{key}>" for key in (*_SHAPES, *LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own")
 )
-
-
-def _check_motion(legs: Any) -> Any:
-    if not listed(legs):
-        raise Problem("is empty", _LEG_EXAMPLE)
-    return legs
 
 
 # --- outputs, accuracy, effects -------------------------------------------------------------------
@@ -493,7 +381,7 @@ class Scene(Strict):
     """What touches it: {shape: flat}, or cylinder, bar, line, sampled, wavy."""
     friction: number("a coefficient of zero or more", 0.0, math.inf, low_included=True) = 0.0
     """Coulomb coefficient of friction."""
-    motion: Annotated[tuple[Leg, ...], BeforeValidator(_check_motion)]
+    motion: Motion
     """Programme of legs, one after the other."""
     outputs: Outputs
     """What is recorded."""
@@ -517,7 +405,10 @@ class Scene(Strict):
 
     @model_validator(mode="after")
     def _check(self) -> Scene:
-        self._check_programme()
+        try:
+            check_programme(self.motion, self.stimulus.length if isinstance(self.stimulus, Wavy) else math.inf)
+        except Problem as problem:
+            raise problem.below("motion") from None
         if self.specimen.mesh is None:
             self._check_inside()
         end = self.end_time
@@ -548,38 +439,6 @@ class Scene(Strict):
             raise Problem(f"makes more than {MAXIMUM_SNAPSHOTS} snapshots", f"{least} or more", key)
         return tuple(round(k * every, 12) for k in range(1, int(end / every * (1 + 1e-9)) + 1))
 
-    def _check_programme(self) -> None:
-        if not isinstance(self.motion[0], (PressToForce, PressToDepth)):
-            raise Problem(
-                "comes before anything is pressed",
-                "a press_to_force or press_to_depth leg first",
-                ("motion", 0, _kind(self.motion[0])),
-            )
-        last: tuple[str, float] | None = None
-        lifted = False
-        along, length = 0.0, self.stimulus.length if isinstance(self.stimulus, Wavy) else math.inf
-        for i, leg in enumerate(self.motion):
-            key = _kind(leg)
-            target = (key, getattr(leg, key))
-            if lifted and isinstance(leg, (Slide, StepAndRepeat, Lift)):
-                raise Problem("comes when nothing is pressed any more", "a press before it, or a hold", ("motion", i, key))
-            lifted = isinstance(leg, Lift) or (lifted and isinstance(leg, Hold))
-            if isinstance(leg, Lift):
-                last = None
-            elif isinstance(leg, (Slide, StepAndRepeat)):
-                along += target[1]
-                if abs(target[1]) > MAXIMUM_STROKE:
-                    raise Problem("is too long a way", f"up to {MAXIMUM_STROKE:g} m", ("motion", i, key))
-                if math.isfinite(length) and not -1e-9 <= along <= length + 1e-9:
-                    end = format_quantity(length, "length")
-                    raise Problem("leads off the surface", f"to stay from 0 mm to {end} along it", ("motion", i, key))
-                if isinstance(leg, Slide) and last and last[0] != f"press_to_{leg.keep}":
-                    last = None
-            elif not isinstance(leg, Hold):
-                if target == last:
-                    raise Problem("is where the leg before ended", "another target, or a hold", ("motion", i, key))
-                last = target
-
     def _check_inside(self) -> None:
         thickness, half_width = self.specimen.soft_thickness, self.specimen.half_width
         below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the {self._ground}"
@@ -608,29 +467,7 @@ class Scene(Strict):
     @property
     def end_time(self) -> float | None:
         """Duration of the motion, s, steady legs taking none; None if a change of control leaves it open."""
-        time, force, depth, moved = 0.0, 0.0, 0.0, False
-        for leg in self.motion:
-            moved = moved or isinstance(leg, (Slide, StepAndRepeat))
-            if isinstance(leg, Hold):
-                time += leg.hold
-            elif isinstance(leg, PressToForce):
-                if leg.rate is not None:
-                    time += abs(leg.press_to_force - force) / leg.rate
-                force, depth = leg.press_to_force, math.nan
-            elif isinstance(leg, Slide):
-                if leg.speed is not None:
-                    time += abs(leg.slide) / leg.speed
-                force, depth = (force, math.nan) if leg.keep == "force" else (math.nan, depth)
-            elif isinstance(leg, PressToDepth):
-                if leg.speed is not None:
-                    time += abs(leg.press_to_depth - depth) / leg.speed
-                force, depth = math.nan, leg.press_to_depth
-            elif isinstance(leg, Lift):
-                left = math.nan if moved else 0.0  # where the skin is touched depends on the surface there
-                if leg.speed is not None:
-                    time += abs(depth - left) / leg.speed
-                force, depth = 0.0, left
-        return None if math.isnan(time) else time
+        return end_time(self.motion)
 
     def varied(self, changes: Mapping[str, Any]) -> Scene:
         """Copy of the scene with some of its keys changed, checked like a scene that was read.

@@ -1,13 +1,27 @@
-"""Motion programmes: the legs of a scene turned into steps."""
+"""Motion programmes: the legs of a scene, each its keys and the steps it turns into.
+
+A new leg is one class here: a subclass of :class:`Leg` whose first field is its key in a scene. What the planner and the checks
+of a programme ask of legs are its attributes; nothing outside this module asks which leg it is.
+"""
+
+from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Union
 
 import numpy as np
+from pydantic import BeforeValidator, Discriminator, Tag, model_validator
+
+from fingerpad.documents import Problem, Strict, nearest
+from fingerpad.fields import Length, Time, listed, quantity
+from fingerpad.units import format_quantity
 
 #: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed after it.
 STEADY = 1e9
+MAXIMUM_STEPS = 100_000
+MAXIMUM_STROKE = 10.0
 
 
 @dataclass(frozen=True)
@@ -27,6 +41,341 @@ class Step:
     fresh: bool = False
 
 
+class Goal(NamedTuple):
+    """What is prescribed: force (N/m) or depth (m), the other None, and the place along the surface (m)."""
+
+    force: float | None
+    depth: float | None
+    distance: float
+
+
+class Reached(NamedTuple):
+    """Where a leg finds the pad: force (N/m), depth (m), and the depth (m) at which the undeformed skin is just touched."""
+
+    force: float
+    depth: float
+    touching: float = 0.0
+
+
+class Stepping(NamedTuple):
+    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of a slide (m)."""
+
+    steps: int
+    contact_length: float
+    timed: bool
+    slide_step: float | None
+
+
+class Outlook(NamedTuple):
+    """What is known of a programme before it is run: s, N, m (NaN: not known), and has the pad moved along the surface?"""
+
+    time: float = 0.0
+    force: float = 0.0
+    depth: float = 0.0
+    moved: bool = False
+
+
+class Leg(Strict):
+    """Base of all legs.
+
+    Attributes:
+        key: its name in a scene. presses: does it press to a target, so that a programme may begin with it? needs_contact: is it
+        senseless when nothing is pressed? releases: is nothing pressed after it? loads: does it deform the skin? strokes: does it
+        rub the skin? fresh: are its steps?
+        along: m, its way along the surface. speed: m/s, None for a steady leg, or one that has none.
+    """
+
+    key: ClassVar[str]
+    presses: ClassVar[bool] = False
+    needs_contact: ClassVar[bool] = False
+    releases: ClassVar[bool] = False
+    loads: ClassVar[bool] = True
+    strokes: ClassVar[bool] = False
+    fresh: ClassVar[bool] = False
+    along: ClassVar[float] = 0.0
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        cls.key = next(iter(cls.model_fields))
+        LEGS[cls.key] = cls
+
+    @property
+    def target(self) -> Any:
+        """Value of its key."""
+        return getattr(self, self.key)
+
+    def path(self, at: Goal, last: float | None, reached: Reached, how: Stepping) -> tuple[np.ndarray, list[Goal], float | None]:
+        """Durations (s) of its steps and what each reaches, and the last of these durations (None: steady).
+
+        Args:
+            at: what is prescribed when it begins. last: s, duration of the step before. reached: where the pad is. how: finely.
+        """
+        raise NotImplementedError
+
+    def ahead(self, outlook: Outlook) -> Outlook:
+        """What is known after it."""
+        raise NotImplementedError
+
+    def leaves(self, target: tuple[str, float] | None) -> tuple[str, float] | None:
+        """The key and value that are prescribed after it, if those before it were `target`."""
+        return target
+
+
+#: key in a scene -> leg
+LEGS: dict[str, type[Leg]] = {}
+
+_PUSH = ": the stimulus must press into the skin"
+
+
+def _ramp(start: float, end: float, speed: float | None, steps: int) -> tuple[list[float], np.ndarray, float | None]:
+    """Values from start to end, durations and the last of these; steady without a speed.
+
+    A steady press is path-independent: increments only guide Newton's method and let the energy be balanced.
+    """
+    count = min(steps, 8) if speed is None else steps
+    last = None if speed is None else abs(end - start) / speed / count
+    values = [start + (end - start) * k / count for k in range(1, count)] + [end]
+    return values, np.full(count, STEADY if speed is None else last), last
+
+
+def _taking(way: float, speed: float | None) -> float:
+    """Duration, s, of a way at a speed; a steady leg takes none."""
+    return 0.0 if speed is None else abs(way) / speed
+
+
+class PressToForce(Leg):
+    """Press until the force is reached."""
+
+    presses = True
+
+    press_to_force: quantity("force", note=_PUSH)
+    """Normal force at the end of the leg."""
+    rate: quantity("force_rate", note=_PUSH) | None = None
+    """Rate of the force; left out for the steady state."""
+
+    speed: ClassVar[None] = None
+
+    def path(self, at, last, reached, how):
+        rate = self.rate and self.rate / how.contact_length
+        values, sizes, last = _ramp(reached.force, self.press_to_force / how.contact_length, rate, how.steps)
+        return sizes, [Goal(value, None, at.distance) for value in values], last
+
+    def ahead(self, outlook):
+        time = outlook.time + _taking(self.press_to_force - outlook.force, self.rate)
+        return outlook._replace(time=time, force=self.press_to_force, depth=math.nan)
+
+    def leaves(self, target):
+        return self.key, self.target
+
+
+class PressToDepth(Leg):
+    """Press until the indentation depth is reached."""
+
+    presses = True
+
+    press_to_depth: quantity("length", note=_PUSH)
+    """Depth of the stimulus below first touch at the end of the leg."""
+    speed: quantity("speed", note=_PUSH) | None = None
+    """Speed of the stimulus; left out for the steady state."""
+
+    def path(self, at, last, reached, how):
+        values, sizes, last = _ramp(reached.depth, self.press_to_depth, self.speed, how.steps)
+        return sizes, [Goal(None, value, at.distance) for value in values], last
+
+    def ahead(self, outlook):
+        time = outlook.time + _taking(self.press_to_depth - outlook.depth, self.speed)
+        return outlook._replace(time=time, force=math.nan, depth=self.press_to_depth)
+
+    def leaves(self, target):
+        return self.key, self.target
+
+
+class Hold(Leg):
+    """Keep what the leg before prescribed."""
+
+    loads = False
+
+    hold: Time
+    """Duration."""
+
+    speed: ClassVar[None] = None
+
+    def path(self, at, last, reached, how):
+        even = self.hold / how.steps
+        sizes = geometric(self.hold, how.steps, min(last or even, even)) if how.timed else np.array([self.hold])
+        return sizes, [at] * len(sizes), last
+
+    def ahead(self, outlook):
+        return outlook._replace(time=outlook.time + self.hold)
+
+
+class Lift(Leg):
+    """Let the finger go: raise the stimulus to where it no more than touches the undeformed skin; a hold then is recovery."""
+
+    needs_contact = releases = True
+
+    lift: quantity("speed", note=_PUSH, words=("steady",))
+    """Speed of the stimulus, or steady for a release so slow that all is relaxed."""
+
+    @property
+    def speed(self) -> float | None:
+        """Speed of the stimulus, m/s; None for the steady state."""
+        return None if self.lift == "steady" else self.lift
+
+    def path(self, at, last, reached, how):
+        values, sizes, last = _ramp(reached.depth, reached.touching, self.speed, how.steps)
+        return sizes, [Goal(None, value, at.distance) for value in values], last
+
+    def ahead(self, outlook):
+        left = math.nan if outlook.moved else 0.0  # where the skin is touched depends on the surface there
+        return outlook._replace(time=outlook.time + _taking(outlook.depth - left, self.speed), force=0.0, depth=left)
+
+    def leaves(self, target):
+        return None
+
+
+class Slide(Leg):
+    """Stroke the skin: the pad moves along the surface while force or depth is kept."""
+
+    needs_contact = strokes = True
+
+    slide: quantity("length", "nonzero")
+    """Distance the pad moves along x of the surface; negative towards its start."""
+    speed: quantity("speed", note=": the sign of slide is its direction") | None = None
+    """Speed along the surface; left out for a stroke so slow that all is relaxed."""
+    keep: Literal["force", "depth"] = "force"
+    """What is kept as it is when the stroke begins: the normal force, or the height of the surface."""
+
+    @property
+    def along(self) -> float:
+        """Way along the surface, m."""
+        return self.slide
+
+    def path(self, at, last, reached, how):
+        count = math.ceil(abs(self.slide) / how.slide_step * (1 - 1e-9)) if how.slide_step else how.steps
+        if self.keep == "force":
+            force, depth = reached.force if at.force is None else at.force, None
+        else:
+            force, depth = None, reached.depth if at.depth is None else at.depth
+        last = None if self.speed is None else abs(self.slide) / self.speed / count
+        goals = [Goal(force, depth, at.distance + self.slide * k / count) for k in range(1, count + 1)]
+        return np.full(count, last or STEADY), goals, last
+
+    def ahead(self, outlook):
+        kept = {"force": math.nan, "depth": math.nan} | {self.keep: getattr(outlook, self.keep)}
+        return outlook._replace(time=outlook.time + _taking(self.slide, self.speed), moved=True, **kept)
+
+    def leaves(self, target):
+        return target if target and target[0] == f"press_to_{self.keep}" else None
+
+
+class StepAndRepeat(Leg):
+    """Move on without stroking: lift, recover, press again to what the leg before reached, over and over."""
+
+    needs_contact = fresh = True
+
+    step: quantity("length", "nonzero")
+    """Distance covered in all; negative towards the start of the surface."""
+    every: Length
+    """Distance from one indentation to the next."""
+
+    speed: ClassVar[None] = None
+
+    @model_validator(mode="after")
+    def _check(self) -> StepAndRepeat:
+        whole = format_quantity(abs(self.step), "length")
+        count = abs(self.step) / self.every
+        if count < 1 - 1e-9:
+            raise Problem("is more than the whole distance", f"up to {whole}", ("every",))
+        if count > MAXIMUM_STEPS:
+            raise Problem(f"makes more than {MAXIMUM_STEPS} indentations", "a larger distance", ("every",))
+        if abs(count - round(count)) > 1e-6 * count:
+            raise Problem("does not divide the whole distance", f"a whole fraction of {whole}", ("every",))
+        return self
+
+    @property
+    def along(self) -> float:
+        """Way along the surface, m."""
+        return self.step
+
+    def path(self, at, last, reached, how):
+        count = round(abs(self.step) / self.every)
+        goals = [Goal(at.force, at.depth, at.distance + self.step * k / count) for k in range(1, count + 1)]
+        return np.full(count, STEADY), goals, None
+
+    def ahead(self, outlook):
+        return outlook._replace(moved=True)
+
+
+# --- programmes -------------------------------------------------------------------------------------------------------------
+
+LEG_EXAMPLE = 'legs such as {press_to_force: "20 gf", rate: "40 gf/s"} and {hold: "2 s"}'
+
+
+def _check_leg(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        kinds = [key for key in LEGS if key in value]
+        first = next(iter(value), None)
+        if not kinds:
+            near = f", {nearest(first, LEGS)}" if isinstance(first, str) else ""
+            raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(LEGS)}")
+        if len(kinds) > 1:
+            raise Problem(f"is two legs in one: {' and '.join(kinds)}", "one of them in each entry of motion")
+    elif not isinstance(value, Leg):
+        raise Problem("is not a leg", LEG_EXAMPLE)
+    return value
+
+
+def _tag(value: Any) -> str | None:
+    if isinstance(value, Leg):
+        return f"<{value.key}>"
+    return next((f"<{key}>" for key in LEGS if key in value), None)
+
+
+def _check_motion(legs: Any) -> Any:
+    if not listed(legs):
+        raise Problem("is empty", LEG_EXAMPLE)
+    return legs
+
+
+AnyLeg = Annotated[
+    Union[tuple(Annotated[leg, Tag(f"<{key}>")] for key, leg in LEGS.items())],  # noqa: UP007
+    Discriminator(_tag),
+    BeforeValidator(_check_leg),
+]
+Motion = Annotated[tuple[AnyLeg, ...], BeforeValidator(_check_motion)]
+"""Field type: legs, one after the other."""
+
+
+def check_programme(legs: Sequence[Leg], length: float = math.inf) -> None:
+    """Refuses legs that make no sense one after the other, on a surface of `length` m; `Problem` with the key below motion."""
+    if not legs[0].presses:
+        raise Problem("comes before anything is pressed", "a press_to_force or press_to_depth leg first", (0, legs[0].key))
+    last: tuple[str, float] | None = None
+    way, pressed = 0.0, False
+    for i, leg in enumerate(legs):
+        if leg.needs_contact and not pressed:
+            raise Problem("comes when nothing is pressed any more", "a press before it, or a hold", (i, leg.key))
+        way += leg.along
+        if abs(leg.along) > MAXIMUM_STROKE:
+            raise Problem("is too long a way", f"up to {MAXIMUM_STROKE:g} m", (i, leg.key))
+        if leg.along and math.isfinite(length) and not -1e-9 <= way <= length + 1e-9:
+            end = format_quantity(length, "length")
+            raise Problem("leads off the surface", f"to stay from 0 mm to {end} along it", (i, leg.key))
+        if leg.presses and (leg.key, leg.target) == last:
+            raise Problem("is where the leg before ended", "another target, or a hold", (i, leg.key))
+        last = leg.leaves(last)
+        pressed = leg.presses or (pressed and not leg.releases)
+
+
+def end_time(legs: Sequence[Leg]) -> float | None:
+    """Duration of a programme, s, steady legs taking none; None if a change of control leaves it open."""
+    outlook = Outlook()
+    for leg in legs:
+        outlook = leg.ahead(outlook)
+    return None if math.isnan(outlook.time) else outlook.time
+
+
 def geometric(duration: float, count: int, first: float) -> np.ndarray:
     """``count`` step sizes (s) that sum to ``duration``, start at ``first`` and grow by a constant ratio (never shrink)."""
     if count == 1 or first * count >= duration * (1 - 1e-9):
@@ -39,68 +388,40 @@ def geometric(duration: float, count: int, first: float) -> np.ndarray:
 
 
 def programme(
-    legs: Sequence,
+    legs: Sequence[Leg],
     *,
     steps: int,
     contact_length: float,
     timed: bool = True,
     snapshots: Sequence[float] = (),
-    present: Callable[[], tuple[float, float, float]] | None = None,
+    present: Callable[[], tuple[float, ...]] | None = None,
     slide_step: float | None = None,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
     Args:
-        legs: validated legs (press_to_force/rate, press_to_depth/speed, hold, lift, slide/speed/keep, step/every), SI, newtons.
+        legs: SI, newtons.
         steps: per leg. contact_length: m, turns N into N/m.
         timed: does time matter? If not, a press is load increments and a hold one step.
         snapshots: times (s) at which a step must end.
-        present: asked when a leg begins for the force (N/m) and depth (m) reached so far, which a change between force and
-            depth control needs, and for the depth (m) at which the undeformed skin is no more than touched, where a lift ends;
-            without it such a leg is taken to start from zero, and a lift to end there.
+        present: asked when a leg begins for what has been :class:`Reached` so far, which a change between force and depth
+            control needs, and a lift; without it such a leg is taken to start from zero, and a lift to end there.
         slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
     """
-    time, force, depth, distance, last = 0.0, 0.0, 0.0, 0.0, None
+    how = Stepping(steps, contact_length, timed, slide_step)
+    time, at, last = 0.0, Goal(None, None, 0.0), None
     for number, leg in enumerate(legs):
-        kind = next(key for key in ("press_to_force", "press_to_depth", "hold", "lift", "slide", "step") if hasattr(leg, key))
-        target = getattr(leg, kind)
-        reached = present() if present else (force or 0.0, depth or 0.0, 0.0)
-        if kind == "hold":
-            sizes = geometric(target, steps, min(last or target / steps, target / steps)) if timed else np.array([target])
-            goals = [(force, depth, distance)] * len(sizes)
-        elif kind in ("slide", "step"):
-            if kind == "step":
-                count, speed = round(abs(target) / leg.every), None
-            else:
-                count, speed = math.ceil(abs(target) / slide_step * (1 - 1e-9)) if slide_step else steps, leg.speed
-                if leg.keep == "force":
-                    force, depth = reached[0] if force is None else force, None
-                else:
-                    force, depth = None, reached[1] if depth is None else depth
-            last = None if speed is None else abs(target) / speed / count
-            sizes = np.full(count, last or STEADY)
-            goals = [(force, depth, distance + target * k / count) for k in range(1, count + 1)]
-        else:
-            by_force = kind == "press_to_force"
-            start, end = reached[0 if by_force else 1], target / contact_length if by_force else target
-            end = reached[2] if kind == "lift" else end
-            speed = leg.rate and leg.rate / contact_length if by_force else leg.speed
-            # a steady press is path-independent: increments only guide Newton's method and let the energy be balanced
-            count = min(steps, 8) if speed is None else steps
-            last = None if speed is None else abs(end - start) / speed / count
-            sizes = np.full(count, STEADY if speed is None else last)
-            path = [start + (end - start) * k / count for k in range(1, count)] + [end]
-            goals = [(value, None, distance) if by_force else (None, value, distance) for value in path]
+        reached = Reached(*present()) if present else Reached(at.force or 0.0, at.depth or 0.0)
+        sizes, goals, last = leg.path(at, last, reached, how)
         for dt, goal in zip(sizes, goals, strict=True):
             begin, time = time, time + (float(dt) if dt < STEADY else 0.0)
             for cut in sorted(t for t in snapshots if begin + 1e-9 * time < t < time - 1e-9 * time):
-                share = (cut - begin) / (time - begin)
-                force, depth, distance = _between((force, depth, distance), goal, share)
-                yield Step(number, cut, cut - begin, force, depth, distance)
+                at = _between(at, goal, (cut - begin) / (time - begin))
+                yield Step(number, cut, cut - begin, *at)
                 begin = cut
-            yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=kind == "step")
-            force, depth, distance = goal
+            yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh)
+            at = goal
 
 
-def _between(before, after, share):
-    return (None if b is None else b if a is None else a + share * (b - a) for a, b in zip(before, after, strict=True))
+def _between(before: Goal, after: Goal, share: float) -> Goal:
+    return Goal(*(None if b is None else b if a is None else a + share * (b - a) for a, b in zip(before, after, strict=True)))
