@@ -301,3 +301,13 @@ def test_points_that_are_no_numbers_do_not_stop_a_query():
     """Newton's method may stray; its residual then says so, not the profile."""
     assert np.isnan(STANDARD.evaluate(np.array([[np.nan, 0.0], [0.0, np.nan]]))[0]).all()
     assert [len(part) for part in STANDARD.evaluate(np.zeros((0, 2)))] == [0, 0, 0]
+
+
+@pytest.mark.parametrize("curvature", [1e-7, 1e-10, 1e-13])
+def test_nearly_flat_cylinders_are_exact(curvature):
+    """Of a flat plate their distance differs by the sagitta, k x^2 / 2, and not by what a radius of 10^13 m rounds away."""
+    at = np.random.default_rng(0).uniform([-5e-3, -2e-3], [5e-3, 1e-4], (200, 2))
+    distance, gradient, _ = Cylinder(curvature).evaluate(at)
+    np.testing.assert_allclose(distance, -at[:, 1] + curvature * at[:, 0] ** 2 / 2, rtol=1e-9)
+    np.testing.assert_allclose(gradient, np.tile([0.0, -1.0], (200, 1)), atol=1e-9)
+    np.testing.assert_allclose(Cylinder(curvature).outline(at[:, 0]), curvature * at[:, 0] ** 2 / 2, rtol=1e-9)

@@ -113,6 +113,13 @@ def test_a_sampled_profile_is_read_in_metres(folder):
     assert scene.stimulus.y == pytest.approx((5e-4, 0.0, 5e-4))
 
 
+@pytest.mark.parametrize("size", [{"radius": "2.5 mm"}, {"diameter": "5 mm"}, {"curvature": "400 1/m"}])
+def test_a_cylinder_is_known_by_its_curvature_radius_or_diameter(folder, size):
+    scene = load_scene(write(folder, changed(stimulus={"shape": "cylinder", **size})))
+    assert scene.stimulus == Cylinder(curvature=400.0) == Cylinder(radius=2.5e-3) == Cylinder(diameter=5e-3)
+    assert scene.canonical()["stimulus"] == {"shape": "cylinder", "curvature": 400.0}
+
+
 def test_points_of_a_profile_cannot_be_given_in_the_scene(folder):
     stimulus = {"shape": "sampled", "csv": "p.csv", "x": [0, 1], "y": [0, 1]}
     with pytest.raises(SceneError, match=r"stimulus\.x: is not a known key"):

@@ -109,7 +109,20 @@ BAD = {
     "unknown key in a stimulus": (
         changed(stimulus={"shape": "flat", "curvature": "1 1/m"}),
         "stimulus.curvature",
-        "the nearest is 'shape'",
+        "is not a known key; allowed: the key shape",
+    ),
+    "radius and curvature": (
+        changed(stimulus={"shape": "cylinder", "curvature": "210 1/m", "radius": "2 mm"}),
+        "stimulus.radius",
+        "is given beside curvature; allowed: one of curvature, radius and diameter",
+    ),
+    "radius of nothing": (changed(stimulus={"shape": "cylinder", "radius": "0 mm"}), "stimulus.radius", "'0 mm' is zero"),
+    "diameter without a unit": (changed(stimulus={"shape": "cylinder", "diameter": 2}), "stimulus.diameter", "has no unit"),
+    "bar without a width": (changed(stimulus={"shape": "bar"}), "stimulus.width", "allowed: Width of the face, such as '"),
+    "depth that is no list": (
+        changed(outputs={"receptors": {"depths": "600 um"}}),
+        "outputs.receptors.depths",
+        'is not a list; allowed: a list such as ["600 um"]',
     ),
     "name is the file's": (changed(name="x"), "name", "is not a known key"),
     "steps that are a switch": (changed(accuracy={"steps": True}), "accuracy.steps", "a whole number"),

@@ -199,6 +199,8 @@ def _run(options: argparse.Namespace) -> int:
                 write_vtu(dataset, stage / "vtu")
     if not options.quiet:
         print(_closing_line(totals, out, unit))
+        for note in totals["run"].get("notes", ()):
+            print(f"note: {note}")
     return DONE
 
 
@@ -421,6 +423,8 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     for line in plan.specimen:
         console.print(Text(f"specimen: {line}"), soft_wrap=True)
     console.print(Text(f"expected error: {plan.estimated_error:.1%} (depth, width, pressure, strain energy)"))
+    for note in plan.surface.notes:
+        console.print(Text(f"note: {note}"))
     console.print(Text(f"predicted cost: {plan.predicted_cost_s:.2g} s of one core"))
 
 

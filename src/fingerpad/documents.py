@@ -78,8 +78,9 @@ def _or_allowed(allowed: str) -> str:
 
 
 def nearest(name: Any, known: Iterable[str]) -> str:
-    """Words for an unknown name: the known one most like it."""
-    return f"the nearest is '{difflib.get_close_matches(str(name)[:60], list(known), n=1, cutoff=0.0)[0]}'"
+    """Words for an unknown name: the known one most like it; none where nothing is much like it."""
+    found = difflib.get_close_matches(str(name)[:60], list(known), n=1, cutoff=0.5)
+    return f", the nearest is '{found[0]}'" if found else ""
 
 
 def error_line(file: Any, location: tuple, problem: Problem, document: Any = None) -> str:
@@ -115,6 +116,12 @@ def explain(error: ValidationError, file: Any, document: Any, tags: frozenset[st
     return SceneError(error_line(file, location, problem, document))
 
 
+def _parts(schema: Any) -> list[dict[str, Any]]:
+    """A field's JSON schema and those it is made of, at any depth."""
+    inner = schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ()
+    return ([schema] if isinstance(schema, dict) else []) + [part for each in inner for part in _parts(each)]
+
+
 class Strict(BaseModel):
     """Frozen model that says itself which key is unknown, missing or not a mapping."""
 
@@ -129,6 +136,14 @@ class Strict(BaseModel):
         """Values for keys left out; `context` is None when the model is made in Python."""
         return data
 
+    @classmethod
+    def _allowed(cls, key: str) -> str:
+        """What a field is, and an example of it where its type has one."""
+        what = (cls.model_fields[key].description or "a value").split("\n")[0]
+        parts = _parts(cls.model_json_schema()["properties"].get(key))
+        examples = [example for part in parts for example in part.get("examples", ())]
+        return f"{what.rstrip('.')}, such as '{examples[0]}'" if examples else what
+
     @model_validator(mode="wrap")
     @classmethod
     def _check_keys(cls, data: Any, handler: ModelWrapValidatorHandler, info: ValidationInfo) -> Any:
@@ -141,14 +156,14 @@ class Strict(BaseModel):
         for key in data:
             if not isinstance(key, str) or key not in keys:
                 name = key[:60] if isinstance(key, str) else _SHORT.repr(key)
-                hint = cls.hints.get(name) or f"is not a known key, {nearest(name, keys)}"
+                hint = cls.hints.get(name) or f"is not a known key{nearest(name, keys)}"
                 raise Problem(hint, choices, (name,), HIDE)
             if data[key] is None and info.context is not None:
-                raise Problem("is empty", cls.model_fields[key].description or "", (key,), HIDE)
+                raise Problem("is empty", cls._allowed(key), (key,), HIDE)
         data = cls.fill(dict(data), info.context)
         for key, field in cls.model_fields.items():
             if field.is_required() and key not in data:
-                raise Problem("is missing", (field.description or "a value").split("\n")[0], (key,), HIDE)
+                raise Problem("is missing", cls._allowed(key), (key,), HIDE)
         return handler(data)
 
 

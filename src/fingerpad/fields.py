@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, ValidationInfo
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, ValidationInfo
 
 from fingerpad.documents import Problem
 from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, QuantityError, parse_number, parse_quantity
@@ -82,17 +83,27 @@ def whole(low: int, high: int) -> Any:
     return Annotated[int, BeforeValidator(parse, json_schema_input_type=Annotated[int, Field(ge=low, le=high)])]
 
 
+def read(kind: Any, value: Any, key: str, context: Any) -> Any:
+    """`value` of the field `key` read as the field type `kind`, before the model is there; `Problem` if it is wrong."""
+    try:
+        return TypeAdapter(kind).validate_python(value, context=context)
+    except ValidationError as error:
+        cause = error.errors()[0].get("ctx", {}).get("error")
+        raise Problem(getattr(cause, "problem", "is not valid"), getattr(cause, "allowed", ""), (key,)) from None
+
+
 def listed(value: Any) -> Any:
     """`value` if it is a list; `Problem` otherwise."""
     if not isinstance(value, (list, tuple)):
-        raise Problem("is not a list", "a list")
+        like = json.dumps(value) if isinstance(value, str) else "1, 2"
+        raise Problem("is not a list", f"a list such as [{like}]")
     return value
 
 
 def filled(value: Any) -> Any:
     """`value` if it is a list with something in it; `Problem` otherwise."""
     if not listed(value):
-        raise Problem("is empty", "a list of one or more")
+        raise Problem("is empty", "a list of one or more, in square brackets")
     return value
 
 

@@ -233,6 +233,10 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
     } | cost
     if history.attrs.get("singular"):
         run["peak_pressure_singular"] = True
+    how, notes = (json.loads(history.attrs.get(name, empty)) for name, empty in (("plan", "{}"), ("notes", "[]")))
+    run |= {key: value for key, value in how.get("discretisation", {}).items() if key.startswith("profile_")}
+    if notes:
+        run |= {"contact_reached_profile_end": any("reached the end" in note for note in notes), "notes": notes}
     totals = {"legs": legs, "run": run}
     if "impulse_rate" in history:
         totals["responses"] = _responses(history, places)

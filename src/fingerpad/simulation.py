@@ -75,7 +75,7 @@ class Simulation:
         self.share = 0.5 if self.mesh.half else 1.0
         specimen = scene.specimen
         self.prony = Prony(tuple(t.g for t in specimen.prony), tuple(t.tau for t in specimen.prony))
-        self.profile = profile_of(scene.stimulus)
+        self.profile = profile_of(scene.stimulus).at(plan.surface.smoothing, plan.contact_edge)
         self.body, instantaneous = self._body()
         self.receptors = self._receptors(instantaneous)
         self.skin = self._skin()
@@ -202,7 +202,7 @@ class Simulation:
         around = self.plan.mesh_size and self.plan.mesh_size.skin_edge
         stroked = any(record.distance for record in records)
         error = estimated_error(self.plan.contact_edge, max(narrowest / 2, 1e-5), steps, stroked, around)
-        error += self.plan.small_strain_error
+        error += self.plan.small_strain_error + self.plan.surface.error
         touching = min((np.count_nonzero(records[k].nodal_force) / self.share for k in ends), default=0)
         missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
         drift = [
@@ -212,6 +212,21 @@ class Simulation:
         ]
         lost = sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
         return float(max(error, lost, 0.5 if touching < 4 else 0.0))
+
+    def _notes(self, records):
+        """What a person should know of the contact with a measured profile."""
+        notes = [note for note in self.plan.surface.notes if "expected" not in note]
+        for record in records:
+            on = self.skin.nodes[record.nodal_force > 0]
+            x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance
+            over = np.array([self.profile.known[0] - x.min(initial=np.inf), x.max(initial=-np.inf) - self.profile.known[1]])
+            if over.max() > -self.plan.contact_edge:
+                end = self.profile.known[int(over.argmax())]
+                return [
+                    *notes,
+                    f"contact reached the end of the profile's points at x = {end * 1e3:.3g} mm, t = {record.time:.3g} s",
+                ]
+        return notes
 
     # -- back to the whole pad --------------------------------------------------------------------------------------
 
@@ -245,7 +260,7 @@ class Simulation:
     def _edges(self, record):
         length, position = self._length_and_gradient(record)
         edges = contact_edges(position[self.skin.nodes, 0], record.nodal_force / length, record.gap)
-        return (0.0, edges[1]) if self.mesh.half and record.nodal_force[0] > 0 else edges
+        return (0.0, edges[1]) if self.mesh.half and record.nodal_force.any() else edges  # from outermost to outermost
 
     def _history(self, records: list[Record], states, snapshots, complete: bool):
         unfold = _Unfolding(self.whole, self.mesh, self.skin.nodes)
@@ -329,6 +344,7 @@ class Simulation:
                 "cost": cost,
                 "estimated_error": self._estimated_error(records, out["contact_width"]),
                 "singular": int(self.profile.singular),
+                "notes": self._notes(records),
                 "provenance": provenance(),
             },
         )

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fingerpad.mechanics.contact import ContactError, Zone, solve_contact
 from fingerpad.mechanics.linear_solver import FactorisationError, condensation
@@ -39,7 +38,8 @@ class NewtonSettings:
     A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was.
     ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
     only descends. A step of a stroke begins with the factors of the one before, if that was as long; a first or second
-    iteration with its own factors that ends within ``chord`` tolerances is followed by one with the same.
+    iteration with its own factors that ends within ``chord`` tolerances is followed by one with the same. A push that points
+    farther than ``aside`` (rad) from the vertical is one at the pad's side.
     """
 
     force_tolerance: float = 1e-4
@@ -50,6 +50,7 @@ class NewtonSettings:
     max_halvings: int = 10
     energy_share: float = 0.35
     chord: float = 30.0
+    aside: float = np.radians(50.0)
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,22 @@ class Record:
     tangential: np.ndarray | None = None  # (ns,) N/m along the tangent; the three only with friction
     slip: np.ndarray | None = None  # (ns,) m, of the skin over the profile in this step
     state: np.ndarray | None = None  # (ns,) 0 open, 1 sticks, 2 slips
+
+
+def first_touch(skin: np.ndarray, profile) -> float:
+    """Height (m) of the origin of ``profile`` where, moving straight down, it first touches ``skin`` (ns, 2) m; NaN if it misses.
+
+    Where the skin stands out most against the profile: at a node, or between two if the profile fits between them.
+    """
+    x, y = skin.T
+    height = y - profile.outline(x)
+    if np.isnan(height).all():
+        high = np.flatnonzero(y > y.max() - np.ptp(y) / 2)
+        high = high[np.argsort(x[high])]
+        first, last = np.clip(profile.reach, x[high[0]], x[high[-1]])
+        between = np.linspace(first, last, 65)
+        height = np.interp(between, x[high], y[high]) - profile.outline(between)
+    return float(np.nan if np.isnan(height).all() else np.nanmax(height))
 
 
 class QuasiStatic:
@@ -158,16 +175,10 @@ class QuasiStatic:
 
     def _first_touch(self) -> float:
         """Height of the profile's origin at which it just touches the undeformed skin."""
-        skin = self.points[self.skin.nodes] + np.array([self.distance, 0.0])
-        top = skin[:, 1].max()
-
-        def closest(height):
-            return self.profile.evaluate(skin - np.array([0.0, height]))[0].min()
-
-        span = np.ptp(skin[:, 1]) + np.ptp(skin[:, 0])
-        if abs(closest(top)) < 1e-15 * span:
-            return top
-        return brentq(closest, top - span, top + span, xtol=1e-15 * span, rtol=1e-15)
+        height = first_touch(self.points[self.skin.nodes] + np.array([self.distance, 0.0]), self.profile)
+        if np.isnan(height):
+            raise NonConvergence(self.time, f"the stimulus left the pad at {self.distance * 1e3:.3g} mm", "a shorter way")
+        return height
 
     def touching_depth(self) -> float:
         """Depth (m) at which the profile just touches the undeformed skin where it is now; zero where it came down first."""
@@ -395,7 +406,11 @@ class QuasiStatic:
             target = step.force if control == "force" else step.depth
             begin = self.force if control == "force" else self.depth
             if step.fresh:
-                self._start_again(step.distance)
+                try:
+                    self._start_again(step.distance)
+                except NonConvergence as problem:
+                    problem.records = records
+                    raise
                 begin = 0.0 if control == "force" else self.depth
             start = self.distance
             smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh
@@ -414,9 +429,14 @@ class QuasiStatic:
                         continue
                     size /= 2
                     halvings += 1
-                    if size < 0.5**self.settings.max_halvings:
+                    aside = bool(records) and self._slips_off(records[-1])
+                    if size < 0.5**self.settings.max_halvings or (aside and halvings > 1):
                         where = f" (depth {self.depth * 1e3:.4g} mm, force {self.force:.4g} N/m of the meshed part)"
-                        problem = NonConvergence(self.time, str(failure), self._advice(str(failure)), where)
+                        reason, advice = str(failure), self._advice(str(failure))
+                        if aside:
+                            way = f"{self.distance * 1e3:.3g} mm"
+                            reason, advice = f"the stimulus left the pad at {way}", f"a way of less than {way}"
+                        problem = NonConvergence(self.time, reason, advice, where)
                         problem.records = records
                         raise problem from failure
                     continue
@@ -433,7 +453,16 @@ class QuasiStatic:
                 on_step(record)
         return records
 
+    def _slips_off(self, record):
+        """Was the pad touched, on its way along the profile, by its side only? Then nothing can hold it there."""
+        push = -(record.nodal_force @ record.gradient)
+        return bool(record.distance) and abs(push[0]) > np.tan(self.settings.aside) * push[1]
+
     def _advice(self, reason):
+        spacing = float(np.median(np.hypot(*np.diff(self.points[self.skin.nodes[self._range]], axis=0).T)))
+        about_profile = self.profile.advice(spacing)
+        if about_profile:
+            return about_profile
         if "inside out" in reason:
             return "a finer skin mesh, a fillet on sharp edges, or a smaller depth or force"
         if "carry the force" in reason:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,7 @@ import numpy as np
 from fingerpad.laws import departure
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
+from fingerpad.planning.surface import Surface, surface_of
 from fingerpad.scenes.scene import Discretisation, Hold, Lift, PressToDepth, PressToForce, Scene, Slide, StepAndRepeat
 from fingerpad.specimen import counted
 from fingerpad.specimen.external import read_specimen_mesh
@@ -176,7 +178,8 @@ class Plan:
         slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
         nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
         contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
-        part of it that small strain is to blame for. specimen: sentences on what is touched, and what of it the scene left out.
+        part of it that small strain is to blame for. surface: what the mesh makes of a measured profile.
+        specimen: sentences on what is touched, and what of it the scene left out.
     """
 
     effects: dict[str, Effect]
@@ -196,6 +199,7 @@ class Plan:
     predicted_cost_s: float
     small_strain_error: float = 0.0
     specimen: tuple[str, ...] = ()
+    surface: Surface = Surface()
 
     @property
     def stepping(self) -> tuple[int, bool, float]:
@@ -217,6 +221,9 @@ class Plan:
                 "skin_edge_um": round(self.mesh_size.skin_edge * 1e6, 3),
                 "fine_half_width_mm": round(self.mesh_size.fine_half_width * 1e3, 3),
             }
+        if self.surface.smoothing:
+            out["profile_smoothed_um"] = round(self.surface.smoothing * 1e6, 3)
+            out["profile_moved_um"] = round(self.surface.moved * 1e6, 3)
         return out
 
     def to_dict(self) -> dict[str, Any]:
@@ -237,6 +244,7 @@ class Plan:
             "timed": self.timed,
             "small_strain_error": self.small_strain_error,
             "specimen": list(self.specimen),
+            "surface_SI": asdict(self.surface),
         }
 
     def write(self, path: str | Path) -> None:
@@ -254,7 +262,10 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         room for its ridges.
     """
     external = _external(scene)
-    profile = profile_of(scene.stimulus)
+    measured = profile_of(scene.stimulus)
+    _check_over_pad(scene, measured, external)
+    # noise is no contact's curvature
+    profile = measured.felt(_usual_edge(scene, external, rules))
     pad = pad_estimate(scene.specimen, external, scene.stimulus.width / 2 if scene.stimulus.shape == "bar" else np.inf)
     moves = _moves(scene)
     # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
@@ -302,12 +313,14 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
     linear = 0.0 if effects["finite_strain"].on else _small_strain_error(pad, profile, contact, rules) + laws
+    surface = surface_of(measured, edge, _way(scene), pad, partial(_worst_contact, scene, pad, profile))
     around = None if size is None else size.skin_edge
     time = steps_per_leg if timed else None
-    error = linear + estimated_error(edge, _earliest(scene, contact, timed), time, moves, around, rules)
+    error = linear + surface.error + estimated_error(edge, _earliest(scene, contact, timed), time, moves, around, rules)
     return Plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge, error,
         _cost(nodes, steps, effects, rules), linear, specimen=specimen_said(scene.specimen, external),
+        surface=surface,
     )  # fmt: skip
 
 
@@ -336,6 +349,7 @@ def read_plan(path: str | Path) -> Plan:
         ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
         data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
         data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], specimen=tuple(data["specimen"]),
+        surface=Surface(**data["surface_SI"]),
     )  # fmt: skip
 
 
@@ -344,6 +358,35 @@ def _moves(scene: Scene) -> bool:
 
 
 # -- the choices --------------------------------------------------------------------------------------------------------
+
+
+def _way(scene: Scene) -> tuple[float, float]:
+    """Least and largest x (m) of the stimulus that comes over the middle of the pad."""
+    way = np.cumsum([0.0, *(getattr(leg, "slide", None) or getattr(leg, "step", 0.0) for leg in scene.motion)])
+    return float(way.min()), float(way.max())
+
+
+def _check_over_pad(scene: Scene, profile: Profile, external: PadMesh | None) -> None:
+    """`PlanError` for a measured profile that is not over the finger when it comes down."""
+    first, last = profile.known
+    if external is not None:
+        half = np.ptp(external.points[:, 0]) / 2
+    else:
+        half = (scene.specimen.outline or scene.specimen.stack).half_width
+    if first > half / 2 or last < -half / 2:
+        there = f"from x = {first * 1e3:.4g} mm to {last * 1e3:.4g} mm"
+        raise PlanError(
+            f"{scene.name}: stimulus.csv: '{scene.stimulus.csv.name}' has points {there}, none of them over the finger; "
+            "allowed: points around x = 0, which comes down on its apex"
+        )
+
+
+def _usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
+    """Edge (m) of the skin before the contact is known: of the mesh given, the preset, or the one by hand; else of the thesis."""
+    if external is not None:
+        return apex_edge(external)
+    by_hand = getattr(scene.accuracy, "skin_edge", None)
+    return by_hand or rules.presets[scene.accuracy if isinstance(scene.accuracy, str) else "thesis"].skin_edge
 
 
 def _external(scene: Scene) -> PadMesh | None:

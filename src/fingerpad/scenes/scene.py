@@ -11,7 +11,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -19,7 +19,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError
 from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
-from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, whole
+from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, read, whole
 from fingerpad.scenes.specimen import (
     DEFAULT_SPECIMEN,
     HalfRound,
@@ -46,7 +46,7 @@ from fingerpad.stimuli.motion import (
     check_programme,
     end_time,
 )
-from fingerpad.units import QuantityError, format_quantity, parse_number
+from fingerpad.units import QuantityError, format_quantity, parse_number, parse_quantity
 
 __all__ = [
     "Bar", "Cylinder", "Discretisation", "Flat", "HalfRound", "Hold", "Layer", "Layers", "Lift", "Line", "Outline",
@@ -74,7 +74,23 @@ class Cylinder(Strict):
 
     shape: Literal["cylinder"] = "cylinder"
     curvature: quantity("curvature", note=": for a curvature of zero use shape: flat")
-    """Curvature, the inverse of the radius."""
+    """Curvature, the inverse of the radius; or give `radius` or `diameter` instead."""
+    radius: Length | None = Field(default=None, exclude=True)
+    """Radius, in place of the curvature."""
+    diameter: Length | None = Field(default=None, exclude=True)
+    """Diameter, in place of the curvature."""
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """The curvature is that of the radius or diameter given."""
+        given = [key for key in ("curvature", "radius", "diameter") if data.get(key) is not None]
+        if len(given) > 1:
+            raise Problem(f"is given beside {given[0]}", "one of curvature, radius and diameter", (given[1],), HIDE)
+        if given in (["radius"], ["diameter"]):
+            length = read(Length, data[given[0]], given[0], context)
+            data["curvature"] = SI((1 if given == ["radius"] else 2) / length)
+            del data[given[0]]
+        return data
 
 
 class Bar(Strict):
@@ -104,13 +120,20 @@ class Line(Strict):
 
 
 class Sampled(Strict):
-    """Rigid profile given by points: its lower surface, y up, in the frame of the stimulus."""
+    """Rigid profile given by points of its lower surface: y is up, the solid lies above, and x = 0 is over the pad's apex.
+
+    Only differences of y matter: the profile comes down until it touches. figures/studies/profile_convention.png shows it.
+    """
 
     internal: ClassVar = frozenset({"x", "y"})
 
     shape: Literal["sampled"] = "sampled"
     csv: Path
-    """File with the columns `x (mm)` and `y (mm)`, x strictly increasing."""
+    """File with the columns `x (mm)` and `y (mm)`, or another unit of length in them; x strictly increasing."""
+    smooth: quantity("length", words=("auto", "none")) = "auto"
+    """Structure finer than nodes can feel: `auto` filters it out where there is any, `none` keeps it, or a cut-off wavelength."""
+    ends: Literal["open", "level", "slope"] = "open"
+    """What lies beyond the points: nothing (`open`), a `level` surface, or the `slope` of the last two, for ever."""
     x: SkipJsonSchema[tuple[float, ...]]
     y: SkipJsonSchema[tuple[float, ...]]
 
@@ -125,38 +148,64 @@ class Sampled(Strict):
         return data
 
 
-_COLUMNS = ("x (mm)", "y (mm)")
+_COLUMN = re.compile(r"\s*([xy])\s*\((.*)\)\s*", re.IGNORECASE)
+NARROWEST, WIDEST = 10e-6, 10.0
+"""Widths (m) between which a profile is believed to be in the unit that its columns name."""
 
 
 def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Points of a profile, m; `Problem` unless they are numbers with x strictly increasing."""
+    """Points of a profile, m; `Problem` unless they are numbers with x strictly increasing, of a believable size."""
 
-    def wrong(problem: str) -> Problem:
-        return Problem(problem, "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing", ("csv",))
+    def wrong(problem: str, allowed: str = "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing") -> Problem:
+        return Problem(problem, allowed, ("csv",))
 
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.DictReader(file, skipinitialspace=True))
+            lines = [(number, text) for number, text in enumerate(file, start=1) if text.strip() and text.lstrip()[0] != "#"]
+        rows = list(csv.reader((text for _, text in lines), skipinitialspace=True))
     except FileNotFoundError:
         raise wrong("is not an existing file") from None
     except (OSError, ValueError, csv.Error) as error:
         raise wrong(f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})") from None
-    for name in _COLUMNS:
-        if rows and name not in rows[0]:
-            raise wrong(f"has no column '{name}'")
-    if len(rows) < 2:
+    if rows:
+        columns, factors = _profile_columns(rows[0], wrong)
+    if len(rows) < 3:
         raise wrong("has fewer than two points")
     points = []
-    for line, row in enumerate(rows, start=2):
+    for (line, _), row in zip(lines[1:], rows[1:], strict=False):
         try:
-            point = tuple(1e-3 * parse_number(row[name] or "") for name in _COLUMNS)
+            point = tuple(
+                factor * parse_number(row[k] if k < len(row) else "") for k, factor in zip(columns, factors, strict=True)
+            )
         except QuantityError:
             raise wrong(f"has no finite number in row {line}") from None
         if points and point[0] <= points[-1][0]:
             raise wrong(f"is not single-valued: x does not increase in row {line}")
         points.append(point)
     x, y = zip(*points, strict=True)
+    width = x[-1] - x[0]
+    if not NARROWEST <= width <= WIDEST:
+        size = f"{width:.3g} m" if width > WIDEST else f"{width * 1e6:.3g} um"
+        raise wrong(
+            f"is {size} wide by its column '{rows[0][columns[0]]}'", "10 um to 10 m; is the unit another one, um, mm or m?"
+        )
     return x, y
+
+
+def _profile_columns(header: list[str], wrong: Callable[..., Problem]) -> tuple[list[int], list[float]]:
+    """Where x and y stand in a row, and their units in m."""
+    found: dict[str, tuple[int, float]] = {}
+    for k, name in enumerate(header):
+        match = _COLUMN.fullmatch(name)
+        if match and match[1].lower() not in found:
+            try:
+                found[match[1].lower()] = k, parse_quantity(f"1 {match[2]}", "length")
+            except QuantityError as error:
+                raise wrong(f"has the column '{name}', which {error.problem}") from None
+    for name in "xy":
+        if name not in found:
+            raise wrong(f"has no column '{name} (mm)'")
+    return [found[name][0] for name in "xy"], [found[name][1] for name in "xy"]
 
 
 class Wavy(Strict):
@@ -207,7 +256,7 @@ def _check_shape(value: Any) -> Any:
         if "shape" not in value:
             raise Problem("is missing", ", ".join(_SHAPES), ("shape",), HIDE)
         if not isinstance(value["shape"], str) or value["shape"] not in _SHAPES:
-            raise Problem(f"is not a known shape, {nearest(value['shape'], _SHAPES)}", ", ".join(_SHAPES), ("shape",))
+            raise Problem(f"is not a known shape{nearest(value['shape'], _SHAPES)}", ", ".join(_SHAPES), ("shape",))
     elif not isinstance(value, tuple(_SHAPES.values())):
         raise Problem("is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}')
     return value
@@ -277,7 +326,7 @@ def _read_responses(value: Any) -> Any:
         return known[:1] if value else ()
     for i, name in enumerate(listed(value)):
         if name not in known:
-            raise Problem(f"is not a kind of receptor, {nearest(name, known)}", ", ".join(known), (i,))
+            raise Problem(f"is not a kind of receptor{nearest(name, known)}", ", ".join(known), (i,))
     return tuple(dict.fromkeys(value))
 
 
@@ -353,7 +402,7 @@ def _read_effects(value: Any) -> dict[str, bool]:
     effects = {}
     for key, switch in value.items():
         if key not in EFFECTS:
-            raise Problem(f"is not a known effect, {nearest(key, EFFECTS)}", choices, (str(key)[:60],), HIDE)
+            raise Problem(f"is not a known effect{nearest(key, EFFECTS)}", choices, (str(key)[:60],), HIDE)
         if not isinstance(switch, (bool, str)) or switch not in _SWITCH:
             raise Problem("is not a switch", "on or off", (key,))
         effects[key] = _SWITCH[switch]
@@ -595,6 +644,8 @@ def scene_json_schema() -> dict[str, Any]:
     for name in ("Outline", "Layers", "Layer", "Ridges", "InnerRidges", "OuterRidges", "Receptors", "Outputs", "Specimen"):
         schema["$defs"][name].pop("required", None)
     schema["required"] = ["stimulus", "motion"]
+    schema["$defs"]["Cylinder"]["oneOf"] = [{"required": [key]} for key in ("curvature", "radius", "diameter")]
+    del schema["$defs"]["Cylinder"]["required"]
     return _published(schema, "A fingerpad scene")
 
 

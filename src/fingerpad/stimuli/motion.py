@@ -317,7 +317,7 @@ def _check_leg(value: Any) -> Any:
         kinds = [key for key in LEGS if key in value]
         first = next(iter(value), None)
         if not kinds:
-            near = f", {nearest(first, LEGS)}" if isinstance(first, str) else ""
+            near = nearest(first, LEGS) if isinstance(first, str) else ""
             raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(LEGS)}")
         if len(kinds) > 1:
             raise Problem(f"is two legs in one: {' and '.join(kinds)}", "one of them in each entry of motion")

@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fingerpad.stimuli.smoothing import ROUGH, WAVE, smoothed, turning
+
 
 class Profile:
     """Base of all profiles: ``evaluate(points (n, 2) m) -> distance (n,) m, gradient (n, 2), curvature (n,) 1/m``."""
@@ -25,6 +27,24 @@ class Profile:
     convexity = 0.0
     #: m, by which the surface reaches below its point at x = 0
     dip = 0.0
+    #: m, first and last x where there is a surface
+    reach: tuple[float, float] = (-np.inf, np.inf)
+    #: m, first and last x of measured points; contact beyond them is with a guess
+    known: tuple[float, float] = (-np.inf, np.inf)
+    #: m, cut-off wavelength at which a measured surface was smoothed; 0 if it was not
+    smoothing = 0.0
+
+    def felt(self, edge: float) -> "Profile":
+        """The profile as skin with nodes ``edge`` m apart can feel it."""
+        return self
+
+    def at(self, smoothing: float, edge: float) -> "Profile":
+        """The profile smoothed at a cut-off wavelength (m; 0: not at all), for skin with nodes ``edge`` m apart."""
+        return self
+
+    def advice(self, spacing: float) -> str | None:
+        """What to try when skin with nodes ``spacing`` m apart finds no equilibrium under the profile; None: nothing special."""
+        return None
 
     def evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         raise NotImplementedError
@@ -58,15 +78,21 @@ class Cylinder(Profile):
     def convexity(self):
         return self.curvature
 
+    @property
+    def reach(self):
+        return (-1 / self.curvature, 1 / self.curvature)
+
     def evaluate(self, points):
         radius = 1 / self.curvature
         arm = points - np.array([0.0, radius])
         length = np.maximum(np.hypot(arm[:, 0], arm[:, 1]), 1e-12 * radius)
-        return length - radius, arm / length[:, None], 1 / length
+        # length - radius would lose all digits where the cylinder is all but flat
+        distance = (points[:, 0] ** 2 + points[:, 1] * (arm[:, 1] - radius)) / (length + radius)
+        return distance, arm / length[:, None], 1 / length
 
     def outline(self, x):
         radius = 1 / self.curvature
-        return radius - np.sqrt(np.where(np.abs(x) <= radius, radius**2 - x**2, np.nan))
+        return x**2 / (radius + np.sqrt(np.where(np.abs(x) <= radius, radius**2 - x**2, np.nan)))
 
 
 @dataclass(frozen=True)
@@ -80,6 +106,8 @@ class Bar(Profile):
     @property
     def edges(self):
         return (-self.width / 2, self.width / 2)
+
+    reach = edges
 
     def evaluate(self, points):
         # distance to the half-infinite box shrunk by the fillet, minus the fillet
@@ -146,6 +174,8 @@ class Curve(Profile):
     overlap = 1e-12
     #: m, closer than which a point is on a corner
     touch = 1e-9
+    #: pieces that are the surface itself and not its continuation
+    own = slice(None)
 
     def __init__(self, x, y, curvature):
         self.x, self.y, self.bend = (np.asarray(values, float) for values in (x, y, curvature))
@@ -157,8 +187,8 @@ class Curve(Profile):
         slope, turn = np.arctan2(chord[:, 1], chord[:, 0]), np.arcsin(np.clip(self.bend * length / 2, -1, 1))
         if self.bend[0] or self.bend[-1] or np.any(np.abs(slope) + np.abs(turn) >= np.pi / 2):
             raise ValueError("a profile starts and ends with lines, and its arcs are single-valued")
-        #: largest slope of the surface
-        self.steepness = float(np.tan(np.max(np.abs(slope) + np.abs(turn))))
+        slopes = np.tan(np.abs(slope) + np.abs(turn))
+        self._steepest, self.steepness = float(slopes.max()), float(slopes[self.own].max())
         self._tangent = chord / length[:, None]
         self._side = np.where(self.bend < 0, -1.0, 1.0)  # of the skin, seen from the centre of an arc
         self._line = self.bend == 0
@@ -187,16 +217,19 @@ class Curve(Profile):
     def dip(self):
         ends = self.x[:-1], self.x[1:]
         bottom = np.where(self.bend > 0, np.clip(self._centre[:, 0], *ends), self.x[:-1])
-        return float(self.outline(np.array([0.0]))[0] - min(self.outline(bottom).min(), self.y.min()))
+        return float(self._height(np.array([0.0]))[0] - min(self._height(bottom).min(), self.y.min()))
 
     @property
     def convexity(self):
         # a corner between two lines stands for the arc that would touch both in their middles
-        chord = np.diff(self.x)
-        corner = 2 * self._kink[1:] / (chord[:-1] + chord[1:]) * (self._line[:-1] & self._line[1:])
-        return float(max(self.bend.max(), corner.max(initial=0.0)))
+        chord, line = np.diff(self.x)[self.own], self._line[self.own]
+        corner = 2 * self._kink[self.own][1:] / (chord[:-1] + chord[1:]) * (line[:-1] & line[1:])
+        return float(max(self.bend[self.own].max(), corner.max(initial=0.0)))
 
     def outline(self, x):
+        return self._height(x)
+
+    def _height(self, x):
         piece = np.searchsorted(self.x[1:-1], x, side="right")
         (cx, cy), (tx, ty) = self._centre[piece].T, self._tangent[piece].T
         rise = self._side[piece] * np.sqrt(np.maximum(self._radius[piece] ** 2 - (x - cx) ** 2, 0))
@@ -212,12 +245,14 @@ class Curve(Profile):
         past = np.where(piece < len(self.bend) - 1, past, -np.inf)
         return np.where(line, across, side * (length - radius)), arm, np.maximum(past, short)
 
+    def _farthest(self, x, y, height):
+        """Farther along x than this (m) from a point the surface cannot be closest."""
+        return np.abs(y - height) * _share(self._steepest)
+
     def evaluate(self, points):
         x, y = points.T
-        height = self.outline(x)
-        # farther along x than this share of the way along y, the surface cannot have come near: its slope is too small
-        slope = min(self.steepness, 1.0)
-        within = np.abs(y - height) * 2 * slope / (1 + slope**2) * (1 + 1e-9) + 2 * self.overlap
+        height = self._height(x)
+        within = self._farthest(x, y, height) * (1 + 1e-9) + 2 * self.overlap
         first = np.searchsorted(self.x[1:-1], x - within, side="left")
         count = np.searchsorted(self.x[1:-1], x + within, side="right") + 1 - first
         begin = np.cumsum(count) - count
@@ -253,6 +288,12 @@ class Curve(Profile):
         return distance, gradient, np.where(hit, 0.0, curvature)
 
 
+def _share(slope: float) -> float:
+    """Of the way along y to a surface of at most this slope: farther along x than that it cannot come near."""
+    slope = min(slope, 1.0)
+    return 2 * slope / (1 + slope**2)
+
+
 def _normal(tangent: np.ndarray) -> np.ndarray:
     """Unit normals (n, 2) towards the skin of a surface that runs along ``tangent`` (n, 2)."""
     return np.column_stack([tangent[:, 1], -tangent[:, 0]])
@@ -263,13 +304,110 @@ class Sampled(Curve):
 
     Args:
         x, y: (n,) m; x strictly increasing. The lowest point is moved to height zero.
+        ends: what is beyond the first and the last sample: nothing ("open"), a "level" surface at their heights, or the "slope"
+            of the lines there, for ever. smooth: "auto", "none" or a cut-off wavelength, m (see :meth:`felt`).
+        rounding: m, radius with which open ends turn away from the skin.
 
     Raises:
         ValueError: fewer than two samples or x not strictly increasing.
     """
 
-    def __init__(self, x, y):
-        super().__init__(x, np.asarray(y, float) - np.min(y), np.zeros(max(len(x) - 1, 0)))
+    #: rad, slope of the sides into which open ends turn
+    side = np.radians(80.0)
+
+    def __init__(self, x, y, ends="open", smooth="auto", rounding=0.0):
+        self.samples = self.measured = np.asarray(x, float), np.asarray(y, float) - np.min(y)
+        self.ends, self.smooth = ends, smooth
+        x, y = self.samples
+        bend = np.zeros(max(len(x) - 1, 0))
+        if ends != "slope" and len(x) >= 2 and np.all(np.diff(x) > 0):
+            right = self._end(x[-2:], y[-2:], rounding)
+            left = self._end(-x[1::-1], y[1::-1], rounding)
+            self.own = slice(len(left[0]), len(left[0]) + len(bend))
+            x = np.concatenate([-np.array(left[0][::-1]), x, right[0]])
+            y, bend = (np.concatenate([left[k][::-1], inner, right[k]]) for k, inner in ((1, y), (2, bend)))
+        super().__init__(x, y, bend)
+        self.known = tuple(map(float, self.samples[0][[0, -1]]))
+        if ends == "open":
+            self.reach = self.known
+
+    def _end(self, x, y, rounding):
+        """x, y (k,) m and curvature (k,) 1/m of the pieces that follow the last of two samples on the right."""
+        (x, last), (y, height) = x, y
+        if self.ends == "level":
+            return [last + (last - x)], [height], [0.0]
+        slope = np.arctan2(height - y, last - x)
+        turn = max(self.side - slope, 0.0) / 2
+        xs, ys, bends = [], [], []
+        if rounding and turn:
+            chord = 2 * rounding * np.sin(turn)
+            last, height = last + chord * np.cos(slope + turn), height + chord * np.sin(slope + turn)
+            xs, ys, bends = [last], [height], [1 / rounding]
+        length = rounding or 1e-4
+        steep = slope + 2 * turn
+        return [*xs, last + length * np.cos(steep)], [*ys, height + length * np.sin(steep)], [*bends, 0.0]
+
+    def outline(self, x):
+        height = self._height(x)
+        return np.where((x >= self.reach[0]) & (x <= self.reach[1]), height, np.nan)
+
+    def _farthest(self, x, y, height):
+        within = super()._farthest(x, y, height)
+        left = x < (self.known[0] + self.known[1]) / 2
+        beyond = np.where(left, self.known[0] - x, x - self.known[1])
+        # away from the steep sides the samples' own slopes count; beside them, how far their end is away
+        end = np.hypot(beyond, y - np.where(left, *self.samples[1][[0, -1]]))
+        inside = np.where(-beyond > within, np.abs(y - height) * _share(self.steepness), within)
+        return np.where(beyond > 0, np.minimum(within, end), inside)
+
+    def felt(self, edge):
+        """The profile as skin with nodes ``edge`` m apart can feel it.
+
+        What is finer is smoothed: as asked for, or with "auto" at two edges if the surface turns to and fro within half an edge.
+        """
+        if self.smooth == "none":
+            return self.at(0.0, edge)
+        if self.smooth != "auto":
+            return self.at(self.smooth, edge)
+        rough = turning(*self.samples, edge / 2).max(initial=0.0) > ROUGH
+        return self.at(WAVE * edge if rough else 0.0, edge)
+
+    def at(self, smoothing, edge):
+        points = smoothed(*self.samples, smoothing) if smoothing else self.samples
+        felt = Sampled(*points, self.ends, self.smooth, rounding=edge)
+        felt.smoothing, felt.measured = smoothing, self.samples
+        return felt
+
+    def bulge(self, x: float, half_width: float) -> float:
+        """Curvature (1/m) around the place near ``x`` m that stands out most, fitted over ``half_width`` m to either side."""
+        near = np.linspace(x - half_width, x + half_width, 65)
+        height = self.outline(near)
+        if not np.isfinite(height).sum() > 3:
+            return 0.0
+        lowest = near[np.nanargmin(height)]
+        near = np.linspace(lowest - half_width, lowest + half_width, 65)
+        height = self.outline(near)
+        there = np.isfinite(height)
+        return float(2 * np.polyfit(near[there] - lowest, height[there], 2)[0])
+
+    def moved(self, first: float, last: float) -> float:
+        """Largest change (m) of the measured heights by the smoothing between two places (m), one as a whole apart."""
+        x, y = self.measured
+        near = (x >= first) & (x <= last)
+        if not self.smoothing or not near.any():
+            return 0.0
+        change = self._height(x[near]) - y[near]
+        return float(np.ptp(change) / 2)
+
+    def advice(self, spacing):
+        if not self.smoothing and turning(*self.samples, spacing / 2).max(initial=0.0) <= ROUGH:
+            return None
+        x, _ = self.measured
+        apart, cutoff = float(np.median(np.diff(x))), max(2 * self.smoothing, WAVE * spacing)
+        return (
+            f"smoothing of the profile, whose corners are {apart * 1e6:.3g} um apart, the nodes {spacing * 1e6:.3g} um: "
+            f'stimulus.smooth: "{cutoff * 1e6:.0f} um" or more'
+        )
 
 
 class Wavy(Curve):
@@ -324,7 +462,7 @@ def profile_of(stimulus) -> Profile:
         case "line":
             return Line()
         case "sampled":
-            return Sampled(stimulus.x, stimulus.y)
+            return Sampled(stimulus.x, stimulus.y, stimulus.ends, stimulus.smooth)
         case "wavy":
             return Wavy(stimulus.curvatures, stimulus.half_angle, stimulus.lead_in, stimulus.run_out, stimulus.fillet)
     raise ValueError(f"no profile called {stimulus.shape!r}")
