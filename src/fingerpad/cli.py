@@ -177,7 +177,7 @@ def _run(options: argparse.Namespace) -> int:
     out = options.out or Path("results") / options.scene.stem
     _check_writable(out, directory=True)
     scene, plan = _prepare(options)
-    mesh, unit = _mesh_for(options.scene, scene, plan), _force_unit(options.scene)
+    unit = _force_unit(options.scene)
 
     import fingerpad
     from fingerpad.mechanics.stepping import NonConvergence
@@ -186,11 +186,14 @@ def _run(options: argparse.Namespace) -> int:
     with _folder(out, scene, plan, options) as folder:
         try:
             with _naming(options.scene, scene), _progress(scene.name, quiet=options.quiet) as progress:
-                dataset = fingerpad.simulate(scene, plan=plan, mesh=mesh, progress=progress, fields=options.vtu)
+                dataset = fingerpad.simulate(scene, plan=plan, progress=progress, fields=options.vtu)
         except NonConvergence as error:
             return _say(folder.rescue(error), NOT_COMPLETED)
         except KeyboardInterrupt as stop:
             return _say(folder.keep(stop), INTERRUPTED)
+        folder.plan = (
+            json.loads(dataset.attrs.get("plan", "{}")) or folder.plan
+        )  # of the last run, where the tolerance took more than one
         with folder.writing() as stage:
             write_history(dataset, stage / "history.nc")
             totals = summary(dataset)
@@ -422,7 +425,9 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     console.print(details)
     for line in plan.specimen:
         console.print(Text(f"specimen: {line}"), soft_wrap=True)
-    console.print(Text(f"expected error: {plan.estimated_error:.1%} (depth, width, pressure, strain energy)"))
+    console.print(Text(f"expected error: {plan.estimated_error:.1%} ({plan.covers})"))
+    if plan.missed():
+        console.print(Text(plan.missed()))
     for note in plan.surface.notes:
         console.print(Text(f"note: {note}"))
     console.print(Text(f"predicted cost: {plan.predicted_cost_s:.2g} s of one core"))
@@ -485,8 +490,21 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
         f"depth {last['depth_mm']:.3g} mm, force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "
         f"contact {last['contact_width_mm']:.3g} mm wide; {run['steps']} steps, "
         f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s; "
-        f"error about {run['estimated_error']:.1%}; results in {directory}"
+        f"{_error_line(totals)}; results in {directory}"
     )
+
+
+def _error_line(totals: dict[str, Any]) -> str:
+    """The error at the end and, where it is much larger, the largest on the way; what was asked for; and what it leaves out."""
+    run, end = totals["run"], totals["legs"][-1]["estimated_error"]
+    line = f"error about {end:.1%}"
+    if run["largest_error"] > 1.5 * end:
+        line += f", {run['largest_error']:.1%} at most"
+    if len(run.get("runs", [])) > 1:
+        line += f", after {len(run['runs'])} runs"
+    if run.get("tolerance_missed"):
+        line += f" ({run['tolerance_missed']})"
+    return f"{line}; at the edge pressure is unbounded" if run["peak_pressure_singular"] else line
 
 
 if __name__ == "__main__":

@@ -192,17 +192,20 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
     Energies are lists, one entry a receptor point, and once more in ``receptors`` with the place of each; of more than
     :data:`MOST_RECEPTORS` points ``receptors`` says that they are in the history.
     """
+    attributes, numbers = history.attrs, np.unique(history.leg.values[1:])
+    errors = json.loads(attributes.get("estimated_error_of_legs", "[]")) or [float(attributes["estimated_error"])] * len(numbers)
     cost, length = json.loads(history.attrs["cost"]), json.loads(history.attrs["scene"])["specimen"]["contact_length"]
     places = [
         {"depth_mm": round(depth * 1e3, 9), "offset_mm": round(offset * 1e3, 9)}
         for depth, offset in zip(history.receptor_depth.values.tolist(), history.receptor_offset.values.tolist(), strict=True)
     ]
     legs = []
-    for leg in np.unique(history.leg.values[1:]):
+    for leg, error in zip(numbers, errors, strict=True):
         end = history.isel(time=int(np.flatnonzero(history.leg.values == leg)[-1]))
         force = float(end.force)
         entry = {
             "time_s": float(end.time),
+            "estimated_error": error,
             "depth_mm": float(end.indentation_depth) * 1e3,
             "force_N_per_m": force,
             "force_N": force * length,
@@ -229,10 +232,16 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
         "energy_balance_error": float(history.energy_balance_error[-1]),
         "complementarity_error": float(history.complementarity_error.max()),
         "min_detF": float(history.min_detF.min()),
-        "estimated_error": float(history.attrs["estimated_error"]),
+        "estimated_error": float(attributes["estimated_error"]),
+        "largest_error": float(attributes.get("largest_error", attributes["estimated_error"])),
+        "error_covers": attributes.get("error_covers", ""),
+        "peak_pressure_singular": bool(attributes.get("singular")),
     } | cost
-    if history.attrs.get("singular"):
-        run["peak_pressure_singular"] = True
+    asked = float(attributes.get("asked_error", np.nan))
+    if np.isfinite(asked):
+        missed = attributes["tolerance"]
+        run |= {"asked_error": asked, "tolerance_met": not missed, "tolerance_missed": missed}
+        run["runs"] = json.loads(attributes["runs"])
     how, notes = (json.loads(history.attrs.get(name, empty)) for name, empty in (("plan", "{}"), ("notes", "[]")))
     run |= {key: value for key, value in how.get("discretisation", {}).items() if key.startswith("profile_")}
     if notes:

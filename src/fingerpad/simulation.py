@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -17,7 +18,7 @@ from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tribu
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
 from fingerpad.mechanics.stepping import NonConvergence, QuasiStatic, Record, Skin
-from fingerpad.planning.plan import Plan, PlanError, estimated_error, plan, schedule
+from fingerpad.planning.plan import Plan, PlanError, estimated_error, plan, refined, schedule
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.receptors.respond import respond
 from fingerpad.results import FIELDS, add_snapshots, dataset, peak_memory_MB, provenance, skin_arc
@@ -35,6 +36,8 @@ _plan = plan
 
 #: Unprojected volumetric stiffness under edge indenters, in shear moduli.
 EDGE_STIFFNESS = 5.0
+_UNLOADED = 0.5  # of a force that was reached before
+_NO_CONTACT = 1e-5  # m, half-width that stands for none
 
 
 def simulate(
@@ -48,7 +51,9 @@ def simulate(
 
     Args:
         scene: a checked scene. plan: how (default: ``fingerpad.plan(scene)``). mesh: the whole pad's mesh (default: built or
-        read as the plan says). progress: called after each step with time_s, end_time_s, contact_width_mm, iterations, cutbacks.
+        read as the plan says). A run that misses the tolerance that its plan was asked for is refined and run again, a few
+        times at most, unless the scene says ``once`` or a mesh is given; the history tells of its last plan. progress: called
+        after each step with time_s, end_time_s, contact_width_mm, iterations, cutbacks.
         fields: full fields of strain energy, strain and stress as well, at the scene's snapshots, or of the last state.
 
     Returns:
@@ -60,8 +65,35 @@ def simulate(
         NonConvergence: a step failed for good; its ``dataset`` is the history up to the last converged step. A
         KeyboardInterrupt has the same ``dataset``, if a step had converged.
     """
+    chosen = plan or _plan(scene)
     with threadpool_limits(1):
-        return Simulation(scene, plan or _plan(scene), mesh, fields).run(progress)
+        history = Simulation(scene, chosen, mesh, fields).run(progress)
+        runs = [_told(history)]
+        why_not = "a mesh was given" if mesh is not None else ""
+        while mesh is None:
+            following = refined(scene, chosen, history.attrs["estimated_error"], history.attrs["narrowest_half_width"], len(runs))
+            if isinstance(following, str):
+                why_not = following
+                break
+            try:
+                again = Simulation(scene, following, None, fields).run(progress)
+            except NonConvergence:
+                why_not = f"the refined run on {following.nodes} nodes did not converge"
+                break
+            runs.append(_told(again))
+            chosen, history = following, again
+    missed = chosen.missed(history.attrs["estimated_error"])
+    tolerance = {
+        "asked_error": np.nan if chosen.asked_error is None else chosen.asked_error,
+        "tolerance": "" if missed is None else f"{missed}; {why_not}".removesuffix("; "),
+        "runs": json.dumps(runs),
+    }
+    return history.assign_attrs(tolerance)
+
+
+def _told(history: xr.Dataset) -> dict[str, Any]:
+    """What is kept of a run that may be run again: its nodes and its own estimate of its error."""
+    return {"nodes": json.loads(history.attrs["cost"])["nodes"], "estimated_error": history.attrs["estimated_error"]}
 
 
 class Simulation:
@@ -188,30 +220,52 @@ class Simulation:
             last = step.time
         return last or 1.0
 
-    def _estimated_error(self, records, width):
-        """The plan's error law at the narrowest contact that was found at a leg's end; at least a half for a few nodes.
+    def _errors(self, records, width) -> dict[str, Any]:
+        """The plan's error law at the contact that was found: of legs' ends, the worst of these, the largest of any step.
 
-        A leg that ends with the finger let go has no contact to ask for. And at least the share of the work that has gone
-        missing in strokes: what jumps of nodes over sharp edges have cost.
+        Of a leg's end at least a half where but a few nodes touch, and at least the share of the work that has gone missing in
+        strokes: what jumps of nodes over sharp edges have cost. What has been unloaded to less than half of a force before is
+        judged beside what that force did, and so are the steps on the way to a larger contact; a finger that is let go has no
+        error left.
         """
+        width, force = np.asarray(width[1:]), np.array([record.force for record in records])
+        touching = np.array([np.count_nonzero(record.nodal_force) / self.share for record in records])
         ends = [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
-        most = max((record.force for record in records), default=0.0)
-        ends = [k for k in ends if records[k].force > 1e-6 * most] or ends
-        narrowest = min((width[k + 1] for k in ends), default=0.0)
-        steps = self.plan.steps_per_leg if self.plan.timed else None
-        around = self.plan.mesh_size and self.plan.mesh_size.skin_edge
+        lost = self._lost_work(records)
         stroked = any(record.distance for record in records)
-        error = estimated_error(self.plan.contact_edge, max(narrowest / 2, 1e-5), steps, stroked, around)
-        error += self.plan.small_strain_error + self.plan.surface.error
-        touching = min((np.count_nonzero(records[k].nodal_force) / self.share for k in ends), default=0)
+        own = {k: max(self._error_at(width[k], stroked), lost, 0.5 if touching[k] < 4 else 0.0) for k in ends}
+        legs = []
+        for k in ends:
+            largest = int(np.argmax(force[: k + 1]))
+            unloaded = force[k] < _UNLOADED * force[largest] and width[k] < width[largest]
+            legs.append(own[k] * width[k] / width[largest] if unloaded else own[k])
+        beside = [self._error_at(each, stroked) * each / width.max() for each in np.unique(width) if each > 0]
+        judged = [k for k, error in zip(ends, legs, strict=True) if error == own[k]]
+        narrowest = min((width[k] for k in judged), default=0.0)
+        return {
+            "estimated_error": float(max(legs)),
+            "estimated_error_of_legs": json.dumps([float(error) for error in legs]),
+            "largest_error": float(max([*legs, *beside])),
+            "narrowest_half_width": max(narrowest / 2, 1e-9),
+        }
+
+    def _error_at(self, width, stroked) -> float:
+        """The error law for a contact of ``width`` m."""
+        plan = self.plan
+        half_width = min(width / 2, plan.contact.narrowest or np.inf)
+        around = plan.mesh_size and plan.mesh_size.skin_edge
+        steps = plan.steps_per_leg if plan.timed else None
+        found = estimated_error(plan.contact_edge, half_width or _NO_CONTACT, steps, stroked, around)
+        return max(found, plan.edge_error) + plan.small_strain_error + plan.surface.error
+
+    def _lost_work(self, records) -> float:
         missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
         drift = [
             abs(now - before)
             for now, before, record, last in zip(missing[1:], missing, records[1:], records, strict=False)
             if record.leg == last.leg and hasattr(self.scene.motion[record.leg], "slide")
         ]
-        lost = sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
-        return float(max(error, lost, 0.5 if touching < 4 else 0.0))
+        return sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
 
     def _notes(self, records):
         """What a person should know of the contact with a measured profile."""
@@ -342,8 +396,9 @@ class Simulation:
                 "scene": self.scene.canonical(),
                 "plan": self.plan.to_dict(),
                 "cost": cost,
-                "estimated_error": self._estimated_error(records, out["contact_width"]),
-                "singular": int(self.profile.singular),
+                **self._errors(records, out["contact_width"]),
+                "error_covers": self.plan.covers,
+                "singular": int(self.plan.unbounded_peak),
                 "notes": self._notes(records),
                 "provenance": provenance(),
             },
@@ -365,6 +420,9 @@ class Simulation:
         wanted = self.scene.outputs.responses
         if wanted and out["leg"].size > 1 and history.time.values[-1] > 0:
             history = history.merge(respond(history, wanted))
+        if self.plan.unbounded_peak:
+            for name in ("peak_pressure", "contact_pressure"):
+                history[name].attrs["comment"] = "at a true edge pressure is unbounded: its largest value is the mesh's"
         return history
 
 

@@ -6,9 +6,16 @@ the simulated widths and a fifth of the depths of the thesis's nine shapes; good
 large strains will be.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import brentq
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def layer_kernel(stiffness_ratio: float, wavenumber: float) -> float:
@@ -24,11 +31,16 @@ def layer_kernel(stiffness_ratio: float, wavenumber: float) -> float:
 
 @dataclass(frozen=True)
 class ContactEstimate:
-    """Half-width m, depth m, mean pressure Pa and representative strain of a pressed line contact."""
+    """Half-width m, depth m and representative strain of a pressed line contact.
+
+    ``narrowest`` is the half-width m of the least piece of it that has to be resolved: of a face, a tip or a bump (None: the
+    whole contact).
+    """
 
     half_width: float
     depth: float
     strain: float
+    narrowest: float | None = None
 
 
 @dataclass(frozen=True)
@@ -58,8 +70,52 @@ class PadEstimate:
 
     def pressed_to(self, depth: float, curvature: float) -> ContactEstimate:
         """Contact at ``depth`` m: the force is sought first."""
-        low, high = 1e-6, 1e6
+        return self.pressed(self.force_of(depth, curvature), curvature)
+
+    def force_of(self, depth: float, curvature: float = 0.0) -> float:
+        """Force (N/m) that presses to ``depth`` m."""
+        low, high = (1e-6, 1e6) if depth > self.pressed(1e-6, curvature).depth else (1e-30, 1e-6)
         for _ in range(80):
             middle = np.sqrt(low * high)
             low, high = (middle, high) if self.pressed(middle, curvature).depth < depth else (low, middle)
-        return self.pressed(np.sqrt(low * high), curvature)
+        return float(np.sqrt(low * high))
+
+    def on_rounding(self, force: float, flat: float, radius: float) -> float:
+        """How far (m) the contact of a face reaches into the rounding of its edge.
+
+        Ciavarella, Hills and Monno 1998, J. Mech. Eng. Sci. 212, eq. 11, on a half-plane as stiff as the epidermis.
+
+        Args:
+            force: N/m. flat: m, half-width of the face between the roundings; radius: m, of these.
+        """
+        load = 2 * force * radius / self.stiff
+        if flat < 1e-3 * radius:
+            return float(min(np.sqrt(2 * load / np.pi), radius))
+
+        def excess(angle):  # between the edge of the face and that of the contact, seen on the circle over it
+            return flat**2 * (angle / np.cos(angle) ** 2 - np.tan(angle)) - load
+
+        top = np.arccos(flat / (flat + radius))
+        if excess(top) <= 0:
+            return radius
+        angle = brentq(excess, 0.0, top)
+        return float(flat * (1 / np.cos(angle) - 1))
+
+    def least_piece(self, force: float, outline: Callable[[np.ndarray], np.ndarray], low: float, high: float) -> float:
+        """Half-width (m) of the narrowest piece of a contact somewhere in ``low`` to ``high`` m along a surface.
+
+        A surface bulges the more the smaller the length over which that is asked. A bump that is wider than the contact it would
+        make alone stands out; what is narrower is flattened, and counts as part of what is wider.
+
+        Args:
+            force: N/m. outline: height of the surface (n,) m at (n,) m; NaN where there is none.
+        """
+        widest = self.pressed(force, 0.0).half_width
+        least = widest
+        for scale in widest * 0.5 ** np.arange(0.0, 12.0, 0.5):
+            middles = np.linspace(low, high, int(np.clip(4 * (high - low) / scale, 3, 4000)) | 1)
+            sides = np.stack([outline(middles + shift) for shift in (-scale, 0.0, scale)])
+            bend = np.nanmax(np.where(np.isnan(sides).any(0), -np.inf, sides[0] + sides[2] - 2 * sides[1])) / scale**2
+            alone = self.pressed(force, float(max(bend, 0.0))).half_width
+            least = min(least, alone if alone <= scale else np.inf)
+        return float(least)

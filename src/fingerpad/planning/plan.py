@@ -7,6 +7,7 @@ the scene. The thresholds and measured constants stand together in :class:`Rules
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from itertools import product
@@ -26,7 +27,7 @@ from fingerpad.specimen.materials import Prony
 from fingerpad.specimen.measures import apex_edge
 from fingerpad.specimen.mesh import MeshSize, PadMesh
 from fingerpad.stimuli.motion import STEADY, programme
-from fingerpad.stimuli.profiles import Curve, Profile, profile_of
+from fingerpad.stimuli.profiles import Bar, Curve, Cylinder, Profile, Wavy, profile_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -103,6 +104,15 @@ class Rules:
         mesh_order, time_order: with which errors are taken to go on beyond the meshes and steps that were measured.
         edge_share: of an element's edge, by which an edge of the contact may be misplaced: a quarter of the node spacing.
         safety: factor on both, for errors swing with where nodes happen to lie.
+        fillet_error, fillet_order: of the peak pressure, over that power of element edge / length of the contact on the rounded
+            edge that presses. edge_error: of the centre
+            pressure and the strain energies, over element edge / half width of the face, under a true edge; edge_floor: what it
+            does not fall below, for the skin's node at the edge is held by it or is not.
+        linear_triangle, linear_quad: by how much coarser P2B and Q1P0 elements of external meshes count than their edges.
+        least_edge: m, of an element; shorter ones are not made. least_half_width: m, of a contact; narrower ones are refused.
+        most_nodes: of a mesh, and most_memory: share of the machine's, that a plan may ask for; bytes_node, bytes_step: needed
+            for each node, and for each node and step.
+        most_runs: of a scene whose run missed its tolerance; most_nodes_again: of a mesh on which it is run again.
         least_steps: of a leg; fewer would do for its end, but a curve of fewer is none.
         small_strain_error: of small strain in the headline quantities, over depth / soft thickness, at most; small strain is used
             when that is within the accuracy asked for.
@@ -134,6 +144,20 @@ class Rules:
     time_order: float = 1.0
     edge_share: float = 0.125
     safety: float = 1.5
+    fillet_error: float = 0.2
+    fillet_order: float = 1.5
+    edge_error: float = 0.65
+    edge_floor: float = 0.08
+    linear_triangle: float = 1.6
+    linear_quad: float = 2.0
+    least_edge: float = 1e-7
+    least_half_width: float = 2e-7
+    most_nodes: float = 2e6
+    most_memory: float = 0.8
+    bytes_node: float = 1e4
+    bytes_step: float = 20.0
+    most_runs: int = 3
+    most_nodes_again: float = 3e5
     least_steps: int = 10
     small_strain_error: float = 4.6
     pressing_friction: float = 2.0
@@ -156,6 +180,10 @@ class Rules:
 
 
 RULES = Rules()
+_RECEPTOR_BYTES = 400  # of a receptor and step: what is sampled, kept twice
+_FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
+_MOST_COLUMNS = 2000  # of refined elements to either side
+_FLATTER = 0.8  # pieces less than so much narrower than the contact are the contact
 _THESIS_ROWS = 7  # elements across the epidermis of the thesis's preset
 
 
@@ -178,8 +206,10 @@ class Plan:
         slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
         nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
         contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
-        part of it that small strain is to blame for. surface: what the mesh makes of a measured profile.
-        specimen: sentences on what is touched, and what of it the scene left out.
+        part of it that small strain is to blame for; edge_error: at least this because of the profile's edges. error_from: what
+        most of it comes from. asked_error: the tolerance, None where none is asked for; once: whether it is tried for once only.
+        unbounded_peak: whether the profile has a true edge, where pressure has no bound and a peak is the mesh's. specimen:
+        sentences on what is touched, and what of it the scene left out. surface: what the mesh makes of a measured profile.
     """
 
     effects: dict[str, Effect]
@@ -198,8 +228,29 @@ class Plan:
     estimated_error: float
     predicted_cost_s: float
     small_strain_error: float = 0.0
+    edge_error: float = 0.0
+    error_from: str = ""
+    asked_error: float | None = None
+    once: bool = False
+    unbounded_peak: bool = False
     specimen: tuple[str, ...] = ()
     surface: Surface = Surface()
+
+    @property
+    def covers(self) -> str:
+        """The quantities that the error is of."""
+        if self.unbounded_peak:
+            return "depth, width, centre pressure, strain energy; the peak at the edge is unbounded"
+        return "depth, width, pressure, strain energy"
+
+    def missed(self, error: float | None = None) -> str | None:
+        """What to say where ``error`` (default: the expected one) exceeds the tolerance; None where it does not."""
+        planned = error is None
+        error = self.estimated_error if planned else error
+        if self.asked_error is None or error <= self.asked_error * (1 + 1e-9):
+            return None
+        had = "not to be had: expected" if planned else "got"
+        return f"asked {_percent(self.asked_error)}, {had} {_percent(error)}: {self.error_from}"
 
     @property
     def stepping(self) -> tuple[int, bool, float]:
@@ -245,7 +296,29 @@ class Plan:
             "small_strain_error": self.small_strain_error,
             "specimen": list(self.specimen),
             "surface_SI": asdict(self.surface),
+            "edge_error": self.edge_error,
+            "error_from": self.error_from,
+            "error_covers": self.covers,
+            "asked_error": self.asked_error,
+            "tolerance_met": None if self.asked_error is None else self.missed() is None,
+            "once": self.once,
+            "unbounded_peak": self.unbounded_peak,
         }
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any]) -> Plan:
+        """The plan of which :meth:`to_dict` is the description."""
+        size = data["mesh_size_SI"]
+        if size is not None:
+            size = MeshSize(**size | {"focus": tuple(tuple(pair) for pair in size["focus"])})
+        known = data["discretisation"]
+        return cls(
+            {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
+            ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
+            data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
+            data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["edge_error"], data["error_from"],
+            data["asked_error"], data["once"], data["unbounded_peak"], tuple(data["specimen"]), Surface(**data["surface_SI"]),
+        )  # fmt: skip
 
     def write(self, path: str | Path) -> None:
         """Write plan.json, whole or not at all."""
@@ -254,13 +327,18 @@ class Plan:
         write_text(path, json.dumps(self.to_dict(), indent=2) + "\n")
 
 
-def plan(scene: Scene, rules: Rules = RULES) -> Plan:
+def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, tolerance: float | None = None) -> Plan:
     """Decide effects and discretisation of ``scene``.
 
+    Args:
+        scene: a checked scene. rules: thresholds (default: :data:`RULES`). found: half-width m of the narrowest contact that a
+        run has shown, in place of the estimated one. tolerance: what the mesh is made for where that is less than the scene asks.
+
     Raises:
-        PlanError: an override asks for what the scene cannot have. MeshError: an external mesh cannot be read, or the pad has no
-        room for its ridges.
+        PlanError: an override asks for what the scene cannot have, or the mesh for more than the machine has. MeshError: an
+        external mesh cannot be read, or the pad has no room for its ridges.
     """
+    rules = rules or RULES
     external = _external(scene)
     measured = profile_of(scene.stimulus)
     _check_over_pad(scene, measured, external)
@@ -270,13 +348,16 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
     moves = _moves(scene)
     # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
     contact = _worst_contact(scene, pad, profile, profile.convexity if moves or not isinstance(profile, Curve) else 0.0)
+    contact = replace(contact, narrowest=_narrowest(scene, pad, profile, contact, found))
+    _check_width(scene, pad, contact, rules)
     inertia, fastest = _inertia_ratio(scene, contact)
     if inertia > rules.inertia_limit:
         raise PlanError(
             f"motion[{fastest}]: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); "
             f"allowed: up to {rules.inertia_limit:g}"
         )
-    preset, by_hand = _preset(scene, rules, contact)
+    rounding = _on_rounding(scene, pad, profile, contact) if profile.edges and not profile.unbounded else 0.0
+    preset, by_hand = _preset(scene, rules, contact, tolerance)
     tolerance = preset.tolerance
     chosen = (layer.law for layer in scene.specimen.materials.values())
     laws = max(departure(one.law, one.constants, contact.strain) for one in chosen)
@@ -301,7 +382,8 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
         # on its way over a surface the contact is also flat
         widest = _worst_contact(scene, pad, profile, 0.0) if moves and isinstance(profile, Curve) else contact
         wander = _wander(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
-        size = _mesh_size(scene, preset, profile, contact, widest.half_width, wander, rules)
+        size = _mesh_size(scene, preset, profile, contact, widest.half_width, wander, rounding, rules)
+        _check_size(scene, size, ridges, rules)
         nodes, smallest = counted(scene.specimen, size, ridges)
         edge = min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
         if ridges is not None:
@@ -309,19 +391,52 @@ def plan(scene: Scene, rules: Rules = RULES) -> Plan:
             effects["ridges"], edge = _resolved(effects["ridges"], layered, edge)
     else:
         size, nodes = None, len(external.points)
-        smallest, edge = external.quality()["smallest_edge_m"], apex_edge(external)
+        smallest, edge = external.quality()["smallest_edge_m"], _coarseness(external, rules) * apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
+    _check_memory(scene, nodes, steps, rules)
     linear = 0.0 if effects["finite_strain"].on else _small_strain_error(pad, profile, contact, rules) + laws
     surface = surface_of(measured, edge, _way(scene), pad, partial(_worst_contact, scene, pad, profile))
     around = None if size is None else size.skin_edge
     time = steps_per_leg if timed else None
-    error = linear + surface.error + estimated_error(edge, _earliest(scene, contact, timed), time, moves, around, rules)
+    narrowest = _earliest(scene, contact, timed)
+    at_edge = edge if size is None else min([edge, *(each for _, each in size.focus)])
+    at_edges, edges_said = _edge_error(profile, at_edge, rounding, rules)
+    in_contact = estimated_error(edge, narrowest, time, moves, around, rules)
+    sources = {
+        f"edges of {_micrometres(edge)} um in a contact of {_micrometres(narrowest)} um to either side": in_contact,
+        edges_said: at_edges,
+        "small strain": linear,
+        "what the mesh cannot feel of the profile": surface.error,
+    }
     return Plan(
-        effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge, error,
-        _cost(nodes, steps, effects, rules), linear, specimen=specimen_said(scene.specimen, external),
-        surface=surface,
+        effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
+        linear + surface.error + max(in_contact, at_edges), _cost(nodes, steps, effects, rules), linear, at_edges,
+        max(sources, key=sources.get), scene.tolerance, scene.once, _unbounded(profile, at_edge, rounding, rules),
+        specimen_said(scene.specimen, external), surface,
     )  # fmt: skip
+
+
+def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: int = 1, rules: Rules | None = None) -> Plan | str:
+    """The plan of another run of a scene that was solved as ``before`` says, or why there is none ("" where none is wanted).
+
+    Args:
+        error: what the run estimates of itself. narrowest: half-width m of the narrowest contact that it found. runs: so far.
+    """
+    rules = rules or RULES
+    if before.missed(error) is None or before.once:
+        return ""
+    if before.mesh_size is None:
+        return "an external mesh is not refined"
+    if runs >= rules.most_runs:
+        return f"after {runs} runs"
+    # what misses by some share is aimed at by as much below
+    finer = plan(scene, rules, narrowest, before.asked_error * min(1.0, max(before.asked_error / error, 0.25)))
+    if finer.estimated_error > 0.9 * error:
+        return "a finer mesh would not help"
+    if finer.nodes > rules.most_nodes_again:
+        return f"{_percent(finer.estimated_error)} would need {finer.nodes} nodes"
+    return finer
 
 
 def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | None = None, present=None):
@@ -339,18 +454,7 @@ def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | 
 
 def read_plan(path: str | Path) -> Plan:
     """The plan written to ``path`` by :meth:`Plan.write`."""
-    data = json.loads(Path(path).read_text(encoding="utf-8"))
-    size = data["mesh_size_SI"]
-    if size is not None:
-        size = MeshSize(**size | {"focus": tuple(tuple(pair) for pair in size["focus"])})
-    known = data["discretisation"]
-    return Plan(
-        {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
-        ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
-        data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
-        data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], specimen=tuple(data["specimen"]),
-        surface=Surface(**data["surface_SI"]),
-    )  # fmt: skip
+    return Plan.from_dict(json.loads(Path(path).read_text(encoding="utf-8")))
 
 
 def _moves(scene: Scene) -> bool:
@@ -429,18 +533,23 @@ def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> tuple[float, int]:
     return 1000.0 * speed[fastest] ** 2 / softest, fastest
 
 
-def _preset(scene: Scene, rules: Rules, contact: ContactEstimate) -> tuple[Preset, Discretisation | None]:
+def _preset(
+    scene: Scene, rules: Rules, contact: ContactEstimate, tolerance: float | None
+) -> tuple[Preset, Discretisation | None]:
     """The discretisation asked for: a named one, the cheapest that meets a tolerance, or one by hand."""
     accuracy = scene.accuracy
+    by_hand = accuracy if isinstance(accuracy, Discretisation) else None
     if isinstance(accuracy, str):
         return rules.presets[accuracy], None
+    if scene.tolerance is not None:
+        return _cheapest(scene, min(scene.tolerance, tolerance or 1.0), contact, rules), by_hand
     thesis = rules.presets["thesis"]
-    if isinstance(accuracy, Discretisation):
+    if by_hand is not None:
         edge = accuracy.skin_edge or thesis.skin_edge
         scale = edge / thesis.skin_edge
         error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
-        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), accuracy
-    return _cheapest(scene, accuracy, contact, rules), None
+        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), by_hand
+    raise AssertionError(accuracy)
 
 
 def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules) -> Preset:
@@ -452,15 +561,18 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     timed = bool(scene.specimen.prony) and any(duration is not None for duration in leg_durations(scene))
     moves, half_width = _moves(scene), _earliest(scene, contact, timed)
     still = not moves and scene.specimen.mesh is None and scene.specimen.ridges is None
+    outer = 3 if scene.specimen.ridges is not None and scene.specimen.ridges.outer is not None else 1  # columns of outer ridges
     found = []
     for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):
         edge, growth = known.edge * _THESIS_ROWS / rows, min(thesis.growth ** (_THESIS_ROWS / rows), 3.0)
         time = steps if timed else None
-        for finer in (1, 2, 4, 8, 16) if still else (1,):
-            error = estimated_error(edge / finer, half_width, time, moves, edge, rules)
+        for finer in [2**k for k in range(_FINEST_FOCUS)] if still else (1,):
             # the right half has about 7 columns and 4 rows an element across the epidermis
             more = np.log(finer) / np.log(growth)
-            wide = 1.2 * contact.half_width / edge * (finer - 1)
+            wide = 1.2 * _reach(scene, contact) / edge * (finer - 1)
+            if finer > 1 and (edge / finer < rules.least_edge or wide > _MOST_COLUMNS):
+                break
+            error = estimated_error(edge / finer / outer, half_width, time, moves, edge, rules)
             work = (7 * rows + more + wide) * (4 * rows + more) * steps
             found.append((max(error - tolerance, 0.0), work, edge / finer, edge, growth, steps))
     _, _, focus, edge, growth, steps = min(found)
@@ -476,7 +588,144 @@ def _earliest(scene: Scene, contact: ContactEstimate, timed: bool) -> float:
     """Half width (m) of the contact before anything relaxes: narrower as the root of the modulus is larger."""
     relaxes = timed and scene.specimen.moduli == "long_term"
     share = (1 - sum(term.g for term in scene.specimen.prony)) ** 0.5 if relaxes else 1.0
-    return max(share * contact.half_width, 1e-5)
+    earliest = share * contact.half_width
+    return earliest if contact.narrowest is None else min(earliest, contact.narrowest)
+
+
+def _reach(scene: Scene, contact: ContactEstimate) -> float:
+    """How far (m) the contact reaches to either side."""
+    return min(contact.half_width, scene.stimulus.width / 2) if scene.stimulus.shape == "bar" else contact.half_width
+
+
+def _narrowest(scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate, found: float | None) -> float | None:
+    """Half-width (m) of the least piece of the contact where that is not the contact itself: a face, a tip, a bump; or found."""
+    least = np.inf if found is None else found
+    if isinstance(profile, Bar):
+        least = min(least, profile.width / 2)
+    elif isinstance(profile, Cylinder):
+        radius = 1 / profile.curvature
+        least = min(least, radius if radius < contact.half_width else np.inf)
+    elif isinstance(profile, Curve) and not isinstance(profile, Wavy):
+        low, high = _way(scene)
+        force = _force(scene, pad, contact)
+        bump = pad.least_piece(force, profile.outline, low - contact.half_width, high + contact.half_width)
+        least = min(least, bump if bump < _FLATTER * contact.half_width else np.inf)
+    if scene.specimen.ridges is not None and scene.specimen.ridges.outer is not None:
+        period = scene.specimen.ridges.outer.period or scene.specimen.ridges.inner.pitch
+        least = min(least, period / 4)  # the skin touches with the tops of its ridges
+    return float(least) if np.isfinite(least) else None
+
+
+def _force(scene: Scene, pad: PadEstimate, contact: ContactEstimate) -> float:
+    """Largest force (N/m) of the motion: that of its legs, or what presses to the estimated depth."""
+    forces = [leg.press_to_force for leg in scene.motion if isinstance(leg, PressToForce)]
+    return max(forces) / scene.specimen.contact_length if forces else pad.force_of(contact.depth)
+
+
+def _on_rounding(scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate) -> float:
+    """Length (m) of the contact on the rounded edges of a face."""
+    return pad.on_rounding(_force(scene, pad, contact), profile.width / 2 - profile.fillet, profile.fillet)
+
+
+def _edge_error(profile: Profile, edge: float, rounding: float, rules: Rules) -> tuple[float, str]:
+    """Error because of the profile's own edges, meshed with ``edge`` m: of a rounded one the peak pressure's; and what it is."""
+    if not profile.edges:
+        return 0.0, ""
+    if _unbounded(profile, edge, rounding, rules):
+        error = max(rules.edge_error * edge / (profile.width / 2), rules.edge_floor)
+        return error, "at a true edge the skin is held or is not, by a node; a fillet that is resolved converges"
+    said = f"edges of {_micrometres(edge)} um on {_micrometres(rounding)} um of a rounded edge"
+    return rules.fillet_error * (edge / rounding) ** rules.fillet_order, said
+
+
+def _unbounded(profile: Profile, edge: float, rounding: float, rules: Rules) -> bool:
+    """Whether the pressure at the profile's edges is the mesh's: they are true ones, or roundings that ``edge`` m cannot tell."""
+    return profile.unbounded or (bool(profile.edges) and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1)
+
+
+def _edge_size(profile: Profile, preset: Preset, asked: float | None, rounding: float, rules: Rules) -> float:
+    """Element edge (m) at the profile's own edges: as presets have it, and finer where a tolerance asks for that."""
+    edge = min(preset.skin_edge / 4, profile.fillet / 2) if profile.fillet else preset.skin_edge / 4
+    if asked is None:
+        return edge
+    if profile.unbounded:
+        wanted = max(asked, rules.edge_floor) / rules.edge_error * profile.width / 2
+    else:
+        wanted = (asked / rules.fillet_error) ** (1 / rules.fillet_order) * rounding
+    return max(min(edge, wanted), rules.least_edge)
+
+
+def _coarseness(external: PadMesh, rules: Rules) -> float:
+    """By how much coarser the elements of an external mesh count than their edges."""
+    return {"quad4": rules.linear_quad, "tri6": rules.linear_triangle}.get(external.element, 1.0)
+
+
+# -- what is not to be had ----------------------------------------------------------------------------------------------
+
+
+def _check_width(scene: Scene, pad: PadEstimate, contact: ContactEstimate, rules: Rules) -> None:
+    """Refuses contacts narrower than any element."""
+    if contact.half_width >= rules.least_half_width:
+        return
+    force = _force(scene, pad, contact)
+    least = rules.least_half_width * 1e9
+    said = f"the contact would be {contact.half_width * 1e9:.2g} nm to either side; allowed: {least:g} nm or more"
+    if pad.pressed(force, 0.0).half_width < rules.least_half_width:
+        i, leg = next((i, leg) for i, leg in enumerate(scene.motion) if isinstance(leg, (PressToForce, PressToDepth)))
+        key = "press_to_force" if isinstance(leg, PressToForce) else "press_to_depth"
+        raise PlanError(f"motion[{i}].{key}: so little that {said}")
+    key = ".curvature" if scene.stimulus.shape == "cylinder" else ""
+    raise PlanError(f"stimulus{key}: so sharp that {said}")
+
+
+def _check_size(scene: Scene, size: MeshSize, ridges: Any, rules: Rules) -> None:
+    """Refuses meshes of more nodes than are allowed, from above and before anything is allocated."""
+    outline = scene.specimen.outline
+    fine = scene.specimen.soft_thickness if outline is None else outline.epidermis_thickness + outline.dermis_thickness
+    rows = fine / size.layer_edge + 4
+    nodes = 8 * rows * (size.fine_half_width / size.skin_edge + len(size.focus))
+    if nodes > rules.most_nodes:
+        key = "accuracy.skin_edge" if getattr(scene.accuracy, "skin_edge", None) else "accuracy"
+        least = size.skin_edge * (nodes / rules.most_nodes) ** 0.5
+        raise PlanError(
+            f"{key}: edges of {_micrometres(size.skin_edge)} um make {nodes:.2g} nodes; "
+            f"allowed: {rules.most_nodes:g} nodes, edges of about {_micrometres(least)} um"
+        )
+    if ridges is not None:
+        wave = ridges.inner.pitch / (2 if ridges.inner.limiting else 1)
+        nodes = 8 * 20 * 8 * (ridges.half_width + ridges.inner.pitch) / wave
+        if nodes > rules.most_nodes:
+            raise PlanError(
+                f"specimen.ridges.inner.pitch: {ridges.half_width / wave:.2g} ridges to either side make {nodes:.2g} nodes; "
+                f"allowed: {rules.most_nodes:g} nodes, a pitch of about {_micrometres(wave * nodes / rules.most_nodes)} um"
+            )
+
+
+def _check_memory(scene: Scene, nodes: int, steps: int, rules: Rules) -> None:
+    """Refuses what would need more memory than the machine has, or more nodes than are allowed."""
+    machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    receptors = len(scene.outputs.receptors.depths) * len(scene.outputs.receptors.offsets)
+    needed = {
+        "accuracy": nodes * rules.bytes_node,
+        "accuracy.steps" if getattr(scene.accuracy, "steps", None) else "motion": nodes * steps * rules.bytes_step,
+        "outputs.receptors": receptors * (steps + 1) * _RECEPTOR_BYTES,
+    }
+    if nodes > rules.most_nodes:
+        raise PlanError(f"accuracy: {nodes} nodes; allowed: {rules.most_nodes:g}")
+    if sum(needed.values()) > rules.most_memory * machine:
+        worst = max(needed, key=needed.get)
+        raise PlanError(
+            f"{worst}: {nodes} nodes, {steps} steps and {receptors} receptors need about {sum(needed.values()) / 1e9:.2g} GB "
+            f"of memory; allowed: {rules.most_memory * machine / 1e9:.2g} GB on this machine"
+        )
+
+
+def _micrometres(length: float) -> str:
+    return f"{length * 1e6:.3g}"
+
+
+def _percent(error: float) -> str:
+    return f"{100 * error:.2g} %" if error < 0.995 else "more than 100 %"
 
 
 def estimated_error(
@@ -672,21 +921,30 @@ def _wander(scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, ru
 
 
 def _mesh_size(
-    scene: Scene, preset: Preset, profile: Profile, contact: ContactEstimate, half_width: float, wander: float, rules: Rules
+    scene: Scene,
+    preset: Preset,
+    profile: Profile,
+    contact: ContactEstimate,
+    half_width: float,
+    wander: float,
+    rounding: float,
+    rules: Rules,
 ) -> MeshSize:
     offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
     fine = max(rules.fine_half_width, 1.3 * half_width, half_width + wander, offsets)
     focus, radial = (), None
-    if profile.edges:
-        fillet = getattr(profile, "fillet", 0.0)
-        edge = min(preset.skin_edge / 4, fillet / 2) if fillet else preset.skin_edge / 4
-        focus = tuple((x, edge) for x in sorted({abs(x) for x in profile.edges}))
-    elif preset.focus is not None:
+    if preset.focus is not None:
         # fine all over the contact, somewhat wider than it is estimated, and not at the apex only
-        places = np.linspace(0.0, 1.2 * half_width, max(2, round(1.2 * half_width / preset.focus / 2) + 1))
+        reach = 1.2 * min(half_width, _reach(scene, contact))
+        places = np.linspace(0.0, reach, max(2, round(reach / preset.focus / 2) + 1))
         focus, radial = tuple((float(x), preset.focus) for x in places), preset.focus
-    elif not isinstance(scene.accuracy, Discretisation) and not _moves(scene) and preset.skin_edge > contact.half_width:
-        focus = ((0.0, contact.half_width / rules.edges_per_half_width),)
+    if profile.edges:
+        edge = _edge_size(profile, preset, None if scene.tolerance is None else preset.tolerance, rounding, rules)
+        focus += tuple((x, edge) for x in sorted({abs(x) for x in profile.edges}))
+        if scene.tolerance is not None:
+            radial = min(edge, radial or edge)
+    elif preset.focus is None and _refined_at_apex(scene) and preset.skin_edge > contact.half_width:
+        focus = ((0.0, max(contact.half_width / rules.edges_per_half_width, rules.least_edge)),)
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
@@ -695,6 +953,11 @@ def _mesh_size(
         focus=focus,
         skin_radial_edge=radial,
     )
+
+
+def _refined_at_apex(scene: Scene) -> bool:
+    """Whether a contact narrower than an edge is refined for: not where edges are given by hand or the contact moves."""
+    return not isinstance(scene.accuracy, Discretisation) and not _moves(scene)
 
 
 def _cost(nodes: int, steps: int, effects: dict[str, Effect], rules: Rules) -> float:

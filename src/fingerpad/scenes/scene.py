@@ -350,9 +350,23 @@ class Outputs(Strict):
         return data
 
 
-class Discretisation(Strict):
-    """Accuracy by hand; what is left out is chosen by the plan."""
+_SWITCH = {True: True, False: False, "on": True, "off": False, "true": True, "false": False}
+_Switch = bool | Literal["on", "off", "true", "false"]
 
+
+def _switch(value: Any) -> bool:
+    if not isinstance(value, (bool, str)) or value not in _SWITCH:
+        raise Problem("is not a switch", "on or off")
+    return _SWITCH[value]
+
+
+class Discretisation(Strict):
+    """Accuracy by hand; what is left out is chosen by the plan, as for the tolerance or else as for `thesis`."""
+
+    tolerance: number("a tolerance above 0 and below 1", 0.0, 1.0) | None = None
+    """Relative error allowed: a run that turns out to be worse is refined and run again."""
+    once: Annotated[bool, BeforeValidator(_switch, json_schema_input_type=_Switch)] = False
+    """Whether a tolerance is tried for once only."""
     element: Literal["Q1P0", "Q2P1", "P2B"] | None = None
     """Element: displacement and pressure interpolation."""
     skin_edge: Length | None = None
@@ -360,9 +374,18 @@ class Discretisation(Strict):
     steps: whole(1, MAXIMUM_STEPS) | None = None
     """Number of time steps of the whole motion."""
 
+    @model_validator(mode="after")
+    def _check(self) -> Discretisation:
+        for key in ("skin_edge", "steps"):
+            if self.tolerance is not None and getattr(self, key) is not None:
+                raise Problem("is given beside a tolerance, which chooses it", "one of both", (key,))
+        return self
+
 
 Level = Literal["draft", "thesis", "fine"]
-_ACCURACY = f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, or a mapping of element, skin_edge, steps"
+_ACCURACY = (
+    f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, or a mapping of tolerance and once, or element, skin_edge, steps"
+)
 
 
 def _check_accuracy(value: Any) -> Any:
@@ -390,8 +413,6 @@ Accuracy = Annotated[
     BeforeValidator(_check_accuracy),
 ]
 
-_SWITCH = {True: True, False: False, "on": True, "off": False, "true": True, "false": False}
-
 
 def _read_effects(value: Any) -> dict[str, bool]:
     if value == "auto":
@@ -403,15 +424,14 @@ def _read_effects(value: Any) -> dict[str, bool]:
     for key, switch in value.items():
         if key not in EFFECTS:
             raise Problem(f"is not a known effect{nearest(key, EFFECTS)}", choices, (str(key)[:60],), HIDE)
-        if not isinstance(switch, (bool, str)) or switch not in _SWITCH:
-            raise Problem("is not a switch", "on or off", (key,))
-        effects[key] = _SWITCH[switch]
+        try:
+            effects[key] = _switch(switch)
+        except Problem:
+            raise Problem("is not a switch", "on or off", (key,)) from None
     return effects
 
 
-_EffectsSurface = (
-    Literal["auto"] | dict[Literal[EFFECTS], bool | Literal["on", "off", "true", "false"]]  # type: ignore[valid-type]
-)
+_EffectsSurface = Literal["auto"] | dict[Literal[EFFECTS], _Switch]  # type: ignore[valid-type]
 Effects = Annotated[dict[str, bool], BeforeValidator(_read_effects, json_schema_input_type=_EffectsSurface)]
 
 
@@ -517,6 +537,17 @@ class Scene(Strict):
     def end_time(self) -> float | None:
         """Duration of the motion, s, steady legs taking none; None if a change of control leaves it open."""
         return end_time(self.motion)
+
+    @property
+    def tolerance(self) -> float | None:
+        """Relative error asked for; None for a preset or a discretisation by hand."""
+        asked = self.accuracy.tolerance if isinstance(self.accuracy, Discretisation) else self.accuracy
+        return asked if isinstance(asked, float) else None
+
+    @property
+    def once(self) -> bool:
+        """Whether the scene is to be run once, whatever the run's own estimate of its error."""
+        return isinstance(self.accuracy, Discretisation) and self.accuracy.once
 
     def varied(self, changes: Mapping[str, Any]) -> Scene:
         """Copy of the scene with some of its keys changed, checked like a scene that was read.

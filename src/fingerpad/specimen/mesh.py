@@ -38,6 +38,7 @@ _MIRRORED = {  # node order of an element's mirror image that is again counter-c
     "quad9": (1, 0, 3, 2, 4, 7, 6, 5, 8),
 }
 _COARSEST = 8.0  # largest edge along the skin, in skin edges
+_LARGEST_GRID = 100_000  # places along the skin at which edges are asked for, evenly spaced
 _LARGEST_TURN = 0.5  # largest angle in radians that one edge along the skin may turn by
 
 
@@ -216,6 +217,18 @@ def _limit_growth(s: np.ndarray, edge: np.ndarray, growth: float) -> np.ndarray:
     return (np.minimum.accumulate((rising + slope * s)[::-1]))[::-1] - slope * s
 
 
+def _grid_along(length: float, smallest: float, focus: list[float]) -> np.ndarray:
+    """Arc lengths at which edges are asked for: four to the smallest edge; of tiny edges, only from focus to focus and near."""
+    count = max(4000, int(np.ceil(4.0 * length / smallest)))
+    if count <= _LARGEST_GRID:
+        return np.linspace(0.0, length, count + 1)
+    away = np.geomspace(smallest / 4, length, 2000)
+    low, high = min(focus, default=0.0), max(focus, default=0.0)
+    between = np.linspace(low, high, min(int(4 * (high - low) / smallest) + 2, _LARGEST_GRID))
+    grid = np.concatenate([np.linspace(0.0, length, 4001), between, low - away, high + away])
+    return np.unique(np.clip(grid, 0.0, length))
+
+
 def _columns(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
     """Arc lengths of the column boundaries from apex to bottom, and the index of the nail's rim.
 
@@ -238,7 +251,7 @@ def _columns(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
     focus = [(float(curve.arc_length(curve.theta_at_x(min(abs(x), half_width)))[0]), edge) for x, edge in size.focus]
 
     smallest = min([size.skin_edge, *(edge for _, edge in focus)])
-    grid = np.linspace(0.0, curve.length, max(4000, int(np.ceil(4.0 * curve.length / smallest))) + 1)
+    grid = _grid_along(curve.length, smallest, [s for s, _ in focus])
     grid = np.union1d(grid, [*breaks, *(s for s, _ in focus)])
     radius = 1.0 / curve.curvature(curve.theta_at(grid))
     edge = np.minimum(_LARGEST_TURN * radius, radius - curve.layer_depths[-1])

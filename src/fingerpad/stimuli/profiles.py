@@ -20,7 +20,10 @@ class Profile:
     symmetric = True
     #: positions along x (m) where the profile's own edges press; the mesh planner refines there
     edges: tuple[float, ...] = ()
+    #: is there an edge at which strains are large or without bound?
     singular = False
+    #: is there a true edge, at which pressure has no bound?
+    unbounded = False
     #: largest slope of the surface; without bound for shapes that end beside their middle
     steepness = np.inf
     #: 1/m, largest curvature with which the surface bulges at the skin
@@ -108,6 +111,10 @@ class Bar(Profile):
         return (-self.width / 2, self.width / 2)
 
     reach = edges
+
+    @property
+    def unbounded(self):
+        return self.fillet == 0
 
     def evaluate(self, points):
         # distance to the half-infinite box shrunk by the fillet, minus the fillet

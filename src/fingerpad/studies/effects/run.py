@@ -111,7 +111,7 @@ def flattened(scene: Scene) -> Scene:
 
 
 def _focused(scene: Scene, on: bool) -> tuple[Scene, Plan]:
-    chosen = plan(scene)
+    chosen = replace(plan(scene), once=True)
     size = chosen.mesh_size
     if not on:
         size = replace(size, focus=(), skin_radial_edge=None)
@@ -390,6 +390,20 @@ DECIDES = {
     "time_order": "errors of steps beyond those measured: order in the step",
     "edge_share": "error, at least: an edge of the contact is misplaced by this share of an element's edge",
     "safety": "factor on measured errors and on that",
+    "fillet_error": "error of the peak pressure on a rounded edge, over edge / length of the contact there, to a power",
+    "fillet_order": "that power",
+    "edge_error": "error under a true edge, over edge / half width of the face",
+    "edge_floor": "error under a true edge, at least",
+    "linear_triangle": "by how much coarser quadratic triangles of external meshes count than their edges",
+    "linear_quad": "by how much coarser linear quads of external meshes count than their edges",
+    "least_edge": "shortest element edge that is made (m)",
+    "least_half_width": "contacts narrower to either side are refused (m)",
+    "most_nodes": "meshes of more nodes are refused",
+    "most_memory": "plans that need more than this share of the machine's memory are refused",
+    "bytes_node": "memory of a node",
+    "bytes_step": "memory of a node and step",
+    "most_runs": "runs of a scene that misses its tolerance, at most",
+    "most_nodes_again": "nodes on which a scene that missed its tolerance is run again, at most",
     "least_steps": "steps of a leg for a tolerance, at least",
     "small_strain_error": "finite strain: on when this times depth / soft thickness exceeds the accuracy",
     "pressing_friction": "friction of a press: on when this times the coefficient exceeds the accuracy",
@@ -418,6 +432,15 @@ WHERE = {
     "time_order": "figures/tables/accuracy_orders.csv",
     "edge_share": "figures/tables/accuracy_belief.csv",
     "safety": "figures/tables/accuracy_belief.csv",
+    **dict.fromkeys(("fillet_error", "fillet_order", "edge_error", "edge_floor"), "figures/tables/accuracy_drawn.csv"),
+    **dict.fromkeys(("linear_triangle", "linear_quad"), "figures/tables/accuracy.csv"),
+    "least_edge": "chosen: a tenth of a micrometre, below which skin is no continuum",
+    "least_half_width": "chosen: two of the shortest edges",
+    "most_nodes": "chosen: some 20 GB",
+    "most_memory": "chosen",
+    **dict.fromkeys(("bytes_node", "bytes_step"), "figures/tables/accuracy.csv, on 1e5 nodes and in 176 steps"),
+    "most_runs": "chosen: the second run knows the contact",
+    "most_nodes_again": "chosen: some minutes of one core",
     "least_steps": "chosen: fewer would do for the end of a leg, but a curve of fewer is none",
     "fine_half_width": "contact of a plate at 20 gf reaches 2.4 mm (figures/thesis/fig_4-10.csv)",
     "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",

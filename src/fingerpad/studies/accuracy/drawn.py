@@ -1,0 +1,156 @@
+"""Scenes drawn at random outside the cylinders, by class of stimulus, to ask whether runs know their error there as well.
+
+The classes: bars with true edges, filleted bars, lines, sampled profiles, strokes over waves, pads with inner ridges, external
+meshes, and very small and large forces. The truth is the same scene on the finest run's mesh made finer still; of a true edge,
+where nodes are held or are not, that of a rounding by a hundredth of the half width.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fingerpad.planning.plan import Plan, plan
+from fingerpad.scenes.scene import Bar, Sampled, Scene
+from fingerpad.specimen.mesh import build_pad_mesh
+from fingerpad.studies.accuracy.belief import FINEST, difference, ends
+from fingerpad.studies.accuracy.run import split
+from fingerpad.studies.stability.hard_cases import FLAT, cylinder, force, scene_of
+
+CLASSES = ("bar", "fillet", "line", "sampled", "wavy", "ridges", "external", "force")
+SEED, SCENES = 20, 60
+"""Of the scenes drawn; other seeds set the rules."""
+LEVELS = (0.1, 0.05)
+"""Accuracies that are asked for, one drawn for each scene; an external mesh is what it is."""
+HEAVY = ("wavy", "ridges")
+"""Classes whose truth is large, tried at the first of these only."""
+FINER, FINER_STILL, ROUNDED = 1.7, 2.5, 200
+"""By how much the truth's edges are shorter than the run's, of strokes and ridged pads and of others; a true edge is rounded by
+the width over this."""
+
+
+def drawn(seed: int = SEED, count: int = SCENES) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Name, class and document of each scene, the classes in turn; what an external mesh is made of stands under ``made``."""
+    draw = np.random.default_rng(seed)
+
+    def between(low, high):
+        return float(f"{np.exp(draw.uniform(np.log(low), np.log(high))):.4g}")
+
+    def pick(*values):
+        return values[draw.integers(len(values))]
+
+    def load(low, high):
+        return [force(between(low, high), between(20, 100) if draw.integers(3) == 0 else None)]
+
+    def bar(rounded):
+        width = between(0.6, 4)
+        fillet = float(f"{draw.uniform(0.05, 0.6) * width / 2:.3g}") if rounded else 0
+        return {"shape": "bar", "width": f"{width} mm", "fillet": f"{fillet} mm"}
+
+    for number in range(count):
+        kind = CLASSES[number % len(CLASSES)]
+        document: dict[str, Any] = {"motion": load(3, 30), "stimulus": pick(FLAT, cylinder(between(20, 600)))}
+        document["accuracy"] = pick(*LEVELS) if kind not in HEAVY else LEVELS[0]
+        if kind in ("bar", "fillet"):
+            document["stimulus"] = bar(kind == "fillet")
+        elif kind == "line":
+            document |= {"stimulus": {"shape": "line"}, "motion": load(1, 20)}
+        elif kind == "sampled":
+            x = np.linspace(-8e-3, 8e-3, 2 * round(8e-3 / (1e-6 * between(10, 40))) + 1)
+            y = between(20, 400) * x**2 / 2
+            for _ in range(draw.integers(1, 4)):
+                wave = between(0.6e-3, 4e-3)
+                y = y + between(0.003, 0.012) * wave * np.cos(2 * np.pi * x / wave + pick(0.0, np.pi, draw.uniform(0, 6)))
+            document["stimulus"] = Sampled(csv=Path("drawn.csv"), x=tuple(x), y=tuple(y - y.min()))
+        elif kind == "wavy":
+            curvatures = [f"{between(60, 500)} 1/m" for _ in range(2)]
+            document["stimulus"] = {
+                "shape": "wavy",
+                "curvatures": curvatures,
+                "lead_in": f"{between(1, 3)} mm",
+                "run_out": "5 mm",
+            }
+            document |= {"motion": [force(between(5, 25), None), {"slide": f"{between(1, 2.5)} mm"}], "friction": pick(0.0, 0.3)}
+        elif kind == "ridges":
+            document["specimen"] = {"ridges": {"inner": {"height": f"{between(50, 150)} um", "phase": pick("tip", "valley")}}}
+            document["stimulus"] = pick(FLAT, cylinder(between(20, 600)), bar(True))
+        elif kind == "external":
+            document["made"] = {"edge": between(80e-6, 300e-6), "element": pick("quad9", "quad4", "tri6")}
+        elif kind == "force":
+            document["motion"] = pick(load(1e-4, 0.03), load(50, 120))
+        yield f"{kind}_{number}", kind, document
+
+
+def finer(chosen: Plan, share: float) -> Plan:
+    """A plan with edges and steps ``share`` times as short."""
+    size = chosen.mesh_size
+    size = replace(
+        size,
+        skin_edge=size.skin_edge / share,
+        layer_edge=size.layer_edge / share,
+        growth=max(size.growth ** (1 / share), 1.03),
+        focus=tuple((x, edge / share) for x, edge in size.focus),
+        skin_radial_edge=size.skin_radial_edge and size.skin_radial_edge / share,
+    )
+    steps = round(chosen.steps_per_leg * (2 if chosen.timed else 1))
+    return replace(chosen, mesh_size=size, steps_per_leg=steps, slide_step=chosen.slide_step / 1.5, asked_error=None)
+
+
+def truth_of(scene: Scene, last: Plan) -> Any:
+    """History of the truth, beside runs the finest of which was solved as ``last`` says."""
+    from fingerpad.simulation import simulate
+
+    if last.unbounded_peak:
+        width = scene.stimulus.width
+        scene = scene.varied({"stimulus": Bar(width=width, fillet=width / ROUNDED), "accuracy": 0.1})
+        return simulate(scene, finer(plan(scene), 1.5))
+    heavy = last.effects["ridges"].on or not last.effects["symmetry"].on or last.nodes > 5000
+    return simulate(scene, finer(last, FINER if heavy else FINER_STILL))
+
+
+def beliefs(name: str, kind: str, document: dict[str, Any], folder: Path) -> list[dict[str, Any]]:
+    """Run a drawn scene as it is and as finely as the truth: a row each. ``folder`` takes an external mesh."""
+    from fingerpad.simulation import simulate
+
+    document = dict(document)
+    made, stimulus = document.pop("made", None), document.pop("stimulus")
+    document["stimulus"] = FLAT if isinstance(stimulus, Sampled) else stimulus
+    scene = asked = scene_of(document, name)
+    if isinstance(stimulus, Sampled):
+        scene = asked = scene.varied({"stimulus": stimulus})
+    if made:
+        edge, size = made["edge"], plan(scene.with_accuracy("thesis")).mesh_size
+        mesh = build_pad_mesh(scene.specimen.outline, replace(size, skin_edge=edge, layer_edge=0.9 * edge))
+        path = folder / f"{name}.msh"
+        (mesh if made["element"] == "quad9" else split(mesh, made["element"])).write(path)
+        asked = scene_of(document | {"specimen": {"mesh": str(path)}}, name)
+    run = simulate(asked)
+    last = plan(scene.with_accuracy(0.02)) if made else Plan.from_dict(json.loads(run.attrs["plan"]))
+    truth = truth_of(scene, last)
+    rows = []
+    for level, history in ((str(document["accuracy"]), run), (FINEST, truth)):
+        found, exact = ends(history), ends(truth)
+        if last.unbounded_peak:
+            found.pop("peak_pressure"), exact.pop("peak_pressure")
+        error, worst = difference(found, exact) if history is run else (np.nan, "")
+        cost = json.loads(history.attrs["cost"])
+        rows.append(
+            {
+                "scene": name,
+                "class": kind,
+                "accuracy": level,
+                "believed error (%)": 100 * float(history.attrs["estimated_error"]),
+                "true error (%)": 100 * error,
+                "worst quantity": worst,
+                "runs": len(json.loads(history.attrs["runs"])),
+                "nodes": cost["nodes"],
+                "steps": int(history.sizes["time"] - 1),
+                "process time (s)": cost["cpu_s"],
+            }
+        )
+    return rows
