@@ -74,11 +74,15 @@ class SmallStrainBody:
         answering = (self._factor * self.u + self._history).ravel()
         return (self._deviatoric @ answering + self._volumetric @ self.u.ravel()).reshape(self.u.shape)
 
+    def stiffness(self) -> np.ndarray:
+        """Coefficients of the pattern (nonzeros + 1,) of the step begun last."""
+        return self._factor * self._free[0] + self._free[1]
+
     def linearise(self, solver) -> tuple[np.ndarray, np.ndarray]:
         """Schur complement (nc, nc), factored anew only for a new step size or contact zone, and internal force (n, 2)."""
         key = (id(solver), self._factor)
         if self._factored is None or self._factored[0] != key:
-            self._data = self._factor * self._free[0] + self._free[1]
+            self._data = self.stiffness()
             self._factored = (key, solver.factor(self._data), solver)
         return self._factored[1].copy(), self.internal_force()
 

@@ -1,6 +1,6 @@
 """Analytic solutions of contact, elasticity and linear viscoelasticity, to check a solver against.
 
-The package stands alone: numpy and scipy only, nothing of the rest of ``fingerpad``. One module a subject:
+The package stands alone: numpy and scipy (the weak form: scikit-fem), nothing of the rest of ``fingerpad``. One module a subject:
 
 ================== ===========================================================================
 hertz              rigid or elastic cylinder on a half-plane: width, pressure, stresses below
@@ -19,6 +19,7 @@ ting               hereditary integrals for any contact with one Prony series
 phillips_johnson   the skin as an elastic half-plane: stresses and strain energy below any pressure
 waterbed           the fingertip as a fluid under a membrane, pressed by a plate or cylinder
 manufactured       displacement fields with their body forces, small and finite strain
+weak_form          the equations that are solved and their tangent, in scikit-fem's form language
 ================== ===========================================================================
 
 Any consistent set of units will do; the docstrings use the SI. Forces and moments of plane problems are per
