@@ -11,13 +11,13 @@ from fingerpad.claims.comparison import TRENDS
 from fingerpad.figures.chapter4_responses import AVERAGED, GIVEN_RATE, IMPULSE, PRINTED
 from fingerpad.figures.registry import FIGURES
 from fingerpad.measures import features
-from fingerpad.measures.of_scenes import TRIALS
 from fingerpad.measures.quantities import NODE, SED, TIME, P
 from fingerpad.measures.responses import (
     IMPULSE_RATE,
     P_LAW,
     SED_LAW,
     SHALLOW_DEPTH,
+    TRIALS,
     predicted_rate,
     pressed,
     rate_in,

@@ -48,10 +48,10 @@ from fingerpad.measures.features import (
     width,
 )
 from fingerpad.measures.quantities import DEPTH, FORCE, NODE, P_CENTRE, P_PEAK, RATE, RECEPTOR, SED, TIME, WIDTH, P, X, Y
+from fingerpad.measures.responses import DEPTHS
 from fingerpad.publishing import style
 
 SHOWN_DEPTH = 915e-6  # m, the receptor depth of Figs 4-21, 4-23, 4-28
-DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))
 PROFILE_SURFACES = ("flat", "158", "1260")
 shown_energy = partial(energy, depth=SHOWN_DEPTH)
 

@@ -45,10 +45,13 @@ from fingerpad.measures.quantities import CURVATURE, FORCE, NODE, P_PEAK, RATE, 
 from fingerpad.measures.responses import (
     FREQUENCY,
     IMPULSE_RATE,
+    NODE_COUNT,
+    NODE_SURFACE,
     P_LAW,
     RECEPTOR_DEPTH,
     SED_LAW,
     SHALLOW_DEPTH,
+    TRIALS,
     contact_nodes,
     curvature_of,
     energy_from_pressure,
@@ -71,8 +74,6 @@ from fingerpad.receptors.laws import THESIS_RATE, rectified
 from fingerpad.receptors.spikes import VARIATION
 
 Reading = Callable[[xr.Dataset], float]
-NODE_SURFACE, NODE_COUNT = "210", 12
-TRIALS = 4
 INVERSE_WIDTHS = dict(zip(SURFACES, ("T106", "T108", "T110", "T112", "T114", "T115", "T116", "T118", "T120"), strict=True))
 HELD_RATES = {"flat": "T107", "79": "T109", "105": "T111", "158": "T113", "420": "T117", "630": "T119", "1260": "T121"}
 AVERAGED, SEED = 100, 1999

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from fingerpad.receptors.laws import rate_by_leg
 from fingerpad.units import parse_quantity
 
 if TYPE_CHECKING:
@@ -104,16 +105,11 @@ def energy(history: xr.Dataset, depth: float, offset: float = 0.0, name: str = "
 def energy_rate(history: xr.Dataset, depth: float) -> pd.DataFrame:
     """Time derivative of the strain energy density at the centre, with the times it is taken at.
 
-    Second-order differences on the output times (numpy.gradient), taken leg by leg, so that the jump at the
-    top of the ramp stays a jump: that time appears twice, once with the rate of each leg.
+    Taken leg by leg (see `rate_by_leg`), so that the jump at the top of the ramp stays a jump: that time appears twice, once
+    with the rate of each leg.
     """
-    time, value, top = history["time"].values, energy(history, depth), ramp_end(history)
-    pieces = []
-    for part in (slice(0, top + 1), slice(top, len(time))):
-        if len(time[part]) > 1:
-            rate = np.gradient(value[part], time[part])
-            pieces.append(pd.DataFrame({"time (s)": time[part], "strain_energy_rate (Pa/s)": rate}))
-    return pd.concat(pieces, ignore_index=True)
+    time, _, rate = rate_by_leg(history["time"].values, energy(history, depth), history["leg"].values)
+    return pd.DataFrame({"time (s)": time, "strain_energy_rate (Pa/s)": rate})
 
 
 def profile(history: xr.Dataset, index: int, name: str = PRESSURE) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from types import ModuleType
 from typing import Any, Literal
 
 import xarray as xr
@@ -42,6 +43,10 @@ class Together(Mapping):
         return self._made[make]
 
 
+def anywhere(scene: Scene) -> bool:
+    return True
+
+
 @dataclass(frozen=True)
 class Measure:
     """A measure, called with a scene, a mesh or a history.
@@ -50,21 +55,21 @@ class Measure:
     ----------
     name, unit
         As in the measures table.
-    of
-        What `read` takes.
     read
         A number, or a mapping condition -> number, in `unit`. Raises KeyError where the scene does not show it.
     where
         Whether a scene has it.
+    of
+        What `read` takes.
     beside
         Whether `read` takes, as second argument, all histories `Together`.
     """
 
     name: str
     unit: str
-    of: Literal["scene", "mesh", "history"]
     read: Callable[..., float | Values]
-    where: Callable[[Scene], bool]
+    where: Callable[[Scene], bool] = anywhere
+    of: Literal["scene", "mesh", "history"] = "history"
     beside: bool = False
 
     def __call__(self, subject: Scene | PadMesh | xr.Dataset, runs: Together | None = None) -> dict[str, float]:
@@ -74,12 +79,22 @@ class Measure:
 
 def measure(
     unit: str,
-    where: Callable[[Scene], bool] = lambda scene: True,
+    where: Callable[[Scene], bool] = anywhere,
     of: Literal["scene", "mesh", "history"] = "history",
     beside: bool = False,
 ) -> Callable[[Callable[..., float | Values]], Measure]:
     """Decorator: the function is the measure of its name."""
-    return lambda read: Measure(read.__name__, unit, of, read, where, beside)
+    return lambda read: Measure(read.__name__, unit, read, where, of, beside)
+
+
+def measures_of(module: ModuleType) -> dict[str, Measure]:
+    """The measures of a module, by name: those that stand alone, and those in tuples."""
+    return {
+        m.name: m
+        for each in vars(module).values()
+        for m in (each if isinstance(each, tuple) else (each,))
+        if isinstance(m, Measure)
+    }
 
 
 # --- kinds of scenes -------------------------------------------------------------------------------------

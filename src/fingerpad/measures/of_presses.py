@@ -12,16 +12,17 @@ import xarray as xr
 from fingerpad.measures import features
 from fingerpad.measures.direction import BESIDE, DEPTH
 from fingerpad.measures.features import PRESSURE, PRESSURE_SCALE, centre_node, energy, profile, ramp_end, surface_nodes
-from fingerpad.measures.measure import Together, deep, forced, held, measure, named, slides, strokes, waves, wavy
+from fingerpad.measures.measure import Measure, Together, deep, forced, held, measure, named, slides, strokes, waves, wavy
 from fingerpad.measures.quantities import BURST_RATE, IMPULSE_RATE, SED, SED_LAW, TIME
-from fingerpad.measures.quantities import RATE as ENERGY_RATE
 from fingerpad.measures.responses import (
+    DEPTHS,
     RECEPTOR_DEPTH,
     SHALLOW_DEPTH,
     burst_values,
     energy_from_pressure,
     fit_sum,
     is_stroke,
+    peak_energy_rate,
     predicted_rate,
     rate_in,
     shallow_law,
@@ -35,8 +36,7 @@ from fingerpad.receptors.laws import ImpulseRate
 from fingerpad.receptors.spikes import impulses
 from fingerpad.results import scene_of
 
-DEPTHS = (560, 600, 640, 765, 800, 845, 870, 915, 960)
-"""Depths (um) of the thesis's receptors."""
+UM = tuple(round(z * 1e6) for z in DEPTHS)
 ENERGIES = {
     "network": "strain_energy_network",
     "recoverable": "strain_energy_recoverable",
@@ -63,16 +63,11 @@ def pressing(scene) -> bool:
 # --- counts ----------------------------------------------------------------------------------------------
 
 
-@measure("count")
-def simulated(history):
-    return 1
-
-
 @measure("count", lambda scene: not wavy(scene))
 def receptor_depths(history):
     """How many of the thesis's depths there are: of its profiles, in the epidermis and in the dermis."""
     have = set(np.round(history["receptor_depth"].values * 1e6).astype(int)) if "receptor_depth" in history else set()
-    return {"profiles": len(have & {800, 915}), "epidermis": len(have & set(DEPTHS[:6])), "dermis": len(have & set(DEPTHS[6:]))}
+    return {"profiles": len(have & {800, 915}), "epidermis": len(have & set(UM[:6])), "dermis": len(have & set(UM[6:]))}
 
 
 @measure("um", forced)
@@ -99,21 +94,6 @@ def nodes_present(history):
 # --- depth, width, force ---------------------------------------------------------------------------------
 
 
-@measure("mm", pressing)
-def depth(history):
-    return _ends(history, 1e3 * history["indentation_depth"].values)
-
-
-@measure("mm", pressing)
-def width(history):
-    return _ends(history, 1e3 * history["contact_width"].values)
-
-
-@measure("mm", pressing)
-def half_width(history):
-    return 1e3 * history["contact_width"].values[-1] / 2
-
-
 @measure("1/mm", pressing)
 def inverse_width(history):
     values = history["contact_width"].values
@@ -121,26 +101,9 @@ def inverse_width(history):
 
 
 @measure("mm", pressing)
-def sunk(history):
-    """Largest downward displacement of any skin node."""
-    return -1e3 * history["skin_displacement_y"].values.min()
-
-
-@measure("mm", deep)
-def deflection(history):
-    """The same, to 0.1 um: where a depth is prescribed, it is that."""
-    return round(-1e3 * float(history["skin_displacement_y"].values.min()), 4)
-
-
-@measure("mm", pressing)
 def skin_height(history):
     node = centre_node(history)
     return 1e3 * (history["skin_y"].values[node] + history["skin_displacement_y"].values[-1, node])
-
-
-@measure("N", deep)
-def largest_force(history):
-    return force_N(history).max()
 
 
 @measure("N", named([PLATE]))
@@ -155,18 +118,7 @@ def peak_over_steady(history, runs):
     return force_N(history).max() / steady_force(runs[PLATE], max(pressed_depths(history)))
 
 
-@measure("s", pressing)
-def ramp_end_time(history):
-    return history["time"].values[ramp_end(history)]
-
-
 # --- pressure --------------------------------------------------------------------------------------------
-
-
-@measure("Pa", pressing)
-def highest_pressure(history):
-    """Largest of any node."""
-    return {k: v for k, v in _ends(history, features.peak_pressure(history)).items() if k != "top"}
 
 
 @measure("Pa", forced)
@@ -194,17 +146,6 @@ def _first_peak(history: xr.Dataset) -> dict[str, int]:
     return {"first": inner[0], "dip": inner[0] + int(p[inner[0] :].argmin()), "top": top} if inner else {"top": top}
 
 
-@measure("Pa", held)
-def ramp_pressure(history):
-    """Centre pressure: first peak within the ramp, at the dip after it and at the ramp's end; without one the last alone."""
-    return {k: features.centre_pressure(history)[i] for k, i in _first_peak(history).items()}
-
-
-@measure("s", held)
-def ramp_pressure_time(history):
-    return {k: history["time"].values[i] for k, i in _first_peak(history).items()}
-
-
 def _twin_peak(history: xr.Dataset, index: int) -> tuple[float, float]:
     """Excess of the largest pressure over the centre's (relative) and its distance from the centre (m)."""
     x, p = profile(history, index)
@@ -218,12 +159,6 @@ def off_centre_excess(history):
     """Of the largest pressure over the centre's: at the end, and the largest at any time."""
     ever = max(_twin_peak(history, i)[0] for i in range(1, history.sizes["time"]))
     return {"end": _twin_peak(history, history.sizes["time"] - 1)[0], "ever": ever}
-
-
-@measure("mm", held)
-def off_centre_place(history):
-    """Distance of the node of the largest pressure from the centre, at the end."""
-    return 1e3 * _twin_peak(history, history.sizes["time"] - 1)[1]
 
 
 @measure("1", held)
@@ -287,22 +222,12 @@ def _falls(history: xr.Dataset) -> dict[str, tuple[float, float]]:
     return {k: _decay(history, v) for k, v in traces.items()}
 
 
-@measure("1", held)
-def fall_in_hold(history):
-    return {k: fall for k, (fall, _) in _falls(history).items()}
-
-
 @measure("s", held)
 def half_of_fall(history):
     """Time to half of the fall of the pressure: of the largest, of the centre's, and at nodes past the peak."""
     found = [_decay(history, history[PRESSURE].values[:, n])[1] for n in _past_peak(history)]
     spread = {"shortest": min(found), "longest": max(found), "mean": np.mean(found)} if found else {}
     return {k: half for k, (_, half) in _falls(history).items()} | spread
-
-
-@measure("count", held)
-def nodes_past_peak(history):
-    return len(_past_peak(history))
 
 
 def _past_peak(history: xr.Dataset) -> list[int]:
@@ -347,7 +272,7 @@ def falls_up_to(history):
 
 def _traces(history: xr.Dataset) -> dict[str, np.ndarray]:
     """Strain energy (time) Pa at the thesis's receptors: under the centre, beside it, and by other definitions."""
-    places = {f"{z} um": (z * 1e-6, 0.0, "strain_energy_density") for z in (*DEPTHS, 935)}
+    places = {f"{z} um": (z * 1e-6, 0.0, "strain_energy_density") for z in (*UM, 935)}
     places |= {f"915 um, {side}46 um": (DEPTH, x, "strain_energy_density") for side, x in (("-", -BESIDE), ("", BESIDE))}
     places |= {f"915 um, {k}": (DEPTH, 0.0, v) for k, v in ENERGIES.items()}
     found = {}
@@ -357,27 +282,6 @@ def _traces(history: xr.Dataset) -> dict[str, np.ndarray]:
         except KeyError:
             continue
     return found
-
-
-@measure("Pa", forced)
-def highest_energy(history):
-    return {k: v.max() for k, v in _traces(shown(history)).items()}
-
-
-@measure("Pa", pressing)
-def energy_at_top(history):
-    return {k: v[ramp_end(history)] for k, v in _traces(history).items()}
-
-
-@measure("Pa", forced)
-def energy_at_end(history):
-    return {k: v[-1] for k, v in _traces(shown(history)).items()}
-
-
-@measure("Pa", pressing)
-def pressure_or_energy(history):
-    """The larger of 0.04 x centre pressure and strain energy, as Fig 4-21 shows them."""
-    return max(PRESSURE_SCALE * features.centre_pressure(history).max(), energy(history, DEPTH).max())
 
 
 @measure("1", lambda scene: held(scene) and scene.name in FAST.scenes.values())
@@ -412,11 +316,6 @@ def correlation_with_plain(history, runs):
 # --- predicted rates -------------------------------------------------------------------------------------
 
 
-@measure("Pa/s", lambda scene: held(scene) or slides(scene))
-def highest_energy_rate(history):
-    return predicted_rate(shown(history), RECEPTOR_DEPTH)[ENERGY_RATE].max()
-
-
 @measure("impulses/s", lambda scene: held(scene) or slides(scene))
 def rate(history):
     """By Eq 5-1 at 915 um: the highest, means over windows, and at the ends of the hold."""
@@ -435,12 +334,6 @@ def answer(history):
     if is_stroke(history):
         return max(burst_values(loaded(history), BURST_RATE).values())
     return predicted_rate(history)[IMPULSE_RATE].max()
-
-
-@measure("s", held)
-def rate_peak_time(history):
-    frame = predicted_rate(history)
-    return frame[TIME][frame[IMPULSE_RATE].idxmax()]
 
 
 @measure("s", held)
@@ -483,3 +376,47 @@ def _by_eq_4_4(runs: Together) -> dict[str, pd.DataFrame]:
     surfaces = _nine(runs)
     law = fit_sum(surfaces.values(), RECEPTOR_DEPTH)
     return {k: energy_from_pressure(h, RECEPTOR_DEPTH, law) for k, h in surfaces.items()}
+
+
+def _pressure_or_energy(history: xr.Dataset) -> float:
+    """The larger of 0.04 x centre pressure and strain energy (Pa), as Fig 4-21 shows them."""
+    return max(PRESSURE_SCALE * features.centre_pressure(history).max(), energy(history, DEPTH).max())
+
+
+PLAIN = (
+    Measure("simulated", "count", lambda h: 1),
+    Measure("ramp_end_time", "s", lambda h: h["time"].values[ramp_end(h)], pressing),
+    Measure("depth", "mm", lambda h: _ends(h, 1e3 * h["indentation_depth"].values), pressing),
+    Measure("width", "mm", lambda h: _ends(h, 1e3 * h["contact_width"].values), pressing),
+    Measure("half_width", "mm", lambda h: 1e3 * h["contact_width"].values[-1] / 2, pressing),
+    # largest downward displacement of any skin node; where a depth is prescribed, it is that, to 0.1 um
+    Measure("sunk", "mm", lambda h: -1e3 * h["skin_displacement_y"].values.min(), pressing),
+    Measure("deflection", "mm", lambda h: round(-1e3 * float(h["skin_displacement_y"].values.min()), 4), deep),
+    Measure("largest_force", "N", lambda h: force_N(h).max(), deep),
+)
+
+PRESSURE_MEASURES = (
+    Measure("highest_pressure", "Pa", lambda h: _ends(h, features.peak_pressure(h)), pressing),
+    # at the first peak within the ramp, at the dip after it and at the ramp's end; without one the last alone
+    Measure("ramp_pressure", "Pa", lambda h: {k: features.centre_pressure(h)[i] for k, i in _first_peak(h).items()}, held),
+    Measure("ramp_pressure_time", "s", lambda h: {k: h["time"].values[i] for k, i in _first_peak(h).items()}, held),
+    # of the node of the largest pressure, at the end
+    Measure("off_centre_place", "mm", lambda h: 1e3 * _twin_peak(h, h.sizes["time"] - 1)[1], held),
+    Measure("fall_in_hold", "1", lambda h: {k: fall for k, (fall, _) in _falls(h).items()}, held),
+    Measure("nodes_past_peak", "count", lambda h: len(_past_peak(h)), held),
+)
+
+ENERGY_MEASURES = (
+    Measure("highest_energy", "Pa", lambda h: {k: v.max() for k, v in _traces(shown(h)).items()}, forced),
+    Measure("energy_at_top", "Pa", lambda h: {k: v[ramp_end(h)] for k, v in _traces(h).items()}, pressing),
+    Measure("energy_at_end", "Pa", lambda h: {k: v[-1] for k, v in _traces(shown(h)).items()}, forced),
+    # as Fig 4-21 shows them
+    Measure(
+        "pressure_or_energy",
+        "Pa",
+        lambda h: max(PRESSURE_SCALE * features.centre_pressure(h).max(), energy(h, DEPTH).max()),
+        pressing,
+    ),
+    Measure("highest_energy_rate", "Pa/s", lambda h: peak_energy_rate(shown(h), RECEPTOR_DEPTH), lambda s: held(s) or slides(s)),
+    Measure("rate_peak_time", "s", lambda h: predicted_rate(h).set_index(TIME)[IMPULSE_RATE].idxmax(), held),
+)

@@ -3,267 +3,159 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
-from fingerpad.measures.measure import cylinders, deep, forced, held, measure, named, slides, strokes, wavy
+from fingerpad.measures.measure import Measure, anywhere, cylinders, deep, forced, held, named, slides, strokes, wavy
+from fingerpad.measures.responses import NODE_COUNT, TRIALS
 from fingerpad.measures.steady import PLATE
 from fingerpad.receptors.laws import THESIS_RATE
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.mesh import PadMesh, corner_count
 from fingerpad.specimen.quality import quality
-from fingerpad.stimuli.profiles import profile_of
+from fingerpad.stimuli.profiles import Segment, profile_of
 from fingerpad.units import parse_quantity
 
 GF = parse_quantity("1 gf", "force")
 CYLINDERS = (79, 105, 158, 210, 315, 420, 630, 1260)
 WAVES = (26, 39, 52, 79, 105, 157, 210, 315)
 """Curvatures (1/m) as the thesis lists them: of the pressed cylinders, and of the wavy surface."""
-TRIALS = 4
-"""Trials of a surface in Fig 4-2."""
-NODE_SURFACE, NODE_COUNT = "210", 12
-"""Surface and number of nodes of Fig 4-17."""
 
 
-def of_specimen(scene: Scene) -> bool:
-    """Scenes of the built-in outline."""
+def bar(scene: Scene) -> bool:
+    return scene.stimulus.shape == "bar"
+
+
+def steps(scene: Scene) -> bool:
+    return any(hasattr(leg, "step") for leg in scene.motion)
+
+
+def timed(scene: Scene) -> bool:
+    """Presses to a depth at a speed."""
+    return deep(scene) and scene.motion[0].speed is not None
+
+
+def finger(scene: Scene) -> bool:
+    """Scenes of the built-in outline with its layers."""
     return scene.specimen.outline is not None
 
 
-# --- stimulus --------------------------------------------------------------------------------------------
+def _convex(scene: Scene) -> list[Segment]:
+    return [arc for arc in profile_of(scene.stimulus).segments if arc.curvature > 0]
 
 
-@measure("mm", cylinders, "scene")
-def diameter(scene):
-    return 2e3 / scene.stimulus.curvature
-
-
-@measure("mm", lambda scene: scene.stimulus.shape == "bar", "scene")
-def bar_width(scene):
-    return 1e3 * scene.stimulus.width
-
-
-@measure("%", lambda scene: cylinders(scene) or wavy(scene), "scene")
-def departure_of_curvature(scene):
-    """Of the curvatures from the ones that the thesis lists, the largest."""
+def _departure(scene: Scene) -> float:
+    """Largest departure (%) of the curvatures from the ones that the thesis lists."""
     if wavy(scene):
-        found = [arc.curvature for arc in profile_of(scene.stimulus).segments if arc.curvature > 0]
-        return max(100 * abs(k / listed - 1) for k, listed in zip(found, WAVES, strict=False))
+        return max(100 * abs(arc.curvature / listed - 1) for arc, listed in zip(_convex(scene), WAVES, strict=False))
     k = scene.stimulus.curvature
     return 100 * abs(k - min(CYLINDERS, key=lambda listed: abs(listed - k))) / k
 
 
-@measure("mm", wavy, "scene")
-def largest_radius(scene):
-    return round(1e3 / min(scene.stimulus.curvatures), 6)
-
-
-@measure("deg", wavy, "scene")
-def half_angle(scene):
-    return math.degrees(scene.stimulus.half_angle)
-
-
-@measure("1/m", wavy, "scene")
-def convexity_curvature(scene):
-    """By the thesis's name of the convexity: its curvature, rounded."""
-    arcs = [arc.curvature for arc in profile_of(scene.stimulus).segments if arc.curvature > 0]
-    return {f"{k:.0f}": k for k in arcs}
-
-
-@measure("1/m", wavy, "scene")
-def hollow_curvature(scene):
-    """The sharpest hollow's."""
-    return -min(piece.curvature for piece in profile_of(scene.stimulus).segments)
-
-
-@measure("mm", wavy, "scene")
-def peak_to_valley(scene):
-    """Height of the surface between its first and its last convexity."""
-    profile = profile_of(scene.stimulus)
-    ends = [end for arc in profile.segments if arc.curvature > 0 for end in (arc.start, arc.end)]
-    return 1e3 * np.ptp(profile.outline(np.linspace(min(ends), max(ends), 4001)))
-
-
-# --- motion ----------------------------------------------------------------------------------------------
+def _height(scene: Scene) -> float:
+    """Height (mm) of the wavy surface between its first and its last convexity."""
+    ends = [end for arc in _convex(scene) for end in (arc.start, arc.end)]
+    return 1e3 * np.ptp(profile_of(scene.stimulus).outline(np.linspace(min(ends), max(ends), 4001)))
 
 
 def _depths(scene: Scene) -> list[float]:
+    """Depths (mm) pressed to, in their order."""
     return [round(leg.press_to_depth * 1e3, 9) for leg in scene.motion if hasattr(leg, "press_to_depth")]
 
 
-@measure("mm", deep, "scene")
-def pressed_depth(scene):
-    return {"first": _depths(scene)[0], "deepest": _depths(scene)[-1]}
-
-
-@measure("mm", deep, "scene")
-def depth_step(scene):
-    return np.diff([0.0, *_depths(scene)]).max()
-
-
-@measure("count", deep, "scene")
-def thesis_depths(scene):
-    """How many of the thesis's four depths are pressed to."""
-    return len({0.5, 1.0, 1.5, 2.0} & set(_depths(scene)))
-
-
-@measure("mm/s", lambda scene: deep(scene) and scene.motion[0].speed is not None, "scene")
-def press_speed(scene):
-    return 1e3 * scene.motion[0].speed
-
-
-@measure("gf", forced, "scene")
-def held_force(scene):
-    return scene.motion[0].press_to_force / GF
-
-
-@measure("gf/s", held, "scene")
-def ramp_rate(scene):
-    return scene.motion[0].rate / GF
-
-
-@measure("s", held, "scene")
-def ramp_time(scene):
-    return scene.motion[0].press_to_force / scene.motion[0].rate
-
-
-@measure("s", held, "scene")
-def hold_time(scene):
-    return sum(leg.hold for leg in scene.motion if hasattr(leg, "hold"))
-
-
-@measure("mm/s", slides, "scene")
-def stroke_speed(scene):
-    return 1e3 * next(leg.speed for leg in scene.motion if hasattr(leg, "slide"))
-
-
-@measure("mm", lambda scene: any(hasattr(leg, "step") for leg in scene.motion), "scene")
-def step(scene):
-    return 1e3 * next(leg.every for leg in scene.motion if hasattr(leg, "step"))
-
-
-@measure("1", strokes, "scene")
-def friction(scene):
-    return scene.friction
-
-
-@measure("N/m", forced, "scene")
-def line_load(scene):
-    return scene.motion[0].press_to_force / scene.specimen.contact_length
-
-
-# --- specimen --------------------------------------------------------------------------------------------
-
-
-@measure("um", of_specimen, "scene")
-def thickness(scene):
-    return {k: 1e6 * getattr(scene.specimen.outline, f"{k}_thickness") for k in ("stratum_corneum", "epidermis", "dermis")}
-
-
-@measure("mm", of_specimen, "scene")
-def apex_radius(scene):
-    return 1e3 * scene.specimen.outline.apex_radius
-
-
-@measure("1", of="scene")
-def poisson_ratio(scene):
-    return scene.specimen.layers.dermis.poisson_ratio
+def _first(scene: Scene, key: str) -> float:
+    """A key of the first leg that has it."""
+    return next(getattr(leg, key) for leg in scene.motion if getattr(leg, key, None) is not None)
 
 
 def _moduli(scene: Scene) -> dict[str, float]:
-    layers = scene.specimen.layers
-    return {k: getattr(layers, k).youngs_modulus * 1e-6 for k in ("epidermis", "dermis", "fat")}
+    """Young's modulus (MPa) of the layers."""
+    return {k: getattr(scene.specimen.layers, k).youngs_modulus * 1e-6 for k in ("epidermis", "dermis", "fat")}
 
 
-@measure("MPa", of="scene")
-def modulus(scene):
-    return _moduli(scene)
-
-
-@measure("1", of="scene")
-def ratio_of_moduli(scene):
+def _ratios(scene: Scene) -> dict[str, float]:
     epidermis, dermis, fat = _moduli(scene).values()
     return {"epidermis to dermis": epidermis / dermis, "dermis to fat": dermis / fat}
 
 
-@measure("1", of="scene")
-def prony_share(scene):
-    return {str(i): term.g for i, term in enumerate(scene.specimen.prony, start=1)}
+def _left(scene: Scene) -> float:
+    """Long-time relaxation."""
+    return 1 - sum(term.g for term in scene.specimen.prony)
 
 
-@measure("s", of="scene")
-def prony_time(scene):
-    return {str(i): term.tau for i, term in enumerate(scene.specimen.prony, start=1)}
+def _relaxation(scene: Scene) -> dict[str, float]:
+    return {"at once": _left(scene) + sum(term.g for term in scene.specimen.prony), "long after": _left(scene)}
 
 
-@measure("1", of="scene")
-def relaxation(scene):
-    left = 1 - sum(term.g for term in scene.specimen.prony)
-    return {"at once": left + sum(term.g for term in scene.specimen.prony), "long after": left}
-
-
-@measure("MPa", of="scene")
-def instantaneous_modulus(scene):
-    """The long-term modulus over the long-time relaxation."""
-    left = 1.0 if scene.specimen.moduli == "instantaneous" else 1 - sum(term.g for term in scene.specimen.prony)
+def _instantaneous(scene: Scene) -> dict[str, float]:
+    """Instantaneous modulus (MPa): the long-term one over the long-time relaxation."""
+    left = 1.0 if scene.specimen.moduli == "instantaneous" else _left(scene)
     return {k: v / left for k, v in _moduli(scene).items()}
 
 
-# --- what figures and predictions take as given ----------------------------------------------------------
+def _subjects(scene: Scene) -> float:
+    """Measured subjects of Fig 3-7."""
+    raise KeyError("the fifth subject's data are not at hand")
 
 
-@measure("count", named([PLATE]), "scene")
-def measured_subjects(scene):
-    """Of the thesis's Fig 3-7; the fifth one's data are not at hand."""
-    raise KeyError("the fifth subject's data")
+given = partial(Measure, of="scene")
+
+STIMULUS = (
+    given("diameter", "mm", lambda s: 2e3 / s.stimulus.curvature, cylinders),
+    given("bar_width", "mm", lambda s: 1e3 * s.stimulus.width, bar),
+    given("departure_of_curvature", "%", _departure, lambda s: cylinders(s) or wavy(s)),
+    given("largest_radius", "mm", lambda s: round(1e3 / min(s.stimulus.curvatures), 6), wavy),
+    given("half_angle", "deg", lambda s: math.degrees(s.stimulus.half_angle), wavy),
+    # by the thesis's name of the convexity: its curvature, rounded
+    given("convexity_curvature", "1/m", lambda s: {f"{arc.curvature:.0f}": arc.curvature for arc in _convex(s)}, wavy),
+    given("hollow_curvature", "1/m", lambda s: -min(arc.curvature for arc in profile_of(s.stimulus).segments), wavy),
+    given("peak_to_valley", "mm", _height, wavy),
+)
+
+MOTION = (
+    given("pressed_depth", "mm", lambda s: {"first": _depths(s)[0], "deepest": _depths(s)[-1]}, deep),
+    given("depth_step", "mm", lambda s: np.diff([0.0, *_depths(s)]).max(), deep),
+    # how many of the thesis's four depths are pressed to
+    given("thesis_depths", "count", lambda s: len({0.5, 1.0, 1.5, 2.0} & set(_depths(s))), deep),
+    given("press_speed", "mm/s", lambda s: 1e3 * s.motion[0].speed, timed),
+    given("held_force", "gf", lambda s: s.motion[0].press_to_force / GF, forced),
+    given("ramp_rate", "gf/s", lambda s: s.motion[0].rate / GF, held),
+    given("ramp_time", "s", lambda s: s.motion[0].press_to_force / s.motion[0].rate, held),
+    given("hold_time", "s", lambda s: sum(leg.hold for leg in s.motion if hasattr(leg, "hold")), held),
+    given("stroke_speed", "mm/s", lambda s: 1e3 * next(leg.speed for leg in s.motion if hasattr(leg, "slide")), slides),
+    given("step", "mm", lambda s: 1e3 * _first(s, "every"), steps),
+    given("friction", "1", lambda s: s.friction, strokes),
+    given("line_load", "N/m", lambda s: s.motion[0].press_to_force / s.specimen.contact_length, forced),
+)
+
+LAYERS = ("stratum_corneum", "epidermis", "dermis")
+SPECIMEN = (
+    given("thickness", "um", lambda s: {k: 1e6 * getattr(s.specimen.outline, f"{k}_thickness") for k in LAYERS}, finger),
+    given("apex_radius", "mm", lambda s: 1e3 * s.specimen.outline.apex_radius, finger),
+    given("poisson_ratio", "1", lambda s: s.specimen.layers.dermis.poisson_ratio, finger),
+    given("modulus", "MPa", _moduli, finger),
+    given("ratio_of_moduli", "1", _ratios, finger),
+    given("instantaneous_modulus", "MPa", _instantaneous, finger),
+    given("prony_share", "1", lambda s: {str(i): term.g for i, term in enumerate(s.specimen.prony, start=1)}),
+    given("prony_time", "s", lambda s: {str(i): term.tau for i, term in enumerate(s.specimen.prony, start=1)}),
+    given("relaxation", "1", _relaxation),
+)
+
+TAKEN = (
+    given("measured_subjects", "count", _subjects, named([PLATE])),
+    given("trials", "count", lambda s: TRIALS, held),
+    given("nodes_shown", "count", lambda s: NODE_COUNT, held),
+    given("rate_per_energy", "(impulses/s)/Pa", lambda s: THESIS_RATE.per_energy, forced),
+    given("rate_per_energy_rate", "impulses/Pa", lambda s: THESIS_RATE.per_rate, forced),
+    given("energy_threshold", "Pa", lambda s: THESIS_RATE.threshold, forced),
+    given("energy_rate_threshold", "Pa/s", lambda s: THESIS_RATE.rate_threshold, forced),
+)
+"""What figures and predictions take as given."""
 
 
-@measure("count", held, "scene")
-def trials(scene):
-    return TRIALS
-
-
-@measure("count", held, "scene")
-def nodes_shown(scene):
-    return NODE_COUNT
-
-
-@measure("(impulses/s)/Pa", forced, "scene")
-def rate_per_energy(scene):
-    return THESIS_RATE.per_energy
-
-
-@measure("impulses/Pa", forced, "scene")
-def rate_per_energy_rate(scene):
-    return THESIS_RATE.per_rate
-
-
-@measure("Pa", forced, "scene")
-def energy_threshold(scene):
-    return THESIS_RATE.threshold
-
-
-@measure("Pa/s", forced, "scene")
-def energy_rate_threshold(scene):
-    return THESIS_RATE.rate_threshold
-
-
-# --- the mesh --------------------------------------------------------------------------------------------
-
-
-@measure("count", of="mesh")
-def nodes(mesh: PadMesh):
-    return quality(mesh)["nodes"]
-
-
-@measure("count", of="mesh")
-def elements(mesh: PadMesh):
-    return quality(mesh)["elements"]
-
-
-@measure("um", of="mesh")
-def smallest_edge(mesh: PadMesh):
-    """Of elements in epidermis and dermis within 2 mm of the middle, on the upper side."""
+def _smallest_edge(mesh: PadMesh) -> float:
+    """Smallest element edge (um) in epidermis and dermis within 2 mm of the middle, on the upper side."""
     corners = mesh.points[mesh.cells[:, : corner_count(mesh.element)]]
     middle = corners.mean(axis=1)
     near = (mesh.region < mesh.regions.index("fat")) & (abs(middle[:, 0]) < 2e-3) & (middle[:, 1] > 0)
@@ -271,12 +163,13 @@ def smallest_edge(mesh: PadMesh):
     return np.hypot(edges[..., 0], edges[..., 1]).min() * 1e6
 
 
-@measure("mm", of="mesh")
-def section(mesh: PadMesh):
-    return {side: 1e3 * np.ptp(mesh.points[:, axis]) for axis, side in enumerate(("width", "height"))}
+counted = partial(Measure, of="mesh")
 
-
-@measure("count", of="mesh")
-def shaded_layers(mesh: PadMesh):
-    """Layers with elements, the stratum corneum and the bone."""
-    return len(mesh.regions) + 2
+MESH = (
+    counted("nodes", "count", lambda mesh: quality(mesh)["nodes"], anywhere),
+    counted("elements", "count", lambda mesh: quality(mesh)["elements"], anywhere),
+    counted("smallest_edge", "um", _smallest_edge, finger),
+    counted("section", "mm", lambda mesh: {k: 1e3 * np.ptp(mesh.points[:, i]) for i, k in enumerate(("width", "height"))}),
+    # layers with elements, the stratum corneum and the bone
+    counted("shaded_layers", "count", lambda mesh: len(mesh.regions) + 2, finger),
+)

@@ -9,8 +9,8 @@ import xarray as xr
 
 from fingerpad.measures import features
 from fingerpad.measures.direction import BESIDE, DEPTH, OFFSETS, directional_index, islands
-from fingerpad.measures.features import PRESSURE, energy, profile, receptor_index
-from fingerpad.measures.measure import Together, measure, named, plates, strokes, waves, wavy
+from fingerpad.measures.features import PRESSURE, energy, profile
+from fingerpad.measures.measure import Measure, Together, measure, named, plates, waves, wavy
 from fingerpad.measures.quantities import (
     BURST_RATE,
     BURST_TIME,
@@ -69,28 +69,10 @@ PROMINENCE = 0.005
 SETTLED, BEGINNING = 2e-3, 5.0
 """Stroke of a plate (m) after which its start is over, and the part of it (mm) that is its beginning."""
 
-in_full, in_part = named(FULL.values()), named([*SUB.values(), STEPPED])
+in_full, in_part, only_ten = named(FULL.values()), named([*SUB.values(), STEPPED]), named([SUB["10"]])
 
 
 # --- contact and pressure --------------------------------------------------------------------------------
-
-
-@measure("mm", wavy)
-def contact_length(history):
-    """Stroke distance over which the centre node touches each convexity."""
-    return {k: 1e3 * v for k, v in contact_lengths(loaded(history)).items()}
-
-
-@measure("Pa", wavy)
-def convexity_pressure(history):
-    """Largest centre pressure while each convexity passes."""
-    return peaks(loaded(history), features.centre_pressure)
-
-
-@measure("Pa", wavy)
-def convexity_energy(history):
-    """Largest strain energy at 915 um while each convexity passes."""
-    return peaks(loaded(history), energy_at(RECEPTOR_DEPTH))
 
 
 def _at_location(stroke: xr.Dataset, location: float) -> int:
@@ -180,11 +162,6 @@ def _scaled_curvature(stroke: xr.Dataset) -> tuple[np.ndarray, float, float, flo
     return scaled(centre_curvature(stroke), features.centre_pressure(stroke), touching(stroke))
 
 
-@measure("Pa m", wavy)
-def curvature_factor(history):
-    return _scaled_curvature(loaded(history))[1]
-
-
 @measure("Pa", wavy)
 def curvature_fit(history):
     """Pressure at no curvature, and the root mean square misfit."""
@@ -209,7 +186,7 @@ def curvature_miss(history):
 # --- stepped and stroked, and the velocities -------------------------------------------------------------
 
 
-@measure("mm", named([SUB["10"]]), beside=True)
+@measure("mm", only_ten, beside=True)
 def profile_shift(history, runs):
     """Shift to the left of the pressure profile at each location against the stepped surface."""
     found, x = {}, np.arange(-8e-3, 8e-3, 0.02e-3)
@@ -223,20 +200,10 @@ def profile_shift(history, runs):
     return found
 
 
-def pressure_lag(stroke: xr.Dataset, stepped: xr.Dataset) -> tuple[float, float]:
+def _lag(history: xr.Dataset, runs: Together) -> tuple[float, float]:
     """Lag (m) of the centre pressure of a stroke behind that of the stepped surface, and their correlation when shifted."""
-    stroke, stepped = loaded(stroke), loaded(stepped)
+    stroke, stepped = loaded(history), loaded(runs[STEPPED])
     return lag(distance(stroke), features.centre_pressure(stroke), distance(stepped), features.centre_pressure(stepped))
-
-
-@measure("mm", named([SUB["10"]]), beside=True)
-def lag_of_stepped(history, runs):
-    return 1e3 * pressure_lag(history, runs[STEPPED])[0]
-
-
-@measure("1", named([SUB["10"]]), beside=True)
-def likeness_of_stepped(history, runs):
-    return pressure_lag(history, runs[STEPPED])[1]
 
 
 @measure("%", named([FULL["1"]]), beside=True)
@@ -278,16 +245,8 @@ def _double_peaks(history: xr.Dataset, trace: features.Trace) -> dict[str, float
     return {k: peaks_apart(d[where], values[where]) for k, where in inside.items() if where.any()}
 
 
-@measure("mm", in_full)
-def energy_peaks_apart(history):
-    """Distance between the two peaks of strain energy at 560 um while each convexity passes; NaN where there are not two."""
-    return _double_peaks(history, energy_at(SHALLOW))
-
-
-@measure("mm", in_full)
-def rate_peaks_apart(history):
-    """The same of the rate predicted from 560 um."""
-    return _double_peaks(history, lambda stroke: predicted_rate(stroke, SHALLOW)[IMPULSE_RATE].to_numpy())
+def _rate_at_560_um(stroke: xr.Dataset) -> np.ndarray:
+    return predicted_rate(stroke, SHALLOW)[IMPULSE_RATE].to_numpy()
 
 
 def _by_eq_4_4(history: xr.Dataset, runs: Together) -> tuple[np.ndarray, np.ndarray]:
@@ -295,17 +254,6 @@ def _by_eq_4_4(history: xr.Dataset, runs: Together) -> tuple[np.ndarray, np.ndar
     law, shift = runs.once(stroke_law)
     s = skin_sample(history, RECEPTOR_DEPTH)
     return s.energy, law.strain_energy(s.x, s.pressure, s.indentation, shift)
-
-
-@measure("Pa", in_full, beside=True)
-def energy_by_eq_4_4(history, runs):
-    return _by_eq_4_4(loaded(history), runs)[1].max()
-
-
-@measure("mm", named([FULL["10"]]), beside=True)
-def receptor_shift(history, runs):
-    """Constant lateral shift with which Eq 4-4 comes closest to the stroke at 10 mm/s."""
-    return 1e3 * runs.once(stroke_law)[1]
 
 
 @measure("1", in_full, beside=True)
@@ -316,34 +264,6 @@ def departure_of_eq_4_4(history, runs):
 
 
 # --- predicted rates -------------------------------------------------------------------------------------
-
-
-@measure("mm", waves)
-def burst_width(history):
-    return burst_values(loaded(history), BURST_WIDTH)
-
-
-@measure("s", waves)
-def burst_time(history):
-    return burst_values(loaded(history), BURST_TIME)
-
-
-@measure("impulses/s", waves)
-def burst_rate(history):
-    """Mean rate of the burst that each convexity makes."""
-    return burst_values(loaded(history), BURST_RATE)
-
-
-@measure("impulses/s", waves)
-def convexity_rate(history):
-    """Largest rate while each convexity passes."""
-    return burst_values(loaded(history), f"largest {IMPULSE_RATE}")
-
-
-@measure("Pa/s", waves)
-def convexity_energy_rate(history):
-    """Largest rate of the strain energy while each convexity passes."""
-    return burst_values(loaded(history), f"largest {RATE}")
 
 
 @measure("impulses/s", named([FULL["10"]]))
@@ -389,18 +309,6 @@ def _in_hollows(history: xr.Dataset, under: Callable[[xr.Dataset], np.ndarray]) 
     return _impulses(stroke, {f"{a} to {b}": (at >= arc.start) & (at <= arc.end) for a, b, arc in pairs})
 
 
-@measure("impulses", in_full)
-def impulses_in_hollows(history):
-    """Mean number of impulses at the distances of each hollow."""
-    return _in_hollows(history, distance)
-
-
-@measure("impulses", in_full)
-def impulses_under_hollows(history):
-    """The same while the centre of the skin, which is dragged back, is under it."""
-    return _in_hollows(history, place)
-
-
 @measure("%", in_full)
 def dynamic_share(history):
     """Share of the impulses of each convexity that comes from the rate of the strain energy."""
@@ -431,17 +339,6 @@ def _three(history: xr.Dataset) -> dict[str, np.ndarray]:
     return {k: energy(stroke, DEPTH, x) for k, x in OFFSETS.items()}
 
 
-@measure("count", plates)
-def receptors_in_three_places(history):
-    return sum(receptor_index(history, DEPTH, x) >= 0 for x in OFFSETS.values())
-
-
-@measure("1", plates)
-def direction(history):
-    """Directional index of the receptor at -46 um."""
-    return directional_index(history, DEPTH, -BESIDE)
-
-
 @measure("%", plates)
 def spread_of_three(history):
     """Largest range of the three receptors over their mean, once the stroke is settled."""
@@ -466,21 +363,6 @@ def islands_of_contact(history):
     return {"fewest": late.min(), "most": late.max(), "median": np.median(late), "end": found[-1]}
 
 
-@measure("count", strokes)
-def steps_cut(history):
-    if "cutbacks" not in history:
-        raise KeyError("cutbacks")
-    return history["cutbacks"].sum()
-
-
-@measure("1", strokes)
-def smallest_volume(history):
-    """Smallest det F of the body at any time."""
-    if "min_detF" not in history:
-        raise KeyError("min_detF")
-    return history["min_detF"].min()
-
-
 @measure("impulses", plates)
 def plate_impulses(history):
     """Mean number of impulses of a receptor 46 um to the right, in the whole stroke and at its beginning."""
@@ -489,7 +371,44 @@ def plate_impulses(history):
     return {"whole": grown[-1], "beginning": np.interp(BEGINNING, rate[DISTANCE], grown)}
 
 
-@measure("Pa", plates)
-def highest_of_three(history):
-    """Largest strain energy of the three receptors."""
-    return max(v.max() for v in _three(history).values())
+CONVEXITIES = (
+    # stroke distance over which the centre node touches
+    Measure("contact_length", "mm", lambda h: {k: 1e3 * v for k, v in contact_lengths(loaded(h)).items()}, wavy),
+    # largest value at the centre, and 915 um under it, while the convexity passes
+    Measure("convexity_pressure", "Pa", lambda h: peaks(loaded(h), features.centre_pressure), wavy),
+    Measure("convexity_energy", "Pa", lambda h: peaks(loaded(h), energy_at(RECEPTOR_DEPTH)), wavy),
+    # from one of the two peaks 560 um under the centre to the other; NaN where there are not two
+    Measure("energy_peaks_apart", "mm", lambda h: _double_peaks(h, energy_at(SHALLOW)), in_full),
+    Measure("rate_peaks_apart", "mm", lambda h: _double_peaks(h, _rate_at_560_um), in_full),
+    *(
+        Measure(name, unit, lambda h, column=column: burst_values(loaded(h), column), waves)
+        for name, unit, column in (
+            ("burst_width", "mm", BURST_WIDTH),
+            ("burst_time", "s", BURST_TIME),
+            ("burst_rate", "impulses/s", BURST_RATE),
+            ("convexity_rate", "impulses/s", f"largest {IMPULSE_RATE}"),
+            ("convexity_energy_rate", "Pa/s", f"largest {RATE}"),
+        )
+    ),
+    # mean numbers of impulses at the distances of each hollow, and while the centre of the skin, dragged back, is under it
+    Measure("impulses_in_hollows", "impulses", lambda h: _in_hollows(h, distance), in_full),
+    Measure("impulses_under_hollows", "impulses", lambda h: _in_hollows(h, place), in_full),
+)
+
+TRACES = (
+    Measure("curvature_factor", "Pa m", lambda h: _scaled_curvature(loaded(h))[1], wavy),
+    # of the centre pressure behind that of the stepped surface, and their correlation when shifted
+    Measure("lag_of_stepped", "mm", lambda h, runs: 1e3 * _lag(h, runs)[0], only_ten, beside=True),
+    Measure("likeness_of_stepped", "1", lambda h, runs: _lag(h, runs)[1], only_ten, beside=True),
+    Measure("energy_by_eq_4_4", "Pa", lambda h, runs: _by_eq_4_4(loaded(h), runs)[1].max(), in_full, beside=True),
+    # the constant shift with which Eq 4-4 comes closest to the stroke at 10 mm/s
+    Measure("receptor_shift", "mm", lambda h, runs: 1e3 * runs.once(stroke_law)[1], named([FULL["10"]]), beside=True),
+)
+
+PLATES = (
+    Measure("receptors_in_three_places", "count", lambda h: len(_three(h)), plates),
+    Measure("direction", "1", lambda h: directional_index(h, DEPTH, -BESIDE), plates),
+    Measure("highest_of_three", "Pa", lambda h: max(v.max() for v in _three(h).values()), plates),
+    Measure("steps_cut", "count", lambda h: h["cutbacks"].sum(), plates),
+    Measure("smallest_volume", "1", lambda h: h["min_detF"].min(), plates),
+)

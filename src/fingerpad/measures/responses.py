@@ -45,7 +45,7 @@ from fingerpad.measures.quantities import (
     P,
 )
 from fingerpad.measures.skin import skin_curvature
-from fingerpad.measures.strokes import FULL, arcs, convexities, loaded, place
+from fingerpad.measures.strokes import FULL, convexities, loaded, passage, place
 from fingerpad.receptors.fits import SkinSample, constant_shift, linear, r_squared, spatial_sum
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, pressure_terms, rate_by_leg, time_above
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
@@ -54,6 +54,12 @@ from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_fre
 RECEPTOR_DEPTH = 915e-6
 """m; the depth that the thesis predicts impulse rates from."""
 
+DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))
+"""m; depths of the thesis's receptors, the first six in the epidermis."""
+NODE_SURFACE, NODE_COUNT = "210", 12
+"""Surface and number of nodes of Fig 4-17."""
+TRIALS = 4
+"""Trials of a surface in Fig 4-2."""
 SHALLOW_DEPTH = 600e-6
 """m; the depth that the thesis predicts the receptor of Fig 4-3 from."""
 SEED = 1999
@@ -426,7 +432,8 @@ def bursts(
     speed = (distance[-1] - distance[0]) / (time[-1] - time[0])
     under = np.interp(time, history["time"].values, place(history))
     rows = []
-    for (label, arc), (start, end) in zip(convexities(history).items(), _passages(history), strict=True):
+    for label, arc in convexities(history).items():
+        start, end = passage(history, arc, beyond=0.5)
         part = frame[(under >= start) & (under <= end)]
         if len(part) < 2:
             continue
@@ -454,18 +461,6 @@ def burst_values(stroke: xr.Dataset, column: str) -> dict[str, float]:
     """A column of `bursts` by the convexity's label."""
     found = bursts(stroke)
     return dict(zip(found["convexity"], found[column], strict=True))
-
-
-def _passages(history: xr.Dataset) -> list[tuple[float, float]]:
-    """Start and end (m, along the surface) of the passage of every convexity."""
-    hollows = [(arc.start + arc.end) / 2 for arc in arcs(history) if arc.curvature < 0]
-    out = []
-    for arc in convexities(history).values():
-        half = (arc.end - arc.start) / 2
-        before = max((m for m in hollows if m < arc.start), default=arc.start - half)
-        after = min((m for m in hollows if m > arc.start), default=arc.end + half)
-        out.append((before, after))
-    return out
 
 
 def stimulus(history: xr.Dataset, name: str, depth: float) -> np.ndarray:

@@ -139,12 +139,21 @@ def contact_lengths(stroke: xr.Dataset) -> dict[str, float]:
     return {k: FINE * float(np.sum(touches & (under >= a.start) & (under < a.end))) for k, a in convexities(stroke).items()}
 
 
-def passing(stroke: xr.Dataset, convexity: Segment) -> np.ndarray:
-    """Outputs (time) at which the centre node is between the middles of the concavities on either side of a convexity."""
+def passage(stroke: xr.Dataset, convexity: Segment, beyond: float = 0.0) -> tuple[float, float]:
+    """Stretch of the surface (m, along it) between the middles of the concavities on either side of a convexity.
+
+    Where there is none it ends where the convexity does, or as far `beyond` as this part of it.
+    """
     middles = [(a.start + a.end) / 2 for a in arcs(stroke) if a.curvature < 0]
-    before = max((m for m in middles if m < convexity.start), default=convexity.start)
-    after = min((m for m in middles if m > convexity.start), default=convexity.end)
-    under = place(stroke)
+    margin = beyond * (convexity.end - convexity.start)
+    before = max((m for m in middles if m < convexity.start), default=convexity.start - margin)
+    after = min((m for m in middles if m > convexity.start), default=convexity.end + margin)
+    return before, after
+
+
+def passing(stroke: xr.Dataset, convexity: Segment) -> np.ndarray:
+    """Outputs (time) at which the centre node is in the `passage` of a convexity."""
+    (before, after), under = passage(stroke, convexity), place(stroke)
     return (under >= before) & (under <= after)
 
 

@@ -17,17 +17,12 @@ import pandas as pd
 from fingerpad.files import write_atomically
 from fingerpad.measures import of_presses, of_scenes, of_strokes
 from fingerpad.measures.features import Histories, Meshes
-from fingerpad.measures.measure import Measure, Together
+from fingerpad.measures.measure import Measure, Together, measures_of
 from fingerpad.results import scene_of
 
 COLUMNS = ("scene", "quantity", "condition", "unit", "value", "companion")
 
-MEASURES: dict[str, Measure] = {
-    each.name: each
-    for module in (of_scenes, of_presses, of_strokes)
-    for each in vars(module).values()
-    if isinstance(each, Measure)
-}
+MEASURES: dict[str, Measure] = {**measures_of(of_scenes), **measures_of(of_presses), **measures_of(of_strokes)}
 """Every measure by its name."""
 
 Find = Callable[[str, str], Mapping[str, float]]

@@ -14,6 +14,9 @@ import xarray as xr
 from fingerpad.measures.features import Histories, scene_name
 from fingerpad.measures.quantities import NODE, P
 from fingerpad.measures.responses import (
+    DEPTHS,
+    NODE_COUNT,
+    NODE_SURFACE,
     P_LAW,
     RECEPTOR_DEPTH,
     contact_nodes,
@@ -27,12 +30,6 @@ from fingerpad.measures.responses import (
 from fingerpad.receptors.fits import constant_shift, jackknife, r_squared, rms, spatial_sum
 from fingerpad.receptors.laws import NODE_TERMS, TERM_UNITS, THESIS_RATE, SpatialSum
 from fingerpad.studies.receptors.impulse_rates import RATE_FITS, assignments, kind, matched_histories, rate_fit, rate_sets
-
-DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))
-"""m; receptor depths of Fig 4-24."""
-
-NODE_SURFACE, NODE_COUNT = "210", 12
-"""Surface and number of nodes that Fig 4-17 shows."""
 
 FIT_COLUMNS = (
     "law", "scenes", "receptor_depth (um)", "quantity", "estimate", "low_95", "high_95", "units", "residual_rms",
