@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-import yaml
 
 from fingerpad.figures.catalogue import read_catalogue, readme
 from fingerpad.figures.registry import FIGURES
@@ -12,7 +11,7 @@ from fingerpad.reference_data import ReferenceDataError
 pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[1]
 LIST = ROOT / "config/reference/figures.csv"
-MADE = yaml.safe_load((ROOT / "config/thesis.yaml").read_text(encoding="utf-8"))["figure_numbers"]
+MADE = {number: spec.title for number, spec in FIGURES.items()}
 COUNTS = {2: 4, 3: 11, 4: 29, 5: 29}
 """Figures of the thesis, by chapter."""
 
@@ -28,12 +27,12 @@ def test_every_figure_of_the_thesis_is_listed_in_order(catalogue):
 
 def test_every_figure_drawn_is_one_of_the_thesiss_and_listed_once_in_order():
     order = [tuple(map(int, number.split("-"))) for number in MADE]
-    assert order == sorted(set(order)) and set(MADE) <= set(FIGURES)
+    assert order == sorted(set(order)) and set(MADE) <= set(read_catalogue(LIST)["number"])
 
 
 def test_committed_list_is_what_the_workflow_writes(catalogue):
     committed = (ROOT / "figures/README.md").read_text(encoding="utf-8")
-    assert committed == readme(catalogue, MADE), "run workflow/scripts/catalogue.py as the rule catalogue does, and commit"
+    assert committed == readme(catalogue, MADE), "run `snakemake catalogue` and commit figures/README.md"
 
 
 def test_every_figure_is_in_one_list(catalogue):
@@ -45,8 +44,8 @@ def test_every_figure_is_in_one_list(catalogue):
 
 
 def test_a_figure_taken_out_is_named_as_missing(catalogue):
-    assert "## Not drawn yet" in readme(catalogue, [n for n in MADE if n != "5-12"])
-    without = readme(catalogue, [n for n in MADE if n != "5-1"])
+    assert "## Not drawn yet" in readme(catalogue, {n: title for n, title in MADE.items() if n != "5-12"})
+    without = readme(catalogue, {n: title for n, title in MADE.items() if n != "5-1"})
     assert "| 5-1 | impulses of ten strokes and their histogram | recording |\n" in without.split("## Not drawn yet")[1]
 
 

@@ -15,13 +15,14 @@ from fingerpad.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, ste
 from fingerpad.measures.table import Measures
 from fingerpad.reference_data import empty_reference, read_reference
 from fingerpad.results import summary
+from fingerpad.scenes.families import read_family
 from fingerpad.scenes.scene import Bar, Hold, Line, PressToDepth
 
 ROOT = Path(__file__).parents[1]
 SCENES = ROOT / "config" / "scenes"
 REFERENCE = ROOT / "config" / "reference"
 NUMBERS = numbers(read_reference(REFERENCE / "thesis_numbers.csv"))
-STEADY = sorted(path.stem for path in SCENES.glob("steady_*.yaml"))
+STEADY = sorted(name for path in SCENES.glob("steady_*.yaml") for name in read_family(path))
 MM = 1e-3
 
 

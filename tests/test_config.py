@@ -9,7 +9,9 @@ import pytest
 import yaml
 from pydantic import ValidationError
 
-from fingerpad.config import WorkflowConfig, schemas, write_schemas
+from fingerpad.config import WorkflowConfig, read_config, schemas, write_schemas
+from fingerpad.documents import SceneError
+from fingerpad.scenes.families import read_scene
 
 pytestmark = pytest.mark.unit
 
@@ -40,29 +42,53 @@ def test_yaml_names_its_schema_and_fulfils_it(path):
     validator.validate(yaml.safe_load(path.read_text()))
 
 
+def configured(name):
+    return read_config(yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text()), f"config/{name}.yaml")
+
+
 @pytest.mark.parametrize("name", ["thesis", "smoke"])
 def test_workflow_configurations_fulfil_the_model(name):
-    config = WorkflowConfig.model_validate(yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text()))
+    config = configured(name)
     assert config.name == name
-    for scene in (*config.scenes, *config.variants):
-        assert (ROOT / "config" / "scenes" / f"{scene}.yaml").is_file()
+    for scene in config.every_scene:
+        assert read_scene(ROOT / "config" / "scenes" / f"{scene}.yaml").document
 
 
 def test_everything_of_smoke_is_under_its_results():
-    config = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text())
-    assert config["results"] == "results/smoke"
-    assert config["figures"].startswith("results/smoke/")
-    assert config["tables"].startswith("results/smoke/")
+    config = configured("smoke")
+    assert config.results == "results/smoke"
+    assert all(getattr(config, folder).startswith("results/smoke/") for folder in ("figures", "tables", "studies"))
 
 
-@pytest.mark.parametrize(
-    "change",
-    [{"scenes": []}, {"accuracy": "rough"}, {"accuracy": 1.5}, {"results": "/abs"}, {"figure": "4-10"}],
-    ids=str,
-)
-def test_wrong_configurations_are_refused_by_model_and_schema(change):
-    config = yaml.safe_load((ROOT / "config" / "smoke.yaml").read_text()) | change
-    with pytest.raises(ValidationError):
-        WorkflowConfig.model_validate(config)
+def test_name_and_scenes_suffice():
+    config = read_config({"name": "mine", "scenes": ["press"]}, "mine.yaml")
+    assert (config.results, config.figures) == ("results/mine", "results/mine/figures")
+    assert (config.table_names, config.calibration_scenes, config.companion_accuracy) == (("summary",), (), None)
+    moved = read_config({"name": "mine", "scenes": ["press"], "results": "elsewhere", "subjects": "forces"}, "mine.yaml")
+    assert moved.studies == "elsewhere/studies" and "calibration_plate" in moved.calibration_scenes
+
+
+WRONG = {
+    "name: is missing": {"scenes": ["a"]},
+    "scenes: [] is empty; allowed: a list of one or more": {"scenes": []},
+    "scenes: 'a' is not a list": {"scenes": "a"},
+    "scenes[1]: 'b/c' is not allowed here; allowed: letters, digits": {"scenes": ["a", "b/c"]},
+    "accuracy: 'rough' is not a known accuracy; allowed: draft, thesis, fine, or a tolerance": {"accuracy": "rough"},
+    "accuracy: 1.5 is not a known accuracy": {"accuracy": 1.5},
+    "results: '/abs' is not allowed here; allowed: a folder, relative": {"results": "/abs"},
+    "figure: is not a known key, the nearest is 'figures'": {"figure": "4-10"},
+    "figure_numbers[0]: -6 is not allowed here; allowed: a figure of the thesis in quotes": {"figure_numbers": [-6]},
+    "ridge_heights[1]: -1 is not allowed here; allowed: a number from 0": {"ridge_heights": [0, -1]},
+}
+
+
+@pytest.mark.parametrize("message", WRONG, ids=str)
+def test_wrong_configurations_are_refused_in_one_line_and_by_the_schema(message):
+    config = WRONG[message] if "name" in message.split(":")[0] else {"name": "mine"} | {"scenes": ["a"]} | WRONG[message]
+    with pytest.raises(SceneError) as caught:
+        read_config(config, "mine.yaml")
+    assert str(caught.value).startswith(f"mine.yaml: {message}") and "\n" not in str(caught.value)
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(config, schemas()["workflow"])
+    with pytest.raises(ValidationError):
+        WorkflowConfig.model_validate(config)

@@ -11,6 +11,7 @@ import xarray as xr
 
 from fingerpad import load_scene
 from fingerpad.reference_data import ReferenceDataError, read_friction
+from fingerpad.scenes.families import read_family
 from fingerpad.studies.calibration.friction import (
     AXIS,
     STRETCH,
@@ -159,7 +160,8 @@ def test_every_stroke_has_the_calibrated_coefficient():
     table = pd.read_csv(ROOT / "figures" / "tables" / "calibration.csv")
     rows = table[table["study"] == "friction"].set_index("quantity")["estimate"]
     assert rows["coefficient, rounded"] == pytest.approx(rounded(rows["coefficient"]), abs=1e-9)
-    names = [path.stem for path in sorted((ROOT / "config" / "scenes").glob("*stroke_*.yaml"))]
+    files = sorted((ROOT / "config" / "scenes").glob("*stroke*.yaml"))
+    names = [name for path in files for name in read_family(path)]
     assert {
         "stroke_1",
         "stroke_5",
@@ -173,5 +175,6 @@ def test_every_stroke_has_the_calibrated_coefficient():
     for name in names:
         path = ROOT / "config" / "scenes" / f"{name}.yaml"
         assert load_scene(path).friction == pytest.approx(rows["coefficient, rounded"], abs=1e-9), name
-        if name.startswith("stroke_"):
-            assert "figures/tables/calibration.md; the thesis states none" in path.read_text(), name
+    for family in ("stroke", "stroke_sub"):
+        text = (ROOT / "config" / "scenes" / f"{family}.yaml").read_text()
+        assert "figures/tables/calibration.md; the thesis states none" in text

@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
+from fingerpad.scenes.families import read_family
 from fingerpad.scenes.scene import (
     Cylinder,
     Discretisation,
@@ -47,7 +48,8 @@ from wrong_scenes import (
 pytestmark = pytest.mark.unit
 
 CONFIG = Path(__file__).parents[1] / "config"
-SCENES = sorted(CONFIG.glob("scenes/**/*.yaml"))
+FILES = sorted(CONFIG.glob("scenes/**/*.yaml"))
+SCENES = [path.with_name(f"{name}.yaml") for path in FILES for name in read_family(path)]
 THESIS_CURVATURES = {
     "k79": 78.74, "k105": 104.99, "k158": 157.48, "k210": 209.97,
     "k315": 314.96, "k420": 419.95, "k630": 629.92, "k1260": 1259.84,
@@ -153,17 +155,25 @@ def test_a_specimen_near_the_scene_comes_before_the_repository_s(folder):
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
-def test_the_scenes_that_come_with_the_project_load_and_fit_the_schema(path):
+def test_the_scenes_that_come_with_the_project_load(path):
     scene = load_scene(path)
     assert scene.name == path.stem
     json.dumps(scene.canonical())
-    document = yaml.safe_load(path.read_text())
-    Draft202012Validator(scene_json_schema()).validate(document)
+
+
+def test_files_of_scenes_fit_the_schema():
+    validator = Draft202012Validator(scene_json_schema())
+    for path in FILES:
+        validator.validate(yaml.safe_load(path.read_text()))
+
+
+def test_scenes_of_one_family_are_in_one_file():
+    assert len(SCENES) == 83 and len(FILES) <= 25
 
 
 def test_the_ramp_and_hold_scenes_are_the_eighteen():
     names = {f"ramp{rate}_{shape}" for rate in (40, 150) for shape in ("flat", *THESIS_CURVATURES)}
-    assert {path.stem for path in CONFIG.glob("scenes/ramp[14]*.yaml")} == names
+    assert {path.stem for path in SCENES if path.stem.startswith(("ramp40_", "ramp150_"))} == names
     for name in names:
         scene = load_scene(CONFIG / "scenes" / f"{name}.yaml")
         ramp, hold = scene.motion

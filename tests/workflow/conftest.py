@@ -34,27 +34,28 @@ class Project:
                 shutil.copy(source, root / name)
         return cls(root)
 
-    def snakemake(self, *arguments: str, **environment: str) -> subprocess.CompletedProcess:
+    def snakemake(self, *arguments: str, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess:
+        """Run Snakemake in the tree, or in another folder."""
         path = os.pathsep.join([str(self.root / "src"), str(Path(__file__).parent / "trace")])
         return subprocess.run(
             [sys.executable, "-m", "snakemake", *QUIET, *arguments],
-            cwd=self.root,
+            cwd=folder or self.root,
             env=os.environ | {"PYTHONPATH": path} | self.environment | environment,
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
         )
 
-    def run(self, *arguments: str, **environment: str) -> str:
+    def run(self, *arguments: str, folder: Path | None = None, **environment: str) -> str:
         """Run the workflow; its whole output."""
-        done = self.snakemake(*arguments, **environment)
+        done = self.snakemake(*arguments, folder=folder, **environment)
         logs = "\n".join(f"{log}:\n{log.read_text()}" for log in self.root.glob("results/*/logs/**/*.log"))
         assert done.returncode == 0, f"{done.stdout}\n{done.stderr}\n{logs}"
         return done.stdout + done.stderr
 
-    def planned(self, *arguments: str) -> dict[str, set[str]]:
+    def planned(self, *arguments: str, folder: Path | None = None) -> dict[str, set[str]]:
         """What a dry run would make: rule -> output files; targets without files are left out."""
-        text = self.run("--dry-run", *arguments)
+        text = self.run("--dry-run", *arguments, folder=folder)
         jobs: dict[str, set[str]] = {}
         rule = ""
         for line in text.splitlines():
@@ -85,10 +86,8 @@ def clone(tmp_path) -> Project:
 
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory) -> Project:
-    """A tree in which the coarse configuration has run once, with a cache and every opened file recorded."""
+    """A tree in which the coarse configuration has run once, with every opened file recorded."""
     project = Project.copy(tmp_path_factory.mktemp("finished"))
-    traces, cache = tmp_path_factory.mktemp("traces"), tmp_path_factory.mktemp("cache")
-    project.environment = {"SNAKEMAKE_OUTPUT_CACHE": str(cache)}
-    project.run(*SMOKE, "--cache", TRACE_DIRECTORY=str(traces), TRACE_ROOT=str(project.root))
-    project.traces, project.cache = traces, cache
+    project.traces = tmp_path_factory.mktemp("traces")
+    project.run(*SMOKE, TRACE_DIRECTORY=str(project.traces), TRACE_ROOT=str(project.root))
     return project

@@ -1,30 +1,35 @@
-"""What is made again after a change: by content, no more and no less, with and without the cache."""
+"""What is made again after a change, by content, no more and no less; after an interruption; and what is adopted.
+
+Which jobs an edit reruns in the full configuration is asked of the package in test_products, and of Snakemake here.
+"""
 
 import json
 import os
+import signal
+import subprocess
+import sys
+import time
 
 import pytest
+import yaml
+
+from fingerpad.config import read_config
+from fingerpad.workflow.products import Products
 
 pytestmark = [pytest.mark.workflow, pytest.mark.slow]
 
 SMOKE = ("--configfile", "config/smoke.yaml")
-
 HISTORY = "results/smoke/simulations/homogeneous_flat/history.nc"
 COMPANION = "results/smoke/coarse/homogeneous_flat/history.nc"
-CALIBRATION = {"calibrate", "calibration_figure", "calibration_table"}
-FIGURES = {"figure", "measures", "table", "receptor_table", *CALIBRATION}
 
 
-def test_nothing_is_left_to_do(finished):
+def test_nothing_is_left_to_do_and_touched_files_rerun_nothing(finished):
     assert finished.planned(*SMOKE) == {}
-
-
-def test_touched_files_rerun_nothing(finished):
     for path in (
         "src/fingerpad/mechanics/stepping.py",
         "src/fingerpad/publishing/style.py",
-        "workflow/scripts/simulate.py",
-        "config/scenes/ramp40_flat.yaml",
+        "src/fingerpad/workflow/jobs/simulate.py",
+        "config/scenes/ramp40.yaml",
         "config/specimens/thesis.yaml",
         "config/reference/thesis_numbers.csv",
         "requirements.lock",
@@ -34,108 +39,149 @@ def test_touched_files_rerun_nothing(finished):
     assert finished.planned(*SMOKE) == {}
 
 
-def test_change_in_the_mechanics_reruns_simulations_and_what_reads_them(finished):
-    with finished.edited("src/fingerpad/mechanics/stepping.py"):
-        jobs = finished.planned(*SMOKE)
-    assert set(jobs) == {"simulate", *FIGURES}
-    assert HISTORY in jobs["simulate"]
-    assert finished.planned(*SMOKE) == {}
-
-
-@pytest.mark.parametrize("module", ["publishing/style", "figures/chapter4", "publishing/write"])
-def test_change_in_a_figure_module_reruns_only_figures(finished, module):
-    with finished.edited(f"src/fingerpad/{module}.py"):
-        jobs = finished.planned(*SMOKE)
-    assert "figure" in jobs
-    assert set(jobs) <= FIGURES | {"mesh_quality"}
-    assert finished.planned(*SMOKE) == {}
-
-
-@pytest.mark.parametrize(
-    ("path", "jobs"),
-    [
-        ("src/fingerpad/claims/comparison.py", {"table"}),
-        ("src/fingerpad/claims/trends_pressing.py", {"table"}),
-        ("src/fingerpad/measures/of_presses.py", {"measures", "table"}),
-    ],
-)
-def test_change_of_a_claim_or_a_measure_reruns_only_the_tables(finished, path, jobs):
-    with finished.edited(path):
-        assert set(finished.planned(*SMOKE)) == jobs
-
-
-def test_change_of_a_scene_reruns_that_scene(finished):
+def test_a_remark_in_a_scene_reruns_nothing_and_a_change_that_scene(finished):
     with finished.edited("config/scenes/homogeneous_flat.yaml"):
+        assert finished.planned(*SMOKE) == {}
+    with finished.edited("config/scenes/homogeneous_flat.yaml", "friction: 0.1\n"):
         jobs = finished.planned(*SMOKE)
-    assert jobs["simulate"] == {HISTORY, COMPANION}
+    assert {HISTORY, COMPANION} <= jobs["simulate_homogeneous_flat"]
+    assert not any(name.startswith("simulate_") for name in jobs if name != "simulate_homogeneous_flat")
 
 
 def test_change_of_a_specimen_reruns_the_scenes_that_name_it(finished):
     with finished.edited("config/specimens/homogeneous.yaml"):
         jobs = finished.planned(*SMOKE)
-    assert jobs["simulate"] == {HISTORY, COMPANION}
-
-
-def test_change_of_a_measured_force_reruns_the_calibration_and_no_simulation(finished):
-    with finished.edited("config/reference/force_depth/dandekar_2003.csv", "\n"):
-        assert set(finished.planned(*SMOKE)) == CALIBRATION
+    assert {name for name in jobs if name.startswith("simulate_")} == {"simulate_homogeneous_flat"}
 
 
 def test_a_further_file_of_measured_forces_reruns_the_calibration(finished):
     path = finished.root / "config/reference/force_depth/mine.csv"
-    path.write_text((path.parent / "dandekar_2003.csv").read_text().replace("\n1,", "\nme,"))
+    path.write_text((path.parent / "dandekar_2003.csv").read_text())
     try:
-        assert set(finished.planned(*SMOKE)) == CALIBRATION
+        assert set(finished.planned(*SMOKE)) == {"calibrate", "calibration_pictures", "calibration_table"}
     finally:
         path.unlink()
     assert finished.planned(*SMOKE) == {}
 
 
-def test_changed_environment_reruns_meshes_simulations_and_figures(finished):
+def test_changed_environment_reruns_simulations_and_what_reads_them(finished):
     with finished.edited("requirements.lock"):
-        assert set(finished.planned(*SMOKE)) >= {"mesh", "simulate", *FIGURES}
-
-
-def test_cache_restores_a_reverted_edit_and_never_a_stale_result(finished):
-    history = finished.root / HISTORY
-    original = history.resolve()
-    assert original.parent == finished.cache, "the result was not cached"
-    with finished.edited("src/fingerpad/mechanics/stepping.py"):
-        text = finished.run(*SMOKE, "--cache", "--", HISTORY)
-        assert "Moving output file" in text, "an edited source was answered from the cache"
-        assert history.resolve() != original
-    text = finished.run(*SMOKE, "--cache", "--", HISTORY)
-    assert "Moving output file" not in text
-    assert "Symlinking output file" in text
-    assert history.resolve() == original
-
-
-def test_running_without_the_cache_leaves_what_is_cached_alone(finished):
-    cached = {path: path.read_bytes() for path in finished.cache.iterdir()}
-    with finished.edited("src/fingerpad/mechanics/stepping.py"):
-        finished.run(*SMOKE, "--", HISTORY)
-        assert not (finished.root / HISTORY).is_symlink()
-    assert {path: path.read_bytes() for path in finished.cache.iterdir()} == cached
-    finished.run(*SMOKE, "--cache", "--", HISTORY)
+        assert {"simulate_ramp40", "figures_4_12", "tables", "calibrate"} <= set(finished.planned(*SMOKE))
 
 
 def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
     """What is not declared cannot trigger a rerun: the rules' inputs against what processes really opened."""
-    summary = finished.snakemake(*SMOKE, "--detailed-summary", "--forceall").stdout.splitlines()
-    header = next(line for line in summary if line.startswith("output_file")).split("\t")
-    rows = [dict(zip(header, line.split("\t"), strict=False)) for line in summary if line.startswith("results/")]
-    declared = {(row["rule"], row["output_file"]): set(row["input-file(s)"].split(",")) for row in rows}
-    jobs = [json.loads(path.read_text()) for path in finished.traces.iterdir()]
-    jobs = [job for job in jobs if job["argv"][0].startswith("workflow/scripts/")]
-    rules = set()
-    for job in jobs:
-        rule = job["argv"][0].removeprefix("workflow/scripts/").removesuffix(".py")
-        outputs = [argument for argument in job["argv"] if (rule, argument) in declared]
-        assert outputs, f"no output of {rule} in {job['argv']}"
-        inputs = declared[rule, outputs[0]]
-        results = {path for _, path in declared}
-        read = {path for path in job["files"] if path in results or not path.startswith("results/")}
-        undeclared = {path for path in read - inputs - set(outputs) if "__pycache__" not in path}
-        assert not undeclared, f"{rule} opens what it does not declare"
-        rules.add(rule)
-    assert rules >= {"mesh", "simulate", *FIGURES}
+    config = read_config(yaml.safe_load((finished.root / "config" / "smoke.yaml").read_text()), "smoke.yaml")
+    before = os.getcwd()
+    os.chdir(finished.root)
+    try:
+        jobs = Products(config, "smoke.yaml", finished.root).jobs()
+        declared = {f"results/smoke/logs/{job.name}.log": job for job in jobs}
+        inputs = {
+            log: {os.path.relpath(p) for p in (*job.sources, *(p for paths in job.inputs.values() for p in paths))}
+            for log, job in declared.items()
+        }
+    finally:
+        os.chdir(before)
+    here = os.path.relpath(os.path.join(os.path.dirname(__file__), "..", "..", "src"), finished.root)
+    results = {path for job in jobs for paths in (*job.outputs.values(), job.beside) for path in paths}
+    traced = [json.loads(path.read_text()) for path in finished.traces.iterdir()]
+    runs = set()
+    for process in (t for t in traced if t["argv"][:2] == ["-m", "fingerpad.workflow"]):
+        log = process["argv"][process["argv"].index("--log") + 1]
+        job = declared[log]
+        allowed = {path.replace(here, "src") for path in inputs[log]}
+        own = {path for paths in (*job.outputs.values(), job.beside) for path in paths}
+        read = {path for path in process["files"] if path in results or not path.startswith("results/")}
+        undeclared = {path for path in read - allowed - own if "__pycache__" not in path}
+        assert not undeclared, f"{job.name} opens what it does not declare"
+        runs.add(job.run)
+    assert runs >= {"simulate", "figures", "measures", "tables", "calibrate", "pictures", "joined", "receptor_tables"}
+
+
+def test_copied_results_are_adopted_by_one_command(finished, tmp_path):
+    copy = type(finished).copy(tmp_path)
+    subprocess.run(["cp", "-r", finished.root / "results", copy.root], check=True)
+    assert copy.planned(*SMOKE)
+    copy.run(*SMOKE, "--touch")
+    assert copy.planned(*SMOKE) == {}
+
+
+# -- interrupted -----------------------------------------------------------------------------------------------------------
+
+SCENE = "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf, rate: 5 gf/s}]\naccuracy: {skin_edge: 0.2 mm, steps: 40}\n"
+
+
+@pytest.mark.parametrize("how", ["SIGINT to all", "SIGKILL of snakemake"])
+def test_an_interrupted_run_goes_on_by_the_same_command(clone, how):
+    (clone.root / "scenes").mkdir()
+    for name in ("one", "two"):
+        (clone.root / "scenes" / f"{name}.yaml").write_text(SCENE)
+    (clone.root / "mine.yaml").write_text("{name: mine, scenes: [one, two], scenes_folder: scenes}")
+    started = subprocess.Popen(
+        [sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "1"],
+        cwd=clone.root,
+        env=os.environ | {"PYTHONPATH": str(clone.root / "src")},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        for _ in range(3000):
+            if list(clone.root.glob("results/mine/simulations/*/mesh.msh")):
+                break
+            time.sleep(0.1)
+        if how.startswith("SIGINT"):
+            os.killpg(started.pid, signal.SIGINT)
+        else:
+            started.kill()
+        started.wait()
+    finally:
+        if started.poll() is None:
+            os.killpg(started.pid, signal.SIGKILL)
+    histories = [clone.root / f"results/mine/simulations/{name}/history.nc" for name in ("one", "two")]
+    assert not all(path.exists() for path in histories), "not interrupted"
+    text = clone.run("--configfile", "mine.yaml")
+    assert all(path.exists() for path in histories) and (clone.root / "results/mine/tables/summary.csv").exists()
+    assert ("took over" in text) == how.startswith("SIGKILL")
+
+
+def test_a_failed_job_says_why_where_it_failed(clone):
+    (clone.root / "forces").mkdir()
+    (clone.root / "forces" / "mine.csv").write_text("subject,depth\nme,1\n")
+    (clone.root / "mine.yaml").write_text("{name: mine, scenes: [calibration_plate], calibration_scenes: [calibration_plate], "
+                                          "subjects: forces, accuracy: draft}")  # fmt: skip
+    done = clone.snakemake("--configfile", "mine.yaml", "--", "calibration")
+    assert done.returncode != 0
+    said = [line for line in done.stderr.splitlines() if line.startswith("calibrate: ")]
+    assert len(said) == 1 and "forces/mine.csv: row 1: column indenter is missing; allowed: subject" in said[0]
+
+
+# -- the full configuration ------------------------------------------------------------------------------------------------
+
+
+def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clone):
+    """Files of no content stand for all the results; what edits rerun is planned, not run."""
+    config = read_config(yaml.safe_load((clone.root / "config" / "thesis.yaml").read_text()), "thesis.yaml")
+    for job in Products(config, "thesis.yaml", clone.root).jobs():
+        for path in (path for paths in (*job.outputs.values(), job.beside) for path in paths):
+            file = clone.root / path
+            if file.name == "specimens":
+                file.mkdir(parents=True, exist_ok=True)
+            else:
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text("x")
+    clone.run("--touch")
+    assert clone.planned() == {}
+    for path, kinds in (
+        ("src/fingerpad/figures/chapter4.py", {"figures_4"}),
+        ("src/fingerpad/claims/comparison.py", {"tables"}),
+        ("src/fingerpad/figures/spec.py", {"figures_3", "figures_4", "figures_5"}),
+    ):
+        with clone.edited(path):
+            jobs = clone.planned()
+        assert {name if name == "tables" else "_".join(name.split("_")[:2]) for name in jobs} == kinds, path
+    with clone.edited("src/fingerpad/mechanics/kernels.py"):
+        jobs = clone.planned()
+    assert {name for name in jobs if name.startswith("simulate_")} > {"simulate_ramp40", "simulate_stroke_1"}

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Mapping
 from os import PathLike
 
 import pandas as pd
 
-from fingerpad.figures.registry import FIGURES
 from fingerpad.reference_data import Column, read_table
 
 CATALOGUE = {
@@ -38,14 +37,14 @@ def read_catalogue(path: str | PathLike) -> pd.DataFrame:
     return table
 
 
-def readme(catalogue: pd.DataFrame, made: Collection[str]) -> str:
-    """Text of ``figures/README.md``. made: numbers of the figures that are drawn, of ``config/thesis.yaml``."""
-    here = catalogue[catalogue["number"].isin(made)]
+def readme(catalogue: pd.DataFrame, made: Mapping[str, str]) -> str:
+    """Text of ``figures/README.md``. made: the figures that are drawn, number -> title."""
+    here = catalogue[catalogue["number"].isin(list(made))]
     drawable = catalogue["kind"].isin(DRAWABLE) | catalogue["stand_in"].str.startswith("predicted")
-    never, missing = (catalogue[~catalogue["number"].isin(made) & which] for which in (~drawable, drawable))
+    never, missing = (catalogue[~catalogue["number"].isin(list(made)) & which] for which in (~drawable, drawable))
     parts = [
         "# Figures",
-        "Written by the workflow from `config/reference/figures.csv` and the list in `config/thesis.yaml`; do not edit.",
+        "Written by the workflow from `config/reference/figures.csv` and the titles of the figures drawn; do not edit.",
         f"The thesis (Cysyk 1999) has {len(catalogue)} figures. {len(here)} are drawn here from simulations, on the thesis's"
         " axes, each with the plotted data beside it (`thesis/fig_*.csv`). None of the thesis's recordings and photographs is"
         " public: no recording is drawn, and a figure that stands in for one says *predicted* in the picture.",
@@ -53,7 +52,7 @@ def readme(catalogue: pd.DataFrame, made: Collection[str]) -> str:
         _table(
             ("figure", "shows", "kind in the thesis", "in place of what is not public"),
             [
-                (f"[{row.number}](thesis/fig_{row.number}.png)", FIGURES[row.number].title, row.kind, row.stand_in)
+                (f"[{row.number}](thesis/fig_{row.number}.png)", made[row.number], row.kind, row.stand_in)
                 for row in here.itertuples()
             ],
         ),

@@ -19,8 +19,12 @@ from fingerpad.figures import (
 )
 from fingerpad.figures.spec import FigureSpec
 
-_MODULES = (chapter3, chapter3_verification, chapter4, chapter4_responses, chapter5, chapter5_responses, ridges)
+CHAPTERS = {
+    module.__name__: module.FIGURES
+    for module in (chapter3, chapter3_verification, chapter4, chapter4_responses, chapter5, chapter5_responses, ridges)
+}
+"""Module -> its figures: those of one module are drawn in one process."""
 FIGURES: dict[str, FigureSpec] = {
     spec.number: spec
-    for spec in sorted((s for module in _MODULES for s in module.FIGURES), key=lambda s: [int(n) for n in s.number.split("-")])
+    for spec in sorted((s for specs in CHAPTERS.values() for s in specs), key=lambda s: [int(n) for n in s.number.split("-")])
 }

@@ -18,8 +18,9 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
+from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest
 from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, read, whole
+from fingerpad.scenes.families import Written, read_scene
 from fingerpad.scenes.specimen import (
     DEFAULT_SPECIMEN,
     HalfRound,
@@ -441,9 +442,11 @@ Effects = Annotated[dict[str, bool], BeforeValidator(_read_effects, json_schema_
 class Scene(Strict):
     """One simulation: something pressed on a fingerpad, what to record and how well."""
 
-    internal: ClassVar = frozenset({"name"})
+    internal: ClassVar = frozenset({"name", "tags"})
 
     name: SkipJsonSchema[str]
+    tags: SkipJsonSchema[dict[str, str]] = Field(default_factory=dict)
+    """Family and place in it, of a scene that has one: {"family": "ramp40", "surface": "k210"}."""
     specimen: Specimen
     """What is touched; parts left out are the thesis's."""
     stimulus: Stimulus
@@ -461,9 +464,9 @@ class Scene(Strict):
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
-        """The name is the file's; specimen and outputs left out are the default specimen's."""
+        """The name is the file's, the tags are the family's; specimen and outputs left out are the default specimen's."""
         if context is not None:
-            data["name"] = context.path.stem
+            data["name"], data["tags"] = context.path.stem, context.tags
         data.setdefault("specimen", {})
         data.setdefault("outputs", {})
         depths = _middles(data["specimen"], context)
@@ -649,9 +652,9 @@ def load_scene(source: str | Path | Mapping[str, Any], name: str = "scene") -> S
     """Read and check a scene.
 
     Args:
-        source: YAML file, or what would be in one as a dictionary. Paths in it are relative to the file (of a dictionary: to the
-            working directory), and names of specimens are looked up in config/specimens of that folder, of the folders above,
-            and of the package.
+        source: YAML file, a member of a family as if it were a file (:mod:`fingerpad.scenes.families`), or a dictionary. Paths
+            in it are relative to the file (of a dictionary: to the working directory), and names of specimens are looked up in
+            config/specimens of that folder, of the folders above, and of the package.
         name: of the scene of a dictionary; a file's is the file's.
 
     Returns:
@@ -662,11 +665,13 @@ def load_scene(source: str | Path | Mapping[str, Any], name: str = "scene") -> S
     """
     given = isinstance(source, Mapping)
     path = Path(f"{name}.yaml") if given else Path(source)
-    document = source if given else read_yaml(path)
+    written = Written(source, {}, (path,)) if given else read_scene(path)
+    home = written.files[0]
+    shown = name if given else path if home == path else f"{home} ({path.stem})"
     try:
-        return Scene.model_validate(document, context=Source(path))
+        return Scene.model_validate(written.document, context=Source(path, written.tags))
     except ValidationError as error:
-        raise explain(error, name if given else path, document, _TAGS) from None
+        raise explain(error, shown, written.document, _TAGS) from None
 
 
 def scene_json_schema() -> dict[str, Any]:
@@ -674,9 +679,19 @@ def scene_json_schema() -> dict[str, Any]:
     schema = Scene.model_json_schema(mode="validation")
     for name in ("Outline", "Layers", "Layer", "Ridges", "InnerRidges", "OuterRidges", "Receptors", "Outputs", "Specimen"):
         schema["$defs"][name].pop("required", None)
-    schema["required"] = ["stimulus", "motion"]
     schema["$defs"]["Cylinder"]["oneOf"] = [{"required": [key]} for key in ("curvature", "radius", "diameter")]
     del schema["$defs"]["Cylinder"]["required"]
+    one = {"type": "object", "minProperties": 1}
+    schema["properties"] |= {
+        "extends": {"type": "string", "description": "Scene or family to start from; what stands here is merged over it."},
+        "over": one
+        | {
+            "description": "A family: for each key its words, and for each word what is special to the scenes so called.",
+            "additionalProperties": {"anyOf": [one | {"additionalProperties": {"type": ["object", "null"]}}, {"type": "array"}]},
+        },
+    }
+    schema["anyOf"] = [{"required": keys} for keys in (["stimulus", "motion"], ["extends"], ["over"])]
+    schema.pop("required", None)
     return _published(schema, "A fingerpad scene")
 
 

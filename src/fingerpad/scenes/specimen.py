@@ -417,10 +417,10 @@ def _lacks(layer: Any, key: str) -> bool:
 
 
 class Source:
-    """Where a document comes from: finds the files it names and the specimens it refers to."""
+    """Where a document comes from, and the tags of the family it belongs to: finds the files it names and the specimens."""
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, tags: Mapping[str, str] | None = None) -> None:
+        self.path, self.tags = path, dict(tags or {})
         self._files: dict[str, SpecimenFile] = {}
 
     def resolve(self, name: str) -> Path:
@@ -433,15 +433,15 @@ class Source:
             yield parent / "config" / "specimens"
         yield BUILT_IN / "specimens"
 
+    def specimen_files(self) -> dict[str, Path]:
+        """The specimen files by name; one in a nearer folder hides one of the same name farther away."""
+        folders = [folder for folder in self._folders() if folder.is_dir()]
+        return {file.stem: file for folder in reversed(folders) for file in sorted(folder.glob("*.yaml"))}
+
     def specimen(self, name: str, key: tuple = ()) -> SpecimenFile:
         """The specimen file called `name`; raises `Problem` at `key` when there is none."""
         if name not in self._files:
-            found = {
-                file.stem: file
-                for folder in reversed(list(self._folders()))
-                if folder.is_dir()
-                for file in sorted(folder.glob("*.yaml"))
-            }
+            found = self.specimen_files()
             if name not in found:
                 names = ", ".join(sorted(found)) or "none found"
                 raise Problem("is not the name of a specimen", f"names of files in config/specimens ({names})", key)

@@ -1,0 +1,192 @@
+"""Scenes that share a file: a family says what its members have in common, and in what they differ.
+
+    # ramp40.yaml: the scenes ramp40_flat and ramp40_k210
+    motion: [{press_to_force: "20 gf", rate: "40 gf/s"}, {hold: "2 s"}]
+    over:
+      surface:
+        flat: {stimulus: {shape: flat}}
+        k210: {stimulus: {shape: cylinder, curvature: "210 1/m"}}
+
+A member is asked for as if it were a file beside the family's, ``ramp40_k210.yaml``. With several keys under ``over`` there is a
+member for every combination. ``extends: other.yaml`` starts from another file, whose ``over`` comes along: a list of words takes
+some of them, further keys change them. Mappings are merged, everything else is replaced. Names follow the order of the keys,
+those of the file itself before those of the file it extends.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from fingerpad.documents import HIDE, Problem, SceneError, error_line, read_yaml
+from fingerpad.scenes.specimen import DEFAULT_SPECIMEN, Source
+
+MOST = 1000
+"""Members of a family."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """A scene as it is written: its document, its tags (family, and the word under each key of ``over``), and the files it is in,
+    its own first."""
+
+    document: Any
+    tags: Mapping[str, str]
+    files: tuple[Path, ...]
+
+
+def read_scene(path: str | Path) -> Written:
+    """What is written of a scene, in a file of its own or as a member of a family in the same folder.
+
+    Raises:
+        SceneError: there is neither, a file cannot be read, or it is a family itself.
+    """
+    path = Path(path)
+    home = path if path.is_file() else next(_homes(path), path)
+    members = read_family(home)
+    if path.stem in members:
+        return members[path.stem]
+    example = path.with_name(f"{next(iter(members))}.yaml")
+    what = f"is a family of {len(members)} scenes" if home == path else f"is not a scene of {home.name}"
+    raise SceneError(f"{path}: {what}; allowed: one of {', '.join(members)}, as in {example}")
+
+
+def read_family(path: str | Path) -> dict[str, Written]:
+    """The scenes that a file describes, by name: one unless it has ``over``; SceneError if it cannot be read or is wrong."""
+    path = Path(path)
+    document, files = _extended(path, ())
+    if not isinstance(document, Mapping) or "over" not in document:
+        return {path.stem: Written(document, {}, files)}
+    axes = _axes(path, document["over"])
+    common = {key: value for key, value in document.items() if key != "over"}
+    members = {}
+    for words in itertools.product(*axes.values()):
+        tags = dict(zip(axes, words, strict=True))
+        member = common
+        for axis, word in tags.items():
+            member = merged(member, axes[axis][word])
+        members["_".join((path.stem, *words))] = Written(member, {"family": path.stem, **tags}, files)
+    return members
+
+
+def rests_on(path: str | Path) -> list[Path]:
+    """The files that a scene is made of: its own, those it extends, and the specimens, profile and mesh that it names.
+
+    Of what is not there nothing is said: reading the scene does.
+    """
+    written, source = read_scene(path), Source(Path(path))
+    named, files = {DEFAULT_SPECIMEN}, []
+    todo = [written.document]
+    while todo:
+        part = todo.pop()
+        for key, value in part.items() if isinstance(part, Mapping) else ():
+            if key in ("mesh", "csv") and isinstance(value, str):
+                files.append(source.resolve(value))
+            elif isinstance(value, str):
+                named.add(value)
+            else:
+                todo.append(value)
+    specimens = source.specimen_files()
+    return [*written.files, *(specimens[name] for name in sorted(named & specimens.keys())), *files]
+
+
+def moves_along(path: str | Path) -> bool:
+    """Is the scene a stroke, or stepped along, and so takes much longer than a press?"""
+    document = read_scene(path).document
+    legs = document.get("motion") if isinstance(document, Mapping) else None
+    return any(isinstance(leg, Mapping) and ("slide" in leg or "step" in leg) for leg in legs or ())
+
+
+def merged(base: Any, changes: Any) -> Any:
+    """`changes` over `base`: mappings key by key, everything else replaced."""
+    if not isinstance(base, Mapping) or not isinstance(changes, Mapping):
+        return changes
+    return {**base, **{key: merged(base.get(key), value) for key, value in changes.items()}}
+
+
+def _homes(path: Path) -> Iterator[Path]:
+    """Files in the folder of `path` whose members may be called so, the longest name first."""
+    parts = path.stem.split("_")
+    for n in range(len(parts) - 1, 0, -1):
+        home = path.with_name("_".join(parts[:n]) + path.suffix)
+        if home.is_file() and "over" in (_extended(home, ())[0] or {}):
+            yield home
+
+
+def _read(path: Path) -> Any:
+    """A document, read once as long as its file stays as it is; nobody changes it."""
+    try:
+        state = path.stat()
+    except (OSError, ValueError):
+        return read_yaml(path)
+    return _unchanged(path, state.st_mtime_ns, state.st_size, state.st_ino)
+
+
+@lru_cache(maxsize=256)
+def _unchanged(path: Path, *state: int) -> Any:
+    return read_yaml(path)
+
+
+def _extended(path: Path, seen: tuple[Path, ...]) -> tuple[Any, tuple[Path, ...]]:
+    """The document of a file over that of the file it extends, and the files, its own first."""
+    document = _read(path)
+    if not isinstance(document, Mapping) or "extends" not in document:
+        return document, (path,)
+    named = document["extends"]
+    if not isinstance(named, str):
+        raise _wrong(path, ("extends",), named, "is not a path", "the path of a scene or family, relative to this file")
+    base = path.parent / named
+    if not base.is_file() or base in (path, *seen):
+        problem = "extends itself" if base.is_file() else "is not an existing file"
+        raise _wrong(path, ("extends",), named, problem, "the path of a scene or family, relative to this file")
+    below, files = _extended(base, (*seen, path))
+    own = {key: value for key, value in document.items() if key not in ("extends", "over")}
+    whole = merged({key: value for key, value in below.items() if key != "over"}, own)
+    given = {str(axis): words for axis, words in below.get("over", {}).items()}
+    over = {
+        str(axis): _taken(path, str(axis), given.get(str(axis)), words) for axis, words in (document.get("over") or {}).items()
+    }
+    over |= {axis: words for axis, words in given.items() if axis not in over}
+    return whole | ({"over": over} if over else {}), (path, *files)
+
+
+def _taken(path: Path, axis: str, below: Any, words: Any) -> Any:
+    """The words of an axis: some of those below, or those below with changes."""
+    if isinstance(words, Mapping):
+        words = {str(word): change for word, change in words.items()}
+    if not isinstance(words, list) or below is None:
+        return words if below is None else merged({str(word): change for word, change in below.items()}, words)
+    known = {str(word): change for word, change in below.items()}
+    for word in words:
+        if str(word) not in known:
+            raise _wrong(path, ("over", axis), word, "is not in the file that is extended", ", ".join(known))
+    return {str(word): known[str(word)] for word in words}
+
+
+def _axes(path: Path, over: Any) -> dict[str, dict[str, Any]]:
+    """``over`` checked: key -> word -> changes."""
+    allowed = "a key such as surface, with a word for each scene and what is special to it"
+    if not isinstance(over, Mapping) or not over:
+        raise _wrong(path, ("over",), over, "is not a mapping of keys", allowed)
+    axes: dict[str, dict[str, Any]] = {}
+    count = 1
+    for axis, words in over.items():
+        if not isinstance(words, Mapping) or not words or str(axis) == "family":
+            raise _wrong(path, ("over", str(axis)), words, "is not a mapping of words", allowed)
+        axes[str(axis)] = {str(word): {} if change is None else change for word, change in words.items()}
+        for word, change in axes[str(axis)].items():
+            if not isinstance(change, Mapping):
+                raise _wrong(path, ("over", str(axis), word), change, "is not a mapping", "keys of a scene")
+        count *= len(words)
+    if count > MOST:
+        raise _wrong(path, ("over",), HIDE, f"makes {count} scenes", f"up to {MOST}")
+    return axes
+
+
+def _wrong(path: Path, key: tuple, value: Any, problem: str, allowed: str) -> SceneError:
+    shown = "" if value is HIDE else f"{value!r:.60} "
+    return SceneError(error_line(path, key, Problem(f"{shown}{problem}", allowed, (), HIDE)))

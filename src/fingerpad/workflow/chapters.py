@@ -1,0 +1,74 @@
+"""What the studies and figures of the package offer, read without importing them when nothing they rest on has changed."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from fingerpad.files import write_text
+from fingerpad.provenance import digest, imported_sources
+
+_MODULES = (
+    "fingerpad.figures.registry",
+    "fingerpad.studies.accuracy.belief",
+    "fingerpad.studies.accuracy.run",
+    "fingerpad.studies.stability.picture",
+)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure as the workflow sees it: the module that draws it, the scenes whose histories and meshes it needs, those whose
+    companions it compares with, and patterns of the files of measured data, in the folder of reference data."""
+
+    number: str
+    title: str
+    module: str
+    needs: tuple[str, ...]
+    companions: tuple[str, ...]
+    measured: tuple[str, ...]
+
+
+@cache
+def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
+    """What is on offer: `figures` by number, and the studies' `FAMILY`, `SWEEPS`, `OUTSIDE` (accuracy) and `METHODS` (stability).
+
+    Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
+    """
+    key, path = digest(imported_sources(*_MODULES)), Path(folder, "offered.json")
+    try:
+        kept = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        kept = {}
+    if kept.get("key") != key:
+        kept = {"key": key, **_read()}
+        write_text(path, json.dumps(kept, indent=1, ensure_ascii=False) + "\n")
+    figures = {
+        number: Figure(number, **{k: tuple(v) if isinstance(v, list) else v for k, v in entry.items()})
+        for number, entry in kept["figures"].items()
+    }
+    return kept | {"figures": figures}
+
+
+def _read() -> dict[str, Any]:
+    from fingerpad.figures.registry import CHAPTERS
+    from fingerpad.figures.spec import MEASURED
+    from fingerpad.studies.accuracy.belief import OUTSIDE
+    from fingerpad.studies.accuracy.run import FAMILY, sweeps
+    from fingerpad.studies.stability.picture import METHODS
+
+    found = [(spec, module) for module, specs in CHAPTERS.items() for spec in specs]
+    figures = {
+        spec.number: {
+            "title": spec.title,
+            "module": module,
+            "needs": list(spec.needs),
+            "companions": list(spec.read_companions),
+            "measured": MEASURED[spec.measured][0].split() if spec.measured else [],
+        }
+        for spec, module in sorted(found, key=lambda pair: [int(n) for n in pair[0].number.split("-")])
+    }
+    return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps()), "OUTSIDE": list(OUTSIDE), "METHODS": list(METHODS)}

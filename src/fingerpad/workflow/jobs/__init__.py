@@ -1,0 +1,1 @@
+"""What the workflow's jobs do, a module each: `run(job)` reads the files that `job` names and writes those it names."""

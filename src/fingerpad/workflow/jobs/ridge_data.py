@@ -1,0 +1,15 @@
+"""Cases and whole strokes -> the directional index against place, height, friction and mesh, and contact in islands."""
+
+from pathlib import Path
+
+from fingerpad.measures.inputs import read_results
+from fingerpad.publishing.write import write_frame
+from fingerpad.studies.ridges.frames import frames
+
+
+def run(job):
+    """`cases`, `histories`, `coarse` -> `data` (CSV, named as the study's frames)."""
+    strokes, _, coarse = read_results([*job.histories, *job.coarse])
+    made = frames(read_results(job.cases)[0], strokes, coarse)
+    for path in map(Path, job.data):
+        write_frame(made[path.stem], path)

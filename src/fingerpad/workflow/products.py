@@ -1,0 +1,551 @@
+"""From a configuration to the workflow's jobs: what each reads, what it writes, and which of the package's files it rests on.
+
+Every file is named here, there are no wildcards: what is not named cannot be asked for, and what is asked for has one job.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from pathlib import Path
+
+from fingerpad.config import WorkflowConfig
+from fingerpad.documents import HIDE, Problem, SceneError, error_line, nearest
+from fingerpad.provenance import imported_sources
+from fingerpad.scenes.families import moves_along, read_scene, rests_on
+from fingerpad.workflow.chapters import Figure, offered
+
+RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
+RIDGED, OUTER = "ridged_stroke_right", ("ridged_outer_stroke_right", "ridged_outer_stroke_left")
+HEIGHT, FRICTION = 150, 0.65
+"""Height (um) of ridges and coefficient of friction of RIDGED; the study of ridges varies one at a time."""
+RIDGE_MESHES = (("fine",), ("curved", "straight", "shifted"))
+"""Further meshes for that case, by process."""
+RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rapidly_adapting")
+TABLES = ("thesis_comparison", "sensitivity")
+UNTOLD = ("files", "scene_files", "measured", "written")
+"""Inputs that a job finds by itself, beside others or named in them, and what only says when to run it again."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One process of the workflow.
+
+    Attributes:
+        name: the rule's. run: module of `fingerpad.workflow.jobs`. inputs, outputs: files by what they are to the job.
+        values: parameters likewise. modules: further modules that the job imports by name. also: outputs beside the others.
+        caption, category, labels: for the report, of the outputs called picture(s), table(s).
+    """
+
+    name: str
+    run: str
+    inputs: Mapping[str, list[str]]
+    outputs: Mapping[str, list[str]]
+    values: Mapping[str, list[str]] = field(default_factory=dict)
+    modules: tuple[str, ...] = ()
+    category: str = ""
+    caption: str = "table"
+    labels: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    also: list[str] = field(default_factory=list)
+    mem_mb: int = 1000
+    runtime: int = 10
+    priority: int = 0
+
+    @property
+    def sources(self) -> list[str]:
+        """The package's files that the job imports, directly or not."""
+        return _sources("fingerpad.workflow.__main__", f"fingerpad.workflow.jobs.{self.run}", *self.modules)
+
+    @property
+    def beside(self) -> list[str]:
+        """What is written beside the outputs: Markdown to tables, their data to pictures, and `also`."""
+        pictures = [Path(p) for key in ("picture", "pictures") for p in self.outputs.get(key, [])]
+        tables = [Path(p) for key in ("table", "tables") for p in self.outputs.get(key, [])]
+        return [*(str(p.with_suffix(".csv")) for p in pictures), *(str(p.with_suffix(".md")) for p in tables), *self.also]
+
+    @property
+    def words(self) -> list[tuple[str, str]]:
+        """What the job is told on its command line: where in the rule it stands (input, output, params), and its key."""
+        told = [("input", key) for key in self.inputs if key not in UNTOLD]
+        values = [("params", key) for key in self.values if key not in UNTOLD]
+        return [*told, *(("output", key) for key in self.outputs), *values]
+
+    def reported(self, key: str, path: str) -> dict[str, object] | None:
+        """How the report shows an output, if it does: caption, category and labels."""
+        if key not in ("picture", "pictures", "table", "tables") or not self.category:
+            return None
+        labels = self.labels.get(path) or {("table" if "table" in key else "study"): Path(path).stem.replace("_", " ")}
+        return {"caption": f"{self.caption}.rst", "category": self.category, "labels": dict(labels)}
+
+
+@cache
+def _sources(*modules: str) -> list[str]:
+    return [os.path.relpath(path) for path in imported_sources(*modules)]
+
+
+class Products:
+    """The jobs of a configuration.
+
+    Args:
+        config: the configuration. file: where it was read. root: folder of the Snakefile. Files that a configuration names are
+        looked for in the working directory first and then in `root`.
+    """
+
+    def __init__(self, config: WorkflowConfig, file: str | Path, root: str | Path) -> None:
+        self.config, self.file, self.root = config, file, Path(root)
+        self._found: dict[str, str] = {}
+        self._check()
+
+    # -- what there is -----------------------------------------------------------------------------------------------------
+
+    def at(self, path: str) -> str:
+        """A file or folder of the project: in the working directory if it is there, else beside the Snakefile."""
+        return path if Path(path).exists() else os.path.relpath(self.root / path)
+
+    def _check(self) -> None:
+        """SceneError, one line, for a scene, a figure or a table that there is not."""
+        c = self.config
+        for key in ("scenes", "variants", "calibration_scenes", "friction_scenes"):
+            for i, name in enumerate(getattr(c, key)):
+                self._check_scene((key, i), name)
+        for i, number in enumerate(c.figure_numbers or ()):
+            if number not in self.specs:
+                self._wrong(("figure_numbers", i), number, f"is not drawn{nearest(number, self.specs)}", "")
+        known = (*TABLES, *RECEPTOR_TABLES, "mesh_quality", "summary")
+        for i, name in enumerate(c.table_names):
+            if name not in known:
+                self._wrong(("table_names", i), name, "is not a table", ", ".join(known))
+        for key, needed in (("calibration_scenes", PLATE), ("friction_scenes", STROKE)):
+            if getattr(c, key) and needed not in getattr(c, key):
+                self._wrong((key,), getattr(c, key), f"lacks {needed}", "")
+        if not self.forces and c.calibration_scenes:
+            self._wrong(("subjects",), c.subjects, "holds no CSV file", "a folder of at least one")
+
+    def _check_scene(self, key: tuple, name: str) -> None:
+        try:
+            read_scene(self.scene(name))
+        except SceneError as error:
+            if "there is no such file" in str(error):
+                folders = " and ".join(self.scene_folders)
+                self._wrong(key, name, "is not the name of a scene", f"names of scenes in {folders}")
+            raise
+
+    def _wrong(self, key: tuple, value: object, problem: str, allowed: str) -> None:
+        raise SceneError(error_line(self.file, key, Problem(f"{value!r} {problem}", allowed, (), HIDE)))
+
+    @cached_property
+    def specs(self) -> dict[str, Figure]:
+        """The thesis's figures that can be drawn, by number."""
+        return offered()["figures"]
+
+    @cached_property
+    def scene_folders(self) -> list[str]:
+        """Where scenes are looked for."""
+        return list(dict.fromkeys([self.at(self.config.scenes_folder), self.at("config/scenes")]))
+
+    @cached_property
+    def forces(self) -> list[str]:
+        """Files of measured forces."""
+        return self._csv(self.config.subjects)
+
+    def _csv(self, *folders: str) -> list[str]:
+        return [str(path) for folder in folders for path in sorted(Path(self.at(folder)).glob("*.csv"))]
+
+    def scene(self, name: str) -> str:
+        """Path of a scene: in the first folder that has a file, or a family, which can be so called."""
+        if name not in self._found:
+            self._found[name] = self._find(name)
+        return self._found[name]
+
+    def _find(self, name: str) -> str:
+        for folder in self.scene_folders:
+            path = Path(folder, f"{name}.yaml")
+            try:
+                read_scene(path)
+            except SceneError as error:
+                if "there is no such file" in str(error) and folder != self.scene_folders[-1]:
+                    continue
+            return str(path)
+        raise AssertionError("a folder at least")
+
+    def thesis_specimen(self) -> str:
+        return self.at("config/specimens/thesis.yaml")
+
+    # -- names of results --------------------------------------------------------------------------------------------------
+
+    def result(self, path: str) -> str:
+        return f"{self.config.results}/{path}"
+
+    def histories(self, scenes: Iterable[str], fidelity: str = "simulations") -> list[str]:
+        """Simulation results of some scenes."""
+        return [self.result(f"{fidelity}/{scene}/history.nc") for scene in scenes]
+
+    def companions(self, scenes: Iterable[str]) -> list[str]:
+        """Results of the scenes' coarser companions, if the configuration has any."""
+        return self.histories(scenes, "coarse") if self.config.companion_accuracy is not None else []
+
+    def meshes(self, scenes: Iterable[str]) -> list[str]:
+        """Meshes the scenes are simulated on."""
+        return [self.result(f"simulations/{scene}/mesh.msh") for scene in scenes]
+
+    def pictures(self, names: Iterable[str], prefix: str = "") -> list[str]:
+        """Pictures of studies."""
+        return [f"{self.config.studies}/{prefix}{name}.png" for name in names]
+
+    def tables(self, names: Iterable[str]) -> list[str]:
+        """Tables."""
+        return [f"{self.config.tables}/{name}.csv" for name in names]
+
+    # -- simulations -------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def drawn(self) -> list[Figure]:
+        """The figures of the configuration: those it names, else all whose scenes it has."""
+        numbers, scenes = self.config.figure_numbers, set(self.config.every_scene)
+        return [f for f in self.specs.values() if (f.number in numbers if numbers is not None else scenes.issuperset(f.needs))]
+
+    @cached_property
+    def coarse(self) -> set[str]:
+        """Scenes that have a companion: those of the configuration, and the variants that a figure or a calibration compares."""
+        c = self.config
+        compared = {*c.scenes, *(scene for figure in self.drawn for scene in figure.companions)}
+        return compared | {scene for scene in c.every_scene if scene in (PLATE, RAMP, STROKE)}
+
+    def batches(self) -> dict[str, list[str]]:
+        """Scenes that share a process: a family's, but each stroke has one of its own."""
+        batches: dict[str, list[str]] = {}
+        for name in self.config.every_scene:
+            batches.setdefault(name if moves_along(self.scene(name)) else self._family(name), []).append(name)
+        return batches
+
+    def simulations(self) -> list[Job]:
+        """Scenes -> plans, meshes, histories, summaries."""
+        jobs = []
+        for batch, names in self.batches().items():
+            cases = [(name, "simulations", self.config.accuracy) for name in names]
+            if self.config.companion_accuracy is not None:
+                cases += [(name, "coarse", self.config.companion_accuracy) for name in names if name in self.coarse]
+            places = [self.result(f"{fidelity}/{name}") for name, fidelity, _ in cases]
+            jobs.append(
+                Job(
+                    f"simulate_{batch}".replace(".", "_").replace("-", "_"),
+                    "simulate",
+                    self._read(*names),
+                    {"histories": [f"{place}/history.nc" for place in places]},
+                    {
+                        "scenes": [self.scene(name) for name, *_ in cases],
+                        "accuracies": ["as_stated" if accuracy is None else str(accuracy) for *_, accuracy in cases],
+                        "written": self._written(*names),
+                    },
+                    also=[f"{place}/{name}" for place in places for name in ("mesh.msh", "plan.json", "summary.json")],
+                    mem_mb=2000,
+                    runtime=60,
+                    # the longest first, so that no core waits for them in the end
+                    priority=2 if moves_along(self.scene(names[0])) else 0,
+                )
+            )
+        return jobs
+
+    def _read(self, *names: str) -> dict[str, list[str]]:
+        """What jobs read of scenes: their files, and the specimens, profiles and meshes that these name.
+
+        The scenes' own files only have to be there: what counts is what is written of a scene (`_written`), so that an edit
+        reruns the scenes whose meaning it changes, not all that share the file.
+        """
+        files = dict.fromkeys(os.path.relpath(path) for name in names for path in rests_on(self.scene(name)))
+        own = {os.path.relpath(path) for name in names for path in read_scene(self.scene(name)).files}
+        return {"scene_files": [path for path in files if path in own], "files": [path for path in files if path not in own]}
+
+    def _written(self, *names: str) -> list[str]:
+        """Digests of what is written of scenes."""
+        texts = (json.dumps(read_scene(self.scene(name)).document, sort_keys=True, default=str) for name in names)
+        return [hashlib.sha256(text.encode()).hexdigest()[:16] for text in texts]
+
+    def _told(self, name: str) -> dict[str, list[str]]:
+        """What jobs are told of a scene: where it is, and what is written of it."""
+        return {"scene": [self.scene(name)], "written": self._written(name)}
+
+    def _family(self, name: str) -> str:
+        """Name of the file that a scene is in."""
+        return read_scene(self.scene(name)).files[0].stem
+
+    # -- figures and tables ------------------------------------------------------------------------------------------------
+
+    def picture_of(self, number: str) -> str:
+        return f"{self.config.figures}/fig_{number}.png"
+
+    def figures(self) -> list[Job]:
+        """Histories and meshes -> figures: those of a chapter's module that rest on the same simulations share a process."""
+        batch_of = {name: batch for batch, names in self.batches().items() for name in names}
+        groups: dict[tuple, list[Figure]] = {}
+        for figure in self.drawn:
+            rests_on = frozenset(batch_of[scene] for scene in figure.needs)
+            groups.setdefault((figure.module, rests_on), []).append(figure)
+        reference = self.at("config/reference/thesis_numbers.csv")
+        jobs = []
+        for (module, _), group in groups.items():
+            needs = list(dict.fromkeys(scene for figure in group for scene in figure.needs))
+            compared = list(dict.fromkeys(scene for figure in group for scene in figure.companions))
+            folders = {str(Path(reference).parent / pattern) for figure in group for pattern in figure.measured}
+            measured = sorted(str(path) for pattern in folders for path in Path().glob(pattern))
+            chapter = group[0].number.split("-")[0]
+            jobs.append(
+                Job(
+                    f"figures_{group[0].number.replace('-', '_')}",
+                    "figures",
+                    {
+                        "reference": [reference],
+                        "histories": self.histories(needs),
+                        "meshes": self.meshes(needs),
+                        "coarse": self.companions(compared),
+                        "measured": measured,
+                    },
+                    {"pictures": [self.picture_of(figure.number) for figure in group]},
+                    {"chapter": [module]},
+                    (module,),
+                    f"Chapter {chapter}",
+                    "figure",
+                    {self.picture_of(f.number): {"figure": f.number, "shows": f.title} for f in group},
+                )
+            )
+        return jobs
+
+    def catalogue(self) -> list[Job]:
+        """figures/README.md, of the configuration that draws them all."""
+        if self.config.name != "thesis":
+            return []
+        titles = json.dumps({figure.number: figure.title for figure in self.drawn}, ensure_ascii=False)
+        listed = {"catalogue": [self.at("config/reference/figures.csv")]}
+        return [Job("catalogue", "catalogue", listed, {"readme": ["figures/README.md"]}, {"titles": [titles]})]
+
+    def animations(self) -> list[Job]:
+        """Moving pictures."""
+        return [
+            Job(
+                f"animation_{scene}",
+                "animation",
+                {"history": self.histories([scene])},
+                {"gif": [f"{self.config.studies}/animation_{scene}.gif"]},
+            )
+            for scene in self.config.animations
+        ]
+
+    def all_tables(self) -> list[Job]:
+        """Tables of all the results, of the receptors, and of the scenes' summaries."""
+        c, jobs = self.config, []
+        compared = [*c.scenes, *(scene for scene in c.calibration_scenes if scene in (PLATE, RAMP))]
+        if names := [name for name in TABLES if name in c.table_names]:
+            every = {
+                "histories": self.histories(dict.fromkeys([*c.scenes, *c.variants, *c.calibration_scenes])),
+                "meshes": self.meshes(c.scenes),
+                "coarse": self.companions(dict.fromkeys(compared)),
+            }
+            measures = {"measures": [self.result("measures.csv")]}
+            jobs.append(Job("measures", "measures", every, measures, mem_mb=2000))
+            read = measures | {"reference": [self.at("config/reference/thesis_numbers.csv")]}
+            jobs.append(Job("tables", "tables", read, {"tables": self.tables(names)}, category="Tables"))
+        if "mesh_quality" in c.table_names:
+            quality = {"table": self.tables(["mesh_quality"])}
+            jobs.append(Job("mesh_quality", "mesh_quality", {"meshes": self.meshes(c.scenes)}, quality, category="Tables"))
+        if "summary" in c.table_names:
+            summaries = [self.result(f"simulations/{scene}/summary.json") for scene in dict.fromkeys([*c.scenes, *c.variants])]
+            jobs.append(
+                Job("summary", "summary", {"summaries": summaries}, {"table": self.tables(["summary"])}, category="Tables")
+            )
+        if names := [name for name in RECEPTOR_TABLES if name in c.table_names]:
+            felt = self._of([*c.scenes, *c.variants], "ramp40", "ramp150", "press10", "press15", "stroke", "stroke_sub")
+            read = {
+                "rates": self._csv("config/reference/impulse_rates", "config/reference/recordings"),
+                "histories": self.histories(felt),
+                "coarse": self.companions(
+                    s for s in self._of(c.scenes, "ramp40", "stroke") if s.startswith("ramp40_") or s == "stroke_10"
+                ),
+            }
+            jobs.append(Job("receptor_tables", "receptor_tables", read, {"tables": self.tables(names)}, category="Tables"))
+        return jobs
+
+    def _of(self, names: Iterable[str], *families: str) -> list[str]:
+        """Those of `names` that belong to some families."""
+        return [name for name in names if self._family(name) in families]
+
+    def meanings(self) -> list[Job]:
+        """The study of the definitions of strain energy, if the configuration has the nine surfaces."""
+        nine = self._of(self.config.scenes, "ramp40")
+        if len(nine) < 9:
+            return []
+        read = {"histories": self.histories(nine), "coarse": self.companions(nine)}
+        picture = self.pictures(["strain_energy_meanings"])
+        return [
+            Job(
+                "strain_energy_meanings",
+                "strain_energy_meanings",
+                read,
+                {"picture": picture},
+                category="Receptors",
+                caption="strain_energy_meanings",
+            )
+        ]
+
+    # -- studies -----------------------------------------------------------------------------------------------------------
+
+    def calibration(self) -> list[Job]:
+        """The pad calibrated to measured forces; the Prony series and friction, if the configuration has their scenes."""
+        c = self.config
+        if not c.calibration_scenes:
+            return []
+        names, estimates, jobs = ["fit", "identifiability", "residuals"], ["estimates"], []
+
+        def data(*names: str) -> list[str]:
+            return [self.result(f"calibration/{name}.csv") for name in names]
+
+        steady = [scene for scene in c.calibration_scenes if scene != RAMP]
+        read = {"forces": self.forces, "histories": self.histories(steady), "coarse": self.companions([PLATE])}
+        made = {"data": data(*names, *estimates), "specimens": [self.result("specimens")]}
+        jobs.append(Job("calibrate", "calibrate", read, made))
+        if RAMP in c.calibration_scenes:
+            read = {
+                "relaxation": [self.at("config/reference/relaxation.csv")],
+                "mesh": self.meshes([RAMP]),
+                "histories": self.histories([PLATE, "calibration_instantaneous", RAMP]),
+                **self._read(RAMP),
+            }
+            values = self._told(RAMP) | {"accuracy": [str(c.accuracy or "as_stated")]}
+            jobs.append(Job("calibrate_prony", "calibrate_prony", read, {"data": data("prony", "prony_estimates")}, values))
+            names, estimates = [*names, "prony"], [*estimates, "prony_estimates"]
+        if c.friction_coefficients:
+            sweep = [self.result(f"friction/{mu:g}/history.nc") for mu in c.friction_coefficients]
+            coarse_mesh = [self.result(f"coarse/{STROKE}/mesh.msh")]
+            read = {"mesh": coarse_mesh, **self._read(STROKE)}
+            values = self._told(STROKE) | {"accuracy": [str(c.companion_accuracy)]}
+            for k in (0, 1):  # in two processes, for two cores
+                values["coefficients"] = [f"{mu:g}" for mu in c.friction_coefficients[k::2]]
+                made = {"histories": sweep[k::2]}
+                jobs.append(Job(f"strokes_with_friction_{k + 1}", "strokes_with_friction", read, made, dict(values), mem_mb=2000))
+            read = {
+                "thesis": [self.at("config/reference/thesis_numbers.csv")],
+                "published": [self.at("config/reference/friction.csv")],
+                "sweep": sweep,
+                "histories": self.histories(c.friction_scenes),
+                "coarse": self.companions([STROKE]),
+            }
+            jobs.append(Job("calibrate_friction", "calibrate_friction", read, {"data": data("friction", "friction_estimates")}))
+            names, estimates = [*names, "friction"], [*estimates, "friction_estimates"]
+        study = "fingerpad.studies.calibration.picture"
+        jobs.append(self._study_pictures("calibration", names, data(*names), study, "Calibration"))
+        table = {"table": self.tables(["calibration"])}
+        jobs.append(
+            Job("calibration_table", "joined", {"parts": data(*estimates)}, table, category="Tables", caption="calibration")
+        )
+        return jobs
+
+    def _study_pictures(self, name: str, names: list[str], data: list[str], module: str, category: str) -> Job:
+        made = {"pictures": self.pictures(names, f"{name}_")}
+        labels = {path: {"study": Path(path).stem.replace("_", " ")} for path in made["pictures"]}
+        return Job(f"{name}_pictures", "pictures", {"data": data}, made, {"study": [module]}, (module,), category, name, labels)
+
+    def ridges(self) -> list[Job]:
+        """The study of ridges, if the configuration varies their height."""
+        c = self.config
+        if not c.ridge_heights:
+            return []
+        pairs = list(dict.fromkeys([(h, FRICTION) for h in c.ridge_heights] + [(HEIGHT, mu) for mu in c.ridge_frictions]))
+        both = [[self.result(f"ridges/{h:g}_{mu:g}_{mesh}/history.nc") for mesh in ("thesis", "coarse")] for h, mu in pairs]
+        groups = [sum(both[k : k + 2], []) for k in range(0, len(both), 2)]
+        if (HEIGHT, FRICTION) in pairs:
+            base = f"ridges/{HEIGHT:g}_{FRICTION:g}"
+            groups += [[self.result(f"{base}_{mesh}/history.nc") for mesh in meshes] for meshes in RIDGE_MESHES]
+        read, told = self._read(RIDGED), self._told(RIDGED)
+        jobs = [
+            Job(f"ridge_cases_{k}", "ridge_cases", read, {"histories": group}, told, mem_mb=2000, runtime=30, priority=1)
+            for k, group in enumerate(groups, start=1)
+        ]
+        cases = [history for group in groups for history in group]
+        names = ["offset", "height", "friction", "mesh", "outer"]
+        read = {"cases": cases, "histories": self.histories(OUTER), "coarse": self.companions(OUTER[:1])}
+        data = [self.result(f"ridges/{name}.csv") for name in names]
+        jobs.append(Job("ridge_data", "ridge_data", read, {"data": data}))
+        return [*jobs, self._study_pictures("ridges", names, data, "fingerpad.studies.ridges.picture", "Ridges")]
+
+    def accuracy(self) -> list[Job]:
+        """What accuracy costs in time, and whether runs know their error."""
+        family, sweeps, outside = (offered()[key] for key in ("FAMILY", "SWEEPS", "OUTSIDE"))
+        jobs = []
+        for sweep in sweeps:
+            scene = family[sweep.split("_")[0]]
+            made, values = {"records": [self.result(f"accuracy/{sweep}.json")]}, {"sweep": [sweep], **self._told(scene)}
+            jobs.append(Job(f"accuracy_{sweep}", "accuracy_sweep", self._read(scene), made, values, mem_mb=3000, runtime=60))
+        read = self._read(*family.values()) | {"records": [self.result(f"accuracy/{sweep}.json") for sweep in sweeps]}
+        tables = self.tables(["accuracy", "accuracy_orders", "accuracy_planner", "presets"])
+        values = {"scenes": [self.scene(scene) for scene in family.values()], "written": self._written(*family.values())}
+        jobs.append(Job("accuracy_tables", "accuracy_tables", read, {"tables": tables}, values, (), "Accuracy", "accuracy"))
+        rows = [self.result(f"accuracy/belief/{name}.csv") for name in outside]
+        base = family["210"]
+        for k in range(0, len(outside), 7):
+            values = {"names": list(outside[k : k + 7]), **self._told(base)}
+            name, made = f"accuracy_belief_{k // 7 + 1}", {"rows": rows[k : k + 7]}
+            jobs.append(Job(name, "accuracy_belief", self._read(base), made, values, mem_mb=2000, runtime=60))
+        believed = self.tables(["accuracy_belief"])
+        jobs.append(Job("accuracy_beliefs", "joined", {"parts": rows}, {"table": believed}))
+        for name, table, pictures in (
+            ("accuracy_pictures", tables[0], ("error", "error_stroke", "growth")),
+            ("accuracy_belief_picture", believed[0], ("belief",)),
+        ):
+            made = {"pictures": self.pictures(pictures, "accuracy_")}
+            labels = {path: {"study": Path(path).stem} for path in made["pictures"]}
+            jobs.append(Job(name, "accuracy_pictures", {"table": [table]}, made, {}, (), "Accuracy", "accuracy", labels))
+        return jobs
+
+    def stability(self) -> list[Job]:
+        """Hard cases -> how stable the default method is in them, beside simpler methods."""
+        methods = [method.replace(" ", "_") for method in offered()["METHODS"]]
+        data = [self.result(f"stability/{method}.csv") for method in methods]
+        jobs = [
+            Job(
+                f"stability_{m}",
+                "stability_method",
+                {"files": [self.thesis_specimen()]},
+                {"data": [d]},
+                {"method": [m]},
+                runtime=30,
+            )
+            for m, d in zip(methods, data, strict=True)
+        ]
+        made = {"picture": self.pictures(["stability"]), "table": self.tables(["stability"])}
+        return [*jobs, Job("stability_picture", "stability_picture", {"methods": data}, made, {}, (), "Studies", "study")]
+
+    def effects(self) -> list[Job]:
+        """What each effect changes and costs, and the planner's choices and rules against that."""
+        parts = ("changes", "choices")
+        data = [self.result(f"effects/{part}.csv") for part in parts]
+        jobs = [
+            Job(f"effects_{p}", "effects_study", {"files": [self.thesis_specimen()]}, {"data": [d]}, {"part": [p]}, runtime=30)
+            for p, d in zip(parts, data, strict=True)
+        ]
+        tables = self.tables(["effects", "planner_choices", "planner_rules"])
+        made = {"picture": self.pictures(["effects"]), "tables": tables}
+        return [*jobs, Job("effects_picture", "effects_picture", {"parts": data}, made, {}, (), "Studies", "study")]
+
+    def peers(self) -> list[Job]:
+        """The same press through a public finite element package."""
+        files = [self.thesis_specimen(), self.at("config/specimens/homogeneous.yaml")]
+        return [Job("peers_table", "peers", {"files": files}, {"table": self.tables(["peers"])}, category="Tables", mem_mb=2000)]
+
+    def jobs(self) -> list[Job]:
+        """All of them."""
+        parts = (
+            self.simulations, self.figures, self.catalogue, self.animations, self.all_tables, self.meanings, self.calibration,
+            self.ridges, self.accuracy, self.stability, self.effects, self.peers,
+        )  # fmt: skip
+        return [job for part in parts for job in part()]
+
+    def targets(self, *parts: str, figures: str = "none") -> list[str]:
+        """Final outputs of some parts (names of the methods above), and the figures whose number starts so."""
+        wanted = [f for f in self.drawn if f.number.startswith(figures)]
+        jobs = [job for part in parts for job in getattr(self, part)()]
+        read = {path for job in jobs for paths in job.inputs.values() for path in paths}
+        made = [path for job in jobs for paths in job.outputs.values() for path in paths if path not in read]
+        return [*(self.picture_of(f.number) for f in wanted), *made]

@@ -1,0 +1,261 @@
+"""What follows from a configuration: which jobs a target needs, what they make, and what an edit makes again.
+
+Asked of the package, without Snakemake: a job's inputs, its sources included, are what its rule has.
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+import yaml
+
+from fingerpad.config import read_config
+from fingerpad.documents import SceneError
+from fingerpad.workflow.products import Job, Products
+
+pytestmark = pytest.mark.workflow
+
+ROOT = Path(__file__).resolve().parents[2]
+LENT = {"Chapter 3": ("Chapter 5",)}
+"""Chapters whose functions another draws with: ridged pads are drawn as the plain one is."""
+STUDY_FIGURES = ("fit", "identifiability", "residuals", "prony", "friction")
+RIDGES = ("offset", "height", "friction", "mesh", "outer")
+
+
+class Plan:
+    """The jobs of a configuration, and what depends on what."""
+
+    def __init__(self, document: dict | str) -> None:
+        if isinstance(document, str):
+            document = yaml.safe_load((ROOT / "config" / f"{document}.yaml").read_text())
+        self.products = Products(read_config(document, "config.yaml"), "config.yaml", ROOT)
+        self.config = self.products.config
+        self.jobs = {job.name: job for job in self.products.jobs()}
+        self.maker = {path: job for job in self.jobs.values() for path in made(job)}
+
+    def needed(self, targets: Iterable[str]) -> set[str]:
+        """Names of the jobs that make some files from nothing."""
+        todo, names = list(targets), set()
+        while todo:
+            job = self.maker.get(todo.pop())
+            if job and job.name not in names:
+                names.add(job.name)
+                todo += [path for paths in job.inputs.values() for path in paths]
+        return names
+
+    def default(self) -> set[str]:
+        parts = ("catalogue", "animations", "all_tables", "calibration", "ridges", "meanings")
+        return self.needed(self.products.targets(*parts, figures=""))
+
+    def rerun(self, edited: str) -> set[str]:
+        """Kinds of jobs of the default target that rest on a file of the project themselves."""
+        names = self.default()
+        return {n for n in names if any(Path(p).resolve() == ROOT / edited for p in inputs(self.jobs[n]))}
+
+    def scenes(self, names: Iterable[str]) -> set[str]:
+        jobs = [self.jobs[name] for name in names if self.jobs[name].run == "simulate"]
+        return {Path(path).parent.name for job in jobs for path in job.outputs["histories"]}
+
+
+def made(job: Job) -> list[str]:
+    return [*(path for paths in job.outputs.values() for path in paths), *job.beside]
+
+
+def inputs(job: Job) -> list[str]:
+    return [*job.sources, *(path for key, paths in job.inputs.items() if key != "scene_files" for path in paths)]
+
+
+@pytest.fixture(scope="module")
+def thesis():
+    return Plan("thesis")
+
+
+@pytest.fixture(scope="module")
+def smoke():
+    return Plan("smoke")
+
+
+def test_every_file_has_one_maker_and_every_job_a_name(thesis):
+    outputs = [path for job in thesis.jobs.values() for path in made(job)]
+    assert len(outputs) == len(set(outputs)) and len(thesis.jobs) == len(thesis.products.jobs())
+    assert all(name.isidentifier() for name in thesis.jobs)
+
+
+def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(thesis):
+    names = thesis.default()
+    assert len(names) <= 90
+    outputs = {path for name in names for path in made(thesis.jobs[name])}
+    assert {f"figures/thesis/fig_{n}.{kind}" for n in thesis.products.specs for kind in ("png", "csv")} <= outputs
+    assert {f"figures/tables/{name}.{kind}" for name in thesis.config.table_names for kind in ("csv", "md")} <= outputs
+    assert {f"figures/studies/calibration_{n}.png" for n in STUDY_FIGURES} | {"figures/tables/calibration.md"} <= outputs
+    assert {f"figures/studies/ridges_{n}.png" for n in RIDGES} | {"figures/studies/strain_energy_meanings.png"} <= outputs
+    assert {"figures/README.md", "figures/studies/animation_stroke_10.gif", "results/thesis/specimens"} <= outputs
+    every = set(thesis.config.every_scene)
+    assert {Path(p).parent.name for p in outputs if p.startswith("results/thesis/simulations/")} == every
+    coarse = {Path(p).parent.name for p in outputs if p.startswith("results/thesis/coarse/")}
+    compared = {scene for figure in thesis.products.drawn for scene in figure.companions}
+    assert coarse == {*thesis.config.scenes, *compared, "calibration_plate", "calibration_ramp_hold", "stroke_sub_10"}
+    assert {"ramp150_flat", "press10_flat"} <= coarse < every
+
+
+def test_studies_are_not_part_of_the_default(thesis):
+    runs = {thesis.jobs[name].run for name in thesis.default()}
+    assert not runs & {"accuracy_sweep", "accuracy_belief", "stability_method", "effects_study", "peers"}
+
+
+@pytest.mark.parametrize("chapter", ["3", "4", "5"])
+def test_a_chapter_makes_its_figures_only(thesis, chapter):
+    targets = thesis.products.targets(figures=f"{chapter}-")
+    names = thesis.needed(targets)
+    assert {thesis.jobs[name].run for name in names} == {"simulate", "figures"}
+    drawn = {Path(p).stem for name in names for p in thesis.jobs[name].outputs.get("pictures", [])}
+    assert drawn == {f"fig_{n}" for n in thesis.products.specs if n.startswith(f"{chapter}-")}
+
+
+def test_a_figure_simulates_the_families_it_needs_only(thesis):
+    assert thesis.scenes(thesis.needed(["figures/thesis/fig_4-10.png"])) == {
+        f"ramp40_{k}" for k in ("flat", "k79", "k105", "k158", "k210", "k315", "k420", "k630", "k1260")
+    }
+    assert thesis.scenes(thesis.needed(["figures/thesis/fig_5-11.png"])) == {"stroke_10"}
+
+
+def test_ridges_and_calibration_simulate_their_own_scenes_only(thesis):
+    names = thesis.needed(thesis.products.targets("ridges"))
+    assert all(scene.startswith("ridged_outer_stroke_") for scene in thesis.scenes(names))
+    names = thesis.needed(thesis.products.targets("calibration"))
+    assert thesis.scenes(names) == {*thesis.config.calibration_scenes, *thesis.config.friction_scenes}
+    assert not {"figures", "tables"} & {thesis.jobs[name].run for name in names}
+
+
+def test_studies_make_their_tables_and_figures(thesis):
+    jobs = [thesis.jobs[name] for name in thesis.needed(thesis.products.targets("accuracy"))]
+    assert {Path(p).name for job in jobs for p in made(job) if p.startswith("figures/")} == {
+        f"{name}.{kind}"
+        for names, kinds in (
+            (("accuracy", "accuracy_orders", "accuracy_planner", "presets", "accuracy_belief"), ("csv", "md")),
+            (("accuracy_error", "accuracy_error_stroke", "accuracy_growth", "accuracy_belief"), ("csv", "png")),
+        )
+        for name in names
+        for kind in kinds
+    }
+    runs = [job.run for job in jobs]
+    assert runs.count("accuracy_sweep") == 24 and "simulate" not in runs
+    assert {Path(p).stem for p in thesis.products.targets("stability")} == {"stability"}
+    assert {Path(p).stem for p in thesis.products.targets("effects")} == {"effects", "planner_choices", "planner_rules"}
+
+
+def test_smoke_writes_under_its_results_only_and_skips_what_it_lacks(smoke):
+    names = smoke.default()
+    outputs = [path for name in names for path in made(smoke.jobs[name])]
+    assert all(Path(path).is_relative_to("results/smoke") for path in outputs)
+    assert smoke.scenes(names) == {*smoke.config.scenes, *smoke.config.calibration_scenes}
+    assert not {"calibrate_friction", "ridge_cases", "catalogue"} & {smoke.jobs[name].run for name in names}
+
+
+# -- what an edit makes again ----------------------------------------------------------------------------------------------
+
+
+def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
+    for module in {figure.module for figure in thesis.products.drawn}:
+        path = "src/" + module.replace(".", "/") + ".py"
+        names = thesis.rerun(path)
+        assert names and {thesis.jobs[name].run for name in names} == {"figures"}
+        own = {name for name in names if thesis.jobs[name].values["chapter"] == [module]}
+        assert own == {name for name in thesis.default() if thesis.jobs[name].values.get("chapter") == [module]}
+        chapters, (chapter,) = ({thesis.jobs[name].category for name in part} for part in (names, own))
+        assert chapters <= {chapter, *LENT.get(chapter, ())}, f"drawn again by an edit in {module}"
+
+
+def test_an_edited_figure_grammar_redraws_figures_only(thesis):
+    names = thesis.rerun("src/fingerpad/figures/spec.py")
+    assert {thesis.jobs[name].run for name in names} == {"figures"}
+    assert names == {name for name in thesis.default() if thesis.jobs[name].run == "figures"}
+
+
+def test_an_edited_claim_remakes_the_tables_only(thesis):
+    for module in ("comparison", "trends_pressing", "reasons"):
+        assert thesis.rerun(f"src/fingerpad/claims/{module}.py") == {"tables"}
+
+
+def test_an_edited_kernel_reruns_simulations(thesis):
+    names = thesis.rerun("src/fingerpad/mechanics/kernels.py")
+    runs = {thesis.jobs[name].run for name in names}
+    assert {"simulate", "strokes_with_friction", "ridge_cases"} <= runs and not {"figures", "tables", "measures"} & runs
+    assert all(name in names for name in thesis.default() if thesis.jobs[name].run == "simulate")
+
+
+def test_an_edited_job_reruns_itself_only(thesis):
+    assert thesis.rerun("src/fingerpad/workflow/jobs/calibrate.py") == {"calibrate"}
+    assert not thesis.rerun("src/fingerpad/workflow/products.py") and not thesis.rerun("src/fingerpad/config.py")
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    """A study of its own in a folder of its own: two families and a configuration of name and scenes."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scenes").mkdir()
+    family = (
+        "motion: [{press_to_force: 5 gf}]\nover: {surface: {flat: {stimulus: {shape: flat}}, line: {stimulus: {shape: line}}}}\n"
+    )
+    (tmp_path / "scenes" / "press.yaml").write_text(family)
+    (tmp_path / "scenes" / "soft.yaml").write_text("extends: press.yaml\nspecimen: {layers: calibrated_mean}\n")
+    return {"name": "mine", "scenes": ["press_flat", "press_line", "soft_flat", "ramp40_flat"], "scenes_folder": "scenes"}
+
+
+def written(document: dict) -> dict[str, list[str]]:
+    jobs = Plan(document).jobs
+    return {name: [*job.values["written"], *job.inputs["files"]] for name, job in jobs.items() if job.run == "simulate"}
+
+
+def test_an_edited_scene_reruns_its_family_and_what_extends_it_only_if_that_changes_it(own):
+    before, path = written(own), Path("scenes/press.yaml")
+    assert set(before) == {"simulate_press", "simulate_soft", "simulate_ramp40"}
+
+    def changed(text: str) -> set[str]:
+        path.write_text(text)
+        return {name for name, now in written(own).items() if now != before[name]}
+
+    text = path.read_text()
+    assert changed(text + "# a remark\n") == set()
+    assert changed(text.replace("shape: line", "shape: bar, width: 1 mm")) == {"simulate_press"}
+    assert changed(text.replace("shape: flat", "shape: bar, width: 1 mm")) == {"simulate_press", "simulate_soft"}
+
+
+def test_a_study_of_ones_own_needs_name_and_scenes_and_writes_under_its_name(own):
+    plan = Plan(own)
+    outputs = {path for name in plan.default() for path in made(plan.jobs[name])}
+    assert all(Path(path).is_relative_to("results/mine") for path in outputs)
+    assert "results/mine/tables/summary.csv" in outputs
+    assert plan.scenes(plan.default()) == set(own["scenes"])
+    assert any(path.endswith("config/specimens/calibrated_mean.yaml") for path in plan.jobs["simulate_soft"].inputs["files"])
+
+
+def test_subjects_of_ones_own_are_calibrated_to_in_ones_own_results(own):
+    Path("forces").mkdir()
+    rows = (ROOT / "config/reference/force_depth/dandekar_2003.csv").read_text()
+    Path("forces/anna.csv").write_text(rows)
+    plan = Plan(own | {"subjects": "forces"})
+    assert plan.jobs["calibrate"].inputs["forces"] == ["forces/anna.csv"]
+    outputs = {path for name in plan.default() for path in made(plan.jobs[name])}
+    assert {"results/mine/specimens", "results/mine/tables/calibration.csv"} <= outputs
+    assert all(Path(path).is_relative_to("results/mine") for path in outputs)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"scenes": ["press_flat", "pres"]},
+            "config.yaml: scenes[1]: 'pres' is not the name of a scene; allowed: names of scenes in",
+        ),
+        ({"scenes": ["press_round"]}, "press_round.yaml: is not a scene of press.yaml; allowed: one of press_flat, press_line"),
+        ({"figure_numbers": ["9-99"]}, "config.yaml: figure_numbers[0]: '9-99' is not drawn, the nearest is"),
+        ({"table_names": ["sumary"]}, "config.yaml: table_names[0]: 'sumary' is not a table; allowed: "),
+        ({"subjects": "nowhere"}, "config.yaml: subjects: 'nowhere' holds no CSV file; allowed: a folder of at least one"),
+        ({"calibration_scenes": ["ramp40_flat"]}, "config.yaml: calibration_scenes: ('ramp40_flat',) lacks calibration_plate"),
+    ],
+)
+def test_what_is_not_there_is_said_in_one_line(own, change, message):
+    with pytest.raises(SceneError) as caught:
+        Plan(own | change)
+    assert message in str(caught.value) and "\n" not in str(caught.value)
