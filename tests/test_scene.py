@@ -554,3 +554,14 @@ def test_a_scene_is_the_same_in_any_units(folder, depth_um, force_mgf, rate_mgf,
     assert ours.stimulus.curvature == pytest.approx(theirs.stimulus.curvature, rel=1e-14)
     for name in ("press_to_force", "rate"):
         assert getattr(ours.motion[0], name) == pytest.approx(getattr(theirs.motion[0], name), rel=1e-14)
+
+
+def test_a_profile_made_in_python_needs_no_file():
+    """Points in metres are a profile; without points and without a file it says so, and records keep it."""
+    scene = load_scene({"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}, name="made")
+    made = scene.varied({"stimulus": Sampled(x=(-1e-3, 0.0, 1e-3), y=(1e-4, 0.0, 1e-4))})
+    assert made.stimulus.csv is None and recorded_scene(made.canonical()) == made
+    with pytest.raises(SceneError, match="stimulus.csv: is missing"):
+        load_scene({"stimulus": {"shape": "sampled"}, "motion": [{"press_to_force": "20 gf"}]})
+    with pytest.raises(SceneError, match=r"scene: motion\[0\].press_to_force: '20 g' has the wrong dimension"):
+        load_scene({"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 g"}]})

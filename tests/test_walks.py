@@ -109,13 +109,14 @@ def test_an_engineer_varies_a_bar_thirty_times():
         {"stimulus": {"shape": "bar", "width": "1 mm", "fillet": "0.2 mm"}, "motion": [{"press_to_force": "10 gf"}],
          "accuracy": {"skin_edge": "0.7 mm", "steps": 2}}
     )  # fmt: skip
-    widths, moduli = np.linspace(1.0, 3.5, 6), (75, 150, 300, 600, 1200)
+    widths, moduli = np.linspace(0.8, 2.3, 6), (75, 120, 200, 350, 600)
     depth = np.empty((len(widths), len(moduli)))
     for i, width in enumerate(widths):
         for j, modulus in enumerate(moduli):
             changes = {"stimulus.width": f"{width} mm", "specimen.layers.epidermis.youngs_modulus": f"{modulus} kPa"}
             depth[i, j] = fingerpad.simulate(base.varied(changes)).indentation_depth[-1]
-    assert (np.diff(depth, axis=0) < 0).all() and (np.diff(depth, axis=1) < 0).all()
+    assert (np.diff(depth, axis=0) < 1e-6).all() and (depth[0] > depth[-1] + 5e-6).all()
+    assert (np.diff(depth, axis=1) < -20e-6).all()
 
 
 def test_an_engineer_measures_a_profile(capsys):

@@ -478,9 +478,10 @@ def _check_over_pad(scene: Scene, profile: Profile, external: PadMesh | None) ->
     else:
         half = (scene.specimen.outline or scene.specimen.stack).half_width
     if first > half / 2 or last < -half / 2:
+        name = getattr(scene.stimulus.csv, "name", "x, y")
         there = f"from x = {first * 1e3:.4g} mm to {last * 1e3:.4g} mm"
         raise PlanError(
-            f"{scene.name}: stimulus.csv: '{scene.stimulus.csv.name}' has points {there}, none of them over the finger; "
+            f"{scene.name}: stimulus.csv: '{name}' has points {there}, none of them over the finger; "
             "allowed: points around x = 0, which comes down on its apex"
         )
 

@@ -129,7 +129,7 @@ class Sampled(Strict):
     internal: ClassVar = frozenset({"x", "y"})
 
     shape: Literal["sampled"] = "sampled"
-    csv: Path
+    csv: Path | None = None
     """File with the columns `x (mm)` and `y (mm)`, or another unit of length in them; x strictly increasing."""
     smooth: quantity("length", words=("auto", "none")) = "auto"
     """Structure finer than nodes can feel: `auto` filters it out where there is any, `none` keeps it, or a cut-off wavelength."""
@@ -141,7 +141,9 @@ class Sampled(Strict):
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
         """Reads the points from the file."""
-        if "x" not in data and "csv" in data:
+        if "x" not in data and data.get("csv") is None:
+            raise Problem("is missing", "the path of a CSV file, or in Python x and y", ("csv",), HIDE)
+        if "x" not in data:
             if not isinstance(data["csv"], (str, Path)):
                 raise Problem("is not a path", "the path of a CSV file", ("csv",))
             data["csv"] = source_of(context).resolve(data["csv"])
@@ -592,7 +594,7 @@ class Scene(Strict):
             data["specimen"]["mesh"] = {"name": mesh.name, "sha256": _sha256(mesh.read_bytes())}
         if isinstance(stimulus, Sampled):
             points = json.dumps([stimulus.x, stimulus.y]).encode()
-            data["stimulus"] |= {"csv": stimulus.csv.name, "sha256": _sha256(points)}
+            data["stimulus"] |= {"csv": stimulus.csv and stimulus.csv.name, "sha256": _sha256(points)}
         return json.loads(json.dumps(data, sort_keys=True))
 
 
@@ -679,6 +681,7 @@ def scene_json_schema() -> dict[str, Any]:
     schema = Scene.model_json_schema(mode="validation")
     for name in ("Outline", "Layers", "Layer", "Ridges", "InnerRidges", "OuterRidges", "Receptors", "Outputs", "Specimen"):
         schema["$defs"][name].pop("required", None)
+    schema["$defs"]["Sampled"]["required"] = ["csv"]
     schema["$defs"]["Cylinder"]["oneOf"] = [{"required": [key]} for key in ("curvature", "radius", "diameter")]
     del schema["$defs"]["Cylinder"]["required"]
     one = {"type": "object", "minProperties": 1}
