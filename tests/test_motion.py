@@ -1,11 +1,17 @@
 """Motion programmes become steps that end where and when they should."""
 
+from typing import ClassVar
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fingerpad.documents import Problem
+from fingerpad.fields import number
+from fingerpad.scenes import scene
 from fingerpad.scenes.scene import Hold, PressToDepth, PressToForce, Slide, StepAndRepeat
+from fingerpad.stimuli import motion
 from fingerpad.stimuli.motion import STEADY, geometric, programme
 
 pytestmark = pytest.mark.unit
@@ -121,3 +127,31 @@ def test_step_and_repeat_presses_afresh_at_every_place():
     assert steps[-1].distance == fresh[-1].distance and steps[-1].time == pytest.approx(2.3)
     deep = list(programme((PressToDepth(press_to_depth=1e-3), legs[2]), steps=2, contact_length=1.0))
     assert {step.depth for step in deep if step.fresh} == {1e-3}
+
+
+def test_a_leg_is_one_class(monkeypatch):
+    """A leg that only this test knows: its key registers it, its path makes the steps, checks and outlook ask its attributes."""
+    monkeypatch.setattr(motion, "LEGS", dict(motion.LEGS))
+
+    class Tap(motion.Leg):
+        """Touch once more, by a share of the depth, and come back."""
+
+        needs_contact = True
+        tap: number("a share", 0.0, 1.0)
+        speed: ClassVar[None] = None
+
+        def path(self, at, last, reached, how):
+            goals = [motion.Goal(None, reached.depth * (1 + share), at.distance) for share in (self.tap, 0.0)]
+            return np.full(2, STEADY), goals, None
+
+        def ahead(self, outlook):
+            return outlook
+
+    legs = (PressToDepth(press_to_depth=1e-3), Tap(tap=0.25))
+    assert motion.LEGS["tap"] is Tap and "tap" not in scene.LEGS
+    motion.check_programme(legs)
+    with pytest.raises(Problem, match="before anything is pressed"):
+        motion.check_programme(legs[1:])
+    steps = list(programme(legs, steps=4, contact_length=1.0, present=lambda: (1.0, 1e-3)))
+    assert [step.depth for step in steps if step.leg == 1] == pytest.approx([1.25e-3, 1e-3])
+    assert motion.end_time(legs) == 0.0

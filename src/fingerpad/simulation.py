@@ -80,6 +80,9 @@ def simulate(
             except NonConvergence:
                 why_not = f"the refined run on {following.nodes} nodes did not converge"
                 break
+            except KeyboardInterrupt as stop:
+                stop.dataset = history  # the run before is whole
+                raise
             runs.append(_told(again))
             chosen, history = following, again
     missed = chosen.missed(history.attrs["estimated_error"])
@@ -168,7 +171,7 @@ class Simulation:
         held = np.intersect1d(self.skin.nodes, np.concatenate([np.unique(mesh.curves[name]) for name in mesh.fixed]))
         if not len(held):
             return
-        depth = max((getattr(leg, "press_to_depth", 0.0) for leg in self.scene.motion), default=0.0)
+        depth = max(leg.depth or 0.0 for leg in self.scene.motion)
         room = self.profile.evaluate(mesh.points[held] - [0.0, self.stepper.height - depth])[0]
         if room.min() <= 1e-9 * np.ptp(mesh.points[:, 0]):
             x = 1e3 * mesh.points[held[np.argmin(room)], 0]

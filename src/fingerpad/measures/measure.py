@@ -108,7 +108,7 @@ def named(scenes: Iterable[str]) -> Callable[[Scene], bool]:
 
 def strokes(scene: Scene) -> bool:
     """Something slides or is stepped over the pad."""
-    return any(hasattr(leg, "slide") or hasattr(leg, "step") for leg in scene.motion)
+    return any(leg.along for leg in scene.motion)
 
 
 def cylinders(scene: Scene) -> bool:
@@ -117,7 +117,7 @@ def cylinders(scene: Scene) -> bool:
 
 def slides(scene: Scene) -> bool:
     """Something slides over the pad at a speed."""
-    return any(getattr(leg, "slide", None) and leg.speed for leg in scene.motion)
+    return any(leg.strokes and leg.speed for leg in scene.motion)
 
 
 def waves(scene: Scene) -> bool:

@@ -20,7 +20,7 @@ from fingerpad.laws import departure
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.planning.surface import Surface, surface_of
-from fingerpad.scenes.scene import Discretisation, Hold, Lift, PressToDepth, PressToForce, Scene, Slide, StepAndRepeat
+from fingerpad.scenes.scene import Discretisation, Scene
 from fingerpad.specimen import counted
 from fingerpad.specimen.external import read_specimen_mesh
 from fingerpad.specimen.materials import Prony
@@ -458,7 +458,7 @@ def read_plan(path: str | Path) -> Plan:
 
 
 def _moves(scene: Scene) -> bool:
-    return any(isinstance(leg, (Slide, StepAndRepeat)) for leg in scene.motion)
+    return any(leg.along for leg in scene.motion)
 
 
 # -- the choices --------------------------------------------------------------------------------------------------------
@@ -466,7 +466,7 @@ def _moves(scene: Scene) -> bool:
 
 def _way(scene: Scene) -> tuple[float, float]:
     """Least and largest x (m) of the stimulus that comes over the middle of the pad."""
-    way = np.cumsum([0.0, *(getattr(leg, "slide", None) or getattr(leg, "step", 0.0) for leg in scene.motion)])
+    way = np.cumsum([0.0, *(leg.along for leg in scene.motion)])
     return float(way.min()), float(way.max())
 
 
@@ -503,13 +503,13 @@ def _worst_contact(scene: Scene, pad: PadEstimate, profile: Profile, curvature: 
     """The deepest contact of the motion with a surface of ``curvature`` 1/m."""
     specimen = scene.specimen
     # at a kept depth the surface comes as much deeper as it reaches below its start
-    keeps_depth = any(isinstance(leg, Slide) and leg.keep == "depth" for leg in scene.motion)
+    keeps_depth = any(leg.kept == "depth" for leg in scene.motion)
     worst = ContactEstimate(0.0, 0.0, 0.0)
     for leg in scene.motion:
-        if isinstance(leg, PressToForce):
-            now = pad.pressed(leg.press_to_force / specimen.contact_length, curvature)
-        elif isinstance(leg, PressToDepth):
-            now = pad.pressed_to(leg.press_to_depth, curvature)
+        if leg.force is not None:
+            now = pad.pressed(leg.force / specimen.contact_length, curvature)
+        elif leg.depth is not None:
+            now = pad.pressed_to(leg.depth, curvature)
         else:
             continue
         if keeps_depth:
@@ -527,9 +527,8 @@ def _inertia_ratio(scene: Scene, contact: ContactEstimate) -> tuple[float, int]:
     softest = min(layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in layers)
     speed = [0.0] * len(scene.motion)
     for i, (leg, duration) in enumerate(zip(scene.motion, leg_durations(scene), strict=True)):
-        if (duration or isinstance(leg, Lift)) and not isinstance(leg, Hold):
-            depth = leg.press_to_depth if isinstance(leg, PressToDepth) else contact.depth
-            speed[i] = getattr(leg, "speed", None) or (depth / duration if duration else 0.0)
+        if leg.loads and (duration or leg.speed):
+            speed[i] = leg.speed or (leg.depth or contact.depth) / duration
     fastest = int(np.argmax(speed))
     return 1000.0 * speed[fastest] ** 2 / softest, fastest
 
@@ -619,7 +618,7 @@ def _narrowest(scene: Scene, pad: PadEstimate, profile: Profile, contact: Contac
 
 def _force(scene: Scene, pad: PadEstimate, contact: ContactEstimate) -> float:
     """Largest force (N/m) of the motion: that of its legs, or what presses to the estimated depth."""
-    forces = [leg.press_to_force for leg in scene.motion if isinstance(leg, PressToForce)]
+    forces = [leg.force for leg in scene.motion if leg.force is not None]
     return max(forces) / scene.specimen.contact_length if forces else pad.force_of(contact.depth)
 
 
@@ -672,9 +671,8 @@ def _check_width(scene: Scene, pad: PadEstimate, contact: ContactEstimate, rules
     least = rules.least_half_width * 1e9
     said = f"the contact would be {contact.half_width * 1e9:.2g} nm to either side; allowed: {least:g} nm or more"
     if pad.pressed(force, 0.0).half_width < rules.least_half_width:
-        i, leg = next((i, leg) for i, leg in enumerate(scene.motion) if isinstance(leg, (PressToForce, PressToDepth)))
-        key = "press_to_force" if isinstance(leg, PressToForce) else "press_to_depth"
-        raise PlanError(f"motion[{i}].{key}: so little that {said}")
+        i, leg = next((i, leg) for i, leg in enumerate(scene.motion) if leg.presses)
+        raise PlanError(f"motion[{i}].{leg.key}: so little that {said}")
     key = ".curvature" if scene.stimulus.shape == "cylinder" else ""
     raise PlanError(f"stimulus{key}: so sharp that {said}")
 
@@ -782,7 +780,7 @@ def _read(count: float, counts: tuple[int, ...], errors: tuple[float, ...], orde
 def _friction(scene: Scene, tolerance: float, rules: Rules) -> Effect:
     if scene.friction == 0:
         return Effect(False, "the coefficient is 0")
-    if any(isinstance(leg, Slide) for leg in scene.motion):
+    if any(leg.strokes for leg in scene.motion):
         return Effect(True, f"the skin is stroked with a coefficient of {scene.friction:g}")
     worth = min(rules.pressing_friction * scene.friction, rules.most_pressing_friction)
     number = f"in a press a coefficient of {scene.friction:g} changes up to {worth:.1%}, {tolerance:.1%} is allowed"
@@ -853,7 +851,7 @@ def _viscoelasticity(
     if not prony:
         return Effect(False, "the specimen has no Prony series"), "long_term"
     durations = [
-        contact.depth / leg.speed if isinstance(leg, Lift) and leg.speed else duration
+        contact.depth / leg.speed if leg.releases and leg.speed else duration
         for leg, duration in zip(scene.motion, leg_durations(scene), strict=True)
     ]
     if all(d is None for d in durations):
@@ -865,9 +863,9 @@ def _viscoelasticity(
         return Effect(False, why), "instantaneous"
     loading = []
     for duration, leg in zip(durations, scene.motion, strict=True):
-        if duration is None or isinstance(leg, Hold):
+        if duration is None or not leg.loads:
             continue
-        if isinstance(leg, Slide):
+        if leg.strokes:
             if profile.steepness == 0 and scene.friction == 0:
                 continue  # a smooth plate sliding changes nothing
             # the narrowest contact is a new one, and the skin has stretched anew, after half its width
@@ -917,7 +915,7 @@ def _element(by_hand: Discretisation | None, external: PadMesh | None) -> str:
 
 def _wander(scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, rules: Rules) -> float:
     """How far (m) a stroke takes the contact from the middle of the pad: to where the pad is as steep as the surface."""
-    way = np.cumsum([getattr(leg, "slide", None) or getattr(leg, "step", 0.0) for leg in scene.motion])
+    way = np.cumsum([leg.along for leg in scene.motion])
     return min(profile.steepness * pad.apex_radius, np.abs(way).max()) + rules.skin_stretch * friction
 
 

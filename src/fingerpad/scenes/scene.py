@@ -517,7 +517,7 @@ class Scene(Strict):
         thickness, half_width = self.specimen.soft_thickness, self.specimen.half_width
         below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the {self._ground}"
         for i, leg in enumerate(self.motion):
-            if isinstance(leg, PressToDepth) and leg.press_to_depth >= thickness:
+            if leg.depth is not None and leg.depth >= thickness:
                 raise Problem(f"presses to the {self._ground}", below, ("motion", i, "press_to_depth"))
         for i, depth in enumerate(self.outputs.receptors.depths):
             if depth >= thickness:

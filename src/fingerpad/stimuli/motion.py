@@ -82,7 +82,8 @@ class Leg(Strict):
         key: its name in a scene. presses: does it press to a target, so that a programme may begin with it? needs_contact: is it
         senseless when nothing is pressed? releases: is nothing pressed after it? loads: does it deform the skin? strokes: does it
         rub the skin? fresh: are its steps?
-        along: m, its way along the surface. speed: m/s, None for a steady leg, or one that has none.
+        force, depth: N, m, which it presses to. along: m, its way along the surface. kept: "force" or "depth" on that way. speed:
+        m/s, None for a steady leg, or one that has none; every leg says it.
     """
 
     key: ClassVar[str]
@@ -92,7 +93,10 @@ class Leg(Strict):
     loads: ClassVar[bool] = True
     strokes: ClassVar[bool] = False
     fresh: ClassVar[bool] = False
+    force: ClassVar[float | None] = None
+    depth: ClassVar[float | None] = None
     along: ClassVar[float] = 0.0
+    kept: ClassVar[str | None] = None
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -155,6 +159,11 @@ class PressToForce(Leg):
 
     speed: ClassVar[None] = None
 
+    @property
+    def force(self) -> float:
+        """Normal force at the end, N."""
+        return self.press_to_force
+
     def path(self, at, last, reached, how):
         rate = self.rate and self.rate / how.contact_length
         values, sizes, last = _ramp(reached.force, self.press_to_force / how.contact_length, rate, how.steps)
@@ -177,6 +186,11 @@ class PressToDepth(Leg):
     """Depth of the stimulus below first touch at the end of the leg."""
     speed: quantity("speed", note=_PUSH) | None = None
     """Speed of the stimulus; left out for the steady state."""
+
+    @property
+    def depth(self) -> float:
+        """Depth at the end, m."""
+        return self.press_to_depth
 
     def path(self, at, last, reached, how):
         values, sizes, last = _ramp(reached.depth, self.press_to_depth, self.speed, how.steps)
@@ -250,6 +264,11 @@ class Slide(Leg):
     def along(self) -> float:
         """Way along the surface, m."""
         return self.slide
+
+    @property
+    def kept(self) -> str:
+        """What is kept on the way."""
+        return self.keep
 
     def path(self, at, last, reached, how):
         count = math.ceil(abs(self.slide) / how.slide_step * (1 - 1e-9)) if how.slide_step else how.steps

@@ -314,7 +314,7 @@ def trials(scene: Scene, chosen: Plan) -> Iterator[tuple[str, xr.Dataset, list[t
     if scene.specimen.ridges:
         yield "ridges", simulate(scene, ridged), [(flattened(scene), ridged)]
     coarse = chosen.mesh_size.skin_edge > chosen.contact.half_width / RULES.edges_per_half_width
-    if coarse and chosen.nodes < MOST_NODES and not any(hasattr(leg, "slide") for leg in scene.motion):
+    if coarse and chosen.nodes < MOST_NODES and not any(leg.strokes for leg in scene.motion):
         on, off = (_focused(scene, on) for on in (True, False))
         yield "local refinement", simulate(*on), [off]
 
