@@ -9,7 +9,7 @@ import synthetic
 from fingerpad import load_scene, plan, simulate
 from fingerpad.claims.comparison import thesis_comparison
 from fingerpad.claims.rows import numbers
-from fingerpad.figures.chapter3_verification import section, surface_deflection
+from fingerpad.figures.geometry import section, surface_deflection
 from fingerpad.figures.registry import FIGURES
 from fingerpad.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
 from fingerpad.measures.table import Measures

@@ -8,10 +8,10 @@ import pytest
 
 import synthetic
 from fingerpad.claims.comparison import TRENDS
-from fingerpad.figures.chapter4_responses import AVERAGED, GIVEN_RATE, IMPULSE, PRINTED
+from fingerpad.figures.chapter4_receptors import AVERAGED, PRINTED
 from fingerpad.figures.registry import FIGURES
 from fingerpad.measures import features
-from fingerpad.measures.quantities import NODE, SED, TIME, P
+from fingerpad.measures.quantities import GIVEN_RATE, IMPULSE, NODE, SED, TIME, P
 from fingerpad.measures.responses import (
     IMPULSE_RATE,
     P_LAW,

@@ -9,7 +9,7 @@ import pytest
 import synthetic
 from fingerpad.claims.comparison import TRENDS
 from fingerpad.claims.rows import numbers
-from fingerpad.figures.chapter5_responses import PREDICTED
+from fingerpad.figures.chapter5_receptors import PREDICTED
 from fingerpad.figures.registry import FIGURES
 from fingerpad.measures import strokes as st
 from fingerpad.measures.features import SURFACES, is_simulated, scene_name

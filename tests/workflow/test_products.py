@@ -167,7 +167,7 @@ def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
 
 
 def test_an_edited_figure_grammar_redraws_figures_only(thesis):
-    names = thesis.rerun("src/fingerpad/figures/spec.py")
+    names = thesis.rerun("src/fingerpad/figures/grammar.py")
     assert {thesis.jobs[name].run for name in names} == {"figures"}
     assert names == {name for name in thesis.default() if thesis.jobs[name].run == "figures"}
 

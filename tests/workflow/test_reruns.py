@@ -177,7 +177,7 @@ def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clon
     for path, kinds in (
         ("src/fingerpad/figures/chapter4.py", {"figures_4"}),
         ("src/fingerpad/claims/comparison.py", {"tables"}),
-        ("src/fingerpad/figures/spec.py", {"figures_3", "figures_4", "figures_5"}),
+        ("src/fingerpad/figures/grammar.py", {"figures_3", "figures_4", "figures_5"}),
     ):
         with clone.edited(path):
             jobs = clone.planned()

@@ -1,266 +1,401 @@
-"""Chapter 3: the model's section and its mesh. The MRI images are not available and are not imitated."""
+"""Chapter 3: the model's section and its mesh, its surface profiles, forces and layer boundaries, beside what was measured.
+
+The thesis compares with recordings of single subjects and with MRI sections. Those are not available and nothing is drawn in
+their place: Figs 3-6 and 3-7 carry published measurements of other or partly the same subjects, the others the model alone.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
+import xarray as xr
 
-from fingerpad.figures.spec import FigureSpec, assemble, axis_rows
-from fingerpad.measures.features import ERROR, Histories, Meshes, scene_of
+from fingerpad.figures import axes as axs
+from fingerpad.figures.geometry import (
+    LAYERS,
+    NOTE,
+    boundaries,
+    draw_indenter,
+    draw_mesh,
+    inward,
+    layer_patches,
+    mesh_rows,
+    quality_of,
+    section,
+    section_error,
+    section_rows,
+    stratum_corneum,
+    surface_deflection,
+)
+from fingerpad.figures.grammar import Data, Figure, Own, below
+from fingerpad.measures.features import ERROR, error_percent, is_simulated, ramp_end
+from fingerpad.measures.quantities import DEFLECTION, DEPTH, NEWTON, TIME, X, Y
+from fingerpad.measures.runs import NINE, Runs
+from fingerpad.measures.steady import (
+    BAR,
+    DEPTH_SCENES,
+    PLATE,
+    PROFILES,
+    SPEED_SCENES,
+    force_N,
+    leg_end,
+    pressed_depths,
+    steady_force,
+)
 from fingerpad.publishing import style
-from fingerpad.specimen.mesh import PadMesh, corner_count, element_edges
 
-X, Y = "x (mm)", "y (mm)"
-LAYERS = ("stratum corneum", "epidermis", "dermis", "fat", "bone")
-SCENE = "ramp40_flat"
-NOTE = "The model's own geometry and mesh, not measured; the MRI sections of Cysyk (1999) are not available."
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Picture
+
+FLAT = NINE.only(("flat",))
+STEADY_PLATE = Runs("series", {"model": PLATE})
+SECTIONS = {
+    "no load": (BAR, 0.0),
+    "1/8 inch cylinder, 1 mm": ("steady_cylinder_1_8_inch", 1e-3),
+    "1/4 inch cylinder, 1 mm": ("steady_cylinder_1_4_inch", 1e-3),
+    "1 inch cylinder, 1 mm": ("steady_cylinder_1_inch", 1e-3),
+    "1/16 inch bar, 1 mm": (BAR, 1e-3),
+    "1/16 inch bar, 2 mm": (BAR, 2e-3),
+}
+"""Panels of Fig 3-11: scene and depth (m)."""
+SHOWN = 7.5  # mm, half of the surface shown: beyond it the flanks are too steep for a deflection at a distance
+STATE_LINES = {"undeformed": {"ls": (0, (3, 2)), "lw": 0.8, "color": style.GREY}, "deformed": {"ls": "-", "lw": 1.3}}
+MODEL = "Lines: simulated in plane strain, not measured."
+NOT_AVAILABLE = "The recordings of subjects that Cysyk (1999) shows here are not available: the model stands alone."
+BAND = "Grey band: axis range of Cysyk (1999) where more is shown."
 
 
-def frame_3_4(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
+def note_of(words: Callable[[str], list[str]]) -> Callable[[pd.DataFrame], list[str]]:
+    """A note in words about the error of a frame."""
+
+    def note(frame: pd.DataFrame) -> list[str]:
+        worst = frame[ERROR].max()
+        error = f"Discretisation error ≤ {worst:.2g} %" if np.isfinite(worst) else "Discretisation error not computed"
+        return style.wrapped(words(error), style.NOTE_WIDTH - 12)
+
+    return note
+
+
+# --- 3-4, 3-5: the section and its mesh ------------------------------------------------------------------
+
+
+def section_lines(data: Data) -> pd.DataFrame:
     """Closed boundaries of the section, outside to inside, named by the layer they enclose."""
-    loops = boundaries(meshes[SCENE])
-    loops["stratum corneum"] = loops["skin"]
-    loops["epidermis"] = inward(loops["skin"], stratum_corneum(histories[SCENE]))
-    parts = [
-        pd.DataFrame({"layer": layer, X: loops[layer][:, 0] * 1e3, Y: loops[layer][:, 1] * 1e3, ERROR: np.nan})
-        for layer in LAYERS
-    ]
-    return assemble(pd.concat(parts, ignore_index=True))
+    lines = boundaries(data.meshes[FLAT["flat"]])
+    lines["stratum corneum"] = lines["skin"]
+    lines["epidermis"] = inward(lines["skin"], stratum_corneum(data.histories[FLAT["flat"]]))
+    parts = [pd.DataFrame({"layer": k, X: lines[k][:, 0] * 1e3, Y: lines[k][:, 1] * 1e3, ERROR: np.nan}) for k in LAYERS]
+    return pd.concat(parts, ignore_index=True)
 
 
-@style.styled
-def fig_3_4(frame: pd.DataFrame) -> Figure:
+def three_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     """Boundaries of the section: layers, symmetry, stratum corneum."""
-    fig = style.new_figure(frame, "3-4", "Boundaries of the finite element model", 2.9, note=[NOTE])
     axes = fig.subplots(1, 3, sharey=True)
     titles = ("(a) layers and bone", "(b) symmetric, smooth, offset", "(c) with stratum corneum")
-    loops = {layer: rows[[X, Y]].to_numpy() for layer, rows in frame.groupby("layer")}
-    skin, apex = loops["stratum corneum"], {layer: loop[:, 1].max() for layer, loop in loops.items()}
+    lines = {layer: rows[[X, Y]].to_numpy() for layer, rows in frame.groupby("layer")}
+    skin, apex = lines["stratum corneum"], {layer: line[:, 1].max() for layer, line in lines.items()}
     for ax, title in zip(axes, titles, strict=True):
-        ax.set(
-            title=title,
-            aspect="equal",
-            xlim=(-10, 10),
-            ylim=(-8.2, 9.6),
-            xlabel="x (mm)",
-            yticks=[-6, -3, 0, 3, 6],
-        )
-    axes[0].set_ylabel("y (mm)")
+        ax.set(title=title, aspect="equal", xlim=(-10, 10), ylim=(-8.2, 9.6), xlabel=X.label, yticks=[-6, -3, 0, 3, 6])
+    axes[0].set_ylabel(Y.label)
+    small = {"ha": "center", "fontsize": 7}
 
-    _fill(axes[0], {k: v for k, v in loops.items() if k != "epidermis"}, merged=True)
-    bands = {"epidermis": ("stratum corneum", -7.0), "dermis": ("dermis", -1.0)}
-    inner = {"epidermis": "dermis", "dermis": "fat"}
-    for name, (outer, x) in bands.items():
-        y = (_upper(loops[outer], x) + _upper(loops[inner[name]], x)) / 2
-        _point_out(axes[0], name, (x, y), (x, 8.3))
-    axes[0].text(0, (apex["fat"] + apex["bone"]) / 2, "fat", ha="center", va="center", fontsize=7)
-    axes[0].text(0, (loops["bone"][:, 1].min() + apex["bone"]) / 2, "bone", ha="center", va="center", fontsize=7)
-    size = f"{np.ptp(skin[:, 0]):.1f} × {np.ptp(skin[:, 1]):.1f} mm"
-    axes[0].text(0, -7.3, size, ha="center", va="center", fontsize=7)
+    fill(axes[0], {k: v for k, v in lines.items() if k != "epidermis"}, merged=True)
+    bands = {"epidermis": ("stratum corneum", "dermis", -7.0), "dermis": ("dermis", "fat", -1.0)}
+    for name, (outer, inner, x) in bands.items():
+        point_out(axes[0], name, (x, (upper(lines[outer], x) + upper(lines[inner], x)) / 2), (x, 8.3))
+    axes[0].text(0, (apex["fat"] + apex["bone"]) / 2, "fat", va="center", **small)
+    axes[0].text(0, (lines["bone"][:, 1].min() + apex["bone"]) / 2, "bone", va="center", **small)
+    axes[0].text(0, -7.3, f"{np.ptp(skin[:, 0]):.1f} × {np.ptp(skin[:, 1]):.1f} mm", va="center", **small)
 
     for layer in ("stratum corneum", "dermis", "fat", "bone"):
-        x, y = loops[layer].T
+        x, y = lines[layer].T
         axes[1].plot(x, y, color=style.INK, lw=1.0)
         axes[1].plot(-x, y, color=style.COLOURS["630"], lw=1.0, ls=(0, (2, 3)))
     axes[1].axvline(0, ymax=0.83, color=style.GREY, lw=0.6, ls=(0, (6, 2, 1, 2)))
     thick = apex["stratum corneum"] - apex["dermis"], apex["dermis"] - apex["fat"]
     text = f"epidermis {thick[0]:.2f} mm, dermis {thick[1]:.2f} mm\ndashed: mirror image"
-    axes[1].text(0, 9.3, text, ha="center", va="top", fontsize=7)
+    axes[1].text(0, 9.3, text, va="top", **small)
 
-    _fill(axes[2], loops, merged=False)
-    corneum = apex["stratum corneum"] - apex["epidermis"]
-    _point_out(axes[2], f"stratum corneum, {corneum:.2f} mm", (0, 5.85), (0, 8.3))
-    return fig
+    fill(axes[2], lines, merged=False)
+    point_out(axes[2], f"stratum corneum, {apex['stratum corneum'] - apex['epidermis']:.2f} mm", (0, 5.85), (0, 8.3))
 
 
-def _upper(loop: np.ndarray, x: float) -> float:
+def upper(loop: np.ndarray, x: float) -> float:
     """Height at which a closed line passes `x` on its upper side."""
     near = loop[np.argsort(abs(loop[:, 0] - x))]
     return float(near[near[:, 1] > loop[:, 1].mean()][0, 1])
 
 
-def _point_out(ax: Axes, text: str, at: tuple[float, float], label: tuple[float, float]) -> None:
+def point_out(ax: Axes, text: str, at: tuple[float, float], label: tuple[float, float]) -> None:
     """Name a place with a hairline."""
     line = {"arrowstyle": "-", "lw": 0.6, "color": style.INK, "shrinkA": 0, "shrinkB": 0}
     ax.annotate(text, at, label, ha="center", va="center", fontsize=7, arrowprops=line)
 
 
-def _fill(ax: Axes, loops: dict[str, np.ndarray], merged: bool) -> None:
+def fill(ax: Axes, lines: dict[str, np.ndarray], merged: bool) -> None:
     """Paint the layers outside to inside; `merged` gives the outermost band the epidermis's colour."""
     for layer in LAYERS:
-        if layer in loops:
+        if layer in lines:
             colour = style.LAYER_COLOURS["epidermis" if merged and layer == "stratum corneum" else layer]
-            ax.fill(*loops[layer].T, facecolor=colour, edgecolor=style.INK, lw=0.6)
+            ax.fill(*lines[layer].T, facecolor=colour, edgecolor=style.INK, lw=0.6)
 
 
-def frame_3_5(histories: Histories, meshes: Meshes, coarse: Histories, reference: pd.DataFrame) -> pd.DataFrame:
-    """Outline of every element (one row a point) with its layer, the bone's rim, and the mesh's quality."""
-    frame = mesh_rows(meshes[SCENE], stratum_corneum(histories[SCENE]))
-    return assemble(frame, axis_rows(reference, X, "T039a"), axis_rows(reference, Y, "T040a"))
-
-
-def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
-    """Elements, rim of the bone and quality of a mesh; elements within `corneum` (m) of the skin are of the stratum corneum."""
-    from scipy.spatial import cKDTree  # here, for it is slow to import
-
-    corners = mesh.points[mesh.cells[:, : corner_count(mesh.element)]]
-    layer = np.array(mesh.regions)[mesh.region]
-    loops = boundaries(mesh)
-    depth = cKDTree(densify(loops["skin"], 20e-6)).query(corners.mean(axis=1))[0]
-    layer = np.where((layer == "epidermis") & (depth < corneum), "stratum corneum", layer)
-    polygons = [element_outline(mesh, nodes) for nodes in mesh.cells]
-    counts = [len(p) for p in polygons]
-    points = np.concatenate(polygons) * 1e3
-    elements = pd.DataFrame(
-        {
-            "series": "element",
-            "element": np.repeat(np.arange(len(polygons)), counts),
-            "layer": np.repeat(layer, counts),
-            X: points[:, 0].round(4),
-            Y: points[:, 1].round(4),
-        }
-    )
-    bone = pd.DataFrame({"series": "rim", "layer": "bone", X: loops["bone"][:, 0] * 1e3, Y: loops["bone"][:, 1] * 1e3})
-    values = mesh.quality()
-    quality = pd.DataFrame(
-        {
-            "series": "quality",
-            "quantity": ["nodes (1)", "elements (1)", "smallest_edge (um)", "worst_scaled_jacobian (1)"],
-            "value": [
-                values["nodes"],
-                values["elements"],
-                values["smallest_edge_m"] * 1e6,
-                values["worst_scaled_jacobian"],
-            ],
-        }
-    )
-    frame = pd.concat([elements, bone, quality], ignore_index=True)
-    frame[ERROR] = np.nan
-    return frame
-
-
-@style.styled
-def fig_3_5(frame: pd.DataFrame) -> Figure:
+def whole_mesh(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     """The mesh, layers shaded."""
-    fig = style.new_figure(frame, "3-5", "Finite element mesh of the fingerpad", 5.3, note=[NOTE])
     ax = fig.subplots()
     draw_mesh(ax, frame)
-    ax.set(aspect="equal", xlim=(-10, 10), ylim=(-6.6, 6.6), xlabel="x (mm)", ylabel="y (mm)")
+    ax.set(aspect="equal", xlim=(-10, 10), ylim=(-6.6, 6.6), xlabel=X.label, ylabel=Y.label)
     ax.set(xticks=range(-10, 11, 2), yticks=range(-6, 7, 2))
-    handles = [Patch(facecolor=style.LAYER_COLOURS[k], edgecolor="0.25", lw=0.4, label=k) for k in LAYERS]
-    ax.legend(handles=handles, loc="upper left", handlelength=1.2, bbox_to_anchor=(0.0, 1.02))
-    value = frame.dropna(subset="value").set_index("quantity")["value"]
+    ax.legend(handles=layer_patches(), loc="upper left", handlelength=1.2, bbox_to_anchor=(0.0, 1.02))
+    value = quality_of(frame)
     text = (
         f"{value['nodes (1)']:,.0f} nodes\n{value['elements (1)']:,.0f} elements\n"
         f"smallest edge {value['smallest_edge (um)']:.0f} µm\n"
         f"worst scaled Jacobian {value['worst_scaled_jacobian (1)']:.2f}"
     )
     ax.text(9.9, 6.75, text, ha="right", va="top", fontsize=7.5, linespacing=1.4)
-    return fig
 
 
-def draw_mesh(ax: Axes, frame: pd.DataFrame, line: float = 0.22) -> None:
-    """Elements in the colours of their layers, and the bone."""
-    elements = frame[frame["series"] == "element"]
-    start = np.flatnonzero(np.diff(elements["element"].to_numpy(), prepend=-1))
-    polygons = np.split(elements[[X, Y]].to_numpy(), start[1:])
-    colours = [style.LAYER_COLOURS[layer] for layer in elements["layer"].to_numpy()[start]]
-    rim = frame[frame["series"] == "rim"]
-    ax.fill(rim[X], rim[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
-    ax.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors="0.25", linewidths=line))
+# --- 3-6, 3-7: beside what was measured ------------------------------------------------------------------
 
 
-def element_outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.ndarray:
-    """Points (n, 2) in m round one element; middle nodes only where a side is bent by over `straight`."""
-    corners = corner_count(mesh.element)
-    first = mesh.points[nodes[:corners]]
-    if len(nodes) == corners:
-        return first
-    middle = mesh.points[nodes[corners : 2 * corners]]
-    bent = np.hypot(*(middle - (first + np.roll(first, -1, axis=0)) / 2).T) > straight
-    return np.concatenate([[a, m] if b else [a] for a, m, b in zip(first, middle, bent, strict=True)])
+def measured_source(rows: pd.DataFrame) -> str:
+    """One word for all: where measured rows come from."""
+    return "measured (" + "; ".join(rows["source"].drop_duplicates()) + "; digitised by a third party)"
 
 
-def stratum_corneum(history) -> float:
-    """Thickness (m) of the stratum corneum in a history's scene, which must have a parametric outline."""
-    return scene_of(history)["specimen"]["outline"]["stratum_corneum_thickness"]
+def deflection_at(place: float) -> Callable[[xr.Dataset], float]:
+    """Feature: deflection (m) at a lateral distance (m) at the end of the motion."""
+    return lambda history: float(np.interp(place, *surface_deflection(history, history.sizes["time"] - 1)))
 
 
-def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
-    """Closed boundary lines: ``skin`` (with the nail side), ``dermis``, ``fat``, ``bone``.
-
-    Points (n, 2) in m, or node numbers (n,) if `as_nodes`. A layer's line is its outer boundary, where it meets the layer
-    outside it. Raises ValueError for a half mesh.
-    """
-    if mesh.half:
-        raise ValueError("boundaries are drawn from the whole mesh, not from a half of it")
-    sides = element_edges(mesh.cells, mesh.element)
-    edges = sides[:, :2]
-    owner = np.tile(np.arange(len(mesh.cells)), corner_count(mesh.element))
-    order = np.lexsort(np.sort(edges, axis=1).T)
-    pairs = np.sort(edges, axis=1)[order]
-    same = (pairs[1:] == pairs[:-1]).all(axis=1)
-    first, second = order[:-1][same], order[1:][same]
-    low, high = mesh.region[owner[first]], mesh.region[owner[second]]
-    alone = np.ones(len(edges), bool)
-    alone[first] = alone[second] = False
-    rim = sorted(loops(_halves(sides[alone])), key=lambda loop: np.ptp(mesh.points[loop, 0]))
-    lines = {"skin": rim[-1], "bone": rim[0]}
-    for name in ("dermis", "fat"):
-        index = mesh.regions.index(name)
-        inner = ((low == index - 1) & (high == index)) | ((high == index - 1) & (low == index))
-        lines[name] = max(loops(_halves(sides[first][inner])), key=len)
-    return lines if as_nodes else {name: mesh.points[line] for name, line in lines.items()}
+def deflections(data: Data) -> pd.DataFrame:
+    """Deflection of the skin in the steady state at several depths of three indenters, and measured ones."""
+    parts, points = [], []
+    for panel, history, coarse in data.runs(Runs("panel", PROFILES)):
+        error = error_percent(history, coarse, *(deflection_at(x * 1e-3) for x in (0.5, 1.0, 2.0)))
+        depths = pressed_depths(history)
+        for depth in depths:
+            x, deflection = (1e3 * each for each in surface_deflection(history, leg_end(history, depth)))
+            near = abs(x) <= SHOWN
+            part = {"panel": panel, "series": f"{depth * 1e3:g} mm", X: x[near], DEFLECTION: deflection[near], ERROR: error}
+            parts.append(pd.DataFrame(part))
+        if data.measured is None or "cylinder" not in panel:
+            continue
+        rows = data.measured[np.isclose(data.measured["diameter_mm"], float(panel.split()[1]))]
+        rows = rows[[bool(np.isclose(d, np.array(depths) * 1e3).any()) for d in rows["depth_mm"]]]
+        part = {"source": measured_source(rows), "panel": panel, "series": [f"{d:g} mm" for d in rows["depth_mm"]]}
+        points.append(pd.DataFrame(part | {X: rows["lateral_distance_mm"], DEFLECTION: -rows["deflection_mm"]}))
+    return below(pd.concat(parts, ignore_index=True), *points)
 
 
-def _halves(sides: np.ndarray) -> np.ndarray:
-    """Element sides (start, end[, middle]) as straight edges (n, 2), through the middle node if any."""
-    return sides if sides.shape[1] == 2 else np.vstack((sides[:, [0, 2]], sides[:, [2, 1]]))
+def three_deflections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    axes = fig.subplots(1, 3, sharey=True)
+    ranges = frame[frame["source"].str.startswith("thesis")]
+    for tag, ax, panel in zip("abc", axes, PROFILES, strict=True):
+        rows = frame[frame["panel"] == panel]
+        simulated = rows[is_simulated(rows)]
+        for k, (name, curve) in enumerate(simulated.groupby("series", sort=False)):
+            ax.plot(curve[X], curve[DEFLECTION], color=style.SHADES[k], lw=1.2, label=name)
+            points = rows[~is_simulated(rows) & (rows["series"] == name)]
+            ax.plot(points[X], points[DEFLECTION], style.MARKERS[k], color=style.SHADES[k], ms=4)
+        axs.limit_axis(ax, pd.concat([rows, ranges]), X, "x")
+        axs.limit_axis(ax, pd.concat([frame[is_simulated(frame) | frame["series"].notna()], ranges]), DEFLECTION)
+        ax.set(title=f"({tag}) {panel}", xlabel="distance from the axis (mm)", xticks=[-10, -5, 0, 5, 10])
+        ax.legend(title="depth", loc="lower left", fontsize=7, title_fontsize=7, handlelength=1.2, borderaxespad=0.1)
+    for ax in axes[:-1]:  # the bracket beside the last panel says it for all
+        for artist in [t for t in ax.texts if t.get_text() in ("", "thesis axis range")]:
+            artist.remove()
+    axes[0].set_ylabel(DEFLECTION.label)
 
 
-def loops(edges: np.ndarray) -> list[np.ndarray]:
-    """Join edges (n, 2) of node numbers, of any direction, into lines; closed ones repeat a node."""
-    neighbours: dict[int, list[int]] = {}
-    for a, b in edges.tolist():
-        neighbours.setdefault(a, []).append(b)
-        neighbours.setdefault(b, []).append(a)
-    found = []
-    while neighbours:
-        start = next((n for n, near in neighbours.items() if len(near) == 1), next(iter(neighbours)))
-        line = [start]
-        while near := neighbours.get(line[-1]):
-            step = near.pop()
-            neighbours[step].remove(line[-1])
-            line.append(step)
-        for node in set(line):
-            if not neighbours.get(node, True):
-                del neighbours[node]
-        found.append(np.array(line))
-    return found
+def deflection_words(error: str) -> list[str]:
+    return [
+        f"{MODEL} {error}. The line is a blade with a round tip of 0.1 mm radius.",
+        "Points: measured under cylinders of 3.17 and 9.52 mm diameter (MIT Touch Lab, of the kind of Srinivasan 1989; mean of "
+        "both sides, digitised by a third party). They stand in for the three subjects' profiles under a line load, which are "
+        f"not available. {BAND}",
+    ]
 
 
-def densify(line: np.ndarray, spacing: float) -> np.ndarray:
-    """Points (m, 2) along a polyline (n, 2), at most `spacing` apart."""
-    length = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
-    at = np.linspace(0, length[-1], int(length[-1] / spacing) + 2)
-    return np.column_stack([np.interp(at, length, line[:, k]) for k in (0, 1)])
+def forces_over_depth(data: Data) -> pd.DataFrame:
+    """Steady force against the depth of a flat plate, and the measured forces of each subject."""
+    ((_, plate, coarse),) = data.runs(STEADY_PLATE)
+    ends = [partial(steady_force, depth=z) for z in pressed_depths(plate)]
+    model = pd.DataFrame({"series": "model", DEPTH: DEPTH.read(plate), NEWTON: NEWTON.read(plate)})
+    points = []
+    if data.measured is not None:
+        rows = data.measured[(data.measured["indenter"] == "flat plate") & (data.measured["speed_mm_per_s"] == 0)]
+        for subject, part in rows.groupby("subject", sort=False):
+            values = {"series": f"subject {subject}", DEPTH: part["depth_mm"], NEWTON: part["force_N"]}
+            points.append(pd.DataFrame({"source": measured_source(part), **values}))
+    return below(model.assign(**{ERROR: error_percent(plate, coarse, *ends)}), *points)
 
 
-def inward(loop: np.ndarray, distance: float) -> np.ndarray:
-    """Closed line moved by `distance` (m) along its inward normals (mean of the adjoining edges')."""
-    points = loop[:-1]
-    tangent = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
-    normal = np.column_stack((-tangent[:, 1], tangent[:, 0])) / np.hypot(*tangent.T)[:, None]
-    area = np.sum(points[:, 0] * np.roll(points[:, 1], -1) - np.roll(points[:, 0], -1) * points[:, 1])
-    moved = points + np.sign(area) * distance * normal
-    return np.vstack((moved, moved[:1]))
+def model_and_subjects(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    ax, model = fig.subplots(), frame[is_simulated(frame)]
+    ax.plot(model[DEPTH], model[NEWTON], color=style.INK, label="model, 10 mm contact length")
+    others = frame[~is_simulated(frame) & frame["series"].notna()]
+    for k, (name, rows) in enumerate(others.groupby("series", sort=False)):
+        ax.plot(rows[DEPTH], rows[NEWTON], style.MARKERS[k % 4], color=style.SHADES[k % 4], ms=5, label=name)
+    axs.limit_axes(ax, frame, DEPTH, NEWTON)
+    ax.set(xlabel=DEPTH.label, ylabel=NEWTON.label)
+    ax.legend(loc="upper left")
+
+
+def force_words(error: str) -> list[str]:
+    return [
+        f"{MODEL.replace('Lines', 'Line')} {error}. Moduli of the default specimen (0.15, 0.015 and 0.015 MPa), contact "
+        "length 10 mm: not fitted to these subjects. Force tells modulus x contact length alone: "
+        "see figures/studies/calibration_fit.",
+        "Points: measured (Dandekar, Raju and Srinivasan 2003; digitised by a third party), four subjects, the same plate and "
+        f"depths; Cysyk (1999) shows five subjects. {BAND}",
+    ]
+
+
+# --- 3-8, 3-9: ramp and hold -----------------------------------------------------------------------------
+
+
+def ramp_and_hold(data: Data, runs: Runs, until: float) -> pd.DataFrame:
+    """Force over time of each scene up to a time, and its steady level, as two rows to the same time."""
+    ((_, plate, companion),) = data.runs(STEADY_PLATE)
+    parts = []
+    for series, history, coarse in data.runs(runs):
+        time = np.append(history["time"].values[history["time"].values < until * (1 - 1e-9)], until)
+        error = error_percent(history, coarse, lambda d: float(force_N(d)[ramp_end(d)]), lambda d: float(force_N(d)[-1]))
+        values = np.interp(time, history["time"].values, force_N(history))
+        parts.append(pd.DataFrame({"series": series, "phase": "ramp and hold", TIME: time, NEWTON: values, ERROR: error}))
+        level = partial(steady_force, depth=max(pressed_depths(history)))
+        part = {"series": series, "phase": "steady state", TIME: [0.0, until], NEWTON: level(plate)}
+        parts.append(pd.DataFrame(part | {ERROR: error_percent(plate, companion, level)}))
+    return pd.concat(parts, ignore_index=True)
+
+
+def forces_over_time(fig: Picture, frame: pd.DataFrame, spec: Figure, at_curves: bool) -> None:
+    """Curves and steady levels, each with its name and peak over steady force: at the curve's end or in a legend."""
+    ax, simulated, dashes = fig.subplots(), frame[is_simulated(frame)], {"lw": 0.8, "ls": (0, (2, 2))}
+    for colour, (name, rows) in zip(style.SHADES, simulated.groupby("series", sort=False), strict=False):
+        curve, steady = (rows[rows["phase"] == phase] for phase in ("ramp and hold", "steady state"))
+        ax.plot(steady[TIME], steady[NEWTON], color=colour, **dashes)
+        label = f"{name}: peak / steady {curve[NEWTON].max() / steady[NEWTON].iloc[0]:.2f}"
+        ax.plot(curve[TIME], curve[NEWTON], color=colour, label="_" * at_curves + label)
+        if at_curves:
+            end, away = curve.iloc[-1], {"xytext": (-2, 5), "textcoords": "offset points", "ha": "right"}
+            ax.annotate(label, (end[TIME], end[NEWTON]), color=colour, fontsize=8, **away)
+    axs.limit_axes(ax, frame, TIME, NEWTON)
+    ax.set(xlabel=TIME.label, ylabel=NEWTON.label)
+    ax.plot([], [], color=style.INK, label="steady state, solved as such", **dashes)
+    ax.legend(loc="upper right")
+
+
+def model_alone(frame: pd.DataFrame) -> list[str]:
+    marks = f" {BAND}" if (~is_simulated(frame)).any() else ""
+    return note_of(lambda error: [f"{MODEL} {error}. Contact length 10 mm.", NOT_AVAILABLE + marks])(frame)
+
+
+def held(number: str, title: str, scenes: Mapping[str, str], unit: str, until: float, thesis: tuple[str, str], at_curves: bool):
+    """Figs 3-8 and 3-9."""
+    runs = Runs("series", {f"{label} {unit}": scene for label, scene in scenes.items()})
+    return Figure(number, title, (STEADY_PLATE, runs), TIME, (NEWTON,), dict(zip((TIME, NEWTON), thesis, strict=True)),
+                  Own(height=4.0, paint=partial(forces_over_time, at_curves=at_curves)),
+                  rows=partial(ramp_and_hold, runs=runs, until=until), note=model_alone)  # fmt: skip
+
+
+# --- 3-10, 3-11: sections under indenters ----------------------------------------------------------------
+
+
+def under_the_bar(data: Data) -> pd.DataFrame:
+    """The section, undeformed and under the 1/16 inch bar at 2 mm: closed layer boundaries, the bar's lower side."""
+    history, layers = data.histories[BAR], ("skin", "dermis", "fat", "bone")
+    error = section_error(history, data.coarse.get(BAR))
+    pressed = section_rows("1/16 inch bar, 2 mm", "deformed", section(history, 2e-3), (*layers, "indenter"), error)
+    before = section_rows("undeformed", "undeformed", section(history, 0.0), layers, error)
+    return pd.concat([before, pressed], ignore_index=True)
+
+
+def two_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    axes = fig.subplots(1, 2, sharey=True)
+    for ax, panel in zip(axes, frame["panel"].unique(), strict=True):
+        rows = frame[frame["panel"] == panel]
+        for layer in ("skin", "dermis", "fat", "bone"):
+            loop = rows[rows["layer"] == layer]
+            colour = style.LAYER_COLOURS["epidermis" if layer == "skin" else layer]
+            ax.fill(loop[X], loop[Y], facecolor=colour, edgecolor=style.INK, lw=0.7)
+        draw_indenter(ax, rows)
+        ax.set(title=panel, aspect="equal", xlim=(-10, 10), ylim=(-6.8, 7.4), xlabel=X.label)
+        ax.set(xticks=range(-10, 11, 5), yticks=(-6, -3, 0, 3, 6))
+    for name, y in {"epidermis": 5.57, "dermis": 4.72, "fat": 2.4, "bone": -1.8}.items():
+        axes[0].text(0, y, name, ha="center", va="center", fontsize=6 if name.endswith("dermis") else 7)
+    axes[0].set_ylabel(Y.label)
+
+
+def six_indentations(data: Data) -> pd.DataFrame:
+    """Layer boundaries without load and under five indentations; the stratum corneum is left out."""
+    parts, layers = [], ("corneum", "dermis", "fat")
+    for panel, (scene, depth) in SECTIONS.items():
+        history = data.histories[scene]
+        error = section_error(history, data.coarse.get(scene))
+        before = section(history, 0.0, corneum=True)
+        parts.append(section_rows(panel, "undeformed", before, (*layers, "bone"), error))
+        if depth:
+            after = section(history, depth, corneum=True)
+            parts.append(section_rows(panel, "deformed", after, (*layers, "indenter"), error))
+    return pd.concat(parts, ignore_index=True)
+
+
+def six_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Boundaries undeformed (dashed) and deformed."""
+    axes = fig.subplots(2, 3, sharex=True, sharey=True)
+    colours = dict(zip(("corneum", "dermis", "fat"), style.SHADES, strict=False))
+    for ax, panel in zip(axes.ravel(), SECTIONS, strict=True):
+        rows = frame[frame["panel"] == panel]
+        bone = rows[rows["layer"] == "bone"]
+        ax.fill(bone[X], bone[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
+        draw_indenter(ax, rows)
+        for (state, layer), line in rows[rows["layer"].isin(colours)].groupby(["phase", "layer"], sort=False):
+            look = STATE_LINES["deformed" if panel == "no load" else state]
+            ax.plot(line[X], line[Y], **{"color": colours[layer]} | look)
+        ax.set(title=panel, aspect="equal", xlim=(-8.4, 8.4), ylim=(-1.5, 6.5), xticks=(-6, -3, 0, 3, 6), yticks=(0, 3, 6))
+    axes[1, 1].set_xlabel(X.label)
+    for ax in axes[:, 0]:
+        ax.set_ylabel(Y.label)
+    names = ("outside of the living epidermis", "epidermis to dermis", "dermis to fat")
+    handles = [style.handle(name, color=colour) for name, colour in zip(names, colours.values(), strict=True)]
+    style.header_legend(fig, [*handles, style.handle("undeformed", **STATE_LINES["undeformed"])], columnspacing=1.4)
+
+
+def section_words(extra: str) -> Callable[[str], list[str]]:
+    return lambda error: [
+        f"Simulated in plane strain, not measured. {error} (displacement of the layers under the indenters). {extra}",
+        "The MRI sections of Cysyk (1999) are not available: nothing stands in their place.",
+    ]
 
 
 FIGURES = (
-    FigureSpec("3-4", "Boundaries of the model", (SCENE,), frame_3_4, fig_3_4),
-    FigureSpec("3-5", "Finite element mesh", (SCENE,), frame_3_5, fig_3_5),
-)
+    Figure("3-4", "Boundaries of the finite element model", FLAT, X, (Y,), {}, Own(height=2.9, paint=three_sections),
+           rows=section_lines, meshes=True, note=lambda frame: [NOTE]),
+    Figure("3-5", "Finite element mesh of the fingerpad", FLAT, X, (Y,), {X: "T039a", Y: "T040a"},
+           Own(height=5.3, paint=whole_mesh), meshes=True, note=lambda frame: [NOTE],
+           rows=lambda data: mesh_rows(data.meshes[FLAT["flat"]], stratum_corneum(data.histories[FLAT["flat"]]))),
+    Figure("3-6", "Surface deflection in the steady state", Runs("panel", PROFILES), X, (DEFLECTION,),
+           {X: "T059", DEFLECTION: "T058a"}, Own(height=3.6, paint=three_deflections), rows=deflections,
+           measured="surface_profiles", note=note_of(deflection_words)),
+    Figure("3-7", "Steady force under a flat plate", STEADY_PLATE, DEPTH, (NEWTON,), {DEPTH: "T063", NEWTON: "T062a"},
+           Own(height=4.0, paint=model_and_subjects), rows=forces_over_depth, measured="force_depth", note=note_of(force_words)),
+    held("3-8", "Force in ramp and hold, 2 mm/s to four depths", DEPTH_SCENES, "mm", 10.0, ("T067", "T066a"), True),
+    held("3-9", "Force in ramp and hold to 1 mm, three speeds", SPEED_SCENES, "mm/s", 1.5, ("T071", "T070a"), False),
+    Figure("3-10", "Section under a 1/16 inch rectangular bar, steady state", Runs("panel", {"bar": BAR}), X, (Y,), {},
+           Own(height=3.5, paint=two_sections), rows=under_the_bar,
+           note=note_of(section_words("The stratum corneum is part of the outermost layer. The bar's edges have a radius of "
+                                      "0.1 mm."))),
+    Figure("3-11", "Layer boundaries under five indentations, steady state",
+           Runs("panel", {panel: scene for panel, (scene, _) in SECTIONS.items()}), X, (Y,), {},
+           Own(height=4.3, header=0.2, paint=six_sections), rows=six_indentations,
+           note=note_of(section_words("The outermost line is 0.35 mm under the skin (the stratum corneum is left out, as in the "
+                                      "thesis): indenters stand off."))),
+)  # fmt: skip

@@ -1,6 +1,6 @@
-"""The thesis figures of chapters 3 to 5, redrawn from simulated histories, one module a chapter.
+"""The figures of the thesis, chapters 3 to 5, one module of specs a chapter. Nothing here loads matplotlib.
 
-A figure is a function of its data frame, and the frame is saved beside the picture::
+::
 
     spec = FIGURES["4-10"]
     reference = read_reference("config/reference/thesis_numbers.csv")
@@ -8,23 +8,17 @@ A figure is a function of its data frame, and the frame is saved beside the pict
     publish(spec.draw(frame), frame, "figures/thesis/fig_4-10.png")
 """
 
-from fingerpad.figures import (
-    chapter3,
-    chapter3_verification,
-    chapter4,
-    chapter4_responses,
-    chapter5,
-    chapter5_responses,
-    ridges,
-)
-from fingerpad.figures.spec import FigureSpec
+from __future__ import annotations
 
-CHAPTERS = {
-    module.__name__: module.FIGURES
-    for module in (chapter3, chapter3_verification, chapter4, chapter4_responses, chapter5, chapter5_responses, ridges)
+from fingerpad.figures import chapter3, chapter4, chapter4_receptors, chapter5, chapter5_receptors, ridges
+from fingerpad.figures.grammar import Figure
+
+CHAPTERS: dict[str, tuple[Figure, ...]] = {
+    module.__name__: module.FIGURES for module in (chapter3, chapter4, chapter4_receptors, chapter5, chapter5_receptors, ridges)
 }
 """Module -> its figures: those of one module are drawn in one process."""
-FIGURES: dict[str, FigureSpec] = {
+FIGURES: dict[str, Figure] = {
     spec.number: spec
     for spec in sorted((s for specs in CHAPTERS.values() for s in specs), key=lambda s: [int(n) for n in s.number.split("-")])
 }
+"""The figures by the thesis's number, in its order."""

@@ -8,13 +8,13 @@ touches the point x = d + u of the surface, u being its lateral displacement.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
 
-from fingerpad.measures.features import PRESSURE, Trace, centre_node, centre_pressure, energy, scene_of
+from fingerpad.measures.features import PRESSURE, Trace, centre_node, centre_pressure, energy
 from fingerpad.measures.skin import WINDOW, skin_curvature
+from fingerpad.results import scene_of
 from fingerpad.stimuli.profiles import Profile, Segment, profile_of
 
 SPEEDS = ("1", "5", "10", "20", "40")
@@ -42,7 +42,7 @@ FINE = 5e-6
 def profile_and_height(history: xr.Dataset) -> tuple[Profile, np.ndarray]:
     """The profile of a history's stimulus and the height (time) m of its origin above the pad's."""
     apex = history["skin_y"].values[centre_node(history)]
-    return profile_of(SimpleNamespace(**scene_of(history)["stimulus"])), apex - history["indentation_depth"].values
+    return profile_of(scene_of(history).stimulus), apex - history["indentation_depth"].values
 
 
 def arcs(history: xr.Dataset) -> list[Segment]:

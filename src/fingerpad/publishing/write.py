@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from fingerpad.files import write_atomically
 from fingerpad.publishing.style import theme
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 DPI = 200
 FLOAT_FORMAT = "%.6g"

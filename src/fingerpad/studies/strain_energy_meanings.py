@@ -22,8 +22,8 @@ from functools import partial
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
+from fingerpad.figures import axes as axs
 from fingerpad.measures.features import (
     ERROR,
     SIMULATED,
@@ -52,9 +52,7 @@ SHOWN = "915 um"
 CHANGE = "change_in_hold (%)"
 MARKS = {
     panel: {"color": colour, "marker": "o", "ms": 4, "zorder": 9 - k}
-    for k, (panel, colour) in enumerate(
-        zip(MEANINGS, style.mpl.colormaps["viridis"](np.linspace(0, 0.85, len(MEANINGS))), strict=True)
-    )
+    for k, (panel, colour) in enumerate(style.colours("viridis", 0, 0.85, MEANINGS).items())
 }
 MARKS["long-term moduli"] |= {"ms": 8, "mfc": "none"}  # rings: at 600 um it changes as the first does
 LINES = {"600 um": "--", "915 um": "-"}
@@ -84,13 +82,12 @@ def titled(panel: str) -> str:
 def fig_meanings(frame: pd.DataFrame) -> Figure:
     """Above: each definition over time, relative to the top of the ramp; below: its change over the hold for every surface."""
     note = [
-        *style.footnote(frame),
+        *axs.footnote(frame),
         "Rates recorded from slowly adapting receptors peak at the top of the ramp and fall in the hold under every surface "
         "(Cysyk 1999, section 4.2).",
         "Grey: where a definition does so. Without viscosity the five are one.",
     ]
-    fig = style.new_figure(frame, "", "", 6.6, note=note)
-    fig.texts[0].set_text("Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, under the centre")
+    fig = style.sheet("Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, under the centre", note, 6.6)
     grid = fig.add_gridspec(2, len(MEANINGS), height_ratios=[1, 1.1])
     axes = [fig.add_subplot(grid[0, k]) for k in range(len(MEANINGS))]
     shown = frame[frame["series"] == SHOWN]
@@ -117,7 +114,7 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
     ax.set(ylabel="change over the hold (%)", xlabel="curvature (1/m)", xlim=(-0.3, len(SURFACES) - 0.7))
     ax.set_xticks(range(len(SURFACES)), ["flat plate", *SURFACES[1:]])
     ax.set_ylim(top=ax.get_ylim()[0] + 1.3 * np.ptp(ax.get_ylim()))
-    handles = [Line2D([], [], **MARKS[panel], label=panel) for panel in MEANINGS]
-    handles += [Line2D([], [], color=style.INK, ls=line, label=series.replace("um", "µm")) for series, line in LINES.items()]
+    handles = [style.handle(panel, **MARKS[panel]) for panel in MEANINGS]
+    handles += [style.handle(series.replace("um", "µm"), color=style.INK, ls=line) for series, line in LINES.items()]
     ax.legend(handles=handles, loc="upper left", ncols=3, fontsize=7)
     return fig

@@ -54,8 +54,8 @@ def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
 
 
 def _read() -> dict[str, Any]:
+    from fingerpad.figures.grammar import MEASURED
     from fingerpad.figures.registry import CHAPTERS
-    from fingerpad.figures.spec import MEASURED
     from fingerpad.studies.accuracy.belief import OUTSIDE
     from fingerpad.studies.accuracy.run import FAMILY, sweeps
     from fingerpad.studies.stability.picture import METHODS

@@ -1,0 +1,672 @@
+"""Chapter 4, from skin to impulses: the laws of pressure and strain energy, and predicted rates of slowly adapting receptors.
+
+The recordings that the thesis shows beside its model are not public. Its figures of recordings alone (4-2 to 4-5) are made from
+predicted rates (Eq 5-1 with the thesis's constants) and say so in the picture; in those of comparisons (4-9, 4-18 to 4-29) the
+predicted rates stand where the recorded ones did, with what can be read of those in the thesis, and with published rates and
+another model's in panels of their own. A user's recordings under the same protocol are laid over (config/reference/recordings).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from fingerpad.figures import axes as axs
+from fingerpad.figures.chapter4 import HOLD, K210, by_surface
+from fingerpad.figures.grammar import Data, Figure, Own, below, nine
+from fingerpad.measures.features import (
+    ERROR,
+    PRESSURE,
+    SIMULATED,
+    SURFACES,
+    at_ends,
+    centre_pressure,
+    energy,
+    error_percent,
+    force_gf,
+    is_simulated,
+    peak_pressure,
+    ramp_end,
+    surface_nodes,
+)
+from fingerpad.measures.quantities import (
+    CURVATURE,
+    DOUBT,
+    FORCE,
+    FREQUENCY,
+    GIVEN_RATE,
+    IMPULSE,
+    IMPULSE_RATE,
+    INVERSE_WIDTH,
+    MEAN_P,
+    NODE,
+    P_LAW,
+    P_PEAK,
+    RATE,
+    SED,
+    SED_LAW,
+    STEADY_RATE,
+    TIME,
+    P,
+    Q,
+)  # fmt: skip
+from fingerpad.measures.responses import (
+    NODE_COUNT,
+    RECEPTOR_DEPTH,
+    SEED,
+    SHALLOW_DEPTH,
+    TRIALS,
+    contact_nodes,
+    energy_from_pressure,
+    fit_nodes,
+    fit_sum,
+    mean_frequency,
+    mean_pressure,
+    peak_energy_rate,
+    predicted_rate,
+    pressure_by_law,
+    raster,
+    rate_in,
+    shallow_law,
+    straight_line,
+)
+from fingerpad.measures.runs import FAST, LOWER, NINE
+from fingerpad.publishing import style
+from fingerpad.receptors.fits import gain_and_threshold, r_squared
+from fingerpad.receptors.laws import THESIS_RATE, rectified
+from fingerpad.receptors.spikes import VARIATION
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Picture
+
+AVERAGED = 100
+"""Trials that the frequency of Fig 4-3 is the mean of."""
+PRINTED = ("T083", "T084", "T085", "T086", "T087")
+"""Mean rates of the hold that can be read beside the rasters of Fig 4-2."""
+
+RATES = "impulse_rates"
+LAW_NOTE = (
+    "Predicted, not recorded: Eq. 5-1 with the thesis's constants (0.081 (impulses/s)/Pa, 150 Pa; 0.0182 impulses/Pa, 100 Pa/s)"
+)
+DEEP = f"{LAW_NOTE}, 915 µm under the centre."
+STEADY_NOTE = f"{DEEP} Steady: mean of the last half of the hold."
+PUBLISHED, HALF_SPACE = "monkey, spheres; ours: cylinders", "half-space; ours: layered pad"
+OF_THE_LARGEST = "of what is plotted, relative to the largest"
+PEAK, STEADY, HELD = (partial(rate_in, window=window) for window in ("peak", "steady", "hold"))
+
+# --- rows ------------------------------------------------------------------------------------------------
+
+
+def line_through(rows: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
+    """Two rows: the ends of the line through points, from 0 to the last of them, where it is not negative."""
+    slope, offset, share = straight_line(rows[x], rows[y])
+    ends = np.array([max(0.0, -offset / slope) if slope > 0 else 0.0, rows[x].max()])
+    return pd.DataFrame({"source": f"{SIMULATED}: least-squares line, R2 {share:.3f}", x: ends, y: slope * ends + offset})
+
+
+def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> pd.DataFrame:
+    """Rates recorded under the protocol of a figure: those printed in the thesis, and a user's."""
+    if (rates := data.measured) is None:
+        return pd.DataFrame()
+    same = rates[
+        (rates["receptor"] == "SA-I")
+        & (rates["species"] != "model")
+        & rates["stimulus"].isin(("flat plate", "cylinder"))
+        & (rates["force_gf"].sub(20).abs() < 0.5)
+        & (rates["ramp_gf_per_s"] == ramp)
+        & (rates["window"] == window)
+    ]
+    printed = {float(data.reference.loc[id_, "low"]): id_ for id_ in PRINTED if id_ in data.reference.index}
+    of_thesis = same["source"].str.startswith("Cysyk 1999")
+    same = same[~of_thesis | same["rate_per_s"].isin(printed)].reset_index(drop=True)
+    sources = [
+        f"stated in the thesis ({printed[row['rate_per_s']]}, reading uncertain)"
+        if row["source"].startswith("Cysyk 1999")
+        else f"measured ({row['recording']}; {row['source']})"
+        for row in same.to_dict("records")
+    ]
+    return pd.DataFrame(
+        {"source": sources, CURVATURE: same["curvature_per_m"], DOUBT: same["or_curvature_per_m"], column: same["rate_per_s"]}
+    )
+
+
+def published(data: Data, panel: str, window: str, model: bool, force: float | None = None) -> pd.DataFrame:
+    """Published rates, or another model's, of pressed surfaces in a window, one series a recording."""
+    if (rates := data.measured) is None:
+        return pd.DataFrame()
+    rows = rates[(rates["species"] == "model") == model]
+    rows = rows[(rows["window"] == window) & (rows["receptor"] == "SA-I") & ~rows["source"].str.startswith("Cysyk")]
+    rows = rows[rows["stimulus"].isin(("sphere", "flat plate")) | model]
+    spheres = rows.groupby("recording")["stimulus"].transform(lambda kinds: "sphere" in set(kinds))
+    rows = rows[spheres.astype(bool) | model] if len(rows) else rows
+    if force:
+        rows = rows[rows["force_gf"] == force]
+    source = ("other model (" if model else "measured (") + rows["source"] + ")"
+    shared = {"source": source, "panel": panel, "series": rows["recording"]}
+    return pd.DataFrame(shared | {CURVATURE: rows["curvature_per_m"], GIVEN_RATE: rows["rate_per_s"]})
+
+
+def trains_and_rates(data: Data) -> pd.DataFrame:
+    """Predicted impulses of four trials a surface at 150 gf/s, the force, the mean predicted rate in the hold, printed ones."""
+    numbers = data.numbers(FAST, {GIVEN_RATE: HELD})
+    plate = data.histories[FAST["flat"]]
+    parts = [
+        numbers.assign(panel="mean rate of the hold"),
+        pd.DataFrame({"panel": "force", TIME: plate["time"].values, FORCE: force_gf(plate)}),
+    ]
+    errors = numbers.set_index("surface")[ERROR]
+    for k, (label, history, _) in enumerate(data.runs(FAST)):
+        impulses = raster(predicted_rate(history), TRIALS, SEED + k)
+        part = {"panel": "impulses", "surface": label, "series": [f"trial {n}" for n in impulses["trial"]]}
+        parts.append(pd.DataFrame(part | {IMPULSE: impulses[TIME], ERROR: errors[label]}))
+    return below(pd.concat(parts, ignore_index=True), given(data, "hold", 150))
+
+
+def frequencies(data: Data) -> pd.DataFrame:
+    """Instantaneous frequency of predicted impulses at 40 gf/s, mean of many trials, and the rate they were made from."""
+    errors = data.numbers(NINE, {IMPULSE_RATE: PEAK}).set_index("surface")[ERROR]
+    parts, at = [], np.arange(0, 2.0001, 0.02)
+    for k, (label, history, _) in enumerate(data.runs(NINE)):
+        rate = predicted_rate(history)
+        frequency = mean_frequency(raster(rate, AVERAGED, SEED + k), AVERAGED, at)
+        parts += [
+            frequency.assign(surface=label, series="frequency of impulses", **{ERROR: errors[label]}),
+            rate[[TIME, IMPULSE_RATE]].assign(surface=label, series="rate", **{ERROR: errors[label]}),
+        ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def peak_and_steady(data: Data) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
+    """Predicted peak rate and rate in the last half of the hold, one row a surface, and recorded ones of either kind."""
+    rows = data.numbers(NINE, {GIVEN_RATE: PEAK, STEADY_RATE: STEADY})
+    return rows, given(data, "peak", 40), given(data, "steady", 40, STEADY_RATE)
+
+
+def steady_over_peak(data: Data) -> pd.DataFrame:
+    rows, peak, steady = peak_and_steady(data)
+    both = peak.merge(steady, on=["source", CURVATURE, DOUBT]) if len(peak) and len(steady) else pd.DataFrame()
+    return below(rows, line_through(rows, GIVEN_RATE, STEADY_RATE), both)
+
+
+def over_curvature(data: Data) -> pd.DataFrame:
+    rows, peak, steady = peak_and_steady(data)
+    return below(rows, *(line_through(rows, CURVATURE, column) for column in (GIVEN_RATE, STEADY_RATE)), peak, steady)
+
+
+def rate_and_width(data: Data) -> pd.DataFrame:
+    """Predicted rate and inverse contact width in the hold, one row an output and surface."""
+    errors = data.numbers(NINE, {IMPULSE_RATE: HELD}).set_index("surface")[ERROR]
+    parts = []
+    for label, history, _ in data.runs(NINE):
+        held = history.isel(time=slice(ramp_end(history), None))
+        rate = THESIS_RATE.terms(energy(history, RECEPTOR_DEPTH), 0.0)[0][ramp_end(history) :]
+        part = {"surface": label, TIME: held["time"].values, INVERSE_WIDTH: INVERSE_WIDTH.read(held), IMPULSE_RATE: rate}
+        parts.append(pd.DataFrame(part | {ERROR: errors[label]}))
+    return pd.concat(parts, ignore_index=True)
+
+
+def nodes_by_law(data: Data) -> pd.DataFrame:
+    """Pressure of twelve nodes as simulated, and by Eq 4-1 from each node's peak on: one set of constants, and a set for each."""
+    ((_, history, coarse),) = data.runs(K210)
+    nodes = contact_nodes(history, NODE_COUNT)
+    together, parts = fit_nodes("4-1", nodes), []
+    for node in surface_nodes(history)[:NODE_COUNT]:
+        x = history["skin_x"].values[node] * 1e3
+        part = pd.DataFrame({TIME: history["time"].values, P: history[PRESSURE].values[:, node]})
+        parts.append(part.assign(series="simulated", **{NODE: round(x, 5)}))
+        own = nodes[np.isclose(nodes[NODE], x)]
+        if own["past_peak"].sum() < 4:
+            continue
+        for series, constants in (("one set", together), ("a set for each", fit_nodes("4-1", own))):
+            law = pressure_by_law("4-1", own, constants)[[TIME, P_LAW]]
+            parts.append(law.assign(series=f"Eq 4-1, {series}", **{NODE: round(x, 5)}))
+    error = error_percent(history, coarse, *at_ends(centre_pressure))
+    return pd.concat(parts, ignore_index=True).assign(**{ERROR: error})
+
+
+def energy_by_pressure(data: Data) -> pd.DataFrame:
+    """Strain energy at 915 um as simulated and by Eq 4-4 from the contact pressure, one set of constants for nine surfaces."""
+    runs = list(data.runs(NINE))
+    law = fit_sum([history for _, history, _ in runs], RECEPTOR_DEPTH)
+    source = f"{SIMULATED}: Eq 4-4 with r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m"
+    shown = partial(energy, depth=RECEPTOR_DEPTH)
+    parts = [
+        energy_from_pressure(history, RECEPTOR_DEPTH, law).assign(
+            surface=label, source=source, **{ERROR: error_percent(history, coarse, *at_ends(shown))}
+        )
+        for label, history, coarse in runs
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def peaks_over_pressure(data: Data) -> pd.DataFrame:
+    """Predicted peak rate and largest pressure at any node, one row a surface, and the line through them; recorded peak rates."""
+    rows = data.numbers(NINE, {P_PEAK: lambda d: float(peak_pressure(d).max()), GIVEN_RATE: PEAK})
+    mine = given(data, "peak", 40)
+    if len(mine):
+        mine[P_PEAK] = np.interp(mine[CURVATURE], rows[CURVATURE], rows[P_PEAK])
+    return below(rows, line_through(rows, P_PEAK, GIVEN_RATE), mine)
+
+
+def linear_in_pressure(data: Data) -> pd.DataFrame:
+    """Rates as linear functions of the mean centre pressure: closest to Eq 5-1's in the hold, and to Goodwin's first second."""
+    early = Q("first_second_pressure", "Pa")
+    rows = data.numbers(NINE, {GIVEN_RATE: HELD, MEAN_P: mean_pressure, early: partial(mean_pressure, window="first second")})
+    early = rows.pop(early)
+    parts, theirs = [rows.assign(source=f"{SIMULATED}: Eq 5-1")], published(data, "published", "first second", False, 20)
+
+    def fitted(pressure: np.ndarray, rates: np.ndarray) -> tuple:
+        law = gain_and_threshold(pressure, rates)
+        return law, f"{SIMULATED}: linear in the pressure, R2 {r_squared(rates, law(pressure)):.3f}"
+
+    law, source = fitted(rows[MEAN_P].to_numpy(), rows[GIVEN_RATE].to_numpy())
+    parts.append(rows.assign(source=source, **{GIVEN_RATE: law(rows[MEAN_P])}))
+    if len(theirs):
+        law, source = fitted(np.interp(theirs[CURVATURE], rows[CURVATURE], early), theirs[GIVEN_RATE].to_numpy())
+        inside = rows[CURVATURE] <= 1.01 * theirs[CURVATURE].max()
+        part = {"source": source, "panel": "published", CURVATURE: rows[CURVATURE], MEAN_P: early, GIVEN_RATE: law(early)}
+        parts.append(pd.DataFrame(part)[inside].assign(surface=rows["surface"], **{ERROR: rows[ERROR]}))
+    return below(pd.concat(parts, ignore_index=True), theirs, given(data, "hold", 40))
+
+
+def held_rates(data: Data) -> pd.DataFrame:
+    """Mean predicted rate of the hold at 150 gf/s, and the rates printed in Fig 4-2."""
+    return below(data.numbers(FAST, {GIVEN_RATE: HELD}), given(data, "hold", 150))
+
+
+def mean_rates(data: Data, depth: float) -> pd.DataFrame:
+    """Mean predicted rates of the hold at a depth; beside them published rates and TouchSim's, and ours in their windows."""
+    law, text = THESIS_RATE, "Eq 5-1 at 915 um"
+    if depth != RECEPTOR_DEPTH:
+        law, factor = shallow_law(NINE.histories(data.histories))
+        text = f"Eq 5-1 at {depth * 1e6:.0f} um, energies times {factor:.3f}"
+    number = partial(rate_in, depth=depth, law=law)
+    parts = [data.numbers(NINE, {GIVEN_RATE: partial(number, window="hold")})]
+    for force, runs in {**LOWER, 20: NINE}.items():
+        early = data.numbers(runs, {GIVEN_RATE: partial(number, window="first second")})
+        parts.append(early.assign(panel="published", series=f"predicted, {force} gf"))
+    steady = data.numbers(NINE, {GIVEN_RATE: partial(number, window="steady")})
+    parts.append(steady.assign(panel="TouchSim", series="predicted, cylinders"))
+    rows = pd.concat(parts, ignore_index=True)
+    rows = rows[rows["panel"].isna() | (rows[CURVATURE] < 700)].assign(source=f"{SIMULATED}: {text}")
+    beside = published(data, "published", "first second", False), published(data, "TouchSim", "steady", True)
+    return below(rows, *beside, given(data, "hold", 40))
+
+
+def peak_rates(data: Data) -> pd.DataFrame:
+    """Predicted peak rates at two depths, the line in the peak rate of strain energy closest to each; TouchSim's first 200 ms."""
+    parts = []
+    for depth in (SHALLOW_DEPTH, RECEPTOR_DEPTH):
+        law, factor = shallow_law(NINE.histories(data.histories)) if depth == SHALLOW_DEPTH else (THESIS_RATE, 1.0)
+        columns = {GIVEN_RATE: partial(PEAK, depth=depth, law=law), RATE: partial(peak_energy_rate, depth=depth)}
+        rows = data.numbers(NINE, columns).assign(panel=f"{depth * 1e6:.0f} um")
+        slope, offset, share = straight_line(rows[RATE], rows[GIVEN_RATE])
+        parts.append(rows.assign(source=f"{SIMULATED}: Eq 5-1, energies times {factor:.3f}"))
+        by = {GIVEN_RATE: rectified(slope * rows[RATE] + offset), ERROR: rows[ERROR]}
+        parts.append(rows.assign(source=f"{SIMULATED}: linear in the peak energy rate, R2 {share:.3f}", **by))
+    early = data.numbers(FAST, {GIVEN_RATE: partial(rate_in, window="first 200 ms")})
+    early = early[early[CURVATURE] < 700].assign(panel="TouchSim", series="predicted, cylinders", source=f"{SIMULATED}: Eq 5-1")
+    mine = [rows.assign(panel=panel) for panel in ("600 um", "915 um") if len(rows := given(data, "peak", 40))]
+    return below(pd.concat([*parts, early], ignore_index=True), published(data, "TouchSim", "first 200 ms", True), *mine)
+
+
+# --- drawing ---------------------------------------------------------------------------------------------
+
+
+def stamp(ax: Axes, text: str = "predicted", x: float = 0.985, y: float = 0.03, va: str = "bottom") -> None:
+    """A word in the picture, so that it is not taken for a recording."""
+    ax.text(x, y, text, transform=ax.transAxes, fontsize=8, style="italic", color=style.GREY, ha="right", va=va)
+
+
+def points(ax: Axes, rows: pd.DataFrame, x: str, y: str, **look) -> None:
+    """One point a surface, in the surfaces' colours."""
+    look = {"marker": "o", "s": 30, "zorder": 3, "clip_on": False} | look
+    ax.scatter(rows[x], rows[y], color=[style.COLOURS[label] for label in rows["surface"]], **look)
+
+
+def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
+    """What was recorded under the same protocol: a rate whose surface is one of two spans both."""
+    if column not in frame:
+        return
+    rows = frame[frame["source"].str.contains(r"stated in the thesis|^measured")]
+    rows = rows[rows["panel"].isna()] if "panel" in rows else rows
+    printed = rows["source"].str.startswith("stated")
+    for mine, look, label in (
+        (rows[printed], {"marker": "s", "mfc": "none", "mec": style.INK}, "printed in the thesis (scan)"),
+        (rows[~printed], {"marker": "D", "color": style.INK}, "recorded"),
+    ):
+        if mine.empty:
+            continue
+        other = mine[DOUBT].where(mine[DOUBT].notna(), mine[CURVATURE])
+        ax.hlines(mine[column], mine[CURVATURE], other, color=style.INK, lw=0.8)
+        ax.plot((mine[CURVATURE] + other) / 2, mine[column], ls="none", ms=5, zorder=4, label=label, **look)
+
+
+def source_text(rows: pd.DataFrame) -> str:
+    """What follows the colon in the source of some simulated rows."""
+    return rows["source"].iloc[0].partition(": ")[2].replace("R2", "R²")
+
+
+def of_panel(frame: pd.DataFrame, name: str) -> pd.DataFrame:
+    return frame[frame["panel"] == name] if "panel" in frame else frame[:0]
+
+
+def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Force above, nine times four predicted trains of impulses, mean rates of the hold at the right."""
+    upper, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1, 6.2])
+    force = frame[frame[FORCE].notna() & is_simulated(frame)]
+    upper.plot(force[TIME], force[FORCE], color=style.INK, clip_on=False)
+    axs.limit_axis(upper, frame, FORCE)
+    upper.set(ylabel=FORCE.label, yticks=[0, 20])
+    place = {label: k for k, label in enumerate(SURFACES)}
+    for (label, series), train in frame[frame[IMPULSE].notna()].groupby(["surface", "series"]):
+        row = place[label] + (int(series.split()[1]) - 1) * 0.2 - 0.3
+        ax.vlines(train[IMPULSE], row - 0.07, row + 0.07, color=style.COLOURS[label], lw=0.9)
+    ax.set(xlim=(0, force[TIME].max()), ylim=(8.6, -0.6), xlabel=TIME.label, ylabel=CURVATURE.label, yticks=range(9))
+    ax.set_yticklabels(["flat plate", *SURFACES[1:]])
+    ax.tick_params(left=False)
+    for k in range(8):
+        ax.axhline(k + 0.5, color="0.9", lw=0.6, zorder=0)
+    outside = {"transform": ax.get_yaxis_transform(), "ha": "right"}
+    rows = of_panel(frame, "mean rate of the hold")
+    for label, rate in zip(rows["surface"], rows[GIVEN_RATE], strict=True):
+        ax.text(1.062, place[label], f"{rate:.1f}", va="center", color=style.COLOURS[label], **outside)
+    curvatures = rows.set_index("surface")[CURVATURE]
+    for entry in frame[frame["source"].str.startswith(("stated", "measured"))].to_dict("records"):
+        at = [float((curvatures - k).abs().argmin()) for k in (entry[CURVATURE], entry[DOUBT]) if k == k]
+        ax.text(1.128, np.mean(at), f"{entry[GIVEN_RATE]:.1f}", va="center", color=style.GREY, **outside)
+    outside |= {"fontsize": 6.5}
+    ax.text(1.066, -0.62, "predicted", color=style.INK, va="bottom", **outside)
+    ax.text(1.135, -0.62, "printed", color=style.GREY, va="bottom", **outside)
+    ax.text(1.135, 8.75, "impulses/s", color=style.INK, va="top", **outside)
+    upper.text(0.99, 0.5, "predicted, not recorded", transform=upper.transAxes, ha="right", va="center", style="italic",
+               color=style.GREY)  # fmt: skip
+
+
+def nine_frequencies(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Nine traces of predicted frequency, labelled at the right, over the rates they are made from."""
+    ax, ends = fig.subplots(), {}
+    both = frame.assign(**{FREQUENCY: frame[[FREQUENCY, IMPULSE_RATE]].max(axis=1)})
+    axs.limit_axis(ax, both[(both[TIME] <= 2) | both[TIME].isna()], FREQUENCY, text=False)
+    for label in SURFACES:
+        rows, look = frame[frame["surface"] == label], {"color": style.COLOURS[label]}
+        rate, frequency = rows[rows["series"] == "rate"], rows[rows["series"] != "rate"]
+        jump = int(np.flatnonzero(np.diff(rate[TIME]) == 0)[0]) + 1
+        for leg in (rate[:jump], rate[jump:]):
+            ax.plot(leg[TIME], leg[IMPULSE_RATE], lw=3.2, alpha=0.25, **look)
+        ax.plot(frequency[TIME], frequency[FREQUENCY], lw=1.0, **look)
+        ends[label] = (2.0, float(np.interp(2.0, rate[TIME], rate[IMPULSE_RATE])))
+    ax.set(xlabel=TIME.label, ylabel=FREQUENCY.label, xlim=(0, 2))
+    style.label_ends(ax, ends, 2.12, "curvature (1/m)")
+    stamp(ax, "predicted, not recorded", y=0.97, va="top")
+
+
+def points_and_line(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Named points of nine surfaces, the line through them, and recordings if there are any."""
+    ax, x, y = fig.subplots(), spec.x, spec.y[0]
+    axs.wide_limits(ax, frame, x, y)
+    line = frame[frame["source"].str.contains("line")]
+    ax.plot(line[x], line[y], color=style.GREY, lw=1, label=source_text(line))
+    own = frame[frame["source"] == SIMULATED]
+    points(ax, own, x, y)
+    name_points(ax, own, x, y)
+    mine = frame[frame["source"].str.startswith("measured")]
+    if len(mine):
+        ax.plot(mine[x], mine[y], "D", color=style.INK, ms=4.5, label="recorded")
+    words = {GIVEN_RATE: "peak rate (impulses/s)"}
+    ax.set(xlabel=words.get(x, x.label), ylabel=words.get(y, y.label))
+    ax.legend(loc="upper left")
+    stamp(ax)
+
+
+def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
+    """Curvatures beside points; those at the same place share a label."""
+    rows = rows.sort_values([x, y])
+    place = rows[[x, y]].to_numpy() / np.array([np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())])
+    groups = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(place, axis=0).T) > 0.03)])
+    for _, group in rows.groupby(groups):
+        at = group[[x, y]].mean()
+        across, up = ax.transLimits.transform(at)
+        left = up < 0.06 or across > 0.9  # at the floor and the right end labels are above to the left
+        how = {"va": "bottom" if left else "top", "ha": "right" if left else "left"}
+        away = (-5, 4) if left else (5, -4)
+        ax.annotate(", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=7, color=style.GREY, **how)
+
+
+def peak_and_steady_over_curvature(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Peak (triangles) and steady rate (crosses) against curvature, dotted, with their lines."""
+    ax = fig.subplots()
+    axs.wide_limits(ax, frame, CURVATURE, GIVEN_RATE)
+    own = frame[frame["source"] == SIMULATED]
+    for column, marker, name in ((GIVEN_RATE, "^", "peak"), (STEADY_RATE, "P", "steady")):
+        ax.plot(own[CURVATURE], own[column], ":", color=style.GREY, lw=0.9)
+        points(ax, own, CURVATURE, column, marker=marker, s=38)
+        line = frame[frame["source"].str.contains("line") & frame[column].notna()]
+        ax.plot(line[CURVATURE], line[column], color=style.INK, lw=1)
+        draw_given(ax, frame[frame[column].notna()], column)
+        end = line.iloc[-1]
+        ax.annotate(f"{name}: {source_text(line)}", (end[CURVATURE], end[column]), (0, 5), textcoords="offset points",
+                    ha="right", fontsize=7, color=style.INK)  # fmt: skip
+    ax.set(xlabel="surface curvature (1/m)", ylabel="impulse rate (impulses/s)")
+    kinds = [style.handle(f"{name} rate", ls="none", marker=m, color=style.INK) for m, name in (("^", "peak"), ("P", "steady"))]
+    ax.legend(handles=kinds + ax.get_legend_handles_labels()[0][:1], loc="upper left")
+    stamp(ax)
+
+
+def rate_over_width(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+    """Time runs from right to left, as the contact grows."""
+    axs.wide_limits(ax, rows, INVERSE_WIDTH, IMPULSE_RATE)
+    own = rows[is_simulated(rows)]
+    ax.plot(own[INVERSE_WIDTH], own[IMPULSE_RATE], "o-", ms=3, lw=0.8, **axs.look(own["surface"].iloc[0]))
+    ax.locator_params(axis="x", nbins=4)
+    if own[IMPULSE_RATE].max() == 0:
+        ax.text(0.5, 0.2, "below the threshold:\nno impulses predicted", transform=ax.transAxes, ha="center", va="center",
+                fontsize=7, color=style.GREY)  # fmt: skip
+
+
+def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Twelve panels: dotted simulated, solid and dashed by Eq 4-1."""
+    axes = fig.subplots(4, 3, sharex=True, sharey=True)
+    looks = {
+        "simulated": (P, {"ls": (0, (1, 1.2)), "lw": 1.8, "color": style.COLOURS["210"]}),
+        "Eq 4-1, one set": (P_LAW, {"ls": "-", "lw": 1.1, "color": style.INK}),
+        "Eq 4-1, a set for each": (P_LAW, {"ls": (0, (4, 1.5)), "lw": 0.9, "color": style.GREY}),
+    }
+    wide = frame.assign(**{P: frame[P].fillna(frame[P_LAW])})
+    nodes = frame[is_simulated(frame)].groupby(NODE)
+    for ax in axes.ravel()[len(nodes) :]:  # a coarse mesh has fewer nodes in contact
+        ax.set_visible(False)
+    for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), nodes, strict=False)):
+        for series, (column, look) in looks.items():
+            own = rows[rows["series"] == series]
+            ax.plot(own[TIME], own[column], **look)
+        axs.limit_axis(ax, wide, P, text=k == 5)
+        ax.set(title=f"x = {x:.3g} mm", **HOLD)
+    axes[3, 1].set_xlabel(TIME.label)
+    axes[2, 0].set_ylabel(P.label, y=1.15)
+    names = {"Eq 4-1, one set": "Eq. 4-1, one set of constants", "Eq 4-1, a set for each": "a set for each node"}
+    style.header_legend(fig, [style.handle(names.get(name, name), **look) for name, (_, look) in looks.items()])
+
+
+def energy_and_law(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+    """Points simulated, line by Eq 4-4, and what is left between them."""
+    own = rows[is_simulated(rows)]
+    ax.plot(own[TIME], own[SED], "o", ms=2.4, mfc="none", mew=0.7, **axs.look(own["surface"].iloc[0]))
+    ax.plot(own[TIME], own[SED_LAW], color=style.INK, lw=1)
+    left = np.sqrt(np.mean((own[SED] - own[SED_LAW]) ** 2) / np.mean(own[SED] ** 2))
+    ax.text(0.97, 0.06, f"r.m.s. residual {left:.0%}", transform=ax.transAxes, ha="right", fontsize=7, color=style.GREY)
+
+
+def note_with(words, how: str = ""):
+    """A note: the usual lines, and words that depend on the frame."""
+    return lambda frame: axs.footnote(frame, how) + style.wrapped([words(frame)], 132)
+
+
+def constants_note(frame: pd.DataFrame) -> str:
+    constants = source_text(frame[is_simulated(frame)]).removeprefix("Eq 4-4 with ").replace("m2", "m²")
+    return f"Points simulated; lines by Eq. 4-4 with one set of constants for all nine surfaces: {constants}."
+
+
+def rates_by_pressure(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Left: rates by Eq 5-1 and by the pressure; right: Goodwin's rates and by the pressure."""
+    ax, right = fig.subplots(1, 2, width_ratios=[1.55, 1])
+    main = frame[frame["panel"].isna()] if "panel" in frame else frame
+    axs.wide_limits(ax, main, CURVATURE, GIVEN_RATE)
+    law = main[main["source"].str.contains("linear")]
+    ax.plot(law[CURVATURE], law[GIVEN_RATE], color=style.INK, lw=1.1, label=source_text(law))
+    ax.plot([], [], "o", color=style.GREY, label="Eq. 5-1, predicted from strain energy")
+    points(ax, main[main["source"].str.contains("Eq 5-1")], CURVATURE, GIVEN_RATE)
+    draw_given(ax, main)
+    ax.set(xlabel=CURVATURE.label, ylabel=GIVEN_RATE.label)
+    ax.legend(loc="upper left")
+    stamp(ax)
+    beside(right, of_panel(frame, "published"), "Goodwin 1995, first second")
+
+
+def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str = PUBLISHED) -> None:
+    """A panel of rates measured elsewhere or of another model (points), with ours (lines)."""
+    ax.set_title(f"{title}\n{mismatch}", fontsize=7.5)
+    if rows.empty:
+        ax.text(0.5, 0.5, "no rates given", transform=ax.transAxes, ha="center", color=style.GREY)
+        return
+    own = is_simulated(rows)
+    theirs = list(rows.loc[~own, "series"].unique())
+    shades = list(style.colours("viridis", 0.15, 0.75, range(3)).values())
+    for k, (name, curve) in enumerate(rows[~own].groupby("series", sort=False)):
+        look = {"marker": "os^D"[k % 4], "color": shades[k % 3], "ms": 4.5}
+        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], ls="none", label=name, **look)
+    keys = "series" if "series" in rows and rows.loc[own, "series"].notna().any() else "source"
+    for name, curve in rows[own].groupby(keys, sort=False):
+        same = [i for i, s in enumerate(theirs) if name.split()[-2:] == s.split()[-2:]]
+        label = source_text(curve) if keys == "source" else name
+        curve = curve.sort_values(CURVATURE)
+        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], color=shades[same[0]] if same else style.INK, lw=1.1, label=label)
+    ax.set(xlim=(0, 1.04 * rows[CURVATURE].max()), ylim=(0, 1.5 * rows[GIVEN_RATE].max()), xlabel=CURVATURE.label)
+    ax.legend(loc="upper left", fontsize=7, handlelength=1.6, borderaxespad=0.2, labelspacing=0.3)
+
+
+def draw_rates(ax: Axes, frame: pd.DataFrame) -> None:
+    """Predicted rates against curvature on the thesis's axes, with what was recorded under the same protocol."""
+    axs.wide_limits(ax, frame, CURVATURE, GIVEN_RATE)
+    own = frame[is_simulated(frame) & frame["surface"].notna()]
+    ax.plot(own[CURVATURE], own[GIVEN_RATE], color=style.GREY, lw=0.9, zorder=1)
+    ax.plot([], [], "o-", color=style.GREY, lw=0.9, label="predicted by Eq. 5-1")
+    points(ax, own, CURVATURE, GIVEN_RATE)
+    draw_given(ax, frame)
+    ax.set(xlabel=CURVATURE.label, ylabel=GIVEN_RATE.label)
+    ax.legend(loc="upper left")
+    stamp(ax, "points: predicted")
+
+
+def rates_and_others(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Predicted rates, beside published and another model's."""
+    ax, middle, right = fig.subplots(1, 3, width_ratios=[1.7, 1, 1])
+    draw_rates(ax, frame[frame["panel"].isna()])
+    beside(middle, of_panel(frame, "published"), "Goodwin 1995, first second")
+    beside(right, of_panel(frame, "TouchSim"), "TouchSim, steady", HALF_SPACE)
+
+
+def others_note(frame: pd.DataFrame, depth: str) -> str:
+    scaled = source_text(frame[is_simulated(frame)]).partition(", energies ")[2]
+    more = f" The thesis prints no constants for {depth}: energies {scaled}, the same mean as at 915 µm." if scaled else ""
+    return (
+        f"{LAW_NOTE}, {depth} under the centre.{more} Left: mean over the hold; the recorded rates are not public. Middle: "
+        "Goodwin, Browning and Wheat (1995), digitised by a third party, impulses in the first second (force rate not stated). "
+        "Right: TouchSim (Saal et al. 2017), a half-space, the last second of its hold."
+    )
+
+
+def peaks_by_energy_rate(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """(a) 600 um, (b) 915 um, and TouchSim's early rates."""
+    axes = fig.subplots(1, 3, width_ratios=[1.25, 1.25, 1])
+    for ax, tag, panel in zip(axes, "ab", ("600 um", "915 um"), strict=False):
+        rows = frame[(frame["panel"] == panel) | frame["source"].str.contains("axis range")]
+        axs.wide_limits(ax, rows, CURVATURE, GIVEN_RATE)
+        line = rows[rows["source"].str.contains("linear")]
+        label = source_text(line).replace("peak energy", "peak\nenergy")
+        ax.plot(line[CURVATURE], line[GIVEN_RATE], color=style.INK, lw=1.1, label=label)
+        ax.plot([], [], "o", color=style.GREY, label="predicted by Eq. 5-1")
+        points(ax, rows[rows["source"].str.contains("Eq 5-1")], CURVATURE, GIVEN_RATE)
+        draw_given(ax, rows.drop(columns="panel"))
+        ax.set(xlabel=CURVATURE.label, title=f"({tag}) {panel.replace('um', 'µm')}")
+        ax.legend(loc="lower right", fontsize=7, handlelength=1.4)
+    axes[0].set_ylabel("peak rate (impulses/s)")
+    beside(axes[2], of_panel(frame, "TouchSim"), "TouchSim, first 200 ms", HALF_SPACE)
+
+
+def energy_rate_note(frame: pd.DataFrame) -> str:
+    scale = source_text(frame[frame["source"].str.contains("energies")]).partition("times ")[2]
+    return (
+        f"{LAW_NOTE}. Points: both terms; line: the linear function of the peak rate of strain energy closest to them, as the "
+        f"thesis predicts the recorded peaks, which are not public. (a) energies times {scale}: the thesis prints no constants "
+        "for 600 µm. Right: TouchSim (Saal et al. 2017), a half-space, mean of the first 200 ms, ramp of 100 ms; ours at 150 "
+        "gf/s (133 ms), 915 µm."
+    )
+
+
+def of_rates(number: str, title: str, rows, height: float, paint, thesis: Mapping, runs=NINE, **options) -> Figure:
+    """A figure of rates over curvature, or of one rate over another."""
+    options = {"how": OF_THE_LARGEST, "measured": RATES, "remarks": (DEEP,), "x": CURVATURE, "y": (GIVEN_RATE,)} | options
+    return Figure(number, title, runs, thesis=thesis, layout=Own(height=height, paint=paint), rows=rows, **options)
+
+
+def from_depth(number: str, depth: float, axis: str) -> Figure:
+    """Figs 4-26 and 4-27."""
+    words = f"{depth * 1e6:.0f} µm"
+    title = f"Predicted mean rate of the hold from strain energy at {words}, 40 gf/s"
+    return of_rates(number, title, partial(mean_rates, depth=depth), 4.4, rates_and_others,
+                    {GIVEN_RATE: axis, CURVATURE: "T202"}, (NINE, *LOWER.values()),
+                    note=note_with(partial(others_note, depth=words), OF_THE_LARGEST))  # fmt: skip
+
+
+FIGURES = (
+    Figure("4-2", "Predicted impulses, 150 gf/s ramp to 20 gf, 2 s hold", FAST, TIME, (IMPULSE,), {FORCE: "T080"},
+           Own(height=6.4, paint=trains), rows=trains_and_rates, measured=RATES, how="of the rate, relative to the largest",
+           remarks=(f"{LAW_NOTE}, strain energy 915 µm under the centre; integrate-and-fire, coefficient of variation of the "
+                    f"intervals {VARIATION} (assumed), seed {SEED}. Right: mean predicted rate of the hold; grey: rates printed "
+                    "beside the recordings in Fig. 4-2 of Cysyk (1999), from a scan, where a rate between two rows may belong to "
+                    "either.",)),
+    Figure("4-3", "Predicted instantaneous frequency, 40 gf/s ramp to 20 gf", NINE, TIME, (FREQUENCY,),
+           {TIME: "T091", FREQUENCY: "T090"}, Own(height=4.9, paint=nine_frequencies), rows=frequencies,
+           how="of the peak rate, relative to the largest",
+           remarks=(f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses (integrate-and-fire, "
+                    f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",)),
+    of_rates("4-4", "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf", steady_over_peak, 4.6, points_and_line,
+             {GIVEN_RATE: "T094", STEADY_RATE: "T095"}, x=GIVEN_RATE, y=(STEADY_RATE,), remarks=(STEADY_NOTE,)),
+    of_rates("4-5", "Predicted peak and steady rates against curvature", over_curvature, 4.6, peak_and_steady_over_curvature,
+             {GIVEN_RATE: "T096", CURVATURE: "T162"}, remarks=(STEADY_NOTE,)),
+    Figure("4-9", "Predicted rate against the inverse of the contact width in the hold", NINE, INVERSE_WIDTH, (IMPULSE_RATE,),
+           {INVERSE_WIDTH: by_surface("T106 T108 T110 T112 T114 T115 T116 T118 T120"),
+            IMPULSE_RATE: by_surface("T107 T109 T111 T113 T117 T119 T121", ("flat", "79", "105", "158", "420", "630", "1260"))},
+           nine(SURFACES, 7.0, fill=rate_over_width, limit=""), rows=rate_and_width, how=OF_THE_LARGEST,
+           remarks=(f"{DEEP} Time runs leftwards: the contact grows.",)),
+    Figure("4-17", "Pressure at twelve nodes and its decay by Eq. 4-1, K = 210 1/m", K210, TIME, (P, P_LAW),
+           {TIME: "T155", P: "T154"}, Own(height=6.9, header=0.2, paint=twelve_nodes), rows=nodes_by_law,
+           remarks=("Eq. 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the edge's) + A3, from the peak "
+                    "of a node on; constants by least squares. Nodes count from one spacing inside the edge on.",)),
+    of_rates("4-18", "Predicted peak rate against peak contact pressure", peaks_over_pressure, 4.6, points_and_line,
+             {P_PEAK: "T159", GIVEN_RATE: "T160"}, x=P_PEAK),
+    of_rates("4-19", "Mean rate from mean contact pressure, against curvature", linear_in_pressure, 4.3, rates_by_pressure,
+             {GIVEN_RATE: "T161", CURVATURE: "T162"},
+             remarks=(f"{DEEP} Left: mean over the hold, as in the thesis, whose recorded rates are not public. Right: Goodwin, "
+                      "Browning and Wheat (1995), digitised by a third party, impulses in the first second at 20 gf; gain and "
+                      "threshold of the line fitted to them.",)),
+    Figure("4-22", "Strain energy density at 915 µm, and from contact pressure by Eq. 4-4", NINE, TIME, (SED, SED_LAW),
+           {SED: by_surface("T181 T182 T183 T184 T185 T186 T187a T187b T187c")},
+           nine(SURFACES, 6.8, fill=energy_and_law, limit="y", set=HOLD), rows=energy_by_pressure,
+           note=note_with(constants_note)),
+    of_rates("4-25", "Predicted mean rate of the hold, 150 gf/s ramp to 20 gf", held_rates, 4.6,
+             lambda fig, frame, spec: draw_rates(fig.subplots(), frame), {GIVEN_RATE: "T201", CURVATURE: "T202"}, FAST,
+             remarks=(f"{DEEP[:-1]}; nothing is fitted here. Squares: mean rates printed beside Fig. 4-2 of Cysyk (1999), read "
+                      "from a scan (17.0 without its point); a bar joins the two surfaces that a rate may belong to.",)),
+    from_depth("4-26", RECEPTOR_DEPTH, "T203"),
+    from_depth("4-27", SHALLOW_DEPTH, "T204"),
+    of_rates("4-29", "Predicted peak rate, and from the peak rate of strain energy, against curvature", peak_rates, 4.4,
+             peaks_by_energy_rate, {GIVEN_RATE: "T207", CURVATURE: "T208"}, (NINE, FAST),
+             note=note_with(energy_rate_note, OF_THE_LARGEST)),
+)  # fmt: skip

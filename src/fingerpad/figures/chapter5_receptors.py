@@ -1,0 +1,433 @@
+"""Chapter 5: what a slowly adapting receptor makes of strokes, predicted by Eqs 4-4 and 5-1 with the thesis's constants.
+
+Where the thesis shows recordings, which are not public, these figures show predictions on the same axes and say so: rates by
+Eq 5-1 from the simulated strain energy, and impulses of a seeded integrate-and-fire receptor at these rates. What a user puts
+into ``config/reference/recordings`` is laid over the bursts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from fingerpad.figures import axes as axs
+from fingerpad.figures.chapter5 import DEEP, RED_DASHED, SHALLOW, TEN, TEN_RUN
+from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, stack
+from fingerpad.measures.features import ERROR, SIMULATED, error_percent, is_simulated
+from fingerpad.measures.quantities import (
+    BURST_RATE,
+    BURST_TIME,
+    BURST_WIDTH,
+    CURVATURE,
+    DISTANCE,
+    FREQUENCY,
+    IMPULSE_RATE,
+    RATE,
+    RECEPTOR,
+    SED,
+    SPEED,
+    STATIC,
+    STROKE_TIME,
+    TIME,
+    TRIAL,
+    Q,
+)  # fmt: skip
+from fingerpad.measures.responses import (
+    ASIDE,
+    SEED,
+    STROKES_SHOWN,
+    burst_values,
+    bursts,
+    curvature_of,
+    impulses_of,
+    mean_frequency,
+    plate_rate,
+    predicted_rate,
+    ramp_and_hold_rates,
+    raster,
+    skin_sample,
+    skin_shift,
+    stroke_histogram,
+    stroke_law,
+)
+from fingerpad.measures.runs import CYLINDERS, NINE, RIDGED, SPEEDS, WITHIN_350, Runs
+from fingerpad.measures.strokes import distance, energy_at, label_errors, loaded, rms_error
+from fingerpad.publishing import style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Picture
+
+PREDICTED = f"{SIMULATED}: predicted by Eq 5-1"
+BY_PRESSURE = {
+    "constant shift": f"{SIMULATED}: Eq 4-4 and a constant shift",
+    "shift of the skin": f"{SIMULATED}: Eq 4-4 and the shift of the skin",
+}
+RASTER, HISTOGRAM = "raster", "histogram"
+FOUR = SPEEDS.only(("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s"))
+EIGHT = NINE.only(CYLINDERS)
+BURST = "A burst is the time during which the strain energy is above 150 Pa; its rate is the mean predicted rate over that time."
+RESPONSES = {"peak": "ramp and hold, peak", "end of the hold": "ramp and hold, steady state"}
+STROKED = "stroked at 10 mm/s"
+WAYS = {"right": "(a) plate stroked to the right", "left": "(b) plate stroked to the left"}
+RATE_WORDS = "predicted rate\n(impulses/s)"
+
+
+def equation(depth: float = DEEP) -> str:
+    """What the pictures say of their rates."""
+    return (
+        "Predicted, nothing recorded: Eq 5-1 with the thesis's constants and the simulated strain energy "
+        f"{depth * 1e6:.0f} µm under the centre."
+    )
+
+
+def of_rate(column: Q, depth: float = DEEP) -> Q:
+    """A column of `predicted_rate` at the loaded outputs of a stroke."""
+    return column.reading(lambda stroke: predicted_rate(stroke, depth)[column].to_numpy())
+
+
+def rate_error(history: xr.Dataset, coarse: xr.Dataset | None, depth: float = DEEP) -> float:
+    return rms_error(history, coarse, of_rate(IMPULSE_RATE, depth).read)
+
+
+# --- rows ------------------------------------------------------------------------------------------------
+
+
+def rasters(data: Data, number: str, low: float, high: float, depth: float = DEEP) -> pd.DataFrame:
+    """Predicted impulses of repeated strokes at 10 mm/s over a part of the surface (mm), and their histogram."""
+    ((_, history, coarse),) = data.runs(TEN_RUN)
+    repetitions = STROKES_SHOWN[number]
+    rate, impulses = impulses_of(history, repetitions, depth)
+    ticks = impulses.rename(columns={"trial": TRIAL})[[TRIAL, DISTANCE]].assign(panel=RASTER)
+    bars = stroke_histogram(rate, impulses, repetitions).assign(panel=HISTOGRAM)
+    rows = pd.concat([ticks, bars], ignore_index=True)
+    rows = rows[rows[DISTANCE].between(low, high)].assign(source=PREDICTED, series=TEN)
+    rows[RECEPTOR], rows[ERROR] = depth * 1e6, rate_error(history, coarse, depth)
+    return pd.concat([data.surface(TEN_RUN[TEN], low, high), rows], ignore_index=True)
+
+
+def frequencies(data: Data) -> pd.DataFrame:
+    """Instantaneous frequency of predicted impulses of a shallow receptor, mean of 12 strokes at every velocity."""
+    parts, repetitions = [data.surface(TEN_RUN[TEN], 40, 80)], STROKES_SHOWN["5-23"]
+    at = np.arange(40, 80.01, 0.1)
+    for series, history, coarse in data.runs(SPEEDS):
+        rate, impulses = impulses_of(history, repetitions, SHALLOW)
+        frequency = mean_frequency(impulses, repetitions, np.interp(at, rate[DISTANCE], rate[TIME]))[FREQUENCY]
+        row = {"source": PREDICTED, "panel": series, "series": series, DISTANCE: at, FREQUENCY: frequency}
+        parts.append(pd.DataFrame(row | {RECEPTOR: SHALLOW * 1e6, ERROR: rate_error(history, coarse, SHALLOW)}))
+    return pd.concat(parts, ignore_index=True)
+
+
+def both_ways(data: Data) -> pd.DataFrame:
+    """Predicted impulses of ten strokes of a plate over a pad with inner ridges, each way."""
+    parts, right = [], RIDGED["right"]
+    for way, scene in RIDGED.scenes.items():
+        rate = plate_rate(data.histories[scene])
+        ticks = raster(rate, STROKES_SHOWN["5-27"], SEED).rename(columns={"trial": TRIAL})[[TRIAL, DISTANCE]]
+        side = partial(plate_trace, offset=ASIDE if way == "right" else -ASIDE)
+        error = rms_error(data.histories[right], data.coarse.get(right), side)
+        for panel, rows in ((RASTER, ticks), ("rate", rate[[DISTANCE, IMPULSE_RATE]])):
+            of = {"source": PREDICTED, "series": way, "panel": panel, RECEPTOR: round(DEEP * 1e6), ERROR: error}
+            parts.append(rows.assign(**of))
+    return pd.concat(parts, ignore_index=True)
+
+
+def plate_trace(stroke: xr.Dataset, offset: float) -> np.ndarray:
+    """Predicted rate at every output, after a kink between legs where there is one."""
+    return predicted_rate(stroke, DEEP, offset=offset).drop_duplicates(TIME, keep="last")[IMPULSE_RATE].to_numpy()
+
+
+def burst_rows(data: Data, runs: Runs, columns: Sequence[Q]) -> pd.DataFrame:
+    """Burst of each convexity at some velocities, and a user's recorded ones, for none is public."""
+    parts = []
+    for series, history, coarse in data.runs(runs):
+        found = bursts(loaded(history))
+        errors = [list(label_errors(history, coarse, partial(burst_values, column=c)).values()) for c in columns]
+        with np.errstate(all="ignore"):
+            error = np.fmax.reduce(np.array(errors, float))
+        part = {"source": PREDICTED, "series": series, "panel": series, SPEED: float(series.split()[0])}
+        part |= {"convexity": found["convexity"]} | {c: found[c] for c in (CURVATURE, *columns)}
+        parts.append(pd.DataFrame(part | {ERROR: error}))
+    if (rates := data.measured) is not None:
+        names = rates["speed_mm_per_s"].map("{:g} mm/s".format)
+        rows = rates[(rates["window"] == "burst") & (rates["receptor"] == "SA-I") & names.isin(list(runs))]
+        found = {
+            BURST_RATE: rows["rate_per_s"],
+            BURST_WIDTH: rows["burst_width_mm"],
+            BURST_TIME: rows["burst_width_mm"] / rows["speed_mm_per_s"],
+        }
+        part = {"source": "measured (" + rows["recording"] + ")", "series": names[rows.index], "panel": names[rows.index]}
+        part |= {SPEED: rows["speed_mm_per_s"], CURVATURE: rows["curvature_per_m"]} | {c: found[c] for c in columns}
+        parts += [pd.DataFrame(part)] if len(rows) else []
+    return pd.concat(parts, ignore_index=True)
+
+
+def stroked_and_pressed(data: Data) -> pd.DataFrame:
+    """Predicted rates against curvature: mean of the burst when stroked, peak and steady state when pressed."""
+    rows = []
+    for _, history, coarse in data.runs(NINE.only(WITHIN_350)):
+        found = ramp_and_hold_rates(history)
+        for key, series in RESPONSES.items():
+            error = error_percent(history, coarse, lambda d, key=key: ramp_and_hold_rates(d)[key])
+            rows.append((PREDICTED, series, curvature_of(history), found[key], error))
+    frame = pd.DataFrame(rows, columns=["source", "series", CURVATURE, IMPULSE_RATE, ERROR])
+    burst = burst_rows(data, TEN_RUN, (BURST_RATE,)).rename(columns={BURST_RATE: IMPULSE_RATE})
+    return pd.concat([frame, burst.drop(columns=["panel", "convexity", SPEED]).assign(series=STROKED)], ignore_index=True)
+
+
+def by_pressure(data: Data) -> pd.DataFrame:
+    """Strain energy at 915 um, simulated and by Eq 4-4: constants of the ramps, shift constant or the skin's."""
+    law, shift = stroke_law(data.histories)
+    parts = [data.surface(TEN_RUN[TEN], 0, 80)]
+    for series, history, coarse in data.runs(SPEEDS):
+        stroke = loaded(history)
+        sample = skin_sample(stroke, DEEP)
+        shared = {"series": series, DISTANCE: distance(stroke) * 1e3, RECEPTOR: DEEP * 1e6}
+        error = rms_error(history, coarse, energy_at(DEEP))
+        parts.append(pd.DataFrame({"source": SIMULATED} | shared | {SED: sample.energy, ERROR: error}))
+        shifts = {"constant shift": shift, "shift of the skin": skin_shift(stroke)}
+        for how, source in BY_PRESSURE.items():
+            values = law.strain_energy(sample.x, sample.pressure, sample.indentation, shifts[how])
+            parts.append(pd.DataFrame({"source": source} | shared | {SED: values}))
+    return pd.concat(parts, ignore_index=True)
+
+
+def over_time(data: Data, columns: Sequence[Q]) -> pd.DataFrame:
+    """Columns of `predicted_rate` over time while the surface slides, 10 mm/s."""
+    return data.traces(TEN_RUN, (STROKE_TIME, *map(of_rate, columns)))
+
+
+def energy_and_histogram(data: Data) -> pd.DataFrame:
+    """Strain energy and its rate at 915 um over time, 10 mm/s, and the histogram of 12 predicted strokes."""
+    ((_, history, coarse),) = data.runs(TEN_RUN)
+    repetitions = STROKES_SHOWN["5-19"]
+    rate, impulses = impulses_of(history, repetitions)
+    bars = stroke_histogram(rate, impulses, repetitions)
+    times = np.interp(bars[DISTANCE], rate[DISTANCE], rate[TIME] - rate[TIME].iloc[0])
+    part = {"source": PREDICTED, "series": TEN, "panel": HISTOGRAM, TIME: times, IMPULSE_RATE: bars[IMPULSE_RATE]}
+    bars = pd.DataFrame(part | {ERROR: rate_error(history, coarse)})
+    return pd.concat([over_time(data, (SED, RATE)), bars], ignore_index=True)
+
+
+def pressed_rates(data: Data) -> pd.DataFrame:
+    """Rate by Eq 5-1 over time for eight cylinders pressed at 40 gf/s and held."""
+    parts = []
+    for label, history, coarse in data.runs(EIGHT):
+        error = error_percent(history, coarse, lambda d: ramp_and_hold_rates(d)["peak"])
+        part = {"source": PREDICTED, "surface": label, **predicted_rate(history)[[TIME, IMPULSE_RATE, STATIC]]}
+        parts.append(pd.DataFrame(part | {ERROR: error}))
+    return pd.concat(parts, ignore_index=True)
+
+
+# --- pictures --------------------------------------------------------------------------------------------
+
+
+def draw_raster(ax: Axes, frame: pd.DataFrame, count: int) -> None:
+    """One row of ticks a stroke, the first one above."""
+    rows = frame[(frame["panel"] == RASTER) & is_simulated(frame)]
+    trains = [rows.loc[rows[TRIAL] == trial, DISTANCE].to_numpy() for trial in range(1, count + 1)]
+    ax.eventplot(trains, lineoffsets=range(1, count + 1), linelengths=0.7, linewidths=0.9, colors=[style.INK])
+    ax.set(ylim=(count + 0.6, 0.4), yticks=[1, count] if count > 5 else range(1, count + 1), ylabel="predicted stroke")
+    ax.tick_params(left=False)
+
+
+def draw_bars(ax: Axes, frame: pd.DataFrame, x: Q, width: float) -> None:
+    rows = frame[frame["panel"] == HISTOGRAM]
+    ax.bar(rows[x], rows[IMPULSE_RATE], width, color=style.INK, lw=0)
+
+
+def ticks_below_surface(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Predicted rasters below the surface, and their histogram if the spec has one (y)."""
+    panels = axs.below_surface(fig, frame, 1 + len(spec.y))
+    draw_raster(panels[0], frame, STROKES_SHOWN[spec.number])
+    if spec.y:
+        draw_bars(panels[1], frame, DISTANCE, 0.5)
+        panels[1].set_ylabel(RATE_WORDS)
+    axs.limit_axis(panels[-1], frame, DISTANCE, "x")
+    panels[-1].set_xlabel(DISTANCE.label)
+
+
+def plate_both_ways(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Ten predicted rasters each way, and their rate below."""
+    (*ticks,), (*rates,) = fig.subplots(2, 2, sharex=True, sharey="row", height_ratios=[1.6, 1])
+    for way, top, below in zip(WAYS, ticks, rates, strict=True):
+        rows = frame[frame["series"] == way]
+        draw_raster(top, rows, STROKES_SHOWN["5-27"])
+        rate = rows[rows["panel"] == "rate"]
+        below.plot(rate[DISTANCE], rate[IMPULSE_RATE], color=style.INK, lw=1.2)
+        if not (rows["panel"] == RASTER).any():
+            top.text(0.5, 0.5, "no impulse predicted", transform=top.transAxes, ha="center", color=style.GREY)
+        top.set_title(WAYS[way])
+        below.set(xlabel="stroke distance (mm)", xlim=(0, 50))
+    rates[0].set_ylim(0, None)
+    ticks[1].set_ylabel("")
+    rates[0].set_ylabel(RATE_WORDS)
+
+
+def plate_note(frame: pd.DataFrame) -> list[str]:
+    most = frame.groupby("series").size().idxmax()  # an error relative to next to no response tells nothing
+    where = "The receptor lies 46 µm to the right of the centre, under the flank of a ridge."
+    own = axs.footnote(frame[frame["series"] == most], f"to the {most}, {HOW}")
+    return [*own, equation().replace("under the centre", "deep"), where]
+
+
+def recorded(frame: pd.DataFrame) -> pd.DataFrame:
+    return frame[frame["source"].str.startswith("measured")]
+
+
+def draw_bursts(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+    """Predicted bursts as a line, recorded ones as crosses."""
+    own, other, y = rows[rows["source"] == PREDICTED], recorded(rows), spec.y[0]
+    look = {"color": style.INK} | (axs.look(own["series"].iloc[0]) if len(spec.all_runs[0]) > 1 else {})
+    ax.plot(own[CURVATURE], own[y], marker="o", ms=3.5, label="predicted", **look)
+    if len(other):
+        ax.plot(other[CURVATURE], other[y], "x", color=style.COLOURS["315"], label="recorded")
+
+
+def width_and_rate(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Burst width (a) and rate (b) against curvature."""
+    for ax, tag, y in zip(fig.subplots(2, 1), "ab", spec.y, strict=True):
+        axs.limit_axes(ax, frame, CURVATURE, y)
+        if y == BURST_RATE:
+            ax.set_ylim(0, None)  # most of the predicted rates are below the 10 that the thesis's axis begins with
+        draw_bursts(ax, frame, replace(spec, y=(y,)))
+        ax.set(xlabel=CURVATURE.label, ylabel=y.label, title=f"({tag})")
+
+
+def against_velocity(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Burst width (a) and rate (b) against velocity, a line a convexity."""
+    own, other = frame[frame["source"] == PREDICTED], recorded(frame)
+    shades = style.colours("plasma", 0.0, 0.82, own["convexity"].unique())
+    for ax, tag, y in zip(fig.subplots(2, 1), "ab", spec.y, strict=True):
+        axs.limit_axes(ax, frame, SPEED, y)
+        ends = {}
+        for label, rows in own.groupby("convexity", sort=False):
+            ax.plot(rows[SPEED], rows[y], marker="o", ms=3, color=shades[label], lw=1.1)
+            ends[label] = rows[y].iloc[-1]
+        ax.plot(other[SPEED], other[y], "x", color=style.INK, ms=4)
+        low, high = ax.get_ylim()
+        gap = 0.055 * (high - low)
+        for label, place in zip(ends, style.spread(list(ends.values()), gap, low + gap / 2, high - gap), strict=True):
+            ax.plot([40.4, 42.3], [ends[label], place], color=shades[label], lw=0.6)
+            ax.text(42.5, place, label, color=shades[label], va="center", fontsize=7.5)
+        ax.text(42.5, high, "curvature (1/m)", va="top", fontsize=7)
+        ax.set(xlabel=SPEED.label, ylabel=y.label, title=f"({tag})")
+
+
+def three_responses(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Stroked (solid), pressed: peak (dashed), steady state (dotted)."""
+    ax = fig.subplots()
+    looks = {
+        STROKED: {"ls": "-", "marker": "s", "color": style.COLOURS["315"]},
+        RESPONSES["peak"]: {"ls": style.DASHED, "marker": "o", "color": style.INK},
+        RESPONSES["end of the hold"]: {"ls": style.DOTTED, "marker": "o", "mfc": "white", "color": style.INK},
+    }
+    for series, look in looks.items():
+        rows = frame[(frame["source"] == PREDICTED) & (frame["series"] == series)]
+        ax.plot(rows[CURVATURE], rows[IMPULSE_RATE], ms=4, label=f"predicted, {series}", **look)
+    if len(rows := recorded(frame)):
+        ax.plot(rows[CURVATURE], rows[IMPULSE_RATE], "x", color=style.COLOURS["315"], label="recorded, stroked")
+    axs.limit_axes(ax, frame, CURVATURE, IMPULSE_RATE)
+    ax.set(xlabel=CURVATURE.label, ylabel=IMPULSE_RATE.label)
+    ax.legend(loc="upper left", handlelength=3)
+
+
+def three_laws(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    ax = panels[TEN]
+    style.header_legend(ax.figure, ax.lines)
+
+
+def room_for_brackets(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    axs.leave_room_for_brackets(next(iter(panels.values())).figure)
+
+
+def energy_rate_and_bars(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+    """Energy cut at its threshold, positive rate, predicted histogram."""
+    axs.leave_room_for_brackets(fig)
+    energy, rate, bars = fig.subplots(3, 1, sharex=True)
+    rows = frame[frame["source"] == SIMULATED]
+    energy.plot(rows[TIME], rows[SED].clip(lower=150), color=style.INK)
+    rate.plot(rows[TIME], rows[RATE].clip(lower=0), color=style.INK)
+    draw_bars(bars, frame, TIME, 0.05)
+    words = "strain energy density,\ncut at 150 (Pa)", "positive rate of\nstrain energy (Pa/s)", RATE_WORDS
+    for ax, column, name in zip((energy, rate, bars), (SED, RATE, IMPULSE_RATE), words, strict=True):
+        axs.limit_axis(ax, frame, column, text=False)
+        ax.set_ylabel(name)
+    axs.limit_axis(bars, frame, TIME, "x")
+    bars.set_xlabel(TIME.label)
+    fig.align_ylabels()
+
+
+def draw_rate(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+    """Predicted rate (line) and the part of it that comes from strain energy (area)."""
+    rows = rows[rows["source"] == PREDICTED]
+    ax.plot(rows[TIME], rows[IMPULSE_RATE], color=style.INK, lw=1.2, label="predicted by Eq 5-1")
+    colour = style.SPEED_COLOURS["10"]
+    ax.fill_between(rows[TIME], rows[STATIC], color=colour, alpha=0.35, lw=0, label="of this from strain energy alone")
+
+
+def legend_of_the_first(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    next(iter(panels.values())).legend(loc="upper right")
+
+
+BURSTS = (BURST_WIDTH, BURST_RATE)
+FIGURES = (
+    Figure("5-1", "Predicted impulses of ten strokes at 10 mm/s", TEN_RUN, DISTANCE, (IMPULSE_RATE,), {DISTANCE: "T217"},
+           Own(height=5.6, paint=ticks_below_surface), rows=partial(rasters, number="5-1", low=0.0, high=70.0), how=HOW,
+           remarks=(equation(), "The recorded stroke ended before the convexity of 315 1/m; bins of 0.5 mm.")),
+    Figure("5-2", "Predicted burst width and burst rate, 10 mm/s", TEN_RUN, CURVATURE, BURSTS,
+           {CURVATURE: "T222", BURST_WIDTH: "T220", BURST_RATE: "T221"}, Own(height=6.0, paint=width_and_rate),
+           rows=partial(burst_rows, runs=TEN_RUN, columns=BURSTS), measured="impulse_rates",
+           remarks=(equation(), BURST, "In the thesis (b) begins at 10 impulses/s.")),
+    Figure("5-3", "Predicted burst width and burst rate at five velocities", SPEEDS, SPEED, BURSTS,
+           {SPEED: "T225", BURST_WIDTH: "T223", BURST_RATE: "T224"}, Own(height=7.0, paint=against_velocity),
+           rows=partial(burst_rows, runs=SPEEDS, columns=BURSTS), measured="impulse_rates", remarks=(equation(), BURST)),
+    Figure("5-14", "Strain energy density 915 µm under the centre, simulated and by Eq 4-4", (SPEEDS, NINE.without_companions()),
+           DISTANCE, (SED,), {DISTANCE: "T262", SED: "T264"},
+           stack(7.4, header=0.2,
+                 fill=Lines(by="source", names={source: source.removeprefix(f"{SIMULATED}: ") for source in BY_PRESSURE.values()},
+                            looks={SIMULATED: {"color": style.INK, "ls": "-", "lw": 1.3},
+                                   BY_PRESSURE["constant shift"]: RED_DASHED | {"lw": 1.2},
+                                   BY_PRESSURE["shift of the skin"]:
+                                       {"color": style.SPEED_COLOURS["10"], "ls": (0, (1, 1.2)), "lw": 1.1}})),
+           rows=by_pressure, surface=(0, 80), extra=three_laws,
+           remarks=("The error is that of the simulated energy. Eq 4-4 has the constants that fit the nine pressed surfaces;",
+                    "its constant shift is the one that fits the stroke at 10 mm/s.")),
+    Figure("5-16", "Predicted burst duration at four velocities", FOUR, CURVATURE, (BURST_TIME,),
+           {CURVATURE: "T273", BURST_TIME: {series: f"T{269 + k}" for k, series in enumerate(FOUR)}},
+           Panels(height=5.4, by="panel", names=tuple(FOUR), shape=(2, 2), fill=draw_bursts, each=True,
+                  titles=lambda series: f"v = {series}"),
+           key="panel", rows=partial(burst_rows, runs=FOUR, columns=(BURST_TIME,)), measured="impulse_rates",
+           remarks=(BURST.split(";")[0] + " 915 µm under the centre. Predicted, nothing recorded.",)),
+    Figure("5-17", "Predicted impulse rate, stroked and pressed", (NINE.only(WITHIN_350), TEN_RUN), CURVATURE, (IMPULSE_RATE,),
+           {CURVATURE: "T275", IMPULSE_RATE: "T274"}, Own(height=4.6, paint=three_responses), rows=stroked_and_pressed,
+           measured="impulse_rates", remarks=(equation(), "Stroked: " + BURST[0].lower() + BURST[1:])),
+    Figure("5-19", "Strain energy, its rate, and predicted impulses of 12 strokes at 10 mm/s", TEN_RUN, STROKE_TIME,
+           (SED, RATE, IMPULSE_RATE), {TIME: "T281", SED: "T278", RATE: "T279", IMPULSE_RATE: "T280"},
+           Own(height=6.4, paint=energy_rate_and_bars), rows=energy_and_histogram, how=HOW, remarks=(equation(),)),
+    Figure("5-20", "Predicted impulse rate of a stroke at 10 mm/s", TEN_RUN, STROKE_TIME, (IMPULSE_RATE,),
+           {TIME: "T288", IMPULSE_RATE: "T287"}, Panels(height=4.2, fill=draw_rate, legend={"loc": "upper left"}),
+           rows=lambda data: over_time(data, (IMPULSE_RATE, STATIC)).assign(source=PREDICTED), how=HOW, remarks=(equation(),)),
+    Figure("5-21", "Predicted impulse rate of eight ramps and holds", EIGHT, TIME, (IMPULSE_RATE,),
+           {TIME: "T297", IMPULSE_RATE: {label: f"T{289 + k}" for k, label in enumerate(EIGHT)}},
+           Panels(height=7.2, by="surface", names=CYLINDERS, shape=(4, 2), fill=draw_rate, each=True, marked="none",
+                  titles=axs.surface_name, ylabel=RATE_WORDS, share={"sharex": True}),
+           rows=pressed_rates, how="largest rate", remarks=(equation(),), extra=legend_of_the_first),
+    Figure("5-22", "Predicted impulses of four strokes at 10 mm/s, receptor 560 µm deep", TEN_RUN, DISTANCE, (),
+           {DISTANCE: "T300"}, Own(height=3.4, paint=ticks_below_surface), how=HOW, remarks=(equation(SHALLOW),),
+           rows=partial(rasters, number="5-22", low=40.0, high=80.0, depth=SHALLOW)),
+    Figure("5-23", "Predicted instantaneous frequency of a receptor 560 µm deep, mean of 12 strokes", SPEEDS, DISTANCE,
+           (FREQUENCY,),
+           {DISTANCE: "T300", FREQUENCY: {series: "T304" if series[:2] in ("20", "40") else "T304a" for series in SPEEDS}},
+           stack(7.0, by="panel", alike=False, marked="none", fill=Lines(looks={FREQUENCY: {"lw": 1.1}}),
+                 ylabel="predicted frequency\n(impulses/s)"),
+           key="panel", rows=frequencies, surface=(40, 80), remarks=(equation(SHALLOW),), extra=room_for_brackets),
+    Figure("5-27", "Predicted impulses of a flat plate stroked both ways at 10 mm/s, inner ridges", RIDGED, DISTANCE,
+           (IMPULSE_RATE,), {}, Own(height=4.6, paint=plate_both_ways), rows=both_ways, note=plate_note),
+)  # fmt: skip

@@ -1,0 +1,443 @@
+"""A figure of the thesis, said once: which runs, which quantities, which layout; its data frame and its picture follow.
+
+::
+
+    Figure("4-23", "Strain energy density 915 µm under the centre", NINE, TIME, (sed(915e-6),),
+           thesis={TIME: "T189", SED: "T188"}, layout=Panels(4.6, lines=Lines(ends=2.62)))
+
+A picture is a function of its frame alone, which is published beside it. The frame of most figures is read by the quantities
+themselves (`Data.traces`); `rows` says another way, with the other methods of `Data`, and `after` adds what only one figure has.
+What a layout does not say is done by `extra` once its panels are drawn. Matplotlib is imported when something is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from fingerpad.figures import axes as axs
+from fingerpad.measures.features import (
+    ERROR,
+    PHASES,
+    SIMULATED,
+    Feature,
+    Histories,
+    at_ends,
+    centre_node,
+    error_percent,
+    in_contact,
+    is_simulated,
+    peak_pressure,
+    phase_indices,
+    profile,
+)
+from fingerpad.measures.quantities import CURVATURE, DISTANCE, DOWN, HEIGHT, TIME, P, Q, X
+from fingerpad.measures.responses import curvature_of
+from fingerpad.measures.runs import Runs
+from fingerpad.measures.strokes import arcs, loaded, profile_and_height, rms_error
+from fingerpad.publishing import style
+from fingerpad.receptors.recordings import read_rates
+from fingerpad.reference_data import read_force_depth, read_surface_profiles
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Picture
+
+    from fingerpad.specimen.mesh import PadMesh
+
+Ids = str | Mapping[object, str]
+"""Id of an axis's range in the table of the thesis's numbers, or an id for each panel, surface or pad."""
+Look = Mapping[str, object]
+"""What a line looks like, in matplotlib's words."""
+HOW = "r.m.s. over the stroke"
+MEASURED: Mapping[str, tuple[str, Callable[..., pd.DataFrame]]] = {
+    "force_depth": ("force_depth/*.csv", read_force_depth),
+    "surface_profiles": ("surface_profiles.csv", lambda paths: read_surface_profiles(*paths)),
+    "impulse_rates": ("impulse_rates/*.csv recordings/*.csv", lambda paths: read_rates(*paths)),
+}
+"""Measured data by name: their files in the folder of reference data (one pattern or more), and their reader."""
+
+
+# --- data ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Data:
+    """What a figure's rows are made from: results by scene, the thesis's numbers, and measured data if it shows any."""
+
+    histories: Histories
+    meshes: Mapping[str, PadMesh]
+    coarse: Histories
+    reference: pd.DataFrame
+    measured: pd.DataFrame | None = None
+
+    def runs(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset, xr.Dataset | None]]:
+        """Name, history, and coarse companion if there is one, of every run."""
+        for name, scene in runs.scenes.items():
+            yield name, self.histories[scene], self.coarse.get(scene)
+
+    def traces(self, runs: Runs, columns: Sequence[Q], checked: Sequence[Q] = ()) -> pd.DataFrame:
+        """One row an output: the run's name, the columns, and the error of what is `checked` (all columns whose error counts)."""
+        reads = [q.read for q in checked or columns if q.checked]
+        parts = []
+        for name, history, coarse in self.runs(runs):
+            shown = loaded(history) if runs.stroke else history
+            if runs.stroke:
+                error = rms_error(history, coarse, *reads)
+            else:
+                error = error_percent(history, coarse, *(feature for read in reads for feature in at_ends(read)))
+            part = {"source": SIMULATED, runs.column: name} | {q: q.read(shown) for q in columns}
+            parts.append(pd.DataFrame(part | {ERROR: error}))
+        return pd.concat(parts, ignore_index=True)
+
+    def profiles(self, runs: Runs, half: bool = False) -> pd.DataFrame:
+        """Pressure over the contact at the shown outputs: one row a node, at its deformed position."""
+        parts = []
+        for name, history, coarse in self.runs(runs):
+            error = error_percent(history, coarse, *at_ends(peak_pressure))
+            for index, phase in phase_indices(history):
+                x, p = profile(history, index)
+                keep = in_contact(history, index)
+                if half:
+                    keep &= np.arange(len(x)) >= centre_node(history)
+                down = -history["skin_displacement_y"].values[index]
+                part = {"phase": phase, TIME: history["time"].values[index], X: x[keep] * 1e3, DOWN: down[keep] * 1e3}
+                parts.append(pd.DataFrame(part | {P: p[keep], ERROR: error, runs.column: name}))
+        return pd.concat(parts, ignore_index=True)
+
+    def numbers(self, runs: Runs, columns: Mapping[Q, Feature]) -> pd.DataFrame:
+        """One row a surface: curvature, numbers, and their error: the largest, each relative to the largest of all surfaces."""
+        found = {name: (history, coarse) for name, history, coarse in self.runs(runs)}
+        rows = pd.DataFrame({column: {k: read(h) for k, (h, _) in found.items()} for column, read in columns.items()})
+        largest = rows.abs().max()
+        errors = {
+            k: max(100 * abs(read(coarse) - rows.loc[k, c]) / (largest[c] or 1.0) for c, read in columns.items())
+            if coarse is not None
+            else float("nan")
+            for k, (_, coarse) in found.items()
+        }
+        rows.insert(0, CURVATURE, {k: curvature_of(history) for k, (history, _) in found.items()})
+        return rows.assign(**{ERROR: errors}).rename_axis(runs.column).reset_index()
+
+    def surface(self, scene: str, low: float, high: float) -> pd.DataFrame:
+        """Rows of a stroked surface's shape from `low` to `high` (mm along it): height, and curvature (0 on the flats)."""
+        history = self.histories[scene]
+        pieces = arcs(history)
+        ends = [1e3 * a.start for a in pieces] + [1e3 * pieces[-1].end]
+        x = np.union1d(np.arange(low, high + 1e-9, 0.1), [end for end in ends if low < end < high])
+        curvature = np.zeros(len(x))
+        for arc in pieces:
+            curvature[(x >= arc.start * 1e3) & (x < arc.end * 1e3)] = arc.curvature
+        heights = profile_and_height(history)[0].outline(x * 1e-3) * 1e3
+        part = {"source": f"{SIMULATED}: shape of the stimulus", "panel": axs.SURFACE, DISTANCE: x}
+        return pd.DataFrame(part | {HEIGHT: heights, CURVATURE: curvature})
+
+    def axis(self, column: str, ids: Ids, key: str) -> pd.DataFrame:
+        """Rows that mark a thesis axis range: two (its ends) for each id that the reference has, `source` saying so."""
+        rows = []
+        for panel, id_ in (ids if isinstance(ids, Mapping) else {None: ids}).items():
+            if id_ not in self.reference.index:
+                continue
+            entry = self.reference.loc[id_]
+            source = f"thesis axis range ({id_}{', reading uncertain' if entry['kind'] == 'garbled' else ''})"
+            of = {} if panel is None else {key: panel}
+            rows += [{**of, "source": source, column: entry[end]} for end in ("low", "high")]
+        return pd.DataFrame(rows)
+
+
+def below(rows: pd.DataFrame, *others: pd.DataFrame) -> pd.DataFrame:
+    """Frames below each other, the first simulated where it says nothing else; empty ones are left out."""
+    if "source" not in rows:
+        rows.insert(0, "source", SIMULATED)
+    return pd.concat([rows, *(part for part in others if len(part))], ignore_index=True)
+
+
+def stacked(parts: Mapping[object, pd.DataFrame], column: str = "panel") -> pd.DataFrame:
+    """Frames below each other, each with its name in a first column."""
+    return pd.concat(dict(parts), names=[column]).reset_index(0).reset_index(drop=True)
+
+
+# --- figures ---------------------------------------------------------------------------------------------
+
+
+class Layout(Protocol):
+    """How panels are placed and filled. Heights in inch; `header` leaves room under the title."""
+
+    height: float
+    header: float
+
+    def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> None: ...
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One figure of the thesis.
+
+    Attributes
+    ----------
+    number, title
+        The thesis's number (``4-10``) and a title of our own.
+    runs
+        What is shown, one set of runs or more.
+    x, y
+        Quantities across and up; the frame's columns unless `rows` says otherwise.
+    thesis
+        Column -> id of the thesis's axis range, or ids by the values of the column `key`.
+    layout
+        Its picture.
+    rows
+        ``rows(data)``: the rows before those of the axis ranges, where they are not the traces of `y` over `x`.
+    after
+        ``after(data)``: rows after them.
+    keep, checked, constants
+        Of the traces: columns before `x`; quantities whose error counts in place of those of `y`; columns with one value.
+    surface
+        Ends (mm) of the stroked surface that is drawn above.
+    measured
+        Name of the measured data (a key of `MEASURED`) shown beside; empty: none.
+    meshes
+        Whether it is made from the meshes of its runs too.
+    how, remarks, note
+        How the error is taken, and lines added to the note; or ``note(frame)``, the whole of it.
+    extra
+        ``extra(panels, frame)``: what the layout does not say, on the panels by their names.
+    """
+
+    number: str
+    title: str
+    runs: Runs | tuple[Runs, ...]
+    x: Q | None = None
+    y: tuple[Q, ...] = ()
+    thesis: Mapping[str, Ids] = field(default_factory=dict)
+    layout: Layout = None
+    key: str = "surface"
+    rows: Callable[[Data], pd.DataFrame] | None = None
+    after: Callable[[Data], pd.DataFrame] | None = None
+    keep: tuple[Q, ...] = ()
+    checked: tuple[Q, ...] = ()
+    constants: Mapping[str, float] = field(default_factory=dict)
+    surface: tuple[float, float] | None = None
+    measured: str = ""
+    meshes: bool = False
+    how: str | None = None
+    remarks: tuple[str, ...] = ()
+    note: Callable[[pd.DataFrame], Sequence[str]] | None = None
+    extra: Callable[[Mapping[object, Axes], pd.DataFrame], None] | None = None
+
+    @property
+    def all_runs(self) -> tuple[Runs, ...]:
+        """Its sets of runs."""
+        return (self.runs,) if isinstance(self.runs, Runs) else self.runs
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Names of the scenes whose histories the frame is made from."""
+        return tuple(dict.fromkeys(scene for runs in self.all_runs for scene in runs.scenes.values()))
+
+    @property
+    def read_companions(self) -> tuple[str, ...]:
+        """Names of the scenes whose coarse companions the frame reads."""
+        return tuple(dict.fromkeys(scene for runs in self.all_runs for scene in runs.companion_scenes))
+
+    def measurements(self, folder: str | PathLike) -> tuple[pd.DataFrame, ...]:
+        """The measured data in `folder` that `frame` takes after its four arguments: one table or none."""
+        return (MEASURED[self.measured][1](self.measured_files(folder)),) if self.measured else ()
+
+    def measured_files(self, folder: str | PathLike) -> list[Path]:
+        """The files in `folder` that the measured data are read from."""
+        patterns = MEASURED[self.measured][0].split() if self.measured else []
+        return [path for pattern in patterns for path in sorted(Path(folder).glob(pattern))]
+
+    def frame(
+        self,
+        histories: Histories,
+        meshes: Mapping[str, PadMesh],
+        coarse: Histories,
+        reference: pd.DataFrame,
+        measured: pd.DataFrame | None = None,
+    ) -> pd.DataFrame:
+        """The tidy data frame, units in the column names; simulated rows first, a `source` in every row.
+
+        `coarse` holds the companions on a coarser mesh (may be empty: the error column is then NaN), `reference` is the table of
+        `read_reference` (may be empty: thesis ranges are then left out), `measured` a table of `measurements`.
+        """
+        data = Data(histories, meshes, coarse, reference, measured)
+        rows = self.rows(data) if self.rows else self._traces(data)
+        if "source" not in rows:
+            rows.insert(0, "source", SIMULATED)
+        marks = [data.axis(column, ids, self.key) for column, ids in self.thesis.items()]
+        if self.after:
+            marks.append(self.after(data))
+        return pd.concat([rows, *(part for part in marks if len(part))], ignore_index=True)
+
+    def _traces(self, data: Data) -> pd.DataFrame:
+        columns = (*self.keep, self.x, *self.y)
+        rows = pd.concat([data.traces(runs, columns, self.checked) for runs in self.all_runs], ignore_index=True)
+        rows = rows.assign(**self.constants)
+        if self.surface is None:
+            return rows
+        scenes = {name: scene for runs in self.all_runs for name, scene in runs.scenes.items()}
+        above = data.surface(scenes.get("10 mm/s") or next(iter(scenes.values())), *self.surface)
+        return pd.concat([above, rows[rows[DISTANCE] >= self.surface[0] - 1e-9]], ignore_index=True)
+
+    def draw(self, frame: pd.DataFrame) -> Picture:
+        """The picture, a function of the frame alone."""
+        with style.theme():
+            how = self.how if self.how is not None else HOW if self.surface else ""
+            lines = self.note(frame) if self.note else axs.footnote(frame, how) + style.wrapped(self.remarks, 132)
+            fig = style.sheet(self.title, lines, self.layout.height, self.number, self.layout.header)
+            panels = self.layout.draw(fig, frame, self)
+            if self.extra:
+                self.extra(panels, frame)
+            return fig
+
+
+# --- layouts ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lines:
+    """Curves of a panel: one a name in the column `by` (left out, that of the runs) and quantity.
+
+    `looks` of names and quantities go over those of `axes.look`; `names` are what a legend says. `ends`: where (x) surfaces are
+    named directly, under `heading`.
+    """
+
+    by: str = ""
+    looks: Mapping[str, Look] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict)
+    ends: float | None = None
+    heading: str = "curvature (1/m)"
+
+    def __call__(self, ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+        own, ends = rows[is_simulated(rows)], {}
+        for name, curve in own.groupby(self.by or spec.all_runs[0].column, sort=False):
+            for q in spec.y:
+                label = self.names.get(q) or self.names.get(name, str(name) if len(spec.y) == 1 else q)
+                ax.plot(curve[spec.x], curve[q], label=label, **axs.look(name) | self.looks.get(name, {}) | self.looks.get(q, {}))
+            ends[name] = (curve[spec.x].iloc[-1], curve[spec.y[-1]].iloc[-1])
+        if self.ends is not None:
+            style.label_ends(ax, ends, self.ends, self.heading)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Phases:
+    """Curves of a panel: one a time, with the line of its phase, earlier ones below. `colour`: of a surface, in every panel."""
+
+    colour: str = ""
+    order: Sequence[str] = PHASES
+
+    def __call__(self, ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+        own = rows[is_simulated(rows)]
+        times = [TIME] if TIME in own else []
+        for (phase, *_), curve in sorted(own.groupby(["phase", *times]), key=lambda item: self.order.index(item[0][0])):
+            colour = style.COLOURS[self.colour or curve["surface"].iloc[0]]
+            ax.plot(curve[spec.x], curve[spec.y[0]], color=colour, **axs.PHASE_LINES[phase])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Panels:
+    """Panels in a grid, or below the stroked surface: one a value of the column `by`, or one of all rows.
+
+    Attributes
+    ----------
+    by, names, shape
+        Column, its values in order, rows and columns of the grid.
+    titles, corner
+        ``titles(name)`` above a panel, ``corner(name)`` in its upper left.
+    fill
+        What is drawn in each: `Lines`, `Phases` or another ``fill(panel, rows, spec)``.
+    limit
+        Axes that end where the thesis's do: of the panel's rows, or of the whole frame if `alike`.
+    marked
+        Name of the one panel whose bracket says what it is; None: all.
+    set, legend
+        Arguments of ``Axes.set`` for every panel; of ``Axes.legend`` for the last one.
+    xlabel, ylabel, each
+        Words on the axes in place of those of x and y; on the middle panels of the edges, or on all panels there if `each`.
+    share
+        Whether panels in a grid share their axes, in matplotlib's words: ``sharex``, ``sharey``.
+    """
+
+    height: float
+    header: float = 0.0
+    by: str = ""
+    names: Sequence[object] = ("",)
+    shape: tuple[int, int] = (1, 1)
+    titles: Callable[[object], str] | None = None
+    corner: Callable[[object], str] | None = None
+    fill: Callable[[Axes, pd.DataFrame, Figure], None] = Lines()
+    limit: str = "xy"
+    alike: bool = False
+    marked: object = None
+    set: Mapping[str, object] = field(default_factory=dict)
+    legend: Mapping[str, object] | None = None
+    xlabel: str = ""
+    ylabel: str = ""
+    each: bool = False
+    share: Mapping[str, object] = field(default_factory=dict)
+
+    def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
+        """Draw the panels; returned by name, the surface above under ``surface``."""
+        panels, grid = self._place(fig, frame, spec)
+        for name, ax in panels.items():
+            rows = axs.rows_of(frame, self.by, name) if self.by else frame
+            within = axs.together(frame if self.alike else rows, spec.y)
+            text = self.marked is None or name == self.marked
+            if self.limit == "xy":
+                axs.limit_axes(ax, within, spec.x, spec.y[0], text)
+            elif self.limit:
+                axs.limit_axis(ax, within, spec.x if self.limit == "x" else spec.y[0], self.limit, text)
+            self.fill(ax, rows, spec)
+            ax.set(**self.set)
+            if self.titles:
+                ax.set_title(self.titles(name))
+            if self.corner:
+                ax.text(0.008, 0.97, self.corner(name), transform=ax.transAxes, va="top", fontsize=8)
+        high, wide = grid.shape
+        for ax in grid[-1] if self.each else grid[-1, wide // 2 : wide // 2 + 1]:
+            ax.set_xlabel(self.xlabel or spec.x.label)
+        for ax in grid[:, 0] if self.each else grid[high // 2 : high // 2 + 1, 0]:
+            ax.set_ylabel(self.ylabel or spec.y[0].label)
+        if self.legend is not None:
+            grid[-1, -1].legend(**self.legend)
+        return panels
+
+    def _place(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> tuple[dict[object, Axes], np.ndarray]:
+        if spec.surface is None:
+            grid = fig.subplots(*self.shape, squeeze=False, **self.share)
+            return dict(zip(self.names, grid.ravel(), strict=False)), grid
+        below = axs.below_surface(fig, frame, len(self.names), along=spec.x == DISTANCE)
+        return dict(zip(self.names, below, strict=True)), np.array(below)[:, None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Own:
+    """A picture of its own: ``paint(fig, frame, spec)`` draws it on the empty page."""
+
+    height: float
+    header: float = 0.0
+    paint: Callable[[Picture, pd.DataFrame, Figure], None]
+
+    def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
+        self.paint(fig, frame, spec)
+        return {}
+
+
+def nine(names: Sequence[object], height: float, **options) -> Panels:
+    """Nine panels in the thesis's order, the flat plate top left and the sharpest surface bottom right."""
+    options = {"by": "surface", "titles": axs.surface_name} | options
+    return Panels(height=height, names=names, shape=(3, 3), **options)
+
+
+def stack(height: float, **options) -> Panels:
+    """A panel a velocity below the surface."""
+    options = {"by": "series", "corner": lambda series: f"v = {series}", "alike": True, "marked": "10 mm/s"} | options
+    return Panels(height=height, names=tuple(f"{v} mm/s" for v in style.SPEED_COLOURS), **options)
