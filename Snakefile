@@ -45,6 +45,9 @@ except SceneError as error:  # one line, without Snakemake's words round it
     sys.exit(2)
 
 
+report: "workflow/report/workflow.rst"
+
+
 include: "workflow/rules/jobs.smk"
 
 
