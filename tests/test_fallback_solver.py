@@ -1,0 +1,43 @@
+"""Without PARDISO: SuperLU gives the same answers, pressed, stroked with friction, and by the linear theory."""
+
+import numpy as np
+import pytest
+
+from fingerpad import load_scene, simulate
+from fingerpad.mechanics import linear_solver
+from wrong_scenes import write
+
+pytestmark = pytest.mark.unit
+
+PRESS = {"press_to_force": "20 gf", "rate": "40 gf/s"}
+CASES = {
+    "pressed": {"motion": [PRESS, {"hold": "0.5 s"}]},
+    "small strain": {"motion": [PRESS], "effects": {"finite_strain": "off"}},
+    "stroked": {"motion": [PRESS, {"slide": "0.5 mm", "speed": "10 mm/s", "keep": "force"}], "friction": 0.5},
+}
+
+
+def by(name, scene, monkeypatch):
+    monkeypatch.setenv("FINGERPAD_LINEAR_SOLVER", name)
+    history = simulate(scene)
+    assert f'"linear_solver": "{name}"' in history.attrs["cost"]
+    return history
+
+
+@pytest.mark.skipif(not linear_solver.pardiso_available(), reason="PARDISO is not installed here")
+@pytest.mark.parametrize("case", CASES)
+def test_fallback_gives_the_same_answers(case, tmp_path, monkeypatch):
+    stimulus = {"shape": "cylinder", "curvature": "210 1/m"}
+    accuracy = {"skin_edge": "0.5 mm", "steps": 8}
+    scene = load_scene(write(tmp_path, {"stimulus": stimulus, "accuracy": accuracy, **CASES[case]}))
+    found, truth = by("superlu", scene, monkeypatch), by("pardiso", scene, monkeypatch)
+    for name in ("indentation_depth", "force", "tangential_force", "stored_energy", "contact_pressure", "strain_energy_density"):
+        scale = max(np.abs(truth[name].values).max(), 1e-12)
+        np.testing.assert_allclose(found[name].values, truth[name].values, atol=1e-9 * scale, rtol=0, err_msg=name)
+    assert int(found.newton_iterations.sum()) == int(truth.newton_iterations.sum())
+
+
+def test_fallback_is_taken_where_there_is_no_pardiso(monkeypatch):
+    monkeypatch.setattr(linear_solver, "_mkl_path", lambda: None)
+    pattern = linear_solver.SymmetricPattern(np.array([[0, 1, 2]]), 3)
+    assert linear_solver.condensation(pattern, np.array([1])).name == "superlu"
