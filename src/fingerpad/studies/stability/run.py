@@ -162,6 +162,11 @@ def _simulate(case, method, refined):
 
 def run(case: Case, method: str = METHODS[0], halve: bool = True) -> Run | None:
     """Simulate a case by a method, and once more with half the step; None where the method has no mesh for it."""
+    found = _run(case, method)
+    return halved(case, found, method) if halve and found is not None else found
+
+
+def _run(case, method):
     try:
         history = _simulate(case, method, 1)
     except NonConvergence as failure:
@@ -176,11 +181,21 @@ def run(case: Case, method: str = METHODS[0], halve: bool = True) -> Run | None:
     if case.may_fail:
         error = history.attrs["estimated_error"]
         return Run(history, True, ADMITS if error >= 0.5 else SILENT, f"estimated error {error:.2g}", measured)
-    if halve:
-        try:
-            measured["halving"] = difference(_simulate(case, method, 2), history)
-        except NonConvergence:
-            measured["halving"] = np.inf
+    return _judged(case, history, measured)
+
+
+def halved(case: Case, found: Run, method: str = METHODS[0]) -> Run:
+    """A run, judged also by how much half its step changes; one that broke off, or may, is left as it is."""
+    if not found.completed or case.may_fail:
+        return found
+    try:
+        change = difference(_simulate(case, method, 2), found.history)
+    except NonConvergence:
+        change = np.inf
+    return _judged(case, found.history, {**found.measured, "halving": change})
+
+
+def _judged(case, history, measured):
     beyond = excess(measured, case.limits)
     return Run(history, True, SILENT if beyond else STABLE, "; ".join(beyond), measured)
 
