@@ -120,14 +120,18 @@ def test_an_engineer_varies_a_bar_thirty_times():
 
 
 def test_an_engineer_measures_a_profile(capsys):
-    """A cylinder sampled every 0.1 mm is the cylinder, pressed and stepped."""
+    """A cylinder sampled every 0.1 mm is the cylinder; so is a scan of it every 5 um, rounded to whole micrometres."""
     x = np.linspace(-2.4, 2.4, 49)
     rows = [f"{a:.4f},{2.5 - np.sqrt(2.5**2 - a**2):.5f}" for a in x]
     Path("scan.csv").write_text("\n".join(["x (mm),y (mm)", *rows]), encoding="utf-8")
     _, exact = told("exact", capsys, motion=[STEADY])
     _, scan = told("scan", capsys, stimulus={"shape": "sampled", "csv": "scan.csv"}, motion=[STEADY])
+    x = np.arange(-2400, 2401, 5) / 1000
+    np.savetxt("fine.csv", np.column_stack([x, 2.5 - np.sqrt(2.5**2 - x**2)]), "%.3f", ",", header="x (mm),y (mm)", comments="")
+    _, fine = told("fine", capsys, stimulus={"shape": "sampled", "csv": "fine.csv"}, motion=[STEADY, {"lift": "steady"}])
     for key in ("depth_mm", "contact_width_mm", "centre_pressure_Pa"):
         assert last(scan)[key] == pytest.approx(last(exact)[key], rel=0.05), key
+        assert fine["legs"][0][key] == pytest.approx(last(exact)[key], rel=0.05), key
 
 
 def test_an_engineer_presses_robot_skin(capsys):

@@ -470,15 +470,17 @@ def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], Non
 
 def _force_unit(path: Path) -> str:
     """The unit in which a scene file states a force, or gf."""
-    from fingerpad.documents import SceneError, read_yaml
-    from fingerpad.units import unit_of
+    from fingerpad.documents import SceneError
+    from fingerpad.scenes.families import read_scene
+    from fingerpad.units import QuantityError, unit_of
 
+    if path.exists() and not path.is_file():  # a pipe cannot be read again
+        return "gf"
     try:
-        document = read_yaml(path) if path.is_file() else {}  # a pipe cannot be read again
-    except SceneError:
-        document = {}
-    legs = document.get("motion", ())
-    return next((unit_of(leg["press_to_force"]) for leg in legs if "press_to_force" in leg), "gf")
+        legs = read_scene(path).document["motion"]
+        return next((unit_of(leg["press_to_force"]) for leg in legs if "press_to_force" in leg), "gf")
+    except (SceneError, QuantityError):  # it has changed since
+        return "gf"
 
 
 def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:

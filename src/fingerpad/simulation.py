@@ -266,7 +266,7 @@ class Simulation:
         drift = [
             abs(now - before)
             for now, before, record, last in zip(missing[1:], missing, records[1:], records, strict=False)
-            if record.leg == last.leg and hasattr(self.scene.motion[record.leg], "slide")
+            if record.leg == last.leg and self.scene.motion[record.leg].strokes
         ]
         return sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
 
