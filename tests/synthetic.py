@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from functools import cache
+from functools import cache, wraps
 from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
 
+from fingerpad.results import FRICTION_VARIABLES, VARIABLES, skin_arc
 from fingerpad.scenes.scene import Outline
 from fingerpad.specimen.mesh import MeshSize, PadMesh, build_pad_mesh
 from fingerpad.stimuli.profiles import profile_of
@@ -63,6 +64,28 @@ def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
     return made | {name: stroke(name, scale, edge) for name in STROKES}
 
 
+def _as_simulated(make):
+    """A maker whose histories have every variable and coordinate that simulated ones have: what is not made up is zero."""
+
+    @wraps(make)
+    def made(*args, **keys) -> xr.Dataset:
+        data = make(*args, **keys)
+        if "receptor" not in data.sizes:
+            data = data.assign_coords({name: ("receptor", np.empty(0)) for name in ("receptor_depth", "receptor_offset")})
+        apex = int(np.argmin(np.where(data.skin_y > 0, abs(data.skin_x), np.inf)))
+        data = data.drop_vars("skin_arc", errors="ignore")
+        data = data.assign_coords(skin_arc=("skin_node", skin_arc(data.skin_x.values, data.skin_y.values, apex)))
+        rubbed = bool(json.loads(data.attrs["scene"])["friction"])
+        for name, (dims, units, long_name) in VARIABLES.items():
+            if name not in data and (rubbed or name not in FRICTION_VARIABLES):
+                fill = np.full([data.sizes[dim] for dim in dims], float(name == "min_detF"))
+                data[name] = (dims, fill, {"units": units, "long_name": long_name})
+        return data.set_xindex("skin_arc")
+
+    return made
+
+
+@_as_simulated
 def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """One made-up history that follows the dataset's contract."""
     programme, surface = name.split("_")
@@ -146,6 +169,7 @@ PRESSED = {
 """Presses to depths: stimulus, depths in mm leg by leg, and speed in mm/s and end in s of a ramp and hold (None: steady)."""
 
 
+@_as_simulated
 def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up press to depths: force as the square of depth, half of it relaxing, a smooth dent of the skin."""
     stimulus, targets, timed = PRESSED[name]
@@ -197,6 +221,7 @@ STROKES = {
 """Scenes over the wavy surface: length and step of the way in mm, velocity in mm/s (None: stepped, pressed anew each time)."""
 
 
+@_as_simulated
 def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up stroke: skin that lies on the surface, dragged along, pressed harder where it is more curved."""
     way, step, speed = STROKES[name]
@@ -287,6 +312,7 @@ def _with_ridges(data: xr.Dataset, name: str, ridges) -> xr.Dataset:
     return data.assign_attrs(scene=json.dumps(scene))
 
 
+@_as_simulated
 def ridged(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up press of a pad with ridges: that of the plain pad, twice the energy at the centre and 1.3 times beside it."""
     plain = history("ramp40_" + name.rsplit("_", 1)[1], scale, edge)
@@ -296,6 +322,7 @@ def ridged(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     return _with_ridges(_receptors(plain, [915e-6], [-46e-6, 0.0, 46e-6], values), name, RIDGES)
 
 
+@_as_simulated
 def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up stroke of a plate: 200 Pa, with ridges three times as much on the side that the plate leaves."""
     pad, sign = PLATES[name]

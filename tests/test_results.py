@@ -18,6 +18,7 @@ import pytest
 import xarray as xr
 from scipy.spatial import cKDTree
 
+import synthetic
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_atomically
 from fingerpad.receptors.material_points import MaterialPoints
@@ -289,3 +290,20 @@ def test_without_viscosity_there_is_one_strain_energy():
     for name in (f"strain_energy_{other}" for other in others):
         np.testing.assert_allclose(end[name], end.strain_energy_network, rtol=1e-12, err_msg=name)
         assert float(abs(viscous[name] / viscous.strain_energy_network - 1).min()) > 0.005, name
+
+
+@pytest.mark.parametrize("name", ["ramp40_flat", "steady_line", "stroke_10", "ridged_40_flat", "plate_stroke_left"])
+def test_made_up_histories_have_the_variables_of_simulated_ones(name):
+    """What figures and measures are tested on has every variable and coordinate, on the dimensions that they have in a run."""
+    makers = (
+        (synthetic.PRESSED, synthetic.pressed),
+        (synthetic.STROKES, synthetic.stroke),
+        (synthetic.PLATES, synthetic.plate_stroke),
+    )
+    make = next((make for known, make in makers if name in known), synthetic.ridged if "ridged" in name else synthetic.history)
+    made = make(name)
+    friction = FRICTION_VARIABLES if json.loads(made.attrs["scene"])["friction"] else ()
+    wanted = {n: dims for n, (dims, _, _) in VARIABLES.items() if n not in FRICTION_VARIABLES or n in friction}
+    assert {n: made[n].dims for n in made.data_vars if not n.startswith(FIELDS)} == wanted
+    assert {n: made[n].dims for n in COORDINATES} == {n: (dim,) for n, (dim, _, _) in COORDINATES.items()}
+    assert np.all(np.diff(made.skin_arc) > 0)
