@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fingerpad.measures.features import centre_node, scene_of
+from fingerpad.measures.features import centre_node
 from fingerpad.measures.skin import WINDOW, local_curvature, skin_curvature
+from fingerpad.results import scene_of
 
 SCENES = Path(__file__).parents[1] / "config" / "scenes"
 SPACINGS = (67e-6, 134e-6)  # m, nodes of the thesis's resolution and of a draft
@@ -63,5 +64,5 @@ def test_in_contact_the_skin_has_the_surfaces_curvature(name, accuracy):
     assert centre in inner and len(inner) >= 5
     assert found == pytest.approx([surface] * len(inner), rel=0.01)
     free = skin_curvature(history, centre)[0]
-    radius = scene_of(history)["specimen"]["outline"]["apex_radius"]
+    radius = scene_of(history).specimen.outline.apex_radius
     assert free == pytest.approx(-1 / radius, rel=0.02)  # the unloaded apex bulges

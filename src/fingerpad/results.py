@@ -186,6 +186,12 @@ def _scene(text: str) -> Scene:
     return recorded_scene(json.loads(text))
 
 
+def leg_ends(history: xr.Dataset) -> xr.Dataset:
+    """The history at the last output of each leg."""
+    leg = history.leg.values[1:]
+    return history.isel(time=1 + np.flatnonzero(np.append(leg[1:] != leg[:-1], True)))
+
+
 def summary(history: xr.Dataset) -> dict[str, Any]:
     """The summary of a history: the state at the end of each leg, and what the run took.
 

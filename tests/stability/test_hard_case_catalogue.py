@@ -8,10 +8,10 @@ import yaml
 
 from fingerpad.cli import main
 from fingerpad.mechanics import stepping
-from fingerpad.results import read_history
+from fingerpad.results import leg_ends, read_history
 from fingerpad.studies.stability import picture as figure
 from fingerpad.studies.stability.hard_cases import CATALOGUE, Limits
-from fingerpad.studies.stability.run import CLEAN, METHODS, SILENT, STABLE, checkerboard, excess, halved, leg_ends, run
+from fingerpad.studies.stability.run import CLEAN, METHODS, SILENT, STABLE, checkerboard, excess, halved, run
 
 pytestmark = pytest.mark.stability
 

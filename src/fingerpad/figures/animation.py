@@ -17,9 +17,11 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 from fingerpad.files import write_atomically
-from fingerpad.measures.features import PRESSURE, scene_of
+from fingerpad.measures.features import PRESSURE
+from fingerpad.measures.measure import speed_of
 from fingerpad.measures.strokes import profile_and_height
 from fingerpad.publishing import style
+from fingerpad.results import scene_of
 
 SIZE, DPI = (6.4, 6.2), 100  # inch, dots an inch
 FRAME_TIME = 100  # ms
@@ -116,13 +118,13 @@ def _profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _length(history: xr.Dataset) -> float:
-    return scene_of(history)["specimen"]["contact_length"]
+    return scene_of(history).specimen.contact_length
 
 
 def _speed(history: xr.Dataset) -> str:
     """Heading: the stroking velocity of the scene, if it states one."""
-    slides = [leg for leg in scene_of(history)["motion"] if leg.get("slide")]
-    return f"stroked at {1e3 * slides[0]['speed']:g} mm/s   " if slides and slides[0].get("speed") else ""
+    speed = speed_of(scene_of(history))
+    return f"stroked at {1e3 * speed:g} mm/s   " if speed else ""
 
 
 def _borders(cells: np.ndarray, region: np.ndarray) -> np.ndarray:

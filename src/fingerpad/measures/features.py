@@ -6,15 +6,15 @@ on a mesh of up to twice the edge and half the time steps. Nothing here computes
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from fingerpad.receptors.laws import rate_by_leg
+from fingerpad.results import scene_of
 from fingerpad.units import parse_quantity
 
 if TYPE_CHECKING:
@@ -52,17 +52,6 @@ def scenes(programme: str, labels: Iterable[str] = SURFACES) -> tuple[str, ...]:
     return tuple(scene_name(programme, label) for label in labels)
 
 
-def scene_of(history: xr.Dataset) -> dict[str, Any]:
-    """The validated scene (SI) a history was simulated from."""
-    return json.loads(history.attrs["scene"])
-
-
-def ridges_of(history: xr.Dataset) -> dict[str, Any] | None:
-    """The ridges (SI) of a history's pad, None if it has none."""
-    ridges = scene_of(history)["specimen"]["ridges"]
-    return None if ridges == "none" else ridges
-
-
 def is_simulated(frame: pd.DataFrame) -> pd.Series:
     """Rows of a figure's frame that hold simulated data (the others mark thesis ranges)."""
     return frame["source"].astype(str).str.startswith(SIMULATED)
@@ -84,7 +73,7 @@ def phase_indices(history: xr.Dataset) -> list[tuple[int, str]]:
 
 def force_gf(history: xr.Dataset) -> np.ndarray:
     """Normal force in gram-force (time): line load times the scene's contact length."""
-    length = scene_of(history)["specimen"]["contact_length"]
+    length = scene_of(history).specimen.contact_length
     return history["force"].values * length / parse_quantity("1 gf", "force")
 
 

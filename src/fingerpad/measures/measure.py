@@ -115,9 +115,14 @@ def cylinders(scene: Scene) -> bool:
     return scene.stimulus.shape == "cylinder"
 
 
+def speed_of(scene: Scene) -> float:
+    """Speed (m/s) of the first leg that slides at one; 0 if none does."""
+    return next((leg.speed for leg in scene.motion if leg.strokes and leg.speed), 0.0)
+
+
 def slides(scene: Scene) -> bool:
     """Something slides over the pad at a speed."""
-    return any(leg.strokes and leg.speed for leg in scene.motion)
+    return speed_of(scene) > 0
 
 
 def waves(scene: Scene) -> bool:

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from fingerpad.measures.measure import Measure, anywhere, cylinders, deep, forced, held, named, slides, strokes, wavy
+from fingerpad.measures.measure import Measure, anywhere, cylinders, deep, forced, held, named, slides, speed_of, strokes, wavy
 from fingerpad.measures.responses import NODE_COUNT, TRIALS
 from fingerpad.measures.steady import PLATE
 from fingerpad.receptors.laws import THESIS_RATE
@@ -123,7 +123,7 @@ MOTION = (
     given("ramp_rate", "gf/s", lambda s: s.motion[0].rate / GF, held),
     given("ramp_time", "s", lambda s: s.motion[0].press_to_force / s.motion[0].rate, held),
     given("hold_time", "s", lambda s: sum(leg.hold for leg in s.motion if hasattr(leg, "hold")), held),
-    given("stroke_speed", "mm/s", lambda s: 1e3 * next(leg.speed for leg in s.motion if hasattr(leg, "slide")), slides),
+    given("stroke_speed", "mm/s", lambda s: 1e3 * speed_of(s), slides),
     given("step", "mm", lambda s: 1e3 * _first(s, "every"), steps),
     given("friction", "1", lambda s: s.friction, strokes),
     given("line_load", "N/m", lambda s: s.motion[0].press_to_force / s.specimen.contact_length, forced),

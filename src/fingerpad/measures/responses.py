@@ -21,8 +21,8 @@ from fingerpad.measures.features import (
     ramp_end,
     receptor_index,
     scene_name,
-    scene_of,
 )
+from fingerpad.measures.measure import speed_of, waves
 from fingerpad.measures.quantities import (
     BELOW_EDGE,
     BURST_RATE,
@@ -50,6 +50,7 @@ from fingerpad.receptors.fits import SkinSample, constant_shift, linear, r_squar
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, pressure_terms, rate_by_leg, time_above
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_frequency, trains
+from fingerpad.results import scene_of
 
 RECEPTOR_DEPTH = 915e-6
 """m; the depth that the thesis predicts impulse rates from."""
@@ -74,7 +75,7 @@ BIN = 0.5e-3
 
 def curvature_of(history: xr.Dataset) -> float:
     """Curvature (1/m) of a flat or cylindrical stimulus."""
-    return float(scene_of(history)["stimulus"].get("curvature", 0.0))
+    return getattr(scene_of(history).stimulus, "curvature", 0.0)
 
 
 def is_stroke(history: xr.Dataset) -> bool:
@@ -89,9 +90,11 @@ def pressed(histories: Histories, programme: str = "ramp40") -> dict[str, xr.Dat
 
 
 def strokes(histories: Histories) -> dict[str, xr.Dataset]:
-    """Histories of strokes over the wavy surface, by scene, slowest first."""
-    found = {name: histories[name] for name in histories if name.startswith("stroke_") and name.split("_")[-1].isdigit()}
-    return dict(sorted(found.items(), key=lambda item: (item[0].count("_"), int(item[0].split("_")[-1]))))
+    """Histories of strokes over the wavy surface at a speed, by scene: those over most of it first, the slowest first."""
+    scenes = {name: scene_of(history) for name, history in histories.items()}
+    found = [name for name, scene in scenes.items() if waves(scene)]
+    order = {name: (-len(scenes[name].stimulus.curvatures), speed_of(scenes[name])) for name in found}
+    return {name: histories[name] for name in sorted(found, key=order.get)}
 
 
 # -- pressure and strain energy ------------------------------------------------------------------------------------------

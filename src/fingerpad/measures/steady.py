@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from fingerpad.measures.features import scene_of
+from fingerpad.results import scene_of
 
 LINE = "steady_line"
 BAR = "steady_bar_1_16_inch"
@@ -29,20 +29,20 @@ def leg_end(history: xr.Dataset, depth: float) -> int:
 
 def leg_of(history: xr.Dataset, depth: float) -> int:
     """Number of the leg that presses to `depth` (m). Raises KeyError if there is none."""
-    for number, leg in enumerate(scene_of(history)["motion"]):
-        if abs(leg.get("press_to_depth", np.inf) - depth) < 1e-9:
+    for number, leg in enumerate(scene_of(history).motion):
+        if abs(getattr(leg, "press_to_depth", np.inf) - depth) < 1e-9:
             return number
     raise KeyError(f"no press to {depth * 1e3:g} mm")
 
 
 def pressed_depths(history: xr.Dataset) -> list[float]:
     """Depths (m) that the scene's legs press to, in their order."""
-    return [leg["press_to_depth"] for leg in scene_of(history)["motion"] if "press_to_depth" in leg]
+    return [leg.press_to_depth for leg in scene_of(history).motion if hasattr(leg, "press_to_depth")]
 
 
 def force_N(history: xr.Dataset) -> np.ndarray:
     """Normal force (time) in N: line load times the scene's contact length."""
-    return history["force"].values * scene_of(history)["specimen"]["contact_length"]
+    return history["force"].values * scene_of(history).specimen.contact_length
 
 
 def steady_force(plate: xr.Dataset, depth: float) -> float:

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from fingerpad.planning.plan import Plan, plan
+from fingerpad.results import leg_ends
 from fingerpad.scenes.scene import Cylinder, Flat, Hold, PressToDepth, PressToForce, Scene, Slide
 from fingerpad.studies.accuracy.run import DEPTHS
 
@@ -94,10 +95,9 @@ def outside(base: Scene) -> dict[str, Scene]:
 
 def ends(history) -> dict[str, np.ndarray]:
     """Headline quantities at the end of every leg, (legs,) or (legs, receptors)."""
-    leg = history.leg.values
-    last = [int(np.flatnonzero(leg == number)[-1]) for number in np.unique(leg[1:])]
+    last = leg_ends(history)
     names = ("indentation_depth", "contact_width", "centre_pressure", "peak_pressure", "strain_energy_density")
-    return {name: history[name].values[last] for name in names}
+    return {name: last[name].values for name in names}
 
 
 def difference(found: dict[str, Any], truth: dict[str, Any]) -> tuple[float, str]:

@@ -16,9 +16,8 @@ import pandas as pd
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from fingerpad.measures.features import scene_of
 from fingerpad.measures.quantities import DISTANCE, LATERAL
-from fingerpad.scenes.scene import Wavy
+from fingerpad.results import scene_of
 from fingerpad.studies.calibration.force import ESTIMATE_COLUMNS
 
 STROKE = "stroke_sub_10"
@@ -56,19 +55,19 @@ def stretch(history: xr.Dataset) -> Stretch:
         ValueError: the stroke ends before the last wave does, or does not go over a wavy surface in the positive direction.
     """
     scene = scene_of(history)
-    if scene["stimulus"]["shape"] != "wavy":
-        raise ValueError(f"{scene['name']} does not stroke a wavy surface")
-    surface = Wavy(**scene["stimulus"])
+    if scene.stimulus.shape != "wavy":
+        raise ValueError(f"{scene.name} does not stroke a wavy surface")
+    surface = scene.stimulus
     start, end = surface.lead_in, surface.length - surface.run_out
     way, lateral = history.stroke_distance.values, history.centre_lateral_displacement.values
     if way[-1] < end * (1 - 1e-9):
-        raise ValueError(f"{scene['name']} strokes {way[-1] * 1e3:.4g} mm, the waves end at {end * 1e3:.4g} mm")
+        raise ValueError(f"{scene.name} strokes {way[-1] * 1e3:.4g} mm, the waves end at {end * 1e3:.4g} mm")
     way, first = np.unique(way, return_index=True)
     lateral = lateral[first]
     inside = (way > start) & (way < end)
     x = np.concatenate([[start], way[inside], [end]])
     u = np.interp(x, way, lateral)
-    return Stretch(scene["friction"], float(np.trapezoid(u, x) / (end - start)), float(u.min()), float(u.max()))
+    return Stretch(scene.friction, float(np.trapezoid(u, x) / (end - start)), float(u.min()), float(u.max()))
 
 
 class StretchCurve:
@@ -135,7 +134,7 @@ def calibrate_friction(
     stated = numbers.set_index("id")
     target = -1e-3 * stated.loc[STRETCH, "low"]
     axis = tuple(1e-3 * stated.loc[AXIS, ["low", "high"]].astype(float))
-    sweep = sorted(sweep, key=lambda history: scene_of(history)["friction"])
+    sweep = sorted(sweep, key=lambda history: scene_of(history).friction)
     curve = StretchCurve(map(stretch, sweep))
     varied = {VARIATIONS[name]: stretch(histories[name]) for name in VARIATIONS if name in histories}
     return FrictionCalibration(
@@ -156,7 +155,7 @@ def _frame(sweep, curve, varied, target, axis, published) -> pd.DataFrame:
         }
         sliding = np.flatnonzero(history.leg.values == history.leg.values[-1])
         rows.append(pd.DataFrame(course).iloc[sliding[0] - 1 :])
-    stimulus = Wavy(**scene_of(sweep[0])["stimulus"])
+    stimulus = scene_of(sweep[0]).stimulus
     ends = [1e3 * stimulus.lead_in, 1e3 * (stimulus.length - stimulus.run_out)]
     rows.append(pd.DataFrame({"panel": "waves", "series": "waves", "source": "simulated", DISTANCE: ends}))
 

@@ -27,6 +27,7 @@ from fingerpad.measures.responses import (
     skin_shift,
     strokes,
 )
+from fingerpad.measures.strokes import SUB
 from fingerpad.receptors.fits import constant_shift, jackknife, r_squared, rms, spatial_sum
 from fingerpad.receptors.laws import NODE_TERMS, TERM_UNITS, THESIS_RATE, SpatialSum
 from fingerpad.studies.receptors.impulse_rates import RATE_FITS, assignments, kind, matched_histories, rate_fit, rate_sets
@@ -169,7 +170,7 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterato
         own = np.concatenate([s.energy for s in fast])
         predicted = np.concatenate([law.strain_energy(s.x, s.pressure, s.indentation) for s in fast])
         yield _relative(title, f"ramp150, {len(fast)} surfaces", what, own, predicted, depth=um)
-    moving = {name: history for name, history in strokes(histories).items() if "sub" not in name}
+    moving = {name: history for name, history in strokes(histories).items() if name not in SUB.values()}
     if not moving:
         return
     chosen = "stroke_10" if "stroke_10" in moving else next(iter(moving))

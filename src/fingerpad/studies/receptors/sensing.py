@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from fingerpad.measures.features import Histories, ramp_end, scene_name
+from fingerpad.measures.features import Histories, ramp_end
 from fingerpad.measures.quantities import TIME
 from fingerpad.measures.responses import (
     IMPULSE_RATE,
@@ -18,6 +18,7 @@ from fingerpad.measures.responses import (
     skin_sample,
     strokes,
 )
+from fingerpad.measures.runs import FAST, LOWER, NINE
 from fingerpad.receptors.fits import constant_shift
 from fingerpad.receptors.laws import THESIS_RATE, SpatialSum
 from fingerpad.receptors.rapidly_adapting import ASSUMED_RATE, RapidlyAdapting
@@ -46,8 +47,7 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
     if not surfaces:
         raise ValueError("the sensor's constants are fitted to scenes ramp40_*; there is none among the histories")
     laws = {True: fit_sum(surfaces.values(), RECEPTOR_DEPTH), False: fit_sum(surfaces.values(), RECEPTOR_DEPTH, with_depth=False)}
-    programmes = dict.fromkeys(name.split("_")[0] for name in histories if name.startswith(("ramp", "press")))
-    chosen = {scene_name(p, label): history for p in programmes for label, history in pressed(histories, p).items()}
+    chosen = {runs[k]: history for runs in (NINE, FAST, *LOWER.values()) for k, history in runs.histories(histories).items()}
     chosen |= strokes(histories)
     shift = None
     if "stroke_10" in chosen:
@@ -73,7 +73,7 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
                     "scene": name,
                     "knows": knows,
                     "spacing (mm)": 1e3 * (pitch or float(np.median(np.diff(sample.x[0])))),
-                    "fitted to": "this and eight more" if name.startswith("ramp40") else "ramp40",
+                    "fitted to": "this and eight more" if name in NINE.scenes.values() else "ramp40",
                     "rms_error (impulses/s)": _weighted_rms(off, time),
                     "rms_error (% of the rms rate)": 100 * _weighted_rms(off, time) / max(_weighted_rms(own, time), 1e-12),
                     "largest_error (impulses/s)": float(np.abs(off).max()),

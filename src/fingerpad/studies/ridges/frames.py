@@ -14,9 +14,10 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
-from fingerpad.measures.features import PRESSURE, SIMULATED, Histories, profile, ridges_of, scene_of
+from fingerpad.measures.features import PRESSURE, SIMULATED, Histories, profile
 from fingerpad.measures.quantities import DISTANCE, SED, P, X
 from fingerpad.measures.strokes import loaded
+from fingerpad.results import scene_of
 from fingerpad.scenes.specimen import Outline, Ridges
 from fingerpad.studies.ridges.picture import (
     BAND,
@@ -53,9 +54,8 @@ READ: dict[str, Place] = dict(
 
 def specimen_of(history: xr.Dataset) -> tuple[Outline, Ridges | None]:
     """Outline and ridges (None without) of a history's scene."""
-    specimen = scene_of(history)["specimen"]
-    ridges = ridges_of(history)
-    return Outline(**specimen["outline"]), ridges and Ridges(**ridges)
+    specimen = scene_of(history).specimen
+    return specimen.outline, specimen.ridges
 
 
 def tip_of(history: xr.Dataset) -> float:

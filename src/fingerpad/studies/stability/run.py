@@ -20,6 +20,7 @@ from threadpoolctl import threadpool_limits
 
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.plan import plan
+from fingerpad.results import leg_ends
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.mesh import PadMesh
@@ -96,12 +97,6 @@ def simulation(case: Case, method: str, folder: Path, refined: int = 1) -> Simul
 
 
 # -- measures -----------------------------------------------------------------------------------------------------------------
-
-
-def leg_ends(history: xr.Dataset) -> xr.Dataset:
-    """The history at the end of each leg."""
-    leg = history.leg.values[1:]
-    return history.isel(time=1 + np.flatnonzero(np.append(leg[1:] != leg[:-1], True)))
 
 
 def checkerboard(pressure: np.ndarray, smoothed: np.ndarray) -> float:
