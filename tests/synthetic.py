@@ -11,7 +11,8 @@ import xarray as xr
 
 from fingerpad.results import FRICTION_VARIABLES, VARIABLES, skin_arc
 from fingerpad.scenes.scene import Outline
-from fingerpad.specimen.mesh import MeshSize, PadMesh, build_pad_mesh
+from fingerpad.specimen.build import build_pad_mesh
+from fingerpad.specimen.pad import MeshSize, PadMesh
 from fingerpad.stimuli.profiles import profile_of
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")

@@ -10,7 +10,8 @@ from fingerpad import load_scene, plan
 from fingerpad.measures.features import ERROR
 from fingerpad.planning.plan import RULES
 from fingerpad.scenes.scene import Cylinder
-from fingerpad.specimen.mesh import MeshSize, build_pad_mesh, element_edges, skin_chain
+from fingerpad.specimen.build import build_pad_mesh
+from fingerpad.specimen.pad import MeshSize, element_edges, skin_chain
 from fingerpad.specimen.quality import check_orientation
 from fingerpad.studies.accuracy import belief
 from fingerpad.studies.accuracy import errors as found
@@ -98,7 +99,7 @@ def test_the_plane_is_complete_and_names_tell_points_apart():
 
 def test_sizes_span_what_they_should(scenes):
     """From about 500 to 100,000 nodes; the default's row is the thesis's preset."""
-    from fingerpad.specimen.mesh import count_nodes
+    from fingerpad.specimen.build import count_nodes
 
     sizes = [study.discretised(Point("flat", rows=rows), scenes["flat"])[1].mesh_size for rows in study.ROWS]
     nodes = [count_nodes(scenes["flat"].specimen.outline, size) for size in sizes]

@@ -14,7 +14,7 @@ from fingerpad.planning.plan import PlanError
 from fingerpad.planning.stack_estimate import StackEstimate
 from fingerpad.reference_solutions import layered, layered_contact
 from fingerpad.results import summary
-from fingerpad.specimen import MeshError, MeshSize
+from fingerpad.specimen import MeshError, MeshSize, quality_of, write_pad
 from fingerpad.specimen.measures import below_skin, layers_below
 from fingerpad.specimen.stacks import build_stack_mesh
 from test_external_scenes import linear, linear_triangles, triangles
@@ -103,7 +103,7 @@ def material(name):
 def test_meshes_of_one_s_own(name, tmp_path):
     """Every one is read, planned and pressed; those of the same slab agree within 3 % (frozen: 9-node quads)."""
     mesh = VARIANTS[name]()
-    mesh.write(tmp_path / "own.msh")
+    write_pad(mesh, tmp_path / "own.msh")
     layers = {region: material(region) for region in mesh.regions}
     scene = scene_of(tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base"], "contact_length": "10 mm"})
     chosen = plan(scene)
@@ -134,7 +134,7 @@ WRONG = {
         "layer gel is no surface of the mesh; its physical surfaces are cover, foam",
     ),
     "no materials at all": ({"fixed": ["base"]}, "no material for cover, foam; specimen.layers must name each surface"),
-    "nothing held": ({"layers": {"cover": material("cover"), "foam": material("foam")}}, "no curve is held"),
+    "nothing held": ({"layers": {"cover": material("cover"), "foam": material("foam")}, "free": ["base"]}, "no curve is held"),
     "no such curve": (
         {"layers": {"cover": material("cover"), "foam": material("foam")}, "fixed": ["bas"]},
         "physical curves are",
@@ -144,7 +144,7 @@ WRONG = {
 
 @pytest.mark.parametrize("name", WRONG)
 def test_names_are_checked_both_ways(name, tmp_path):
-    own().write(tmp_path / "own.msh")
+    write_pad(own(), tmp_path / "own.msh")
     specimen, words = WRONG[name]
     if name == "surface without a material":
         words = "surface elements are in none of cover; each must be in one (the mesh also has foam)"
@@ -208,7 +208,7 @@ def test_wrong_slabs_are_one_line(name, tmp_path):
 def test_a_half_round_is_a_half_round(solid):
     made = stack(radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3 if solid else 3e-3), solid=solid)
     mesh = build_stack_mesh(made, SIZE)
-    assert mesh.quality()["worst_scaled_jacobian"] > 0.5 and mesh.symmetric and mesh.fixed == ("base",)
+    assert quality_of(mesh)["worst_scaled_jacobian"] > 0.5 and mesh.symmetric and mesh.fixed == ("base",)
     radius = np.hypot(*mesh.points[np.unique(mesh.curves["skin"])].T)
     np.testing.assert_allclose(radius, 8e-3, rtol=1e-12)
     base = mesh.points[np.unique(mesh.curves["base"])]
@@ -229,7 +229,7 @@ def test_receptors_below_a_flat_and_a_partial_skin():
 
 
 def test_a_plate_on_held_ends_is_refused(tmp_path):
-    own().write(tmp_path / "own.msh")
+    write_pad(own(), tmp_path / "own.msh")
     layers = {name: material(name) for name in ("cover", "foam")}
     scene = scene_of(tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base", "sides"]}, PLATE)
     with pytest.raises(PlanError, match="comes down on the end of the skin at x = .*10 mm, which is held"):

@@ -24,6 +24,7 @@ from fingerpad.scenes.scene import (
     StepAndRepeat,
     load_scene,
 )
+from fingerpad.specimen import quality_of
 from fingerpad.studies.stability.hard_cases import scene_of
 
 pytestmark = pytest.mark.unit
@@ -336,6 +337,6 @@ def test_plan_foretells_the_mesh(ramp, accuracy):
 
     whole = changed(ramp, accuracy=accuracy, effects={"symmetry": False})
     chosen = plan(whole)
-    built = mesh_for(whole, chosen).quality()
+    built = quality_of(mesh_for(whole, chosen))
     assert chosen.nodes == built["nodes"]
     assert chosen.smallest_edge == pytest.approx(built["smallest_edge_m"], rel=0.01)

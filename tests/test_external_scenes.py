@@ -7,7 +7,9 @@ import pytest
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.results import summary
-from fingerpad.specimen.mesh import PadMesh, build_pad_mesh
+from fingerpad.specimen import write_pad
+from fingerpad.specimen.build import build_pad_mesh
+from fingerpad.specimen.pad import PadMesh
 
 pytestmark = pytest.mark.unit
 
@@ -53,7 +55,7 @@ def built():
 
 
 def run(mesh, folder, **update):
-    mesh.write(folder / "my.msh")
+    write_pad(mesh, folder / "my.msh")
     (folder / "scene.yaml").write_text(TEXT.format(mesh="my.msh"))
     scene = load_scene(folder / "scene.yaml").model_copy(update=update)
     chosen = plan(scene)

@@ -5,7 +5,8 @@ import pytest
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.mechanics.stepping import NonConvergence, first_touch
-from fingerpad.specimen.mesh import PadMesh
+from fingerpad.specimen.files import write_pad
+from fingerpad.specimen.pad import PadMesh
 from fingerpad.stimuli.profiles import Bar, Cylinder, Flat, Line, Sampled
 
 ROUND = 8e-3
@@ -54,7 +55,8 @@ def test_an_external_mesh_need_not_have_its_apex_in_the_middle(shift, tmp_path):
     built = _draft_mesh()
     depths = []
     for x in (0.0, shift):
-        PadMesh(built.points + [x, 0.0], built.cells, built.element, built.region, built.curves, False).write(tmp_path / "my.msh")
+        moved = PadMesh(built.points + [x, 0.0], built.cells, built.element, built.region, built.curves, False)
+        write_pad(moved, tmp_path / "my.msh")
         (tmp_path / "scene.yaml").write_text(TEXT.format(curvature=120))
         depths.append(float(simulate(load_scene(tmp_path / "scene.yaml")).indentation_depth[-1]))
     assert depths[1] == pytest.approx(depths[0], rel=0.01)

@@ -14,7 +14,7 @@ from fingerpad.measures.features import energy
 from fingerpad.measures.table import Measures
 from fingerpad.scenes.scene import Receptors, Slide
 from fingerpad.scenes.specimen import Specimen
-from fingerpad.specimen import RidgedPad, mesh_for
+from fingerpad.specimen import RidgedPad, mesh_for, quality_of
 from fingerpad.studies.ridges import frames as ridge_frames
 from fingerpad.studies.ridges import picture as ridge_study
 from fingerpad.studies.ridges import run as cases_of
@@ -118,7 +118,7 @@ def test_ridges_drawn_on_the_thesiss_elements(base, name):
     straight = AS_DRAWN[name][0]
     drawn = ridges_drawn(plain, asked.specimen.outline, asked.specimen.ridges, straight)
     assert not chosen.effects["ridges"].on and len(drawn.points) == len(plain.points)
-    assert drawn.quality()["worst_scaled_jacobian"] > 0.3
+    assert quality_of(drawn)["worst_scaled_jacobian"] > 0.3
     np.testing.assert_array_equal(drawn.points[np.unique(drawn.curves["skin"])], plain.points[np.unique(plain.curves["skin"])])
     corners = [np.unique(drawn.cells[drawn.region == drawn.regions.index(n), :4]) for n in ("epidermis", "dermis")]
     x, y = drawn.points[np.intersect1d(*corners)].T

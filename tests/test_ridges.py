@@ -23,12 +23,15 @@ from fingerpad.specimen import (
     build_pad_mesh,
     count_nodes,
     mesh_for,
+    quality_of,
     read_pad_mesh,
     ridge_resolution,
     skin_chain,
+    write_pad,
 )
+from fingerpad.specimen.build import smallest_edge
 from fingerpad.specimen.measures import below_outline, below_skin
-from fingerpad.specimen.mesh import element_edges, smallest_edge
+from fingerpad.specimen.pad import element_edges
 from fingerpad.specimen.quality import jacobians, sample_points
 from fingerpad.specimen.ridges import mean_shape, ridge_shape
 
@@ -119,7 +122,7 @@ def test_plain_mesh_is_what_it_was_before_ridges_existed():
 def test_plain_pad_does_not_even_import_ridges():
     code = (
         "import sys; from fingerpad.scenes.specimen import Specimen; from fingerpad.specimen import build_pad_mesh;"
-        f"from fingerpad.specimen.mesh import MeshSize; build_pad_mesh(Specimen().outline, {DRAFT!r});"
+        f"from fingerpad.specimen.build import MeshSize; build_pad_mesh(Specimen().outline, {DRAFT!r});"
         "assert not {'fingerpad.specimen.ridges', 'fingerpad.specimen.layered'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
@@ -203,7 +206,7 @@ def test_nodes_lie_on_the_stated_curves(case):
 
 def test_elements_have_positive_jacobians_and_are_no_worse_than_the_slope_of_the_ridges(case):
     given_ridges, _, mesh = case
-    worst = mesh.quality()["worst_scaled_jacobian"]
+    worst = quality_of(mesh)["worst_scaled_jacobian"]
     steep = given_ridges is not None and given_ridges.inner.height > 0.2e-3
     assert worst > (0.25 if steep else 0.35)
     np.testing.assert_array_equal(np.unique(mesh.cells), np.arange(len(mesh.points)))
@@ -297,7 +300,7 @@ def test_ridges_do_not_blow_up_the_mesh(meshes):
 def test_counting_is_building(case):
     given_ridges, corneum, mesh = case
     assert count_nodes(OUTLINE, SIZE, given_ridges, corneum) == len(mesh.points)
-    assert smallest_edge(OUTLINE, SIZE, given_ridges, corneum) == mesh.quality()["smallest_edge_m"]
+    assert smallest_edge(OUTLINE, SIZE, given_ridges, corneum) == quality_of(mesh)["smallest_edge_m"]
 
 
 def test_ridges_of_no_height_are_the_plain_pad():
@@ -325,7 +328,7 @@ def test_receptor_depth_is_measured_from_the_smooth_skin():
 @pytest.mark.parametrize("name", ["inner", "aside", "outer and corneum", "corneum alone"])
 def test_files_keep_ridges_and_corneum(name, meshes, tmp_path):
     mesh = meshes[name]
-    mesh.write(tmp_path / "pad.msh")
+    write_pad(mesh, tmp_path / "pad.msh")
     again = read_pad_mesh(tmp_path / "pad.msh")
     np.testing.assert_allclose(again.points, mesh.points, rtol=0.0, atol=1e-12)
     np.testing.assert_array_equal(again.cells, mesh.cells)
@@ -362,7 +365,7 @@ def test_any_ridges_of_the_literature_can_be_meshed(height, pitch, shape, phase,
     size = replace(SIZE, skin_edge=edge, layer_edge=0.9 * edge, growth=growth)
     mesh = build_pad_mesh(OUTLINE, size, asked, corneum)
     assert len(mesh.points) == count_nodes(OUTLINE, size, asked, corneum)
-    assert mesh.quality()["worst_scaled_jacobian"] > 0.08
+    assert quality_of(mesh)["worst_scaled_jacobian"] > 0.08
     pad = RidgedPad(OUTLINE, asked, OUTLINE.stratum_corneum_thickness if corneum else 0.0)
     assert mesh.symmetric == pad.symmetric
     s, depth = named(mesh.points[between(mesh, "epidermis", "dermis", 3e-3)])
@@ -403,7 +406,7 @@ def test_stratum_corneum_is_a_layer_only_if_asked_for():
 
 
 def test_ridges_beside_a_mesh_are_refused(meshes, tmp_path):
-    meshes["corneum"].write(tmp_path / "pad.msh")
+    write_pad(meshes["corneum"], tmp_path / "pad.msh")
     with pytest.raises(ValueError, match="beside a mesh"):
         Specimen(mesh=tmp_path / "pad.msh", ridges="inner")
 
@@ -430,7 +433,7 @@ def test_plan_says_why_and_how_finely():
     assert "10.7 elements from ridge to ridge, 4 rows" in effect.why
     assert chosen.effects["symmetry"].on
     mesh = build_pad_mesh(OUTLINE, chosen.mesh_size, Specimen(ridges="inner").ridges)
-    assert chosen.nodes == len(mesh.points) // 2 + 1 and chosen.smallest_edge == mesh.quality()["smallest_edge_m"]
+    assert chosen.nodes == len(mesh.points) // 2 + 1 and chosen.smallest_edge == quality_of(mesh)["smallest_edge_m"]
     assert "outer ones 0.48 mm apart, 0.06 mm high" in plan(scene({"ridges": "inner_and_outer"})).effects["ridges"].why
 
 
@@ -471,8 +474,8 @@ def test_plan_file_keeps_ridges(tmp_path):
 
 
 def test_layer_that_the_mesh_does_not_have_is_refused(tmp_path):
-    build_pad_mesh(OUTLINE, DRAFT).write(tmp_path / "pad.msh")
-    with pytest.raises(PlanError, match="specimen.layers.stratum_corneum: is no surface of the mesh"):
+    write_pad(build_pad_mesh(OUTLINE, DRAFT), tmp_path / "pad.msh")
+    with pytest.raises(MeshError, match="layer stratum_corneum is no surface of the mesh"):
         plan(scene({"mesh": tmp_path / "pad.msh", "layers": {"stratum_corneum": {}}}))
 
 

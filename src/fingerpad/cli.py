@@ -32,7 +32,7 @@ _ERRORS = {
     "SceneError": ("documents", ""),
     "PlanError": ("planning.plan", ""),
     "OutlineError": ("specimen.outline", "specimen.outline"),
-    "MeshError": ("specimen.mesh", "specimen.mesh"),
+    "MeshError": ("specimen.pad", "specimen.mesh"),
     "ReceptorError": ("receptors.material_points", "outputs.receptors"),
 }
 
@@ -208,15 +208,15 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _mesh(options: argparse.Namespace) -> int:
-    from fingerpad.files import write_atomically
+    from fingerpad.specimen import quality_of, write_pad
 
     if options.out.suffix != ".msh":
         raise _Refusal(f"--out: '{options.out}' is not a mesh file; allowed: a name ending in .msh")
     _check_writable(options.out, directory=False)
     mesh = _mesh_for(options.scene, *_prepare(options))
     with _directory(options.out.parent), _unwritable(options.out):
-        write_atomically(options.out, mesh.write)
-    for name, value in mesh.quality().items():
+        write_pad(mesh, options.out)
+    for name, value in quality_of(mesh).items():
         print(f"{name}: {value:.6g}" if isinstance(value, float) else f"{name}: {value}")
     return DONE
 

@@ -22,6 +22,7 @@ import xarray as xr
 from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.provenance import digest, imported_sources
 from fingerpad.scenes.scene import Scene, recorded_scene
+from fingerpad.specimen.element_kinds import kind_of
 
 #: name -> (dimensions, unit, long name)
 VARIABLES = {
@@ -311,7 +312,7 @@ def write_vtu(history: xr.Dataset, directory: str | Path) -> list[Path]:
     from scipy.spatial import cKDTree
 
     directory, nodes = Path(directory), history.sizes["node"]
-    kind = {4: "quad", 9: "quad9", 6: "triangle6", 7: "triangle7", 3: "triangle"}[history.sizes["element_node"]]
+    kind = kind_of(history.sizes["element_node"]).meshio
     position, region = history.node_position.values, history.element_region
     skin = cKDTree(position).query(np.column_stack([history.skin_x, history.skin_y]))[1]
     times = history.snapshot_time.values.tolist()

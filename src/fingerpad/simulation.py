@@ -26,7 +26,7 @@ from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.measures import below_outline, below_skin, touched_side
-from fingerpad.specimen.mesh import PadMesh, skin_chain
+from fingerpad.specimen.pad import PadMesh, skin_chain
 from fingerpad.stimuli.profiles import profile_of
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fingerpad.specimen.mesh import PadMesh
+from fingerpad.specimen.pad import PadMesh
 
 #: Mesh kind that each element runs on.
 KIND = {"Q2P1": "quad9", "Q2": "quad9", "Q2R": "quad9", "Q1P0": "quad4", "Q1": "quad4", "P2B": "tri6", "P2": "tri6"}

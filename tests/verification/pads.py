@@ -9,8 +9,9 @@ from problems import BODIES
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.stepping import Step
 from fingerpad.scenes.specimen import Outline
+from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.materials import Prony, moduli
-from fingerpad.specimen.mesh import MeshSize, build_pad_mesh
+from fingerpad.specimen.pad import MeshSize
 from fingerpad.stimuli.profiles import Cylinder, Flat
 
 THESIS = Prony((0.055, 0.3691), (3.25, 0.3414))

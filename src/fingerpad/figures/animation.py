@@ -22,14 +22,13 @@ from fingerpad.measures.measure import speed_of
 from fingerpad.measures.strokes import profile_and_height
 from fingerpad.publishing import style
 from fingerpad.results import scene_of
+from fingerpad.specimen.element_kinds import kind_of
 
 SIZE, DPI = (6.4, 6.2), 100  # inch, dots an inch
 FRAME_TIME = 100  # ms
 COLOURS = mpl.colormaps["YlOrRd"]
 SHADES, GREYS = 96, 48  # in the one palette of all frames
 HALF_WIDTH, LOW, HIGH = 10.5, -6.6, 7.4  # mm, of the section shown
-CORNERS = {9: 4, 4: 4, 8: 4, 6: 3, 7: 3, 3: 3}
-"""Corners of an element by its number of nodes."""
 
 
 def animate(history: xr.Dataset, path: str | PathLike) -> None:
@@ -70,7 +69,7 @@ def _frames(history: xr.Dataset) -> list[np.ndarray]:
     at = [int(abs(time - t).argmin()) for t in history["snapshot_time"].values]
     heights = profile_and_height(history)[1]
     stress = -1e-3 * history["snapshot_pressure"].values
-    cells = history["element_nodes"].values[:, : CORNERS[history.sizes["element_node"]]]
+    cells = history["element_nodes"].values[:, : kind_of(history.sizes["element_node"]).corners]
     points = history["node_position"].values + history["snapshot_displacement"].values
     layer_lines = _borders(cells, history["element_region"].values)
 

@@ -13,7 +13,9 @@ from fingerpad.measures.quantities import X, Y
 from fingerpad.measures.steady import leg_of, pressed_depths
 from fingerpad.publishing import style
 from fingerpad.results import scene_of
-from fingerpad.specimen.mesh import PadMesh, corner_count, element_edges
+from fingerpad.specimen import quality
+from fingerpad.specimen.element_kinds import KINDS, kind_of
+from fingerpad.specimen.pad import PadMesh, element_edges
 from fingerpad.stimuli.profiles import profile_of
 
 if TYPE_CHECKING:
@@ -42,7 +44,7 @@ def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
         raise ValueError("boundaries are drawn from the whole mesh, not from a half of it")
     sides = element_edges(mesh.cells, mesh.element)
     edges = sides[:, :2]
-    owner = np.tile(np.arange(len(mesh.cells)), corner_count(mesh.element))
+    owner = np.tile(np.arange(len(mesh.cells)), KINDS[mesh.element].corners)
     order = np.lexsort(np.sort(edges, axis=1).T)
     pairs = np.sort(edges, axis=1)[order]
     same = (pairs[1:] == pairs[:-1]).all(axis=1)
@@ -121,7 +123,7 @@ def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
     """
     from scipy.spatial import cKDTree  # here, for it is slow to import
 
-    corners = mesh.points[mesh.cells[:, : corner_count(mesh.element)]]
+    corners = mesh.points[mesh.cells[:, : KINDS[mesh.element].corners]]
     layer, lines = np.array(mesh.regions)[mesh.region], boundaries(mesh)
     depth = cKDTree(densify(lines["skin"], 20e-6)).query(corners.mean(axis=1))[0]
     layer = np.where((layer == "epidermis") & (depth < corneum), "stratum corneum", layer)
@@ -130,20 +132,20 @@ def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
     numbers = {"element": np.repeat(np.arange(len(polygons)), counts), "layer": np.repeat(layer, counts)}
     elements = {"series": "element"} | numbers | {X: points[:, 0].round(4), Y: points[:, 1].round(4)}
     bone = {"series": "rim", "layer": "bone", X: lines["bone"][:, 0] * 1e3, Y: lines["bone"][:, 1] * 1e3}
-    found = mesh.quality()
+    found = quality.quality_of(mesh)
     values = {
         "nodes (1)": found["nodes"],
         "elements (1)": found["elements"],
         "smallest_edge (um)": found["smallest_edge_m"] * 1e6,
         "worst_scaled_jacobian (1)": found["worst_scaled_jacobian"],
     }
-    quality = {"series": "quality", "quantity": list(values), "value": list(values.values())}
-    return pd.concat([pd.DataFrame(each) for each in (elements, bone, quality)], ignore_index=True).assign(**{ERROR: np.nan})
+    judged = {"series": "quality", "quantity": list(values), "value": list(values.values())}
+    return pd.concat([pd.DataFrame(each) for each in (elements, bone, judged)], ignore_index=True).assign(**{ERROR: np.nan})
 
 
 def _outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.ndarray:
     """Points (n, 2) in m round one element; middle nodes only where a side is bent by over `straight`."""
-    corners = corner_count(mesh.element)
+    corners = KINDS[mesh.element].corners
     first = mesh.points[nodes[:corners]]
     if len(nodes) == corners:
         return first
@@ -190,8 +192,7 @@ def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[st
 
     points = history["node_position"].values
     cells, region = history["element_nodes"].values, history["element_region"].values
-    kind = {9: "quad9", 4: "quad4", 6: "tri6", 3: "tri3"}[cells.shape[1]]
-    numbered = boundaries(PadMesh(points, cells, kind, region, {}, True), as_nodes=True)
+    numbered = boundaries(PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True), as_nodes=True)
     moved = history["snapshot_displacement"].values[leg_of(history, depth)] if depth else np.zeros_like(points)
     lines = {name: points[nodes] + moved[nodes] for name, nodes in numbered.items()}
     if corneum:

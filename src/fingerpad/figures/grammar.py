@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Picture
 
-    from fingerpad.specimen.mesh import PadMesh
+    from fingerpad.specimen.pad import PadMesh
 
 Ids = str | Mapping[object, str]
 """Id of an axis's range in the table of the thesis's numbers, or an id for each panel, surface or pad."""

@@ -18,7 +18,7 @@ from fingerpad.results import scene_of
 from fingerpad.units import parse_quantity
 
 if TYPE_CHECKING:
-    from fingerpad.specimen.mesh import PadMesh
+    from fingerpad.specimen.pad import PadMesh
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
 """Labels of the nine surfaces, broad to sharp: curvature in 1/m as the thesis rounds it."""

@@ -47,6 +47,6 @@ def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping
 
 
 def _read_mesh(path: Path) -> Any:
-    from fingerpad.specimen.external import read_pad_mesh
+    from fingerpad.specimen.files import read_pad_mesh
 
     return read_pad_mesh(path)

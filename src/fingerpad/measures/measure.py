@@ -14,7 +14,7 @@ from typing import Any, Literal
 import xarray as xr
 
 from fingerpad.scenes.scene import Scene
-from fingerpad.specimen.mesh import PadMesh
+from fingerpad.specimen.pad import PadMesh
 
 Values = Mapping[str, float]
 """Condition -> value; the condition of a single number is empty."""

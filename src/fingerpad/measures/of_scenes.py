@@ -12,8 +12,9 @@ from fingerpad.measures.responses import NODE_COUNT, TRIALS
 from fingerpad.measures.steady import PLATE
 from fingerpad.receptors.laws import THESIS_RATE
 from fingerpad.scenes.scene import Scene
-from fingerpad.specimen.mesh import PadMesh, corner_count
-from fingerpad.specimen.quality import quality
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.pad import PadMesh
+from fingerpad.specimen.quality import quality_of
 from fingerpad.stimuli.profiles import Segment, profile_of
 from fingerpad.units import parse_quantity
 
@@ -156,7 +157,7 @@ TAKEN = (
 
 def _smallest_edge(mesh: PadMesh) -> float:
     """Smallest element edge (um) in epidermis and dermis within 2 mm of the middle, on the upper side."""
-    corners = mesh.points[mesh.cells[:, : corner_count(mesh.element)]]
+    corners = mesh.points[mesh.cells[:, : KINDS[mesh.element].corners]]
     middle = corners.mean(axis=1)
     near = (mesh.region < mesh.regions.index("fat")) & (abs(middle[:, 0]) < 2e-3) & (middle[:, 1] > 0)
     edges = corners[near] - np.roll(corners[near], 1, axis=1)
@@ -166,8 +167,8 @@ def _smallest_edge(mesh: PadMesh) -> float:
 counted = partial(Measure, of="mesh")
 
 MESH = (
-    counted("nodes", "count", lambda mesh: quality(mesh)["nodes"], anywhere),
-    counted("elements", "count", lambda mesh: quality(mesh)["elements"], anywhere),
+    counted("nodes", "count", lambda mesh: quality_of(mesh)["nodes"], anywhere),
+    counted("elements", "count", lambda mesh: quality_of(mesh)["elements"], anywhere),
     counted("smallest_edge", "um", _smallest_edge, finger),
     counted("section", "mm", lambda mesh: {k: 1e3 * np.ptp(mesh.points[:, i]) for i, k in enumerate(("width", "height"))}),
     # layers with elements, the stratum corneum and the bone

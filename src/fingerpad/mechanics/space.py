@@ -7,8 +7,9 @@ import numpy as np
 
 from fingerpad.mechanics.elements import EDGE_WEIGHTS, ELEMENTS, edge_shape
 from fingerpad.mechanics.linear_solver import SymmetricPattern
+from fingerpad.specimen.element_kinds import KINDS
 
-DEFAULT_ELEMENT = {"quad9": "Q2P1", "quad4": "Q1P0", "tri6": "P2B"}
+DEFAULT_ELEMENT = {name: kind.solved for name, kind in KINDS.items() if kind.solved}
 
 
 @dataclass(frozen=True)

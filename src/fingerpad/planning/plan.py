@@ -21,11 +21,12 @@ from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.planning.surface import Surface, surface_of
 from fingerpad.scenes.scene import Discretisation, Scene
-from fingerpad.specimen import counted
-from fingerpad.specimen.external import read_specimen_mesh
+from fingerpad.specimen import counted, quality_of
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.files import read_specimen_mesh
 from fingerpad.specimen.materials import Prony
 from fingerpad.specimen.measures import apex_edge
-from fingerpad.specimen.mesh import MeshSize, PadMesh
+from fingerpad.specimen.pad import MeshSize, PadMesh
 from fingerpad.stimuli.motion import STEADY, programme
 from fingerpad.stimuli.profiles import Bar, Curve, Cylinder, Profile, Wavy, profile_of
 
@@ -391,7 +392,7 @@ def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, t
             effects["ridges"], edge = _resolved(effects["ridges"], layered, edge)
     else:
         size, nodes = None, len(external.points)
-        smallest, edge = external.quality()["smallest_edge_m"], _coarseness(external, rules) * apex_edge(external)
+        smallest, edge = quality_of(external)["smallest_edge_m"], _coarseness(external, rules) * apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
     _check_memory(scene, nodes, steps, rules)
@@ -904,7 +905,7 @@ def _apply_overrides(scene: Scene, effects: dict[str, Effect]) -> None:
 
 
 def _element(by_hand: Discretisation | None, external: PadMesh | None) -> str:
-    natural = {"quad9": "Q2P1", "quad4": "Q1P0", "tri6": "P2B"}[external.element if external else "quad9"]
+    natural = KINDS[external.element if external else "quad9"].solved
     if by_hand is None or by_hand.element is None or by_hand.element == natural:
         return natural
     raise PlanError(

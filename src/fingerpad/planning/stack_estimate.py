@@ -15,7 +15,7 @@ import numpy as np
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.reference_solutions.layered import Layer, stack_compliance
 from fingerpad.specimen import measures
-from fingerpad.specimen.mesh import REGIONS, SKIN, UNNAMED, PadMesh
+from fingerpad.specimen.pad import REGIONS, SKIN, UNNAMED, PadMesh
 
 _NARROWEST = 1e-4  # half width of a contact, in thicknesses
 _FLAT = 5.0  # apex radius, in half widths, beyond which a pad is a flat one

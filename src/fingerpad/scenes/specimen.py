@@ -539,7 +539,7 @@ class Specimen(Strict):
     outline: Annotated[Outline, _named("outline", Outline)] | None = None
     """Section of the pad, by name or by keys; keys left out are the thesis's."""
     mesh: Path | None = None
-    """External mesh in mm instead of an outline: surfaces are layers, a curve skin is touched, bone and nail are held."""
+    """External mesh in mm instead of an outline: surfaces are layers, a curve skin is touched; bone, nail and base are held."""
     slab: Slab | None = None
     """A flat slab instead of an outline."""
     half_round: HalfRound | None = None

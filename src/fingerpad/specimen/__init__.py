@@ -7,13 +7,15 @@ from importlib import import_module
 _HOME = {
     "OutlineCurve": "fingerpad.specimen.outline",
     "OutlineError": "fingerpad.specimen.outline",
-    "MeshError": "fingerpad.specimen.mesh",
-    "MeshSize": "fingerpad.specimen.mesh",
-    "PadMesh": "fingerpad.specimen.mesh",
-    "build_pad_mesh": "fingerpad.specimen.mesh",
-    "count_nodes": "fingerpad.specimen.mesh",
-    "skin_chain": "fingerpad.specimen.mesh",
-    "read_pad_mesh": "fingerpad.specimen.external",
+    "MeshError": "fingerpad.specimen.pad",
+    "MeshSize": "fingerpad.specimen.pad",
+    "PadMesh": "fingerpad.specimen.pad",
+    "build_pad_mesh": "fingerpad.specimen.build",
+    "count_nodes": "fingerpad.specimen.build",
+    "skin_chain": "fingerpad.specimen.pad",
+    "read_pad_mesh": "fingerpad.specimen.files",
+    "write_pad": "fingerpad.specimen.files",
+    "quality_of": "fingerpad.specimen.quality",
     "quality_table": "fingerpad.specimen.quality",
     "RidgedPad": "fingerpad.specimen.ridges",
     "ridge_resolution": "fingerpad.specimen.layered",
@@ -30,12 +32,13 @@ def __getattr__(name: str):
 
 def counted(specimen, size, ridges) -> tuple[int, float]:
     """Nodes and shortest edge (m) of the mesh of such a size of an outline (with `ridges` or None), a slab or a half-round."""
-    from fingerpad.specimen.mesh import count_nodes, smallest_edge
+    from fingerpad.specimen.build import count_nodes, smallest_edge
 
     if specimen.stack is not None:
+        from fingerpad.specimen.quality import quality_of
         from fingerpad.specimen.stacks import build_stack_mesh
 
-        quality = build_stack_mesh(specimen.stack, size).quality()
+        quality = quality_of(build_stack_mesh(specimen.stack, size))
         return quality["nodes"], quality["smallest_edge_m"]
     layered = specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None
     return count_nodes(*layered), smallest_edge(*layered)
@@ -49,14 +52,14 @@ def mesh_for(scene, plan):
     OutlineError, MeshError : see `build_pad_mesh`, `build_stack_mesh` and `read_pad_mesh`.
     """
     if scene.specimen.mesh is not None:
-        from fingerpad.specimen.external import read_specimen_mesh
+        from fingerpad.specimen.files import read_specimen_mesh
 
         return read_specimen_mesh(scene.specimen)
     if scene.specimen.stack is not None:
         from fingerpad.specimen.stacks import build_stack_mesh
 
         return build_stack_mesh(scene.specimen.stack, plan.mesh_size)
-    from fingerpad.specimen.mesh import build_pad_mesh
+    from fingerpad.specimen.build import build_pad_mesh
 
     specimen = scene.specimen
     ridges = specimen.ridges if plan.effects["ridges"].on else None

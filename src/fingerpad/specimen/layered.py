@@ -8,29 +8,15 @@ Below and beside stays the plain mesh. Nodes are named on a lattice of sixths of
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fingerpad.specimen.mesh import (
-    _MIRRORED,
-    OPTIONAL,
-    REGIONS,
-    MeshError,
-    MeshSize,
-    PadMesh,
-    _columns,
-    _divide,
-    _fat_rows,
-    _limit_growth,
-    _node_positions,
-)
-from fingerpad.specimen.outline import OutlineCurve, curve_of
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.grid import columns_of, divide, fat_rows_of, limit_growth, node_positions
+from fingerpad.specimen.outline import OutlineCurve, OutlineLike, curve_of
+from fingerpad.specimen.pad import OPTIONAL, REGIONS, MeshError, MeshSize, PadMesh
 from fingerpad.specimen.quality import check_orientation
-from fingerpad.specimen.ridges import RidgedPad
-
-if TYPE_CHECKING:
-    from fingerpad.scenes.specimen import Outline, Ridges
+from fingerpad.specimen.ridges import RidgedPad, RidgesLike
 
 PER_PITCH = 8  # elements from one ridge to the next, at least
 PER_HEIGHT = 4  # rows within a ridge's height of the interface, unless the ridges are low (see `_interface_edge`)
@@ -81,7 +67,7 @@ def ridge_column(size: MeshSize, ridged: RidgedPad) -> float:
     return min(size.skin_edge, 3.0 * ridged.wave / PER_PITCH)
 
 
-def skin_edge(outline: Outline, size: MeshSize, ridges: Ridges, edge: float) -> float:
+def skin_edge(outline: OutlineLike, size: MeshSize, ridges: RidgesLike, edge: float) -> float:
     """Edge (m) along the skin under the apex that would be `edge` in the plain mesh."""
     edge = min(edge, ridge_column(size, RidgedPad(outline, ridges)))
     return edge / 3 if ridges.outer is not None else edge
@@ -131,21 +117,21 @@ def _skin_rows(curve: OutlineCurve, size: MeshSize, ridged: RidgedPad | None, co
     edge = np.full_like(grid, size.layer_edge)
     for depth, wanted in fixed.items():
         edge[grid == depth] = np.minimum(edge[grid == depth], wanted)
-    edges = {_FINE: _limit_growth(grid, edge, growth)}
+    edges = {_FINE: limit_growth(grid, edge, growth)}
     edge[grid >= ends[0]] = size.layer_edge  # templates part coarse rows from fine ones
-    edges[_COARSE] = _limit_growth(grid, edge, size.growth)
+    edges[_COARSE] = limit_growth(grid, edge, size.growth)
     rows, kind = [0.0], []
     for low, high, each in zip([0.0, *ends[:-1]], ends, kinds, strict=True):
         if each in (_NARROWS, _WIDENS):
             part = np.array([low, high])
         else:
-            part = _divide(grid, edges[each], low, high, np.ceil if each == _FINE else np.round)
+            part = divide(grid, edges[each], low, high, np.ceil if each == _FINE else np.round)
         rows.extend(part[1:].tolist())
         kind.extend([each] * (len(part) - 1))
     return np.array(rows), np.array(kind)
 
 
-def _grid(outline: Outline, size: MeshSize, ridges: Ridges | None, corneum: bool):
+def _grid(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corneum: bool):
     """The grid, the pad's curve and its ridges."""
     curve = curve_of(outline)
     thick = outline.stratum_corneum_thickness if corneum else 0.0
@@ -157,10 +143,10 @@ def _grid(outline: Outline, size: MeshSize, ridges: Ridges | None, corneum: bool
             raise MeshError("ridges: half_width and a pitch reach beyond the pad's widest place; less is allowed")
         edge = ridge_column(size, ridged)
         size = replace(size, skin_edge=edge, fine_half_width=max(size.fine_half_width, ridged.extent))
-    columns, nail = _columns(curve, size)
+    columns, nail = columns_of(curve, size)
     zone = int(np.searchsorted(columns, ridged.extent - 1e-9)) if ridged else 0
     rows, kinds = _skin_rows(curve, size, ridged, thick)
-    fat, fat_edge = _fat_rows(curve, size, rows[-1] - rows[-2])
+    fat, fat_edge = fat_rows_of(curve, size, rows[-1] - rows[-2])
     middle = 0.5 * (rows[1:] + rows[:-1])
     bounds = [*([thick] if corneum else []), *curve.layer_depths]
     region = np.concatenate((np.searchsorted(bounds, middle), np.full(fat, len(bounds))))
@@ -191,19 +177,19 @@ def _places(grid: _Grid, curve: OutlineCurve, ridged: RidgedPad | None, column: 
         depth = ridged.depth(np.where(column[skin] < 0, -1.0, 1.0) * s[skin], depth)
     unique, back = np.unique(s[skin], return_inverse=True)
     points[skin] = curve.point(curve.theta_at(unique)[back], depth)
-    fat = _node_positions(curve, grid.columns, grid.rows[-1:], grid.fat, grid.fat_edge)
+    fat = node_positions(curve, grid.columns, grid.rows[-1:], grid.fat, grid.fat_edge)
     points[deep] = fat[2 * np.abs(column[deep]) // _C, 2 * (row[deep] - _R * (len(grid.rows) - 1)) // _R]
     points[column < 0, 0] *= -1.0
     return points
 
 
-def build_layered_mesh(outline: Outline, size: MeshSize, ridges: Ridges | None, corneum: bool) -> PadMesh:
-    """The pad with ridges or a layer ``stratum_corneum``; see :func:`fingerpad.specimen.mesh.build_pad_mesh`."""
+def build_layered_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corneum: bool) -> PadMesh:
+    """The pad with ridges or a layer ``stratum_corneum``; see :func:`fingerpad.specimen.build.build_pad_mesh`."""
     grid, curve, ridged = _grid(outline, size, ridges, corneum)
     steps, region = _right_cells(grid)
     half = _C * (len(grid.columns) - 1)
     ring, deep = 2 * half, _R * len(grid.kinds) + 1
-    steps = np.concatenate((steps, (steps * (-1, 1))[:, _MIRRORED["quad9"]]))
+    steps = np.concatenate((steps, (steps * (-1, 1))[:, KINDS["quad9"].mirrored]))
     key = steps[..., 0] % ring * deep + steps[..., 1]
     known, cells = np.unique(key, return_inverse=True)
     column = known // deep
@@ -238,7 +224,7 @@ def build_layered_mesh(outline: Outline, size: MeshSize, ridges: Ridges | None, 
     return mesh
 
 
-def count_layered_nodes(outline: Outline, size: MeshSize, ridges: Ridges | None, corneum: bool) -> int:
+def count_layered_nodes(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corneum: bool) -> int:
     """Number of nodes of :func:`build_layered_mesh`, from its lattice alone."""
     grid = _grid(outline, size, ridges, corneum)[0]
     steps = _right_cells(grid)[0]
@@ -247,7 +233,7 @@ def count_layered_nodes(outline: Outline, size: MeshSize, ridges: Ridges | None,
     return 2 * len(column) - int(np.count_nonzero((column == 0) | (column == half)))
 
 
-def ridge_resolution(outline: Outline, size: MeshSize, ridges: Ridges, corneum: bool = False) -> tuple[float, int]:
+def ridge_resolution(outline: OutlineLike, size: MeshSize, ridges: RidgesLike, corneum: bool = False) -> tuple[float, int]:
     """Elements from one inner ridge to the next, and rows within a ridge's height of the interface, the fewest of each.
 
     The rows are counted above and below the tip and the valley nearest to x = 0.

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from fingerpad.specimen.mesh import MeshError, PadMesh, element_edges, skin_chain
-from fingerpad.specimen.outline import curve_of
-
-if TYPE_CHECKING:
-    from fingerpad.scenes.specimen import Outline
+from fingerpad.specimen.outline import OutlineLike, curve_of
+from fingerpad.specimen.pad import MeshError, PadMesh, element_edges, skin_chain
 
 
 def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
@@ -133,7 +128,7 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     return found
 
 
-def below_outline(outline: Outline, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     """Points (n, 2) m at lateral position ``offsets`` whose depth below the smooth outline is ``depths`` (n,) m.
 
     For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as :func:`below_skin`.

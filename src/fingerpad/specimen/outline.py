@@ -12,17 +12,30 @@ makes the half width the one asked for. Negative angles are the left half. Lengt
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-if TYPE_CHECKING:
-    from fingerpad.scenes.scene import Outline
-
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 _INTERVALS = 256  # of the arc-length table; even, so that theta = pi/2 is one of its points
 _SAMPLES = 4001  # points at which an inequality along the outline is checked
+
+
+class OutlineLike(Protocol):
+    """What an outline says, m."""
+
+    apex_height: float
+    apex_radius: float
+    half_width: float
+    depth_below: float
+    epidermis_thickness: float
+    dermis_thickness: float
+    stratum_corneum_thickness: float
+    bone_centre_height: float
+    bone_half_width: float
+    bone_half_height: float
+    nail_half_width: float
 
 
 class OutlineError(ValueError):
@@ -49,7 +62,7 @@ class OutlineCurve:
 
     Parameters
     ----------
-    outline : the scene's `Outline` (all lengths in m).
+    outline : as `OutlineLike` (all lengths in m).
 
     Raises
     ------
@@ -58,7 +71,7 @@ class OutlineCurve:
         layers reach the bone, or the nail is wider than the pad.
     """
 
-    def __init__(self, outline: Outline):
+    def __init__(self, outline: OutlineLike):
         self.outline = outline
         self.scale = float(np.sqrt(outline.apex_radius * outline.apex_height))
         self.widening = outline.half_width / self.scale - 1.0
@@ -211,6 +224,6 @@ class OutlineCurve:
 
 
 @cache
-def curve_of(outline: Outline) -> OutlineCurve:
+def curve_of(outline: OutlineLike) -> OutlineCurve:
     """The curve of an outline, made and checked once. Raises OutlineError."""
     return OutlineCurve(outline)

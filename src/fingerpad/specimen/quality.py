@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fingerpad.specimen.mesh import MeshError, PadMesh, corner_count, element_edges
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.pad import MeshError, PadMesh, element_edges
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -85,9 +86,9 @@ def scaled_jacobian(mesh: PadMesh) -> np.ndarray:
     return (_determinant(tangents) / scale).min(axis=1)
 
 
-def quality(mesh: PadMesh) -> dict[str, float]:
+def quality_of(mesh: PadMesh) -> dict[str, float]:
     """nodes, elements, smallest_edge_m (corner to corner) and worst_scaled_jacobian of a mesh."""
-    start, end = element_edges(mesh.cells[:, : corner_count(mesh.element)], mesh.element).T
+    start, end = element_edges(mesh.cells[:, : KINDS[mesh.element].corners], mesh.element).T
     return {
         "nodes": len(mesh.points),
         "elements": len(mesh.cells),
@@ -102,7 +103,7 @@ def quality_table(meshes: Mapping[str, PadMesh]) -> DataFrame:
 
     rows = []
     for name, mesh in meshes.items():
-        values = mesh.quality()
+        values = quality_of(mesh)
         rows.append(
             {
                 "mesh": name,

@@ -7,18 +7,23 @@ within `half_width` of the apex and fade out over one pitch beyond.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
 
-from fingerpad.specimen.outline import curve_of
-
-if TYPE_CHECKING:
-    from fingerpad.scenes.specimen import Outline, Ridges
+from fingerpad.specimen.outline import OutlineLike, curve_of
 
 _POWER = {"smooth": 1, "sharp": 2}  # of cos(pi u)^2: a sharp tip has half a smooth one's radius of curvature
 _MEAN = {"smooth": 1 / 2, "sharp": 3 / 8}
 _REACH = 0.25  # pitches by which the mesh still follows the ridges above their valleys and below their tips
+
+
+class RidgesLike(Protocol):
+    """What ridges say: ``inner`` has pitch, height, shape, phase and limiting, ``outer`` (or None) period, height and shape."""
+
+    inner: Any
+    outer: Any
+    half_width: float
 
 
 def ridge_shape(u: np.ndarray, shape: str, limiting: float = 0.0) -> np.ndarray:
@@ -54,7 +59,7 @@ class RidgedPad:
     above, below : depths (m) between which the mesh follows inner ridges.
     """
 
-    def __init__(self, outline: Outline, ridges: Ridges, corneum: float = 0.0):
+    def __init__(self, outline: OutlineLike, ridges: RidgesLike, corneum: float = 0.0):
         self.curve = curve_of(outline)
         self.inner, self.outer, self.half_width = ridges.inner, ridges.outer, ridges.half_width
         inner = self.inner

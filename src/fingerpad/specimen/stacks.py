@@ -12,7 +12,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from fingerpad.specimen.mesh import _MIRRORED, MeshError, MeshSize, PadMesh, _divide, _limit_growth, _with_middles
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.grid import divide, limit_growth, with_middles
+from fingerpad.specimen.pad import MeshError, MeshSize, PadMesh
 from fingerpad.specimen.quality import check_orientation
 
 _COARSEST = 8.0  # largest edge along the surface and across the layers, in those under the contact
@@ -30,8 +32,8 @@ def _graded(length: float, ends: list[float], wanted, focus, growth: float) -> n
         edge = np.where((grid >= low) & (grid <= high), np.minimum(edge, high - low), edge)
     for s, near in focus:
         edge = np.where(grid == s, np.minimum(edge, near), edge)
-    edge = _limit_growth(grid, edge, growth)
-    parts = [_divide(grid, edge, low, high, np.ceil) for low, high in pairwise(ends)]
+    edge = limit_growth(grid, edge, growth)
+    parts = [divide(grid, edge, low, high, np.ceil) for low, high in pairwise(ends)]
     return np.concatenate([part[:-1] for part in parts] + [[length]])
 
 
@@ -85,8 +87,8 @@ def _chain(nodes: np.ndarray) -> np.ndarray:
 
 def _slab(stack, size: MeshSize):
     """Points, cells, layer of each cell and curves of a slab's right half."""
-    x, (depth, layer) = _with_middles(_columns(stack, size)), _rows(stack, size, sum(stack.thicknesses))
-    y = -_with_middles(depth)
+    x, (depth, layer) = with_middles(_columns(stack, size)), _rows(stack, size, sum(stack.thicknesses))
+    y = -with_middles(depth)
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     number = np.arange(len(points)).reshape(len(x), len(y))
     steps = _quads(len(x) // 2, len(y) // 2)
@@ -100,11 +102,11 @@ def _half_round(stack, size: MeshSize):
     solid = stack.solid
     ring = above + (1.0 - _RING) * (radius - above) if solid else sum(stack.thicknesses)
     s, (depth, layer) = _columns(stack, size), _rows(stack, size, ring)
-    angle = _with_middles(s) / radius
+    angle = with_middles(s) / radius
     sine, cosine = np.sin(angle), np.cos(angle)
     sine[0], cosine[-1] = 0.0, 0.0  # exactly on the axis and on the base
     way = np.stack((sine, cosine), axis=-1)
-    points = (radius - _with_middles(depth))[None, :, None] * way[:, None, :]
+    points = (radius - with_middles(depth))[None, :, None] * way[:, None, :]
     wide = len(s) - 1
     if not solid:
         number = np.arange(points[..., 0].size).reshape(points.shape[:2])
@@ -117,7 +119,7 @@ def _half_round(stack, size: MeshSize):
     inner = radius - ring
     corner = int(np.clip(np.argmin(np.abs(s / radius - 0.25 * np.pi)), 1, wide - 1))
     cx, cy = _RING * inner * way[2 * corner]
-    along = _with_middles(s)
+    along = with_middles(s)
     top = np.clip(along / s[corner], 0.0, 1.0)
     side = np.clip((along - s[corner]) / (s[-1] - s[corner]), 0.0, 1.0)
     block = np.stack((cx * top, cy * (1.0 - side)), axis=-1)
@@ -178,7 +180,7 @@ def build_stack_mesh(stack, size: MeshSize) -> PadMesh:
 
     mesh = PadMesh(
         points=np.concatenate((points, points[~on_axis] * (-1.0, 1.0))),
-        cells=np.concatenate((cells, mirror[cells][:, _MIRRORED["quad9"]]))[by_layer].astype(np.int32),
+        cells=np.concatenate((cells, mirror[cells][:, KINDS["quad9"].mirrored]))[by_layer].astype(np.int32),
         element="quad9",
         region=np.concatenate((region, region))[by_layer].astype(np.int8),
         curves={name: whole(name, line) for name, line in curves.items()},

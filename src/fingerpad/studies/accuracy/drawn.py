@@ -17,7 +17,7 @@ import numpy as np
 
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Bar, Sampled, Scene
-from fingerpad.specimen.mesh import build_pad_mesh
+from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.studies.accuracy.belief import FINEST, difference, ends
 from fingerpad.studies.accuracy.run import split
 from fingerpad.studies.stability.hard_cases import FLAT, cylinder, force, scene_of

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from fingerpad.specimen.mesh import PadMesh, corner_count
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.pad import PadMesh
 
 
 def distorted(mesh: PadMesh, share: float = 0.3) -> PadMesh:
@@ -42,7 +43,7 @@ def quarters(mesh: PadMesh) -> PadMesh:
 
 def corners_only(mesh: PadMesh) -> PadMesh:
     """6-node triangles without their mid-side nodes: what most mesh generators write."""
-    count = corner_count(mesh.element)
+    count = KINDS[mesh.element].corners
     used = np.unique(mesh.cells[:, :count])
     number = np.full(len(mesh.points), -1, np.int32)
     number[used] = np.arange(len(used))

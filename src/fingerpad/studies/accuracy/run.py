@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.planning.plan import RULES, Plan, plan
-from fingerpad.specimen.mesh import PadMesh, build_pad_mesh, count_nodes
+from fingerpad.specimen.build import build_pad_mesh, count_nodes
+from fingerpad.specimen.pad import PadMesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,7 +15,7 @@ import numpy as np
 
 from fingerpad.scenes.scene import Scene
 from fingerpad.scenes.specimen import Source
-from fingerpad.specimen.mesh import PadMesh
+from fingerpad.specimen.pad import PadMesh
 from fingerpad.studies.accuracy.meshes import corners_only, distorted, triangles
 
 SCENES = Path(__file__).resolve().parents[4] / "config" / "scenes"
@@ -84,11 +84,11 @@ class Case:
         document = self.document
         if self.mesh is not None:
             from fingerpad.planning.plan import plan
-            from fingerpad.specimen import mesh_for
+            from fingerpad.specimen import mesh_for, write_pad
 
             built = scene_of(document, self.name)
             path = Path(folder).absolute() / "external.msh"
-            self.mesh(mesh_for(built, plan(built))).write(path)
+            write_pad(self.mesh(mesh_for(built, plan(built))), path)
             document["specimen"] = {"mesh": str(path)}
         return scene_of(document, self.name)
 

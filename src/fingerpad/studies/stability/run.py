@@ -23,7 +23,7 @@ from fingerpad.planning.plan import plan
 from fingerpad.results import leg_ends
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
-from fingerpad.specimen.mesh import PadMesh
+from fingerpad.specimen.pad import PadMesh
 from fingerpad.studies.accuracy.meshes import quarters, triangles
 from fingerpad.studies.stability.hard_cases import CATALOGUE, Case, Limits
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_text
 from fingerpad.results import summary, write_history
-from fingerpad.specimen import mesh_for, read_pad_mesh
+from fingerpad.specimen import mesh_for, read_pad_mesh, write_pad
 
 
 def run(job):
@@ -17,9 +17,10 @@ def run(job):
             scene = scene.with_accuracy(accuracy)
         folder, how = Path(history).parent, plan(scene)
         how.write(folder / "plan.json")
-        mesh_for(scene, how).write(folder / "mesh.msh")
+        built, file = mesh_for(scene, how), folder / "mesh.msh"
+        write_pad(built, file)
         # what is published is what is solved
-        dataset = simulate(scene, how, mesh=read_pad_mesh(folder / "mesh.msh"))
+        dataset = simulate(scene, how, mesh=read_pad_mesh(file, built.regions, built.fixed))
         write_text(folder / "summary.json", json.dumps(summary(dataset), indent=2) + "\n")
         write_history(dataset, history)
         print(history, flush=True)

@@ -2,7 +2,7 @@
 
 Coordinates are in mm. Physical surfaces are the layers, under any names; a mesh with epidermis, dermis and fat (and
 stratum_corneum, if it has it) is a finger. A physical curve skin is what may be touched; at least one more is held: bone,
-nail, or what the scene says. Boundary edges in none of them are free. Linear and quadratic triangles and quads are read
+nail, base, or what the scene says. Boundary edges in none of them are free. Linear and quadratic triangles and quads are read
 (format 2.2 or 4.1); an 8-node quad is given the centre node where its own (serendipity) map puts the centre.
 """
 
@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from fingerpad.files import write_atomically
-from fingerpad.specimen.mesh import FIXED, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
+from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
 from fingerpad.specimen.quality import check_orientation
 
 _ELEMENTS = {2: "tri3", 9: "tri6", 3: "quad4", 16: "quad8", 10: "quad9"}  # by gmsh's element type
@@ -40,7 +40,7 @@ def _quiet_gmsh() -> Iterator[object]:
         gmsh.finalize()
 
 
-def write_pad_mesh(mesh: PadMesh, path: str | Path) -> None:
+def write_pad(mesh: PadMesh, path: str | Path) -> None:
     """Write `mesh` to a gmsh .msh file (version 4.1, mm), whole or not at all.
 
     Raises
@@ -125,11 +125,11 @@ def _held(path: Path, curves: dict, fixed: Sequence[str], free: Sequence[str]) -
         for name in names:
             if name not in curves:
                 raise MeshError(f"{path}: {key}: {name} is no curve of the mesh; its physical curves are {_listed(curves)}")
-    held = tuple(dict.fromkeys([*(name for name in FIXED if name in curves and name not in free), *fixed]))
+    held = tuple(dict.fromkeys([*(name for name in HELD if name in curves and name not in free), *fixed]))
     if not held:
         others = _listed(name for name in curves if name != SKIN)
         raise MeshError(
-            f"{path}: no curve is held; a physical curve {' or '.join(FIXED)}, or one named by specimen.fixed, must be there, "
+            f"{path}: no curve is held; a physical curve {', '.join(HELD)}, or one named by specimen.fixed, must be there, "
             f"among {others}"
         )
     return held
@@ -288,8 +288,8 @@ def read_pad_mesh(path: str | Path, layers: Sequence[str] = (), fixed: Sequence[
     ----------
     layers : names of its physical surfaces, outside to inside. Left out they are stratum_corneum (if it is there), epidermis,
         dermis and fat where the mesh has these three, else whatever surfaces it has.
-    fixed : names of the physical curves that are held, beside bone and nail. free : of those that are not (bone and nail
-        may be among them). Boundary edges in none of these and not in the skin are free, as the curve "unnamed".
+    fixed : names of the physical curves that are held, beside bone, nail and base. free : of those that are not (these
+        three may be among them). Boundary edges in none of these and not in the skin are free, as the curve "unnamed".
 
     Returns
     -------

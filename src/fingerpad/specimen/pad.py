@@ -1,0 +1,154 @@
+"""The pad's mesh as data: what a mesh is (`PadMesh`), how fine it shall be (`MeshSize`), its edges and its skin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fingerpad.specimen.element_kinds import KINDS
+
+REGIONS = ("epidermis", "dermis", "fat")
+OPTIONAL = ("stratum_corneum",)  # regions that a mesh may have besides, outside the others
+SKIN = "skin"  # the curve that may be touched
+FIXED = ("bone", "nail")  # curves that hold a finger
+HELD = (*FIXED, "base")  # curves of a mesh that are held unless a scene says that they are free
+UNNAMED = "unnamed"  # boundary edges in no curve that a scene or a finger names: free
+CURVES = (SKIN, *FIXED)
+
+
+class MeshError(ValueError):
+    """A mesh or mesh size cannot be used; the message is one line."""
+
+
+@dataclass(frozen=True)
+class MeshSize:
+    """How fine the built mesh shall be; all lengths in m.
+
+    Parameters
+    ----------
+    skin_edge : edge along the skin where contact is expected (two node spacings).
+    fine_half_width : arc length from the apex within which `skin_edge` holds.
+    layer_edge : edge across epidermis and dermis.
+    growth : largest ratio of one edge to the next finer one, along the skin and into the fat under the apex.
+    focus : pairs (x, edge): near the skin points at x and -x the edge along the skin shrinks to `edge`.
+    skin_radial_edge : first edge below the skin, growing to `layer_edge`; None means `layer_edge` at once.
+    coarse_edge : largest edge along the skin; None means eight times `skin_edge`.
+    """
+
+    skin_edge: float
+    fine_half_width: float
+    layer_edge: float
+    growth: float = 1.2
+    focus: tuple[tuple[float, float], ...] = ()
+    skin_radial_edge: float | None = None
+    coarse_edge: float | None = None
+
+    def __post_init__(self):
+        lengths = {
+            "skin_edge": self.skin_edge,
+            "layer_edge": self.layer_edge,
+            "skin_radial_edge": self.skin_radial_edge,
+            "coarse_edge": self.coarse_edge,
+            **{f"focus edge at x = {x * 1e3:g} mm": edge for x, edge in self.focus},
+        }
+        for key, length in lengths.items():
+            if length is not None and not 0.0 < length < np.inf:
+                raise MeshError(f"mesh size: {key} is {length!r} m; it must be above 0")
+        if not 0.0 <= self.fine_half_width < np.inf:
+            raise MeshError(f"mesh size: fine_half_width is {self.fine_half_width!r} m; it must be 0 or more")
+        if not 1.0 < self.growth <= 3.0:
+            raise MeshError(f"mesh size: growth is {self.growth!r}; it must be above 1 and at most 3")
+
+
+@dataclass(frozen=True)
+class PadMesh:
+    """A plane mesh of the pad with named regions and curves.
+
+    Parameters
+    ----------
+    points : (n, 2) float64, node positions in m.
+    cells : (elements, nodes per element) int32: corners counter-clockwise, mid-side nodes (0-1, 1-2, ...),
+        centre node; the order of gmsh and meshio.
+    element : "quad9", "quad4", "tri6" or "tri3".
+    region : (elements,) int8, index into `regions`.
+    curves : name -> (facets, 2 or 3) int32 node numbers (start, end[, middle]), the material on the right of
+        the way from start to end. "skin" runs from left to right, facet after facet; a finger's others are "bone"
+        and "nail"; in a half mesh there is "symmetry".
+    symmetric : whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from such a mesh).
+    half : whether this is the right half only.
+    regions : names of the layers, outside to inside.
+    fixed : names of the curves that are held; the others, the skin among them, are free.
+    """
+
+    points: np.ndarray
+    cells: np.ndarray
+    element: str
+    region: np.ndarray
+    curves: dict[str, np.ndarray]
+    symmetric: bool
+    half: bool = False
+    regions: tuple[str, ...] = REGIONS
+    fixed: tuple[str, ...] = FIXED
+
+    def right_half(self) -> PadMesh:
+        """The half x >= 0 of a symmetric mesh, with the further curve "symmetry" (x = 0 exactly).
+
+        Raises
+        ------
+        MeshError : when the mesh is not symmetric.
+        """
+        if self.half:
+            return self
+        if not self.symmetric:
+            raise MeshError("mesh: no right half, for the mesh is not its own mirror image in x = 0")
+        kept = self.points[self.cells[:, : KINDS[self.element].corners], 0].mean(axis=1) > 0.0
+        nodes = np.unique(self.cells[kept])
+        number = np.full(len(self.points), -1, dtype=np.int32)
+        number[nodes] = np.arange(len(nodes), dtype=np.int32)
+        points = self.points[nodes].copy()
+        on_axis = np.abs(points[:, 0]) <= 1e-6 * np.ptp(self.points[:, 0])
+        points[on_axis, 0] = 0.0
+        cells = number[self.cells[kept]]
+        curves = {}
+        for name, facets in self.curves.items():
+            facets = number[facets]
+            curves[name] = facets[(facets >= 0).all(axis=1)]
+        rim = element_edges(cells, self.element)
+        curves["symmetry"] = rim[on_axis[rim[:, :2]].all(axis=1)][:, [1, 0, *range(2, rim.shape[1])]]
+        return replace(self, points=points, cells=cells, region=self.region[kept], curves=curves, half=True)
+
+    def elevated(self) -> PadMesh:
+        """The same mesh with mid-side nodes if it is made of linear triangles (tri3 -> tri6); else itself."""
+        if self.element != "tri3":
+            return self
+        edges = element_edges(self.cells, "tri3")
+        pairs, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+        first, count = len(self.points), len(self.cells)
+        middle = first + index.reshape(-1).astype(np.int32)
+        points = np.concatenate((self.points, self.points[pairs].mean(axis=1)))
+        cells = np.column_stack((self.cells, middle.reshape(3, count).T)).astype(np.int32)
+        known = dict(zip(map(tuple, pairs.tolist()), range(first, len(points)), strict=True))
+        curves = {
+            name: np.array([(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32).reshape(-1, 3)
+            for name, facets in self.curves.items()
+        }
+        return replace(self, points=points, cells=cells, element="tri6", curves=curves)
+
+
+def element_edges(cells: np.ndarray, element: str) -> np.ndarray:
+    """All element edges, counter-clockwise, shape (corners * elements, 2 or 3): start, end[, middle]."""
+    corners = KINDS[element].corners
+    quadratic = cells.shape[1] > corners
+    edges = []
+    for side in range(corners):
+        nodes = [side, (side + 1) % corners] + ([corners + side] if quadratic else [])
+        edges.append(cells[:, nodes])
+    return np.concatenate(edges)
+
+
+def skin_chain(mesh: PadMesh) -> np.ndarray:
+    """Node numbers (ns,) along the skin of `mesh` from left to right, mid-side nodes included."""
+    skin = mesh.curves["skin"]
+    order = skin[:, [0, 2]] if skin.shape[1] == 3 else skin[:, :1]
+    return np.append(order.ravel(), skin[-1, 1])
