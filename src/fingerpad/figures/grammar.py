@@ -159,6 +159,14 @@ def below(rows: pd.DataFrame, *others: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([rows, *(part for part in others if len(part))], ignore_index=True)
 
 
+def without_round_off(frame: pd.DataFrame, least: float = 1e-11) -> pd.DataFrame:
+    """The frame with zeros for what is below `least` of a column's largest: so that two machines publish the same bytes."""
+    for column in frame.select_dtypes("float"):
+        size = frame[column].abs()
+        frame[column] = frame[column].mask(size < least * size.max(), 0.0)
+    return frame
+
+
 def stacked(parts: Mapping[object, pd.DataFrame], column: str = "panel") -> pd.DataFrame:
     """Frames below each other, each with its name in a first column."""
     return pd.concat(dict(parts), names=[column]).reset_index(0).reset_index(drop=True)
@@ -275,7 +283,7 @@ class Figure:
         marks = [data.axis(column, ids, self.key) for column, ids in self.thesis.items()]
         if self.after:
             marks.append(self.after(data))
-        return pd.concat([rows, *(part for part in marks if len(part))], ignore_index=True)
+        return without_round_off(pd.concat([rows, *(part for part in marks if len(part))], ignore_index=True))
 
     def _traces(self, data: Data) -> pd.DataFrame:
         columns = (*self.keep, self.x, *self.y)
