@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from functools import cache, wraps
-from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
@@ -13,7 +12,7 @@ from fingerpad.results import FRICTION_VARIABLES, VARIABLES, skin_arc
 from fingerpad.scenes.scene import Outline
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.pad import MeshSize, PadMesh
-from fingerpad.stimuli.profiles import profile_of
+from fingerpad.stimuli.shapes import shape_from
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
 CURVATURE = dict(zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True))
@@ -239,7 +238,7 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         load = np.minimum(np.arange(len(d)) / start, 1.0)
         time = np.concatenate([np.arange(start) / start * 0.5, 0.5 + slid / (speed * MM)])
         drag = MM * (1 - 0.04 * np.log(speed)) * (1 - np.exp(-d / (2 * MM)))
-    shape = profile_of(SimpleNamespace(**stimulus))
+    shape = shape_from(stimulus)
     skin_x, skin_y = _skin(edge)
     upper = skin_y > 0
     centre = int(np.argmin(np.where(upper, abs(skin_x), np.inf)))

@@ -7,7 +7,8 @@ from fingerpad import load_scene, plan, simulate
 from fingerpad.mechanics.stepping import NonConvergence, first_touch
 from fingerpad.specimen.files import write_pad
 from fingerpad.specimen.pad import PadMesh
-from fingerpad.stimuli.profiles import Bar, Cylinder, Flat, Line, Sampled
+from fingerpad.stimuli.shapes import Bar, Cylinder, Flat
+from fingerpad.stimuli.shapes.sampled import Points
 
 ROUND = 8e-3
 
@@ -27,14 +28,14 @@ def test_cylinders_touch_where_two_circles_do(curvature, along):
     off = along / (radius + ROUND)
     # R cos a - R without the cancellation
     expected = ROUND * (np.sqrt(1 - off**2) - 1) - radius * off**2 / (1 + np.sqrt(1 - off**2))
-    assert first_touch(skin() + [along, 0.0], Cylinder(curvature)) == pytest.approx(expected, abs=2e-8)
+    assert first_touch(skin() + [along, 0.0], Cylinder(curvature=curvature)) == pytest.approx(expected, abs=2e-8)
 
 
 @pytest.mark.unit
 def test_a_profile_touches_between_nodes_if_it_fits_there():
     """A blade narrower than the spacing touches the line between two nodes; beside the pad it touches nothing."""
     coarse = skin(0.5e-3, 0.25e-3)[2:-2]
-    for profile in (Bar(0.1e-3), Line(0.05e-3), Sampled([-5e-5, 5e-5], [0.0, 0.0])):
+    for profile in (Bar(width=0.1e-3), Bar(width=0.1e-3, fillet=0.05e-3), Points([-5e-5, 5e-5], [0.0, 0.0])):
         assert first_touch(coarse, profile) == pytest.approx(np.interp(0.0, *coarse.T), abs=1e-7)
         assert np.isnan(first_touch(coarse + [9e-3, 0.0], profile))
     assert first_touch(coarse, Flat()) == coarse[:, 1].max()

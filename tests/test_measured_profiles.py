@@ -9,7 +9,8 @@ from fingerpad.documents import SceneError
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.plan import PlanError, read_plan
 from fingerpad.results import summary
-from fingerpad.stimuli.profiles import Cylinder, Sampled
+from fingerpad.stimuli.shapes import Cylinder
+from fingerpad.stimuli.shapes.sampled import Points
 from fingerpad.stimuli.smoothing import SIGMA, smoothed, turning
 from measured_profiles import INSTRUMENTS, measured
 from test_scene import changed, write
@@ -47,7 +48,7 @@ def test_the_filter_keeps_lines_to_their_ends_and_lifts_parabolas():
 @pytest.mark.unit
 def test_turning_to_and_fro_is_noise_and_turning_one_way_is_shape():
     x = np.linspace(-2e-3, 2e-3, 801)
-    assert turning(x, Cylinder(400.0).outline(x), 100e-6).max() < 1e-8
+    assert turning(x, Cylinder(curvature=400.0).outline(x), 100e-6).max() < 1e-8
     assert turning(np.array([-1.0, 0.0, 1e-6, 2e-6, 1.0]), np.array([1.0, 0.0, 0.0, 0.0, 1.0]), 1.0).max() == 0
     zigzag = np.where(np.arange(801) % 2, 1e-6, 0.0)
     angle = np.arctan(1e-6 / (x[1] - x[0]))
@@ -62,12 +63,12 @@ def test_profiles_without_noise_are_left_alone(edge):
     arc = np.linspace(-2.4e-3, 2.4e-3, 201)
     teeth = np.cumsum(np.tile([1.0, 0.2, 0.6, 0.2], 6)) * 1e-3
     for x, y in (
-        (arc, Cylinder(400.0).outline(arc)),
-        (np.round(arc, 9), np.round(Cylinder(400.0).outline(arc), 9)),
+        (arc, Cylinder(curvature=400.0).outline(arc)),
+        (np.round(arc, 9), np.round(Cylinder(curvature=400.0).outline(arc), 9)),
         (1e-3 * np.array([-2, -1, 0, 1, 2]), 1e-3 * np.array([1, 0.25, 0, 0.25, 1])),
         (teeth, np.tile([0, 0, 3e-4, 3e-4], 6)),
     ):
-        raw = Sampled(x, y)
+        raw = Points(x, y)
         felt = raw.felt(edge)
         assert felt.smoothing == 0 and felt.moved(-1, 1) == 0
         np.testing.assert_array_equal(felt.samples, raw.samples)
@@ -76,9 +77,9 @@ def test_profiles_without_noise_are_left_alone(edge):
 @pytest.mark.unit
 def test_smooth_is_auto_none_or_a_length():
     x, y, _ = measured(1)
-    assert Sampled(x, y).felt(100e-6).smoothing == pytest.approx(200e-6)
-    assert Sampled(x, y, smooth="none").felt(100e-6).smoothing == 0
-    felt = Sampled(x, y, smooth=50e-6).felt(100e-6)
+    assert Points(x, y).felt(100e-6).smoothing == pytest.approx(200e-6)
+    assert Points(x, y, smooth="none").felt(100e-6).smoothing == 0
+    felt = Points(x, y, smooth=50e-6).felt(100e-6)
     assert felt.smoothing == 50e-6 and 1e-7 < felt.moved(-1e-3, 1e-3) < 3e-6
 
 
@@ -93,7 +94,7 @@ def test_ends():
     along = np.arctan(0.1)
     expected = {"slope": 2e-4 * np.cos(along), "level": 1e-4, "open": np.hypot(1e-3, 1e-4)}
     for ends, distance in expected.items():
-        profile = Sampled(x, y, ends).at(0.0, 50e-6)
+        profile = Points(x, y, ends).at(0.0, 50e-6)
         found = profile.evaluate(far)[0]
         assert found == pytest.approx([distance] * 2, rel=1e-9 if ends != "open" else 0.06), ends
         outside = profile.outline(np.array([2e-3]))[0]
@@ -101,7 +102,7 @@ def test_ends():
     assert (
         profile.symmetric
         and profile.steepness == pytest.approx(0.1)
-        and profile.convexity == pytest.approx(Sampled(x, y, "slope").convexity)
+        and profile.convexity == pytest.approx(Points(x, y, "slope").convexity)
     )
 
 
@@ -111,7 +112,7 @@ def test_distance_beside_the_ends_is_the_closest_of_all(ends):
     """Against every piece one by one, around and beyond the ends, the gradient its derivative."""
     rng = np.random.default_rng(3)
     x = np.cumsum(rng.uniform(1e-4, 3e-4, 12))
-    profile = Sampled(x, 1e-4 * rng.normal(size=12), ends).at(0.0, 1e-4)
+    profile = Points(x, 1e-4 * rng.normal(size=12), ends).at(0.0, 1e-4)
     at = np.column_stack([rng.uniform(x[0] - 2e-3, x[-1] + 2e-3, 60), rng.uniform(-1e-3, 1e-3, 60)])
     fine = np.linspace(x[0] - 4e-3, x[-1] + 4e-3, 100001)
     height = profile._height(fine)

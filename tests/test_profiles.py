@@ -6,23 +6,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from fingerpad.scenes.scene import Wavy as WavyModel
-from fingerpad.stimuli.profiles import Bar, Curve, Cylinder, Flat, Line, Sampled, Wavy, profile_of
+from fingerpad.stimuli.curve import Curve
+from fingerpad.stimuli.shapes import Bar, Cylinder, Flat, Line, Wavy
+from fingerpad.stimuli.shapes.sampled import Points
 
 pytestmark = pytest.mark.unit
 
 WAVE = np.linspace(-0.02, 0.02, 41)
 PROFILES = {
     "flat": Flat(),
-    "cylinder": Cylinder(209.97),
-    "bar": Bar(1.5875e-3, 0.1e-3),
-    "sharp bar": Bar(1.5875e-3),
+    "cylinder": Cylinder(curvature=209.97),
+    "bar": Bar(width=1.5875e-3, fillet=0.1e-3),
+    "sharp bar": Bar(width=1.5875e-3),
     "line": Line(),
-    "sampled": Sampled(WAVE, -1e-3 * np.cos(300 * WAVE)),
-    "wavy": Wavy([400.0, 700.0], np.radians(30), 1e-3, 1e-3),
-    "wavy with fillets": Wavy([400.0, 700.0], np.radians(30), 1e-3, 1e-3, 0.5e-3),
+    "sampled": Points(WAVE, -1e-3 * np.cos(300 * WAVE)),
+    "wavy": Wavy(curvatures=[400.0, 700.0], half_angle=np.radians(30), lead_in=1e-3, run_out=1e-3),
+    "wavy with fillets": Wavy(curvatures=[400.0, 700.0], half_angle=np.radians(30), lead_in=1e-3, run_out=1e-3, fillet=0.5e-3),
 }
-STANDARD = profile_of(WavyModel())
+STANDARD = Wavy()
 INCH_RADII = 25.4e-3 * np.array([1.5, 1, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125])
 point = st.tuples(st.floats(-5e-3, 5e-3), st.floats(-4e-3, 2e-3))
 
@@ -79,7 +80,7 @@ def test_outline_lies_on_the_surface(name):
 
 def test_sharp_corner_is_kept():
     """Beyond the corner of a sharp bar the nearest point is the corner itself."""
-    bar = Bar(2e-3)
+    bar = Bar(width=2e-3)
     distance, gradient, _ = bar.evaluate(np.array([[1e-3 + 3e-4, -4e-4]]))
     assert distance[0] == pytest.approx(5e-4) and gradient[0] == pytest.approx([0.6, -0.8])
 
@@ -87,8 +88,8 @@ def test_sharp_corner_is_kept():
 def test_sampled_cylinder_approaches_the_cylinder():
     """A finely sampled arc has the arc's distance up to the sagitta of its chords."""
     x = np.linspace(-3e-3, 3e-3, 1201)
-    exact = Cylinder(209.97)
-    sampled = Sampled(x, exact.outline(x))
+    exact = Cylinder(curvature=209.97)
+    sampled = Points(x, exact.outline(x))
     at = np.random.default_rng(0).uniform([-2e-3, -2e-3], [2e-3, 1e-3], (200, 2))
     sagitta = (x[1] - x[0]) ** 2 / 8 * 209.97 * 2
     np.testing.assert_allclose(sampled.evaluate(at)[0], exact.evaluate(at)[0], atol=2 * sagitta)
@@ -96,14 +97,14 @@ def test_sampled_cylinder_approaches_the_cylinder():
 
 def test_symmetry_of_samples_is_seen():
     """A symmetric sampled profile may be halved, a lopsided one may not."""
-    assert Sampled([-1e-3, 0, 1e-3], [1e-4, 0, 1e-4]).symmetric
-    assert not Sampled([-1e-3, 0, 1e-3], [1e-4, 0, 2e-4]).symmetric
+    assert Points([-1e-3, 0, 1e-3], [1e-4, 0, 1e-4]).symmetric
+    assert not Points([-1e-3, 0, 1e-3], [1e-4, 0, 2e-4]).symmetric
 
 
 @pytest.mark.parametrize("x", [[0.0], [0.0, 0.0], [1.0, 0.0]])
 def test_profile_must_be_single_valued(x):
     with pytest.raises(ValueError, match="strictly increasing"):
-        Sampled(x, np.zeros(len(x)))
+        Points(x, np.zeros(len(x)))
 
 
 # -- lines and arcs -----------------------------------------------------------------------------------------------------------
@@ -156,9 +157,9 @@ def slopes_at(profile, x, h=1e-8):
 
 def test_arcs_share_their_tangents_and_only_the_flats_meet_them_sharply():
     """Slopes left and right of every join; the corners are reentrant and turn by the half angle."""
-    for k, x in enumerate(STANDARD.x[1:-1]):
+    for k, x in enumerate(STANDARD.curve.x[1:-1]):
         before, after = slopes_at(STANDARD, x)
-        if k in (0, len(STANDARD.x) - 3):
+        if k in (0, len(STANDARD.curve.x) - 3):
             assert after - before == pytest.approx(-9, abs=1e-3)
         else:
             assert after == pytest.approx(before, abs=1e-3) and abs(before) == pytest.approx(9, abs=1e-3)
@@ -166,17 +167,17 @@ def test_arcs_share_their_tangents_and_only_the_flats_meet_them_sharply():
 
 def test_fillet_is_tangent_to_flat_and_arc():
     """Rounded corners have no kink left and the radius asked for; the solid gains there, nothing else moves."""
-    rounded = profile_of(WavyModel(fillet=2e-3))
+    rounded = Wavy(fillet=2e-3)
     assert [segment.curvature for segment in rounded.segments][1::16] == pytest.approx([-500, -500])
-    for x in rounded.x[1:-1]:
+    for x in rounded.curve.x[1:-1]:
         before, after = slopes_at(rounded, x)
         assert after == pytest.approx(before, abs=1e-3)
-    x = np.linspace(0, STANDARD.x[-1], 20001)
+    x = np.linspace(0, STANDARD.curve.x[-1], 20001)
     gain = STANDARD.outline(x) - rounded.outline(x)
-    near = np.min(np.abs(x[:, None] - STANDARD.x[[1, -2]]), axis=1) < 0.4e-3
+    near = np.min(np.abs(x[:, None] - STANDARD.curve.x[[1, -2]]), axis=1) < 0.4e-3
     assert np.all(gain[near] >= -1e-15) and np.abs(gain[~near]).max() < 1e-15
     # between tangents at 9 degrees the sharp corner stands out by r (1 / cos 4.5 - 1) at most
-    assert rounded.evaluate(np.array([[STANDARD.x[1], 0.0]]))[0][0] == pytest.approx(
+    assert rounded.evaluate(np.array([[STANDARD.curve.x[1], 0.0]]))[0][0] == pytest.approx(
         -2e-3 * (1 / np.cos(np.radians(4.5)) - 1), rel=0.05
     )
 
@@ -191,9 +192,9 @@ def test_distance_to_the_wavy_surface_is_the_closest_of_all(curvatures, half_ang
     """Against the nearest of densely drawn points, within what their spacing allows; below the surface it is positive."""
     spacing = 2e-6
     surface = drawn(1 / np.array(curvatures), half_angle, 8e-3, 8e-3, spacing)
-    profile = Wavy(curvatures, half_angle, 8e-3, 8e-3)
-    at = np.array(places) * [profile.x[-1], 1.0]
-    inside = (at[:, 0] > 0) & (at[:, 0] < profile.x[-1])
+    profile = Wavy(curvatures=curvatures, half_angle=half_angle, lead_in=8e-3, run_out=8e-3)
+    at = np.array(places) * [profile.curve.x[-1], 1.0]
+    inside = (at[:, 0] > 0) & (at[:, 0] < profile.curve.x[-1])
     distance = profile.evaluate(at)[0]
     nearest, index = cKDTree(surface).query(at)
     inside &= (index > 0) & (index < len(surface) - 1)
@@ -210,7 +211,7 @@ def test_distance_to_the_wavy_surface_is_the_closest_of_all(curvatures, half_ang
 def test_distance_to_steep_lines_is_the_closest_of_all(pieces, place):
     """Against every segment one by one: leaving most of them out loses none that matters, however steep they are."""
     steps = np.array(pieces)
-    profile = Sampled(np.cumsum(steps[:, 0]), np.cumsum(steps[:, 1]))
+    profile = Points(np.cumsum(steps[:, 0]), np.cumsum(steps[:, 1]))
     at = np.array([profile.x[0] + place[0] * np.ptp(profile.x), place[1]])
     start, way = np.column_stack([profile.x, profile.y])[:-1], np.column_stack([np.diff(profile.x), np.diff(profile.y)])
     share = np.einsum("ij,ij->i", at - start, way) / np.sum(way**2, axis=1)
@@ -224,7 +225,7 @@ def test_work_does_not_grow_with_the_length_of_a_profile():
     """Points near the surface look at the pieces near them, whether the profile has a thousand or a million."""
     looked_at = []
 
-    class Counting(Sampled):
+    class Counting(Points):
         def _to_piece(self, points, piece):
             looked_at.append(len(points))
             return super()._to_piece(points, piece)
@@ -238,7 +239,7 @@ def test_work_does_not_grow_with_the_length_of_a_profile():
 
 def test_reentrant_corner_has_its_fan_of_normals_in_the_solid():
     """On the corner the bisector of both normals, above it the distance to it, below it that to the closer of the two sides."""
-    corner, half = np.array([STANDARD.x[1], 0.0]), np.radians(4.5)
+    corner, half = np.array([STANDARD.curve.x[1], 0.0]), np.radians(4.5)
     up = np.array([np.sin(half), np.cos(half)])
     distance, gradient, curvature = STANDARD.evaluate(np.array([corner, corner + 10e-6 * up, corner - 10e-6 * up]))
     np.testing.assert_allclose(distance, [0, -10e-6, 10e-6 * np.cos(half)], atol=1e-10)
@@ -249,20 +250,20 @@ def test_reentrant_corner_has_its_fan_of_normals_in_the_solid():
 
 def test_level_sets_of_arcs_and_corners():
     """Curvature 1/(R + d) under a convexity, -1/(R - d) under a hollow, 1/d under a corner that points at the skin."""
-    x = [np.mean(STANDARD.x[k : k + 2]) for k in (1, 2)]
+    x = [np.mean(STANDARD.curve.x[k : k + 2]) for k in (1, 2)]
     deep = np.column_stack([x, STANDARD.outline(np.array(x)) - 2e-3])
     distance, gradient, curvature = STANDARD.evaluate(deep)
     np.testing.assert_allclose(distance, 2e-3, rtol=1e-9)
     np.testing.assert_allclose(gradient, [[0, -1], [0, -1]], atol=1e-9)
     np.testing.assert_allclose(curvature, [1 / (38.1e-3 + 2e-3), -1 / (25.4e-3 - 2e-3)], rtol=1e-9)
-    tip = Sampled([-1e-3, 0, 1e-3], [1e-3, 0, 1e-3])
+    tip = Points([-1e-3, 0, 1e-3], [1e-3, 0, 1e-3])
     assert tip.evaluate(np.array([[0.1e-3, -0.5e-3]]))[2][0] == pytest.approx(1 / np.hypot(0.1e-3, 0.5e-3))
     assert np.all(tip.evaluate(np.zeros((1, 2)))[1][0] == [0, -1])
 
 
 def test_arcs_on_a_smooth_join_are_not_corners():
     """Straight below a join between arcs the curvature is that of one of them, at any distance down to none."""
-    for x in STANDARD.x[2:-2]:
+    for x in STANDARD.curve.x[2:-2]:
         foot = np.array([x, 0.0])
         normal = STANDARD.evaluate(foot[None])[1][0]
         for distance in (0.0, 1e-10, 1e-7, 1e-4):
@@ -275,10 +276,12 @@ def test_what_planning_asks_of_a_surface():
     assert STANDARD.steepness == pytest.approx(np.tan(np.radians(9))) and STANDARD.convexity == pytest.approx(1 / 3.175e-3)
     assert STANDARD.dip == pytest.approx(38.1e-3 * (1 - np.cos(np.radians(9))))
     assert (Flat().steepness, Flat().convexity, Flat().dip) == (0, 0, 0)
-    assert Cylinder(210.0).convexity == 210 and Line(0.1e-3).convexity == pytest.approx(1e4) and Bar(1e-3).convexity == 0
+    assert (
+        Cylinder(curvature=210.0).convexity == 210 and Line().convexity == pytest.approx(1e4) and Bar(width=1e-3).convexity == 0
+    )
     x = np.linspace(-3e-3, 3e-3, 601)
-    assert Sampled(x, Cylinder(210.0).outline(x)).convexity == pytest.approx(210, rel=0.5)
-    groove = Sampled([-2e-3, -1e-3, 0, 1e-3, 2e-3], [0, 0, 1e-3, 0, 0])
+    assert Points(x, Cylinder(curvature=210.0).outline(x)).convexity == pytest.approx(210, rel=0.5)
+    groove = Points([-2e-3, -1e-3, 0, 1e-3, 2e-3], [0, 0, 1e-3, 0, 0])
     assert (groove.dip, groove.steepness, groove.convexity) == pytest.approx((1e-3, 1.0, np.pi / 4 / 1e-3))
 
 
@@ -307,7 +310,7 @@ def test_points_that_are_no_numbers_do_not_stop_a_query():
 def test_nearly_flat_cylinders_are_exact(curvature):
     """Of a flat plate their distance differs by the sagitta, k x^2 / 2, and not by what a radius of 10^13 m rounds away."""
     at = np.random.default_rng(0).uniform([-5e-3, -2e-3], [5e-3, 1e-4], (200, 2))
-    distance, gradient, _ = Cylinder(curvature).evaluate(at)
+    distance, gradient, _ = Cylinder(curvature=curvature).evaluate(at)
     np.testing.assert_allclose(distance, -at[:, 1] + curvature * at[:, 0] ** 2 / 2, rtol=1e-9)
     np.testing.assert_allclose(gradient, np.tile([0.0, -1.0], (200, 1)), atol=1e-9)
-    np.testing.assert_allclose(Cylinder(curvature).outline(at[:, 0]), curvature * at[:, 0] ** 2 / 2, rtol=1e-9)
+    np.testing.assert_allclose(Cylinder(curvature=curvature).outline(at[:, 0]), curvature * at[:, 0] ** 2 / 2, rtol=1e-9)

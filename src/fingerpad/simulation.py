@@ -27,7 +27,6 @@ from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.measures import below_outline, below_skin, touched_side
 from fingerpad.specimen.pad import PadMesh, skin_chain
-from fingerpad.stimuli.profiles import profile_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -110,7 +109,7 @@ class Simulation:
         self.share = 0.5 if self.mesh.half else 1.0
         specimen = scene.specimen
         self.prony = Prony(tuple(t.g for t in specimen.prony), tuple(t.tau for t in specimen.prony))
-        self.profile = profile_of(scene.stimulus).at(plan.surface.smoothing, plan.contact_edge)
+        self.profile = scene.stimulus.at(plan.surface.smoothing, plan.contact_edge)
         self.body, instantaneous = self._body()
         self.receptors = self._receptors(instantaneous)
         self.skin = self._skin()

@@ -12,10 +12,10 @@ from fingerpad.scenes.specimen import Outline
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.pad import MeshSize
-from fingerpad.stimuli.profiles import Cylinder, Flat
+from fingerpad.stimuli.shapes import Cylinder, Flat
 
 THESIS = Prony((0.055, 0.3691), (3.25, 0.3414))
-SHAPES = {"flat": Flat(), "cylinder": Cylinder(210.0)}
+SHAPES = {"flat": Flat(), "cylinder": Cylinder(curvature=210.0)}
 LAYERS = (0.15e6, 0.015e6, 0.015e6)  # Young's moduli, Pa
 LOAD = 19.6  # N/m, 20 gram-weight over 10 mm
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from fingerpad.mechanics.pressure import contact_edges, contact_pressure
 from fingerpad.mechanics.stepping import NewtonSettings, QuasiStatic, Record, Skin, Step
-from fingerpad.stimuli.profiles import Flat
+from fingerpad.stimuli.shapes import Flat
 
 #: Frozen numbers do not see these; the forces of nearly incompressible bodies carry 5e-9 of round-off.
 TIGHT = NewtonSettings(force_tolerance=1e-7, gap_tolerance=1e-8, max_iterations=30)

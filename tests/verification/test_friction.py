@@ -17,7 +17,7 @@ from fingerpad.mechanics.space import edge_load_vectors
 from fingerpad.mechanics.stepping import QuasiStatic, Step
 from fingerpad.reference_solutions import cattaneo_mindlin, friction_plate, hertz, incline, punch
 from fingerpad.stimuli.motion import STEADY
-from fingerpad.stimuli.profiles import Bar, Cylinder, Flat, Sampled
+from fingerpad.stimuli.shapes import Bar, Cylinder, Flat, Sampled
 
 # -- a cylinder on a half-plane (lengths in half widths of the contact) --------------------------------------
 
@@ -33,7 +33,7 @@ def dragged_cylinder(shares, friction=MU, poisson=POISSON, back=()):
     """
     mesh, body = block(DEPTH, DEPTH, poisson, SHEAR)
     skin = skin_of(mesh)
-    stepper = QuasiStatic(body, skin, Cylinder(1 / RADIUS), TIGHT, friction=friction or None)
+    stepper = QuasiStatic(body, skin, Cylinder(curvature=1 / RADIUS), TIGHT, friction=friction or None)
     record = stepper.run([Step(0, 1.0, 1.0, force=HERTZ_LOAD)])[-1]
     limit = MU * HERTZ_LOAD
     records = drag_to(stepper, record, [share * limit for share in shares], 5e-6)
@@ -115,7 +115,7 @@ def test_partial_slip_on_the_way_back(must_fail):
 def check_sliding_cylinder(friction=MU, distance=0.1):
     """Pressed, then slid far enough for everything to slip."""
     mesh, body = block(DEPTH, DEPTH, POISSON, SHEAR)
-    pressed, *_, state = stroke(body, mesh, slide(HERTZ_LOAD, distance, 2), Cylinder(1 / RADIUS), friction or None)
+    pressed, *_, state = stroke(body, mesh, slide(HERTZ_LOAD, distance, 2), Cylinder(curvature=1 / RADIUS), friction or None)
     assert abs(state.ratio - MU) < 1e-4 * MU, f"truth: F_t/F_n = {state.ratio!r} is not mu"
     assert not state.stick.any(), "truth: all of it slips"
     inside = np.abs(state.x + distance) < 0.85
@@ -138,7 +138,7 @@ def test_sliding_cylinder(must_fail):
 def check_full_stick(friction=100.0):
     """A cylinder that cannot slip, dragged in equal small steps."""
     mesh, body = block(DEPTH, DEPTH, POISSON, SHEAR)
-    pressed, *states = stroke(body, mesh, slide(HERTZ_LOAD, 4e-5, 4), Cylinder(1 / RADIUS), friction or None)
+    pressed, *states = stroke(body, mesh, slide(HERTZ_LOAD, 4e-5, 4), Cylinder(curvature=1 / RADIUS), friction or None)
     forces = np.array([state.record.tangential_force for state in (pressed, *states)])
     assert forces[-1] > 0.1 * MU * HERTZ_LOAD, f"truth: the skin is dragged along, F_t = {forces[-1]!r}"
     assert not any(state.slip.any() for state in states), "truth: nothing slips"
@@ -175,7 +175,7 @@ PUNCH_LOAD = 0.01
 def check_punch(nominal, poisson=None, friction=100.0, shift=2e-3):
     """A punch with sharp edges that sticks while it is pressed and while it is shifted."""
     poisson = nominal if poisson is None else poisson
-    bar, steps = Bar(2 * 1.015625), slide(PUNCH_LOAD, shift, 1)  # its edges lie between nodes, the last touching ones at 1
+    bar, steps = Bar(width=2 * 1.015625), slide(PUNCH_LOAD, shift, 1)  # its edges lie between nodes, the last touching ones at 1
     mesh, body = block(DEPTH, DEPTH, poisson, SHEAR)
     free = press(body, mesh, bar, force=PUNCH_LOAD)
     mesh, body = block(DEPTH, DEPTH, poisson, SHEAR)
@@ -273,7 +273,7 @@ def check_incline(nominal, friction=None, slope=0.1):
     fixed = np.zeros(mesh.points.shape, bool)
     fixed[nodes_of(mesh, "bottom")] = True
     body = make_body(mesh, fixed, *lame_constants(1e6, 0.3))
-    line = Sampled([-5.0, 5.0], [5 * slope, -5 * slope])
+    line = Sampled(x=[-5.0, 5.0], y=[5 * slope, -5 * slope])
     start, *_, state = stroke(body, mesh, slide(1.0, 0.1, 3), line, friction or None)
     assert not state.stick.any(), "truth: all of it slides"
     limit = incline.limit_ratio(0.1, nominal)
@@ -295,7 +295,7 @@ def test_incline(friction, must_fail):
 
 # -- strokes of a pad ----------------------------------------------------------------------------------------
 
-FLAT, ROUND = Flat(), Cylinder(105.0)
+FLAT, ROUND = Flat(), Cylinder(curvature=105.0)
 PAD_MU = 0.5
 
 

@@ -9,7 +9,8 @@ from problems import two_numbers
 from strips import Layer, half_strip
 
 from fingerpad.reference_solutions import hertz, layered_contact, westergaard
-from fingerpad.stimuli.profiles import Cylinder, Profile
+from fingerpad.stimuli.profile import Profile
+from fingerpad.stimuli.shapes import Cylinder
 
 DEPTH, RADIUS, SHEAR = 20.0, 200.0, 1.0  # in units of the half width of the contact, 1
 POISSON = 0.4999
@@ -27,7 +28,7 @@ def hertz_contact(element, poisson=POISSON, radius=RADIUS, load_share=1.0):
     """Strip twenty half widths deep under the force that makes a half width of one."""
     load = hertz.force(1.0, RADIUS, 2 * SHEAR / (1 - POISSON))
     mesh, body = half_strip([Layer(DEPTH, SHEAR, poisson)], DEPTH, element)
-    return load, press(body, mesh, Cylinder(1 / radius), force=load_share * load / 2)
+    return load, press(body, mesh, Cylinder(curvature=1 / radius), force=load_share * load / 2)
 
 
 def check_hertz(element, **mutant):

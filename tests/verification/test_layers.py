@@ -9,7 +9,7 @@ from skfem.quadrature import get_quadrature
 from strips import Layer, half_strip
 
 from fingerpad.reference_solutions import layered, layered_contact
-from fingerpad.stimuli.profiles import Cylinder
+from fingerpad.stimuli.shapes import Cylinder
 
 # -- thin layer ----------------------------------------------------------------------------------------------
 
@@ -26,7 +26,7 @@ def check_thin_layer(element, poisson=POISSON, ran_as=None):
     """A layer of thickness one under a contact fifteen thicknesses to each side."""
     load = layered.thin_layer_force(HALF_WIDTH, THIN_RADIUS, 1.0, 3 * SHEAR)
     mesh, body = half_strip([Layer(1.0, SHEAR, poisson)], 4 * HALF_WIDTH, ran_as or element, fine=0.3, columns=(36, 16), rows=[4])
-    result = press(body, mesh, Cylinder(1 / THIN_RADIUS), force=load / 2)
+    result = press(body, mesh, Cylinder(curvature=1 / THIN_RADIUS), force=load / 2)
     truth = layered_contact.press(lambda x: x**2 / (2 * THIN_RADIUS), [Layer(1.0, SHEAR, POISSON)], 4 * HALF_WIDTH, load, 1024)
     law = layered.thin_layer_pressure(result.x, HALF_WIDTH, THIN_RADIUS, 1.0, 3 * SHEAR)
     inside = result.x < 0.9 * HALF_WIDTH
@@ -126,7 +126,7 @@ STRIP = {
 def check_strip(element, load, layers=SKIN):
     radius, half_length = 200.0, 12.0
     mesh, body = half_strip(layers, half_length, element, fine=0.3, columns=(48, 16), rows=[7, 4, 9])
-    result = press(body, mesh, Cylinder(1 / radius), force=load / 2)
+    result = press(body, mesh, Cylinder(curvature=1 / radius), force=load / 2)
     truth = layered_contact.press(lambda x: x**2 / (2 * radius), SKIN, half_length, load, 1024)
     within, frozen = (0.03 if element == "Q1P0" else 0.01), STRIP[element, load]
     two_numbers(result.depth, truth=truth.depth, within=within, frozen=frozen[0])

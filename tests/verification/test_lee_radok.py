@@ -9,7 +9,7 @@ from strips import Layer, half_strip
 from fingerpad.mechanics.stepping import Step
 from fingerpad.reference_solutions import hertz, lee_radok, ting
 from fingerpad.specimen.materials import Prony
-from fingerpad.stimuli.profiles import Cylinder
+from fingerpad.stimuli.shapes import Cylinder
 
 DEPTH, RADIUS, SHEAR, POISSON = 20.0, 400.0, 1.0, 0.4999  # long-term shear modulus
 ONE_TERM = Prony((0.8,), (1.0,))
@@ -21,7 +21,7 @@ def run(steps, series, element="Q2P1"):
     """Pressed strip after each step, as records over its skin."""
     layer = Layer(DEPTH, SHEAR, POISSON)
     mesh, body = half_strip([layer], DEPTH, element, prony=series, fine=0.14, columns=(24, 12))
-    records = walk(body, mesh, steps, Cylinder(1 / RADIUS)).records
+    records = walk(body, mesh, steps, Cylinder(curvature=1 / RADIUS)).records
     skin = skin_of(mesh)
     return [over_skin(body, skin, records, record) for record in records]
 

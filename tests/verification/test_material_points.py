@@ -14,7 +14,7 @@ from strips import Layer, half_strip
 from fingerpad.receptors.material_points import MaterialPoints, ReceptorError, locate, logarithmic_strain
 from fingerpad.reference_solutions import hertz, prony_point
 from fingerpad.specimen.materials import Prony
-from fingerpad.stimuli.profiles import Cylinder
+from fingerpad.stimuli.shapes import Cylinder
 
 THESIS = Prony((0.055, 0.3691), (3.25, 0.3414))
 ENERGIES = {f"strain_energy_{name}" for name in ("density", "long_term_moduli", "half_stress_strain", "recoverable", "network")}
@@ -39,7 +39,7 @@ def check_hertz_energy(element, strain="small", poisson=0.4999, off_axis=0.0):
     mesh, body = half_strip([Layer(depth, shear, poisson)], depth, element, strain, fine=3 / depth, columns=(24, 18))
     points = np.column_stack([np.full(len(DEPTHS), off_axis), -np.array(DEPTHS)])
     receptors = MaterialPoints(body, points, body.shear)
-    press(body, mesh, Cylinder(1 / radius), force=load / 2)
+    press(body, mesh, Cylinder(curvature=1 / radius), force=load / 2)
     energies = receptors.sample(body)
     truth = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)["max_shear"] ** 2 / (2 * shear)
     for found, expected, frozen in zip(energies["strain_energy_network"], truth, HERTZ[element, strain], strict=True):

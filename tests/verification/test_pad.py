@@ -10,7 +10,7 @@ from problems import two_numbers
 
 from fingerpad.mechanics.stepping import NewtonSettings, Step
 from fingerpad.reference_solutions import ting
-from fingerpad.stimuli.profiles import Cylinder
+from fingerpad.stimuli.shapes import Cylinder
 
 BOTH_SHAPES = pytest.mark.parametrize("shape", SHAPES)
 COUNT = 16

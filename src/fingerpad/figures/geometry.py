@@ -16,7 +16,6 @@ from fingerpad.results import scene_of
 from fingerpad.specimen import quality
 from fingerpad.specimen.element_kinds import KINDS, kind_of
 from fingerpad.specimen.pad import PadMesh, element_edges
-from fingerpad.stimuli.profiles import profile_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -202,7 +201,7 @@ def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[st
         motion = LinearNDInterpolator(points[epidermis] * 1e3, moved[epidermis])(inner * 1e3) if depth else 0.0
         lines["corneum"] = inner + motion
     x = np.linspace(-4e-3, 4e-3, 801)
-    height = profile_of(scene_of(history).stimulus).outline(x) + points[:, 1].max() - depth
+    height = scene_of(history).stimulus.outline(x) + points[:, 1].max() - depth
     lines["indenter"] = np.column_stack((x, height))[np.isfinite(height)]
     return lines
 

@@ -15,7 +15,7 @@ from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import PadMesh
 from fingerpad.specimen.quality import quality_of
-from fingerpad.stimuli.profiles import Segment, profile_of
+from fingerpad.stimuli.curve import Segment
 from fingerpad.units import parse_quantity
 
 GF = parse_quantity("1 gf", "force")
@@ -43,7 +43,7 @@ def finger(scene: Scene) -> bool:
 
 
 def _convex(scene: Scene) -> list[Segment]:
-    return [arc for arc in profile_of(scene.stimulus).segments if arc.curvature > 0]
+    return [arc for arc in scene.stimulus.segments if arc.curvature > 0]
 
 
 def _departure(scene: Scene) -> float:
@@ -57,7 +57,7 @@ def _departure(scene: Scene) -> float:
 def _height(scene: Scene) -> float:
     """Height (mm) of the wavy surface between its first and its last convexity."""
     ends = [end for arc in _convex(scene) for end in (arc.start, arc.end)]
-    return 1e3 * np.ptp(profile_of(scene.stimulus).outline(np.linspace(min(ends), max(ends), 4001)))
+    return 1e3 * np.ptp(scene.stimulus.outline(np.linspace(min(ends), max(ends), 4001)))
 
 
 def _depths(scene: Scene) -> list[float]:
@@ -110,7 +110,7 @@ STIMULUS = (
     given("half_angle", "deg", lambda s: math.degrees(s.stimulus.half_angle), wavy),
     # by the thesis's name of the convexity: its curvature, rounded
     given("convexity_curvature", "1/m", lambda s: {f"{arc.curvature:.0f}": arc.curvature for arc in _convex(s)}, wavy),
-    given("hollow_curvature", "1/m", lambda s: -min(arc.curvature for arc in profile_of(s.stimulus).segments), wavy),
+    given("hollow_curvature", "1/m", lambda s: -min(arc.curvature for arc in s.stimulus.segments), wavy),
     given("peak_to_valley", "mm", _height, wavy),
 )
 

@@ -15,7 +15,8 @@ import xarray as xr
 from fingerpad.measures.features import PRESSURE, Trace, centre_node, centre_pressure, energy
 from fingerpad.measures.skin import WINDOW, skin_curvature
 from fingerpad.results import scene_of
-from fingerpad.stimuli.profiles import Profile, Segment, profile_of
+from fingerpad.stimuli.curve import Segment
+from fingerpad.stimuli.profile import Profile
 
 SPEEDS = ("1", "5", "10", "20", "40")
 """Stroking velocities, mm/s."""
@@ -42,7 +43,7 @@ FINE = 5e-6
 def profile_and_height(history: xr.Dataset) -> tuple[Profile, np.ndarray]:
     """The profile of a history's stimulus and the height (time) m of its origin above the pad's."""
     apex = history["skin_y"].values[centre_node(history)]
-    return profile_of(scene_of(history).stimulus), apex - history["indentation_depth"].values
+    return scene_of(history).stimulus, apex - history["indentation_depth"].values
 
 
 def arcs(history: xr.Dataset) -> list[Segment]:

@@ -28,7 +28,7 @@ from fingerpad.specimen.materials import Prony
 from fingerpad.specimen.measures import apex_edge
 from fingerpad.specimen.pad import MeshSize, PadMesh
 from fingerpad.stimuli.motion import STEADY, programme
-from fingerpad.stimuli.profiles import Bar, Curve, Cylinder, Profile, Wavy, profile_of
+from fingerpad.stimuli.profile import Profile
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -341,14 +341,14 @@ def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, t
     """
     rules = rules or RULES
     external = _external(scene)
-    measured = profile_of(scene.stimulus)
-    _check_over_pad(scene, measured, external)
+    measured = scene.stimulus
+    _check_over_pad(scene, external)
     # noise is no contact's curvature
     profile = measured.felt(_usual_edge(scene, external, rules))
-    pad = pad_estimate(scene.specimen, external, scene.stimulus.width / 2 if scene.stimulus.shape == "bar" else np.inf)
+    pad = pad_estimate(scene.specimen, external, measured.face)
     moves = _moves(scene)
     # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
-    contact = _worst_contact(scene, pad, profile, profile.convexity if moves or not isinstance(profile, Curve) else 0.0)
+    contact = _worst_contact(scene, pad, profile, profile.convexity if moves or not profile.uneven else 0.0)
     contact = replace(contact, narrowest=_narrowest(scene, pad, profile, contact, found))
     _check_width(scene, pad, contact, rules)
     inertia, fastest = _inertia_ratio(scene, contact)
@@ -381,7 +381,7 @@ def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, t
     element = _element(by_hand, external)
     if external is None:
         # on its way over a surface the contact is also flat
-        widest = _worst_contact(scene, pad, profile, 0.0) if moves and isinstance(profile, Curve) else contact
+        widest = _worst_contact(scene, pad, profile, 0.0) if moves and profile.uneven else contact
         wander = _wander(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
         size = _mesh_size(scene, preset, profile, contact, widest.half_width, wander, rounding, rules)
         _check_size(scene, size, ridges, rules)
@@ -471,9 +471,9 @@ def _way(scene: Scene) -> tuple[float, float]:
     return float(way.min()), float(way.max())
 
 
-def _check_over_pad(scene: Scene, profile: Profile, external: PadMesh | None) -> None:
+def _check_over_pad(scene: Scene, external: PadMesh | None) -> None:
     """`PlanError` for a measured profile that is not over the finger when it comes down."""
-    first, last = profile.known
+    first, last = scene.stimulus.known
     if external is not None:
         half = np.ptp(external.points[:, 0]) / 2
     else:
@@ -516,8 +516,8 @@ def _worst_contact(scene: Scene, pad: PadEstimate, profile: Profile, curvature: 
         if keeps_depth:
             now = pad.pressed_to(now.depth + profile.dip, curvature)
         worst = max(worst, now, key=lambda estimate: estimate.depth)
-    if scene.stimulus.shape == "bar":
-        wide = max(worst.half_width, scene.stimulus.width / 2)
+    if np.isfinite(profile.face):
+        wide = max(worst.half_width, profile.face)
         worst = replace(worst, half_width=wide, strain=max(worst.strain, 0.5))
     return worst
 
@@ -595,18 +595,15 @@ def _earliest(scene: Scene, contact: ContactEstimate, timed: bool) -> float:
 
 def _reach(scene: Scene, contact: ContactEstimate) -> float:
     """How far (m) the contact reaches to either side."""
-    return min(contact.half_width, scene.stimulus.width / 2) if scene.stimulus.shape == "bar" else contact.half_width
+    return min(contact.half_width, scene.stimulus.face)
 
 
 def _narrowest(scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate, found: float | None) -> float | None:
     """Half-width (m) of the least piece of the contact where that is not the contact itself: a face, a tip, a bump; or found."""
     least = np.inf if found is None else found
-    if isinstance(profile, Bar):
-        least = min(least, profile.width / 2)
-    elif isinstance(profile, Cylinder):
-        radius = 1 / profile.curvature
-        least = min(least, radius if radius < contact.half_width else np.inf)
-    elif isinstance(profile, Curve) and not isinstance(profile, Wavy):
+    if profile.edges or (not profile.irregular and profile.reach[1] < contact.half_width):
+        least = min(least, profile.reach[1])
+    elif profile.irregular:
         low, high = _way(scene)
         force = _force(scene, pad, contact)
         bump = pad.least_piece(force, profile.outline, low - contact.half_width, high + contact.half_width)
@@ -625,7 +622,7 @@ def _force(scene: Scene, pad: PadEstimate, contact: ContactEstimate) -> float:
 
 def _on_rounding(scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate) -> float:
     """Length (m) of the contact on the rounded edges of a face."""
-    return pad.on_rounding(_force(scene, pad, contact), profile.width / 2 - profile.fillet, profile.fillet)
+    return pad.on_rounding(_force(scene, pad, contact), profile.reach[1] - profile.edge_radius, profile.edge_radius)
 
 
 def _edge_error(profile: Profile, edge: float, rounding: float, rules: Rules) -> tuple[float, str]:
@@ -633,7 +630,7 @@ def _edge_error(profile: Profile, edge: float, rounding: float, rules: Rules) ->
     if not profile.edges:
         return 0.0, ""
     if _unbounded(profile, edge, rounding, rules):
-        error = max(rules.edge_error * edge / (profile.width / 2), rules.edge_floor)
+        error = max(rules.edge_error * edge / profile.reach[1], rules.edge_floor)
         return error, "at a true edge the skin is held or is not, by a node; a fillet that is resolved converges"
     said = f"edges of {_micrometres(edge)} um on {_micrometres(rounding)} um of a rounded edge"
     return rules.fillet_error * (edge / rounding) ** rules.fillet_order, said
@@ -646,11 +643,11 @@ def _unbounded(profile: Profile, edge: float, rounding: float, rules: Rules) -> 
 
 def _edge_size(profile: Profile, preset: Preset, asked: float | None, rounding: float, rules: Rules) -> float:
     """Element edge (m) at the profile's own edges: as presets have it, and finer where a tolerance asks for that."""
-    edge = min(preset.skin_edge / 4, profile.fillet / 2) if profile.fillet else preset.skin_edge / 4
+    edge = min(preset.skin_edge / 4, profile.edge_radius / 2) if profile.edge_radius else preset.skin_edge / 4
     if asked is None:
         return edge
     if profile.unbounded:
-        wanted = max(asked, rules.edge_floor) / rules.edge_error * profile.width / 2
+        wanted = max(asked, rules.edge_floor) / rules.edge_error * profile.reach[1]
     else:
         wanted = (asked / rules.fillet_error) ** (1 / rules.fillet_order) * rounding
     return max(min(edge, wanted), rules.least_edge)
@@ -674,7 +671,7 @@ def _check_width(scene: Scene, pad: PadEstimate, contact: ContactEstimate, rules
     if pad.pressed(force, 0.0).half_width < rules.least_half_width:
         i, leg = next((i, leg) for i, leg in enumerate(scene.motion) if leg.presses)
         raise PlanError(f"motion[{i}].{leg.key}: so little that {said}")
-    key = ".curvature" if scene.stimulus.shape == "cylinder" else ""
+    key = ".curvature" if hasattr(scene.stimulus, "curvature") else ""
     raise PlanError(f"stimulus{key}: so sharp that {said}")
 
 

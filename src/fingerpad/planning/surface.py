@@ -11,7 +11,7 @@ import numpy as np
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate, layer_kernel
 
 if TYPE_CHECKING:
-    from fingerpad.stimuli.profiles import Profile
+    from fingerpad.stimuli.profile import Profile
 
 
 #: Share of the steepest slope near the cut-off that comes to bear on the pressure at a node.

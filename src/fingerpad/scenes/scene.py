@@ -6,12 +6,11 @@ with SI floats directly (``Cylinder(curvature=210.0)``).
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import json
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -19,7 +18,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationError
 from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest
-from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity, read, whole
+from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity, whole
 from fingerpad.scenes.families import Written, read_scene
 from fingerpad.scenes.specimen import (
     DEFAULT_SPECIMEN,
@@ -47,7 +46,8 @@ from fingerpad.stimuli.motion import (
     check_programme,
     end_time,
 )
-from fingerpad.units import QuantityError, format_quantity, parse_number, parse_quantity
+from fingerpad.stimuli.shapes import Bar, Cylinder, Flat, Line, Sampled, Stimulus, Wavy
+from fingerpad.units import QuantityError, format_quantity, parse_number
 
 __all__ = [
     "Bar", "Cylinder", "Discretisation", "Flat", "HalfRound", "Hold", "Layer", "Layers", "Lift", "Line", "Outline",
@@ -61,232 +61,7 @@ LEVELS = ("draft", "thesis", "fine")
 MAXIMUM_SNAPSHOTS = 1000
 
 
-# --- stimulus -------------------------------------------------------------------------------------
-
-
-class Flat(Strict):
-    """Rigid flat plate."""
-
-    shape: Literal["flat"] = "flat"
-
-
-class Cylinder(Strict):
-    """Rigid cylinder lying along the finger's axis."""
-
-    shape: Literal["cylinder"] = "cylinder"
-    curvature: quantity("curvature", note=": for a curvature of zero use shape: flat")
-    """Curvature, the inverse of the radius; or give `radius` or `diameter` instead."""
-    radius: Length | None = Field(default=None, exclude=True)
-    """Radius, in place of the curvature."""
-    diameter: Length | None = Field(default=None, exclude=True)
-    """Diameter, in place of the curvature."""
-
-    @classmethod
-    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
-        """The curvature is that of the radius or diameter given."""
-        given = [key for key in ("curvature", "radius", "diameter") if data.get(key) is not None]
-        if len(given) > 1:
-            raise Problem(f"is given beside {given[0]}", "one of curvature, radius and diameter", (given[1],), HIDE)
-        if given in (["radius"], ["diameter"]):
-            length = read(Length, data[given[0]], given[0], context)
-            data["curvature"] = SI((1 if given == ["radius"] else 2) / length)
-            del data[given[0]]
-        return data
-
-
-class Bar(Strict):
-    """Rigid rectangular bar lying along the finger's axis."""
-
-    shape: Literal["bar"] = "bar"
-    width: Length
-    """Width of the face."""
-    fillet: quantity("length", "non-negative") = 0.0
-    """Radius of the rounded edges."""
-
-    @model_validator(mode="after")
-    def _check(self) -> Bar:
-        if self.fillet > self.width / 2:
-            raise Problem(
-                "is more than half the width",
-                f"0 mm to {format_quantity(self.width / 2, 'length')}",
-                ("fillet",),
-            )
-        return self
-
-
-class Line(Strict):
-    """Line load: a knife edge lying along the finger's axis."""
-
-    shape: Literal["line"] = "line"
-
-
-class Sampled(Strict):
-    """Rigid profile given by points of its lower surface: y is up, the solid lies above, and x = 0 is over the pad's apex.
-
-    Only differences of y matter: the profile comes down until it touches. figures/studies/profile_convention.png shows it.
-    """
-
-    internal: ClassVar = frozenset({"x", "y"})
-
-    shape: Literal["sampled"] = "sampled"
-    csv: Path | None = None
-    """File with the columns `x (mm)` and `y (mm)`, or another unit of length in them; x strictly increasing."""
-    smooth: quantity("length", words=("auto", "none")) = "auto"
-    """Structure finer than nodes can feel: `auto` filters it out where there is any, `none` keeps it, or a cut-off wavelength."""
-    ends: Literal["open", "level", "slope"] = "open"
-    """What lies beyond the points: nothing (`open`), a `level` surface, or the `slope` of the last two, for ever."""
-    x: SkipJsonSchema[tuple[float, ...]]
-    y: SkipJsonSchema[tuple[float, ...]]
-
-    @classmethod
-    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
-        """Reads the points from the file."""
-        if "x" not in data and data.get("csv") is None:
-            raise Problem("is missing", "the path of a CSV file, or in Python x and y", ("csv",), HIDE)
-        if "x" not in data:
-            if not isinstance(data["csv"], (str, Path)):
-                raise Problem("is not a path", "the path of a CSV file", ("csv",))
-            data["csv"] = source_of(context).resolve(data["csv"])
-            data["x"], data["y"] = _read_profile(data["csv"])
-        return data
-
-
-_COLUMN = re.compile(r"\s*([xy])\s*\((.*)\)\s*", re.IGNORECASE)
-NARROWEST, WIDEST = 10e-6, 10.0
-"""Widths (m) between which a profile is believed to be in the unit that its columns name."""
-
-
-def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Points of a profile, m; `Problem` unless they are numbers with x strictly increasing, of a believable size."""
-
-    def wrong(problem: str, allowed: str = "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing") -> Problem:
-        return Problem(problem, allowed, ("csv",))
-
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            lines = [(number, text) for number, text in enumerate(file, start=1) if text.strip() and text.lstrip()[0] != "#"]
-        rows = list(csv.reader((text for _, text in lines), skipinitialspace=True))
-    except FileNotFoundError:
-        raise wrong("is not an existing file") from None
-    except (OSError, ValueError, csv.Error) as error:
-        raise wrong(f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})") from None
-    if rows:
-        columns, factors = _profile_columns(rows[0], wrong)
-    if len(rows) < 3:
-        raise wrong("has fewer than two points")
-    points = []
-    for (line, _), row in zip(lines[1:], rows[1:], strict=False):
-        try:
-            point = tuple(
-                factor * parse_number(row[k] if k < len(row) else "") for k, factor in zip(columns, factors, strict=True)
-            )
-        except QuantityError:
-            raise wrong(f"has no finite number in row {line}") from None
-        if points and point[0] <= points[-1][0]:
-            raise wrong(f"is not single-valued: x does not increase in row {line}")
-        points.append(point)
-    x, y = zip(*points, strict=True)
-    width = x[-1] - x[0]
-    if not NARROWEST <= width <= WIDEST:
-        size = f"{width:.3g} m" if width > WIDEST else f"{width * 1e6:.3g} um"
-        raise wrong(
-            f"is {size} wide by its column '{rows[0][columns[0]]}'", "10 um to 10 m; is the unit another one, um, mm or m?"
-        )
-    return x, y
-
-
-def _profile_columns(header: list[str], wrong: Callable[..., Problem]) -> tuple[list[int], list[float]]:
-    """Where x and y stand in a row, and their units in m."""
-    found: dict[str, tuple[int, float]] = {}
-    for k, name in enumerate(header):
-        match = _COLUMN.fullmatch(name)
-        if match and match[1].lower() not in found:
-            try:
-                found[match[1].lower()] = k, parse_quantity(f"1 {match[2]}", "length")
-            except QuantityError as error:
-                raise wrong(f"has the column '{name}', which {error.problem}") from None
-    for name in "xy":
-        if name not in found:
-            raise wrong(f"has no column '{name} (mm)'")
-    return [found[name][0] for name in "xy"], [found[name][1] for name in "xy"]
-
-
-class Wavy(Strict):
-    """Rigid surface of cylindrical convexities joined by concavities between two flats, after the thesis's chapter 5.
-
-    x = 0, the start of the lead-in, is over the middle of the pad when the motion begins.
-    """
-
-    shape: Literal["wavy"] = "wavy"
-    curvatures: Annotated[tuple[quantity("curvature"), ...], BeforeValidator(filled)] = tuple(
-        1e3 / radius for radius in (38.1, 25.4, 19.05, 12.7, 9.525, 6.35, 4.7625, 3.175)
-    )
-    """Curvatures of the convexities, in their order; a concavity has the radius of the convexity after it."""
-    half_angle: quantity("angle") = math.radians(9.0)
-    """Angle by which every arc turns to either side of its middle."""
-    lead_in: Length = 8e-3
-    """Length of the flat before the first convexity."""
-    run_out: Length = 10e-3
-    """Length of the flat after the last convexity."""
-    fillet: quantity("length", "non-negative") = 0.0
-    """Radius of rounding of the two reentrant corners where the flats meet the arcs."""
-
-    @model_validator(mode="after")
-    def _check(self) -> Wavy:
-        if self.half_angle >= math.radians(45.0):
-            raise Problem("is outside the range", "above 0 deg and below 45 deg", ("half_angle",))
-        # a fillet of radius r ends on the flat: (lead_in + R sin)^2 = (R + r)^2 - (R cos + r)^2 at most
-        sine, drop = math.sin(self.half_angle), 1 - math.cos(self.half_angle)
-        ends = ((self.lead_in, 1 / self.curvatures[0]), (self.run_out, 1 / self.curvatures[-1]))
-        largest = min(flat * (flat + 2 * radius * sine) / (2 * radius * drop) for flat, radius in ends)
-        if self.fillet >= largest:
-            allowed = f"0 mm to below {format_quantity(largest, 'length')}"
-            raise Problem("does not fit the flat beside it", allowed, ("fillet",))
-        return self
-
-    @property
-    def length(self) -> float:
-        """Length of the surface along x, m."""
-        first, *others = (1 / curvature for curvature in self.curvatures)
-        return self.lead_in + 2 * math.sin(self.half_angle) * (first + 2 * sum(others)) + self.run_out
-
-
-_SHAPES = {"flat": Flat, "cylinder": Cylinder, "bar": Bar, "line": Line, "sampled": Sampled, "wavy": Wavy}
-
-
-def _check_shape(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        if "shape" not in value:
-            raise Problem("is missing", ", ".join(_SHAPES), ("shape",), HIDE)
-        if not isinstance(value["shape"], str) or value["shape"] not in _SHAPES:
-            raise Problem(f"is not a known shape{nearest(value['shape'], _SHAPES)}", ", ".join(_SHAPES), ("shape",))
-    elif not isinstance(value, tuple(_SHAPES.values())):
-        raise Problem("is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}')
-    return value
-
-
-def _tag(value: Any) -> str | None:
-    """Label of the union member that `value` is or describes."""
-    if isinstance(value, Mapping):
-        return next((f"<{key}>" for key in _SHAPES if key == value.get("shape")), None)
-    return next((f"<{key}>" for key, model in _SHAPES.items() if isinstance(value, model)), None)
-
-
-Stimulus = Annotated[
-    Annotated[Flat, Tag("<flat>")]
-    | Annotated[Cylinder, Tag("<cylinder>")]
-    | Annotated[Bar, Tag("<bar>")]
-    | Annotated[Line, Tag("<line>")]
-    | Annotated[Sampled, Tag("<sampled>")]
-    | Annotated[Wavy, Tag("<wavy>")],
-    Discriminator(_tag),
-    BeforeValidator(_check_shape),
-]
-
-
-_TAGS = frozenset(
-    f"<{key}>" for key in (*_SHAPES, *LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own")
-)
+_TAGS = frozenset(f"<{key}>" for key in (*LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own"))
 
 
 # --- outputs, accuracy, effects -------------------------------------------------------------------
@@ -480,7 +255,7 @@ class Scene(Strict):
     @model_validator(mode="after")
     def _check(self) -> Scene:
         try:
-            check_programme(self.motion, self.stimulus.length if isinstance(self.stimulus, Wavy) else math.inf)
+            check_programme(self.motion, self.stimulus.length)
         except Problem as problem:
             raise problem.below("motion") from None
         if self.specimen.mesh is None:
@@ -589,12 +364,10 @@ class Scene(Strict):
         Equal scenes give equal dictionaries, in the same order of keys; `json.dumps` takes them as they are.
         """
         data = self.model_dump(mode="json")
-        mesh, stimulus = self.specimen.mesh, self.stimulus
+        mesh = self.specimen.mesh
         if mesh is not None:
             data["specimen"]["mesh"] = {"name": mesh.name, "sha256": _sha256(mesh.read_bytes())}
-        if isinstance(stimulus, Sampled):
-            points = json.dumps([stimulus.x, stimulus.y]).encode()
-            data["stimulus"] |= {"csv": stimulus.csv and stimulus.csv.name, "sha256": _sha256(points)}
+        data["stimulus"] |= self.stimulus.recorded()
         return json.loads(json.dumps(data, sort_keys=True))
 
 
@@ -681,9 +454,6 @@ def scene_json_schema() -> dict[str, Any]:
     schema = Scene.model_json_schema(mode="validation")
     for name in ("Outline", "Layers", "Layer", "Ridges", "InnerRidges", "OuterRidges", "Receptors", "Outputs", "Specimen"):
         schema["$defs"][name].pop("required", None)
-    schema["$defs"]["Sampled"]["required"] = ["csv"]
-    schema["$defs"]["Cylinder"]["oneOf"] = [{"required": [key]} for key in ("curvature", "radius", "diameter")]
-    del schema["$defs"]["Cylinder"]["required"]
     one = {"type": "object", "minProperties": 1}
     schema["properties"] |= {
         "extends": {"type": "string", "description": "Scene or family to start from; what stands here is merged over it."},

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from fingerpad.publishing import style
 from fingerpad.publishing.write import publish
-from fingerpad.stimuli.profiles import Sampled
+from fingerpad.stimuli.shapes import Sampled
 
 RADIUS = 8.0  # mm, of the pad drawn
 
@@ -47,7 +47,7 @@ def fig_convention(frame: pd.DataFrame) -> Figure:
     ax.fill_between(skin, pad, -3.2, color="#e8b89a", lw=0)
     ax.plot(skin, pad, color="#a0522d", lw=1)
     for ends, line in (("level", "--"), ("slope", ":")):
-        profile = Sampled(1e-3 * x, 1e-3 * y, ends)
+        profile = Sampled(x=1e-3 * x, y=1e-3 * y, ends=ends)
         height = y.min()
         for far in (np.array([x[0] - 1.3, x[0]]), np.array([x[-1], x[-1] + 1.3])):
             ax.plot(

@@ -1,0 +1,160 @@
+"""Surfaces of straight lines and circular arcs, whose distance is exact."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fingerpad.stimuli.profile import Profile
+
+
+class Segment(NamedTuple):
+    """A piece of a curve: x of its ends (m) and its curvature (1/m), above zero where it bulges at the skin."""
+
+    start: float
+    end: float
+    curvature: float
+
+
+class Curve(Profile):
+    """A single-valued lower surface of straight lines and circular arcs; its distance is exact.
+
+    The first and the last piece are lines and go on for ever. Nothing is rounded where pieces meet at an angle: the closest
+    point may be the corner, and on the corner itself the gradient bisects the normals beside it. The work of a query grows
+    with the pieces near the point, at most those within its vertical distance from the surface, not with the length of it.
+
+    Args:
+        x, y: (m + 1,) m, ends of the pieces; x strictly increasing. curvature: (m,) 1/m, above zero for arcs that bulge at the
+            skin, below zero for hollow ones, zero for lines.
+
+    Raises:
+        ValueError: x is not strictly increasing, an end piece is no line, or an arc is not single-valued.
+    """
+
+    uneven = True
+    #: m, by which pieces reach over their ends, lest rounding leave a point between two of them
+    overlap = 1e-12
+    #: m, closer than which a point is on a corner
+    touch = 1e-9
+    #: pieces that are the surface itself and not its continuation
+    own = slice(None)
+
+    def __init__(self, x, y, curvature):
+        self.x, self.y, self.bend = (np.asarray(values, float) for values in (x, y, curvature))
+        if not 2 <= len(self.x) == len(self.y) == len(self.bend) + 1 or not np.all(np.diff(self.x) > 0):
+            raise ValueError("a profile needs at least two points with strictly increasing x")
+        ends = np.column_stack([self.x, self.y])
+        chord = np.diff(ends, axis=0)
+        length = np.hypot(*chord.T)
+        slope, turn = np.arctan2(chord[:, 1], chord[:, 0]), np.arcsin(np.clip(self.bend * length / 2, -1, 1))
+        if self.bend[0] or self.bend[-1] or np.any(np.abs(slope) + np.abs(turn) >= np.pi / 2):
+            raise ValueError("a profile starts and ends with lines, and its arcs are single-valued")
+        slopes = np.tan(np.abs(slope) + np.abs(turn))
+        self._steepest, self.steepness = float(slopes.max()), float(slopes[self.own].max())
+        self._tangent = chord / length[:, None]
+        self._side = np.where(self.bend < 0, -1.0, 1.0)  # of the skin, seen from the centre of an arc
+        self._line = self.bend == 0
+        self._radius = np.abs(np.divide(1.0, self.bend, out=np.zeros(len(length)), where=~self._line))
+        to_chord = self._side * self._radius * np.cos(turn)
+        self._centre = np.where(
+            self._line[:, None], ends[:-1], (ends[:-1] + ends[1:]) / 2 - to_chord[:, None] * _normal(self._tangent)
+        )  # of a line: its start
+        self._reach = np.where(self._line, length, np.abs(turn))
+        before, after = (slope + turn)[:-1], (slope - turn)[1:]
+        self._kink = np.concatenate([[0.0], after - before])  # at the start of each piece
+        self._bisector = np.concatenate([[0.0], (before + after) / 2])
+        near = {"rtol": 0, "atol": 1e-9 * np.ptp(self.x)}
+        self.symmetric = bool(
+            np.allclose(self.x, -self.x[::-1], **near)
+            and np.allclose(self.y, self.y[::-1], **near)
+            and np.allclose(self.bend, self.bend[::-1])
+        )
+
+    @property
+    def segments(self) -> list[Segment]:
+        """The pieces from left to right; the first and the last go on beyond their ends."""
+        return [Segment(*map(float, piece)) for piece in zip(self.x, self.x[1:], self.bend, strict=False)]
+
+    @property
+    def dip(self):
+        ends = self.x[:-1], self.x[1:]
+        bottom = np.where(self.bend > 0, np.clip(self._centre[:, 0], *ends), self.x[:-1])
+        return float(self._height(np.array([0.0]))[0] - min(self._height(bottom).min(), self.y.min()))
+
+    @property
+    def convexity(self):
+        # a corner between two lines stands for the arc that would touch both in their middles
+        chord, line = np.diff(self.x)[self.own], self._line[self.own]
+        corner = 2 * self._kink[self.own][1:] / (chord[:-1] + chord[1:]) * (line[:-1] & line[1:])
+        return float(max(self.bend[self.own].max(), corner.max(initial=0.0)))
+
+    def outline(self, x):
+        return self._height(x)
+
+    def _height(self, x):
+        piece = np.searchsorted(self.x[1:-1], x, side="right")
+        (cx, cy), (tx, ty) = self._centre[piece].T, self._tangent[piece].T
+        rise = self._side[piece] * np.sqrt(np.maximum(self._radius[piece] ** 2 - (x - cx) ** 2, 0))
+        return np.where(self._line[piece], cy + (x - cx) * ty / tx, cy - rise)
+
+    def _to_piece(self, points, piece):
+        """Signed distance to a piece going on beyond its ends, arm from its centre, and by how much its ends are overshot (m)."""
+        arm, tangent, side = points - self._centre[piece], self._tangent[piece], self._side[piece]
+        along, across = np.einsum("ni,ni->n", arm, tangent), np.einsum("ni,ni->n", arm, _normal(tangent))
+        length, line, reach, radius = np.hypot(along, across), self._line[piece], self._reach[piece], self._radius[piece]
+        past = np.where(line, along - reach, radius * (np.abs(np.arctan2(along, side * across)) - reach))
+        short = np.where(line & (piece > 0), -along, -np.inf)
+        past = np.where(piece < len(self.bend) - 1, past, -np.inf)
+        return np.where(line, across, side * (length - radius)), arm, np.maximum(past, short)
+
+    def _farthest(self, x, y, height):
+        """Farther along x than this (m) from a point the surface cannot be closest."""
+        return np.abs(y - height) * share_of_height(self._steepest)
+
+    def evaluate(self, points):
+        x, y = points.T
+        height = self._height(x)
+        within = self._farthest(x, y, height) * (1 + 1e-9) + 2 * self.overlap
+        first = np.searchsorted(self.x[1:-1], x - within, side="left")
+        count = np.searchsorted(self.x[1:-1], x + within, side="right") + 1 - first
+        begin = np.cumsum(count) - count
+        row = np.repeat(np.arange(len(points)), count)
+        piece = np.arange(len(row)) - begin[row] + first[row]
+
+        def closest(distance):
+            least = np.minimum.reduceat(distance, begin)
+            where = np.flatnonzero(~(distance > least[row]))  # the first of equals, and anything for a point that is none
+            return least, piece[where[np.searchsorted(row[where], np.arange(len(points)))]]
+
+        distance, _, beyond = self._to_piece(points[row], piece)
+        to_piece, on = closest(np.where(beyond <= self.overlap, np.abs(distance), np.inf))
+        corner = np.hypot(x[row] - self.x[piece], y[row] - self.y[piece])
+        to_corner, at = closest(np.where(piece > 0, corner, np.inf))
+
+        distance, arm, _ = self._to_piece(points, on)
+        tangent, side, line = self._tangent[on], self._side[on], self._line[on]
+        length = np.maximum(np.hypot(*arm.T), 1e-15)
+        gradient = np.where(line[:, None], _normal(tangent), (side / length)[:, None] * arm)
+        curvature = np.where(line, 0.0, side / length)
+
+        is_corner = to_corner < to_piece - self.overlap
+        sign, length = np.where(y > height, -1.0, 1.0), np.maximum(to_corner, self.touch)
+        distance = np.where(is_corner, sign * to_corner, distance)
+        arm = points - np.column_stack([self.x[at], self.y[at]])
+        gradient = np.where(is_corner[:, None], (sign / length)[:, None] * arm, gradient)
+        curvature = np.where(is_corner, sign / length, curvature)
+
+        hit = (to_corner < self.touch) & (np.abs(self._kink[at]) > 1e-9)
+        angle = self._bisector[at]
+        gradient = np.where(hit[:, None], np.column_stack([np.sin(angle), -np.cos(angle)]), gradient)
+        return distance, gradient, np.where(hit, 0.0, curvature)
+
+
+def share_of_height(slope: float) -> float:
+    """Of the way along y to a surface of at most this slope: farther along x than that it cannot come near."""
+    slope = min(slope, 1.0)
+    return 2 * slope / (1 + slope**2)
+
+
+def _normal(tangent: np.ndarray) -> np.ndarray:
+    """Unit normals (n, 2) towards the skin of a surface that runs along ``tangent`` (n, 2)."""
+    return np.column_stack([tangent[:, 1], -tangent[:, 0]])

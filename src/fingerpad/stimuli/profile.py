@@ -1,0 +1,65 @@
+"""What every stimulus is to the solver: a rigid profile as a signed-distance function.
+
+A profile lives in its own frame: the solid lies above, x is lateral, x = 0 is over the pad's middle when a motion begins.
+``evaluate`` returns, at any points, the distance (positive outside the solid), its gradient (pointing away from the solid,
+towards the skin) and the curvature of the level set through the point (the only nonzero eigenvalue of the distance's second
+derivative). The contact problem needs no more.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+
+class Profile:
+    """Base of all profiles, and what the planner asks of them.
+
+    Attributes:
+        symmetric: is it its own mirror image in x = 0? uneven: does its curvature change along x, with flat or hollow places?
+        edges: m, x where its own edges press; the mesh is refined there. edge_radius: m, their rounding (0: sharp).
+        singular: is there an edge at which strains are large or without bound? unbounded: a true edge, at which pressure has no
+        bound? irregular: are there bumps that only a search finds? face: m, half width of a flat face that presses as a whole.
+        steepness: largest slope of the surface; without bound for shapes that end beside their middle. convexity: 1/m, largest
+        curvature with which it bulges at the skin. dip: m, by which it reaches below its point at x = 0.
+        length: m, of the surface along x from x = 0; a motion must stay on it. reach: m, first and last x where there is one.
+        known: m, first and last x of measured points; contact beyond them is with a guess. smoothing: m, cut-off wavelength at
+        which a measured surface was smoothed; 0 if it was not.
+    """
+
+    symmetric: ClassVar[bool] = True
+    uneven: ClassVar[bool] = False
+    edges: ClassVar[tuple[float, ...]] = ()
+    edge_radius: ClassVar[float] = 0.0
+    singular: ClassVar[bool] = False
+    unbounded: ClassVar[bool] = False
+    irregular: ClassVar[bool] = False
+    face: ClassVar[float] = np.inf
+    steepness: ClassVar[float] = np.inf
+    convexity: ClassVar[float] = 0.0
+    dip: ClassVar[float] = 0.0
+    length: ClassVar[float] = np.inf
+    reach: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
+    known: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
+    smoothing: ClassVar[float] = 0.0
+
+    def evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Distance (n,) m, gradient (n, 2) and curvature (n,) 1/m at ``points`` (n, 2) m."""
+        raise NotImplementedError
+
+    def outline(self, x: np.ndarray) -> np.ndarray:
+        """Height of the lower surface (n,) m over ``x`` (n,) m; NaN where the profile does not reach."""
+        raise NotImplementedError
+
+    def felt(self, edge: float) -> Profile:
+        """The profile as skin with nodes ``edge`` m apart can feel it."""
+        return self
+
+    def at(self, smoothing: float, edge: float) -> Profile:
+        """The profile smoothed at a cut-off wavelength (m; 0: not at all), for skin with nodes ``edge`` m apart."""
+        return self
+
+    def advice(self, spacing: float) -> str | None:
+        """What to try when skin with nodes ``spacing`` m apart finds no equilibrium under the profile; None: nothing special."""
+        return None

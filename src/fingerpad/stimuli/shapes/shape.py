@@ -1,0 +1,107 @@
+"""What all shapes have in common, and their register: scenes, their schema, the planner and the solver find them there."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Annotated, Any
+
+from pydantic import ValidationInfo
+from pydantic_core import core_schema
+
+from fingerpad.documents import HIDE, Problem, Strict, nearest
+from fingerpad.stimuli.curve import Curve
+from fingerpad.stimuli.profile import Profile
+
+#: name in a scene -> shape
+SHAPES: dict[str, type[Shape]] = {}
+
+
+class Shape(Strict, Profile):
+    """A rigid shape: the keys a scene gives it, and its geometry.
+
+    A subclass is a shape under the name that is the default of its field ``shape``.
+    """
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        if "shape" in cls.model_fields:
+            SHAPES[cls.model_fields["shape"].default] = cls
+
+    def recorded(self) -> dict[str, Any]:
+        """What provenance says of it beside its fields."""
+        return {}
+
+
+class CurvedShape(Shape):
+    """A shape whose surface is a :class:`fingerpad.stimuli.curve.Curve`."""
+
+    @cached_property
+    def curve(self) -> Curve:
+        """Its surface."""
+        raise NotImplementedError
+
+    def evaluate(self, points):
+        return self.curve.evaluate(points)
+
+    def outline(self, x):
+        return self.curve.outline(x)
+
+    def felt(self, edge):
+        return self.curve.felt(edge)
+
+    def at(self, smoothing, edge):
+        return self.curve.at(smoothing, edge)
+
+    def advice(self, spacing):
+        return self.curve.advice(spacing)
+
+    @property
+    def segments(self):
+        """Pieces of the surface from left to right."""
+        return self.curve.segments
+
+    symmetric = property(lambda self: self.curve.symmetric)
+    uneven = property(lambda self: self.curve.uneven)
+    irregular = property(lambda self: self.curve.irregular)
+    steepness = property(lambda self: self.curve.steepness)
+    convexity = property(lambda self: self.curve.convexity)
+    dip = property(lambda self: self.curve.dip)
+    reach = property(lambda self: self.curve.reach)
+    known = property(lambda self: self.curve.known)
+
+
+def shape_from(data: Mapping[str, Any], context: Any = None) -> Shape:
+    """The shape that `data` describes: SI numbers, or with the `context` of a document text with units.
+
+    Raises:
+        Problem, ValidationError: it is none, or one of its values is wrong.
+    """
+    if "shape" not in data:
+        raise Problem("is missing", ", ".join(SHAPES), ("shape",), HIDE)
+    name = data["shape"]
+    if not isinstance(name, str) or name not in SHAPES:
+        raise Problem(f"is not a known shape{nearest(name, SHAPES)}", ", ".join(SHAPES), ("shape",))
+    return SHAPES[name].model_validate(dict(data), context=context)
+
+
+def _read(value: Any, info: ValidationInfo) -> Shape:
+    if isinstance(value, Shape):
+        return value
+    if not isinstance(value, Mapping):
+        raise Problem("is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}')
+    return shape_from(value, info.context)
+
+
+class _AnyShape:
+    """Any of the registered shapes, those that register later included."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(_read)
+
+    def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: Any) -> dict[str, Any]:
+        return handler(core_schema.union_schema([shape.__pydantic_core_schema__ for shape in SHAPES.values()]))
+
+
+Stimulus = Annotated[Shape, _AnyShape()]
+"""Field type: what touches the pad."""
