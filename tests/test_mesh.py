@@ -66,7 +66,7 @@ def places(points) -> set:
 
 def areas(mesh: PadMesh) -> np.ndarray:
     """Area of each layer by the 3 x 3 Gauss rule of its elements."""
-    weights = np.array([25, 25, 25, 25, 40, 40, 40, 40, 64]) / 81.0
+    weights = np.array([25, 25, 25, 25, 40, 40, 40, 40, 64]) / 324.0
     area = np.linalg.det(jacobians(mesh, sample_points(mesh.element)[1])) @ weights
     return np.bincount(mesh.region, area, minlength=3)
 

@@ -103,7 +103,7 @@ def between(mesh, upper: str, lower: str, reach: float = 5e-3) -> np.ndarray:
 
 
 def areas(mesh) -> dict[str, float]:
-    weights = np.array([25, 25, 25, 25, 40, 40, 40, 40, 64]) / 81.0
+    weights = np.array([25, 25, 25, 25, 40, 40, 40, 40, 64]) / 324.0
     area = np.linalg.det(jacobians(mesh, sample_points(mesh.element)[1])) @ weights
     return dict(zip(mesh.regions, np.bincount(mesh.region, area, minlength=len(mesh.regions)).tolist(), strict=True))
 

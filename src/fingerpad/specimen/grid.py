@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fingerpad.specimen.outline import OutlineCurve
+from fingerpad.specimen.outline import OutlineCurve, bisect
 from fingerpad.specimen.pad import MeshSize
 
 _COARSEST = 8.0  # largest edge along the skin, in skin edges
@@ -116,12 +116,12 @@ def _fat_fractions(thickness: np.ndarray, count: int, edge: float) -> np.ndarray
 
     Edges form a geometric series starting with `edge` where the fat is thick enough; elsewhere all are equal.
     """
-    low, high = np.ones_like(thickness), np.full_like(thickness, 10.0)
     powers = np.arange(count)
-    for _ in range(60):
-        ratio = 0.5 * (low + high)
-        short = edge * (ratio[:, None] ** powers).sum(axis=1) < thickness
-        low, high = np.where(short, ratio, low), np.where(short, high, ratio)
+
+    def short(ratio):
+        return edge * (ratio[:, None] ** powers).sum(axis=1) < thickness
+
+    low, _ = bisect(short, np.ones_like(thickness), np.full_like(thickness, 10.0))
     steps = low[:, None] ** powers
     fractions = np.concatenate((np.zeros((len(thickness), 1)), np.cumsum(steps, axis=1)), axis=1)
     fractions /= fractions[:, -1:]

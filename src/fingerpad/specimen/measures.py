@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fingerpad.specimen.outline import OutlineLike, curve_of
+from fingerpad.specimen.outline import OutlineLike, bisect, curve_of
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges, skin_chain
 
 
@@ -117,11 +117,11 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
             f"{upper[-1, 0] * 1e3:.3g} mm"
         )
     high = np.interp(offsets, upper[:, 0], upper[:, 1])
-    low = high - 4 * depths
-    for _ in range(60):
-        middle = (low + high) / 2
-        deep = tree.query(np.column_stack([offsets, middle]))[0] > depths
-        low, high = np.where(deep, middle, low), np.where(deep, high, middle)
+
+    def deep(height):
+        return tree.query(np.column_stack([offsets, height]))[0] > depths
+
+    low, high = bisect(deep, high - 4 * depths, high)
     found = np.column_stack([offsets, (low + high) / 2])
     if np.any(np.abs(tree.query(found)[0] - depths) > 1e-3 * depths):
         raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")
@@ -138,11 +138,9 @@ def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray)
     """
     depths, offsets = (np.ravel(each) for each in np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float)))
     curve = curve_of(outline)
-    low, high = np.zeros(len(depths)), np.full(len(depths), np.pi / 2)
-    for _ in range(60):
-        middle = (low + high) / 2
-        left = curve.point(middle, depths)[:, 0] < np.abs(offsets)
-        low, high = np.where(left, middle, low), np.where(left, high, middle)
+    _, high = bisect(
+        lambda theta: curve.point(theta, depths)[:, 0] < np.abs(offsets), np.zeros(len(depths)), np.full(len(depths), np.pi / 2)
+    )
     found = curve.point(np.where(offsets == 0, 0.0, high), depths)
     if np.any(np.abs(found[:, 0] - np.abs(offsets)) > 1e-9):
         raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")

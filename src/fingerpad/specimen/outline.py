@@ -46,15 +46,18 @@ def _mm(length: float) -> str:
     return f"{length * 1e3:.4g} mm"
 
 
-def _bisect(negative_below, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Elementwise root of an increasing function; `negative_below(t)` tells where it is still negative."""
+def bisect(negative_below, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Elementwise brackets (low, high), down to rounding, of the root of an increasing function.
+
+    `negative_below(t)` tells where it is still negative. Meshes hang on the last bit of it, so no other root finder will do.
+    """
     low, high = low.copy(), high.copy()
     for _ in range(60):
         middle = 0.5 * (low + high)
         below = negative_below(middle)
         low = np.where(below, middle, low)
         high = np.where(below, high, middle)
-    return 0.5 * (low + high)
+    return low, high
 
 
 class OutlineCurve:
@@ -160,7 +163,7 @@ class OutlineCurve:
             sine = np.sin(theta)
             return self.scale * sine * (1.0 + self.widening * sine**2) < size
 
-        upper = _bisect(inside, np.zeros_like(size), np.full_like(size, 0.5 * np.pi))
+        upper = 0.5 * sum(bisect(inside, np.zeros_like(size), np.full_like(size, 0.5 * np.pi)))
         upper = np.where(size == 0.0, 0.0, upper)
         return np.where(x < 0.0, -1.0, 1.0) * (np.pi - upper if lower else upper)
 
@@ -183,7 +186,7 @@ class OutlineCurve:
             return along - (height * np.cos(phi) - y) * height * np.sin(phi) < 0.0
 
         start = np.where(y >= 0.0, 0.0, 0.5 * np.pi)
-        phi = _bisect(before_foot, start, start + 0.5 * np.pi)
+        phi = 0.5 * sum(bisect(before_foot, start, start + 0.5 * np.pi))
         return np.where(x == 0.0, np.where(y >= 0.0, 0.0, np.pi), phi)
 
     # -- what is not allowed ---------------------------------------------------------------------------------

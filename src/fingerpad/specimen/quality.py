@@ -13,40 +13,26 @@ from fingerpad.specimen.pad import MeshError, PadMesh, element_edges
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-_GAUSS = np.sqrt(0.6)
-_SQUARE = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)], dtype=float)
-_TRIANGLE = np.array([(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)])
+_SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5), (0.5, 0.5)])
+_TRIANGLE = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
+_GAUSS = 0.5 + np.sqrt(0.6) * (_SQUARE - 0.5)
 _TRIANGLE_POINTS = np.array([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)])  # three-point rule
 
 
-def _monomials(element: str) -> list[tuple[int, int]]:
-    order = 2 if element in ("quad9", "tri6") else 1
-    total = 2 * order if element.startswith("quad") else order
-    return [(i, j) for i in range(order + 1) for j in range(order + 1) if i + j <= total]
-
-
 def _derivatives(element: str, at: np.ndarray) -> np.ndarray:
-    """Derivatives of the shape functions at reference points (m, 2), shape (m, 2, nodes per element)."""
-    powers = _monomials(element)
-    nodes = (_SQUARE if element.startswith("quad") else _TRIANGLE)[: len(powers)]
-    coefficients = np.linalg.inv(np.array([[x**i * y**j for i, j in powers] for x, y in nodes]))
-    slopes = np.array(
-        [
-            [
-                [i * x ** max(i - 1, 0) * y**j for i, j in powers],
-                [j * x**i * y ** max(j - 1, 0) for i, j in powers],
-            ]
-            for x, y in at
-        ]
-    )
-    return slopes @ coefficients
+    """Derivatives of the shape functions at points (m, 2) of scikit-fem's reference element, shape (m, 2, nodes per element)."""
+    import skfem  # here, for it is slow to import
+
+    kind = KINDS[element]
+    shape = getattr(skfem, kind.skfem)()
+    return np.stack([np.transpose(shape.lbasis(at.T, node)[1]) * np.ones((len(at), 1)) for node in range(kind.nodes)], axis=-1)
 
 
 def sample_points(element: str) -> tuple[np.ndarray, np.ndarray]:
     """Corners and Gauss points (3 x 3 in quads, 3 in triangles) of the reference element, each (m, 2)."""
     if element.startswith("quad"):
-        return _SQUARE[:4], _GAUSS * _SQUARE
-    return _TRIANGLE[:3], _TRIANGLE_POINTS
+        return _SQUARE[:4], _GAUSS
+    return _TRIANGLE, _TRIANGLE_POINTS
 
 
 def jacobians(mesh: PadMesh, at: np.ndarray) -> np.ndarray:
