@@ -44,5 +44,5 @@ def test_files_that_are_named_exist():
 def test_commands_that_are_named_exist():
     """Every make target of the README is in the Makefile."""
     makefile = (Path(__file__).parents[1] / "Makefile").read_text(encoding="utf-8")
-    for target in set(re.findall(r"make ([a-z][\w-]+)", README)):
+    for target in set(re.findall(r"\bmake ([a-z][\w-]+)", README)):
         assert re.search(rf"^{target}:", makefile, re.M), target
