@@ -15,6 +15,7 @@ from fingerpad.claims.sensitivity import NEAREST, QUANTITIES, SHAPES, VARIANTS, 
 from fingerpad.claims.tables import TABLES
 from fingerpad.claims.verdicts import judge
 from fingerpad.measures.features import centre_node, scene_name
+from fingerpad.measures.measure import Measure
 from fingerpad.measures.table import COLUMNS as MEASURE_COLUMNS
 from fingerpad.measures.table import MEASURES, Measures, measures_table, read_measures, write_measures
 from fingerpad.publishing.write import markdown, publish_table
@@ -134,6 +135,13 @@ def test_the_table_says_what_the_histories_do(made, tmp_path):
         kept("width", "ramp40_k79", "end")
     with pytest.raises(KeyError, match="steady_line"):
         kept("deflection", "steady_line")  # no companion
+
+
+def test_a_measure_that_a_scene_of_ones_own_breaks_is_left_out_and_said(made, monkeypatch):
+    monkeypatch.setitem(MEASURES, "broken", Measure("broken", "1", lambda history: [][0]))
+    with pytest.warns(UserWarning, match="measure broken is left out of ramp40_flat: list index"):
+        rows = measures_table({"ramp40_flat": made[0]["ramp40_flat"]}, {}, {})
+    assert "width" in set(rows["quantity"]) and "broken" not in set(rows["quantity"])
 
 
 def test_columns_kinds_and_verdicts_are_those_asked_for(table):

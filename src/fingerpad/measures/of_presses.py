@@ -210,8 +210,8 @@ def _decay(history: xr.Dataset, values: np.ndarray) -> tuple[float, float]:
     """Relative fall over the hold and time (s) to half of it."""
     top = ramp_end(history)
     held, time = values[top:], history["time"].values[top:]
-    fall = float(1 - held[-1] / held[0])
-    if fall <= 0:
+    fall = float(1 - held[-1] / held[0]) if held[0] else float("nan")
+    if not fall > 0:
         return fall, float("nan")
     share = (held[0] - held) / (held[0] - held[-1])
     return fall, float(np.interp(0.5, np.maximum.accumulate(share), time - time[0]))

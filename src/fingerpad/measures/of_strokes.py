@@ -105,7 +105,7 @@ def start_pressure(history):
     return found
 
 
-@measure("Pa", wavy)
+@measure("Pa", in_part)
 def corner_pressure(history):
     """Centre pressure at the sharp corner, where the first convexity begins."""
     stroke = loaded(history)
@@ -113,7 +113,7 @@ def corner_pressure(history):
     return features.centre_pressure(stroke)[int(abs(place(stroke) - corner).argmin())]
 
 
-@measure("mm", wavy)
+@measure("mm", in_part)
 def lost_contact(history):
     """Length of surface without contact: before the first convexity and before the second, and where the first loss is.
 
@@ -333,6 +333,14 @@ def rate_after_energy_rate(history):
 # --- strokes of a plate, and ridges ----------------------------------------------------------------------
 
 
+def _settled(stroke: xr.Dataset) -> np.ndarray:
+    """Outputs (time) at which the start of a plate's stroke is over. Raises KeyError for a shorter one."""
+    late = abs(distance(stroke)) >= SETTLED
+    if not late.any():
+        raise KeyError(f"stroke of {SETTLED * 1e3:g} mm")
+    return late
+
+
 def _three(history: xr.Dataset) -> dict[str, np.ndarray]:
     """Strain energy (time) Pa at the thesis's three receptors."""
     stroke = loaded(history)
@@ -342,7 +350,7 @@ def _three(history: xr.Dataset) -> dict[str, np.ndarray]:
 @measure("%", plates)
 def spread_of_three(history):
     """Largest range of the three receptors over their mean, once the stroke is settled."""
-    late = abs(distance(loaded(history))) >= SETTLED
+    late = _settled(loaded(history))
     values = [v[late] for v in _three(history).values()]
     return 100 * np.max(np.ptp(values, axis=0) / np.mean(values, axis=0))
 
@@ -351,7 +359,7 @@ def spread_of_three(history):
 def energy_beside(history):
     """Strain energy at -46 um: the highest at the start of the stroke, the highest and the least once it is settled."""
     stroke = loaded(history)
-    settled, values = abs(distance(stroke)) >= SETTLED, energy(loaded(history), DEPTH, -BESIDE)
+    settled, values = _settled(stroke), energy(stroke, DEPTH, -BESIDE)
     return {"start": values[~settled].max(), "highest late": values[settled].max(), "least late": values[settled].min()}
 
 
@@ -359,7 +367,7 @@ def energy_beside(history):
 def islands_of_contact(history):
     """Once the stroke is settled: the fewest, the most, and the most at the end."""
     found = islands(history)
-    late = found[abs(history["stroke_distance"].values) >= SETTLED]
+    late = found[_settled(history)]
     return {"fewest": late.min(), "most": late.max(), "median": np.median(late), "end": found[-1]}
 
 

@@ -7,6 +7,7 @@ it changes by when the column ``companion`` is read instead of ``value``.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -102,6 +103,9 @@ def _read(measure: Measure, scene: str, runs: Together, meshes: Meshes) -> dict[
     try:
         return read(measure, scene, runs, meshes)
     except KeyError:
+        return {}
+    except (ValueError, IndexError, ZeroDivisionError) as error:  # a scene unlike the thesis's must not cost all tables
+        warnings.warn(f"measure {measure.name} is left out of {scene}: {error}", stacklevel=2)
         return {}
 
 
