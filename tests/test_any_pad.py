@@ -14,7 +14,7 @@ from fingerpad.planning.plan import PlanError
 from fingerpad.planning.stack_estimate import StackEstimate
 from fingerpad.reference_solutions import layered, layered_contact
 from fingerpad.results import summary
-from fingerpad.specimen import MeshError, MeshSize, quality_of, write_pad
+from fingerpad.specimen import MeshError, MeshSize, quality_of, read_pad_mesh, write_pad
 from fingerpad.specimen.measures import below_skin, layers_below
 from fingerpad.specimen.stacks import build_stack_mesh
 from test_external_scenes import linear, linear_triangles, triangles
@@ -306,3 +306,19 @@ def test_the_estimate_of_a_stack(thicknesses, radius):
 def test_the_robot_s_skin_runs():
     leg = last_leg(load_scene(EXAMPLES / "robot_skin.yaml"))
     assert leg["force_N_per_m"] == pytest.approx(50 * 9.80665e-3 / 0.01, rel=1e-4)
+
+
+def test_a_written_slab_is_read_again(tmp_path):
+    mesh = own()
+    write_pad(mesh, tmp_path / "slab.msh")
+    again = read_pad_mesh(tmp_path / "slab.msh")
+    assert again.regions == mesh.regions and again.fixed == mesh.fixed and again.symmetric
+    np.testing.assert_allclose(again.points, mesh.points, rtol=0, atol=1e-15)
+    np.testing.assert_array_equal(again.cells, mesh.cells)
+
+
+def test_a_thin_epidermis_needs_no_stratum_corneum(tmp_path):
+    """The thesis's stratum corneum is thicker, and no layer of this pad."""
+    scene = scene_of(tmp_path, {"outline": {"epidermis_thickness": "0.3 mm"}})
+    assert scene.specimen.outline.stratum_corneum_thickness > scene.specimen.outline.epidermis_thickness
+    assert plan(scene).nodes > 0

@@ -42,7 +42,7 @@ KINDS = {
         Kind("tri7", 3, 7, 42, "triangle7", "ElementTriP2B", "P2B", (1, 0, 2, 3, 5, 4, 6)),
     )
 }
-LINES = {2: "line", 3: "line3"}  # meshio's name of a line, by its number of nodes
+LINES = {2: 1, 3: 8}  # gmsh's type of a line, by its number of nodes
 
 
 def kind_of(nodes: int) -> Kind:

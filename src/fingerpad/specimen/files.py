@@ -18,12 +18,11 @@ from pathlib import Path
 import numpy as np
 
 from fingerpad.files import write_atomically
+from fingerpad.specimen.element_kinds import KINDS, LINES
 from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
 from fingerpad.specimen.quality import check_orientation
 
-_ELEMENTS = {2: "tri3", 9: "tri6", 3: "quad4", 16: "quad8", 10: "quad9"}  # by gmsh's element type
-_TYPES = {element: number for number, element in _ELEMENTS.items()}
-_LINES = {2: 1, 3: 8}  # gmsh's element type of a line, by its number of nodes
+_ELEMENTS = {KINDS[name].gmsh: name for name in ("tri3", "tri6", "quad4", "quad8", "quad9")}
 _SAME_PLACE = 1e-6  # of the pad's width: two nodes closer than this are mirror images of each other
 _WIDTHS = (0.1, 1000.0)  # mm, between which the width of a pad is believed
 
@@ -64,11 +63,11 @@ def _write(mesh: PadMesh, partial: Path, path: str | Path) -> None:
         places = np.column_stack((mesh.points * 1e3, np.zeros(len(tags))))
         gmsh.model.mesh.addNodes(2, 1, tags, places.ravel())
         for number, facets in enumerate(mesh.curves.values(), start=1):
-            line = _LINES[facets.shape[1]]
+            line = LINES[facets.shape[1]]
             gmsh.model.mesh.addElementsByType(number, line, [], facets.ravel() + 1)
         for number in range(1, len(mesh.regions) + 1):
             cells = mesh.cells[mesh.region == number - 1]
-            gmsh.model.mesh.addElementsByType(number, _TYPES[mesh.element], [], cells.ravel() + 1)
+            gmsh.model.mesh.addElementsByType(number, KINDS[mesh.element].gmsh, [], cells.ravel() + 1)
         gmsh.model.mesh.reclassifyNodes()
         gmsh.write(str(partial))
     if not partial.read_bytes().rstrip().endswith(b"$EndElements"):
