@@ -397,11 +397,14 @@ def end_time(legs: Sequence[Leg]) -> float | None:
 
 def geometric(duration: float, count: int, first: float) -> np.ndarray:
     """``count`` step sizes (s) that sum to ``duration``, start at ``first`` and grow by a constant ratio (never shrink)."""
-    if count == 1 or first * count >= duration * (1 - 1e-9):
+    many = count >= 500
+    if count == 1 or first * count >= duration * (1 - 1e-9 * (count if many else 1)):
         return np.full(count, duration / count)
     from scipy.optimize import brentq  # here, for it is slow to import
 
-    ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, 1 + (duration / first) ** (1 / (count - 1)))
+    most = (duration / first) ** (1 / (count - 1))  # or the last step alone were longer
+    high = most * (1 + 1e-12) if many else 1 + most
+    ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, high)
     steps = first * ratio ** np.arange(count)
     return steps * (duration / steps.sum())
 
