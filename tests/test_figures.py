@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 import synthetic
-from drawn import LAWS, RATES, REFERENCE, frame, picture, results, saved
+from drawn import RATES, REFERENCE, frame, picture, results, saved
 from fingerpad.figures.geometry import boundaries, inward, loops
 from fingerpad.figures.grammar import Panels
 from fingerpad.figures.registry import CHAPTERS, FIGURES
@@ -279,7 +279,7 @@ def test_a_change_of_two_per_cent_in_one_curve_is_noticed(number):
     ]
     column = columns[-1]
     label = next(c for c in ("surface", "node_x (mm)", "pad", "phase", "series", "source") if c in made)
-    rows = ft.is_simulated(made) & (made[column].gt(0) if number not in LAWS else made[column].notna())
+    rows = ft.is_simulated(made) & (made[column].gt(0) if number in RATES else made[column].notna())
     rows &= made[label] == made.loc[rows, label].dropna().iloc[0]
     changed = made.copy()
     changed.loc[rows, column] *= 1.02

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import textwrap
-
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fingerpad.publishing.style import GREY, INK, NOTE_WIDTH, PAGE_WIDTH, spread, styled
+from fingerpad.publishing.style import GREY, INK, NOTE_WIDTH, sheet, spread, styled, wrapped
 
 LEAST = 1e-6
 """Smaller changes are drawn here."""
@@ -39,8 +37,6 @@ def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
 def effects(frame: pd.DataFrame) -> Figure:
     """Left, change over cost ratio of each effect; right, what each choice of the planner is worth over the accuracy."""
     height = 5.6
-    fig = Figure(figsize=(PAGE_WIDTH, height))
-    fig.text(0.012, 1 - 0.09 / height, "What effects change and cost", ha="left", va="top", fontweight="bold", fontsize=9.5)
     scenes = len(frame.loc[frame["panel"] == "planner", ["seed", "scene"]].drop_duplicates())
     note = (
         "Simulated. Change: largest of depth, force, width, centre pressure, strain energy and, in strokes, tangential force and "
@@ -49,8 +45,7 @@ def effects(frame: pd.DataFrame) -> Figure:
         "asks for (0.5 % to 10 %), one effect flipped at a time. What is left out may be worth up to that accuracy (line); what "
         "is carried should be worth a tenth of it or more (dashed). Symmetry leaves half the pad out."
     )
-    note = textwrap.fill(note, NOTE_WIDTH - 12)
-    fig.text(0.012, 0.06 / height, note, ha="left", va="bottom", fontsize=7, color=GREY, linespacing=1.35)
+    fig = sheet("What effects change and cost", wrapped([note], NOTE_WIDTH - 12), height, laid_out=False)
     grid = fig.add_gridspec(
         1, 2, left=0.1, right=0.985, top=1 - 0.72 / height, bottom=1.45 / height, wspace=0.42, width_ratios=(1.35, 1)
     )

@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
-from fingerpad.publishing.style import GREY, INK, PAGE_WIDTH, styled
+from fingerpad.publishing.style import GREY, INK, sheet, styled
 
 METHODS = {
     "default": "this package\n(default method)",
@@ -125,8 +125,7 @@ def heat_map(frame: pd.DataFrame) -> Figure:
     cases = list(frame["case"].drop_duplicates())
     below, above = 2.72, 1.42  # inch
     height = below + above + 0.138 * len(cases)
-    fig = Figure(figsize=(PAGE_WIDTH, height))
-    fig.text(0.012, 1 - 0.09 / height, "Stability in hard cases", ha="left", va="top", fontweight="bold", fontsize=9.5)
+    fig = sheet("Stability in hard cases", [], height, laid_out=False)
     intro = (
         "Simulated. A row is a case, a column a measure of how the run went: its worst value over the worst that still counts\n"
         "as stable in that case (figures/tables/stability.md lists both). Blue: far inside. Yellow: at the limit. Red: beyond."
