@@ -250,6 +250,10 @@ def test_subjects_of_ones_own_are_calibrated_to_in_ones_own_results(own):
         ({"figure_numbers": ["9-99"]}, "config.yaml: figure_numbers[0]: '9-99' is not drawn, the nearest is"),
         ({"table_names": ["sumary"]}, "config.yaml: table_names[0]: 'sumary' is not a table; allowed: "),
         ({"subjects": "nowhere"}, "config.yaml: subjects: 'nowhere' holds no CSV file; allowed: a folder of at least one"),
+        (
+            {"friction_coefficients": [0.3]},
+            "config.yaml: friction_coefficients: lacks companion_accuracy or friction_scenes; allowed",
+        ),
         ({"calibration_scenes": ["ramp40_flat"]}, "config.yaml: calibration_scenes: ('ramp40_flat',) lacks calibration_plate"),
     ],
 )

@@ -122,6 +122,8 @@ class Products:
         for key, needed in (("calibration_scenes", PLATE), ("friction_scenes", STROKE)):
             if getattr(c, key) and needed not in getattr(c, key):
                 self._wrong((key,), getattr(c, key), f"lacks {needed}", "")
+        if c.friction_coefficients and (c.companion_accuracy is None or not c.friction_scenes):
+            self._wrong(("friction_coefficients",), HIDE, "lacks companion_accuracy or friction_scenes", "all three or none")
         if not self.forces and c.calibration_scenes:
             self._wrong(("subjects",), c.subjects, "holds no CSV file", "a folder of at least one")
 
@@ -135,7 +137,8 @@ class Products:
             raise
 
     def _wrong(self, key: tuple, value: object, problem: str, allowed: str) -> None:
-        raise SceneError(error_line(self.file, key, Problem(f"{value!r} {problem}", allowed, (), HIDE)))
+        shown = "" if value is HIDE else f"{value!r} "
+        raise SceneError(error_line(self.file, key, Problem(f"{shown}{problem}", allowed, (), HIDE)))
 
     @cached_property
     def specs(self) -> dict[str, Figure]:
@@ -283,15 +286,15 @@ class Products:
         batch_of = {name: batch for batch, names in self.batches().items() for name in names}
         groups: dict[tuple, list[Figure]] = {}
         for figure in self.drawn:
-            rests_on = frozenset(batch_of[scene] for scene in figure.needs)
-            groups.setdefault((figure.module, rests_on), []).append(figure)
+            batches = frozenset(batch_of[scene] for scene in figure.needs)
+            groups.setdefault((figure.module, batches), []).append(figure)
         reference = self.at("config/reference/thesis_numbers.csv")
         jobs = []
         for (module, _), group in groups.items():
             needs = list(dict.fromkeys(scene for figure in group for scene in figure.needs))
             compared = list(dict.fromkeys(scene for figure in group for scene in figure.companions))
-            folders = {str(Path(reference).parent / pattern) for figure in group for pattern in figure.measured}
-            measured = sorted(str(path) for pattern in folders for path in Path().glob(pattern))
+            patterns = {pattern for figure in group for pattern in figure.measured}
+            measured = sorted(str(path) for pattern in patterns for path in Path(reference).parent.glob(pattern))
             chapter = group[0].number.split("-")[0]
             jobs.append(
                 Job(
