@@ -314,3 +314,9 @@ def test_nearly_flat_cylinders_are_exact(curvature):
     np.testing.assert_allclose(distance, -at[:, 1] + curvature * at[:, 0] ** 2 / 2, rtol=1e-9)
     np.testing.assert_allclose(gradient, np.tile([0.0, -1.0], (200, 1)), atol=1e-9)
     np.testing.assert_allclose(Cylinder(curvature=curvature).outline(at[:, 0]), curvature * at[:, 0] ** 2 / 2, rtol=1e-9)
+
+
+@pytest.mark.parametrize("deep", [False, True])
+def test_a_changed_copy_has_its_own_curve(deep):
+    steep = STANDARD.model_copy(update={"half_angle": np.radians(12)}, deep=deep)
+    assert STANDARD.curve is STANDARD.curve and steep.steepness == pytest.approx(np.tan(np.radians(12)))

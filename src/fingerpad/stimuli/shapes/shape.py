@@ -41,6 +41,17 @@ class CurvedShape(Shape):
         """Its surface."""
         raise NotImplementedError
 
+    def __copy__(self):
+        """A copy may get other fields: it makes its own curve."""
+        copied = super().__copy__()
+        copied.__dict__.pop("curve", None)
+        return copied
+
+    def __deepcopy__(self, memo=None):
+        copied = super().__deepcopy__(memo)
+        copied.__dict__.pop("curve", None)
+        return copied
+
     def evaluate(self, points):
         return self.curve.evaluate(points)
 
