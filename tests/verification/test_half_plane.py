@@ -1,6 +1,7 @@
 """Contact of a half-plane without friction: Hertz (1881) and Westergaard (1939)."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pytest
@@ -31,6 +32,13 @@ def hertz_contact(element, poisson=POISSON, radius=RADIUS, load_share=1.0):
     return load, press(body, mesh, Cylinder(curvature=1 / radius), force=load_share * load / 2)
 
 
+@cache
+def strip_depth(load):
+    """What an independent solution of the strip says, once for all elements."""
+    strip = [Layer(DEPTH, SHEAR, POISSON)]
+    return layered_contact.press(lambda x: x**2 / (2 * RADIUS), strip, DEPTH, load, 1024).depth
+
+
 def check_hertz(element, **mutant):
     load, result = hertz_contact(element, **mutant)
     p0, within, frozen = hertz.peak_pressure(load, 1.0), WITHIN[element], HERTZ[element]
@@ -41,8 +49,7 @@ def check_hertz(element, **mutant):
     two_numbers(result.half_width, truth=1.0, within=within, frozen=frozen[0])
     two_numbers(result.pressure[0] / p0, truth=1.0, within=within, frozen=frozen[1])
     two_numbers(2 * result.force, truth=load, within=1e-7, frozen=load, tight=1e-7)
-    strip = layered_contact.press(lambda x: x**2 / (2 * RADIUS), [Layer(DEPTH, SHEAR, POISSON)], DEPTH, load, 1024)
-    two_numbers(result.depth, truth=strip.depth, within=within / 3, frozen=frozen[2])
+    two_numbers(result.depth, truth=strip_depth(load), within=within / 3, frozen=frozen[2])
 
 
 @pytest.mark.parametrize("element", WITHIN)

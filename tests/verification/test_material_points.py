@@ -1,5 +1,6 @@
 """Strain energy at receptors: against Hertz's field below the contact, and term by term in simple shear."""
 
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
@@ -31,16 +32,22 @@ HERTZ = {
 }
 
 
-def check_hertz_energy(element, strain="small", poisson=0.4999, off_axis=0.0):
-    """Incompressible half-plane: the density below the contact is (largest shear stress)^2 / 2 G."""
-    shear, radius, depth = 1.0, 200.0, 150.0
-    load = hertz.force(1.0, radius, 2 * shear / (1 - poisson))
-    p0 = hertz.peak_pressure(load, 1.0)
-    mesh, body = half_strip([Layer(depth, shear, poisson)], depth, element, strain, fine=3 / depth, columns=(24, 18))
-    points = np.column_stack([np.full(len(DEPTHS), off_axis), -np.array(DEPTHS)])
-    receptors = MaterialPoints(body, points, body.shear)
+@cache
+def hertz_contact(element, strain):
+    """The load on an incompressible half-plane of shear modulus one, and its body, pressed."""
+    radius, depth, poisson = 200.0, 150.0, 0.4999
+    load = hertz.force(1.0, radius, 2 / (1 - poisson))
+    mesh, body = half_strip([Layer(depth, 1.0, poisson)], depth, element, strain, fine=3 / depth, columns=(24, 18))
     press(body, mesh, Cylinder(curvature=1 / radius), force=load / 2)
-    energies = receptors.sample(body)
+    return load, body
+
+
+def check_hertz_energy(element, strain="small", off_axis=0.0):
+    """Incompressible half-plane: the density below the contact is (largest shear stress)^2 / 2 G."""
+    shear, (load, body) = 1.0, hertz_contact(element, strain)
+    p0 = hertz.peak_pressure(load, 1.0)
+    points = np.column_stack([np.full(len(DEPTHS), off_axis), -np.array(DEPTHS)])
+    energies = MaterialPoints(body, points, body.shear).sample(body)
     truth = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)["max_shear"] ** 2 / (2 * shear)
     for found, expected, frozen in zip(energies["strain_energy_network"], truth, HERTZ[element, strain], strict=True):
         two_numbers(found / p0**2, truth=expected / p0**2, within=0.02, frozen=frozen, tight=1e-5)

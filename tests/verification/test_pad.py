@@ -1,6 +1,7 @@
 """Identities of the pad that need no published number: separability, symmetry, energy, scaling, limit."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -16,10 +17,27 @@ BOTH_SHAPES = pytest.mark.parametrize("shape", SHAPES)
 COUNT = 16
 
 
-@pytest.fixture(scope="module")
-def half():
+@cache
+def half_mesh():
     """Right half of the small pad."""
     return pad_mesh().right_half()
+
+
+@pytest.fixture(scope="module")
+def half():
+    return half_mesh()
+
+
+@cache
+def pressed_half(shape, strain="small", poisson=0.48, **goal):
+    """End of an elastic press of the half, once for all tests and mutants."""
+    return press_pad(pad_body(half_mesh(), strain, poisson), half_mesh(), shape, **goal)
+
+
+@cache
+def pressed_whole(shape, strain):
+    """End of an elastic press of the whole pad."""
+    return press_pad(pad_body(pad_mesh(), strain), pad_mesh(), shape, force=LOAD)
 
 
 # -- separability --------------------------------------------------------------------------------------------
@@ -37,7 +55,7 @@ def pressed_history(mesh, shape, key, goal, poisson, prony, count=COUNT):
 def force_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
     """Depth control: largest deviation of the force from the hereditary integral of the elastic forces."""
     times, ends = pressed_history(mesh, shape, "depth", 0.4e-3, poisson, prony)
-    ramp = [press_pad(pad_body(mesh, "small", poisson), mesh, shape, depth=end.depth).force for end in ends[:COUNT]]
+    ramp = [pressed_half(shape, poisson=poisson, depth=end.depth).force for end in ends[:COUNT]]
     elastic = np.concatenate([[0.0], ramp, np.full(COUNT, ramp[-1])]) / THESIS.g_infinity
     truth = ting.force_under_depth_control(np.append(0.0, times), elastic, THESIS.g, THESIS.tau)[1:]
     return np.abs(np.array([end.force for end in ends]) / truth - 1)[COUNT // 4 :].max()
@@ -50,7 +68,7 @@ def depth_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
     elastic = THESIS.g_infinity * ting.elastic_force_under_force_control(np.append(0.0, times), applied, THESIS.g, THESIS.tau)
     worst = np.zeros(2)
     for k in (COUNT // 2, COUNT - 1, 3 * COUNT // 2, 2 * COUNT - 1):
-        truth = press_pad(pad_body(mesh, "small", poisson), mesh, shape, force=elastic[k + 1])
+        truth = pressed_half(shape, poisson=poisson, force=elastic[k + 1])
         found = ends[k]
         worst = np.maximum(worst, np.abs([found.depth / truth.depth - 1, found.half_width / truth.half_width - 1]))
     return worst
@@ -90,11 +108,8 @@ def test_separability_at_the_poisson_ratio_of_the_thesis(half, shape):
 
 def check_half_is_full(shape, strain, layers=None):
     """Depth, width, pressures and displacements of the half model unfold to those of the whole pad."""
-    whole_mesh = pad_mesh()
-    half_mesh = whole_mesh.right_half()
-    whole = press_pad(pad_body(whole_mesh, strain), whole_mesh, shape, force=LOAD)
-    extra = {} if layers is None else {"layers": layers}
-    half = press_pad(pad_body(half_mesh, strain, **extra), half_mesh, shape, force=LOAD)
+    whole, extra = pressed_whole(shape, strain), {} if layers is None else {"layers": layers}
+    half = press_pad(pad_body(half_mesh(), strain, **extra), half_mesh(), shape, force=LOAD)
     np.testing.assert_allclose(half.depth, whole.depth, rtol=1e-8, err_msg="truth: depth")
     np.testing.assert_allclose(2 * half.force, whole.force, rtol=1e-8, err_msg="truth: force")
     np.testing.assert_allclose(2 * half.half_width, np.ptp(whole.edges), rtol=1e-7, err_msg="truth: width")
@@ -116,15 +131,20 @@ def test_half_model_is_the_full_model(shape, strain, must_fail):
 # -- energy --------------------------------------------------------------------------------------------------
 
 
-def energy_errors(mesh, strain, prony, count, dissipated_share=1.0):
+@cache
+def ramp_and_hold_records(strain, prony, count):
+    body = pad_body(half_mesh(), strain, 0.48, prony)
+    return walk(body, half_mesh(), ramp_and_hold("force", LOAD / 2, count), SHAPES["flat"], curve="skin").records
+
+
+def energy_errors(strain, prony, count, dissipated_share=1.0):
     """Imbalance of work, stored and dissipated energy over the work, after each step of a ramp and hold."""
-    body = pad_body(mesh, strain, 0.48, prony)
-    records = walk(body, mesh, ramp_and_hold("force", LOAD / 2, count), SHAPES["flat"], curve="skin").records
+    records = ramp_and_hold_records(strain, prony, count)
     return np.array([abs(r.work - sum(r.energies[:2]) - dissipated_share * r.dissipated) / r.work for r in records])
 
 
-def check_energy(mesh, strain, prony=THESIS, **mutant):
-    coarse, fine = (energy_errors(mesh, strain, prony, count, **mutant)[-1] for count in (8, 16))
+def check_energy(strain, prony=THESIS, **mutant):
+    coarse, fine = (energy_errors(strain, prony, count, **mutant)[-1] for count in (8, 16))
     assert fine < 2e-3, f"truth: {fine:.2e} of the work is lost"
     assert fine < 0.4 * coarse, f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
     frozen = ENERGY[strain, prony is None]
@@ -141,11 +161,11 @@ ENERGY = {
 
 @pytest.mark.parametrize("prony", [None, THESIS], ids=["elastic", "viscoelastic"])
 @pytest.mark.parametrize("strain", ["small", "finite"])
-def test_energy_balance(half, strain, prony, must_fail):
+def test_energy_balance(strain, prony, must_fail):
     """Work of the indenter = stored + dissipated energy, up to the trapezoidal rule's error in the step."""
-    check_energy(half, strain, prony)
+    check_energy(strain, prony)
     if prony:
-        must_fail(check_energy, half, strain, prony, dissipated_share=0.9)
+        must_fail(check_energy, strain, prony, dissipated_share=0.9)
 
 
 # -- scaling -------------------------------------------------------------------------------------------------
@@ -154,7 +174,7 @@ def test_energy_balance(half, strain, prony, must_fail):
 def check_scaling(mesh, strain, length, stress, load_share=1.0):
     """Lengths times ``length`` and stresses times ``stress`` leave every ratio unchanged."""
     scaled = replace(mesh, points=mesh.points * length)
-    reference = press_pad(pad_body(mesh, strain), mesh, "flat", force=LOAD)
+    reference = pressed_half("flat", strain, force=LOAD)
     result = press_pad(pad_body(scaled, strain, scale=stress), scaled, "flat", force=load_share * LOAD * stress * length)
     for name, unit in {"depth": length, "half_width": length, "force": stress * length}.items():
         expected = getattr(reference, name) * unit
@@ -179,8 +199,7 @@ def check_small_is_the_limit(mesh, shape, poisson=0.48):
     found = []
     for share in (16, 32, 64):
         depths = [
-            press_pad(pad_body(mesh, strain, nu), mesh, shape, force=LOAD / share).depth
-            for strain, nu in (("small", 0.48), ("finite", poisson))
+            pressed_half(shape, strain, nu, force=LOAD / share).depth for strain, nu in (("small", 0.48), ("finite", poisson))
         ]
         found.append(abs(depths[1] / depths[0] - 1))
     rates = np.log2(np.array(found[:-1]) / found[1:])
