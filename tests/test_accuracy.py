@@ -13,7 +13,7 @@ from fingerpad.scenes.scene import Cylinder
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.pad import MeshSize, element_edges, skin_chain
 from fingerpad.specimen.quality import check_orientation
-from fingerpad.studies.accuracy import belief
+from fingerpad.studies.accuracy import belief, drawn
 from fingerpad.studies.accuracy import errors as found
 from fingerpad.studies.accuracy import run as study
 from fingerpad.studies.accuracy.convergence import fitted_order, limit, observed_order
@@ -196,7 +196,7 @@ def test_growth_is_the_exponent():
     assert found.growth(nodes, np.r_[9.0, 2e-4 * nodes[1:] ** 1.2]) == pytest.approx((2e-4, 1.2))
 
 
-@pytest.mark.parametrize("name", sorted(set(STUDIES) - {"accuracy_belief"}))
+@pytest.mark.parametrize("name", sorted(set(STUDIES) - {"accuracy_belief", "accuracy_drawn"}))
 def test_figures_are_drawn_from_the_table_read_back(table, name, tmp_path):
     table.to_csv(tmp_path / "t.csv", index=False)
     frame = found.FRAMES[name](pd.read_csv(tmp_path / "t.csv", dtype={"scene": str}))
@@ -250,6 +250,19 @@ def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
     for scene in outside.values():
         for accuracy in belief.LEVELS:
             assert plan(scene.model_copy(update={"accuracy": accuracy})).estimated_error > 0
+
+
+def test_drawn_scenes_are_of_every_class_and_drawn_the_same_again():
+    scenes = list(drawn.drawn())
+    assert len(scenes) == 60 and {kind for _, kind, _ in scenes} == set(drawn.CLASSES)
+    assert repr(scenes) == repr(list(drawn.drawn())) != repr(list(drawn.drawn(seed=21)))
+
+
+def test_truth_is_on_shorter_edges_and_asks_no_tolerance():
+    chosen = plan(load_scene(SCENES / "steady_bar_1_16_inch.yaml").with_accuracy(0.05))
+    truth = drawn.finer(chosen, 2.0)
+    assert truth.mesh_size.skin_edge == chosen.mesh_size.skin_edge / 2 and truth.missed(9.0) is None
+    assert [edge for _, edge in truth.mesh_size.focus] == [edge / 2 for _, edge in chosen.mesh_size.focus]
 
 
 def test_committed_beliefs_cover_the_truth():

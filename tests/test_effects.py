@@ -201,7 +201,7 @@ def test_mesh_is_fine_wherever_a_stroke_takes_the_contact(stroke, ramp):
     smooth = extent(changed(stroke, friction=0.0))
     assert smooth > still
     assert extent(stroke) == pytest.approx(smooth + RULES.skin_stretch)
-    steeper = changed(stroke, friction=0.0, stimulus=stroke.stimulus.model_copy(update={"half_angle": math.radians(12)}))
+    steeper = stroke.varied({"friction": 0.0, "stimulus.half_angle": math.radians(12)})
     rise = (math.tan(math.radians(12)) - math.tan(math.radians(9))) * stroke.specimen.outline.apex_radius
     assert extent(steeper) == pytest.approx(smooth + rise, abs=0.15e-3)
     few = changed(stroke, friction=0.0, motion=(stroke.motion[0], Slide(slide=0.1e-3, speed=10e-3)))

@@ -46,8 +46,9 @@ def executed(scene):
 
     def note(frame, event, _):
         code = frame.f_code
-        if event == "call" and "fingerpad" in code.co_filename and code.co_name != "<module>":
-            called.add((Path(code.co_filename).stem, code.co_name))
+        path = Path(code.co_filename)
+        if event == "call" and "fingerpad" in path.parts and "planning" not in path.parts and code.co_name != "<module>":
+            called.add((path.stem, code.co_name))
 
     before = sys.getprofile()
     sys.setprofile(note)
@@ -65,7 +66,7 @@ OWN = {
     "finite_strain": [("finite_strain", "tangent"), ("finite_strain", "begin_step")],
     "small_strain": [("small_strain", None)],
     "ridges": [("ridges", None), ("layered", None)],
-    "symmetry": [("mesh", "right_half")],
+    "symmetry": [("pad", "right_half")],
     "full-field output": [("simulation", "_element_pressure"), ("results", "add_snapshots")],
 }
 ON = {"finite_strain": "on", "viscoelasticity": "off"}

@@ -30,7 +30,7 @@ FIELDS = ("vtu/*.vtu", "vtu/*.series", "vtu/*.pvd")
 # errors of wrong input: where they are defined, and the key they are about when they do not name it
 _ERRORS = {
     "SceneError": ("documents", ""),
-    "PlanError": ("planning.plan", ""),
+    "PlanError": ("planning.bounds", ""),
     "OutlineError": ("specimen.outline", "specimen.outline"),
     "MeshError": ("specimen.pad", "specimen.mesh"),
     "ReceptorError": ("receptors.material_points", "outputs.receptors"),

@@ -18,7 +18,12 @@ from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tribu
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
 from fingerpad.mechanics.stepping import NonConvergence, QuasiStatic, Record, Skin
-from fingerpad.planning.plan import Plan, PlanError, estimated_error, plan, refined, schedule
+from fingerpad.planning.bounds import PlanError
+from fingerpad.planning.effects import EFFECTS
+from fingerpad.planning.errors import estimated_error
+from fingerpad.planning.plan import Plan, plan, refined
+from fingerpad.planning.rules import RULES
+from fingerpad.planning.schedule import schedule
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.receptors.respond import respond
 from fingerpad.results import FIELDS, add_snapshots, dataset, peak_memory_MB, provenance, skin_arc
@@ -118,6 +123,9 @@ class Simulation:
         observers = (self.receptors, self.fields) if fields else (self.receptors,)
         self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=observers, friction=friction)
         self._require_room()
+        for name, effect in EFFECTS.items():
+            if effect.compose and name in plan.effects and plan.effects[name].on:
+                effect.compose(self)
 
     def _body(self):
         specimen, plan, mesh = self.scene.specimen, self.plan, self.mesh
@@ -257,7 +265,15 @@ class Simulation:
         half_width = min(width / 2, plan.contact.narrowest or np.inf)
         around = plan.mesh_size and plan.mesh_size.skin_edge
         steps = plan.steps_per_leg if plan.timed else None
-        found = estimated_error(plan.contact_edge, half_width or _NO_CONTACT, steps, stroked, around)
+        found = estimated_error(
+            plan.contact_edge,
+            half_width or _NO_CONTACT,
+            steps,
+            stroked,
+            around,
+            rules=RULES,
+            uneven=self.scene.stimulus.shape != "flat",
+        )
         return max(found, plan.edge_error) + plan.small_strain_error + plan.surface.error
 
     def _lost_work(self, records) -> float:

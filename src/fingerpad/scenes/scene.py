@@ -19,6 +19,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest
 from fingerpad.fields import SI, Length, SignedLength, Time, listed, number, quantity, whole
+from fingerpad.scenes.effects import EFFECTS
 from fingerpad.scenes.families import Written, read_scene
 from fingerpad.scenes.specimen import (
     DEFAULT_SPECIMEN,
@@ -56,7 +57,6 @@ __all__ = [
     "specimen_json_schema",
 ]  # fmt: skip
 
-EFFECTS = ("friction", "viscoelasticity", "finite_strain", "symmetry", "ridges")
 LEVELS = ("draft", "thesis", "fine")
 MAXIMUM_SNAPSHOTS = 1000
 
@@ -209,7 +209,7 @@ def _read_effects(value: Any) -> dict[str, bool]:
     return effects
 
 
-_EffectsSurface = Literal["auto"] | dict[Literal[EFFECTS], _Switch]  # type: ignore[valid-type]
+_EffectsSurface = Literal["auto"] | dict[Literal[tuple(EFFECTS)], _Switch]  # type: ignore[valid-type]
 Effects = Annotated[dict[str, bool], BeforeValidator(_read_effects, json_schema_input_type=_EffectsSurface)]
 
 

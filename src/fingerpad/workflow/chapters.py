@@ -34,7 +34,8 @@ class Figure:
 
 @cache
 def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
-    """What is on offer: `figures` by number, and the studies' `FAMILY`, `SWEEPS`, `OUTSIDE` (accuracy) and `METHODS` (stability).
+    """What is on offer: `figures` by number, and the studies' `FAMILY`, `SWEEPS`, `OUTSIDE`, `CLASSES` (accuracy),
+    `METHODS` (stability).
 
     Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
     """
@@ -57,6 +58,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.figures.grammar import MEASURED
     from fingerpad.figures.registry import CHAPTERS
     from fingerpad.studies.accuracy.belief import OUTSIDE
+    from fingerpad.studies.accuracy.drawn import CLASSES
     from fingerpad.studies.accuracy.run import FAMILY, sweeps
     from fingerpad.studies.stability.picture import METHODS
 
@@ -71,4 +73,5 @@ def _read() -> dict[str, Any]:
         }
         for spec, module in sorted(found, key=lambda pair: [int(n) for n in pair[0].number.split("-")])
     }
-    return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps()), "OUTSIDE": list(OUTSIDE), "METHODS": list(METHODS)}
+    offers = {"OUTSIDE": list(OUTSIDE), "CLASSES": list(CLASSES), "METHODS": list(METHODS)}
+    return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps())} | offers

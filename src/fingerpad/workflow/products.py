@@ -493,9 +493,26 @@ class Products:
             jobs.append(Job(name, "accuracy_belief", self._read(base), made, values, mem_mb=2000, runtime=60))
         believed = self.tables(["accuracy_belief"])
         jobs.append(Job("accuracy_beliefs", "joined", {"parts": rows}, {"table": believed}))
+        parts = [self.result(f"accuracy/drawn/{kind}.csv") for kind in offered()["CLASSES"]]
+        for kind, part in zip(offered()["CLASSES"], parts, strict=True):
+            values = {"kind": [kind], **self._told(base)}
+            jobs.append(
+                Job(
+                    f"accuracy_drawn_{kind}",
+                    "accuracy_drawn",
+                    self._read(base),
+                    {"rows": [part]},
+                    values,
+                    mem_mb=3000,
+                    runtime=60,
+                )
+            )
+        drawn = self.tables(["accuracy_drawn"])
+        jobs.append(Job("accuracy_drawn", "joined", {"parts": parts}, {"table": drawn}))
         for name, table, pictures in (
             ("accuracy_pictures", tables[0], ("error", "error_stroke", "growth")),
             ("accuracy_belief_picture", believed[0], ("belief",)),
+            ("accuracy_drawn_picture", drawn[0], ("drawn",)),
         ):
             made = {"pictures": self.pictures(pictures, "accuracy_")}
             labels = {path: {"study": Path(path).stem} for path in made["pictures"]}

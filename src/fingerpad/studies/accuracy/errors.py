@@ -368,5 +368,6 @@ FRAMES = {
     "accuracy_error_stroke": lambda table: error_frame(table, ("stroke",)),
     "accuracy_growth": growth_frame,
     "accuracy_belief": lambda table: table,
+    "accuracy_drawn": lambda table: table,
 }
 """Figure name -> its data frame, of the table of accuracy or of beliefs."""

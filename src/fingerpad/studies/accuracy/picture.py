@@ -174,10 +174,48 @@ def belief(frame: pd.DataFrame) -> Figure:
     return fig
 
 
+@styled
+def drawn(frame: pd.DataFrame) -> Figure:
+    """What runs believe of their error against what it is, scenes drawn by class of stimulus."""
+    asked = frame[frame["true error (%)"].notna()]
+    covers = asked["believed error (%)"] >= asked["true error (%)"]
+    fig = study_figure(
+        "Does a run know its error under any stimulus?",
+        [
+            f"Simulated: {asked['scene'].nunique()} scenes drawn at random from eight classes, each asked for 10 or 5 %. Truth: "
+            "the largest difference of depth, width, centre and peak pressure (not under true edges) and strain energies at the "
+            "legs' ends to the same scene on edges 1.7 to 2.5 times as short; of a true edge, to a rounding of a 200th of it."
+            f" Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs.",
+        ],
+        3.9,
+    )
+    left, right = fig.subplots(1, 2, width_ratios=(1, 0.9))
+    ends = np.array([0.08, 100.0])
+    left.fill_between(ends, ends, 1e-3, color="0.95", lw=0)
+    left.loglog(ends, ends, color=GREY, lw=0.8)
+    classes = list(asked["class"].unique())
+    for place, (name, marker) in enumerate(zip(classes, "os^DvPX*", strict=False)):
+        part = asked[asked["class"] == name]
+        believed, true = part["believed error (%)"], part["true error (%)"]
+        colour = f"C{place}"
+        left.loglog(believed, true, marker, color=colour, ms=4.5, mfc="white", label=name)
+        right.semilogx(true / believed, np.full(len(part), place), marker, color=colour, ms=4, mfc="white")
+    left.set(xlabel="believed error (%)", ylabel="true error (%)", xlim=ends, ylim=ends)
+    left.legend(loc="upper left", fontsize=6.5)
+    right.axvline(1, color=GREY, lw=0.8)
+    right.set_xlim(right=max(2.0, right.get_xlim()[1]))
+    counts = [f"{name} ({int(covers[asked['class'] == name].sum())} of {(asked['class'] == name).sum()})" for name in classes]
+    right.set_yticks(range(len(classes)), counts, fontsize=6.5)
+    right.invert_yaxis()
+    right.set_xlabel("truth / belief")
+    return fig
+
+
 STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
     "accuracy_error": error,
     "accuracy_error_stroke": error_stroke,
     "accuracy_growth": growth,
     "accuracy_belief": belief,
+    "accuracy_drawn": drawn,
 }
 """Figure name -> drawing function of its data frame."""

@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from fingerpad.planning.effects import EFFECTS
 from fingerpad.publishing.style import GREY, INK, NOTE_WIDTH, sheet, spread, styled, wrapped
 
 LEAST = 1e-6
@@ -15,16 +16,11 @@ LEAST = 1e-6
 DRAFT = 0.06
 """What a draft, as in the left panel, lets effects that are left out change."""
 WRONG, RED = ("wrongly left out", "carried for nothing"), "#c8303d"
-NAMES = {
-    "symmetry": "symmetry (half the pad)",
-    "viscoelasticity": "viscoelasticity",
-    "finite_strain": "finite strain",
-    "friction": "friction",
-    "ridges": "ridges",
+NAMES = {name: effect.title or name.replace("_", " ") for name, effect in EFFECTS.items()} | {
     "local refinement": "local refinement",
     "full-field output": "full-field output",
 }
-MARKERS = dict(zip(NAMES, "so^DvPX", strict=True))
+MARKERS = {name: effect.marker for name, effect in EFFECTS.items()} | {"local refinement": "P", "full-field output": "X"}
 COLOURS = dict(zip(NAMES, mpl.colormaps["viridis"](np.linspace(0, 0.85, len(NAMES))), strict=True))
 
 

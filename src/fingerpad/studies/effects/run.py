@@ -17,6 +17,8 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.mechanics.stepping import NonConvergence
+from fingerpad.planning.effect import OWN_PAIR
+from fingerpad.planning.effects import EFFECTS
 from fingerpad.planning.plan import RULES, Plan, PlanError, Rules, plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.simulation import simulate
@@ -101,10 +103,6 @@ def _switched(effect: str, state: str = "long_term"):
     return switch
 
 
-def _ridged(scene: Scene, on: bool) -> tuple[Scene, Plan]:
-    return scene, with_effects(plan(scene), ridges=on)
-
-
 def flattened(scene: Scene) -> Scene:
     """A scene whose inner ridges are next to nothing, on a mesh that could resolve them."""
     return scene.varied({"specimen.ridges.inner.height": FLATTENED})
@@ -126,45 +124,12 @@ def _fields(scene: Scene, on: bool) -> tuple[Scene, Plan]:
     return scene, plan(scene)
 
 
-SHARP, MIDDLE = cylinder(1259.84), cylinder(209.97)
-STROKE = [force(20, 40), slide(4)]
-LOW_RIDGES = {"inner": {"height": "3 um"}}
-LOPSIDED = TWO_WAVES | {"lead_in": "1 mm"}
+MIDDLE = cylinder(209.97)
 PAIRS = (
-    Pair("symmetry", "lopsided wave", True, {"stimulus": LOPSIDED, "motion": RAMP}, _switched("symmetry")),
-    Pair("symmetry", "ramp and hold, 210 1/m", False, {"stimulus": MIDDLE, "motion": RAMP}, _switched("symmetry")),
-    Pair("symmetry", "ramp and hold, flat", False, {"stimulus": FLAT, "motion": RAMP}, _switched("symmetry")),
-    Pair("viscoelasticity", "ramp of 0.5 s and hold", True, {"stimulus": MIDDLE, "motion": RAMP}, _switched("viscoelasticity")),
-    Pair(
-        "viscoelasticity", "ramp of 3 ms, instantaneous moduli", False,
-        {"stimulus": MIDDLE, "motion": [force(20, 20 / 3e-3)]}, _switched("viscoelasticity", "instantaneous"),
-    ),
-    Pair(
-        "viscoelasticity", "ramp of 3 hours", False, {"stimulus": MIDDLE, "motion": [force(20, 20 / 1e4)]},
-        _switched("viscoelasticity"),
-    ),
-    Pair("finite_strain", "20 gf, 1260 1/m", True, {"stimulus": SHARP, "motion": RAMP}, _switched("finite_strain")),
-    Pair("finite_strain", "20 gf, flat", True, {"stimulus": FLAT, "motion": RAMP}, _switched("finite_strain")),
-    Pair(
-        "finite_strain", "0.02 gf, 210 1/m", False, {"stimulus": MIDDLE, "motion": [force(0.02, 0.04), hold(2)]},
-        _switched("finite_strain"),
-    ),
-    Pair(
-        "friction", "stroke of a plate, 0.7", True, {"stimulus": FLAT, "friction": 0.7, "motion": STROKE}, _switched("friction")
-    ),
-    Pair(
-        "friction", "pressed only, flat, 0.7", True, {"stimulus": FLAT, "friction": 0.7, "motion": RAMP},
-        _switched("friction"),
-    ),
-    Pair(
-        "friction", "pressed only, 210 1/m, 0.01", False, {"stimulus": MIDDLE, "friction": 0.01, "motion": RAMP},
-        _switched("friction"),
-    ),
-    Pair(
-        "ridges", "inner, 0.15 mm high", True, {"stimulus": MIDDLE, "motion": RAMP, "specimen": {"ridges": "inner"}}, _ridged
-    ),
-    Pair(
-        "ridges", "inner, 3 um high", False, {"stimulus": MIDDLE, "motion": RAMP, "specimen": {"ridges": LOW_RIDGES}}, _ridged
+    *(
+        Pair(name, shown.label, shown.matters, shown.document, _switched(name, shown.state))
+        for name, effect in EFFECTS.items()
+        for shown in effect.shown
     ),
     Pair("local refinement", "needle, 10,000 1/m", True, {"stimulus": cylinder(1e4), "motion": RAMP}, _focused),
     Pair("local refinement", "210 1/m", False, {"stimulus": MIDDLE, "motion": RAMP}, _focused),
@@ -383,7 +348,9 @@ def evidence(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
     return pd.concat([chosen, pd.DataFrame(rows)], ignore_index=True)
 
 
+_DECLARED = {each.name: each.metadata for effect in EFFECTS.values() if effect.rules for each in fields(effect.rules)}
 DECIDES = {
+    **{name: declared["decides"] for name, declared in _DECLARED.items()},
     "presets": "discretisations by name",
     "errors": "mesh and steps for a tolerance, and what a run believes of its error: as measured",
     "mesh_order": "errors of meshes beyond those measured: order in the edge",
@@ -394,6 +361,7 @@ DECIDES = {
     "fillet_order": "that power",
     "edge_error": "error under a true edge, over edge / half width of the face",
     "edge_floor": "error under a true edge, at least",
+    "passing": "factor on the error of strokes over surfaces that are not flat",
     "linear_triangle": "by how much coarser quadratic triangles of external meshes count than their edges",
     "linear_quad": "by how much coarser linear quads of external meshes count than their edges",
     "least_edge": "shortest element edge that is made (m)",
@@ -405,14 +373,6 @@ DECIDES = {
     "most_runs": "runs of a scene that misses its tolerance, at most",
     "most_nodes_again": "nodes on which a scene that missed its tolerance is run again, at most",
     "least_steps": "steps of a leg for a tolerance, at least",
-    "small_strain_error": "finite strain: on when this times depth / soft thickness exceeds the accuracy",
-    "pressing_friction": "friction of a press: on when this times the coefficient exceeds the accuracy",
-    "most_pressing_friction": "friction of a press: what that product comes to at most",
-    "ridge_change": "ridges, inner, pressed: on when this times height / pitch exceeds the accuracy",
-    "ridge_width": "half width of the contact, over the pitch, below which ridges change the more the narrower it is",
-    "ridge_contrast": "ridges: always on where the epidermis is stiffer than this times the dermis",
-    "relaxation_share": "viscoelasticity: off when stress can relax by less than this share of the accuracy",
-    "lag_share": "viscoelasticity: off when stress lags behind by less than this share of the accuracy",
     "fine_half_width": "fine skin mesh to either side of the apex, at least (m)",
     "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
     "edges_per_half_width": "local refinement of presets: edges in the contact's half-width where the mesh has less than one",
@@ -422,17 +382,17 @@ DECIDES = {
     "seconds_small": "predicted cost: a node and Newton iteration, small strain (s)",
     "iterations_finite": "predicted cost: iterations a step, finite strain",
     "iterations_small": "predicted cost: iterations a step, small strain",
-    "frictional": "predicted cost: a step with friction over one without",
 }
 """What each of the planner's rules decides."""
 WHERE = {
+    **{name: declared["evidence"] for name, declared in _DECLARED.items()},
     "presets": "studies of accuracy",
     "errors": "figures/tables/accuracy_planner.csv",
     "mesh_order": "figures/tables/accuracy_orders.csv",
     "time_order": "figures/tables/accuracy_orders.csv",
     "edge_share": "figures/tables/accuracy_belief.csv",
     "safety": "figures/tables/accuracy_belief.csv",
-    **dict.fromkeys(("fillet_error", "fillet_order", "edge_error", "edge_floor"), "figures/tables/accuracy_drawn.csv"),
+    **dict.fromkeys(("fillet_error", "fillet_order", "edge_error", "edge_floor", "passing"), "figures/tables/accuracy_drawn.csv"),
     **dict.fromkeys(("linear_triangle", "linear_quad"), "figures/tables/accuracy.csv"),
     "least_edge": "chosen: a tenth of a micrometre, below which skin is no continuum",
     "least_half_width": "chosen: two of the shortest edges",
@@ -444,7 +404,6 @@ WHERE = {
     "least_steps": "chosen: fewer would do for the end of a leg, but a curve of fewer is none",
     "fine_half_width": "contact of a plate at 20 gf reaches 2.4 mm (figures/thesis/fig_4-10.csv)",
     "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",
-    "ridge_contrast": "the thesis's moduli, 10; not studied beyond",
     "inertia_limit": "chosen: 1e-4 at 40 mm/s, a tenth of the elastic forces at the limit",
 }
 """Where the evidence is that is not of this study; costs are those of figures/tables/speed.md."""
@@ -465,14 +424,11 @@ def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) 
             f"{row['scene']}: changes {row['change']:.1g}, costs {row['cost ratio']:.2g} times" for row in part.to_dict("records")
         )
 
-    own = {
-        "small_strain_error": planner("finite_strain"),
-        "pressing_friction": planner("friction"),
-        "most_pressing_friction": pair("friction"),
-        **dict.fromkeys(("relaxation_share", "lag_share"), planner("viscoelasticity")),
-        **dict.fromkeys(("ridge_change", "ridge_width"), planner("ridges")),
-        "edges_per_half_width": planner("local refinement"),
-    }
+    own = {"edges_per_half_width": planner("local refinement")}
+    for name, effect in EFFECTS.items():
+        for each in fields(effect.rules) if effect.rules else ():
+            said = each.metadata["evidence"]
+            own[each.name] = planner(name) if said == "" else pair(name) if said == OWN_PAIR else said
     rows = []
     for name in (f.name for f in fields(Rules)):
         value = getattr(rules, name)
@@ -483,9 +439,7 @@ def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) 
         evidence = own.get(name) or WHERE.get(name, "figures/tables/speed.md")
         rows.append({"rule": name, "value": str(value), "decides": DECIDES.get(name, ""), "evidence": evidence})
     fixed = {
-        "symmetry": "half the pad: whenever pad, stimulus and motion are mirror images",
-        "friction": "friction: whenever the skin is stroked with a coefficient above 0",
-        "ridges": "ridges: in strokes, outer ones, and near receptors whenever the specimen has them",
+        **{name: effect.always for name, effect in EFFECTS.items() if effect.always},
         "local refinement": "fine edges under the contact: presses whose tolerance they meet with less work",
         "full-field output": "full fields: at the times the scene names, no others",
     }

@@ -1,0 +1,66 @@
+"""What is not to be had: plans that would need more than the machine has end here, before anything is allocated."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from fingerpad.planning.rules import Rules
+from fingerpad.scenes.scene import Scene
+from fingerpad.specimen.pad import MeshSize
+
+_RECEPTOR_BYTES = 400  # of a receptor and step: what is sampled, kept twice
+
+
+class PlanError(ValueError):
+    """The scene asks for a combination that cannot be planned; the message is one line."""
+
+
+def check_size(scene: Scene, size: MeshSize, ridges: Any, rules: Rules) -> None:
+    """Refuses meshes of more nodes than are allowed, from above and before anything is allocated."""
+    outline = scene.specimen.outline
+    fine = scene.specimen.soft_thickness if outline is None else outline.epidermis_thickness + outline.dermis_thickness
+    rows = fine / size.layer_edge + 4
+    nodes = 8 * rows * (size.fine_half_width / size.skin_edge + len(size.focus))
+    if nodes > rules.most_nodes:
+        key = "accuracy.skin_edge" if getattr(scene.accuracy, "skin_edge", None) else "accuracy"
+        least = size.skin_edge * (nodes / rules.most_nodes) ** 0.5
+        raise PlanError(
+            f"{key}: edges of {micrometres(size.skin_edge)} um make {nodes:.2g} nodes; "
+            f"allowed: {rules.most_nodes:g} nodes, edges of about {micrometres(least)} um"
+        )
+    if ridges is not None:
+        wave = ridges.inner.pitch / (2 if ridges.inner.limiting else 1)
+        nodes = 8 * 20 * 8 * (ridges.half_width + ridges.inner.pitch) / wave
+        if nodes > rules.most_nodes:
+            raise PlanError(
+                f"specimen.ridges.inner.pitch: {ridges.half_width / wave:.2g} ridges to either side make {nodes:.2g} nodes; "
+                f"allowed: {rules.most_nodes:g} nodes, a pitch of about {micrometres(wave * nodes / rules.most_nodes)} um"
+            )
+
+
+def check_memory(scene: Scene, nodes: int, steps: int, rules: Rules) -> None:
+    """Refuses what would need more memory than the machine has, or more nodes than are allowed."""
+    machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    receptors = len(scene.outputs.receptors.depths) * len(scene.outputs.receptors.offsets)
+    needed = {
+        "accuracy": nodes * rules.bytes_node,
+        "accuracy.steps" if getattr(scene.accuracy, "steps", None) else "motion": nodes * steps * rules.bytes_step,
+        "outputs.receptors": receptors * (steps + 1) * _RECEPTOR_BYTES,
+    }
+    if nodes > rules.most_nodes:
+        raise PlanError(f"accuracy: {nodes} nodes; allowed: {rules.most_nodes:g}")
+    if sum(needed.values()) > rules.most_memory * machine:
+        worst = max(needed, key=needed.get)
+        raise PlanError(
+            f"{worst}: {nodes} nodes, {steps} steps and {receptors} receptors need about {sum(needed.values()) / 1e9:.2g} GB "
+            f"of memory; allowed: {rules.most_memory * machine / 1e9:.2g} GB on this machine"
+        )
+
+
+def micrometres(length: float) -> str:
+    return f"{length * 1e6:.3g}"
+
+
+def percent(error: float) -> str:
+    return f"{100 * error:.2g} %" if error < 0.995 else "more than 100 %"

@@ -1,0 +1,176 @@
+"""The mesh and the steps: a named preset, the cheapest that meets a tolerance, or by hand; and what edges of the profile need."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from fingerpad.planning.bounds import PlanError, micrometres
+from fingerpad.planning.contact import contact_reach, earliest_half_width, moves_along, strokes_waves
+from fingerpad.planning.errors import THESIS_ROWS, estimated_error
+from fingerpad.planning.estimates import ContactEstimate, PadEstimate
+from fingerpad.planning.rules import Preset, Rules
+from fingerpad.planning.schedule import leg_durations
+from fingerpad.scenes.scene import Discretisation, Scene
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.measures import apex_edge
+from fingerpad.specimen.pad import MeshSize, PadMesh
+from fingerpad.stimuli.profile import Profile
+
+_FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
+_MOST_COLUMNS = 2000  # of refined elements to either side
+
+
+def preset_for(
+    scene: Scene, rules: Rules, contact: ContactEstimate, tolerance: float | None
+) -> tuple[Preset, Discretisation | None]:
+    """The discretisation asked for: a named one, the cheapest that meets a tolerance, or one by hand."""
+    accuracy = scene.accuracy
+    by_hand = accuracy if isinstance(accuracy, Discretisation) else None
+    if isinstance(accuracy, str):
+        return rules.presets[accuracy], None
+    if scene.tolerance is not None:
+        return _cheapest(scene, min(scene.tolerance, tolerance or 1.0), contact, rules), by_hand
+    thesis = rules.presets["thesis"]
+    if by_hand is not None:
+        edge = accuracy.skin_edge or thesis.skin_edge
+        scale = edge / thesis.skin_edge
+        error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
+        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), by_hand
+    raise AssertionError(accuracy)
+
+
+def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules) -> Preset:
+    """Of the measured meshes and steps those of least nodes times steps that meet it; if none does, those of least error.
+
+    A mesh that suffices for the widest contact measured is refined under a narrower one that stays where it is.
+    """
+    thesis, known = rules.presets["thesis"], rules.errors
+    timed = bool(scene.specimen.prony) and any(duration is not None for duration in leg_durations(scene))
+    moves, half_width = moves_along(scene), earliest_half_width(scene, contact, timed)
+    still = not moves and scene.specimen.mesh is None and scene.specimen.ridges is None
+    uneven = strokes_waves(scene)
+    outer = 3 if scene.specimen.ridges is not None and scene.specimen.ridges.outer is not None else 1  # columns of outer ridges
+    found = []
+    for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):
+        edge, growth = known.edge * THESIS_ROWS / rows, min(thesis.growth ** (THESIS_ROWS / rows), 3.0)
+        time = steps if timed else None
+        for finer in [2**k for k in range(_FINEST_FOCUS)] if still else (1,):
+            # the right half has about 7 columns and 4 rows an element across the epidermis
+            more = np.log(finer) / np.log(growth)
+            wide = 1.2 * contact_reach(scene, contact) / edge * (finer - 1)
+            if finer > 1 and (edge / finer < rules.least_edge or wide > _MOST_COLUMNS):
+                break
+            error = estimated_error(edge / finer / outer, half_width, time, moves, edge, rules=rules, uneven=uneven)
+            work = (7 * rows + more + wide) * (4 * rows + more) * steps
+            found.append((max(error - tolerance, 0.0), work, edge / finer, edge, growth, steps))
+    _, _, focus, edge, growth, steps = min(found)
+    outline, slide_step = scene.specimen.outline, thesis.slide_step * thesis.steps / steps
+    # so many elements across the epidermis, however thick it is
+    layer_edge = thesis.layer_edge * edge / thesis.skin_edge
+    if outline is not None:
+        layer_edge = min(layer_edge, outline.epidermis_thickness * edge / known.edge / THESIS_ROWS)
+    return Preset(edge, layer_edge, steps, growth, tolerance, slide_step, focus=focus if focus < edge else None)
+
+
+def usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
+    """Edge (m) of the skin before the contact is known: of the mesh given, the preset, or the one by hand; else of the thesis."""
+    if external is not None:
+        return apex_edge(external)
+    by_hand = getattr(scene.accuracy, "skin_edge", None)
+    return by_hand or rules.presets[scene.accuracy if isinstance(scene.accuracy, str) else "thesis"].skin_edge
+
+
+def element_for(by_hand: Discretisation | None, external: PadMesh | None) -> str:
+    natural = KINDS[external.element if external else "quad9"].solved
+    if by_hand is None or by_hand.element is None or by_hand.element == natural:
+        return natural
+    raise PlanError(
+        f"accuracy.element: {by_hand.element} does not fit the mesh of {external.element if external else 'quad9'}; "
+        f"allowed: {natural}"
+    )
+
+
+def wander_of(scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, rules: Rules) -> float:
+    """How far (m) a stroke takes the contact from the middle of the pad: to where the pad is as steep as the surface."""
+    way = np.cumsum([leg.along for leg in scene.motion])
+    return min(profile.steepness * pad.apex_radius, np.abs(way).max()) + rules.skin_stretch * friction
+
+
+def mesh_size_for(
+    scene: Scene,
+    preset: Preset,
+    profile: Profile,
+    contact: ContactEstimate,
+    half_width: float,
+    wander: float,
+    rounding: float,
+    rules: Rules,
+) -> MeshSize:
+    offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
+    fine = max(rules.fine_half_width, 1.3 * half_width, half_width + wander, offsets)
+    focus, radial = (), None
+    if preset.focus is not None:
+        # fine all over the contact, somewhat wider than it is estimated, and not at the apex only
+        reach = 1.2 * min(half_width, contact_reach(scene, contact))
+        places = np.linspace(0.0, reach, max(2, round(reach / preset.focus / 2) + 1))
+        focus, radial = tuple((float(x), preset.focus) for x in places), preset.focus
+    if profile.edges:
+        edge = _edge_size(profile, preset, None if scene.tolerance is None else preset.tolerance, rounding, rules)
+        places = {abs(x) for x in profile.edges}
+        if scene.tolerance is not None:
+            # where the face ends pressure is largest
+            places |= {x - profile.edge_radius for x in places}
+        focus += tuple((x, edge) for x in sorted(places))
+        if scene.tolerance is not None:
+            radial = min(edge, radial or edge)
+    elif preset.focus is None and _refined_at_apex(scene) and preset.skin_edge > contact.half_width:
+        focus = ((0.0, max(contact.half_width / rules.edges_per_half_width, rules.least_edge)),)
+    return MeshSize(
+        skin_edge=preset.skin_edge,
+        fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
+        layer_edge=preset.layer_edge,
+        growth=preset.growth,
+        focus=focus,
+        skin_radial_edge=radial,
+    )
+
+
+def _refined_at_apex(scene: Scene) -> bool:
+    """Whether a contact narrower than an edge is refined for: not where edges are given by hand or the contact moves."""
+    return not isinstance(scene.accuracy, Discretisation) and not moves_along(scene)
+
+
+def _edge_size(profile: Profile, preset: Preset, asked: float | None, rounding: float, rules: Rules) -> float:
+    """Element edge (m) at the profile's own edges: as presets have it, and finer where a tolerance asks for that."""
+    edge = min(preset.skin_edge / 4, profile.edge_radius / 2) if profile.edge_radius else preset.skin_edge / 4
+    if asked is None:
+        return edge
+    if profile.unbounded:
+        wanted = max(asked, rules.edge_floor) / rules.edge_error * profile.reach[1]
+    else:
+        wanted = (asked / rules.fillet_error) ** (1 / rules.fillet_order) * rounding
+    return max(min(edge, wanted), rules.least_edge)
+
+
+def edges_error(profile: Profile, edge: float, rounding: float, rules: Rules) -> tuple[float, str]:
+    """Error because of the profile's own edges, meshed with ``edge`` m: of a rounded one the peak pressure's; and what it is."""
+    if not profile.edges:
+        return 0.0, ""
+    if peak_is_unbounded(profile, edge, rounding, rules):
+        error = max(rules.edge_error * edge / profile.reach[1], rules.edge_floor)
+        return error, "at a true edge the skin is held or is not, by a node; a fillet that is resolved converges"
+    said = f"edges of {micrometres(edge)} um on {micrometres(rounding)} um of a rounded edge"
+    return rules.fillet_error * (edge / rounding) ** rules.fillet_order, said
+
+
+def peak_is_unbounded(profile: Profile, edge: float, rounding: float, rules: Rules) -> bool:
+    """Whether the pressure at the profile's edges is the mesh's: they are true ones, or roundings that ``edge`` m cannot tell."""
+    return profile.unbounded or (bool(profile.edges) and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1)
+
+
+def coarseness(external: PadMesh, rules: Rules) -> float:
+    """By how much coarser the elements of an external mesh count than their edges."""
+    return {"quad4": rules.linear_quad, "tri6": rules.linear_triangle}.get(external.element, 1.0)

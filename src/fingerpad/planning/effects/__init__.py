@@ -1,0 +1,36 @@
+"""The effects that a plan decides on: one file each, with its question, its rules, its decision and the scenes that show it.
+
+A new one is a file that ends in ``EFFECT = PlannedEffect(...)`` and its name here. Scene language, plan, simulation, the study of
+effects, its tables and its picture read the register.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from graphlib import TopologicalSorter
+
+from fingerpad.planning.effect import PlannedEffect
+from fingerpad.planning.effects import finite_strain, friction, ridges, symmetry, viscoelasticity
+from fingerpad.scenes.effects import EFFECTS as NAMES
+
+EFFECTS: dict[str, PlannedEffect] = {
+    each.EFFECT.name: each.EFFECT for each in (symmetry, viscoelasticity, finite_strain, friction, ridges)
+}
+"""Name -> effect, in the order of the study."""
+
+
+def in_order() -> list[PlannedEffect]:
+    """The effects, each after those that its decision asks about."""
+    wants = {name: effect.after for name, effect in EFFECTS.items()}
+    return [EFFECTS[name] for name in TopologicalSorter(wants).static_order()]
+
+
+@contextmanager
+def registered(effect: PlannedEffect) -> Iterator[None]:
+    """An effect of one's own, for as long as this lasts: in scenes, plans and simulations."""
+    EFFECTS[effect.name] = effect
+    NAMES.append(effect.name)
+    try:
+        yield
+    finally:
+        NAMES.remove(effect.name)
+        del EFFECTS[effect.name]

@@ -1,0 +1,64 @@
+"""Finite strain: large displacements, rotations and strains, or their linear theory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fingerpad.laws import departure
+from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown, rule
+
+
+@dataclass(frozen=True)
+class FiniteStrainRules:
+    """Small strain is used where its error is within the accuracy."""
+
+    small_strain_error: float = rule(4.6, "finite strain: on when this times depth / soft thickness exceeds the accuracy")
+
+
+def small_strain_error(case: Case) -> float:
+    """Of small strain in the headline quantities, at most: over depth / soft thickness; under edges also the strain itself.
+
+    And by how much the layers' laws depart from the one that small strain is the limit of.
+    """
+    error = case.rules.small_strain_error * case.contact.depth / case.pad.soft_thickness
+    return (max(error, case.contact.strain) if case.profile.singular else error) + _laws(case)
+
+
+def _laws(case: Case) -> float:
+    return max(departure(layer.law, layer.constants, case.contact.strain) for layer in _layers(case))
+
+
+def _layers(case: Case) -> list:
+    return [layer.law for layer in case.scene.specimen.materials.values()]
+
+
+def decide(case: Case) -> Effect:
+    """On where small strain would be wrong by more than the accuracy."""
+    error = small_strain_error(case)
+    source = "from the depth and the layers' laws" if _laws(case) else "from the depth"
+    why = f"small strain would be wrong by up to {error:.1%} ({source}), {case.tolerance:.1%} is allowed"
+    return Effect(error > case.tolerance, why)
+
+
+def beside_mesh(case: Case, mesh_error: float) -> Effect:
+    """On where a tolerance has no room for both the error of small strain and that of the mesh."""
+    error = small_strain_error(case)
+    return Effect(True, f"small strain would be wrong by up to {error:.1%} beside the mesh's {mesh_error:.1%}: too much for both")
+
+
+_RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]
+_LIGHT = [{"press_to_force": "0.02 gf", "rate": "0.04 gf/s"}, {"hold": "2 s"}]
+
+EFFECT = PlannedEffect(
+    name="finite_strain",
+    question="are displacements and strains large?",
+    decide=decide,
+    rules=FiniteStrainRules,
+    shown=(
+        Shown("20 gf, 1260 1/m", True, {"stimulus": {"shape": "cylinder", "curvature": "1259.84 1/m"}, "motion": _RAMP}),
+        Shown("20 gf, flat", True, {"stimulus": {"shape": "flat"}, "motion": _RAMP}),
+        Shown("0.02 gf, 210 1/m", False, {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}, "motion": _LIGHT}),
+    ),
+    title="finite strain",
+    marker="^",
+)

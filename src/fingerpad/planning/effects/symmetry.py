@@ -1,0 +1,41 @@
+"""Symmetry: half the pad where pad, stimulus and motion are mirror images."""
+
+from __future__ import annotations
+
+from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown
+
+
+def decide(case: Case) -> Effect:
+    """On where everything is its own mirror image in x = 0."""
+    if not case.profile.symmetric:
+        return Effect(False, "the stimulus is not symmetric about x = 0")
+    if case.moves:
+        return Effect(False, "the motion is not symmetric: the pad moves along the surface")
+    if case.external is not None and not case.external.symmetric:
+        return Effect(False, "the external mesh is not its own mirror image in x = 0")
+    if case.decided["ridges"].on:
+        from fingerpad.specimen.ridges import RidgedPad
+
+        if not RidgedPad(case.scene.specimen.outline, case.scene.specimen.ridges).symmetric:
+            return Effect(False, "the ridges are not their own mirror image in x = 0")
+    return Effect(True, "pad, stimulus and motion are mirror images in x = 0: half the unknowns suffice")
+
+
+_RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]
+_LOPSIDED = {"shape": "wavy", "curvatures": ["104.99 1/m", "209.97 1/m"], "lead_in": "1 mm", "run_out": "5 mm"}
+
+EFFECT = PlannedEffect(
+    name="symmetry",
+    question="is half the pad enough?",
+    decide=decide,
+    possible=lambda case: False,  # where the planner has not found it, it is not there
+    after=("ridges",),
+    always="half the pad: whenever pad, stimulus and motion are mirror images",
+    shown=(
+        Shown("lopsided wave", True, {"stimulus": _LOPSIDED, "motion": _RAMP}),
+        Shown("ramp and hold, 210 1/m", False, {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}, "motion": _RAMP}),
+        Shown("ramp and hold, flat", False, {"stimulus": {"shape": "flat"}, "motion": _RAMP}),
+    ),
+    title="symmetry (half the pad)",
+    marker="s",
+)

@@ -1,0 +1,105 @@
+"""What a discretisation is wrong by: measured in the study of accuracy, read between what was measured, and goes on beyond it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+THESIS_ROWS = 7
+"""Elements across the epidermis of the thesis's preset."""
+
+
+@dataclass(frozen=True)
+class MeasuredErrors:
+    """Largest relative error of depth, width, centre and peak pressure and strain energies, as the study of accuracy found it.
+
+    The same numbers as figures/tables/accuracy_planner.csv. Between them errors are interpolated in logarithms.
+
+    Attributes:
+        half_widths: m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the ramp. edge: m, along the skin,
+        where 7 elements go across the epidermis. mesh: elements across the epidermis -> error (half_widths). time: steps of a leg
+        -> error (half_widths). stroke_mesh, stroke_time: those of the plate's stroke.
+    """
+
+    half_widths: tuple[float, ...] = (0.29e-3, 0.88e-3, 2.06e-3)
+    edge: float = 134.4e-6
+    mesh: Mapping[int, tuple[float, ...]] = field(
+        default_factory=lambda: {
+            1: (0.57, 0.31, 0.089),
+            2: (0.2, 0.048, 0.026),
+            4: (0.092, 0.026, 0.0077),
+            7: (0.043, 0.017, 0.0023),
+            10: (0.023, 0.0049, 0.0017),
+            14: (0.0099, 0.0049, 0.0017),
+            22: (0.0099, 0.0049, 0.0017),
+        }
+    )
+    time: Mapping[int, tuple[float, ...]] = field(
+        default_factory=lambda: {
+            5: (0.0033, 0.0066, 0.0076),
+            10: (0.0013, 0.002, 0.0027),
+            20: (0.00045, 0.00063, 0.00096),
+            40: (0.000071, 0.00029, 0.00035),
+            80: (0.000053, 0.00016, 0.00031),
+        }
+    )
+    stroke_mesh: Mapping[int, float] = field(
+        default_factory=lambda: {1: 0.1, 2: 0.055, 4: 0.018, 7: 0.01, 10: 0.01, 14: 0.01, 22: 0.01}
+    )
+    stroke_time: Mapping[int, float] = field(default_factory=lambda: {5: 0.046, 10: 0.02, 20: 0.0099, 40: 0.0027, 80: 0.001})
+
+
+def estimated_error(
+    edge: float,
+    half_width: float,
+    steps: int | None = None,
+    stroked: bool = False,
+    body_edge: float | None = None,
+    *,
+    rules: Any,
+    uneven: bool = False,
+) -> float:
+    """Expected relative error of depth, width, pressure and strain energy at the legs' ends, from :class:`MeasuredErrors`.
+
+    And at least what an edge of the contact between two nodes may be misplaced by.
+
+    Args:
+        edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
+        steps: of a leg; None when time does not matter. stroked: does the pad move along the surface?
+        body_edge: m, skin edge around the contact where that is coarser: no finer than the widest contact measured needs it.
+        uneven: is the surface that is stroked not flat?
+    """
+    found = [_measured_error(edge, half_width, steps, stroked, rules), rules.safety * rules.edge_share * edge / half_width]
+    if body_edge is not None and body_edge > edge:
+        found.append(_measured_error(body_edge, rules.errors.half_widths[-1], steps, stroked, rules))
+    return float(max(found)) * (rules.passing if stroked and uneven else 1.0)
+
+
+def _measured_error(edge: float, half_width: float, steps: int | None, stroked: bool, rules: Any) -> float:
+    known = rules.errors
+    # narrower contacts than were measured are similar to the narrowest one on a coarser mesh
+    alike = edge * max(known.half_widths[0] / half_width, 1.0)
+    rows = known.edge * THESIS_ROWS / alike
+
+    def between(count, table, order):
+        columns = [_read(count, tuple(table), column, order) for column in zip(*table.values(), strict=True)]
+        return float(np.exp(np.interp(np.log(half_width), np.log(known.half_widths), np.log(columns))))
+
+    def stroke(count, table, order):
+        return _read(count, tuple(table), tuple(table.values()), order) if stroked else 0.0
+
+    # a stroke's errors come on top of those of a press as narrow
+    error = between(rows, known.mesh, rules.mesh_order) + stroke(rows, known.stroke_mesh, rules.mesh_order)
+    if steps is not None:
+        error += between(steps, known.time, rules.time_order) + stroke(steps, known.stroke_time, rules.time_order)
+    return rules.safety * error
+
+
+def _read(count: float, counts: tuple[int, ...], errors: tuple[float, ...], order: float) -> float:
+    """Error at ``count`` between measured ones, in logarithms; beyond them it goes on with ``order``."""
+    inside = np.clip(count, counts[0], counts[-1])
+    error = np.exp(np.interp(np.log(inside), np.log(counts), np.log(errors)))
+    return float(error * (inside / count) ** order)
