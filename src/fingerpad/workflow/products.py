@@ -9,7 +9,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -29,6 +29,10 @@ RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rap
 TABLES = ("thesis_comparison", "sensitivity")
 UNTOLD = ("files", "scene_files", "measured", "written")
 """Inputs that a job finds by itself, beside others or named in them, and what only says when to run it again."""
+
+
+READ_BACK = {"history", "histories", "cases", "sweep"}
+"""Inputs that are histories."""
 
 
 @dataclass(frozen=True)
@@ -560,7 +564,10 @@ class Products:
             self.simulations, self.figures, self.catalogue, self.animations, self.all_tables, self.meanings, self.calibration,
             self.ridges, self.accuracy, self.stability, self.effects, self.peers,
         )  # fmt: skip
-        return [job for part in parts for job in part()]
+        jobs = [job for part in parts for job in part()]
+        # a scene read back from a history is filled up with the thesis's specimen, though it lacks nothing
+        named = {"files": [self.thesis_specimen()]}
+        return [replace(job, inputs=named | dict(job.inputs)) if READ_BACK & job.inputs.keys() else job for job in jobs]
 
     def targets(self, *parts: str, figures: str = "none") -> list[str]:
         """Final outputs of some parts (names of the methods above), and the figures whose number starts so."""
