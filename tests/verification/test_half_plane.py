@@ -68,6 +68,9 @@ class Sinusoid(Profile):
     amplitude: float
     wavelength: float
 
+    def outline(self, x):
+        return self.amplitude * (1 - np.cos(2 * np.pi * x / self.wavelength))
+
     def evaluate(self, points):
         k = 2 * np.pi / self.wavelength
         phase = k * points[:, 0]
