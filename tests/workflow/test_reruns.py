@@ -179,8 +179,10 @@ def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clon
         ("src/fingerpad/claims/comparison.py", {"tables"}),
         ("src/fingerpad/figures/grammar.py", {"figures_3", "figures_4", "figures_5"}),
     ):
+        age = (clone.root / path).stat()
         with clone.edited(path):
             jobs = clone.planned()
+        os.utime(clone.root / path, ns=(age.st_atime_ns, age.st_mtime_ns))  # what was touched only is known by its date
         assert {name if name == "tables" else "_".join(name.split("_")[:2]) for name in jobs} == kinds, path
     with clone.edited("src/fingerpad/mechanics/kernels.py"):
         jobs = clone.planned()
