@@ -23,7 +23,7 @@ from fingerpad.studies.accuracy.run import split
 from fingerpad.studies.stability.hard_cases import FLAT, cylinder, force, scene_of
 
 CLASSES = ("bar", "fillet", "line", "sampled", "wavy", "ridges", "external", "force")
-SEED, SCENES = 20, 60
+SEED, SCENES = 21, 60
 """Of the scenes drawn; other seeds set the rules."""
 LEVELS = (0.1, 0.05)
 """Accuracies that are asked for, one drawn for each scene; an external mesh is what it is."""
