@@ -168,7 +168,7 @@ def edges_error(profile: Profile, edge: float, rounding: float, rules: Rules) ->
 
 def peak_is_unbounded(profile: Profile, edge: float, rounding: float, rules: Rules) -> bool:
     """Whether the pressure at the profile's edges is the mesh's: they are true ones, or roundings that ``edge`` m cannot tell."""
-    return profile.unbounded or (bool(profile.edges) and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1)
+    return bool(profile.unbounded or (profile.edges and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1))
 
 
 def coarseness(external: PadMesh, rules: Rules) -> float:
