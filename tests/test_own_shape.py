@@ -73,3 +73,14 @@ def test_it_is_planned_and_run(tmp_path):
     beside = scene(tmp_path, radius="5 mm", beside="0.5 mm")
     assert not plan(beside).effects["symmetry"].on
     assert float(simulate(beside).indentation_depth[-1]) == pytest.approx(exact, rel=0.03)
+
+
+def test_a_class_that_only_evaluates_otherwise_does_not_take_its_parents_place():
+    class Flattened(Cylinder):
+        """A cylinder that hides its curvature."""
+
+        def evaluate(self, points):
+            distance, gradient, curvature = super().evaluate(points)
+            return distance, gradient, 0 * curvature
+
+    assert SHAPES["cylinder"] is Cylinder and Flattened(curvature=1.0).shape == "cylinder"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from inspect import get_annotations
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Union
 
 import numpy as np
@@ -101,7 +102,8 @@ class Leg(Strict):
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
         cls.key = next(iter(cls.model_fields))
-        LEGS[cls.key] = cls
+        if cls.key in get_annotations(cls):
+            LEGS[cls.key] = cls
 
     @property
     def target(self) -> Any:

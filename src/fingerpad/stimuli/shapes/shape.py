@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
+from inspect import get_annotations
 from typing import Annotated, Any
 
 from pydantic import ValidationInfo
@@ -25,7 +26,7 @@ class Shape(Strict, Profile):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        if "shape" in cls.model_fields:
+        if "shape" in get_annotations(cls):  # a class that only evaluates otherwise has the name of its parent, and not its place
             SHAPES[cls.model_fields["shape"].default] = cls
 
     def recorded(self) -> dict[str, Any]:
