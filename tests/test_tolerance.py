@@ -13,6 +13,7 @@ from fingerpad.planning.plan import RULES, Plan, PlanError, plan, read_plan, ref
 from fingerpad.results import summary
 from fingerpad.simulation import simulate
 from fingerpad.specimen import mesh_for
+from fingerpad.specimen.files import write_pad
 from fingerpad.studies.accuracy.run import split
 from fingerpad.studies.stability.hard_cases import FLAT, cylinder, scene_of
 
@@ -171,7 +172,7 @@ def test_coarser_elements_of_external_meshes_are_believed_less(tmp_path):
     errors = {}
     for kind in ("quad9", "quad4", "tri6"):
         path = tmp_path / f"{kind}.msh"
-        (built if kind == "quad9" else split(built, kind)).write(path)
+        write_pad(built if kind == "quad9" else split(built, kind), path)
         errors[kind] = plan(scene(specimen={"mesh": str(path)}, accuracy=0.001)).estimated_error
     assert errors["quad9"] == pytest.approx(errors["quad4"], rel=0.01) and errors["tri6"] > 1.3 * errors["quad9"]
 
@@ -225,11 +226,11 @@ def test_receptors_that_do_not_fit_are_named():
 
 def test_tiny_edges_make_the_same_columns_on_a_graded_grid(monkeypatch):
     """Where edges are asked for only near the focus, as many columns come out as where they are asked for everywhere."""
-    from fingerpad.specimen import mesh
+    from fingerpad.specimen import grid
 
     touch = scene(motion=[{"press_to_force": "1e-4 gf"}], accuracy=0.05)
     everywhere = plan(touch)
-    monkeypatch.setattr(mesh, "_LARGEST_GRID", 3000)
+    monkeypatch.setattr(grid, "_LARGEST_GRID", 3000)
     near = plan(touch)
     assert near.nodes == pytest.approx(everywhere.nodes, rel=0.03)
     assert near.smallest_edge == pytest.approx(everywhere.smallest_edge, rel=0.05)

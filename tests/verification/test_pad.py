@@ -277,7 +277,7 @@ class Misjudged(Cylinder):
 def check_quadratic_convergence(mesh, shape=Cylinder):
     settings = replace(TIGHT, force_tolerance=1e-10)
     body, step = pad_body(mesh, "finite"), Step(0, 1.0, 1.0, force=LOAD / 2)
-    record = walk(body, mesh, [step], shape(1260.0), settings, "skin").records[-1]
+    record = walk(body, mesh, [step], shape(curvature=1260.0), settings, "skin").records[-1]
     assert record.iterations <= 6, f"truth: {record.iterations} iterations are not quadratic convergence"
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Bar, Sampled, Scene
 from fingerpad.specimen.build import build_pad_mesh
+from fingerpad.specimen.files import write_pad
 from fingerpad.studies.accuracy.belief import FINEST, difference, ends
 from fingerpad.studies.accuracy.run import split
 from fingerpad.studies.stability.hard_cases import FLAT, cylinder, force, scene_of
@@ -127,7 +128,7 @@ def beliefs(name: str, kind: str, document: dict[str, Any], folder: Path) -> lis
         edge, size = made["edge"], plan(scene.with_accuracy("thesis")).mesh_size
         mesh = build_pad_mesh(scene.specimen.outline, replace(size, skin_edge=edge, layer_edge=0.9 * edge))
         path = folder / f"{name}.msh"
-        (mesh if made["element"] == "quad9" else split(mesh, made["element"])).write(path)
+        write_pad(mesh if made["element"] == "quad9" else split(mesh, made["element"]), path)
         asked = scene_of(document | {"specimen": {"mesh": str(path)}}, name)
     run = simulate(asked)
     last = plan(scene.with_accuracy(0.02)) if made else Plan.from_dict(json.loads(run.attrs["plan"]))
