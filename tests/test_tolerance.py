@@ -52,6 +52,17 @@ def test_least_piece_of_a_cylinder_is_its_contact(curvature):
     assert 0.8 * half_width <= found <= 1.01 * half_width
 
 
+def test_a_flank_is_no_sharper_for_being_steep():
+    """A circle that rises almost upright at its ends is as sharp there as in its middle."""
+    radius = 2.5e-3
+
+    def circle(x):
+        return radius - np.sqrt(np.where(np.abs(x) < 0.97 * radius, radius**2 - x**2, np.nan))
+
+    found = PAD.least_piece(20.0, circle, -2.4e-3, 2.4e-3)
+    assert found == pytest.approx(PAD.pressed(20.0, 1 / radius).half_width, rel=0.15)
+
+
 def test_least_piece_is_the_bump_that_stands_out_and_not_the_one_that_is_flattened():
     def bumpy(height, wave):
         return PAD.least_piece(20.0, lambda x: height * np.cos(2 * np.pi * x / wave), -2e-3, 2e-3)

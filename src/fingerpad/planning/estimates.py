@@ -115,7 +115,9 @@ class PadEstimate:
         for scale in widest * 0.5 ** np.arange(0.0, 12.0, 0.5):
             middles = np.linspace(low, high, int(np.clip(4 * (high - low) / scale, 3, 4000)) | 1)
             sides = np.stack([outline(middles + shift) for shift in (-scale, 0.0, scale)])
-            bend = np.nanmax(np.where(np.isnan(sides).any(0), -np.inf, sides[0] + sides[2] - 2 * sides[1])) / scale**2
+            slope = (sides[2] - sides[0]) / (2 * scale)  # a steep flank is no sharper for being steep
+            bends = (sides[0] + sides[2] - 2 * sides[1]) / (scale**2 * (1 + slope**2) ** 1.5)
+            bend = np.nanmax(np.where(np.isnan(bends), -np.inf, bends))
             alone = self.pressed(force, float(max(bend, 0.0))).half_width
             least = min(least, alone if alone <= scale else np.inf)
         return float(least)
