@@ -311,3 +311,13 @@ def test_every_simulated_curve_has_its_discretisation_error(path):
     else:
         rows = solved[~known]
         assert rows.empty, f"{len(rows)} rows without an error, such as {rows.iloc[0].dropna().to_dict()}"
+
+
+def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
+    """In the published table of scenes drawn outside the cylinders, sixty of them."""
+    from fingerpad.studies.accuracy.drawn import CLASSES, SCENES
+
+    table = pd.read_csv(ROOT / "figures" / "tables" / "accuracy_drawn.csv").dropna(subset="true error (%)")
+    covered = (table["true error (%)"] <= table["believed error (%)"]).groupby(table["class"]).mean()
+    assert len(table) == SCENES and set(covered.index) == set(CLASSES)
+    assert (covered >= 0.9).all(), covered

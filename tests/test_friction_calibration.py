@@ -128,7 +128,7 @@ def test_what_cannot_be_answered_is_refused():
     with pytest.raises(ValueError, match="the waves end at 35.81 mm"):
         stretch(history(0.6, way=30e-3))
     plate = history(0.6)
-    plate.attrs["scene"] = json.dumps({"name": "plate", "friction": 0.6, "stimulus": {"shape": "flat"}})
+    plate.attrs["scene"] = json.dumps(surface().varied({"name": "plate", "stimulus": {"shape": "flat"}}).canonical())
     with pytest.raises(ValueError, match="plate does not stroke a wavy surface"):
         stretch(plate)
     with pytest.raises(ValueError, match="at least two different"):

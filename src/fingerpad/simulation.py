@@ -272,7 +272,7 @@ class Simulation:
             stroked,
             around,
             rules=RULES,
-            uneven=self.scene.stimulus.shape != "flat",
+            uneven=(stroked and self.scene.stimulus.shape != "flat") or self.scene.stimulus.irregular,
         )
         return max(found, plan.edge_error) + plan.small_strain_error + plan.surface.error
 

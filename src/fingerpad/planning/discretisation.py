@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from fingerpad.planning.bounds import PlanError, micrometres
-from fingerpad.planning.contact import contact_reach, earliest_half_width, moves_along, strokes_waves
+from fingerpad.planning.contact import contact_reach, earliest_half_width, is_uneven, moves_along
 from fingerpad.planning.errors import THESIS_ROWS, estimated_error
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.planning.rules import Preset, Rules
@@ -51,7 +51,7 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     timed = bool(scene.specimen.prony) and any(duration is not None for duration in leg_durations(scene))
     moves, half_width = moves_along(scene), earliest_half_width(scene, contact, timed)
     still = not moves and scene.specimen.mesh is None and scene.specimen.ridges is None
-    uneven = strokes_waves(scene)
+    uneven = is_uneven(scene)
     outer = 3 if scene.specimen.ridges is not None and scene.specimen.ridges.outer is not None else 1  # columns of outer ridges
     found = []
     for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):

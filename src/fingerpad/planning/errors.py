@@ -70,12 +70,12 @@ def estimated_error(
         edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
         steps: of a leg; None when time does not matter. stroked: does the pad move along the surface?
         body_edge: m, skin edge around the contact where that is coarser: no finer than the widest contact measured needs it.
-        uneven: is the surface that is stroked not flat?
+        uneven: does a surface that is not flat pass, or is it measured, with bumps of its own?
     """
     found = [_measured_error(edge, half_width, steps, stroked, rules), rules.safety * rules.edge_share * edge / half_width]
     if body_edge is not None and body_edge > edge:
         found.append(_measured_error(body_edge, rules.errors.half_widths[-1], steps, stroked, rules))
-    return float(max(found)) * (rules.passing if stroked and uneven else 1.0)
+    return float(max(found)) * (rules.passing if uneven else 1.0)
 
 
 def _measured_error(edge: float, half_width: float, steps: int | None, stroked: bool, rules: Any) -> float:

@@ -21,10 +21,10 @@ from fingerpad.planning.contact import (
     earliest_half_width,
     external_mesh,
     inertia_ratio_of,
+    is_uneven,
     least_half_width,
     moves_along,
     rounding_of,
-    strokes_waves,
     way_of,
     worst_contact,
 )
@@ -255,7 +255,7 @@ def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, t
         # presets are fine beside the face, not where it ends and the pressure is largest
         at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
     at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
-    in_contact = estimated_error(edge, narrowest, time, moves, around, rules=rules, uneven=strokes_waves(scene))
+    in_contact = estimated_error(edge, narrowest, time, moves, around, rules=rules, uneven=is_uneven(scene))
     mesh = surface.error + max(in_contact, at_edges)
     linear = 0.0 if effects["finite_strain"].on else finite_strain.small_strain_error(case)
     if linear and scene.tolerance is not None and "finite_strain" not in scene.effects and linear + mesh > scene.tolerance:
