@@ -38,7 +38,7 @@ def told(name, capsys, *options, stimulus=ROUND, motion=(PRESS,), accuracy=COARS
     Path(f"{name}.yaml").write_text(yaml.safe_dump(document), encoding="utf-8")
     assert main(["run", f"{name}.yaml", *options]) == 0
     out, err = capsys.readouterr()
-    assert err == "" and out.count("\n") == 1 and f"results in results/{name}" in out
+    assert err == "" and out.count("\n") == 1 + out.count("\nnote: ") and f"results in results/{name}" in out
     assert {"history.nc", "plan.json", "summary.json"} <= {path.name for path in Path("results", name).iterdir()}
     return out, json.loads(Path("results", name, "summary.json").read_text())
 

@@ -25,7 +25,7 @@ from fingerpad.studies.stability.hard_cases import FLAT, cylinder, force, scene_
 
 CLASSES = ("bar", "fillet", "line", "sampled", "wavy", "ridges", "external", "force")
 SEED, SCENES = 21, 60
-"""Of the scenes drawn. Seed 20 set the rules of edges, fillets and waves; after 21 two more were changed, the floor under true edges
+"""Of the scenes drawn. Seed 20 set the rules of edges, fillets and waves; after 21 two more changed, the floor under true edges
 and the factor of measured profiles, and its bars and profiles were run again."""
 LEVELS = (0.1, 0.05)
 """Accuracies that are asked for, one drawn for each scene; an external mesh is what it is."""
