@@ -111,7 +111,7 @@ def test_copied_results_are_adopted_by_one_command(finished, tmp_path):
 
 # -- interrupted -----------------------------------------------------------------------------------------------------------
 
-SCENE = "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf, rate: 5 gf/s}]\naccuracy: {skin_edge: 0.2 mm, steps: 300}\n"
+SCENE = "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf, rate: 5 gf/s}]\naccuracy: {skin_edge: 0.2 mm, steps: 120}\n"
 
 
 @pytest.mark.parametrize("how", ["SIGINT to all", "SIGKILL of snakemake"])
