@@ -164,6 +164,15 @@ def test_a_student_brings_a_mesh_and_forces(capsys):
     measured = read_force_depth("forces")
     from fingerpad.results import read_history
 
-    curve = ElasticCurve.from_history(read_history("results/mine/history.nc"))
+    history = read_history("results/mine/history.nc")
+    curve = ElasticCurve.from_history(history)
     fit = fit_constant(curve, measured.depth_mm.to_numpy() * 1e-3, measured.force_N.to_numpy(), 0.01)
     assert fit.values[0] == pytest.approx(2.5, rel=1e-3)
+    figure, axes = plt.subplots()
+    loaded = history.assign_coords(depth_mm=history.indentation_depth * 1e3, force_N=history.force * 0.01)
+    (line,) = loaded.force_N.plot(x="depth_mm", ax=axes, label="simulated on my mesh")
+    axes.plot(measured.depth_mm, measured.force_N / fit.values[0], "o", label="measured, over the factor")
+    axes.legend()
+    figure.savefig("mine.png")
+    at = np.interp(measured.depth_mm, line.get_xdata(), line.get_ydata())
+    assert at == pytest.approx(measured.force_N.to_numpy() / 2.5, rel=1e-3) and np.ptp(plt.imread("mine.png")) > 0.5
