@@ -77,10 +77,33 @@ def test_profiles_without_noise_are_left_alone(edge):
 @pytest.mark.unit
 def test_smooth_is_auto_none_or_a_length():
     x, y, _ = measured(1)
-    assert Points(x, y).felt(100e-6).smoothing == pytest.approx(200e-6)
+    assert Points(x, y).felt(200e-6).smoothing == pytest.approx(400e-6)
     assert Points(x, y, smooth="none").felt(100e-6).smoothing == 0
     felt = Points(x, y, smooth=50e-6).felt(100e-6)
     assert felt.smoothing == 50e-6 and 1e-7 < felt.moved(-1e-3, 1e-3) < 3e-6
+
+
+@pytest.mark.unit
+def test_finer_meshes_come_to_longer_cutoffs():
+    """Two edges, where it is rough to them, or octaves of them, up to two edges of the thesis's skin: noise is no shape."""
+    x, y, shape = measured(2)
+    assert Points(x, shape).cutoffs(30e-6) == [0.0]
+    assert Points(x, y).cutoffs(268.8e-6) == pytest.approx([537.6e-6])
+    assert Points(x, y).cutoffs(134.4e-6) == pytest.approx([268.8e-6])
+    # 24 um between points: nodes 33.6 um apart see one kink at a time, and no roughness
+    assert Points(x, y).cutoffs(33.6e-6) == pytest.approx([0.0, 67.2e-6, 134.4e-6, 268.8e-6])
+    x, y, _ = measured(1)
+    assert Points(x, y).cutoffs(40e-6) == pytest.approx([80e-6, 160e-6, 268.8e-6])
+
+
+@pytest.mark.unit
+def test_noise_is_smoothed_away_and_shape_is_kept(folder):
+    """At 2 %: a cylinder's noise over 269 um, which leaves a cylinder; fine textures as short as the mesh feels them."""
+    x, y, _ = measured(2)
+    assert surface_at(folder, x, y, 0.02).smoothing == pytest.approx(268.8e-6)
+    x = np.linspace(-3e-3, 3e-3, 1201)
+    waves = surface_at(folder, x, x**2 / 2 / 2.5e-3 + 10e-6 * np.cos(2 * np.pi * x / 300e-6), "fine")
+    assert waves.smoothing <= 134.5e-6 and waves.moved < 2e-6
 
 
 # -- where the points end -----------------------------------------------------------------------------------------------------
@@ -223,6 +246,13 @@ def pressed(folder, x, y, smooth, motion=PRESS):
     (folder / "scene.yaml").write_text(SCENE.format(more=f", smooth: {smooth}", motion=motion))
     loaded = load_scene(folder / "scene.yaml")
     return plan(loaded), simulate(loaded)
+
+
+def surface_at(folder, x, y, accuracy):
+    np.savetxt(folder / "p.csv", 1e3 * np.column_stack([x, y]), "%.9f", ",", header="x (mm),y (mm)", comments="")
+    text = SCENE.format(more="", motion='[{press_to_depth: "0.8 mm"}]').replace("draft", str(accuracy))
+    (folder / "scene.yaml").write_text(text)
+    return plan(load_scene(folder / "scene.yaml")).surface
 
 
 def check_one(folder, number, exact):

@@ -246,7 +246,8 @@ def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, t
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
     check_memory(scene, nodes, steps, rules)
-    surface = surface_of(measured, edge, way_of(scene), pad, partial(worst_contact, scene, pad, profile))
+    may_change = rules.profile_share * tolerance
+    surface = surface_of(measured, edge, way_of(scene), pad, partial(worst_contact, scene, pad, profile), may_change)
     around = None if size is None else size.skin_edge
     time = steps_per_leg if timed else None
     narrowest = earliest_half_width(scene, contact, timed)

@@ -42,6 +42,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
             does not fall below, for the skin's node at the edge is held by it or is not.
         passing: factor on the error of strokes over surfaces that are not flat, where the contact runs away from the centre, and
             of measured profiles, whose bumps make contacts within the contact.
+        profile_share: of a tolerance, that the smoothing of a measured profile may use up before a longer one is tried.
         linear_triangle, linear_quad: by how much coarser P2B and Q1P0 elements of external meshes count than their edges.
         least_edge: m, of an element; shorter ones are not made. least_half_width: m, of a contact; narrower ones are refused.
         most_nodes: of a mesh, and most_memory: share of the machine's, that a plan may ask for; bytes_node, bytes_step: needed
@@ -73,6 +74,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     edge_error: float = 0.8
     edge_floor: float = 0.11
     passing: float = 2.0
+    profile_share: float = 0.25
     linear_triangle: float = 1.6
     linear_quad: float = 2.0
     least_edge: float = 1e-7

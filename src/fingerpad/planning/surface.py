@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate, layer_kernel
+from fingerpad.stimuli.smoothing import WAVE
 
 if TYPE_CHECKING:
     from fingerpad.stimuli.profile import Profile
@@ -48,16 +49,23 @@ class Surface:
 
 
 def surface_of(
-    profile: Profile, edge: float, way: tuple[float, float], pad: PadEstimate, pressed: Callable[[float], ContactEstimate]
+    profile: Profile,
+    edge: float,
+    way: tuple[float, float],
+    pad: PadEstimate,
+    pressed: Callable[[float], ContactEstimate],
+    allowed: float = 0.0,
 ) -> Surface:
     """How ``profile`` comes to skin with nodes ``edge`` m apart.
 
     A wave of slope s in a stiff skin takes a pressure of E* s / 2 to flatten it (Johnson 1985, section 13.2): the slopes that one
-    more octave of smoothing would take away, against the mean pressure of the contact, are what noise may still change.
+    more octave of smoothing would take away, against the mean pressure of the contact, are what noise may still change. Of the
+    cut-offs that come into question the shortest with an error that is allowed is taken, or else the one with the least: a finer
+    mesh feels finer shapes, but where they are noise it would only find more of it.
 
     Args:
         way: m, least and largest x of the profile that comes over the pad's apex. pressed: the deepest contact with a surface of
-            a curvature (1/m).
+            a curvature (1/m). allowed: relative error that may be left to the profile.
     """
     if not np.isfinite(profile.known).all():
         return Surface()
@@ -68,14 +76,25 @@ def surface_of(
     half, radius = contact.half_width, 1 / (1 / pad.apex_radius + curvature)
     first, last = way[0] - 1.2 * half, way[1] + 1.2 * half
     ends = [end for end, over in zip(profile.known, (profile.known[0] - first, last - profile.known[1]), strict=True) if over > 0]
-    if not felt.smoothing:
-        return Surface(end=min(ends, key=abs, default=None))
+    end = min(ends, key=abs, default=None)
+    cutoffs = profile.cutoffs(edge)
+    if cutoffs == [0.0]:
+        return Surface(end=end)
     modulus = pad.stiff / layer_kernel(min(pad.soft / pad.stiff, 0.999), pad.epidermis_thickness / half + 0.65)
     pressure = np.pi / 8 * modulus * half / radius
-    smoother = profile.at(2 * felt.smoothing, edge)
-    x = np.linspace(first, last, int((last - first) / felt.smoothing * 16) + 33)
-    slope = np.gradient(felt.outline(x) - smoother.outline(x), x)
-    slope = np.nanmax(np.abs(slope)) if np.isfinite(slope).any() else 0.0
-    moved = felt.moved(first, last)
-    error = FELT * slope * pad.stiff / 2 / pressure + moved / max(contact.depth, 1e-9)
-    return Surface(felt.smoothing, moved, float(error), min(ends, key=abs, default=None))
+
+    def smoothed(cutoff):
+        felt, longer = profile.at(cutoff, edge), max(2 * cutoff, WAVE * edge)
+        x = np.linspace(first, last, int((last - first) / (longer / 2) * 16) + 33)
+        slope = np.gradient(felt.outline(x) - profile.at(longer, edge).outline(x), x)
+        slope = np.nanmax(np.abs(slope)) if np.isfinite(slope).any() else 0.0
+        moved = felt.moved(first, last)
+        error = FELT * slope * pad.stiff / 2 / pressure + moved / max(contact.depth, 1e-9)
+        return Surface(cutoff, moved, float(error), end)
+
+    found = []
+    for cutoff in cutoffs:
+        found.append(smoothed(cutoff))
+        if found[-1].error <= allowed:
+            return found[-1]
+    return min(found, key=lambda surface: surface.error)

@@ -52,8 +52,12 @@ class Profile:
         """Height of the lower surface (n,) m over ``x`` (n,) m; NaN where the profile does not reach."""
         raise NotImplementedError
 
+    def cutoffs(self, edge: float) -> list[float]:
+        """Cut-off wavelengths (m) at which it may be smoothed for skin with nodes ``edge`` m apart, ascending; 0 is none."""
+        return [0.0]
+
     def felt(self, edge: float) -> Profile:
-        """The profile as skin with nodes ``edge`` m apart can feel it."""
+        """The profile without what may be noise to skin with nodes ``edge`` m apart."""
         return self
 
     def at(self, smoothing: float, edge: float) -> Profile:

@@ -6,6 +6,8 @@ import numpy as np
 ROUGH = np.radians(3.0)
 #: Cut-off wavelength over the edge: between nodes an edge apart no shorter wave can be told from a longer one.
 WAVE = 2.0
+#: m, edge of the skin of the thesis's mesh: noise of fewer points than a finer mesh has nodes is found by it all the same.
+SKIN_EDGE = 134.4e-6
 #: Standard deviation of the Gaussian over the cut-off wavelength, at which it leaves half of a wave (ISO 16610-21, eq. 1 to 3).
 SIGMA = np.sqrt(np.log(2) / 2) / np.pi
 _PER_SIGMA = 8  # samples
@@ -22,6 +24,24 @@ def turning(x: np.ndarray, y: np.ndarray, window: float) -> np.ndarray:
     net, gross = (np.concatenate([[0.0], np.cumsum(part)]) for part in (kink, np.abs(kink)))
     first = np.arange(len(kink))
     return gross[last] - gross[first] - np.abs(net[last] - net[first])
+
+
+def is_rough(x: np.ndarray, y: np.ndarray, edge: float) -> bool:
+    """Does a profile turn to and fro more than nodes ``edge`` m apart can feel?"""
+    return bool(turning(x, y, edge / 2).max(initial=0.0) > ROUGH)
+
+
+def cutoffs(x: np.ndarray, y: np.ndarray, edge: float) -> list[float]:
+    """Cut-off wavelengths (m) that come into question on a skin with nodes ``edge`` m apart: none (0), and octaves.
+
+    None where it is not rough. From two edges on where the mesh cannot feel what is finer, up to two edges of the thesis's skin:
+    finer meshes feel finer shapes, but also noise, and which of the two it is only the planner can judge.
+    """
+    if not is_rough(x, y, max(edge, SKIN_EDGE)):
+        return [0.0]
+    octaves = max(int(np.ceil(np.log2(SKIN_EDGE / edge) - 1e-6)), 0)
+    longer = [WAVE * edge * 2**k for k in range(octaves)] + [WAVE * max(edge, SKIN_EDGE)]
+    return longer if is_rough(x, y, edge) else [0.0, *longer]
 
 
 def smoothed(x: np.ndarray, y: np.ndarray, cutoff: float) -> tuple[np.ndarray, np.ndarray]:

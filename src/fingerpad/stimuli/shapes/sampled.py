@@ -19,7 +19,7 @@ from fingerpad.documents import HIDE, Problem
 from fingerpad.fields import quantity
 from fingerpad.stimuli.curve import Curve, share_of_height
 from fingerpad.stimuli.shapes.shape import CurvedShape
-from fingerpad.stimuli.smoothing import ROUGH, WAVE, smoothed, turning
+from fingerpad.stimuli.smoothing import SKIN_EDGE, WAVE, cutoffs, is_rough, smoothed
 from fingerpad.units import QuantityError, parse_number, parse_quantity
 
 
@@ -191,17 +191,15 @@ class Points(Curve):
         inside = np.where(-beyond > within, np.abs(y - height) * share_of_height(self.steepness), within)
         return np.where(beyond > 0, np.minimum(within, end), inside)
 
-    def felt(self, edge):
-        """The profile as skin with nodes ``edge`` m apart can feel it.
-
-        What is finer is smoothed: as asked for, or with "auto" at two edges if the surface turns to and fro within half an edge.
-        """
+    def cutoffs(self, edge):
+        """Cut-off wavelengths (m) that come into question for a skin with nodes ``edge`` m apart; 0 is none."""
         if self.smooth == "none":
-            return self.at(0.0, edge)
-        if self.smooth != "auto":
-            return self.at(self.smooth, edge)
-        rough = turning(*self.samples, edge / 2).max(initial=0.0) > ROUGH
-        return self.at(WAVE * edge if rough else 0.0, edge)
+            return [0.0]
+        return cutoffs(*self.samples, edge) if self.smooth == "auto" else [self.smooth]
+
+    def felt(self, edge):
+        """The profile without what may be noise to a skin with nodes ``edge`` m apart: after the longest of its cut-offs."""
+        return self.at(self.cutoffs(edge)[-1], edge)
 
     def at(self, smoothing, edge):
         points = smoothed(*self.samples, smoothing) if smoothing else self.samples
@@ -231,10 +229,10 @@ class Points(Curve):
         return float(np.ptp(change) / 2)
 
     def advice(self, spacing):
-        if not self.smoothing and turning(*self.samples, spacing / 2).max(initial=0.0) <= ROUGH:
+        if not self.smoothing and not is_rough(*self.measured, max(spacing, SKIN_EDGE)):
             return None
         x, _ = self.measured
-        apart, cutoff = float(np.median(np.diff(x))), max(2 * self.smoothing, WAVE * spacing)
+        apart, cutoff = float(np.median(np.diff(x))), max(2 * self.smoothing, WAVE * max(spacing, SKIN_EDGE))
         return (
             f"smoothing of the profile, whose corners are {apart * 1e6:.3g} um apart, the nodes {spacing * 1e6:.3g} um: "
             f'stimulus.smooth: "{cutoff * 1e6:.0f} um" or more'
