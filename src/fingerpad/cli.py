@@ -54,6 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
     Raises:
         SystemExit: by argparse, with code 2 for a wrong command line and 0 after help and version.
     """
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it would look for them in every package there is
     for stream in (sys.stdout, sys.stderr):  # any name of a file can be printed
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
+
+from fingerpad.roots import root
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -98,7 +99,7 @@ class PadEstimate:
         top = np.arccos(flat / (flat + radius))
         if excess(top) <= 0:
             return radius
-        angle = brentq(excess, 0.0, top)
+        angle = root(excess, 0.0, top)
         return float(flat * (1 / np.cos(angle) - 1))
 
     def least_piece(self, force: float, outline: Callable[[np.ndarray], np.ndarray], low: float, high: float) -> float:

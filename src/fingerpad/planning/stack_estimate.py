@@ -14,6 +14,7 @@ import numpy as np
 
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.reference_solutions.layered import Layer, stack_compliance
+from fingerpad.roots import root
 from fingerpad.specimen import measures
 from fingerpad.specimen.pad import REGIONS, SKIN, UNNAMED, PadMesh
 
@@ -135,8 +136,6 @@ class StackEstimate(PadEstimate):
 
     def _found(self, wanted: float, which: int, curvature: float) -> ContactEstimate:
         """The contact whose force (``which`` 0) or depth (1) is the ``wanted`` one."""
-        from scipy.optimize import brentq  # here, for it is slow to import
-
         limit, thick = self.half_width, self.soft_thickness
         narrowest = min(_NARROWEST * thick, 0.1 * limit)
         bend = 1 / self.apex_radius + max(curvature, 0.0)
@@ -148,7 +147,7 @@ class StackEstimate(PadEstimate):
             depth = wanted if which else self._curved(narrowest, curvature)[1]
         else:
             half_width = np.exp(
-                brentq(lambda a: self._curved(np.exp(a), curvature)[which] - wanted, np.log(narrowest), np.log(limit), xtol=1e-4)
+                root(lambda a: self._curved(np.exp(a), curvature)[which] - wanted, np.log(narrowest), np.log(limit), 1e-8)
             )
             depth = self._curved(half_width, curvature)[1]
         return ContactEstimate(float(half_width), float(depth), float(max(0.65 * half_width * bend, depth / thick)))

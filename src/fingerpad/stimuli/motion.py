@@ -17,6 +17,7 @@ from pydantic import BeforeValidator, Discriminator, Tag, model_validator
 
 from fingerpad.documents import Problem, Strict, nearest
 from fingerpad.fields import Length, Time, listed, quantity
+from fingerpad.roots import root
 from fingerpad.units import format_quantity
 
 #: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed after it.
@@ -402,11 +403,9 @@ def geometric(duration: float, count: int, first: float) -> np.ndarray:
     many = count >= 500
     if count == 1 or first * count >= duration * (1 - 1e-9 * (count if many else 1)):
         return np.full(count, duration / count)
-    from scipy.optimize import brentq  # here, for it is slow to import
-
     most = (duration / first) ** (1 / (count - 1))  # or the last step alone were longer
     high = most * (1 + 1e-12) if many else 1 + most
-    ratio = brentq(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, high)
+    ratio = root(lambda q: first * (q**count - 1) / (q - 1) - duration, 1 + 1e-9, high)
     steps = first * ratio ** np.arange(count)
     return steps * (duration / steps.sum())
 
