@@ -420,11 +420,7 @@ def test_as_a_process(tmp_path):
 
     assert fingerpad("--version").returncode == 0
     wrong = fingerpad("run", "no.yaml", "--out", str(tmp_path / "out"))
-    assert (wrong.returncode, wrong.stdout, wrong.stderr) == (
-        2,
-        "",
-        "fingerpad: no.yaml: there is no such file\n",
-    )
+    assert (wrong.returncode, wrong.stdout, wrong.stderr) == (2, "", "fingerpad: no.yaml: there is no such file\n")
     assert names(tmp_path) == []
 
 

@@ -68,8 +68,7 @@ def reference(built, tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    ("change", "element", "tolerance"),
-    [(linear, "Q1P0", 0.03), (triangles, "P2B", 0.01), (linear_triangles, "P2B", 0.03)],
+    ("change", "element", "tolerance"), [(linear, "Q1P0", 0.03), (triangles, "P2B", 0.01), (linear_triangles, "P2B", 0.03)]
 )
 def test_every_element_gives_the_same_answer(change, element, tolerance, built, reference, tmp_path):
     """Linear and quadratic quads and triangles on the same nodes agree in depth, width, pressure and strain energy."""

@@ -49,8 +49,7 @@ def test_hertz_load_is_the_integral_of_the_pressure():
 
 
 @pytest.mark.parametrize(
-    "poisson, shear, shear_depth, mises, mises_depth",
-    [(0.3, 0.3003, 0.786, 0.5575, 0.704), (0.5, 0.3003, 0.786, 0.5201, 0.786)],
+    "poisson, shear, shear_depth, mises, mises_depth", [(0.3, 0.3003, 0.786, 0.5575, 0.704), (0.5, 0.3003, 0.786, 0.5201, 0.786)]
 )
 def test_hertz_largest_stresses_below_the_surface(poisson, shear, shear_depth, mises, mises_depth):
     z = np.linspace(0, 3, 6001)
@@ -119,12 +118,7 @@ def test_westergaard_small_contacts_are_hertzian():
 
 @pytest.mark.parametrize(
     "load, ratio, peak, centre",
-    [
-        (0.25, 0.8660, 0.5, 0.1340),
-        (0.5, 0.7071, 0.7071, 0.2929),
-        (0.75, 0.5, 0.8660, 0.5),
-        (0.9, 0.3162, 0.9487, 0.6838),
-    ],
+    [(0.25, 0.8660, 0.5, 0.1340), (0.5, 0.7071, 0.7071, 0.2929), (0.75, 0.5, 0.8660, 0.5), (0.9, 0.3162, 0.9487, 0.6838)],
 )
 def test_cattaneo_mindlin_table(load, ratio, peak, centre):
     c = cattaneo_mindlin.stick_ratio(load, 2.0, 0.5)
@@ -207,11 +201,7 @@ def test_sticking_punch(poisson):
 
 
 # --- layers ---------------------------------------------------------------------------------------
-KERNEL = {
-    0.1: (9.9673, 8.0556, 4.1124, 1.5328),
-    0.5: (1.9985, 1.9010, 1.6113, 1.1782),
-    5.0: (0.2006, 0.2502, 0.4072, 0.7395),
-}
+KERNEL = {0.1: (9.9673, 8.0556, 4.1124, 1.5328), 0.5: (1.9985, 1.9010, 1.6113, 1.1782), 5.0: (0.2006, 0.2502, 0.4072, 0.7395)}
 
 
 @pytest.mark.parametrize("ratio", KERNEL)
@@ -277,8 +267,7 @@ def test_layered_contact_reproduces_westergaard():
 
 # --- thick cylinder, Cook -------------------------------------------------------------------------
 @pytest.mark.parametrize(
-    "poisson, displacement",
-    [(0.3, 4.5825e-3), (0.49, 5.03993e-3), (0.499, 5.06025e-3), (0.4999, 5.06227e-3), (0.5, 5.0625e-3)],
+    "poisson, displacement", [(0.3, 4.5825e-3), (0.49, 5.03993e-3), (0.499, 5.06025e-3), (0.4999, 5.06227e-3), (0.5, 5.0625e-3)]
 )
 def test_thick_cylinder_of_macneal_and_harder(poisson, displacement):
     assert lame.radial_displacement(3.0, 3, 9, 1000, poisson, internal=1) == pytest.approx(displacement, rel=2e-6)

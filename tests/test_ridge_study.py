@@ -185,11 +185,7 @@ def _backwards(history):
     [
         ("TR45", "ridged_40_k1260", lambda h: h.assign(strain_energy_density=0.5 * h.strain_energy_density)),
         ("TR44", "ridged_40_k79", lambda h: h.assign(strain_energy_density=9 * h.strain_energy_density)),
-        (
-            "TR43",
-            "ridged_40_k210",
-            _backwards,
-        ),
+        ("TR43", "ridged_40_k210", _backwards),
         ("TR47", "plate_stroke_right", lambda h: synthetic.plate_stroke("ridged_stroke_right")),
         ("T321", "ridged_stroke_right", lambda h: synthetic.plate_stroke("plate_stroke_right")),
         ("TR49", "ridged_stroke_left", lambda h: h.assign(strain_energy_density=3 * h.strain_energy_density)),

@@ -31,19 +31,7 @@ from fingerpad.scenes.scene import (
     scene_json_schema,
     specimen_json_schema,
 )
-from wrong_scenes import (
-    BAD,
-    DEPTH,
-    FORCE,
-    OUTLINE,
-    RAMP_AND_HOLD,
-    changed,
-    motion,
-    pad_folder,
-    specimen,
-    wavy,
-    write,
-)
+from wrong_scenes import BAD, DEPTH, FORCE, OUTLINE, RAMP_AND_HOLD, changed, motion, pad_folder, specimen, wavy, write
 
 pytestmark = pytest.mark.unit
 
@@ -212,11 +200,7 @@ def test_what_is_left_out_is_the_thesis_s(folder):
         bone_centre_height=-1.5e-3, bone_half_width=4e-3, bone_half_height=2.5e-3, nail_half_width=5e-3,
     )  # fmt: skip
     layers = scene.specimen.layers
-    assert [layer.youngs_modulus for layer in (layers.epidermis, layers.dermis, layers.fat)] == [
-        15e4,
-        15e3,
-        15e3,
-    ]
+    assert [layer.youngs_modulus for layer in (layers.epidermis, layers.dermis, layers.fat)] == [15e4, 15e3, 15e3]
     assert {layer.poisson_ratio for layer in (layers.epidermis, layers.dermis, layers.fat)} == {0.48}
     assert [(term.g, term.tau) for term in scene.specimen.prony] == [(0.055, 3.25), (0.3691, 0.3414)]
     assert (scene.specimen.moduli, scene.specimen.contact_length) == ("long_term", 0.01)
@@ -297,10 +281,7 @@ def test_effects_are_switches_in_any_yaml(folder, text, effects):
         (0.02, 0.02),
         ("0.02", 0.02),
         ("2 %", 0.02),
-        (
-            {"element": "Q1P0", "skin_edge": "67 um", "steps": 8},
-            Discretisation(element="Q1P0", skin_edge=67e-6, steps=8),
-        ),
+        ({"element": "Q1P0", "skin_edge": "67 um", "steps": 8}, Discretisation(element="Q1P0", skin_edge=67e-6, steps=8)),
     ],
 )
 def test_accuracy(folder, accuracy, value):
@@ -476,15 +457,9 @@ depths offsets snapshots accuracy element skin_edge steps effects g tau fat youn
 poisson_ratio apex_height finite_strain
 """.split()
 keys = st.sampled_from(KEYS) | st.text(max_size=5) | st.integers() | st.booleans()
-junk = st.recursive(
-    leaves,
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(keys, inner, max_size=4),
-    max_leaves=12,
-)
+junk = st.recursive(leaves, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(keys, inner, max_size=4), max_leaves=12)
 many = settings(
-    max_examples=150,
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
 )
 
 
@@ -527,10 +502,7 @@ def test_any_bytes_are_a_scene_or_a_scene_error(folder, content):
 
 @many
 @given(
-    depth_um=st.integers(1, 4999),
-    force_mgf=st.integers(1, 10**6),
-    rate_mgf=st.integers(1, 10**6),
-    curvature=st.integers(1, 5000),
+    depth_um=st.integers(1, 4999), force_mgf=st.integers(1, 10**6), rate_mgf=st.integers(1, 10**6), curvature=st.integers(1, 5000)
 )
 def test_a_scene_is_the_same_in_any_units(folder, depth_um, force_mgf, rate_mgf, curvature):
     gf = 9.80665e-3

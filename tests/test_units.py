@@ -6,14 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fingerpad.units import (
-    DIMENSIONS,
-    QUANTITY_PATTERN,
-    QuantityError,
-    format_quantity,
-    parse_number,
-    parse_quantity,
-)
+from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, QuantityError, format_quantity, parse_number, parse_quantity
 
 pytestmark = pytest.mark.unit
 

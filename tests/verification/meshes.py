@@ -38,12 +38,7 @@ def mapped(columns, rows, mapping, kind="quad9", distortion=0.0, region=None):
     steps = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)]
     cells = np.stack([number[i + a, j + b] for a, b in steps], 1)
     layer = np.zeros(len(cells), int) if region is None else np.asarray(region(grid.reshape(-1, 2)[cells[:, 8]]))
-    rims = {
-        "bottom": number[::-1, 0],
-        "right": number[-1, ::-1],
-        "top": number[:, -1],
-        "left": number[0],
-    }
+    rims = {"bottom": number[::-1, 0], "right": number[-1, ::-1], "top": number[:, -1], "left": number[0]}
     curves = {name: np.stack([rim[:-2:2], rim[2::2], rim[1::2]], 1) for name, rim in rims.items()}
 
     points = mapping(grid.reshape(-1, 2))

@@ -102,12 +102,7 @@ def check_westergaard(element, ratio, poisson=0.4, amplitude=WAVE):
     full = westergaard.full_contact_pressure(WAVE, WAVELENGTH, modulus)
     load = westergaard.mean_pressure(half, WAVE, WAVELENGTH, modulus) * WAVELENGTH
     mesh, body = half_strip(
-        [Layer(WAVELENGTH, SHEAR, poisson)],
-        WAVELENGTH / 2,
-        element,
-        fine=0.98,
-        columns=(40, 1),
-        rows=(20, 10),
+        [Layer(WAVELENGTH, SHEAR, poisson)], WAVELENGTH / 2, element, fine=0.98, columns=(40, 1), rows=(20, 10)
     )
     result = press(body, mesh, Sinusoid(amplitude, WAVELENGTH), force=load / 2)
     truth = westergaard.pressure(result.x, half, WAVE, WAVELENGTH, modulus)

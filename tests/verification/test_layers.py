@@ -17,11 +17,7 @@ from fingerpad.stimuli.shapes import Cylinder
 
 HALF_WIDTH, THIN_RADIUS, SHEAR, POISSON = 15.0, 2e4, 1.0, 0.49999
 #: half width, centre pressure and depth
-THIN = {
-    "Q1P0": (0.32190006, 0.001834894),
-    "Q2P1": (0.32130585, 0.0018449371),
-    "P2B": (0.32103718, 0.0018446898),
-}
+THIN = {"Q1P0": (0.32190006, 0.001834894), "Q2P1": (0.32130585, 0.0018449371), "P2B": (0.32103718, 0.0018446898)}
 
 
 @cache

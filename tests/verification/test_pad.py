@@ -89,10 +89,7 @@ def test_layered_pad_separates(half, shape, must_fail):
     must_fail(check_separability, half, shape, prony=None)
 
 
-SEPARATION_AT_048 = {
-    "flat": (0.0404086, 0.0350085),
-    "cylinder": (0.038065, 0.0341356),
-}
+SEPARATION_AT_048 = {"flat": (0.0404086, 0.0350085), "cylinder": (0.038065, 0.0341356)}
 
 
 @BOTH_SHAPES
@@ -208,10 +205,7 @@ def check_small_is_the_limit(mesh, shape, poisson=0.48):
     two_numbers(found[0], truth=LIMIT[shape], within=0.1, frozen=LIMIT[shape], tight=1e-4)
 
 
-LIMIT = {
-    "flat": 0.00741542,
-    "cylinder": 0.00667745,
-}
+LIMIT = {"flat": 0.00741542, "cylinder": 0.00667745}
 
 
 @BOTH_SHAPES
@@ -224,12 +218,7 @@ def test_finite_strain_becomes_small_strain(half, shape, must_fail):
 # -- effort --------------------------------------------------------------------------------------------------
 
 #: Newton iterations and step halvings of a ramp and hold of 16 steps
-EFFORT = {
-    ("flat", "small"): 16,
-    ("flat", "finite"): 31,
-    ("cylinder", "small"): 17,
-    ("cylinder", "finite"): 32,
-}
+EFFORT = {("flat", "small"): 16, ("flat", "finite"): 31, ("cylinder", "small"): 17, ("cylinder", "finite"): 32}
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])

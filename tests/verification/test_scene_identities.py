@@ -15,10 +15,7 @@ SCENE = {
 }
 IN_METRES = {
     "stimulus": {"shape": "cylinder", "curvature": "0.21 1/mm"},
-    "motion": [
-        {"press_to_force": "0.02 kilogram_force", "rate": "0.04 kilogram_force/s"},
-        {"hold": "2000 ms"},
-    ],
+    "motion": [{"press_to_force": "0.02 kilogram_force", "rate": "0.04 kilogram_force/s"}, {"hold": "2000 ms"}],
     "outputs": {"receptors": {"depths": ["0.0006 m", "0.915 mm"], "offsets": ["0 m", "0.5 mm"]}},
     "accuracy": {"skin_edge": "0.0004 m", "steps": 8},
 }
