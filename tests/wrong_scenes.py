@@ -122,7 +122,7 @@ BAD = {
     "depth that is no list": (
         changed(outputs={"receptors": {"depths": "600 um"}}),
         "outputs.receptors.depths",
-        'is not a list; allowed: a list such as ["600 um"]',
+        'is not a list; allowed: a list, in square brackets: ["600 um"]',
     ),
     "name is the file's": (changed(name="x"), "name", "is not a known key"),
     "steps that are a switch": (changed(accuracy={"steps": True}), "accuracy.steps", "a whole number"),

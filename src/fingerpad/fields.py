@@ -95,8 +95,7 @@ def read(kind: Any, value: Any, key: str, context: Any) -> Any:
 def listed(value: Any) -> Any:
     """`value` if it is a list; `Problem` otherwise."""
     if not isinstance(value, (list, tuple)):
-        like = json.dumps(value) if isinstance(value, str) else "1, 2"
-        raise Problem("is not a list", f"a list such as [{like}]")
+        raise Problem("is not a list", f"a list, in square brackets: [{json.dumps(value, default=str)}]")
     return value
 
 

@@ -149,7 +149,7 @@ def _edge_size(profile: Profile, preset: Preset, asked: float | None, rounding: 
     if asked is None:
         return edge
     if profile.unbounded:
-        wanted = max(asked, rules.edge_floor) / rules.edge_error * profile.reach[1]
+        wanted = max(asked, rules.edge_finest) / rules.edge_error * profile.reach[1]
     else:
         wanted = (asked / rules.fillet_error) ** (1 / rules.fillet_order) * rounding
     return max(min(edge, wanted), rules.least_edge)

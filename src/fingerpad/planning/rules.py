@@ -39,7 +39,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         fillet_error, fillet_order: of the peak pressure, over that power of element edge / length of the contact on the rounded
             edge that presses. edge_error: of the centre
             pressure and the strain energies, over element edge / half width of the face, under a true edge; edge_floor: what it
-            does not fall below, for the skin's node at the edge is held by it or is not.
+            does not fall below, for the skin's node at the edge is held by it or is not (at most 11.3 % in 24 bars drawn at
+            random, with a third more); edge_finest: the error that a mesh is at most made for there.
         passing: factor on the error of strokes over surfaces that are not flat, where the contact runs away from the centre, and
             of measured profiles, whose bumps make contacts within the contact.
         profile_share: of a tolerance, that the smoothing of a measured profile may use up before a longer one is tried.
@@ -72,7 +73,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     fillet_error: float = 0.4
     fillet_order: float = 1.5
     edge_error: float = 0.8
-    edge_floor: float = 0.11
+    edge_floor: float = 0.15
+    edge_finest: float = 0.11
     passing: float = 2.0
     profile_share: float = 0.25
     linear_triangle: float = 1.6
