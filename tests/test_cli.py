@@ -57,7 +57,7 @@ def solver(monkeypatch):
         return dataset
 
     simulation, results = types.ModuleType("fingerpad.simulation"), types.ModuleType("fingerpad.results")
-    simulation.simulate = simulate
+    simulation.solve = simulate
     results.summary = lambda dataset: SUMMARY
     results.write_history = lambda dataset, path: dataset.to_netcdf(path, engine="netcdf4")
     results.write_vtu = lambda dataset, directory: write_text(directory / "snapshot_0.vtu", "<VTKFile/>")
@@ -363,7 +363,7 @@ def test_an_unforeseen_error_is_one_line_and_a_file(tmp_path, scene, solver, mon
         warnings.warn("a library's warning", RuntimeWarning, stacklevel=1)
         raise ZeroDivisionError("nobody has thought\nof this")
 
-    monkeypatch.setattr(sys.modules["fingerpad.simulation"], "simulate", broken)
+    monkeypatch.setattr(sys.modules["fingerpad.simulation"], "solve", broken)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 1
     out, err = capsys.readouterr()
@@ -424,7 +424,30 @@ def test_as_a_process(tmp_path):
     assert names(tmp_path) == []
 
 
+def loaded(*arguments):
+    """Packages that a command has loaded when it is done."""
+    words = [str(argument) for argument in arguments]
+    code = f"import sys; from fingerpad.cli import main; main({words}); print(*sys.modules, file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return {name.partition(".")[0] for name in done.stderr.split()}
+
+
 def test_importing_the_package_is_quick_because_it_imports_nothing():
     slow = {"numpy", "pydantic", "pint", "numba", "rich"}
     code = f"import sys, fingerpad, fingerpad.cli; print(sorted({slow} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
+
+
+def test_a_plan_loads_no_solver_and_no_scipy(scene):
+    """Of what takes long to import, only what reads a scene."""
+    slow = {"scipy", "pint", "xarray", "pandas", "matplotlib", "gmsh", "pygmsh", "meshio", "skfem", "numba", "netCDF4"}
+    assert not loaded("plan", scene) & slow
+
+
+def test_a_run_loads_neither_labels_nor_the_mesher_of_a_mesh_it_knows(scene, tmp_path, monkeypatch):
+    """What it writes it writes as arrays; the second time the reference mesh comes from the user's cache."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    run = ("run", scene, "--out", tmp_path / "out", "--force", "--quiet")
+    first, second = loaded(*run), loaded(*run)
+    assert "pygmsh" in first and "numba" in second
+    assert not second & {"pint", "xarray", "pandas", "matplotlib", "gmsh", "pygmsh", "meshio", "rich"}

@@ -79,3 +79,16 @@ def test_digest_follows_content_not_time_or_order(tmp_path):
     assert digest([second, first]) == before
     second.write_text("3")
     assert digest([first, second]) != before
+
+
+def test_what_was_followed_is_kept_until_a_file_changes(toy, tmp_path, monkeypatch):
+    """From the user's cache nothing is followed; an edited, a new and a removed file are noticed."""
+    monkeypatch.setattr(provenance, "cache_folder", lambda name: tmp_path)
+    files = {"a": "from . import b", "b": "", "c": ""}
+    first = toy("import toy.a", **files)
+    entry = tmp_path / "script.py"
+    monkeypatch.setattr(provenance, "_followed", lambda entries: 1 / 0)
+    assert {path.name for path in imported_sources(entry)} == {"script.py", *(name.rpartition("/")[2] for name in first)}
+    (tmp_path / "toy" / "b.py").write_text("import toy.c")
+    with pytest.raises(ZeroDivisionError):
+        imported_sources(entry)

@@ -13,6 +13,7 @@ matplotlib.use("Agg")
 
 import matplotlib.pyplot as plt
 import meshio
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -22,6 +23,7 @@ import synthetic
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_atomically
 from fingerpad.receptors.material_points import MaterialPoints
+from fingerpad.receptors.respond import respond
 from fingerpad.results import COORDINATES, FRICTION_VARIABLES, VARIABLES, read_history, summary, write_history, write_vtu
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
@@ -212,6 +214,17 @@ def test_skin_is_indexed_by_the_way_along_it(run, tmp_path):
         plt.close("all")
 
 
+def test_a_file_is_the_one_that_xarray_writes(run, tmp_path):
+    """Values, types, dimensions, coordinates and attributes, texts and impulses among them."""
+    history = run[3].merge(respond(run[3]))
+    write_history(history, tmp_path / "own.nc")
+    history.to_netcdf(tmp_path / "xarray.nc", engine="netcdf4")
+    own, theirs = read_history(tmp_path / "own.nc"), read_history(tmp_path / "xarray.nc")
+    xr.testing.assert_identical(own, theirs)
+    assert {name: own[name].dtype for name in own.variables} == {name: theirs[name].dtype for name in theirs.variables}
+    assert {name: type(value) for name, value in own.attrs.items()} == {n: type(v) for n, v in theirs.attrs.items()}
+
+
 def test_a_summary_names_its_receptors(run):
     """Every energy of a summary stands beside depth and offset; of very many receptors only the history speaks."""
     history = run[3]
@@ -244,7 +257,7 @@ def test_an_interrupted_simulation_keeps_what_had_converged(run):
 def test_a_full_disk_is_an_error_of_the_system(run, tmp_path, monkeypatch):
     """What netCDF calls an HDF error becomes one that says what the disk says, and nothing is left."""
     monkeypatch.setattr(shutil, "disk_usage", lambda _: types.SimpleNamespace(free=0))
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", lambda *_, **__: (_ for _ in ()).throw(RuntimeError("NetCDF: HDF error")))
+    monkeypatch.setattr(netCDF4, "Dataset", lambda *_, **__: (_ for _ in ()).throw(RuntimeError("NetCDF: HDF error")))
     with pytest.raises(OSError, match="No space left") as caught:
         write_history(run[3], tmp_path / "history.nc")
     assert caught.value.errno == errno.ENOSPC and not list(tmp_path.iterdir())

@@ -6,7 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, QuantityError, format_quantity, parse_number, parse_quantity
+from fingerpad.units import (
+    DIMENSIONS,
+    QUANTITY_PATTERN,
+    USUAL,
+    QuantityError,
+    _looked_up,
+    format_quantity,
+    parse_number,
+    parse_quantity,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -22,6 +31,13 @@ UNITS = {
     "dimensionless": {"": 1.0, "%": 1e-2, "percent": 1e-2},
 }
 EVERY_UNIT = [(kind, unit, factor) for kind, units in UNITS.items() for unit, factor in units.items()]
+
+
+@pytest.mark.parametrize(("unit", "dimension"), USUAL)
+def test_usual_units_are_as_pint_has_them(unit, dimension):
+    assert USUAL[unit, dimension] == _looked_up(unit, dimension)
+
+
 numbers = st.floats(min_value=1e-6, max_value=1e6).map(lambda x: float(f"{x:.9g}"))
 
 

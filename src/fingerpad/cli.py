@@ -180,14 +180,14 @@ def _run(options: argparse.Namespace) -> int:
     scene, plan = _prepare(options)
     unit = _force_unit(options.scene)
 
-    import fingerpad
     from fingerpad.mechanics.stepping import NonConvergence
     from fingerpad.results import summary, write_history, write_vtu
+    from fingerpad.simulation import solve
 
     with _folder(out, scene, plan, options) as folder:
         try:
             with _naming(options.scene, scene), _progress(scene.name, quiet=options.quiet) as progress:
-                dataset = fingerpad.simulate(scene, plan=plan, progress=progress, fields=options.vtu)
+                dataset = solve(scene, plan=plan, progress=progress, fields=options.vtu)
         except NonConvergence as error:
             return _say(folder.rescue(error), NOT_COMPLETED)
         except KeyboardInterrupt as stop:
@@ -379,7 +379,7 @@ class _Folder:
         if dataset is None:
             return "interrupted"
         self._last_converged(dataset, keeping=True)
-        when = f"interrupted after t = {float(dataset.time[-1]):.6g} s"
+        when = f"interrupted after t = {float(dataset['time'].values[-1]):.6g} s"
         return f"{when}; what had converged is saved in {self.path / 'last_converged.nc'}"
 
     def _last_converged(self, dataset: Any, keeping: bool = False) -> None:

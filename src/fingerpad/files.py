@@ -11,6 +11,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
+from functools import cache
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -38,6 +39,19 @@ def write_atomically(path: str | Path, write: Callable[[Path], object]) -> None:
 def write_text(path: str | Path, text: str) -> None:
     """Write a text file, whole or not at all."""
     write_atomically(path, lambda partial: partial.write_text(text, encoding="utf-8"))
+
+
+@cache
+def cache_folder(name: str) -> Path | None:
+    """A folder of the user's cache for what is slow to find out again; None where it cannot be written."""
+    from platformdirs import user_cache_path
+
+    try:
+        folder = user_cache_path("fingerpad", ensure_exists=True) / name
+        folder.mkdir(exist_ok=True)
+    except OSError:
+        return None
+    return folder if os.access(folder, os.W_OK) else None
 
 
 @contextlib.contextmanager

@@ -11,18 +11,20 @@ import json
 import os
 import platform
 import sys
+from dataclasses import dataclass, field
 from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.provenance import digest, imported_sources
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: name -> (dimensions, unit, long name)
 VARIABLES = {
@@ -85,18 +87,71 @@ FIELDS = {
 MOST_RECEPTORS = 100
 
 
-def dataset(variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray], attributes: dict[str, Any]) -> xr.Dataset:
+@dataclass
+class Variable:
+    """One array of a history, the names of its dimensions, and what is said of it."""
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    attrs: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.dims = (self.dims,) if isinstance(self.dims, str) else tuple(self.dims)
+        self.values = np.asarray(self.values)
+
+
+@dataclass
+class Arrays:
+    """A history as a run makes it, and as it is written: importing xarray takes as long as half of a small run.
+
+    Attributes:
+        variables, coordinates: by name. attrs: plan, scene, cost and provenance.
+    """
+
+    variables: dict[str, Variable]
+    coordinates: dict[str, Variable]
+    attrs: dict[str, Any]
+
+    @classmethod
+    def of(cls, history: xr.Dataset | Arrays) -> Arrays:
+        """The arrays of a labelled history."""
+        if isinstance(history, cls):
+            return history
+        parts = (
+            {str(k): Variable(v.dims, v.values, v.attrs) for k, v in part.items()} for part in (history.data_vars, history.coords)
+        )
+        return cls(*parts, history.attrs)
+
+    def __getitem__(self, name: str) -> Variable:
+        return self.variables[name] if name in self.variables else self.coordinates[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.variables or name in self.coordinates
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Length of each dimension."""
+        parts = (*self.variables.values(), *self.coordinates.values())
+        return {name: size for part in parts for name, size in zip(part.dims, part.values.shape, strict=True)}
+
+    def labelled(self) -> xr.Dataset:
+        """The history as what everybody else works with."""
+        import xarray as xr
+
+        parts = ({k: (v.dims, v.values, v.attrs) for k, v in part.items()} for part in (self.variables, self.coordinates))
+        return _indexed(xr.Dataset(*parts, self.attrs))
+
+
+def arrays(variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray], attributes: dict[str, Any]) -> Arrays:
     """A history from arrays named as in :data:`VARIABLES` and :data:`COORDINATES`; dict attributes become JSON."""
-    data = {
-        name: (VARIABLES[name][0], values, {"units": VARIABLES[name][1], "long_name": VARIABLES[name][2]})
-        for name, values in variables.items()
-    }
-    coords = {
-        name: (COORDINATES[name][0], values, {"units": COORDINATES[name][1], "long_name": COORDINATES[name][2]})
-        for name, values in coordinates.items()
-    }
-    attrs = {k: json.dumps(v, sort_keys=True) if isinstance(v, (dict, list)) else v for k, v in attributes.items()}
-    return _indexed(xr.Dataset(data, coords, attrs))
+    made = (
+        {
+            name: Variable(known[name][0], values, {"units": known[name][1], "long_name": known[name][2]})
+            for name, values in given.items()
+        }
+        for known, given in ((VARIABLES, variables), (COORDINATES, coordinates))
+    )
+    return Arrays(*made, {k: json.dumps(v, sort_keys=True) if isinstance(v, (dict, list)) else v for k, v in attributes.items()})
 
 
 def _indexed(history: xr.Dataset) -> xr.Dataset:
@@ -111,35 +166,35 @@ def skin_arc(x: np.ndarray, y: np.ndarray, apex: int) -> np.ndarray:
 
 
 def add_snapshots(
-    history: xr.Dataset, times, points, cells, region, displacement, pressure, regions, indenter=None, fields=None
-) -> xr.Dataset:
+    history: Arrays, times, points, cells, region, displacement, pressure, regions, indenter=None, fields=None
+) -> None:
     """Add full fields: ``snapshot_displacement`` (snapshot, node, 2) m and ``snapshot_pressure`` (snapshot, element) Pa.
 
     Of the layers ``regions`` the numbers ``region`` (element,) are indices. ``indenter`` (snapshot, n, 2) m, outlines of the
     stimulus. ``fields``: more of the elements (snapshot, element[, components]), named as in :data:`FIELDS`.
     """
     layers = ", ".join(f"{number} {name}" for number, name in enumerate(regions))
+    found = {
+        "snapshot_time": ("snapshot", np.asarray(times, float), "s", "time of the full field"),
+        "node_position": (("node", "axis"), points, "m", "undeformed node position"),
+        "element_nodes": (("element", "element_node"), cells, "1", "nodes of each element"),
+        "element_region": ("element", region, "1", layers),
+        "snapshot_displacement": (("snapshot", "node", "axis"), displacement, "m", "displacement"),
+        "snapshot_pressure": (("snapshot", "element"), pressure, "Pa", "mean stress kappa (J - 1), element mean"),
+    }
     if indenter is not None:
-        outline = {"units": "m", "long_name": "outline of the stimulus"}
-        history = history.assign(snapshot_indenter=(("snapshot", "outline_point", "axis"), indenter, outline))
+        found["snapshot_indenter"] = (("snapshot", "outline_point", "axis"), indenter, "m", "outline of the stimulus")
     for name, values in (fields or {}).items():
         dims = ("snapshot", "element", *((f"component_of_{name}",) if values.ndim == 3 else ()))
-        attributes = {"units": FIELDS[name][0], "long_name": f"{FIELDS[name][3]}, middle of the element"}
-        history[f"snapshot_{name}"] = (dims, values, attributes)
-    return history.assign(
-        snapshot_time=("snapshot", np.asarray(times, float), {"units": "s", "long_name": "time of the full field"}),
-        node_position=(("node", "axis"), points, {"units": "m", "long_name": "undeformed node position"}),
-        element_nodes=(("element", "element_node"), cells, {"units": "1", "long_name": "nodes of each element"}),
-        element_region=(("element",), region, {"units": "1", "long_name": layers}),
-        snapshot_displacement=(("snapshot", "node", "axis"), displacement, {"units": "m", "long_name": "displacement"}),
-        snapshot_pressure=(
-            ("snapshot", "element"), pressure, {"units": "Pa", "long_name": "mean stress kappa (J - 1), element mean"},
-        ),
-    )  # fmt: skip
+        found[f"snapshot_{name}"] = (dims, values, FIELDS[name][0], f"{FIELDS[name][3]}, middle of the element")
+    for name, (dims, values, units, what) in found.items():
+        history.variables[name] = Variable(dims, values, {"units": units, "long_name": what})
 
 
 def provenance() -> dict[str, Any]:
     """What produced a result: code digest, package versions, machine and threads."""
+    from importlib.metadata import PackageNotFoundError, version
+
     packages = {}
     for name in ("fingerpad", "numpy", "scipy", "numba", "scikit-fem", "gmsh", "meshio", "mkl", "pypardiso", "xarray"):
         try:
@@ -193,52 +248,60 @@ def leg_ends(history: xr.Dataset) -> xr.Dataset:
     return history.isel(time=1 + np.flatnonzero(np.append(leg[1:] != leg[:-1], True)))
 
 
-def summary(history: xr.Dataset) -> dict[str, Any]:
+def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
     """The summary of a history: the state at the end of each leg, and what the run took.
 
     Energies are lists, one entry a receptor point, and once more in ``receptors`` with the place of each; of more than
     :data:`MOST_RECEPTORS` points ``receptors`` says that they are in the history.
     """
-    attributes, numbers = history.attrs, np.unique(history.leg.values[1:])
+    history = Arrays.of(history)
+    attributes, leg_of = history.attrs, history["leg"].values
+    numbers = np.unique(leg_of[1:])
     errors = json.loads(attributes.get("estimated_error_of_legs", "[]")) or [float(attributes["estimated_error"])] * len(numbers)
     cost, length = json.loads(history.attrs["cost"]), json.loads(history.attrs["scene"])["specimen"]["contact_length"]
     places = [
         {"depth_mm": round(depth * 1e3, 9), "offset_mm": round(offset * 1e3, 9)}
-        for depth, offset in zip(history.receptor_depth.values.tolist(), history.receptor_offset.values.tolist(), strict=True)
+        for depth, offset in zip(
+            history["receptor_depth"].values.tolist(), history["receptor_offset"].values.tolist(), strict=True
+        )
     ]
     legs = []
     for leg, error in zip(numbers, errors, strict=True):
-        end = history.isel(time=int(np.flatnonzero(history.leg.values == leg)[-1]))
-        force = float(end.force)
+        end = int(np.flatnonzero(leg_of == leg)[-1])
+
+        def at_end(name: str, end: int = end) -> float:
+            return float(history[name].values[end])
+
+        force = at_end("force")
         entry = {
-            "time_s": float(end.time),
+            "time_s": at_end("time"),
             "estimated_error": error,
-            "depth_mm": float(end.indentation_depth) * 1e3,
+            "depth_mm": at_end("indentation_depth") * 1e3,
             "force_N_per_m": force,
             "force_N": force * length,
             "force_gf": force * length / 9.80665e-3,
-            "tangential_force_N_per_m": float(end.tangential_force),
-            "contact_width_mm": float(end.contact_width) * 1e3,
-            "peak_pressure_Pa": float(end.peak_pressure),
-            "centre_pressure_Pa": float(end.centre_pressure),
-            "centre_lateral_displacement_mm": float(end.centre_lateral_displacement) * 1e3,
-            "stroke_distance_mm": float(end.stroke_distance) * 1e3,
+            "tangential_force_N_per_m": at_end("tangential_force"),
+            "contact_width_mm": at_end("contact_width") * 1e3,
+            "peak_pressure_Pa": at_end("peak_pressure"),
+            "centre_pressure_Pa": at_end("centre_pressure"),
+            "centre_lateral_displacement_mm": at_end("centre_lateral_displacement") * 1e3,
+            "stroke_distance_mm": at_end("stroke_distance") * 1e3,
         }
         if len(places) > MOST_RECEPTORS:
             entry["receptors"] = f"{len(places)} receptor points: their strain energies are in the history"
         else:
-            energies = {_energy_key(name): end[name].values.tolist() for name in ENERGIES}
+            energies = {_energy_key(name): history[name].values[end].tolist() for name in ENERGIES}
             each = [dict(zip(energies, values, strict=True)) for values in zip(*energies.values(), strict=True)]
             entry |= energies
             entry["receptors"] = [place | values for place, values in zip(places, each, strict=True)]
         legs.append(entry)
     run = {
         "steps": int(history.sizes["time"] - 1),
-        "newton_iterations": int(history.newton_iterations.sum()),
-        "cutbacks": int(history.cutbacks.sum()),
-        "energy_balance_error": float(history.energy_balance_error[-1]),
-        "complementarity_error": float(history.complementarity_error.max()),
-        "min_detF": float(history.min_detF.min()),
+        "newton_iterations": int(history["newton_iterations"].values.sum()),
+        "cutbacks": int(history["cutbacks"].values.sum()),
+        "energy_balance_error": float(history["energy_balance_error"].values[-1]),
+        "complementarity_error": float(history["complementarity_error"].values.max()),
+        "min_detF": float(history["min_detF"].values.min()),
         "estimated_error": float(attributes["estimated_error"]),
         "largest_error": float(attributes.get("largest_error", attributes["estimated_error"])),
         "error_covers": attributes.get("error_covers", ""),
@@ -259,17 +322,18 @@ def summary(history: xr.Dataset) -> dict[str, Any]:
     return totals
 
 
-def _responses(history: xr.Dataset, places: list[dict[str, float]]) -> list[dict[str, Any]] | str:
+def _responses(history: Arrays, places: list[dict[str, float]]) -> list[dict[str, Any]] | str:
     """What each receptor sends: how many impulses, the highest rate, and when the first impulse comes (None: never)."""
     if len(places) > MOST_RECEPTORS:
         return f"{len(places)} receptor points: their impulses are in the history"
+    rates, counts, times = (history[name].values for name in ("impulse_rate", "impulses", "impulse_time"))
     out = []
-    for afferent in history.afferent.values.tolist():
+    for kind, afferent in enumerate(history["afferent"].values.tolist()):
         for number, place in enumerate(places):
-            one = history.sel(afferent=afferent).isel(receptor=number)
-            count = int(one.impulses)
-            sent = {"impulses": count, "peak_rate_per_s": float(one.impulse_rate.max())}
-            out.append({"afferent": afferent} | place | sent | {"first_impulse_s": float(one.impulse_time[0]) if count else None})
+            count = int(counts[kind, number])
+            sent = {"impulses": count, "peak_rate_per_s": float(rates[kind, :, number].max())}
+            first = float(times[kind, number, 0]) if count else None
+            out.append({"afferent": afferent} | place | sent | {"first_impulse_s": first})
     return out
 
 
@@ -277,29 +341,52 @@ def _energy_key(name: str) -> str:
     return "strain_energy_Pa" if name == "strain_energy_density" else f"{name}_Pa"
 
 
-def write_history(history: xr.Dataset, path: str | Path) -> None:
-    """Write a history as NetCDF 4, whole or not at all.
+def write_history(history: xr.Dataset | Arrays, path: str | Path) -> None:
+    """Write a history as NetCDF 4, whole or not at all, as xarray would.
 
     Raises:
         OSError: it cannot be written, on a full disk for example.
     """
-    encoding = {name: {"zlib": True, "complevel": 4} for name, values in history.data_vars.items() if values.ndim > 1}
+    history = Arrays.of(history)
 
     def write(partial: Path) -> None:
         try:
-            history.to_netcdf(partial, engine="netcdf4", encoding=encoding)
+            _write_netcdf(history, partial)
         except RuntimeError as error:  # what netCDF makes of an error of the disk
             raise disk_is_full(partial.parent) or OSError(f"{error}") from error
 
     write_atomically(path, write)
 
 
+def _write_netcdf(history: Arrays, path: Path) -> None:
+    import netCDF4
+
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        for name, size in history.sizes.items():
+            file.createDimension(name, size)
+        file.setncatts(history.attrs)
+        beside = {name: set(each.dims) for name, each in history.coordinates.items() if each.dims != (name,)}
+        for name, each in (history.variables | history.coordinates).items():
+            text = each.values.dtype.kind in "UO"
+            packed = "zlib" if each.values.ndim > 1 and not text else None
+            fill = np.nan if each.values.dtype.kind == "f" else None
+            made = file.createVariable(name, str if text else each.values.dtype, each.dims, packed, 4, fill_value=fill)
+            made.setncatts(each.attrs)
+            if name in history.variables:  # the convention of the CF metadata, by which xarray tells coordinates
+                belong = sorted(other for other, dims in beside.items() if dims <= set(each.dims))
+                if belong:
+                    made.setncattr("coordinates", " ".join(belong))
+            made[...] = each.values.astype(object) if text else each.values
+
+
 def read_history(path: str | Path) -> xr.Dataset:
     """Read a history written by :func:`write_history`, into memory."""
+    import xarray as xr
+
     return _indexed(xr.load_dataset(path, engine="netcdf4"))
 
 
-def write_vtu(history: xr.Dataset, directory: str | Path) -> list[Path]:
+def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]:
     """Write each full field of a history for ParaView; returns the paths of the pad's, none without full fields.
 
     ``snapshot_<k>.vtu`` is the pad (undeformed, mm) with displacement (mm), contact pressure and traction on its skin (kPa) at
@@ -311,6 +398,7 @@ def write_vtu(history: xr.Dataset, directory: str | Path) -> list[Path]:
     import meshio
     from scipy.spatial import cKDTree
 
+    history = history.labelled() if isinstance(history, Arrays) else history
     directory, nodes = Path(directory), history.sizes["node"]
     kind = kind_of(history.sizes["element_node"]).meshio
     position, region = history.node_position.values, history.element_region

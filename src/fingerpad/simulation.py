@@ -25,8 +25,7 @@ from fingerpad.planning.plan import Plan, plan, refined
 from fingerpad.planning.rules import RULES
 from fingerpad.planning.schedule import schedule
 from fingerpad.receptors.material_points import MaterialPoints
-from fingerpad.receptors.respond import respond
-from fingerpad.results import FIELDS, add_snapshots, dataset, peak_memory_MB, provenance, skin_arc
+from fingerpad.results import FIELDS, Arrays, add_snapshots, arrays, peak_memory_MB, provenance, skin_arc
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
@@ -69,9 +68,20 @@ def simulate(
         NonConvergence: a step failed for good; its ``dataset`` is the history up to the last converged step. A
         KeyboardInterrupt has the same ``dataset``, if a step had converged.
     """
+    return _labelled(lambda: solve(scene, plan, mesh, progress, fields))
+
+
+def solve(
+    scene: Scene,
+    plan: Plan | None = None,
+    mesh: PadMesh | None = None,
+    progress: Callable[[dict[str, Any]], None] | None = None,
+    fields: bool = False,
+) -> Arrays:
+    """:func:`simulate` without labels, for who only writes its result: so is the ``dataset`` of what it raises."""
     chosen = plan or _plan(scene)
     with threadpool_limits(1):
-        history = Simulation(scene, chosen, mesh, fields).run(progress)
+        history = Simulation(scene, chosen, mesh, fields).solve(progress)
         runs = [_told(history)]
         why_not = "a mesh was given" if mesh is not None else ""
         while mesh is None:
@@ -80,7 +90,7 @@ def simulate(
                 why_not = following
                 break
             try:
-                again = Simulation(scene, following, None, fields).run(progress)
+                again = Simulation(scene, following, None, fields).solve(progress)
             except NonConvergence:
                 why_not = f"the refined run on {following.nodes} nodes did not converge"
                 break
@@ -95,10 +105,21 @@ def simulate(
         "tolerance": "" if missed is None else f"{missed}; {why_not}".removesuffix("; "),
         "runs": json.dumps(runs),
     }
-    return history.assign_attrs(tolerance)
+    history.attrs |= tolerance
+    return history
 
 
-def _told(history: xr.Dataset) -> dict[str, Any]:
+def _labelled(made: Callable[[], Arrays]) -> xr.Dataset:
+    """What is ``made``, and what it leaves when it breaks off, with labels."""
+    try:
+        return made().labelled()
+    except (NonConvergence, KeyboardInterrupt) as stop:
+        if getattr(stop, "dataset", None) is not None:
+            stop.dataset = stop.dataset.labelled()
+        raise
+
+
+def _told(history: Arrays) -> dict[str, Any]:
     """What is kept of a run that may be run again: its nodes and its own estimate of its error."""
     return {"nodes": json.loads(history.attrs["cost"])["nodes"], "estimated_error": history.attrs["estimated_error"]}
 
@@ -187,7 +208,12 @@ class Simulation:
                 "curved one, less depth, or a pad that is free there"
             )
 
-    def run(self, progress):
+    def run(self, progress) -> xr.Dataset:
+        """The history; ``progress`` as in :func:`simulate`."""
+        return _labelled(lambda: self.solve(progress))
+
+    def solve(self, progress) -> Arrays:
+        """The same without labels."""
         states: list[dict[str, np.ndarray]] = [self.receptors.sample(self.body)]
         done: list[Record] = []
         # one a leg and time: of the increments of a steady leg, all at one time, the last
@@ -405,7 +431,7 @@ class Simulation:
             "factorisations": int(self.stepper.factorisations),
             "linear_solver": self.stepper.solver.name,
         }
-        history = dataset(
+        history = arrays(
             out,
             coordinates,
             {
@@ -423,7 +449,7 @@ class Simulation:
         )
         if snapshots:
             found = {name: [field[name] for field in snapshots.values()] for name in next(iter(snapshots.values()))}
-            history = add_snapshots(
+            add_snapshots(
                 history,
                 [when for _, when in snapshots],
                 self.whole.points,
@@ -436,8 +462,10 @@ class Simulation:
                 {name: np.array([unfold.elements(values, name) for values in each]) for name, each in found.items()},
             )
         wanted = self.scene.outputs.responses
-        if wanted and out["leg"].size > 1 and history.time.values[-1] > 0:
-            history = history.merge(respond(history, wanted))
+        if wanted and out["leg"].size > 1 and coordinates["time"][-1] > 0:
+            from fingerpad.receptors.respond import respond  # here, for xarray is slow to import
+
+            history = Arrays.of(history.labelled().merge(respond(history.labelled(), wanted)))
         if self.plan.unbounded_peak:
             for name in ("peak_pressure", "contact_pressure"):
                 history[name].attrs["comment"] = "at a true edge pressure is unbounded: its largest value is the mesh's"

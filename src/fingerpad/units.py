@@ -9,7 +9,6 @@ gram-weight is the gram-force of 9.80665e-3 N (standard gravity, 3rd CGPM 1901, 
 from __future__ import annotations
 
 import math
-import os
 import re
 from dataclasses import dataclass
 from functools import cache
@@ -98,22 +97,12 @@ def registry() -> pint.UnitRegistry:
     """The package's one pint registry, made at first use (importing pint takes a fifth of a second)."""
     import pint
 
+    from fingerpad.files import cache_folder
+
     # pint keeps its parsed definitions in the user's cache folder, where there is one: a tenth of a second a process
-    ureg = pint.UnitRegistry(cache_folder=_cache_folder())
+    ureg = pint.UnitRegistry(cache_folder=cache_folder("pint"))
     ureg.define("gram_weight = gram_force = gw")
     return ureg
-
-
-def _cache_folder() -> str | None:
-    """The user's cache folder if it can be written, else None."""
-    from platformdirs import user_cache_path
-
-    try:
-        folder = user_cache_path("fingerpad", ensure_exists=True) / "pint"
-        folder.mkdir(exist_ok=True)
-    except OSError:
-        return None
-    return str(folder) if os.access(folder, os.W_OK) else None
 
 
 def allowed(dimension: str) -> str:

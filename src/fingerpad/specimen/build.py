@@ -11,11 +11,14 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from importlib.metadata import version
 from typing import TYPE_CHECKING
+from zipfile import BadZipFile
 
 import numpy as np
 
+from fingerpad.files import cache_folder, write_atomically
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.grid import columns_of, node_positions, rows_of
 from fingerpad.specimen.outline import OutlineLike, curve_of
@@ -47,6 +50,28 @@ def _reference_quads(columns: int, bands: tuple[int, ...]) -> tuple[np.ndarray, 
 
     Returns the elements' nodes as (elements, 9, 2) integer half steps (column, row), and bands (elements,).
     """
+    steps = _kept_quads(columns, bands)
+    ends = np.concatenate(([0], np.cumsum(bands)))
+    return steps, (np.searchsorted(ends, steps[:, 8, 1] / 2.0, side="right") - 1).astype(np.int8)
+
+
+def _kept_quads(columns: int, bands: tuple[int, ...]) -> np.ndarray:
+    """Nodes of the quads from the user's cache; else gmsh makes them, for which it takes a third of a second to be ready."""
+    folder = cache_folder("quads")
+    if folder is None:
+        return _meshed_quads(columns, bands)
+    kept = folder / f"gmsh{version('gmsh')}-{columns}-{'-'.join(map(str, bands))}.npz"
+    with suppress(OSError, ValueError, LookupError, BadZipFile):
+        with np.load(kept) as file:
+            return file["steps"].astype(np.int64)
+    steps = _meshed_quads(columns, bands)
+    with suppress(OSError):
+        write_atomically(kept, lambda partial: np.savez_compressed(partial, steps=steps.astype(np.int32)))
+    return steps
+
+
+def _meshed_quads(columns: int, bands: tuple[int, ...]) -> np.ndarray:
+    """Nodes of the quads as gmsh makes them."""
     with gmsh_session() as geometry:
         ends = np.concatenate(([0], np.cumsum(bands)))
         corners = [(geometry.add_point((0.0, -float(y))), geometry.add_point((float(columns), -float(y)))) for y in ends]
@@ -64,9 +89,7 @@ def _reference_quads(columns: int, bands: tuple[int, ...]) -> tuple[np.ndarray, 
             geometry.add_physical(surface, REGIONS[band])
         grid = geometry.generate_mesh(dim=2, order=2)
     (quads,) = [block.data for block in grid.cells if block.type == "quad9"]
-    steps = np.rint(2.0 * grid.points[:, :2] * (1.0, -1.0)).astype(np.int64)[quads]
-    row = steps[:, 8, 1] / 2.0
-    return steps, (np.searchsorted(ends, row, side="right") - 1).astype(np.int8)
+    return np.rint(2.0 * grid.points[:, :2] * (1.0, -1.0)).astype(np.int64)[quads]
 
 
 def build_pad_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False) -> PadMesh:
