@@ -39,7 +39,8 @@ if not workflow.overwrite_configfiles:
 
 try:
     file = next(reversed(workflow.overwrite_configfiles), DEFAULT)
-    PRODUCTS = Products(read_config(config, file), file, ROOT)
+    written = {key: value for key, value in config.items() if key not in ("sweep", "sweep_out")}
+    PRODUCTS = Products(read_config(written, file), file, ROOT)
 except SceneError as error:  # one line, without Snakemake's words round it
     print(error, file=sys.stderr)
     sys.exit(2)
@@ -49,6 +50,11 @@ report: "workflow/report/workflow.rst"
 
 
 include: "workflow/rules/jobs.smk"
+
+
+if "sweep" in config:  # snakemake sweep --config sweep=config/sweeps/example.yaml
+
+    include: "workflow/rules/sweeps.smk"
 
 
 localrules:

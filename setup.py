@@ -1,4 +1,4 @@
-"""The built-in specimens: config/specimens, which people edit and a clone reads, and of which a built package carries a copy."""
+"""What a clone reads beside the package, and of which a built package carries a copy: specimens, and the rules of sweeps."""
 
 from pathlib import Path
 
@@ -7,12 +7,13 @@ from setuptools.command.build_py import build_py
 
 
 class BuildWithSpecimens(build_py):
-    """Also takes config/specimens, as fingerpad/built_in/specimens (`fingerpad.files.BUILT_IN`)."""
+    """Also takes config/specimens and workflow/rules/sweeps.smk, into fingerpad/built_in (`fingerpad.files.BUILT_IN`)."""
 
     def _get_data_files(self):
         names = sorted(path.name for path in Path("config/specimens").glob("*.yaml"))
         target = Path(self.build_lib, "fingerpad", "built_in", "specimens")
-        return [*super()._get_data_files(), ("fingerpad", "config/specimens", str(target), names)]
+        rules = ("fingerpad", "workflow/rules", str(target.parent), ["sweeps.smk"])
+        return [*super()._get_data_files(), ("fingerpad", "config/specimens", str(target), names), rules]
 
 
 setup(cmdclass={"build_py": BuildWithSpecimens})

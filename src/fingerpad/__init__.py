@@ -1,10 +1,11 @@
 """The human fingerpad in touch: skin, contact and the strain energy that receptors see.
 
-Four verbs are the whole shallow interface; each is imported at its first use.
+Five verbs are the whole shallow interface; each is imported at its first use.
 
 - ``load_scene(path)``: read and check a scene, a file or a dictionary; it gives a ``Scene`` (`fingerpad.scenes.scene`).
 - ``plan(scene)``: choose effects and discretisation, with reasons (`fingerpad.planning.plan`).
 - ``simulate(scene)``: run it; returns an `xarray.Dataset` (`fingerpad.simulation`).
+- ``sweep(scene, over)``: many variations of it, as one `xarray.Dataset` (`fingerpad.sweeps.engine`).
 - ``respond(history)``: impulse rates and impulses of its receptors (`fingerpad.receptors.respond`).
 """
 
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
     from fingerpad.receptors.respond import respond
     from fingerpad.scenes.scene import Scene, load_scene
     from fingerpad.simulation import simulate
+    from fingerpad.sweeps.engine import sweep
 
-__all__ = ["Scene", "load_scene", "plan", "respond", "simulate"]
+__all__ = ["Scene", "load_scene", "plan", "respond", "simulate", "sweep"]
 
 _MODULES = {
     "Scene": "fingerpad.scenes.scene",
@@ -27,6 +29,7 @@ _MODULES = {
     "plan": "fingerpad.planning.plan",
     "respond": "fingerpad.receptors.respond",
     "simulate": "fingerpad.simulation",
+    "sweep": "fingerpad.sweeps.engine",
 }
 
 

@@ -1,4 +1,4 @@
-"""The command ``fingerpad``: plan, run or mesh one scene, without the workflow.
+"""The command ``fingerpad``: plan, run or mesh one scene, without the workflow; plan or run a sweep of them.
 
 Exit codes: 0 done; 1 an error of the program (one line; the details are in a file); 2 the input is wrong (one line on
 standard error: file, key, what is wrong, what is allowed); 3 the simulation could not be completed (its last converged state
@@ -30,6 +30,7 @@ FIELDS = ("vtu/*.vtu", "vtu/*.series", "vtu/*.pvd")
 # errors of wrong input: where they are defined, and the key they are about when they do not name it
 _ERRORS = {
     "SceneError": ("documents", ""),
+    "SweepError": ("sweeps.engine", ""),
     "PlanError": ("planning.bounds", ""),
     "OutlineError": ("specimen.outline", "specimen.outline"),
     "MeshError": ("specimen.pad", "specimen.mesh"),
@@ -129,6 +130,7 @@ def _parser() -> argparse.ArgumentParser:
 
     plan = commands.add_parser("plan", help="say what would be simulated, why, and what it would cost")
     plan.add_argument("--json", action="store_true", help="print plan.json instead of a table")
+    plan.add_argument("--cores", metavar="N", type=_cores, default=1, help="of a sweep: how many would run it")
     plan.set_defaults(command=_plan)
 
     run = commands.add_parser("run", help="simulate a scene: history.nc, summary.json, plan.json")
@@ -144,14 +146,31 @@ def _parser() -> argparse.ArgumentParser:
     mesh.add_argument("--out", metavar="FILE.msh", type=Path, required=True, help="mesh file, coordinates in mm")
     mesh.set_defaults(command=_mesh)
 
+    sweep = commands.add_parser("sweep", help="simulate the scenes of a sweep: sweep.nc, sweep.csv; only what is missing")
+    sweep.add_argument("--out", metavar="DIR", type=Path, help="where the results go (default: results/sweeps/SWEEP)")
+    sweep.add_argument("--cores", metavar="N", type=_cores, default=1, help="processes at a time (default: 1)")
+    sweep.add_argument("--profile", metavar="DIR", help="a Snakemake profile instead of --cores, as workflow/profiles/slurm")
+    sweep.add_argument("--again", action="store_true", help="also try scenes again that could not be simulated before")
+    sweep.add_argument("--force", action="store_true", help="use DIR though it holds another sweep")
+    sweep.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
+    sweep.add_argument("sweep", metavar="SWEEP.yaml", type=Path, help="the sweep")
+    sweep.set_defaults(command=_sweep)
+
     for command in (plan, run, mesh):
-        command.add_argument("scene", metavar="SCENE.yaml", type=Path, help="the scene")
+        command.add_argument("scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan")
+    for command in (plan, run, mesh, sweep):
         command.add_argument(
             "--accuracy",
             metavar="X",
             help="draft, thesis, fine or a tolerance; replaces what the scene states",
         )
     return parser
+
+
+def _cores(text: str) -> int:
+    if not text.isdigit() or not int(text):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of cores; allowed: 1 or more")
+    return int(text)
 
 
 class _Version(argparse.Action):
@@ -166,6 +185,11 @@ class _Version(argparse.Action):
 
 
 def _plan(options: argparse.Namespace) -> int:
+    from fingerpad.sweeps import command
+
+    if command.is_sweep(options.scene):
+        command.plan(options.scene, options.accuracy, options.cores, options.json)
+        return DONE
     scene, plan = _prepare(options)
     if options.json:
         print(json.dumps(plan.to_dict(), indent=2))
@@ -206,6 +230,14 @@ def _run(options: argparse.Namespace) -> int:
         for note in totals["run"].get("notes", ()):
             print(f"note: {note}")
     return DONE
+
+
+def _sweep(options: argparse.Namespace) -> int:
+    from fingerpad.sweeps import command
+
+    if options.out:
+        _check_writable(options.out, directory=True)
+    return command.sweep(options)
 
 
 def _mesh(options: argparse.Namespace) -> int:

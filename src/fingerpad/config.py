@@ -149,12 +149,14 @@ def workflow_json_schema() -> dict[str, Any]:
 def schemas() -> dict[str, dict]:
     """Return the JSON schema of each kind of YAML file, by the stem of its schema file."""
     from fingerpad.scenes.scene import scene_json_schema, specimen_json_schema
+    from fingerpad.sweeps.language import sweep_json_schema
 
     dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     return {
         "workflow": dialect | workflow_json_schema(),
         "scene": scene_json_schema(),
         "specimen": specimen_json_schema(),
+        "sweep": sweep_json_schema(),
     }
 
 

@@ -8,7 +8,7 @@ import inspect
 import reprlib
 import textwrap
 from collections.abc import Hashable, Iterable, Mapping
-from functools import cache
+from functools import cache, lru_cache
 from inspect import get_annotations
 from itertools import pairwise
 from pathlib import Path
@@ -152,6 +152,9 @@ class Strict(BaseModel):
     hints: ClassVar[Mapping[str, str]] = {}
     """What to say of keys that people are likely to try here."""
 
+    follows: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    """Key -> the fields that are read of it, which go when it is changed."""
+
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
         """Values for keys left out; `context` is None when the model is made in Python."""
@@ -213,11 +216,24 @@ class _Loader(yaml.SafeLoader):
 
 
 def read_yaml(path: Path) -> Any:
-    """The document in a YAML file, as plain Python objects.
+    """The document in a YAML file, as plain Python objects, parsed once as long as the file stays as it is; nobody changes it.
 
     Raises:
         SceneError: the file is missing or unreadable, is not YAML, or gives a key twice.
     """
+    try:
+        state = path.stat()
+    except (OSError, ValueError):
+        return _parsed(path)
+    return _unchanged(path, state.st_mtime_ns, state.st_size, state.st_ino)
+
+
+@lru_cache(maxsize=256)
+def _unchanged(path: Path, *state: int) -> Any:
+    return _parsed(path)
+
+
+def _parsed(path: Path) -> Any:
     try:
         text = path.read_bytes()
     except FileNotFoundError:

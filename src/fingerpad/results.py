@@ -191,6 +191,7 @@ def add_snapshots(
         history.variables[name] = Variable(dims, values, {"units": units, "long_name": what})
 
 
+@lru_cache(maxsize=1)
 def provenance() -> dict[str, Any]:
     """What produced a result: code digest, package versions, machine and threads."""
     from importlib.metadata import PackageNotFoundError, version

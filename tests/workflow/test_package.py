@@ -11,7 +11,7 @@ import pytest
 pytestmark = pytest.mark.workflow
 
 ROOT = Path(__file__).resolve().parents[2]
-PARTS = ("config", "src", "LICENSE", "README.md", "pyproject.toml", "setup.py")
+PARTS = ("config", "src", "workflow", "LICENSE", "README.md", "pyproject.toml", "setup.py")
 
 
 @pytest.fixture(scope="module")
@@ -51,6 +51,8 @@ def test_the_package_is_the_installed_one_with_the_specimens_of_config(installed
     assert module.is_relative_to(installed) and built_in.is_relative_to(installed)
     committed = {path.name: path.read_bytes() for path in (ROOT / "config" / "specimens").glob("*.yaml")}
     assert {path.name: path.read_bytes() for path in (built_in / "specimens").iterdir()} == committed
+    rules = Path("rules", "sweeps.smk")
+    assert (built_in / rules.name).read_bytes() == (ROOT / "workflow" / rules).read_bytes()
 
 
 @pytest.mark.slow

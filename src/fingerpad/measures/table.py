@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 from fingerpad.files import write_atomically
-from fingerpad.measures import of_presses, of_scenes, of_strokes
+from fingerpad.measures import of_any, of_presses, of_scenes, of_strokes
 from fingerpad.measures.features import Histories, Meshes
 from fingerpad.measures.measure import Measure, Together, measures_of
 from fingerpad.results import scene_of
@@ -24,7 +24,10 @@ from fingerpad.results import scene_of
 COLUMNS = ("scene", "quantity", "condition", "unit", "value", "companion")
 
 MEASURES: dict[str, Measure] = {**measures_of(of_scenes), **measures_of(of_presses), **measures_of(of_strokes)}
-"""Every measure by its name."""
+"""Every measure of the table, by its name."""
+
+KNOWN: dict[str, Measure] = measures_of(of_any) | MEASURES
+"""Every measure by its name: those of any scene, which the table is without, as well."""
 
 Find = Callable[[str, str], Mapping[str, float]]
 """find(quantity, scene): condition -> value. Raises KeyError."""

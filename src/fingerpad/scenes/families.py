@@ -18,7 +18,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -117,23 +116,9 @@ def _homes(path: Path) -> Iterator[Path]:
             yield home
 
 
-def _read(path: Path) -> Any:
-    """A document, read once as long as its file stays as it is; nobody changes it."""
-    try:
-        state = path.stat()
-    except (OSError, ValueError):
-        return read_yaml(path)
-    return _unchanged(path, state.st_mtime_ns, state.st_size, state.st_ino)
-
-
-@lru_cache(maxsize=256)
-def _unchanged(path: Path, *state: int) -> Any:
-    return read_yaml(path)
-
-
 def _extended(path: Path, seen: tuple[Path, ...]) -> tuple[Any, tuple[Path, ...]]:
     """The document of a file over that of the file it extends, and the files, its own first."""
-    document = _read(path)
+    document = read_yaml(path)
     if not isinstance(document, Mapping) or "extends" not in document:
         return document, (path,)
     named = document["extends"]

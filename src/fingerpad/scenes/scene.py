@@ -394,7 +394,8 @@ def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> 
         return value
     key, *rest = path
     if isinstance(part, Strict):
-        part = {name: getattr(part, name) for name in type(part).model_fields}
+        follows = type(part).follows.get(key, ())
+        part = {name: getattr(part, name) for name in type(part).model_fields if name not in follows}
     if isinstance(part, (list, tuple)):
         if not isinstance(key, int) or key >= len(part):
             raise SceneError(f"{where}: there is no such entry; allowed: 0 to {len(part) - 1}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from importlib import import_module
 
 _HOME = {
@@ -30,18 +31,22 @@ def __getattr__(name: str):
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
-def counted(specimen, size, ridges) -> tuple[int, float]:
-    """Nodes and shortest edge (m) of the mesh of such a size of an outline (with `ridges` or None), a slab or a half-round."""
+@lru_cache(maxsize=64)  # of a sweep many scenes may have the same mesh
+def _counted_layers(*layered) -> tuple[int, float]:
     from fingerpad.specimen.build import count_nodes, smallest_edge
 
+    return count_nodes(*layered), smallest_edge(*layered)
+
+
+def counted(specimen, size, ridges) -> tuple[int, float]:
+    """Nodes and shortest edge (m) of the mesh of such a size of an outline (with `ridges` or None), a slab or a half-round."""
     if specimen.stack is not None:
         from fingerpad.specimen.quality import quality_of
         from fingerpad.specimen.stacks import build_stack_mesh
 
         quality = quality_of(build_stack_mesh(specimen.stack, size))
         return quality["nodes"], quality["smallest_edge_m"]
-    layered = specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None
-    return count_nodes(*layered), smallest_edge(*layered)
+    return _counted_layers(specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None)
 
 
 def mesh_for(scene, plan):

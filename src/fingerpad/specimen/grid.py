@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -44,6 +45,7 @@ def _grid_along(length: float, smallest: float, focus: list[float]) -> np.ndarra
     return np.unique(np.clip(grid, 0.0, length))
 
 
+@lru_cache(maxsize=16)
 def columns_of(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
     """Arc lengths of the column boundaries from apex to bottom, and the index of the nail's rim.
 

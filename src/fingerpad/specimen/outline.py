@@ -11,7 +11,7 @@ makes the half width the one asked for. Negative angles are the left half. Lengt
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -226,7 +226,7 @@ class OutlineCurve:
             raise OutlineError(f"{keys} reaches the bone, which leaves room for less than {_mm(room)}")
 
 
-@cache
+@lru_cache(maxsize=16)  # of a sweep every finger may be another one
 def curve_of(outline: OutlineLike) -> OutlineCurve:
     """The curve of an outline, made and checked once. Raises OutlineError."""
     return OutlineCurve(outline)

@@ -1,6 +1,6 @@
 """A cylinder."""
 
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import ConfigDict, Field
@@ -19,6 +19,7 @@ class Cylinder(Shape):
     """Rigid cylinder lying along the finger's axis."""
 
     model_config = ConfigDict(json_schema_extra=_one_size)
+    follows: ClassVar = {"radius": ("curvature",), "diameter": ("curvature",)}
     shape: Literal["cylinder"] = "cylinder"
     curvature: quantity("curvature", note=": for a curvature of zero use shape: flat")
     """Curvature, the inverse of the radius; or give `radius` or `diameter` instead."""

@@ -35,6 +35,7 @@ class Sampled(CurvedShape):
     """
 
     internal: ClassVar = frozenset({"x", "y"})
+    follows: ClassVar = {"csv": ("x", "y")}
 
     model_config = ConfigDict(json_schema_extra=_needs_its_file)
     shape: Literal["sampled"] = "sampled"
