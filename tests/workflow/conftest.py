@@ -13,6 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 TREE = ("Snakefile", "config", "profiles", "pyproject.toml", "requirements.lock", "src", "workflow")
+COMPILED_TOO = shutil.ignore_patterns("*.egg-info", "*.tmp.*", "*.pyc.*")  # all but what is being written
 QUIET = ("--quiet", "host")
 SMOKE = ("--configfile", "config/smoke.yaml")
 
@@ -29,7 +30,7 @@ class Project:
         for name in TREE:
             source = ROOT / name
             if source.is_dir():
-                shutil.copytree(source, root / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+                shutil.copytree(source, root / name, ignore=COMPILED_TOO)
             else:
                 shutil.copy(source, root / name)
         return cls(root)
@@ -55,7 +56,11 @@ class Project:
 
     def planned(self, *arguments: str, folder: Path | None = None) -> dict[str, set[str]]:
         """What a dry run would make: rule -> output files; targets without files are left out."""
-        text = self.run("--dry-run", *arguments, folder=folder)
+        return self.jobs_in(self.run("--dry-run", *arguments, folder=folder))
+
+    @staticmethod
+    def jobs_in(text: str) -> dict[str, set[str]]:
+        """Jobs that a dry run has listed: rule -> output files."""
         jobs: dict[str, set[str]] = {}
         rule = ""
         for line in text.splitlines():
@@ -68,20 +73,27 @@ class Project:
 
     @contextmanager
     def edited(self, path: str, addition: str = "\n# edited\n"):
-        """Append to a file, and put it back as it was (but newer) in the end."""
+        """Append to a file, and put it back as it was in the end, its date too: what was touched only is known by its date."""
         file = self.root / path
-        before = file.read_bytes()
+        before, age = file.read_bytes(), file.stat()
         file.write_bytes(before + addition.encode())
         try:
             yield
         finally:
             file.write_bytes(before)
+            os.utime(file, ns=(age.st_atime_ns, age.st_mtime_ns))
 
 
 @pytest.fixture
 def clone(tmp_path) -> Project:
     """A tree in which nothing has run."""
     return Project.copy(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def fresh(tmp_path_factory) -> Project:
+    """The same for all tests that only look."""
+    return Project.copy(tmp_path_factory.mktemp("fresh"))
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import ExitStack
 
 import pytest
 import yaml
@@ -23,45 +24,38 @@ HISTORY = "results/smoke/simulations/homogeneous_flat/history.nc"
 COMPANION = "results/smoke/coarse/homogeneous_flat/history.nc"
 
 
-def test_nothing_is_left_to_do_and_touched_files_rerun_nothing(finished):
-    assert finished.planned(*SMOKE) == {}
-    for path in (
-        "src/fingerpad/mechanics/stepping.py",
-        "src/fingerpad/publishing/style.py",
-        "src/fingerpad/workflow/jobs/simulate.py",
-        "config/scenes/ramp40.yaml",
-        "config/specimens/thesis.yaml",
-        "config/reference/thesis_numbers.csv",
-        "requirements.lock",
-        HISTORY,
-    ):
+TOUCHED = (
+    "src/fingerpad/mechanics/stepping.py", "src/fingerpad/publishing/style.py", "src/fingerpad/workflow/jobs/simulate.py",
+    "config/scenes/ramp40.yaml", "config/specimens/thesis.yaml", "config/reference/thesis_numbers.csv", "requirements.lock",
+    HISTORY,
+)  # fmt: skip
+
+
+def test_nothing_is_left_to_do_and_touched_files_and_remarks_rerun_nothing(finished):
+    for path in TOUCHED:
         os.utime(finished.root / path)
-    assert finished.planned(*SMOKE) == {}
-
-
-def test_a_remark_in_a_scene_reruns_nothing_and_a_change_that_scene(finished):
     with finished.edited("config/scenes/homogeneous_flat.yaml"):
         assert finished.planned(*SMOKE) == {}
+
+
+def test_a_changed_scene_reruns_that_scene(finished):
     with finished.edited("config/scenes/homogeneous_flat.yaml", "friction: 0.1\n"):
         jobs = finished.planned(*SMOKE)
     assert {HISTORY, COMPANION} <= jobs["simulate_homogeneous_flat"]
-    assert not any(name.startswith("simulate_") for name in jobs if name != "simulate_homogeneous_flat")
-
-
-def test_change_of_a_specimen_reruns_the_scenes_that_name_it(finished):
-    with finished.edited("config/specimens/homogeneous.yaml"):
-        jobs = finished.planned(*SMOKE)
     assert {name for name in jobs if name.startswith("simulate_")} == {"simulate_homogeneous_flat"}
+    assert not {"calibrate", "calibration_pictures"} & set(jobs)
 
 
-def test_a_further_file_of_measured_forces_reruns_the_calibration(finished):
+def test_a_changed_specimen_reruns_the_scenes_that_name_it_and_a_further_file_of_forces_the_calibration(finished):
     path = finished.root / "config/reference/force_depth/mine.csv"
     path.write_text((path.parent / "dandekar_2003.csv").read_text())
     try:
-        assert set(finished.planned(*SMOKE)) == {"calibrate", "calibration_pictures", "calibration_table"}
+        with finished.edited("config/specimens/homogeneous.yaml"):
+            jobs = finished.planned(*SMOKE)
     finally:
         path.unlink()
-    assert finished.planned(*SMOKE) == {}
+    assert {name for name in jobs if name.startswith("simulate_")} == {"simulate_homogeneous_flat"}
+    assert {"calibrate", "calibration_pictures", "calibration_table"} <= set(jobs)
 
 
 def test_changed_environment_reruns_simulations_and_what_reads_them(finished):
@@ -111,7 +105,7 @@ def test_copied_results_are_adopted_by_one_command(finished, tmp_path):
 
 # -- interrupted -----------------------------------------------------------------------------------------------------------
 
-SCENE = "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf, rate: 5 gf/s}]\naccuracy: {skin_edge: 0.2 mm, steps: 120}\n"
+SCENE = "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf, rate: 5 gf/s}]\naccuracy: {skin_edge: 0.3 mm, steps: 60}\n"
 
 
 @pytest.mark.parametrize("how", ["SIGINT to all", "SIGKILL of snakemake"])
@@ -128,6 +122,7 @@ def test_an_interrupted_run_goes_on_by_the_same_command(clone, how):
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # also where the tests run in the background
     )
     try:
         for _ in range(3000):
@@ -176,16 +171,15 @@ def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clon
                 file.write_text("x")
     clone.run("--touch")
     assert clone.planned() == {}
-    for path, kinds in (
-        ("src/fingerpad/figures/chapter4.py", {"figures_4"}),
-        ("src/fingerpad/claims/comparison.py", {"tables"}),
-        ("src/fingerpad/figures/grammar.py", {"figures_3", "figures_4", "figures_5"}),
+    for paths, kinds in (
+        (("figures/chapter4.py", "claims/comparison.py"), {"figures_4", "tables"}),
+        (("figures/grammar.py",), {"figures_3", "figures_4", "figures_5"}),
     ):
-        age = (clone.root / path).stat()
-        with clone.edited(path):
+        with ExitStack() as edits:
+            for path in paths:
+                edits.enter_context(clone.edited(f"src/fingerpad/{path}"))
             jobs = clone.planned()
-        os.utime(clone.root / path, ns=(age.st_atime_ns, age.st_mtime_ns))  # what was touched only is known by its date
-        assert {name if name == "tables" else "_".join(name.split("_")[:2]) for name in jobs} == kinds, path
+        assert {name if name == "tables" else "_".join(name.split("_")[:2]) for name in jobs} == kinds, paths
     with clone.edited("src/fingerpad/mechanics/kernels.py"):
         jobs = clone.planned()
     assert {name for name in jobs if name.startswith("simulate_")} > {"simulate_ramp40", "simulate_stroke_1"}
