@@ -28,22 +28,10 @@ from fingerpad.specimen import (
 )
 from fingerpad.specimen.pad import CURVES, REGIONS, element_edges
 from fingerpad.specimen.quality import check_orientation, jacobians, sample_points, scaled_jacobian
+from synthetic import OUTLINE as THESIS
 
 pytestmark = pytest.mark.unit
 
-THESIS = {
-    "apex_height": 6e-3,
-    "apex_radius": 7.9e-3,
-    "half_width": 8.5e-3,
-    "depth_below": 6.2e-3,
-    "epidermis_thickness": 0.85e-3,
-    "dermis_thickness": 0.85e-3,
-    "stratum_corneum_thickness": 0.35e-3,
-    "bone_centre_height": -1.5e-3,
-    "bone_half_width": 4e-3,
-    "bone_half_height": 2.5e-3,
-    "nail_half_width": 5e-3,
-}
 OUTLINE = Outline(**THESIS)
 CURVE = OutlineCurve(OUTLINE)
 SIZE = MeshSize(skin_edge=0.1344e-3, fine_half_width=3.4e-3, layer_edge=0.1214e-3)
@@ -342,14 +330,7 @@ def test_curved_edges_count():
 
 def test_quality_table(mesh, draft):
     table = quality_table({"thesis": mesh, "draft": draft})
-    assert list(table.columns) == [
-        "mesh",
-        "element",
-        "nodes",
-        "elements",
-        "smallest edge (um)",
-        "worst scaled Jacobian (1)",
-    ]
+    assert list(table.columns) == ["mesh", "element", "nodes", "elements", "smallest edge (um)", "worst scaled Jacobian (1)"]
     assert table["nodes"].tolist() == [len(mesh.points), len(draft.points)]
     edges = element_edges(mesh.cells[:, :4], "quad4")
     lengths = np.hypot(*(mesh.points[edges[:, 1]] - mesh.points[edges[:, 0]]).T)
@@ -650,23 +631,53 @@ def test_element_in_no_layer(tmp_path):
     refused(write_rings(tmp_path / "pad.msh", edit=edit), "12 surface elements are in none of")
 
 
-def test_clockwise_element_is_named(draft, tmp_path):
-    cells = draft.cells.copy()
-    cells[7] = cells[7][[1, 0, 3, 2, 4, 7, 6, 5, 8]]
-    write_pad(replace(draft, cells=cells), tmp_path / "pad.msh")
-    refused(tmp_path / "pad.msh", "element 7 at", "runs clockwise", "counter-clockwise")
+def moved(mesh, node, place):
+    points = mesh.points.copy()
+    points[node] = place
+    return replace(mesh, points=points)
 
 
-def test_clockwise_mesh(draft, tmp_path):
-    write_pad(replace(draft, points=draft.points * (-1.0, 1.0)), tmp_path / "pad.msh")
-    refused(tmp_path / "pad.msh", "element 0", "clockwise", f"({len(draft.cells)} of {len(draft.cells)})")
+def turned(mesh, element):
+    cells = mesh.cells.copy()
+    cells[element] = cells[element][[1, 0, 3, 2, 4, 7, 6, 5, 8]]
+    return replace(mesh, cells=cells)
 
 
-def test_folded_element(draft, tmp_path):
-    points = draft.points.copy()
-    points[draft.cells[11, 8]] = points[draft.cells[11, 0]] * 1.05
-    write_pad(replace(draft, points=points), tmp_path / "pad.msh")
-    refused(tmp_path / "pad.msh", "element 11", "is folded")
+def apart(mesh):
+    cells = mesh.cells + (mesh.region == 1)[:, None].astype(np.int32) * len(mesh.points)
+    return replace(mesh, points=np.tile(mesh.points, (2, 1)), cells=cells)
+
+
+def with_curves(mesh, **more):
+    """The mesh with edges added to some of its curves."""
+    return replace(mesh, curves=mesh.curves | {name: np.concatenate((mesh.curves[name], edges)) for name, edges in more.items()})
+
+
+def in_pieces(mesh):
+    middle = len(mesh.curves["skin"]) // 2
+    changed = with_curves(mesh, nail=mesh.curves["skin"][middle : middle + 1])
+    return replace(changed, curves=changed.curves | {"skin": np.delete(mesh.curves["skin"], middle, axis=0)})
+
+
+WRONG = {
+    "clockwise element": (lambda m: turned(m, 7), "element 7 at", "runs clockwise", "counter-clockwise"),
+    "clockwise mesh": (lambda m: replace(m, points=m.points * (-1.0, 1.0)), "element 0", "clockwise", "({all} of {all})"),
+    "folded element": (lambda m: moved(m, m.cells[11, 8], m.points[m.cells[11, 0]] * 1.05), "element 11", "is folded"),
+    "not a number": (lambda m: moved(m, 3, np.nan),),
+    "layers not joined": (apart, "are the layers joined?"),
+    "curve inside the pad": (
+        lambda m: with_curves(m, bone=element_edges(m.cells[:1], "quad9")[:, :3]), "curve bone", "not on the boundary",
+    ),
+    "edge in two curves": (lambda m: with_curves(m, nail=m.curves["skin"][:1]), "curve nail", "two curves"),
+    "skin in pieces": (in_pieces, "curve skin must be one line"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_meshes_are_named(draft, name, tmp_path):
+    change, *words = WRONG[name]
+    write_pad(change(draft), tmp_path / "pad.msh")
+    refused(tmp_path / "pad.msh", *(word.format(all=len(draft.cells)) for word in words))
 
 
 def test_mesh_out_of_plane(draft, tmp_path):
@@ -678,53 +689,12 @@ def test_mesh_out_of_plane(draft, tmp_path):
     refused(path, "one plane")
 
 
-def test_not_a_number(draft, tmp_path):
-    path = tmp_path / "pad.msh"
-    points = draft.points.copy()
-    points[3] = np.nan
-    write_pad(replace(draft, points=points), path)
-    refused(path)
-
-
 def test_boundary_without_a_name_is_free(draft, tmp_path):
     curves = {**draft.curves, "nail": draft.curves["nail"][1:]}
     write_pad(replace(draft, curves=curves), tmp_path / "pad.msh")
     mesh = read_pad_mesh(tmp_path / "pad.msh")
     assert mesh.fixed == ("bone", "nail")
     np.testing.assert_allclose(mesh.points[mesh.curves["unnamed"]], draft.points[draft.curves["nail"][:1]], atol=1e-12)
-
-
-def test_layers_that_are_not_joined(draft, tmp_path):
-    nodes = len(draft.points)
-    cells = draft.cells + (draft.region == 1)[:, None].astype(np.int32) * nodes
-    apart = replace(draft, points=np.tile(draft.points, (2, 1)), cells=cells)
-    write_pad(apart, tmp_path / "pad.msh")
-    refused(tmp_path / "pad.msh", "are the layers joined?")
-
-
-def test_curve_inside_the_pad(draft, tmp_path):
-    inside = element_edges(draft.cells[:1], "quad9")[:, :3]
-    curves = {**draft.curves, "bone": np.concatenate((draft.curves["bone"], inside))}
-    write_pad(replace(draft, curves=curves), tmp_path / "pad.msh")
-    refused(tmp_path / "pad.msh", "curve bone", "not on the boundary")
-
-
-def test_edge_in_two_curves(draft, tmp_path):
-    curves = {**draft.curves, "nail": np.concatenate((draft.curves["nail"], draft.curves["skin"][:1]))}
-    write_pad(replace(draft, curves=curves), tmp_path / "pad.msh")
-    refused(tmp_path / "pad.msh", "curve nail", "two curves")
-
-
-def test_skin_in_pieces(draft, tmp_path):
-    skin = draft.curves["skin"]
-    middle = len(skin) // 2
-    curves = {
-        **draft.curves,
-        "skin": np.delete(skin, middle, axis=0),
-        "nail": np.concatenate((draft.curves["nail"], skin[middle : middle + 1])),
-    }
-    write_pad(replace(draft, curves=curves), tmp_path / "pad.msh")
-    refused(tmp_path / "pad.msh", "curve skin must be one line")
 
 
 # -- the mesh of a scene ---------------------------------------------------------------------------

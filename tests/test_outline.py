@@ -8,22 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fingerpad.specimen import OutlineCurve, OutlineError
+from synthetic import OUTLINE as THESIS
 
 pytestmark = pytest.mark.unit
-
-THESIS = {
-    "apex_height": 6e-3,
-    "apex_radius": 7.9e-3,
-    "half_width": 8.5e-3,
-    "depth_below": 6.2e-3,
-    "epidermis_thickness": 0.85e-3,
-    "dermis_thickness": 0.85e-3,
-    "stratum_corneum_thickness": 0.35e-3,
-    "bone_centre_height": -1.5e-3,
-    "bone_half_width": 4e-3,
-    "bone_half_height": 2.5e-3,
-    "nail_half_width": 5e-3,
-}
 
 
 def outline(**changed):
