@@ -108,11 +108,24 @@ def truth_of(scene: Scene, last: Plan) -> Any:
     from fingerpad.simulation import simulate
 
     if last.unbounded_peak:
-        width = scene.stimulus.width
-        scene = scene.varied({"stimulus": Bar(width=width, fillet=width / ROUNDED), "accuracy": 0.1})
-        return simulate(scene, finer(plan(scene), 1.5))
+        return _of_true_edge(scene, ROUNDED)
     heavy = last.effects["ridges"].on or not last.effects["symmetry"].on or last.nodes > 5000
     return simulate(scene, finer(last, FINER if heavy else FINER_STILL))
+
+
+def _of_true_edge(scene, rounded):
+    """The truth of a bar's true edge: that of a rounding by its width over ``rounded``, or twice that where it is too sharp."""
+    from fingerpad.mechanics.stepping import NonConvergence
+    from fingerpad.simulation import simulate
+
+    width = scene.stimulus.width
+    sharp = scene.varied({"stimulus": Bar(width=width, fillet=width / rounded), "accuracy": 0.1})
+    try:
+        return simulate(sharp, finer(plan(sharp), 1.5))
+    except NonConvergence:
+        if rounded < ROUNDED / 2:
+            raise
+    return _of_true_edge(scene, rounded / 2)
 
 
 def beliefs(name: str, kind: str, document: dict[str, Any], folder: Path) -> list[dict[str, Any]]:
