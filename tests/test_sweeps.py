@@ -12,6 +12,7 @@ import xarray as xr
 from jsonschema import Draft202012Validator
 from scipy import stats
 
+from fingerpad.cli import main
 from fingerpad.documents import SceneError, read_yaml
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.scenes.scene import load_scene
@@ -162,9 +163,9 @@ def test_draws_are_crossed_with_values_and_alone_are_scenes():
 
 
 def test_names_are_the_fewest_last_words_that_tell_keys_apart():
-    over = {FAT: ["15 kPa"], "specimen.layers.dermis.youngs_modulus": ["15 kPa"], "specimen.prony[0].g": [0.1], "friction": [0]}
-    names = sweep_of(over).names
-    assert list(names.values()) == ["fat_youngs_modulus", "dermis_youngs_modulus", "g", "friction"]
+    layers = {f"specimen.layers.{layer}.youngs_modulus": ["15 kPa"] for layer in ("epidermis", "dermis", "fat")}
+    names = sweep_of(layers | {"specimen.prony[0].g": [0.1], "friction": [0]}).names
+    assert list(names.values()) == ["epidermis_youngs_modulus", "dermis_youngs_modulus", "fat_youngs_modulus", "g", "friction"]
     assert sweep_of({FAT: {"words": {"soft": "10 kPa"}, "name": "fat"}}).names == {FAT: "fat"}
 
 
@@ -401,3 +402,47 @@ def test_a_scene_without_a_record_is_an_error_not_a_hole(tmp_path, monkeypatch):
     file.write_bytes(b"".join(file.read_bytes().splitlines(keepends=True)[:-1]))
     with pytest.raises(ValueError, match="1 scenes have no record"):
         collect(json.loads((tmp_path / "design.json").read_text()), [file], tmp_path / "sweep.nc", tmp_path / "sweep.csv")
+
+
+# --- the command ----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "mine.yaml"
+    over = "  stimulus.curvature: [100 1/m, 200 1/m]\n  motion[0].press_to_force: [10 gf, 20 gf]\n"
+    path.write_text(f"scene: {json.dumps(PRESS)}\nover:\n{over}")
+    return path
+
+
+def test_a_plan_of_a_sweep_says_how_many_which_effects_and_what_it_costs(file, capsys):
+    assert main(["plan", str(file), "--json", "--cores", "2"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["scenes"] == 4 and said["effects"] == {"finite_strain": 4, "symmetry": 4} and said["cores"] == 2
+    assert 0 < said["predicted_cost_s"] < 10 and said["predicted_wall_s"] >= said["predicted_cost_s"] / 2
+    assert main(["plan", str(file)]) == 0
+    table = capsys.readouterr().out
+    assert "Sweep mine: 4 scenes" in table and "finite strain in 4" in table and "on 1 core" in table
+
+
+def test_the_command_says_what_was_run_and_what_was_known(file, tmp_path, monkeypatch, capsys):
+    pretend(monkeypatch, {200: ValueError("wrong")})
+    monkeypatch.setattr(engine, "run_layout", lambda layout, cores, profile, watch: run_all(layout))
+    words = ["sweep", str(file), "--out", str(tmp_path / "out")]
+    assert main(words) == 0
+    said = "4 scenes (all run); 2 could not be simulated, see the column diagnosis; results in"
+    assert said in capsys.readouterr().out
+    file.write_text(file.read_text().replace("20 gf]", "20 gf, 30 gf]"))
+    assert main(words) == 0 and "6 scenes (2 run, 4 known from before)" in capsys.readouterr().out
+    file.write_text(file.read_text() + "keep: [contact_widht]\n")
+    assert main(words) == 2
+    assert f"{file}: keep[0]: 'contact_widht' is not a measure" in capsys.readouterr().err
+
+
+def test_a_sweep_that_cannot_go_on_exits_3_with_one_line(file, tmp_path, monkeypatch, capsys):
+    def full(layout, *_):
+        raise engine.NotFinished("2 of 4 scenes are done and kept; No space left on device; the same command goes on from there")
+
+    monkeypatch.setattr(engine, "run_layout", full)
+    assert main(["sweep", str(file), "--out", str(tmp_path / "out")]) == 3
+    assert capsys.readouterr().err.count("\n") == 1

@@ -76,3 +76,17 @@ def test_from_another_folder_and_as_a_module(fresh, tmp_path_factory):
     )
     jobs = fresh.planned("results/mine/tables/summary.csv", folder=elsewhere)
     assert set(jobs) == {"touch_simulate_own", "touch_simulate_ramp40", "touch_summary"}
+
+
+def test_a_sweep_is_a_target_that_a_configuration_names(fresh, tmp_path):
+    sweep, words = tmp_path / "mine.yaml", ("--snakefile", str(fresh.root / "Snakefile"), "sweep", "--config", "sweep=mine.yaml")
+    scene = "{stimulus: {shape: flat}, motion: [{press_to_force: 5 gf}], accuracy: draft}"
+    sweep.write_text(f"scene: {scene}\nover: {{friction: [0, 0.5]}}\n")
+    jobs = fresh.planned(*words, folder=tmp_path)
+    (records,) = jobs["sweep_batch"]
+    assert records.startswith("results/sweeps/mine/batches/")
+    assert jobs["sweep_collect"] == {"results/sweeps/mine/sweep.nc", "results/sweeps/mine/sweep.csv"}
+    sweep.write_text(sweep.read_text() + "designs: grid\n")
+    done = fresh.snakemake("--dry-run", *words, folder=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1].startswith("mine.yaml: designs: is not a known key, the nearest is 'design'; allowed:")

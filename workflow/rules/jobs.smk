@@ -57,6 +57,7 @@ for job in PRODUCTS.jobs():
         log:
             log_of(job),
         priority: job.priority
+        threads: job.threads
         resources:
             mem_mb=job.mem_mb,
             runtime=job.runtime,

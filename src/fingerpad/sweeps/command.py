@@ -105,7 +105,7 @@ def _time(seconds: float) -> str:
 
 def sweep(options: Any) -> int:
     """Run a sweep; the exit code: 0, or 3 if it did not come to its end. Raises SceneError and SweepError."""
-    from fingerpad.sweeps.engine import NotFinished, held, lay_out, run
+    from fingerpad.sweeps.engine import NotFinished, held, lay_out, run_layout
 
     found = read(options.sweep, options.accuracy)
     folder = options.out or Path("results/sweeps") / found.name
@@ -114,7 +114,7 @@ def sweep(options: Any) -> int:
             layout = lay_out(found, folder, options.cores, options.force, options.again, show)
         try:
             with _watching(layout, options.quiet) as watch:
-                run(layout, options.cores, options.profile, watch)
+                run_layout(layout, options.cores, options.profile, watch)
         except NotFinished as error:
             print(f"fingerpad: {error}", file=sys.stderr)
             return 3

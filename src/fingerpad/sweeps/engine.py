@@ -202,7 +202,7 @@ def held(folder: Path) -> Iterator[None]:
         yield
 
 
-def run(layout: Layout, cores: int, profile: str | None = None, watch: Callable[[int, int], object] | None = None) -> None:
+def run_layout(layout: Layout, cores: int, profile: str | None = None, watch: Callable[[int, int], object] | None = None) -> None:
     """Let Snakemake run the batches of a sweep and collect them.
 
     Args:
@@ -295,5 +295,5 @@ def sweep(
         folder = Path(out) if out is not None else Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="fingerpad-")))
         stack.enter_context(held(folder))
         layout = lay_out(load_sweep({"over": over, **more}, folder.name if out else "sweep", base), folder, cores)
-        run(layout, cores, profile)
+        run_layout(layout, cores, profile)
         return xr.load_dataset(folder / "sweep.nc", engine="netcdf4")

@@ -19,7 +19,7 @@ MEMORY_MB = 400.0
 """Of a process before its first scene."""
 BATCH_S = 60.0
 """What a batch should cost at least; a sweep that has fewer of these than cores is divided further, down to LEAST_S."""
-LEAST_S = 15.0
+LEAST_S = 8.0
 MOST_BATCHES = 1000
 """Of a sweep: schedulers and Snakemake are slow with more."""
 

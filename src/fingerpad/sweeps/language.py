@@ -427,10 +427,9 @@ class Read:
             most = max(map(len, keys.values()))
             # a bare number says nothing
             least = next((n for n in range(1, len(parts) + 1) if not parts[-n].isdigit()), len(parts))
-            short = ("_".join(parts[-n:]) for n in range(least, most + 1))
-            others = [other for other in keys if other != key]
-            own = next((name for name in short if not any("_".join(keys[o]).endswith(name) for o in others)), "_".join(parts))
-            found[key] = self.sweep.over[key].name or own
+            others = [words for other, words in keys.items() if other != key]
+            enough = (n for n in range(least, most + 1) if not any(words[-n:] == parts[-n:] for words in others))
+            found[key] = self.sweep.over[key].name or "_".join(parts[-next(enough, most) :])
         return found
 
 

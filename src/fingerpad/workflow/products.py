@@ -31,6 +31,8 @@ UNTOLD = ("files", "scene_files", "measured", "written")
 """Inputs that a job finds by itself, beside others or named in them, and what only says when to run it again."""
 
 
+ALL_CORES = 1000
+"""Threads of a job that fills the machine; Snakemake gives it as many as there are."""
 READ_BACK = {"history", "histories", "cases", "sweep"}
 """Inputs that are histories."""
 
@@ -58,6 +60,7 @@ class Job:
     mem_mb: int = 1000
     runtime: int = 10
     priority: int = 0
+    threads: int = 1
 
     @property
     def sources(self) -> list[str]:
@@ -558,11 +561,29 @@ class Products:
         files = [self.thesis_specimen(), self.at("config/specimens/homogeneous.yaml")]
         return [Job("peers_table", "peers", {"files": files}, {"table": self.tables(["peers"])}, category="Tables", mem_mb=2000)]
 
+    def map_of_touch(self) -> list[Job]:
+        """A sweep over curvature, force and rate."""
+        return self._published_sweep("map_of_touch", {})
+
+    def five_hundred_fingers(self) -> list[Job]:
+        """A sweep over what is not known of a finger."""
+        return self._published_sweep("five_hundred_fingers", {"table": self.tables(["five_hundred_fingers"])})
+
+    def _published_sweep(self, name: str, more: dict[str, list[str]]) -> list[Job]:
+        file, folder = self.at(f"config/sweeps/{name}.yaml"), f"results/sweeps/{name}"
+        made = {"dataset": [f"{folder}/sweep.nc"]}
+        run = ("fingerpad.sweeps.batch", "fingerpad.workflow.jobs.sweep_batch", "fingerpad.workflow.jobs.sweep_collect")
+        read = {"sweep": [file], "files": [self.thesis_specimen()]}
+        table = f"{folder}/sweep.csv"
+        sweep = Job(f"sweep_{name}", "sweep", read, made, modules=run, also=[table], mem_mb=2000, runtime=120, threads=ALL_CORES)
+        made = {"picture": self.pictures([name])} | more
+        return [sweep, Job(name, name, {"scenes": [table]}, made, {}, (), "Studies", "study")]
+
     def jobs(self) -> list[Job]:
         """All of them."""
         parts = (
             self.simulations, self.figures, self.catalogue, self.animations, self.all_tables, self.meanings, self.calibration,
-            self.ridges, self.accuracy, self.stability, self.effects, self.peers,
+            self.ridges, self.accuracy, self.stability, self.effects, self.peers, self.map_of_touch, self.five_hundred_fingers,
         )  # fmt: skip
         jobs = [job for part in parts for job in part()]
         # a scene read back from a history is filled up with the thesis's specimen, though it lacks nothing

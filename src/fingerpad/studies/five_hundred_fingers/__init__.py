@@ -1,0 +1,1 @@
+"""Five hundred fingers: what of a finger matters, and for what."""

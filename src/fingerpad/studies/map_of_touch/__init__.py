@@ -1,0 +1,1 @@
+"""A map of touch: how curved, how hard, how fast."""
