@@ -13,12 +13,13 @@ WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help setup figures smoke test bench lint report specimens regression-update schemas adopt unlock clean
+.PHONY: help setup figures studies smoke test bench lint report specimens regression-update schemas adopt unlock clean
 
 help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
 	@echo "make test               set up, then run the tests"
 	@echo "make smoke              set up, then the same workflow with config/smoke.yaml (coarse, under results/smoke)"
+	@echo "make studies            set up, then run the studies of accuracy, stability, effects and peers anew"
 	@echo "make bench              set up, then measure and print the benchmark table"
 	@echo "make report             pack the figures, their captions and the run's statistics into results/report.zip"
 	@echo "make specimens          calibrate, and take the calibrated specimens over into config/specimens"
@@ -45,6 +46,9 @@ $(INSTALLED): requirements.lock pyproject.toml workflow/scripts/system_libraries
 
 figures: $(INSTALLED)
 	$(SNAKEMAKE)
+
+studies: $(INSTALLED)
+	$(SNAKEMAKE) accuracy stability effects peers
 
 smoke: $(INSTALLED)
 	$(SNAKEMAKE) --configfile config/smoke.yaml
