@@ -8,7 +8,8 @@ another model's in panels of their own. A user's recordings under the same proto
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ import pandas as pd
 
 from fingerpad.figures import axes as axs
 from fingerpad.figures.chapter4 import HOLD, K210, by_surface
-from fingerpad.figures.grammar import Data, Figure, Own, below, nine
+from fingerpad.figures.grammar import Data, Figure, Own, Panels, below, nine
 from fingerpad.measures.features import (
     ERROR,
     PRESSURE,
@@ -29,7 +30,6 @@ from fingerpad.measures.features import (
     error_percent,
     force_gf,
     is_simulated,
-    peak_pressure,
     ramp_end,
     surface_nodes,
 )
@@ -75,6 +75,7 @@ from fingerpad.measures.responses import (
     straight_line,
 )
 from fingerpad.measures.runs import FAST, LOWER, NINE
+from fingerpad.measures.table import reading
 from fingerpad.publishing import style
 from fingerpad.receptors.fits import gain_and_threshold, r_squared
 from fingerpad.receptors.laws import THESIS_RATE, rectified
@@ -95,9 +96,11 @@ LAW_NOTE = (
 )
 DEEP = f"{LAW_NOTE}, 915 µm under the centre."
 STEADY_NOTE = f"{DEEP} Steady: mean of the last half of the hold."
-PUBLISHED, HALF_SPACE = "monkey, spheres; ours: cylinders", "half-space; ours: layered pad"
+GOODWIN = "Goodwin 1995, first second", "monkey, spheres; ours: cylinders"
+HALF_SPACE = "half-space; ours: layered pad"
+PEAK_WORDS = "peak rate (impulses/s)"
 OF_THE_LARGEST = "of what is plotted, relative to the largest"
-PEAK, STEADY, HELD = (partial(rate_in, window=window) for window in ("peak", "steady", "hold"))
+PEAK, STEADY, HELD = (reading("rate", window) for window in ("peak", "steady", "hold"))
 
 # --- rows ------------------------------------------------------------------------------------------------
 
@@ -246,7 +249,7 @@ def energy_by_pressure(data: Data) -> pd.DataFrame:
 
 def peaks_over_pressure(data: Data) -> pd.DataFrame:
     """Predicted peak rate and largest pressure at any node, one row a surface, and the line through them; recorded peak rates."""
-    rows = data.numbers(NINE, {P_PEAK: lambda d: float(peak_pressure(d).max()), GIVEN_RATE: PEAK})
+    rows = data.numbers(NINE, {P_PEAK: reading("highest_pressure", "highest"), GIVEN_RATE: PEAK})
     mine = given(data, "peak", 40)
     if len(mine):
         mine[P_PEAK] = np.interp(mine[CURVATURE], rows[CURVATURE], rows[P_PEAK])
@@ -303,7 +306,10 @@ def peak_rates(data: Data) -> pd.DataFrame:
     parts = []
     for depth in (SHALLOW_DEPTH, RECEPTOR_DEPTH):
         law, factor = shallow_law(NINE.histories(data.histories)) if depth == SHALLOW_DEPTH else (THESIS_RATE, 1.0)
-        columns = {GIVEN_RATE: partial(PEAK, depth=depth, law=law), RATE: partial(peak_energy_rate, depth=depth)}
+        columns = {
+            GIVEN_RATE: partial(rate_in, window="peak", depth=depth, law=law),
+            RATE: partial(peak_energy_rate, depth=depth),
+        }
         rows = data.numbers(NINE, columns).assign(panel=f"{depth * 1e6:.0f} um")
         slope, offset, share = straight_line(rows[RATE], rows[GIVEN_RATE])
         parts.append(rows.assign(source=f"{SIMULATED}: Eq 5-1, energies times {factor:.3f}"))
@@ -334,7 +340,6 @@ def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
     if column not in frame:
         return
     rows = frame[frame["source"].str.contains(r"stated in the thesis|^measured")]
-    rows = rows[rows["panel"].isna()] if "panel" in rows else rows
     printed = rows["source"].str.startswith("stated")
     for mine, look, label in (
         (rows[printed], {"marker": "s", "mfc": "none", "mec": style.INK}, "printed in the thesis (scan)"),
@@ -350,10 +355,6 @@ def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
 def source_text(rows: pd.DataFrame) -> str:
     """What follows the colon in the source of some simulated rows."""
     return rows["source"].iloc[0].partition(": ")[2].replace("R2", "R²")
-
-
-def of_panel(frame: pd.DataFrame, name: str) -> pd.DataFrame:
-    return frame[frame["panel"] == name] if "panel" in frame else frame[:0]
 
 
 def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
@@ -373,7 +374,7 @@ def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     for k in range(8):
         ax.axhline(k + 0.5, color="0.9", lw=0.6, zorder=0)
     outside = {"transform": ax.get_yaxis_transform(), "ha": "right"}
-    rows = of_panel(frame, "mean rate of the hold")
+    rows = frame[frame["panel"] == "mean rate of the hold"]
     for label, rate in zip(rows["surface"], rows[GIVEN_RATE], strict=True):
         ax.text(1.062, place[label], f"{rate:.1f}", va="center", color=style.COLOURS[label], **outside)
     curvatures = rows.set_index("surface")[CURVATURE]
@@ -406,10 +407,9 @@ def nine_frequencies(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     stamp(ax, "predicted, not recorded", y=0.97, va="top")
 
 
-def points_and_line(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def points_and_line(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """Named points of nine surfaces, the line through them, and recordings if there are any."""
-    ax, x, y = fig.subplots(), spec.x, spec.y[0]
-    axs.wide_limits(ax, frame, x, y)
+    x, y = spec.x, spec.y[0]
     line = frame[frame["source"].str.contains("line")]
     ax.plot(line[x], line[y], color=style.GREY, lw=1, label=source_text(line))
     own = frame[frame["source"] == SIMULATED]
@@ -418,9 +418,6 @@ def points_and_line(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     mine = frame[frame["source"].str.startswith("measured")]
     if len(mine):
         ax.plot(mine[x], mine[y], "D", color=style.INK, ms=4.5, label="recorded")
-    words = {GIVEN_RATE: "peak rate (impulses/s)"}
-    ax.set(xlabel=words.get(x, x.label), ylabel=words.get(y, y.label))
-    ax.legend(loc="upper left")
     stamp(ax)
 
 
@@ -438,10 +435,8 @@ def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
         ax.annotate(", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=7, color=style.GREY, **how)
 
 
-def peak_and_steady_over_curvature(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Peak (triangles) and steady rate (crosses) against curvature, dotted, with their lines."""
-    ax = fig.subplots()
-    axs.wide_limits(ax, frame, CURVATURE, GIVEN_RATE)
+def peak_and_steady_over_curvature(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+    """Peak (triangles) and steady rate (crosses), dotted, with their lines."""
     own = frame[frame["source"] == SIMULATED]
     for column, marker, name in ((GIVEN_RATE, "^", "peak"), (STEADY_RATE, "P", "steady")):
         ax.plot(own[CURVATURE], own[column], ":", color=style.GREY, lw=0.9)
@@ -452,7 +447,6 @@ def peak_and_steady_over_curvature(fig: Picture, frame: pd.DataFrame, spec: Figu
         end = line.iloc[-1]
         ax.annotate(f"{name}: {source_text(line)}", (end[CURVATURE], end[column]), (0, 5), textcoords="offset points",
                     ha="right", fontsize=7, color=style.INK)  # fmt: skip
-    ax.set(xlabel="surface curvature (1/m)", ylabel="impulse rate (impulses/s)")
     kinds = [style.handle(f"{name} rate", ls="none", marker=m, color=style.INK) for m, name in (("^", "peak"), ("P", "steady"))]
     ax.legend(handles=kinds + ax.get_legend_handles_labels()[0][:1], loc="upper left")
     stamp(ax)
@@ -512,23 +506,51 @@ def constants_note(frame: pd.DataFrame) -> str:
     return f"Points simulated; lines by Eq. 4-4 with one set of constants for all nine surfaces: {constants}."
 
 
-def rates_by_pressure(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Left: rates by Eq 5-1 and by the pressure; right: Goodwin's rates and by the pressure."""
-    ax, right = fig.subplots(1, 2, width_ratios=[1.55, 1])
-    main = frame[frame["panel"].isna()] if "panel" in frame else frame
-    axs.wide_limits(ax, main, CURVATURE, GIVEN_RATE)
-    law = main[main["source"].str.contains("linear")]
-    ax.plot(law[CURVATURE], law[GIVEN_RATE], color=style.INK, lw=1.1, label=source_text(law))
-    ax.plot([], [], "o", color=style.GREY, label="Eq. 5-1, predicted from strain energy")
-    points(ax, main[main["source"].str.contains("Eq 5-1")], CURVATURE, GIVEN_RATE)
-    draw_given(ax, main)
-    ax.set(xlabel=CURVATURE.label, ylabel=GIVEN_RATE.label)
-    ax.legend(loc="upper left")
+@dataclass(frozen=True, kw_only=True)
+class Beside:
+    """Panels of predicted rates (values of ``panel``; None: what is in none), and at their right rates of others, with ours."""
+
+    height: float
+    fill: Callable[[Axes, pd.DataFrame], None]
+    ratios: Sequence[float]
+    others: Mapping[str, tuple[str, str]]
+    names: Sequence[str | None] = (None,)
+    legend: Mapping[str, object] = field(default_factory=lambda: {"loc": "upper left"})
+    ylabel: str = GIVEN_RATE.label
+    header: float = 0.0
+
+    def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
+        frame = frame if "panel" in frame else frame.assign(panel=np.nan)
+        axes = fig.subplots(1, len(self.ratios), width_ratios=self.ratios)
+        for ax, tag, name in zip(axes, "ab", self.names, strict=False):
+            ranges = frame["source"].str.contains("axis range")
+            rows = frame[frame["panel"].isna() if name is None else (frame["panel"] == name) | ranges]
+            axs.wide_limits(ax, rows, CURVATURE, GIVEN_RATE)
+            self.fill(ax, rows)
+            ax.set(xlabel=CURVATURE.label, title=f"({tag}) {name.replace('um', 'µm')}" if name else "")
+            ax.legend(**self.legend)
+        axes[0].set_ylabel(self.ylabel)
+        for ax, (name, words) in zip(axes[len(self.names) :], self.others.items(), strict=True):
+            beside(ax, frame[frame["panel"] == name], *words)
+        return {}
+
+
+def points_and_law(ax: Axes, rows: pd.DataFrame, words: str = "predicted by Eq. 5-1") -> None:
+    """Points by Eq 5-1, and a linear function as a line."""
+    line = rows[rows["source"].str.contains("linear")]
+    label = source_text(line).replace("peak energy", "peak\nenergy")
+    ax.plot(line[CURVATURE], line[GIVEN_RATE], color=style.INK, lw=1.1, label=label)
+    ax.plot([], [], "o", color=style.GREY, label=words)
+    points(ax, rows[rows["source"].str.contains("Eq 5-1")], CURVATURE, GIVEN_RATE)
+    draw_given(ax, rows)
+
+
+def stamped_law(ax: Axes, rows: pd.DataFrame) -> None:
+    points_and_law(ax, rows, "Eq. 5-1, predicted from strain energy")
     stamp(ax)
-    beside(right, of_panel(frame, "published"), "Goodwin 1995, first second")
 
 
-def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str = PUBLISHED) -> None:
+def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str) -> None:
     """A panel of rates measured elsewhere or of another model (points), with ours (lines)."""
     ax.set_title(f"{title}\n{mismatch}", fontsize=7.5)
     if rows.empty:
@@ -550,25 +572,14 @@ def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str = PUBLISHED) 
     ax.legend(loc="upper left", fontsize=7, handlelength=1.6, borderaxespad=0.2, labelspacing=0.3)
 
 
-def draw_rates(ax: Axes, frame: pd.DataFrame) -> None:
-    """Predicted rates against curvature on the thesis's axes, with what was recorded under the same protocol."""
-    axs.wide_limits(ax, frame, CURVATURE, GIVEN_RATE)
+def draw_rates(ax: Axes, frame: pd.DataFrame, spec: Figure | None = None) -> None:
+    """Predicted rates against curvature, with what was recorded under the same protocol."""
     own = frame[is_simulated(frame) & frame["surface"].notna()]
     ax.plot(own[CURVATURE], own[GIVEN_RATE], color=style.GREY, lw=0.9, zorder=1)
     ax.plot([], [], "o-", color=style.GREY, lw=0.9, label="predicted by Eq. 5-1")
     points(ax, own, CURVATURE, GIVEN_RATE)
     draw_given(ax, frame)
-    ax.set(xlabel=CURVATURE.label, ylabel=GIVEN_RATE.label)
-    ax.legend(loc="upper left")
     stamp(ax, "points: predicted")
-
-
-def rates_and_others(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Predicted rates, beside published and another model's."""
-    ax, middle, right = fig.subplots(1, 3, width_ratios=[1.7, 1, 1])
-    draw_rates(ax, frame[frame["panel"].isna()])
-    beside(middle, of_panel(frame, "published"), "Goodwin 1995, first second")
-    beside(right, of_panel(frame, "TouchSim"), "TouchSim, steady", HALF_SPACE)
 
 
 def others_note(frame: pd.DataFrame, depth: str) -> str:
@@ -581,24 +592,6 @@ def others_note(frame: pd.DataFrame, depth: str) -> str:
     )
 
 
-def peaks_by_energy_rate(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """(a) 600 um, (b) 915 um, and TouchSim's early rates."""
-    axes = fig.subplots(1, 3, width_ratios=[1.25, 1.25, 1])
-    for ax, tag, panel in zip(axes, "ab", ("600 um", "915 um"), strict=False):
-        rows = frame[(frame["panel"] == panel) | frame["source"].str.contains("axis range")]
-        axs.wide_limits(ax, rows, CURVATURE, GIVEN_RATE)
-        line = rows[rows["source"].str.contains("linear")]
-        label = source_text(line).replace("peak energy", "peak\nenergy")
-        ax.plot(line[CURVATURE], line[GIVEN_RATE], color=style.INK, lw=1.1, label=label)
-        ax.plot([], [], "o", color=style.GREY, label="predicted by Eq. 5-1")
-        points(ax, rows[rows["source"].str.contains("Eq 5-1")], CURVATURE, GIVEN_RATE)
-        draw_given(ax, rows.drop(columns="panel"))
-        ax.set(xlabel=CURVATURE.label, title=f"({tag}) {panel.replace('um', 'µm')}")
-        ax.legend(loc="lower right", fontsize=7, handlelength=1.4)
-    axes[0].set_ylabel("peak rate (impulses/s)")
-    beside(axes[2], of_panel(frame, "TouchSim"), "TouchSim, first 200 ms", HALF_SPACE)
-
-
 def energy_rate_note(frame: pd.DataFrame) -> str:
     scale = source_text(frame[frame["source"].str.contains("energies")]).partition("times ")[2]
     return (
@@ -609,17 +602,24 @@ def energy_rate_note(frame: pd.DataFrame) -> str:
     )
 
 
-def of_rates(number: str, title: str, rows, height: float, paint, thesis: Mapping, runs=NINE, **options) -> Figure:
+def of_rates(number: str, title: str, rows, layout, thesis: Mapping, runs=NINE, **options) -> Figure:
     """A figure of rates over curvature, or of one rate over another."""
     options = {"how": OF_THE_LARGEST, "measured": RATES, "remarks": (DEEP,), "x": CURVATURE, "y": (GIVEN_RATE,)} | options
-    return Figure(number, title, runs, thesis=thesis, layout=Own(height=height, paint=paint), rows=rows, **options)
+    return Figure(number, title, runs, thesis=thesis, layout=layout, rows=rows, **options)
+
+
+def points_of(fill, legend: bool = True, **options) -> Panels:
+    """One panel of points, on axes that hold all of them."""
+    return Panels(height=4.6, limit="wide", fill=fill, legend={"loc": "upper left"} if legend else None, **options)
 
 
 def from_depth(number: str, depth: float, axis: str) -> Figure:
     """Figs 4-26 and 4-27."""
     words = f"{depth * 1e6:.0f} µm"
     title = f"Predicted mean rate of the hold from strain energy at {words}, 40 gf/s"
-    return of_rates(number, title, partial(mean_rates, depth=depth), 4.4, rates_and_others,
+    return of_rates(number, title, partial(mean_rates, depth=depth),
+                    Beside(height=4.4, fill=draw_rates, ratios=(1.7, 1, 1),
+                           others={"published": GOODWIN, "TouchSim": ("TouchSim, steady", HALF_SPACE)}),
                     {GIVEN_RATE: axis, CURVATURE: "T202"}, (NINE, *LOWER.values()),
                     note=note_with(partial(others_note, depth=words), OF_THE_LARGEST))  # fmt: skip
 
@@ -636,9 +636,12 @@ FIGURES = (
            how="of the peak rate, relative to the largest",
            remarks=(f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses (integrate-and-fire, "
                     f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",)),
-    of_rates("4-4", "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf", steady_over_peak, 4.6, points_and_line,
+    of_rates("4-4", "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf", steady_over_peak,
+             points_of(points_and_line, xlabel=PEAK_WORDS),
              {GIVEN_RATE: "T094", STEADY_RATE: "T095"}, x=GIVEN_RATE, y=(STEADY_RATE,), remarks=(STEADY_NOTE,)),
-    of_rates("4-5", "Predicted peak and steady rates against curvature", over_curvature, 4.6, peak_and_steady_over_curvature,
+    of_rates("4-5", "Predicted peak and steady rates against curvature", over_curvature,
+             points_of(peak_and_steady_over_curvature, False, xlabel="surface curvature (1/m)",
+                       ylabel="impulse rate (impulses/s)"),
              {GIVEN_RATE: "T096", CURVATURE: "T162"}, remarks=(STEADY_NOTE,)),
     Figure("4-9", "Predicted rate against the inverse of the contact width in the hold", NINE, INVERSE_WIDTH, (IMPULSE_RATE,),
            {INVERSE_WIDTH: by_surface("T106 T108 T110 T112 T114 T115 T116 T118 T120"),
@@ -649,9 +652,11 @@ FIGURES = (
            {TIME: "T155", P: "T154"}, Own(height=6.9, header=0.2, paint=twelve_nodes), rows=nodes_by_law,
            remarks=("Eq. 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the edge's) + A3, from the peak "
                     "of a node on; constants by least squares. Nodes count from one spacing inside the edge on.",)),
-    of_rates("4-18", "Predicted peak rate against peak contact pressure", peaks_over_pressure, 4.6, points_and_line,
+    of_rates("4-18", "Predicted peak rate against peak contact pressure", peaks_over_pressure,
+             points_of(points_and_line, ylabel=PEAK_WORDS),
              {P_PEAK: "T159", GIVEN_RATE: "T160"}, x=P_PEAK),
-    of_rates("4-19", "Mean rate from mean contact pressure, against curvature", linear_in_pressure, 4.3, rates_by_pressure,
+    of_rates("4-19", "Mean rate from mean contact pressure, against curvature", linear_in_pressure,
+             Beside(height=4.3, fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
              {GIVEN_RATE: "T161", CURVATURE: "T162"},
              remarks=(f"{DEEP} Left: mean over the hold, as in the thesis, whose recorded rates are not public. Right: Goodwin, "
                       "Browning and Wheat (1995), digitised by a third party, impulses in the first second at 20 gf; gain and "
@@ -660,13 +665,16 @@ FIGURES = (
            {SED: by_surface("T181 T182 T183 T184 T185 T186 T187a T187b T187c")},
            nine(SURFACES, 6.8, fill=energy_and_law, limit="y", set=HOLD), rows=energy_by_pressure,
            note=note_with(constants_note)),
-    of_rates("4-25", "Predicted mean rate of the hold, 150 gf/s ramp to 20 gf", held_rates, 4.6,
-             lambda fig, frame, spec: draw_rates(fig.subplots(), frame), {GIVEN_RATE: "T201", CURVATURE: "T202"}, FAST,
+    of_rates("4-25", "Predicted mean rate of the hold, 150 gf/s ramp to 20 gf", held_rates,
+             points_of(draw_rates), {GIVEN_RATE: "T201", CURVATURE: "T202"}, FAST,
              remarks=(f"{DEEP[:-1]}; nothing is fitted here. Squares: mean rates printed beside Fig. 4-2 of Cysyk (1999), read "
                       "from a scan (17.0 without its point); a bar joins the two surfaces that a rate may belong to.",)),
     from_depth("4-26", RECEPTOR_DEPTH, "T203"),
     from_depth("4-27", SHALLOW_DEPTH, "T204"),
-    of_rates("4-29", "Predicted peak rate, and from the peak rate of strain energy, against curvature", peak_rates, 4.4,
-             peaks_by_energy_rate, {GIVEN_RATE: "T207", CURVATURE: "T208"}, (NINE, FAST),
+    of_rates("4-29", "Predicted peak rate, and from the peak rate of strain energy, against curvature", peak_rates,
+             Beside(height=4.4, fill=points_and_law, ratios=(1.25, 1.25, 1), names=("600 um", "915 um"),
+                    others={"TouchSim": ("TouchSim, first 200 ms", HALF_SPACE)}, ylabel="peak rate (impulses/s)",
+                    legend={"loc": "lower right", "fontsize": 7, "handlelength": 1.4}),
+             {GIVEN_RATE: "T207", CURVATURE: "T208"}, (NINE, FAST),
              note=note_with(energy_rate_note, OF_THE_LARGEST)),
 )  # fmt: skip

@@ -46,24 +46,19 @@ from fingerpad.measures.quantities import (
     Y,
     sed,
 )  # fmt: skip
-from fingerpad.measures.responses import curvature_of
 from fingerpad.measures.runs import NINE, SPEEDS, STEPPED_OVER, SUB_SPEEDS, WITHIN_400, Runs
 from fingerpad.measures.skin import skin_curvature
 from fingerpad.measures.strokes import (
     LOCATIONS,
     NODES,
-    contact_lengths,
-    convexities,
     distance,
-    energy_at,
-    label_errors,
     loaded,
     nodes_at,
-    peaks,
     profile_and_height,
     rms_error,
     time_of,
 )
+from fingerpad.measures.table import reading
 from fingerpad.publishing import style
 
 if TYPE_CHECKING:
@@ -88,13 +83,9 @@ TOP_OF_STRETCH = -0.5  # mm, where the thesis's axis of Fig 5-15 begins
 
 def lengths(data: Data) -> pd.DataFrame:
     """Stroke distance over which the centre node touches each convexity, at every velocity."""
-    parts = []
-    for series, history, coarse in data.runs(SPEEDS):
-        found, errors = contact_lengths(loaded(history)), label_errors(history, coarse, contact_lengths)
-        exact = [arc.curvature for arc in convexities(history).values()]
-        part = {"series": series, CURVATURE: exact, RADIUS: [1e3 / k for k in exact]}
-        parts.append(pd.DataFrame(part | {LENGTH: [v * 1e3 for v in found.values()], ERROR: list(errors.values())}))
-    return pd.concat(parts, ignore_index=True)
+    rows = data.convexities(SPEEDS, {LENGTH: "contact_length"}).drop(columns="convexity")
+    rows.insert(2, RADIUS, 1e3 / rows[CURVATURE])
+    return rows
 
 
 def locations(data: Data, runs: Runs) -> pd.DataFrame:
@@ -139,37 +130,21 @@ def nodes_over_time(data: Data) -> pd.DataFrame:
 
 def largest_energies(data: Data) -> pd.DataFrame:
     """Largest strain energy at 915 um for each curvature: pressed by cylinders, and stroked at 10 mm/s."""
-    peak, rows = energy_at(DEEP), []
-    for _, history, coarse in data.runs(PRESSED):
-        error = error_percent(history, coarse, lambda d: float(peak(d).max()))
-        rows.append(("ramp and hold", curvature_of(history), float(peak(history).max()), error))
-    ((_, history, coarse),) = data.runs(TEN_RUN)
-    read = partial(peaks, trace=peak)
-    found, errors = read(loaded(history)), label_errors(history, coarse, read)
-    rows += [(TEN, arc.curvature, found[k], errors[k]) for k, arc in convexities(history).items() if k in found]
-    return pd.DataFrame(rows, columns=["series", CURVATURE, SED, ERROR])
+    pressed = data.numbers(PRESSED, {SED: reading("highest_energy", "915 um")}, own=True).assign(series="ramp and hold")
+    stroked = data.convexities(TEN_RUN, {SED: "convexity_energy"})
+    return pd.concat([pressed, stroked])[["series", CURVATURE, SED, ERROR]]
 
 
 # --- what layouts do not say -----------------------------------------------------------------------------
 
 
-def of_series(frame: pd.DataFrame, series: str) -> pd.DataFrame:
-    return frame[is_simulated(frame) & (frame["series"] == series)]
-
-
-def two_lengths(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Contact length against (a) curvature and (b) radius."""
-    rows = frame[is_simulated(frame)]
-    for ax, tag, x in zip(fig.subplots(2, 1), "ab", (CURVATURE, RADIUS), strict=True):
-        axs.limit_axes(ax, frame, x, LENGTH)
-        extent = rows.groupby(x)[LENGTH].agg(["min", "max"])
-        ax.fill_between(
-            extent.index, extent["min"], extent["max"], color=style.SPEED_COLOURS["10"], alpha=0.25, lw=0, label="1 to 40 mm/s"
-        )
-        line = of_series(frame, TEN).sort_values(x)
-        ax.plot(line[x], line[LENGTH], color=style.INK, marker="o", ms=3, label=TEN)
-        ax.set(xlabel=x.label, ylabel=LENGTH.label, title=f"({tag})")
-    ax.legend(loc="lower right")
+def at_ten(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+    """The range over the velocities, and one of them."""
+    rows, (y,) = frame[is_simulated(frame)], spec.y
+    extent = rows.groupby(spec.x)[y].agg(["min", "max"])
+    ax.fill_between(extent.index, *extent.to_numpy().T, color=style.SPEED_COLOURS["10"], alpha=0.25, lw=0, label="1 to 40 mm/s")
+    line = rows[rows["series"] == TEN].sort_values(spec.x)
+    ax.plot(line[spec.x], line[y], color=style.INK, marker="o", ms=3, label=TEN)
 
 
 def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
@@ -243,18 +218,6 @@ def from_half_a_millimetre(panels: Mapping[object, Axes], frame: pd.DataFrame) -
     ax.text(2.0, TOP_OF_STRETCH - 0.02, "from 0 at the start,\noff the axis", va="top", fontsize=7, color=style.GREY)
 
 
-def pressed_and_stroked(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Ramp and hold (solid) and stroking (dashed)."""
-    ax = fig.subplots()
-    looks = {"ramp and hold": {"ls": "-", "marker": "o", "color": style.INK}, TEN: RED_DASHED | {"marker": "s"}}
-    for series, look in looks.items():
-        rows = of_series(frame, series)
-        ax.plot(rows[CURVATURE], rows[SED], ms=4, label=f"stroked at {series}" if series == TEN else series, **look)
-    axs.limit_axes(ax, frame, CURVATURE, SED)
-    ax.set(xlabel=CURVATURE.label, ylabel=SED.label)
-    ax.legend(loc="upper left", handlelength=3)
-
-
 def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
     """Figs 5-5 and 5-6."""
     windows = {f"{location:g} mm": id_ for location, id_ in zip(LOCATIONS, ("T235", "T236", "T237"), strict=True)}
@@ -270,8 +233,10 @@ def below(height: float = 4.6, **options) -> Panels:
 
 FIGURES = (
     Figure("5-4", "Length of each convexity in contact with the centre node", SPEEDS, CURVATURE, (LENGTH,),
-           {CURVATURE: "T229", RADIUS: "T230", LENGTH: "T228"}, Own(height=6.0, paint=two_lengths), rows=lengths,
-           remarks=("Recorded burst widths are not available.",)),
+           {CURVATURE: "T229", RADIUS: "T230", LENGTH: "T228"},
+           Panels(height=6.0, pairs=((CURVATURE, LENGTH), (RADIUS, LENGTH)), shape=(2, 1), fill=at_ten,
+                  legend={"loc": "lower right"}),
+           rows=lengths, remarks=("Recorded burst widths are not available.",)),
     at_locations("5-5", "Skin and contact pressure, surface stepped over the pad by 1 mm", STEPPED_OVER, "T240"),
     at_locations("5-6", "Skin and contact pressure, surface stroked over the pad at 10 mm/s", SUB_TEN, "T241"),
     Figure("5-7", "Centre pressure and scaled skin curvature, stepped by 1 mm", STEPPED_OVER, DISTANCE,
@@ -302,7 +267,12 @@ FIGURES = (
            below(4.8, fill=BY_SPEED, limit="x", legend={"loc": "upper right", "ncols": 3, "handlelength": 2.8}),
            surface=(0, 80), extra=from_half_a_millimetre),
     Figure("5-18", "Largest strain energy density 915 µm under the centre", (PRESSED, TEN_RUN), CURVATURE, (SED,),
-           {CURVATURE: "T277", SED: "T276"}, Own(height=4.4, paint=pressed_and_stroked), rows=largest_energies),
+           {CURVATURE: "T277", SED: "T276"},
+           Panels(height=4.4, legend={"loc": "upper left", "handlelength": 3},
+                  fill=Lines(by="series", names={TEN: f"stroked at {TEN}"},
+                             looks={"ramp and hold": {"marker": "o", "ms": 4, "color": style.INK},
+                                    TEN: RED_DASHED | {"marker": "s", "ms": 4}})),
+           rows=largest_energies),
     Figure("5-24", "Strain energy density 560 µm under the centre at five stroking velocities", SPEEDS, DISTANCE, (sed(SHALLOW),),
            {DISTANCE: "T308", SED: "T307"}, stack(7.0), surface=(40, 80), constants={RECEPTOR: SHALLOW * 1e6}),
 )  # fmt: skip

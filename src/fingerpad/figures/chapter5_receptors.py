@@ -8,7 +8,6 @@ into ``config/reference/recordings`` is laid over the bursts.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -18,7 +17,7 @@ import xarray as xr
 
 from fingerpad.figures import axes as axs
 from fingerpad.figures.chapter5 import DEEP, RED_DASHED, SHALLOW, TEN, TEN_RUN
-from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, stack
+from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, below, stack
 from fingerpad.measures.features import ERROR, SIMULATED, error_percent, is_simulated
 from fingerpad.measures.quantities import (
     BURST_RATE,
@@ -42,14 +41,10 @@ from fingerpad.measures.responses import (
     ASIDE,
     SEED,
     STROKES_SHOWN,
-    burst_values,
-    bursts,
-    curvature_of,
     impulses_of,
     mean_frequency,
     plate_rate,
     predicted_rate,
-    ramp_and_hold_rates,
     raster,
     skin_sample,
     skin_shift,
@@ -57,7 +52,8 @@ from fingerpad.measures.responses import (
     stroke_law,
 )
 from fingerpad.measures.runs import CYLINDERS, NINE, RIDGED, SPEEDS, WITHIN_350, Runs
-from fingerpad.measures.strokes import distance, energy_at, label_errors, loaded, rms_error
+from fingerpad.measures.strokes import distance, energy_at, loaded, rms_error
+from fingerpad.measures.table import reading
 from fingerpad.publishing import style
 
 if TYPE_CHECKING:
@@ -73,7 +69,8 @@ RASTER, HISTOGRAM = "raster", "histogram"
 FOUR = SPEEDS.only(("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s"))
 EIGHT = NINE.only(CYLINDERS)
 BURST = "A burst is the time during which the strain energy is above 150 Pa; its rate is the mean predicted rate over that time."
-RESPONSES = {"peak": "ramp and hold, peak", "end of the hold": "ramp and hold, steady state"}
+RESPONSES = {"peak": "ramp and hold, peak", "end": "ramp and hold, steady state"}
+WITHIN = NINE.only(WITHIN_350)
 STROKED = "stroked at 10 mm/s"
 WAYS = {"right": "(a) plate stroked to the right", "left": "(b) plate stroked to the left"}
 RATE_WORDS = "predicted rate\n(impulses/s)"
@@ -143,42 +140,36 @@ def plate_trace(stroke: xr.Dataset, offset: float) -> np.ndarray:
     return predicted_rate(stroke, DEEP, offset=offset).drop_duplicates(TIME, keep="last")[IMPULSE_RATE].to_numpy()
 
 
-def burst_rows(data: Data, runs: Runs, columns: Sequence[Q]) -> pd.DataFrame:
+def burst_rows(data: Data, runs: Runs, columns: Mapping[Q, str]) -> pd.DataFrame:
     """Burst of each convexity at some velocities, and a user's recorded ones, for none is public."""
-    parts = []
-    for series, history, coarse in data.runs(runs):
-        found = bursts(loaded(history))
-        errors = [list(label_errors(history, coarse, partial(burst_values, column=c)).values()) for c in columns]
-        with np.errstate(all="ignore"):
-            error = np.fmax.reduce(np.array(errors, float))
-        part = {"source": PREDICTED, "series": series, "panel": series, SPEED: float(series.split()[0])}
-        part |= {"convexity": found["convexity"]} | {c: found[c] for c in (CURVATURE, *columns)}
-        parts.append(pd.DataFrame(part | {ERROR: error}))
-    if (rates := data.measured) is not None:
-        names = rates["speed_mm_per_s"].map("{:g} mm/s".format)
-        rows = rates[(rates["window"] == "burst") & (rates["receptor"] == "SA-I") & names.isin(list(runs))]
-        found = {
-            BURST_RATE: rows["rate_per_s"],
-            BURST_WIDTH: rows["burst_width_mm"],
-            BURST_TIME: rows["burst_width_mm"] / rows["speed_mm_per_s"],
-        }
-        part = {"source": "measured (" + rows["recording"] + ")", "series": names[rows.index], "panel": names[rows.index]}
-        part |= {SPEED: rows["speed_mm_per_s"], CURVATURE: rows["curvature_per_m"]} | {c: found[c] for c in columns}
-        parts += [pd.DataFrame(part)] if len(rows) else []
-    return pd.concat(parts, ignore_index=True)
+    own = data.convexities(runs, columns)
+    own.insert(1, SPEED, own["series"].str.removesuffix(" mm/s").astype(float))
+    own.insert(1, "panel", own["series"])
+    own.insert(0, "source", PREDICTED)
+    if (rates := data.measured) is None:
+        return own
+    names = rates["speed_mm_per_s"].map("{:g} mm/s".format)
+    rows = rates[(rates["window"] == "burst") & (rates["receptor"] == "SA-I") & names.isin(list(runs))]
+    found = {
+        BURST_RATE: rows["rate_per_s"],
+        BURST_WIDTH: rows["burst_width_mm"],
+        BURST_TIME: rows["burst_width_mm"] / rows["speed_mm_per_s"],
+    }
+    part = {"source": "measured (" + rows["recording"] + ")", "series": names[rows.index], "panel": names[rows.index]}
+    part |= {SPEED: rows["speed_mm_per_s"], CURVATURE: rows["curvature_per_m"]} | {c: found[c] for c in columns}
+    return below(own, pd.DataFrame(part))
 
 
 def stroked_and_pressed(data: Data) -> pd.DataFrame:
     """Predicted rates against curvature: mean of the burst when stroked, peak and steady state when pressed."""
-    rows = []
-    for _, history, coarse in data.runs(NINE.only(WITHIN_350)):
-        found = ramp_and_hold_rates(history)
-        for key, series in RESPONSES.items():
-            error = error_percent(history, coarse, lambda d, key=key: ramp_and_hold_rates(d)[key])
-            rows.append((PREDICTED, series, curvature_of(history), found[key], error))
-    frame = pd.DataFrame(rows, columns=["source", "series", CURVATURE, IMPULSE_RATE, ERROR])
-    burst = burst_rows(data, TEN_RUN, (BURST_RATE,)).rename(columns={BURST_RATE: IMPULSE_RATE})
-    return pd.concat([frame, burst.drop(columns=["panel", "convexity", SPEED]).assign(series=STROKED)], ignore_index=True)
+    parts = [
+        data.numbers(WITHIN, {IMPULSE_RATE: reading("rate", at)}, own=True).assign(source=PREDICTED, series=series)
+        for at, series in RESPONSES.items()
+    ]
+    pressed = pd.concat(parts).sort_index(kind="stable")
+    burst = burst_rows(data, TEN_RUN, BURST_RATES).rename(columns={BURST_RATE: IMPULSE_RATE}).assign(series=STROKED)
+    columns = ["source", "series", CURVATURE, IMPULSE_RATE, ERROR]
+    return pd.concat([pressed[columns], burst[columns]], ignore_index=True)
 
 
 def by_pressure(data: Data) -> pd.DataFrame:
@@ -219,7 +210,7 @@ def pressed_rates(data: Data) -> pd.DataFrame:
     """Rate by Eq 5-1 over time for eight cylinders pressed at 40 gf/s and held."""
     parts = []
     for label, history, coarse in data.runs(EIGHT):
-        error = error_percent(history, coarse, lambda d: ramp_and_hold_rates(d)["peak"])
+        error = error_percent(history, coarse, reading("rate", "peak"))
         part = {"source": PREDICTED, "surface": label, **predicted_rate(history)[[TIME, IMPULSE_RATE, STATIC]]}
         parts.append(pd.DataFrame(part | {ERROR: error}))
     return pd.concat(parts, ignore_index=True)
@@ -256,15 +247,15 @@ def ticks_below_surface(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None
 def plate_both_ways(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     """Ten predicted rasters each way, and their rate below."""
     (*ticks,), (*rates,) = fig.subplots(2, 2, sharex=True, sharey="row", height_ratios=[1.6, 1])
-    for way, top, below in zip(WAYS, ticks, rates, strict=True):
+    for way, top, bottom in zip(WAYS, ticks, rates, strict=True):
         rows = frame[frame["series"] == way]
         draw_raster(top, rows, STROKES_SHOWN["5-27"])
         rate = rows[rows["panel"] == "rate"]
-        below.plot(rate[DISTANCE], rate[IMPULSE_RATE], color=style.INK, lw=1.2)
+        bottom.plot(rate[DISTANCE], rate[IMPULSE_RATE], color=style.INK, lw=1.2)
         if not (rows["panel"] == RASTER).any():
             top.text(0.5, 0.5, "no impulse predicted", transform=top.transAxes, ha="center", color=style.GREY)
         top.set_title(WAYS[way])
-        below.set(xlabel="stroke distance (mm)", xlim=(0, 50))
+        bottom.set(xlabel="stroke distance (mm)", xlim=(0, 50))
     rates[0].set_ylim(0, None)
     ticks[1].set_ylabel("")
     rates[0].set_ylabel(RATE_WORDS)
@@ -277,65 +268,26 @@ def plate_note(frame: pd.DataFrame) -> list[str]:
     return [*own, equation().replace("under the centre", "deep"), where]
 
 
-def recorded(frame: pd.DataFrame) -> pd.DataFrame:
-    return frame[frame["source"].str.startswith("measured")]
-
-
-def draw_bursts(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
-    """Predicted bursts as a line, recorded ones as crosses."""
-    own, other, y = rows[rows["source"] == PREDICTED], recorded(rows), spec.y[0]
-    look = {"color": style.INK} | (axs.look(own["series"].iloc[0]) if len(spec.all_runs[0]) > 1 else {})
-    ax.plot(own[CURVATURE], own[y], marker="o", ms=3.5, label="predicted", **look)
-    if len(other):
-        ax.plot(other[CURVATURE], other[y], "x", color=style.COLOURS["315"], label="recorded")
-
-
-def width_and_rate(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Burst width (a) and rate (b) against curvature."""
-    for ax, tag, y in zip(fig.subplots(2, 1), "ab", spec.y, strict=True):
-        axs.limit_axes(ax, frame, CURVATURE, y)
-        if y == BURST_RATE:
-            ax.set_ylim(0, None)  # most of the predicted rates are below the 10 that the thesis's axis begins with
-        draw_bursts(ax, frame, replace(spec, y=(y,)))
-        ax.set(xlabel=CURVATURE.label, ylabel=y.label, title=f"({tag})")
-
-
-def against_velocity(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Burst width (a) and rate (b) against velocity, a line a convexity."""
-    own, other = frame[frame["source"] == PREDICTED], recorded(frame)
+def against_velocity(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+    """A line a convexity, named at its end."""
+    own, ends = frame[frame["source"] == PREDICTED], {}
     shades = style.colours("plasma", 0.0, 0.82, own["convexity"].unique())
-    for ax, tag, y in zip(fig.subplots(2, 1), "ab", spec.y, strict=True):
-        axs.limit_axes(ax, frame, SPEED, y)
-        ends = {}
-        for label, rows in own.groupby("convexity", sort=False):
-            ax.plot(rows[SPEED], rows[y], marker="o", ms=3, color=shades[label], lw=1.1)
-            ends[label] = rows[y].iloc[-1]
-        ax.plot(other[SPEED], other[y], "x", color=style.INK, ms=4)
-        low, high = ax.get_ylim()
-        gap = 0.055 * (high - low)
-        for label, place in zip(ends, style.spread(list(ends.values()), gap, low + gap / 2, high - gap), strict=True):
-            ax.plot([40.4, 42.3], [ends[label], place], color=shades[label], lw=0.6)
-            ax.text(42.5, place, label, color=shades[label], va="center", fontsize=7.5)
-        ax.text(42.5, high, "curvature (1/m)", va="top", fontsize=7)
-        ax.set(xlabel=SPEED.label, ylabel=y.label, title=f"({tag})")
+    for label, rows in own.groupby("convexity", sort=False):
+        ax.plot(rows[SPEED], rows[spec.y[0]], marker="o", ms=3, color=shades[label], lw=1.1)
+        ends[label] = rows[spec.y[0]].iloc[-1]
+    points = frame[frame["source"].str.startswith("measured")]
+    ax.plot(points[SPEED], points[spec.y[0]], "x", color=style.INK, ms=4)
+    low, high = ax.get_ylim()
+    gap = 0.055 * (high - low)
+    for label, place in zip(ends, style.spread(list(ends.values()), gap, low + gap / 2, high - gap), strict=True):
+        ax.plot([40.4, 42.3], [ends[label], place], color=shades[label], lw=0.6)
+        ax.text(42.5, place, label, color=shades[label], va="center", fontsize=7.5)
+    ax.text(42.5, high, "curvature (1/m)", va="top", fontsize=7)
 
 
-def three_responses(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Stroked (solid), pressed: peak (dashed), steady state (dotted)."""
-    ax = fig.subplots()
-    looks = {
-        STROKED: {"ls": "-", "marker": "s", "color": style.COLOURS["315"]},
-        RESPONSES["peak"]: {"ls": style.DASHED, "marker": "o", "color": style.INK},
-        RESPONSES["end of the hold"]: {"ls": style.DOTTED, "marker": "o", "mfc": "white", "color": style.INK},
-    }
-    for series, look in looks.items():
-        rows = frame[(frame["source"] == PREDICTED) & (frame["series"] == series)]
-        ax.plot(rows[CURVATURE], rows[IMPULSE_RATE], ms=4, label=f"predicted, {series}", **look)
-    if len(rows := recorded(frame)):
-        ax.plot(rows[CURVATURE], rows[IMPULSE_RATE], "x", color=style.COLOURS["315"], label="recorded, stroked")
-    axs.limit_axes(ax, frame, CURVATURE, IMPULSE_RATE)
-    ax.set(xlabel=CURVATURE.label, ylabel=IMPULSE_RATE.label)
-    ax.legend(loc="upper left", handlelength=3)
+def rates_from_zero(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """Most of the predicted rates are below the 10 that the thesis's axis begins with."""
+    panels[CURVATURE, BURST_RATE].set_ylim(0, None)
 
 
 def three_laws(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
@@ -376,17 +328,23 @@ def legend_of_the_first(panels: Mapping[object, Axes], frame: pd.DataFrame) -> N
     next(iter(panels.values())).legend(loc="upper right")
 
 
-BURSTS = (BURST_WIDTH, BURST_RATE)
+RED_CROSSES = {"color": style.COLOURS["315"]}
+BURST_RATES = {BURST_RATE: "burst_rate"}
+BURSTS = {BURST_WIDTH: "burst_width"} | BURST_RATES
+OWN_BURSTS = {"color": style.INK, "marker": "o", "ms": 3.5}
 FIGURES = (
     Figure("5-1", "Predicted impulses of ten strokes at 10 mm/s", TEN_RUN, DISTANCE, (IMPULSE_RATE,), {DISTANCE: "T217"},
            Own(height=5.6, paint=ticks_below_surface), rows=partial(rasters, number="5-1", low=0.0, high=70.0), how=HOW,
            remarks=(equation(), "The recorded stroke ended before the convexity of 315 1/m; bins of 0.5 mm.")),
-    Figure("5-2", "Predicted burst width and burst rate, 10 mm/s", TEN_RUN, CURVATURE, BURSTS,
-           {CURVATURE: "T222", BURST_WIDTH: "T220", BURST_RATE: "T221"}, Own(height=6.0, paint=width_and_rate),
-           rows=partial(burst_rows, runs=TEN_RUN, columns=BURSTS), measured="impulse_rates",
+    Figure("5-2", "Predicted burst width and burst rate, 10 mm/s", TEN_RUN, CURVATURE, tuple(BURSTS),
+           {CURVATURE: "T222", BURST_WIDTH: "T220", BURST_RATE: "T221"},
+           Panels(height=6.0, pairs=tuple((CURVATURE, y) for y in BURSTS), shape=(2, 1),
+                  fill=Lines(by="series", looks={TEN: OWN_BURSTS}, recorded=RED_CROSSES)),
+           rows=partial(burst_rows, runs=TEN_RUN, columns=BURSTS), measured="impulse_rates", extra=rates_from_zero,
            remarks=(equation(), BURST, "In the thesis (b) begins at 10 impulses/s.")),
-    Figure("5-3", "Predicted burst width and burst rate at five velocities", SPEEDS, SPEED, BURSTS,
-           {SPEED: "T225", BURST_WIDTH: "T223", BURST_RATE: "T224"}, Own(height=7.0, paint=against_velocity),
+    Figure("5-3", "Predicted burst width and burst rate at five velocities", SPEEDS, SPEED, tuple(BURSTS),
+           {SPEED: "T225", BURST_WIDTH: "T223", BURST_RATE: "T224"},
+           Panels(height=7.0, pairs=tuple((SPEED, y) for y in BURSTS), shape=(2, 1), fill=against_velocity),
            rows=partial(burst_rows, runs=SPEEDS, columns=BURSTS), measured="impulse_rates", remarks=(equation(), BURST)),
     Figure("5-14", "Strain energy density 915 µm under the centre, simulated and by Eq 4-4", (SPEEDS, NINE.without_companions()),
            DISTANCE, (SED,), {DISTANCE: "T262", SED: "T264"},
@@ -401,12 +359,21 @@ FIGURES = (
                     "its constant shift is the one that fits the stroke at 10 mm/s.")),
     Figure("5-16", "Predicted burst duration at four velocities", FOUR, CURVATURE, (BURST_TIME,),
            {CURVATURE: "T273", BURST_TIME: {series: f"T{269 + k}" for k, series in enumerate(FOUR)}},
-           Panels(height=5.4, by="panel", names=tuple(FOUR), shape=(2, 2), fill=draw_bursts, each=True,
+           Panels(height=5.4, by="panel", names=tuple(FOUR), shape=(2, 2), each=True,
+                  fill=Lines(by="series", looks=dict.fromkeys(FOUR, {"marker": "o", "ms": 3.5}), recorded=RED_CROSSES),
                   titles=lambda series: f"v = {series}"),
-           key="panel", rows=partial(burst_rows, runs=FOUR, columns=(BURST_TIME,)), measured="impulse_rates",
+           key="panel", rows=partial(burst_rows, runs=FOUR, columns={BURST_TIME: "burst_time"}), measured="impulse_rates",
            remarks=(BURST.split(";")[0] + " 915 µm under the centre. Predicted, nothing recorded.",)),
-    Figure("5-17", "Predicted impulse rate, stroked and pressed", (NINE.only(WITHIN_350), TEN_RUN), CURVATURE, (IMPULSE_RATE,),
-           {CURVATURE: "T275", IMPULSE_RATE: "T274"}, Own(height=4.6, paint=three_responses), rows=stroked_and_pressed,
+    Figure("5-17", "Predicted impulse rate, stroked and pressed", (WITHIN, TEN_RUN), CURVATURE, (IMPULSE_RATE,),
+           {CURVATURE: "T275", IMPULSE_RATE: "T274"},
+           Panels(height=4.6, legend={"loc": "upper left", "handlelength": 3},
+                  fill=Lines(by="series", recorded=RED_CROSSES | {"label": "recorded, stroked"},
+                             looks={STROKED: {"ls": "-", "marker": "s", "ms": 4, "color": style.COLOURS["315"]},
+                                    RESPONSES["peak"]: {"ls": style.DASHED, "marker": "o", "ms": 4, "color": style.INK},
+                                    RESPONSES["end"]: {"ls": style.DOTTED, "marker": "o", "ms": 4, "mfc": "white",
+                                                       "color": style.INK}},
+                             names={series: f"predicted, {series}" for series in (STROKED, *RESPONSES.values())})),
+           rows=stroked_and_pressed,
            measured="impulse_rates", remarks=(equation(), "Stroked: " + BURST[0].lower() + BURST[1:])),
     Figure("5-19", "Strain energy, its rate, and predicted impulses of 12 strokes at 10 mm/s", TEN_RUN, STROKE_TIME,
            (SED, RATE, IMPULSE_RATE), {TIME: "T281", SED: "T278", RATE: "T279", IMPULSE_RATE: "T280"},

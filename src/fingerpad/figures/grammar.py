@@ -13,7 +13,7 @@ What a layout does not say is done by `extra` once its panels are drawn. Matplot
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -41,7 +41,8 @@ from fingerpad.measures.features import (
 from fingerpad.measures.quantities import CURVATURE, DISTANCE, DOWN, HEIGHT, TIME, P, Q, X
 from fingerpad.measures.responses import curvature_of
 from fingerpad.measures.runs import Runs
-from fingerpad.measures.strokes import arcs, loaded, profile_and_height, rms_error
+from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height, rms_error
+from fingerpad.measures.table import MEASURES
 from fingerpad.publishing import style
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import read_force_depth, read_surface_profiles
@@ -112,19 +113,33 @@ class Data:
                 parts.append(pd.DataFrame(part | {P: p[keep], ERROR: error, runs.column: name}))
         return pd.concat(parts, ignore_index=True)
 
-    def numbers(self, runs: Runs, columns: Mapping[Q, Feature]) -> pd.DataFrame:
-        """One row a surface: curvature, numbers, and their error: the largest, each relative to the largest of all surfaces."""
-        found = {name: (history, coarse) for name, history, coarse in self.runs(runs)}
-        rows = pd.DataFrame({column: {k: read(h) for k, (h, _) in found.items()} for column, read in columns.items()})
-        largest = rows.abs().max()
-        errors = {
-            k: max(100 * abs(read(coarse) - rows.loc[k, c]) / (largest[c] or 1.0) for c, read in columns.items())
-            if coarse is not None
-            else float("nan")
-            for k, (_, coarse) in found.items()
-        }
-        rows.insert(0, CURVATURE, {k: curvature_of(history) for k, (history, _) in found.items()})
-        return rows.assign(**{ERROR: errors}).rename_axis(runs.column).reset_index()
+    def numbers(self, runs: Runs, columns: Mapping[Q, Feature], own: bool = False) -> pd.DataFrame:
+        """One row a surface: curvature, numbers, the largest of their errors, relative to the largest of all or to its `own`."""
+        histories = [(history, coarse) for _, history, coarse in self.runs(runs)]
+        rows = pd.DataFrame({q: [read(fine) for fine, _ in histories] for q, read in columns.items()})
+        rough = pd.DataFrame({q: [np.nan if c is None else read(c) for _, c in histories] for q, read in columns.items()})
+        sizes = rows.abs() if own else rows.abs().max()
+        errors = (100 * (rough - rows).abs() / sizes.replace(0, 1)).max(axis=1)
+        rows.insert(0, CURVATURE, [curvature_of(fine) for fine, _ in histories])
+        rows.insert(0, runs.column, list(runs))
+        return rows.assign(**{ERROR: errors})
+
+    def convexities(self, runs: Runs, columns: Mapping[Q, str]) -> pd.DataFrame:
+        """One row a run and convexity: its name and curvature, measures by their names, and the largest of their errors."""
+        parts = []
+        for name, history, coarse in self.runs(runs):
+            fine, rough = (
+                pd.DataFrame({q: MEASURES[m](h) for q, m in columns.items()})
+                for h in (history, history if coarse is None else coarse)
+            )
+            with np.errstate(all="ignore"):
+                errors = 100 * (rough.reindex(fine.index) / fine - 1).abs().where(fine != 0).max(axis=1)
+            exact = [convexities(history)[label].curvature for label in fine.index]
+            rows = fine.rename_axis("convexity").reset_index().assign(**{ERROR: np.nan if coarse is None else errors.to_numpy()})
+            rows.insert(1, CURVATURE, exact)
+            rows.insert(0, runs.column, name)
+            parts.append(rows)
+        return pd.concat(parts, ignore_index=True)
 
     def surface(self, scene: str, low: float, high: float) -> pd.DataFrame:
         """Rows of a stroked surface's shape from `low` to `high` (mm along it): height, and curvature (0 on the flats)."""
@@ -314,8 +329,8 @@ class Figure:
 class Lines:
     """Curves of a panel: one a name in the column `by` (left out, that of the runs) and quantity.
 
-    `looks` of names and quantities go over those of `axes.look`; `names` are what a legend says. `ends`: where (x) surfaces are
-    named directly, under `heading`.
+    `looks` of names (in their order) and quantities go over those of `axes.look`; `names` are what a legend says; `ends`: where
+    (x) surfaces are named directly, under `heading`; `recorded`: what points look like that were measured.
     """
 
     by: str = ""
@@ -323,14 +338,18 @@ class Lines:
     names: Mapping[str, str] = field(default_factory=dict)
     ends: float | None = None
     heading: str = "curvature (1/m)"
+    recorded: Look = field(default_factory=dict)
 
     def __call__(self, ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
         own, ends = rows[is_simulated(rows)], {}
-        for name, curve in own.groupby(self.by or spec.all_runs[0].column, sort=False):
+        curves = own.groupby(self.by or spec.all_runs[0].column, sort=False)
+        for name, curve in sorted(curves, key=lambda item: [*self.looks, item[0]].index(item[0])):
             for q in spec.y:
                 label = self.names.get(q) or self.names.get(name, str(name) if len(spec.y) == 1 else q)
                 ax.plot(curve[spec.x], curve[q], label=label, **axs.look(name) | self.looks.get(name, {}) | self.looks.get(q, {}))
             ends[name] = (curve[spec.x].iloc[-1], curve[spec.y[-1]].iloc[-1])
+        if self.recorded and len(points := rows[rows["source"].str.startswith("measured")]):
+            ax.plot(points[spec.x], points[spec.y[0]], **{"ls": "none", "marker": "x", "label": "recorded"} | self.recorded)
         if self.ends is not None:
             style.label_ends(ax, ends, self.ends, self.heading)
 
@@ -358,12 +377,14 @@ class Panels:
     ----------
     by, names, shape
         Column, its values in order, rows and columns of the grid.
+    pairs
+        In place of values: quantities across and up, a panel each, of all rows.
     titles, corner
         ``titles(name)`` above a panel, ``corner(name)`` in its upper left.
     fill
         What is drawn in each: `Lines`, `Phases` or another ``fill(panel, rows, spec)``.
     limit
-        Axes that end where the thesis's do: of the panel's rows, or of the whole frame if `alike`.
+        Axes that end where the thesis's do: of the panel's rows, or of the whole frame if `alike`; "wide": or where the data do.
     marked
         Name of the one panel whose bracket says what it is; None: all.
     set, legend
@@ -378,6 +399,7 @@ class Panels:
     header: float = 0.0
     by: str = ""
     names: Sequence[object] = ("",)
+    pairs: Sequence[tuple[Q, Q]] = ()
     shape: tuple[int, int] = (1, 1)
     titles: Callable[[object], str] | None = None
     corner: Callable[[object], str] | None = None
@@ -394,12 +416,16 @@ class Panels:
 
     def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
         """Draw the panels; returned by name, the surface above under ``surface``."""
+        if self.pairs:
+            return self._draw_pairs(fig, frame, spec)
         panels, grid = self._place(fig, frame, spec)
         for name, ax in panels.items():
             rows = axs.rows_of(frame, self.by, name) if self.by else frame
             within = axs.together(frame if self.alike else rows, spec.y)
             text = self.marked is None or name == self.marked
-            if self.limit == "xy":
+            if self.limit == "wide":
+                axs.wide_limits(ax, within, spec.x, spec.y[0])
+            elif self.limit == "xy":
                 axs.limit_axes(ax, within, spec.x, spec.y[0], text)
             elif self.limit:
                 axs.limit_axis(ax, within, spec.x if self.limit == "x" else spec.y[0], self.limit, text)
@@ -417,6 +443,16 @@ class Panels:
         if self.legend is not None:
             grid[-1, -1].legend(**self.legend)
         return panels
+
+    def _draw_pairs(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
+        grid = fig.subplots(*self.shape, **self.share).ravel()
+        for ax, tag, (x, y) in zip(grid, "abcd", self.pairs, strict=False):
+            axs.limit_axes(ax, frame, x, y)
+            self.fill(ax, frame, replace(spec, x=x, y=(y,)))
+            ax.set(xlabel=x.label, ylabel=y.label, title=f"({tag})", **self.set)
+        if self.legend is not None:
+            grid[-1].legend(**self.legend)
+        return dict(zip(self.pairs, grid, strict=True))
 
     def _place(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> tuple[dict[object, Axes], np.ndarray]:
         if spec.surface is None:

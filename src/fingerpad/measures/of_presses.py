@@ -411,12 +411,7 @@ ENERGY_MEASURES = (
     Measure("energy_at_top", "Pa", lambda h: {k: v[ramp_end(h)] for k, v in _traces(h).items()}, pressing),
     Measure("energy_at_end", "Pa", lambda h: {k: v[-1] for k, v in _traces(shown(h)).items()}, forced),
     # as Fig 4-21 shows them
-    Measure(
-        "pressure_or_energy",
-        "Pa",
-        lambda h: max(PRESSURE_SCALE * features.centre_pressure(h).max(), energy(h, DEPTH).max()),
-        pressing,
-    ),
+    Measure("pressure_or_energy", "Pa", _pressure_or_energy, pressing),
     Measure("highest_energy_rate", "Pa/s", lambda h: peak_energy_rate(shown(h), RECEPTOR_DEPTH), lambda s: held(s) or slides(s)),
     Measure("rate_peak_time", "s", lambda h: predicted_rate(h).set_index(TIME)[IMPULSE_RATE].idxmax(), held),
 )

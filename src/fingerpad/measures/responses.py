@@ -252,16 +252,6 @@ def predicted_rate(
     return _rate_frame(history, energy(history, depth, offset), law)
 
 
-def predicted_rate_from_pressure(
-    history: xr.Dataset, law: SpatialSum, shift: np.ndarray | float = 0.0, rate: ImpulseRate = THESIS_RATE
-) -> pd.DataFrame:
-    """The same from the contact pressure alone, by Eqs 4-4 and 5-1: what a tactile sensor under a skin like this would send."""
-    nodes = upper_skin(history)
-    x = (history["skin_x"].values + history["skin_displacement_x"].values)[:, nodes]
-    values = law.strain_energy(x, history[PRESSURE].values[:, nodes], sunk(history), shift)
-    return _rate_frame(history, values, rate)
-
-
 def _rate_frame(history: xr.Dataset, values: np.ndarray, law: ImpulseRate) -> pd.DataFrame:
     time, values, rate = rate_by_leg(history["time"].values, values, history["leg"].values)
     static, dynamic = law.terms(values, rate)
@@ -328,20 +318,6 @@ def mean_frequency(impulses: pd.DataFrame, repetitions: int, at: np.ndarray) -> 
     """Instantaneous frequency of a raster, mean over its trials, at times `at` (s): columns time, predicted_frequency."""
     values = [instantaneous_frequency(train[TIME].to_numpy(), at) for _, train in impulses.groupby("trial")]
     return pd.DataFrame({TIME: at, FREQUENCY: np.sum(values, axis=0) / repetitions})
-
-
-def ramp_and_hold_rates(
-    history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, first: float = 1.0
-) -> dict[str, float]:
-    """Numbers of one pressed surface: peak, mean rate of the hold, rate at its end, and impulses in the first second over it."""
-    frame, top = predicted_rate(history, depth, law), float(history["time"].values[ramp_end(history)])
-    held = frame.iloc[int(np.flatnonzero(frame[TIME] == top)[-1]) :]
-    return {
-        "peak": float(frame[IMPULSE_RATE].max()),
-        "mean of the hold": time_mean(held[TIME], held[IMPULSE_RATE]),
-        "end of the hold": float(frame[IMPULSE_RATE].iloc[-1]),
-        "first second": time_mean(frame[TIME], frame[IMPULSE_RATE], end=first),
-    }
 
 
 def time_mean(time, values, start: float | None = None, end: float | None = None) -> float:

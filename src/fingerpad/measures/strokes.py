@@ -7,8 +7,6 @@ touches the point x = d + u of the surface, u being its lateral displacement.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-
 import numpy as np
 import xarray as xr
 
@@ -201,15 +199,6 @@ def rms_error(fine: xr.Dataset, coarse: xr.Dataset | None, *traces: Trace) -> fl
         size = float(np.sqrt(np.mean(own**2)))
         worst = max(worst, 100 * float(np.sqrt(np.mean((own - other) ** 2))) / size if size else 0.0)
     return worst
-
-
-def label_errors(
-    fine: xr.Dataset, coarse: xr.Dataset | None, read: Callable[[xr.Dataset], Mapping[str, float]]
-) -> dict[str, float]:
-    """Difference (%) between a history and its companion of each labelled value that `read` finds in the loaded outputs."""
-    own = read(loaded(fine))
-    other = read(loaded(coarse)) if coarse is not None else {}
-    return {k: 100 * abs(other[k] / v - 1) if k in other and v else float("nan") for k, v in own.items()}
 
 
 def energy_at(depth: float) -> Trace:

@@ -17,7 +17,7 @@ import pandas as pd
 
 from fingerpad.files import write_atomically
 from fingerpad.measures import of_any, of_presses, of_scenes, of_strokes
-from fingerpad.measures.features import Histories, Meshes
+from fingerpad.measures.features import Feature, Histories, Meshes
 from fingerpad.measures.measure import Measure, Together, measures_of
 from fingerpad.results import scene_of
 
@@ -28,6 +28,12 @@ MEASURES: dict[str, Measure] = {**measures_of(of_scenes), **measures_of(of_press
 
 KNOWN: dict[str, Measure] = measures_of(of_any) | MEASURES
 """Every measure by its name: those of any scene, which the table is without, as well."""
+
+
+def reading(name: str, at: str = "") -> Feature:
+    """What a measure finds in a history under one of its conditions."""
+    return lambda history: MEASURES[name](history)[at]
+
 
 Find = Callable[[str, str], Mapping[str, float]]
 """find(quantity, scene): condition -> value. Raises KeyError."""
