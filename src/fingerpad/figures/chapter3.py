@@ -31,7 +31,7 @@ from fingerpad.figures.geometry import (
     stratum_corneum,
     surface_deflection,
 )
-from fingerpad.figures.grammar import Data, Figure, Own, below
+from fingerpad.figures.grammar import Data, Figure, Own, Panels, below
 from fingerpad.measures.features import ERROR, error_percent, is_simulated, ramp_end
 from fingerpad.measures.quantities import DEFLECTION, DEPTH, NEWTON, TIME, X, Y
 from fingerpad.measures.runs import NINE, Runs
@@ -145,12 +145,9 @@ def fill(ax: Axes, lines: dict[str, np.ndarray], merged: bool) -> None:
             ax.fill(*lines[layer].T, facecolor=colour, edgecolor=style.INK, lw=0.6)
 
 
-def whole_mesh(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def shaded_mesh(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """The mesh, layers shaded."""
-    ax = fig.subplots()
     draw_mesh(ax, frame)
-    ax.set(aspect="equal", xlim=(-10, 10), ylim=(-6.6, 6.6), xlabel=X.label, ylabel=Y.label)
-    ax.set(xticks=range(-10, 11, 2), yticks=range(-6, 7, 2))
     ax.legend(handles=layer_patches(), loc="upper left", handlelength=1.2, bbox_to_anchor=(0.0, 1.02))
     value = quality_of(frame)
     text = (
@@ -194,24 +191,22 @@ def deflections(data: Data) -> pd.DataFrame:
     return below(pd.concat(parts, ignore_index=True), *points)
 
 
-def three_deflections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    axes = fig.subplots(1, 3, sharey=True)
-    ranges = frame[frame["source"].str.startswith("thesis")]
-    for tag, ax, panel in zip("abc", axes, PROFILES, strict=True):
-        rows = frame[frame["panel"] == panel]
-        simulated = rows[is_simulated(rows)]
-        for k, (name, curve) in enumerate(simulated.groupby("series", sort=False)):
-            ax.plot(curve[X], curve[DEFLECTION], color=style.SHADES[k], lw=1.2, label=name)
-            points = rows[~is_simulated(rows) & (rows["series"] == name)]
-            ax.plot(points[X], points[DEFLECTION], style.MARKERS[k], color=style.SHADES[k], ms=4)
-        axs.limit_axis(ax, pd.concat([rows, ranges]), X, "x")
-        axs.limit_axis(ax, pd.concat([frame[is_simulated(frame) | frame["series"].notna()], ranges]), DEFLECTION)
-        ax.set(title=f"({tag}) {panel}", xlabel="distance from the axis (mm)", xticks=[-10, -5, 0, 5, 10])
-        ax.legend(title="depth", loc="lower left", fontsize=7, title_fontsize=7, handlelength=1.2, borderaxespad=0.1)
-    for ax in axes[:-1]:  # the bracket beside the last panel says it for all
+def at_depths(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+    """Simulated (lines) and measured (points), a colour a depth."""
+    simulated = rows[is_simulated(rows)]
+    for k, (name, curve) in enumerate(simulated.groupby("series", sort=False)):
+        ax.plot(curve[X], curve[DEFLECTION], color=style.SHADES[k], lw=1.2, label=name)
+        points = rows[~is_simulated(rows) & (rows["series"] == name)]
+        ax.plot(points[X], points[DEFLECTION], style.MARKERS[k], color=style.SHADES[k], ms=4)
+    axs.limit_axis(ax, rows, X, "x")
+    ax.legend(title="depth", loc="lower left", fontsize=7, title_fontsize=7, handlelength=1.2, borderaxespad=0.1)
+
+
+def one_bracket(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """Beside the last panel, for all."""
+    for ax in list(panels.values())[:-1]:
         for artist in [t for t in ax.texts if t.get_text() in ("", "thesis axis range")]:
             artist.remove()
-    axes[0].set_ylabel(DEFLECTION.label)
 
 
 def deflection_words(error: str) -> list[str]:
@@ -237,15 +232,12 @@ def forces_over_depth(data: Data) -> pd.DataFrame:
     return below(model.assign(**{ERROR: error_percent(plate, coarse, *ends)}), *points)
 
 
-def model_and_subjects(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    ax, model = fig.subplots(), frame[is_simulated(frame)]
+def model_and_subjects(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+    model = frame[is_simulated(frame)]
     ax.plot(model[DEPTH], model[NEWTON], color=style.INK, label="model, 10 mm contact length")
     others = frame[~is_simulated(frame) & frame["series"].notna()]
     for k, (name, rows) in enumerate(others.groupby("series", sort=False)):
         ax.plot(rows[DEPTH], rows[NEWTON], style.MARKERS[k % 4], color=style.SHADES[k % 4], ms=5, label=name)
-    axs.limit_axes(ax, frame, DEPTH, NEWTON)
-    ax.set(xlabel=DEPTH.label, ylabel=NEWTON.label)
-    ax.legend(loc="upper left")
 
 
 def force_words(error: str) -> list[str]:
@@ -276,9 +268,9 @@ def ramp_and_hold(data: Data, runs: Runs, until: float) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def forces_over_time(fig: Picture, frame: pd.DataFrame, spec: Figure, at_curves: bool) -> None:
+def forces_over_time(ax: Axes, frame: pd.DataFrame, spec: Figure, at_curves: bool) -> None:
     """Curves and steady levels, each with its name and peak over steady force: at the curve's end or in a legend."""
-    ax, simulated, dashes = fig.subplots(), frame[is_simulated(frame)], {"lw": 0.8, "ls": (0, (2, 2))}
+    simulated, dashes = frame[is_simulated(frame)], {"lw": 0.8, "ls": (0, (2, 2))}
     for colour, (name, rows) in zip(style.SHADES, simulated.groupby("series", sort=False), strict=False):
         curve, steady = (rows[rows["phase"] == phase] for phase in ("ramp and hold", "steady state"))
         ax.plot(steady[TIME], steady[NEWTON], color=colour, **dashes)
@@ -287,10 +279,7 @@ def forces_over_time(fig: Picture, frame: pd.DataFrame, spec: Figure, at_curves:
         if at_curves:
             end, away = curve.iloc[-1], {"xytext": (-2, 5), "textcoords": "offset points", "ha": "right"}
             ax.annotate(label, (end[TIME], end[NEWTON]), color=colour, fontsize=8, **away)
-    axs.limit_axes(ax, frame, TIME, NEWTON)
-    ax.set(xlabel=TIME.label, ylabel=NEWTON.label)
     ax.plot([], [], color=style.INK, label="steady state, solved as such", **dashes)
-    ax.legend(loc="upper right")
 
 
 def model_alone(frame: pd.DataFrame) -> list[str]:
@@ -302,7 +291,7 @@ def held(number: str, title: str, scenes: Mapping[str, str], unit: str, until: f
     """Figs 3-8 and 3-9."""
     runs = Runs("series", {f"{label} {unit}": scene for label, scene in scenes.items()})
     return Figure(number, title, (STEADY_PLATE, runs), TIME, (NEWTON,), dict(zip((TIME, NEWTON), thesis, strict=True)),
-                  Own(height=4.0, paint=partial(forces_over_time, at_curves=at_curves)),
+                  Panels(height=4.0, fill=partial(forces_over_time, at_curves=at_curves), legend={"loc": "upper right"}),
                   rows=partial(ramp_and_hold, runs=runs, until=until), note=model_alone)  # fmt: skip
 
 
@@ -318,20 +307,17 @@ def under_the_bar(data: Data) -> pd.DataFrame:
     return pd.concat([before, pressed], ignore_index=True)
 
 
-def two_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    axes = fig.subplots(1, 2, sharey=True)
-    for ax, panel in zip(axes, frame["panel"].unique(), strict=True):
-        rows = frame[frame["panel"] == panel]
-        for layer in ("skin", "dermis", "fat", "bone"):
-            loop = rows[rows["layer"] == layer]
-            colour = style.LAYER_COLOURS["epidermis" if layer == "skin" else layer]
-            ax.fill(loop[X], loop[Y], facecolor=colour, edgecolor=style.INK, lw=0.7)
-        draw_indenter(ax, rows)
-        ax.set(title=panel, aspect="equal", xlim=(-10, 10), ylim=(-6.8, 7.4), xlabel=X.label)
-        ax.set(xticks=range(-10, 11, 5), yticks=(-6, -3, 0, 3, 6))
+def shaded_section(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
+    for layer in ("skin", "dermis", "fat", "bone"):
+        loop = rows[rows["layer"] == layer]
+        colour = style.LAYER_COLOURS["epidermis" if layer == "skin" else layer]
+        ax.fill(loop[X], loop[Y], facecolor=colour, edgecolor=style.INK, lw=0.7)
+    draw_indenter(ax, rows)
+
+
+def name_layers(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     for name, y in {"epidermis": 5.57, "dermis": 4.72, "fat": 2.4, "bone": -1.8}.items():
-        axes[0].text(0, y, name, ha="center", va="center", fontsize=6 if name.endswith("dermis") else 7)
-    axes[0].set_ylabel(Y.label)
+        panels["undeformed"].text(0, y, name, ha="center", va="center", fontsize=6 if name.endswith("dermis") else 7)
 
 
 def six_indentations(data: Data) -> pd.DataFrame:
@@ -348,25 +334,24 @@ def six_indentations(data: Data) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def six_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+LINES = dict(zip(("corneum", "dermis", "fat"), style.SHADES, strict=False))
+
+
+def boundaries_of_layers(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     """Boundaries undeformed (dashed) and deformed."""
-    axes = fig.subplots(2, 3, sharex=True, sharey=True)
-    colours = dict(zip(("corneum", "dermis", "fat"), style.SHADES, strict=False))
-    for ax, panel in zip(axes.ravel(), SECTIONS, strict=True):
-        rows = frame[frame["panel"] == panel]
-        bone = rows[rows["layer"] == "bone"]
-        ax.fill(bone[X], bone[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
-        draw_indenter(ax, rows)
-        for (state, layer), line in rows[rows["layer"].isin(colours)].groupby(["phase", "layer"], sort=False):
-            look = STATE_LINES["deformed" if panel == "no load" else state]
-            ax.plot(line[X], line[Y], **{"color": colours[layer]} | look)
-        ax.set(title=panel, aspect="equal", xlim=(-8.4, 8.4), ylim=(-1.5, 6.5), xticks=(-6, -3, 0, 3, 6), yticks=(0, 3, 6))
-    axes[1, 1].set_xlabel(X.label)
-    for ax in axes[:, 0]:
-        ax.set_ylabel(Y.label)
+    bone, alone = rows[rows["layer"] == "bone"], (rows["panel"] == "no load").all()
+    ax.fill(bone[X], bone[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
+    draw_indenter(ax, rows)
+    for (state, layer), line in rows[rows["layer"].isin(LINES)].groupby(["phase", "layer"], sort=False):
+        ax.plot(line[X], line[Y], **{"color": LINES[layer]} | STATE_LINES["deformed" if alone else state])
+
+
+def name_boundaries(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     names = ("outside of the living epidermis", "epidermis to dermis", "dermis to fat")
-    handles = [style.handle(name, color=colour) for name, colour in zip(names, colours.values(), strict=True)]
+    handles = [style.handle(name, color=colour) for name, colour in zip(names, LINES.values(), strict=True)]
+    fig = panels["no load"].figure
     style.header_legend(fig, [*handles, style.handle("undeformed", **STATE_LINES["undeformed"])], columnspacing=1.4)
+    panels["no load"].set_ylabel(Y.label)
 
 
 def section_words(extra: str) -> Callable[[str], list[str]]:
@@ -380,22 +365,41 @@ FIGURES = (
     Figure("3-4", "Boundaries of the finite element model", FLAT, X, (Y,), {}, Own(height=2.9, paint=three_sections),
            rows=section_lines, meshes=True, note=lambda frame: [NOTE]),
     Figure("3-5", "Finite element mesh of the fingerpad", FLAT, X, (Y,), {X: "T039a", Y: "T040a"},
-           Own(height=5.3, paint=whole_mesh), meshes=True, note=lambda frame: [NOTE],
+
+           Panels(height=5.3, fill=shaded_mesh, limit="",
+                  set={"aspect": "equal", "xlim": (-10, 10), "ylim": (-6.6, 6.6), "xticks": range(-10, 11, 2),
+                       "yticks": range(-6, 7, 2)}),
+           meshes=True, note=lambda frame: [NOTE],
            rows=lambda data: mesh_rows(data.meshes[FLAT["flat"]], stratum_corneum(data.histories[FLAT["flat"]]))),
     Figure("3-6", "Surface deflection in the steady state", Runs("panel", PROFILES), X, (DEFLECTION,),
-           {X: "T059", DEFLECTION: "T058a"}, Own(height=3.6, paint=three_deflections), rows=deflections,
+           {X: "T059", DEFLECTION: "T058a"},
+           Panels(height=3.6, by="panel", names=tuple(PROFILES), shape=(1, 3), fill=at_depths, limit="y", alike=True,
+                  titles=lambda name: f"({'abc'[list(PROFILES).index(name)]}) {name}", xlabel="distance from the axis (mm)",
+                  each=True, set={"xticks": [-10, -5, 0, 5, 10]}, share={"sharey": True}),
+           rows=deflections, extra=one_bracket,
            measured="surface_profiles", note=note_of(deflection_words)),
     Figure("3-7", "Steady force under a flat plate", STEADY_PLATE, DEPTH, (NEWTON,), {DEPTH: "T063", NEWTON: "T062a"},
-           Own(height=4.0, paint=model_and_subjects), rows=forces_over_depth, measured="force_depth", note=note_of(force_words)),
+           Panels(height=4.0, fill=model_and_subjects, legend={"loc": "upper left"}),
+           rows=forces_over_depth, measured="force_depth", note=note_of(force_words)),
     held("3-8", "Force in ramp and hold, 2 mm/s to four depths", DEPTH_SCENES, "mm", 10.0, ("T067", "T066a"), True),
     held("3-9", "Force in ramp and hold to 1 mm, three speeds", SPEED_SCENES, "mm/s", 1.5, ("T071", "T070a"), False),
     Figure("3-10", "Section under a 1/16 inch rectangular bar, steady state", Runs("panel", {"bar": BAR}), X, (Y,), {},
-           Own(height=3.5, paint=two_sections), rows=under_the_bar,
+
+           Panels(height=3.5, by="panel", names=("undeformed", "1/16 inch bar, 2 mm"), shape=(1, 2), fill=shaded_section,
+                  limit="", titles=str, each=True, share={"sharey": True},
+                  set={"aspect": "equal", "xlim": (-10, 10), "ylim": (-6.8, 7.4), "xticks": range(-10, 11, 5),
+                       "yticks": (-6, -3, 0, 3, 6)}),
+           rows=under_the_bar, extra=name_layers,
            note=note_of(section_words("The stratum corneum is part of the outermost layer. The bar's edges have a radius of "
                                       "0.1 mm."))),
     Figure("3-11", "Layer boundaries under five indentations, steady state",
            Runs("panel", {panel: scene for panel, (scene, _) in SECTIONS.items()}), X, (Y,), {},
-           Own(height=4.3, header=0.2, paint=six_sections), rows=six_indentations,
+
+           Panels(height=4.3, header=0.2, by="panel", names=tuple(SECTIONS), shape=(2, 3), fill=boundaries_of_layers, limit="",
+                  titles=str, share={"sharex": True, "sharey": True},
+                  set={"aspect": "equal", "xlim": (-8.4, 8.4), "ylim": (-1.5, 6.5), "xticks": (-6, -3, 0, 3, 6),
+                       "yticks": (0, 3, 6)}),
+           rows=six_indentations, extra=name_boundaries,
            note=note_of(section_words("The outermost line is 0.35 mm under the skin (the stratum corneum is left out, as in the "
                                       "thesis): indenters stand off."))),
 )  # fmt: skip

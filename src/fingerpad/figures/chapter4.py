@@ -222,15 +222,12 @@ def force_and_pressure(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     Lines(ends=2.62)(lower, frame, replace(spec, y=(P_CENTRE,)))
 
 
-def every_node(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def every_node(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """One trace a contact node, the centre solid."""
-    ax = fig.subplots()
     rows = frame[is_simulated(frame)]
     looks = {name: {"color": style.COLOURS["210"]} | axs.PHASE_LINES[name] for name in (STEADY, PHASES[0])}
     for x, trace in rows.groupby(NODE):
         ax.plot(trace[TIME], trace[P], **looks[STEADY if abs(x) < 1e-6 else PHASES[0]])
-    axs.limit_axes(ax, frame, TIME, P)
-    ax.set(xlabel=TIME.label, ylabel=P.label)
     spacing = np.diff(np.sort(rows[NODE].unique())).mean()
     names = "centre node", f"other nodes, about {spacing * 1e3:.0f} µm apart"
     ax.legend(handles=[style.handle(name, **look) for name, look in zip(names, looks.values(), strict=True)], loc="upper right")
@@ -259,10 +256,8 @@ def three_by_three(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     phase_legend(TOP, STEADY)({"": axes[0, 0]}, frame)
 
 
-def legs_of_rates(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def legs_of_rates(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """Strain energy rate, nine traces named in the ramp; each jumps at its top."""
-    ax = fig.subplots()
-    axs.limit_axes(ax, frame, TIME, RATE)
     ends = {}
     for label, rows in frame[is_simulated(frame)].groupby("surface", sort=False):
         time, rate = rows[TIME].to_numpy(), rows[RATE].to_numpy()
@@ -272,7 +267,6 @@ def legs_of_rates(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
         ax.plot(time[jump - 1 : jump + 1], rate[jump - 1 : jump + 1], color=style.GREY, lw=0.5, zorder=1)
         ends[label] = (time[jump - 1], rate[jump - 1])
     style.label_ends(ax, ends, ends["flat"][0] * 1.3, "curvature (1/m)")
-    ax.set(xlabel=TIME.label, ylabel=RATE.label)
     lowest = frame.loc[is_simulated(frame), RATE].min()
     text = f"hold: rates below zero (to {lowest:.0f} Pa/s), off the axis"
     ax.text(1.75, 60, text, ha="center", fontsize=7, color=style.GREY)
@@ -313,7 +307,7 @@ FIGURES = (
                   fill=Lines(looks={P_CENTRE: axs.PHASE_LINES[TOP]}, names={P_PEAK: "maximum", P_CENTRE: "centre node"}),
                   ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6})),
     Figure("4-16", "Pressure at each node of the contact region, K = 210 1/m", K210, TIME, (P,), {TIME: "T151", P: "T150"},
-           Own(height=4.6, paint=every_node), rows=nodes),
+           Panels(height=4.6, fill=every_node), rows=nodes),
     Figure("4-20", "Pressure and strain energy profiles, 150 gf/s ramp to 20 gf", THREE, X, (P,), {},
            Own(height=7.0, header=0.2, paint=three_by_three), rows=profiles_and_receptors, after=axes_of_three),
     Figure("4-21", f"Strain energy density at 915 µm and contact pressure × {PRESSURE_SCALE}, centre", NINE, TIME,
@@ -332,5 +326,5 @@ FIGURES = (
            key=RECEPTOR, extra=surfaces_above,
            rows=lambda data: pd.concat([data.traces(NINE, (TIME, sed(z))).assign(**{RECEPTOR: round(z * 1e6)}) for z in DEPTHS])),
     Figure("4-28", "Rate of strain energy density 915 µm under the centre", NINE, TIME, (RATE,), {TIME: "T206", RATE: "T205"},
-           Own(height=4.8, paint=legs_of_rates), rows=energy_rates),
+           Panels(height=4.8, fill=legs_of_rates), rows=energy_rates),
 )  # fmt: skip

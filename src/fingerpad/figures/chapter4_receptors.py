@@ -389,10 +389,9 @@ def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
                color=style.GREY)  # fmt: skip
 
 
-def nine_frequencies(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def nine_frequencies(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """Nine traces of predicted frequency, labelled at the right, over the rates they are made from."""
-    ax, ends = fig.subplots(), {}
-    both = frame.assign(**{FREQUENCY: frame[[FREQUENCY, IMPULSE_RATE]].max(axis=1)})
+    ends, both = {}, frame.assign(**{FREQUENCY: frame[[FREQUENCY, IMPULSE_RATE]].max(axis=1)})
     axs.limit_axis(ax, both[(both[TIME] <= 2) | both[TIME].isna()], FREQUENCY, text=False)
     for label in SURFACES:
         rows, look = frame[frame["surface"] == label], {"color": style.COLOURS[label]}
@@ -402,7 +401,6 @@ def nine_frequencies(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
             ax.plot(leg[TIME], leg[IMPULSE_RATE], lw=3.2, alpha=0.25, **look)
         ax.plot(frequency[TIME], frequency[FREQUENCY], lw=1.0, **look)
         ends[label] = (2.0, float(np.interp(2.0, rate[TIME], rate[IMPULSE_RATE])))
-    ax.set(xlabel=TIME.label, ylabel=FREQUENCY.label, xlim=(0, 2))
     style.label_ends(ax, ends, 2.12, "curvature (1/m)")
     stamp(ax, "predicted, not recorded", y=0.97, va="top")
 
@@ -632,7 +630,8 @@ FIGURES = (
                     "beside the recordings in Fig. 4-2 of Cysyk (1999), from a scan, where a rate between two rows may belong to "
                     "either.",)),
     Figure("4-3", "Predicted instantaneous frequency, 40 gf/s ramp to 20 gf", NINE, TIME, (FREQUENCY,),
-           {TIME: "T091", FREQUENCY: "T090"}, Own(height=4.9, paint=nine_frequencies), rows=frequencies,
+           {TIME: "T091", FREQUENCY: "T090"},
+           Panels(height=4.9, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}), rows=frequencies,
            how="of the peak rate, relative to the largest",
            remarks=(f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses (integrate-and-fire, "
                     f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",)),

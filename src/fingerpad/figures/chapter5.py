@@ -16,7 +16,7 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.figures import axes as axs
-from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, stack
+from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, nine, stack
 from fingerpad.measures.features import (
     ERROR,
     PRESSURE,
@@ -185,29 +185,26 @@ def zero_line(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     next(iter(panels.values())).axhline(0, color=style.GREY, lw=0.5, zorder=1)
 
 
-def two_axes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Nine panels: curvature (dashed, left axis) and pressure (solid, right axis)."""
-    looks = {P: {"color": style.INK}, SKIN_CURVATURE: RED_DASHED | {"lw": 1.1}}
+LOOKS = {P: {"color": style.INK}, SKIN_CURVATURE: RED_DASHED | {"lw": 1.1}}
+AT_NODES = tuple(f"X = {place:g} mm" for place in NODES)
+
+
+def two_axes(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """Curvature (dashed, left axis) and pressure (solid, right axis)."""
     least, highest = frame[SKIN_CURVATURE].min(), frame[P].max()
-    grid = fig.subplots(3, 3)
-    for number, (place, ax) in enumerate(zip(NODES, grid.ravel(), strict=True)):
-        panel, right = f"X = {place:g} mm", ax.twinx()
-        rows = frame[frame["panel"] == panel]
-        ax.plot(rows[TIME], rows[SKIN_CURVATURE], **looks[SKIN_CURVATURE])
-        right.plot(rows[TIME], rows[P], **looks[P])
+    for number, (panel, ax) in enumerate(panels.items()):
+        rows, right = frame[frame["panel"] == panel], ax.twinx()
+        right.plot(rows[TIME], rows[P], **LOOKS[P])
         right.spines["right"].set_visible(True)
-        axs.limit_axis(ax, axs.rows_of(frame, "panel", panel), TIME, "x")
         # zero pressure a third up, as the thesis sets the two apart
         right.set(ylim=(-0.75 * highest, highest), yticks=[0, 5000, 10000])
-        ax.set(title=panel, ylim=(least, -2.0 * least), yticks=[-0.2, 0, 0.2])
+        ax.set(ylim=(least, -2.0 * least), yticks=[-0.2, 0, 0.2])
         ax.tick_params(labelleft=number % 3 == 0)
         right.tick_params(labelright=number % 3 == 2)
         if number == 5:
             right.set_ylabel(P.label)
-    grid[2, 1].set_xlabel(TIME.label)
-    grid[1, 0].set_ylabel(SKIN_CURVATURE.label)
     names = {P: "contact pressure (right axis)", SKIN_CURVATURE: "skin curvature (left axis)"}
-    style.header_legend(fig, [style.handle(names[k], **look) for k, look in looks.items()])
+    style.header_legend(ax.figure, [style.handle(names[k], **look) for k, look in LOOKS.items()])
 
 
 def from_half_a_millimetre(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
@@ -252,9 +249,10 @@ FIGURES = (
     Figure("5-9", "Centre pressure at three stroking velocities", SUB_SPEEDS, DISTANCE, (P_CENTRE,),
            {DISTANCE: "T248", P_CENTRE: "T250"}, below(fill=BY_SPEED, legend={"loc": "upper right", "handlelength": 2.8}),
            surface=(0, 50)),
-    Figure("5-10", "Contact pressure and skin curvature at nine nodes, 10 mm/s", SUB_TEN, TIME, (P, SKIN_CURVATURE),
-           {TIME: "T255", P: "T254", SKIN_CURVATURE: "T253"}, Own(height=6.6, header=0.2, paint=two_axes),
-           rows=nodes_over_time, how=f"{HOW}, centre pressure"),
+    Figure("5-10", "Contact pressure and skin curvature at nine nodes, 10 mm/s", SUB_TEN, TIME, (SKIN_CURVATURE,),
+           {TIME: "T255", P: "T254", SKIN_CURVATURE: "T253"},
+           nine(AT_NODES, 6.6, header=0.2, by="panel", titles=str, limit="x", fill=Lines(by="panel", looks=LOOKS)),
+           rows=nodes_over_time, extra=two_axes, how=f"{HOW}, centre pressure"),
     Figure("5-11", "Centre pressure and scaled skin curvature, 10 mm/s", TEN_RUN, STROKE_TIME, (P_CENTRE, SCALED_CURVATURE),
            {TIME: "T257", P_CENTRE: "T256"}, below(4.8, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
            keep=(DISTANCE,), surface=(0, 80)),

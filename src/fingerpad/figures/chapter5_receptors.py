@@ -299,21 +299,23 @@ def room_for_brackets(panels: Mapping[object, Axes], frame: pd.DataFrame) -> Non
     axs.leave_room_for_brackets(next(iter(panels.values())).figure)
 
 
-def energy_rate_and_bars(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
+def aligned(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    room_for_brackets(panels, frame)
+    panels[TIME, SED].figure.align_ylabels()
+
+
+CUT = {SED: (150, "strain energy density,\ncut at 150 (Pa)"), RATE: (0, "positive rate of\nstrain energy (Pa/s)")}
+
+
+def energy_rate_or_bars(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """Energy cut at its threshold, positive rate, predicted histogram."""
-    axs.leave_room_for_brackets(fig)
-    energy, rate, bars = fig.subplots(3, 1, sharex=True)
-    rows = frame[frame["source"] == SIMULATED]
-    energy.plot(rows[TIME], rows[SED].clip(lower=150), color=style.INK)
-    rate.plot(rows[TIME], rows[RATE].clip(lower=0), color=style.INK)
-    draw_bars(bars, frame, TIME, 0.05)
-    words = "strain energy density,\ncut at 150 (Pa)", "positive rate of\nstrain energy (Pa/s)", RATE_WORDS
-    for ax, column, name in zip((energy, rate, bars), (SED, RATE, IMPULSE_RATE), words, strict=True):
-        axs.limit_axis(ax, frame, column, text=False)
-        ax.set_ylabel(name)
-    axs.limit_axis(bars, frame, TIME, "x")
-    bars.set_xlabel(TIME.label)
-    fig.align_ylabels()
+    rows, y, words = frame[frame["source"] == SIMULATED], spec.y[0], RATE_WORDS
+    if y == IMPULSE_RATE:
+        draw_bars(ax, frame, TIME, 0.05)
+    else:
+        least, words = CUT[y]
+        ax.plot(rows[TIME], rows[y].clip(lower=least), color=style.INK)
+    ax.set_ylabel(words)
 
 
 def draw_rate(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
@@ -377,7 +379,10 @@ FIGURES = (
            measured="impulse_rates", remarks=(equation(), "Stroked: " + BURST[0].lower() + BURST[1:])),
     Figure("5-19", "Strain energy, its rate, and predicted impulses of 12 strokes at 10 mm/s", TEN_RUN, STROKE_TIME,
            (SED, RATE, IMPULSE_RATE), {TIME: "T281", SED: "T278", RATE: "T279", IMPULSE_RATE: "T280"},
-           Own(height=6.4, paint=energy_rate_and_bars), rows=energy_and_histogram, how=HOW, remarks=(equation(),)),
+
+           Panels(height=6.4, pairs=tuple((TIME, y) for y in (SED, RATE, IMPULSE_RATE)), shape=(3, 1), fill=energy_rate_or_bars,
+                  marked="none", share={"sharex": True}),
+           rows=energy_and_histogram, how=HOW, remarks=(equation(),), extra=aligned),
     Figure("5-20", "Predicted impulse rate of a stroke at 10 mm/s", TEN_RUN, STROKE_TIME, (IMPULSE_RATE,),
            {TIME: "T288", IMPULSE_RATE: "T287"}, Panels(height=4.2, fill=draw_rate, legend={"loc": "upper left"}),
            rows=lambda data: over_time(data, (IMPULSE_RATE, STATIC)).assign(source=PREDICTED), how=HOW, remarks=(equation(),)),

@@ -447,9 +447,11 @@ class Panels:
     def _draw_pairs(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
         grid = fig.subplots(*self.shape, **self.share).ravel()
         for ax, tag, (x, y) in zip(grid, "abcd", self.pairs, strict=False):
-            axs.limit_axes(ax, frame, x, y)
+            axs.limit_axes(ax, frame, x, y, self.marked is None)
+            ax.set(xlabel=x.label, ylabel=y.label, title="" if self.share else f"({tag})", **self.set)
             self.fill(ax, frame, replace(spec, x=x, y=(y,)))
-            ax.set(xlabel=x.label, ylabel=y.label, title=f"({tag})", **self.set)
+            if self.share:
+                ax.label_outer()
         if self.legend is not None:
             grid[-1].legend(**self.legend)
         return dict(zip(self.pairs, grid, strict=True))
