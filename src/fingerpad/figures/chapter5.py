@@ -17,15 +17,7 @@ import xarray as xr
 
 from fingerpad.figures import axes as axs
 from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, nine, stack
-from fingerpad.measures.features import (
-    ERROR,
-    PRESSURE,
-    SIMULATED,
-    centre_pressure,
-    error_percent,
-    is_simulated,
-    profile,
-)
+from fingerpad.measures.features import ERROR, PRESSURE, SIMULATED, centre_pressure, error_percent, is_simulated, profile
 from fingerpad.measures.quantities import (
     CURVATURE,
     DISTANCE,
@@ -48,16 +40,7 @@ from fingerpad.measures.quantities import (
 )  # fmt: skip
 from fingerpad.measures.runs import NINE, SPEEDS, STEPPED_OVER, SUB_SPEEDS, WITHIN_400, Runs
 from fingerpad.measures.skin import skin_curvature
-from fingerpad.measures.strokes import (
-    LOCATIONS,
-    NODES,
-    distance,
-    loaded,
-    nodes_at,
-    profile_and_height,
-    rms_error,
-    time_of,
-)
+from fingerpad.measures.strokes import LOCATIONS, NODES, distance, loaded, nodes_at, profile_and_height, rms_error, time_of
 from fingerpad.measures.table import reading
 from fingerpad.publishing import style
 

@@ -96,11 +96,7 @@ P_PEAK = Q("peak_pressure", "Pa", "peak contact pressure (Pa)", features.peak_pr
 MEAN_P = Q("mean_centre_pressure", "Pa", tolerance=3e-3)
 P_SCALED = Q("scaled_centre_pressure", "Pa", read=lambda h: features.PRESSURE_SCALE * features.centre_pressure(h), tolerance=3e-3)
 P_LAW = Q("pressure_by_law", "Pa", tolerance=5e-3)
-EDGE_DISTANCE, BELOW_EDGE, NODE_SPEED = (
-    Q("edge_distance", "mm"),
-    Q("displacement_below_edge", "mm"),
-    Q("speed", "mm/s"),
-)
+EDGE_DISTANCE, BELOW_EDGE, NODE_SPEED = (Q("edge_distance", "mm"), Q("displacement_below_edge", "mm"), Q("speed", "mm/s"))
 DOWN = Q("vertical_displacement", "mm", "vertical displacement (mm)", tolerance=1e-3)
 DEFLECTION = Q("deflection", "mm", "surface deflection (mm)", tolerance=1e-3)
 LATERAL = Q("lateral_displacement", "mm", "lateral displacement (mm)", lambda h: strokes.lateral(h) * 1e3, tolerance=2e-3)

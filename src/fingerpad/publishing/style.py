@@ -67,13 +67,7 @@ SPEED_COLOURS = {"1": "#440154", "5": "#404588", "10": "#297a8e", "20": "#25ac82
 SPEED_LINES = {"1": DOTTED, "5": (0, (3, 1, 1, 1)), "10": "-", "20": (0, (6, 1.5)), "40": (0, (3.5, 1.5))}
 SHADES = ("#c8553d", "#1f77a4", "#3c8d5a", "#8a4fbf")
 MARKERS = "os^D"
-LAYER_COLOURS = {
-    "stratum corneum": "#8c6d52",
-    "epidermis": "#c49a78",
-    "dermis": "#e3b7a8",
-    "fat": "#f6e7c4",
-    "bone": "#b9bec4",
-}
+LAYER_COLOURS = {"stratum corneum": "#8c6d52", "epidermis": "#c49a78", "dermis": "#e3b7a8", "fat": "#f6e7c4", "bone": "#b9bec4"}
 
 
 def styled(draw: Callable[[pd.DataFrame], Figure]) -> Callable[[pd.DataFrame], Figure]:

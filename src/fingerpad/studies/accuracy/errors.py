@@ -13,17 +13,7 @@ from scipy.optimize import brentq
 
 from fingerpad.reference_solutions import hertz, phillips_johnson, waterbed
 from fingerpad.studies.accuracy.convergence import Limit, fitted_order, limit
-from fingerpad.studies.accuracy.run import (
-    DEFAULT_STEPS,
-    DEPTHS,
-    ELEMENTS,
-    FAMILY,
-    PRESSED,
-    ROWS,
-    STEPS,
-    Point,
-    seconds,
-)
+from fingerpad.studies.accuracy.run import DEFAULT_STEPS, DEPTHS, ELEMENTS, FAMILY, PRESSED, ROWS, STEPS, Point, seconds
 
 Records = Mapping[str, dict[str, Any]]
 

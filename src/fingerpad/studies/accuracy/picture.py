@@ -87,7 +87,7 @@ def error(frame: pd.DataFrame) -> Figure:
             "Simulated. Error: the largest of flat plate, 210 and 1260 1/m, at the top of the ramp and the end of the hold, to a "
             "limit extrapolated in mesh and time steps (grey: its own uncertainty). Cost: process time, mean of the three, one "
             "thread. The two historical models (Phillips and Johnson's half-plane, Srinivasan's water bed) stand on the left "
-            "edge, end of the hold only, fitted to the width of the contact with the plate. Front: of finite elements.",
+            "edge, end of the hold only, fitted to the width of the contact with the plate. Front: of finite elements."
         ],
     )
 
@@ -115,7 +115,7 @@ def growth(frame: pd.DataFrame) -> Figure:
             "Simulated: mean of ramp and hold by flat plate, 210 and 1260 1/m, 40 steps. Nodes: of the whole pad, half of which "
             "is solved. Time: process time with meshing. Exponents: of time, least squares over meshes of 3000 nodes and more. "
             "Memory: of the process, the interpreter and its libraries included, and in the default's runs the kernels of small "
-            "strain.",
+            "strain."
         ],
         3.3,
     )
@@ -147,7 +147,7 @@ def belief(frame: pd.DataFrame) -> Figure:
             f"Simulated: {asked['scene'].nunique()} scenes outside the study, each at three accuracies. Truth: the largest "
             "difference of depth, width, centre and peak pressure and strain energies at the legs' ends to a run on the preset "
             f"fine, refined in the contact, which believes in an error of {own.min():.1f} to {own.max():.1f} % itself. Below the "
-            f"line the belief covers the truth: {covered} of {len(asked)} runs.",
+            f"line the belief covers the truth: {covered} of {len(asked)} runs."
         ],
         3.9,
     )
@@ -185,7 +185,7 @@ def drawn(frame: pd.DataFrame) -> Figure:
             f"Simulated: {asked['scene'].nunique()} scenes drawn at random from eight classes, each asked for 10 or 5 %. Truth: "
             "the largest difference of depth, width, centre and peak pressure (not under true edges) and strain energies at the "
             "legs' ends to the same scene on edges 1.7 to 2.5 times as short; of a true edge, to a rounding of a 200th of it."
-            f" Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs.",
+            f" Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs."
         ],
         3.9,
     )

@@ -28,19 +28,7 @@ PLATE = "flat plate"
 MEAN = "mean"
 DEPTH, FORCE = "depth (mm)", "force (N)"
 
-ESTIMATE_COLUMNS = (
-    "study",
-    "subject",
-    "quantity",
-    "estimate",
-    "low_95",
-    "high_95",
-    "units",
-    "data",
-    "rss (N2)",
-    "aicc",
-    "note",
-)
+ESTIMATE_COLUMNS = ("study", "subject", "quantity", "estimate", "low_95", "high_95", "units", "data", "rss (N2)", "aicc", "note")
 
 
 @dataclass(frozen=True)

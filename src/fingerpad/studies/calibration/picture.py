@@ -96,7 +96,7 @@ def identifiability(frame: pd.DataFrame) -> Figure:
     """The valley of equal misfit over constant and contact length, and the profiles along each and across."""
     note = [
         "Simulated forces against measured ones: rise of the sum of squares above its least, over the squared scatter of the "
-        "fit. Along the valley nothing changes: force tells modulus x contact length and nothing of either alone.",
+        "fit. Along the valley nothing changes: force tells modulus x contact length and nothing of either alone."
     ]
     fig = study_figure("Calibration: what force can tell", note, 3.7)
     left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
@@ -168,7 +168,7 @@ def residuals(frame: pd.DataFrame) -> Figure:
     note = [
         "Each model of the contact's length has one parameter, fitted to each subject with the thesis's moduli. "
         "Elliptical patch: length proportional to the simulated width. Plane sections: the pad curved along the finger, "
-        "each section pressed by itself. Thin lines and points: subjects; thick: the mean. Measured forces: see the fit.",
+        "each section pressed by itself. Thin lines and points: subjects; thick: the mean. Measured forces: see the fit."
     ]
     fig = study_figure("Calibration: a contact that grows", note, 3.9)
     left, right = fig.subplots(1, 2)
@@ -228,7 +228,7 @@ def prony(frame: pd.DataFrame) -> Figure:
         "Simulated throughout: no measured time courses are at hand. The force is that of the pad with the series stated in the "
         "thesis, with known noise; fits start far from it. Time constants of Pawluk and Howe (1999) are measured, their "
         "abstract gives "
-        "no amplitudes: right, the error any amplitude would have, whatever it is.",
+        "no amplitudes: right, the error any amplitude would have, whatever it is."
     ]
     fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
     grid = fig.add_gridspec(2, 2, width_ratios=(1.35, 1), height_ratios=(1.5, 1))

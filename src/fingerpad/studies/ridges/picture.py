@@ -26,11 +26,7 @@ DRAWN = {
     "shifted": "straight sides, tip amid an element",
 }
 """Meshes with ridges drawn on the thesis's own elements, which the thesis does not describe."""
-RECEPTORS_SWEPT = (
-    "thesis's place: 915 µm deep, x = −46 µm",
-    "epidermis, 25 µm above the flank",
-    "dermis, 25 µm below the flank",
-)
+RECEPTORS_SWEPT = ("thesis's place: 915 µm deep, x = −46 µm", "epidermis, 25 µm above the flank", "dermis, 25 µm below the flank")
 LOOKS = dict(
     zip(RECEPTORS_SWEPT, ((INK, "o", "-"), ("#c8553d", "s", (0, (4, 1.8))), ("#1f77a4", "^", (0, (1, 1.2)))), strict=True)
 )
