@@ -19,6 +19,7 @@ from matplotlib.figure import Figure
 from fingerpad.files import write_atomically
 from fingerpad.measures.features import PRESSURE
 from fingerpad.measures.measure import speed_of
+from fingerpad.measures.steady import force_N
 from fingerpad.measures.strokes import profile_and_height
 from fingerpad.publishing import style
 from fingerpad.results import scene_of
@@ -71,7 +72,7 @@ def _frames(history: xr.Dataset) -> list[np.ndarray]:
     stress = -1e-3 * history["snapshot_pressure"].values
     cells = history["element_nodes"].values[:, : kind_of(history.sizes["element_node"]).corners]
     points = history["node_position"].values + history["snapshot_displacement"].values
-    layer_lines = _borders(cells, history["element_region"].values)
+    layer_lines = _borders(points[0], cells, history["element_region"].values)
 
     fig = Figure(figsize=SIZE, dpi=DPI, layout="constrained")
     canvas = FigureCanvasAgg(fig)
@@ -102,7 +103,7 @@ def _frames(history: xr.Dataset) -> list[np.ndarray]:
         body.set_array(stress[k])
         lines.set_segments(1e3 * points[k][layer_lines])
         curve.set_data(*_profile(history, index))
-        title.set_text(f"{speed}{1e3 * distance[k]:5.1f} mm   {float(history['force'][index]) * _length(history):.2f} N")
+        title.set_text(f"{speed}{1e3 * distance[k]:5.1f} mm   {force_N(history)[index]:.2f} N")
         canvas.draw()
         fig.set_layout_engine("none")  # laid out once: nothing moves between frames
         frames.append(np.array(canvas.buffer_rgba())[..., :3])
@@ -116,23 +117,16 @@ def _profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
     return 1e3 * x[upper], 1e-3 * history[PRESSURE].values[index, upper]
 
 
-def _length(history: xr.Dataset) -> float:
-    return scene_of(history).specimen.contact_length
-
-
 def _speed(history: xr.Dataset) -> str:
     """Heading: the stroking velocity of the scene, if it states one."""
     speed = speed_of(scene_of(history))
     return f"stroked at {1e3 * speed:g} mm/s   " if speed else ""
 
 
-def _borders(cells: np.ndarray, region: np.ndarray) -> np.ndarray:
+def _borders(points: np.ndarray, cells: np.ndarray, region: np.ndarray) -> np.ndarray:
     """Node pairs (n, 2) of the element edges on the rim and between layers; `cells` are corner nodes."""
-    edges = np.sort(np.stack([cells, np.roll(cells, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
-    owner = np.repeat(region, cells.shape[1])
-    unique, inverse, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
-    inverse = inverse.ravel()
-    least, most = np.full(len(unique), 127), np.full(len(unique), -1)
-    np.minimum.at(least, inverse, owner)
-    np.maximum.at(most, inverse, owner)
-    return unique[(count == 1) | (least != most)]
+    import skfem  # here, for it is slow to import
+
+    mesh = (skfem.MeshTri if cells.shape[1] == 3 else skfem.MeshQuad)(points.T, cells.T)
+    one, other = mesh.f2t
+    return mesh.facets[:, (other < 0) | (region[one] != region[other])].T

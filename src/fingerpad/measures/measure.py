@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 import xarray as xr
 
+from fingerpad.measures.strokes import loaded
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.pad import PadMesh
 
@@ -60,7 +61,7 @@ class Measure:
     where
         Whether a scene has it.
     of
-        What `read` takes.
+        What `read` takes; of a stroke its `loaded` outputs.
     beside
         Whether `read` takes, as second argument, all histories `Together`.
     """
@@ -69,10 +70,11 @@ class Measure:
     unit: str
     read: Callable[..., float | Values]
     where: Callable[[Scene], bool] = anywhere
-    of: Literal["scene", "mesh", "history"] = "history"
+    of: Literal["scene", "mesh", "history", "stroke"] = "history"
     beside: bool = False
 
     def __call__(self, subject: Scene | PadMesh | xr.Dataset, runs: Together | None = None) -> dict[str, float]:
+        subject = loaded(subject) if self.of == "stroke" else subject
         found = self.read(subject, runs) if self.beside else self.read(subject)
         return {k: float(v) for k, v in found.items()} if isinstance(found, Mapping) else {"": float(found)}
 
@@ -80,7 +82,7 @@ class Measure:
 def measure(
     unit: str,
     where: Callable[[Scene], bool] = anywhere,
-    of: Literal["scene", "mesh", "history"] = "history",
+    of: Literal["scene", "mesh", "history", "stroke"] = "history",
     beside: bool = False,
 ) -> Callable[[Callable[..., float | Values]], Measure]:
     """Decorator: the function is the measure of its name."""
@@ -142,14 +144,14 @@ def plates(scene: Scene) -> bool:
 
 def held(scene: Scene) -> bool:
     """Presses to a force at a rate, and held."""
-    return getattr(scene.motion[0], "rate", None) is not None and not strokes(scene)
+    return forced(scene) and scene.motion[0].rate is not None and not strokes(scene)
 
 
 def forced(scene: Scene) -> bool:
     """Presses to a force."""
-    return hasattr(scene.motion[0], "press_to_force")
+    return scene.motion[0].force is not None
 
 
 def deep(scene: Scene) -> bool:
     """Presses to a depth."""
-    return hasattr(scene.motion[0], "press_to_depth")
+    return scene.motion[0].depth is not None

@@ -112,7 +112,7 @@ def steady(history):
     return {f"{1e3 * z:g} mm": force_N(history)[leg_end(history, z)] for z in pressed_depths(history)}
 
 
-@measure("1", lambda scene: deep(scene) and any(hasattr(leg, "hold") for leg in scene.motion), beside=True)
+@measure("1", lambda scene: deep(scene) and any(leg.key == "hold" for leg in scene.motion), beside=True)
 def peak_over_steady(history, runs):
     """Largest force of a ramp and hold over the steady force of the plate at its depth."""
     return force_N(history).max() / steady_force(runs[PLATE], max(pressed_depths(history)))

@@ -29,7 +29,7 @@ def bar(scene: Scene) -> bool:
 
 
 def steps(scene: Scene) -> bool:
-    return any(hasattr(leg, "step") for leg in scene.motion)
+    return any(leg.fresh for leg in scene.motion)
 
 
 def timed(scene: Scene) -> bool:
@@ -62,12 +62,7 @@ def _height(scene: Scene) -> float:
 
 def _depths(scene: Scene) -> list[float]:
     """Depths (mm) pressed to, in their order."""
-    return [round(leg.press_to_depth * 1e3, 9) for leg in scene.motion if hasattr(leg, "press_to_depth")]
-
-
-def _first(scene: Scene, key: str) -> float:
-    """A key of the first leg that has it."""
-    return next(getattr(leg, key) for leg in scene.motion if getattr(leg, key, None) is not None)
+    return [round(leg.depth * 1e3, 9) for leg in scene.motion if leg.depth is not None]
 
 
 def _moduli(scene: Scene) -> dict[str, float]:
@@ -120,14 +115,14 @@ MOTION = (
     # how many of the thesis's four depths are pressed to
     given("thesis_depths", "count", lambda s: len({0.5, 1.0, 1.5, 2.0} & set(_depths(s))), deep),
     given("press_speed", "mm/s", lambda s: 1e3 * s.motion[0].speed, timed),
-    given("held_force", "gf", lambda s: s.motion[0].press_to_force / GF, forced),
+    given("held_force", "gf", lambda s: s.motion[0].force / GF, forced),
     given("ramp_rate", "gf/s", lambda s: s.motion[0].rate / GF, held),
-    given("ramp_time", "s", lambda s: s.motion[0].press_to_force / s.motion[0].rate, held),
-    given("hold_time", "s", lambda s: sum(leg.hold for leg in s.motion if hasattr(leg, "hold")), held),
+    given("ramp_time", "s", lambda s: s.motion[0].force / s.motion[0].rate, held),
+    given("hold_time", "s", lambda s: sum(leg.hold for leg in s.motion if leg.key == "hold"), held),
     given("stroke_speed", "mm/s", lambda s: 1e3 * speed_of(s), slides),
-    given("step", "mm", lambda s: 1e3 * _first(s, "every"), steps),
+    given("step", "mm", lambda s: 1e3 * next(leg.every for leg in s.motion if leg.fresh), steps),
     given("friction", "1", lambda s: s.friction, strokes),
-    given("line_load", "N/m", lambda s: s.motion[0].press_to_force / s.specimen.contact_length, forced),
+    given("line_load", "N/m", lambda s: s.motion[0].force / s.specimen.contact_length, forced),
 )
 
 LAYERS = ("stratum_corneum", "epidermis", "dermis")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -69,6 +70,7 @@ PROMINENCE = 0.005
 SETTLED, BEGINNING = 2e-3, 5.0
 """Stroke of a plate (m) after which its start is over, and the part of it (mm) that is its beginning."""
 
+stroked, Stroke = partial(measure, of="stroke"), partial(Measure, of="stroke")
 in_full, in_part, only_ten = named(FULL.values()), named([*SUB.values(), STEPPED]), named([SUB["10"]])
 
 
@@ -79,24 +81,22 @@ def _at_location(stroke: xr.Dataset, location: float) -> int:
     return int(abs(distance(stroke) - location * 1e-3).argmin())
 
 
-@measure("Pa", in_part)
-def location_pressure(history):
+@stroked("Pa", in_part)
+def location_pressure(stroke):
     """Largest pressure of any node at the three locations of Figs 5-5 and 5-6."""
-    stroke = loaded(history)
     return {f"{at:g} mm": stroke[PRESSURE].values[_at_location(stroke, at)].max() for at in LOCATIONS}
 
 
-@measure("Pa", in_part)
-def node_pressure(history):
+@stroked("Pa", in_part)
+def node_pressure(stroke):
     """Largest pressure of the nine nodes of Fig 5-10."""
-    stroke = loaded(history)
     return {f"{at:g} mm": stroke[PRESSURE].values[:, n].max() for at, n in zip(NODES, nodes_at(stroke), strict=True)}
 
 
-@measure("Pa", wavy)
-def start_pressure(history):
+@stroked("Pa", wavy)
+def start_pressure(stroke):
     """Largest centre pressure over the first third of each arc, hollows with a negative sign."""
-    stroke, found = loaded(history), {}
+    found = {}
     under, pressure = place(stroke), features.centre_pressure(stroke)
     for arc in arcs(stroke):
         values = pressure[(under >= arc.start) & (under <= arc.start + (arc.end - arc.start) / 3)]
@@ -105,21 +105,19 @@ def start_pressure(history):
     return found
 
 
-@measure("Pa", in_part)
-def corner_pressure(history):
+@stroked("Pa", in_part)
+def corner_pressure(stroke):
     """Centre pressure at the sharp corner, where the first convexity begins."""
-    stroke = loaded(history)
     corner = next(iter(convexities(stroke).values())).start
     return features.centre_pressure(stroke)[int(abs(place(stroke) - corner).argmin())]
 
 
-@measure("mm", in_part)
-def lost_contact(history):
+@stroked("mm", in_part)
+def lost_contact(stroke):
     """Length of surface without contact: before the first convexity and before the second, and where the first loss is.
 
     Before the first: within 2 mm of the sharp corner; before the second: from the middle of the hollow to a quarter into it.
     """
-    stroke = loaded(history)
     first, second = list(convexities(stroke).values())[:2]
     free = distance(stroke)[~touching(stroke)]
     near = free[abs(free - first.start) < 4e-3]
@@ -134,10 +132,9 @@ def _lost(stroke: xr.Dataset, low: float, high: float) -> float:
     return sum(max(0.0, min(b, high) - max(a, low)) for a, b in lost_contacts(stroke))
 
 
-@measure("mm", wavy)
-def skin_drag(history):
+@stroked("mm", wavy)
+def skin_drag(stroke):
     """Lateral displacement of the centre node under the arcs, from the first corner to the second: mean and least."""
-    stroke = loaded(history)
     ends, under = list(convexities(stroke).values()), place(stroke)
     over = 1e3 * lateral(stroke)[(under >= ends[0].start) & (under <= ends[-1].end)]
     return {"mean": over.mean(), "least": over.min()}
@@ -146,10 +143,9 @@ def skin_drag(history):
 # --- pressure and curvature ------------------------------------------------------------------------------
 
 
-@measure("1", wavy)
-def curvature_correlation(history):
+@stroked("1", wavy)
+def curvature_correlation(stroke):
     """Of pressure with the curvature of the skin while it touches: at the centre, and at the nine nodes of Fig 5-10."""
-    stroke = loaded(history)
     found = {"centre": _scaled_curvature(stroke)[3]}
     for at, node in zip(NODES, nodes_at(stroke), strict=True):
         pressure = stroke[PRESSURE].values[:, node]
@@ -162,19 +158,17 @@ def _scaled_curvature(stroke: xr.Dataset) -> tuple[np.ndarray, float, float, flo
     return scaled(centre_curvature(stroke), features.centre_pressure(stroke), touching(stroke))
 
 
-@measure("Pa", wavy)
-def curvature_fit(history):
+@stroked("Pa", wavy)
+def curvature_fit(stroke):
     """Pressure at no curvature, and the root mean square misfit."""
-    stroke = loaded(history)
     fit, _, offset, _ = _scaled_curvature(stroke)
     misfit = (fit - features.centre_pressure(stroke))[touching(stroke)]
     return {"offset": offset, "misfit": np.sqrt(np.mean(misfit**2))}
 
 
-@measure("1", wavy)
-def curvature_miss(history):
+@stroked("1", wavy)
+def curvature_miss(stroke):
     """Median difference of the skin's curvature from each convexity's, where what it is fitted through touches it."""
-    stroke = loaded(history)
     found, under, all_touch = centre_curvature(stroke), place(stroke), embedded(stroke)
     out = {}
     for label, arc in convexities(stroke).items():
@@ -186,13 +180,13 @@ def curvature_miss(history):
 # --- stepped and stroked, and the velocities -------------------------------------------------------------
 
 
-@measure("mm", only_ten, beside=True)
+@stroked("mm", only_ten, beside=True)
 def profile_shift(history, runs):
     """Shift to the left of the pressure profile at each location against the stepped surface."""
     found, x = {}, np.arange(-8e-3, 8e-3, 0.02e-3)
     for location in LOCATIONS:
         both = []
-        for stroke in (loaded(history), loaded(runs[STEPPED])):
+        for stroke in (history, loaded(runs[STEPPED])):
             index, upper = _at_location(stroke, location), stroke["skin_y"].values > 0
             at, pressure = profile(stroke, index)
             both.append(np.interp(x, at[upper], pressure[upper]))
@@ -200,13 +194,13 @@ def profile_shift(history, runs):
     return found
 
 
-def _lag(history: xr.Dataset, runs: Together) -> tuple[float, float]:
+def _lag(stroke: xr.Dataset, runs: Together) -> tuple[float, float]:
     """Lag (m) of the centre pressure of a stroke behind that of the stepped surface, and their correlation when shifted."""
-    stroke, stepped = loaded(history), loaded(runs[STEPPED])
+    stepped = loaded(runs[STEPPED])
     return lag(distance(stroke), features.centre_pressure(stroke), distance(stepped), features.centre_pressure(stepped))
 
 
-@measure("%", named([FULL["1"]]), beside=True)
+@stroked("%", named([FULL["1"]]), beside=True)
 def spread_of_traces(history, runs):
     """Standard deviation of whole traces over the velocities, root mean square, over the mean square root of the traces."""
     strokes, found = [loaded(runs[name]) for name in FULL.values()], {}
@@ -220,10 +214,9 @@ def spread_of_traces(history, runs):
 # --- strain energy ---------------------------------------------------------------------------------------
 
 
-@measure("Pa", in_full)
-def late_energy(history):
+@stroked("Pa", in_full)
+def late_energy(stroke):
     """Largest strain energy at 560 um from 40 mm on."""
-    stroke = loaded(history)
     return energy(stroke, SHALLOW)[distance(stroke) >= 40e-3 - 1e-9].max()
 
 
@@ -238,11 +231,9 @@ def peaks_apart(d: np.ndarray, values: np.ndarray) -> float:
     return float(d[second] - d[first])
 
 
-def _double_peaks(history: xr.Dataset, trace: features.Trace) -> dict[str, float]:
-    stroke = loaded(history)
+def _double_peaks(stroke: xr.Dataset, trace: features.Trace) -> dict[str, float]:
     values, d = trace(stroke), 1e3 * distance(stroke)
-    inside = {k: passing(stroke, arc) for k, arc in convexities(stroke).items()}
-    return {k: peaks_apart(d[where], values[where]) for k, where in inside.items() if where.any()}
+    return {k: peaks_apart(d[where], values[where]) for k, where in _passages(stroke).items() if where.any()}
 
 
 def _rate_at_560_um(stroke: xr.Dataset) -> np.ndarray:
@@ -266,14 +257,14 @@ def departure_of_eq_4_4(history, runs):
 # --- predicted rates -------------------------------------------------------------------------------------
 
 
-@measure("impulses/s", named([FULL["10"]]))
+@stroked("impulses/s", named([FULL["10"]]))
 def histogram_bin(history):
     """Highest bin of the histogram of repeated strokes, Fig 5-19."""
     count = STROKES_SHOWN["5-19"]
     return stroke_histogram(*impulses_of(history, count), count)[IMPULSE_RATE].max()
 
 
-@measure("impulses/s", in_full)
+@stroked("impulses/s", in_full)
 def highest_frequency(history):
     """Largest mean frequency of a receptor at 560 um from 40 mm on, as Fig 5-23 shows it."""
     count = STROKES_SHOWN["5-23"]
@@ -295,33 +286,29 @@ def _passages(stroke: xr.Dataset) -> dict[str, np.ndarray]:
     return {k: passing(stroke, arc) for k, arc in convexities(stroke).items()}
 
 
-@measure("impulses", in_full)
-def impulses_at_560_um(history):
+@stroked("impulses", in_full)
+def impulses_at_560_um(stroke):
     """Mean number of impulses while each convexity passes."""
-    stroke = loaded(history)
     return _impulses(stroke, _passages(stroke), depth=SHALLOW)
 
 
-def _in_hollows(history: xr.Dataset, under: Callable[[xr.Dataset], np.ndarray]) -> dict[str, float]:
-    stroke = loaded(history)
+def _in_hollows(stroke: xr.Dataset, under: Callable[[xr.Dataset], np.ndarray]) -> dict[str, float]:
     labels, hollows, at = list(convexities(stroke)), [arc for arc in arcs(stroke) if arc.curvature < 0], under(stroke)
     pairs = zip(labels, labels[1:], hollows, strict=False)
     return _impulses(stroke, {f"{a} to {b}": (at >= arc.start) & (at <= arc.end) for a, b, arc in pairs})
 
 
-@measure("%", in_full)
-def dynamic_share(history):
+@stroked("%", in_full)
+def dynamic_share(stroke):
     """Share of the impulses of each convexity that comes from the rate of the strain energy."""
-    stroke = loaded(history)
     where = _passages(stroke)
     whole, part = _impulses(stroke, where), _impulses(stroke, where, DYNAMIC)
     return {k: 100 * part[k] / max(whole[k], 1e-12) for k in where}
 
 
-@measure("mm", in_full)
-def rate_after_energy_rate(history):
+@stroked("mm", in_full)
+def rate_after_energy_rate(stroke):
     """Stroke distance from the peak of the energy's rate to that of the predicted rate, while each convexity passes."""
-    stroke = loaded(history)
     frame, apart = predicted_rate(stroke), {}
     for label, where in _passages(stroke).items():
         part = frame[where]
@@ -341,24 +328,22 @@ def _settled(stroke: xr.Dataset) -> np.ndarray:
     return late
 
 
-def _three(history: xr.Dataset) -> dict[str, np.ndarray]:
+def _three(stroke: xr.Dataset) -> dict[str, np.ndarray]:
     """Strain energy (time) Pa at the thesis's three receptors."""
-    stroke = loaded(history)
     return {k: energy(stroke, DEPTH, x) for k, x in OFFSETS.items()}
 
 
-@measure("%", plates)
-def spread_of_three(history):
+@stroked("%", plates)
+def spread_of_three(stroke):
     """Largest range of the three receptors over their mean, once the stroke is settled."""
-    late = _settled(loaded(history))
-    values = [v[late] for v in _three(history).values()]
+    late = _settled(stroke)
+    values = [v[late] for v in _three(stroke).values()]
     return 100 * np.max(np.ptp(values, axis=0) / np.mean(values, axis=0))
 
 
-@measure("Pa", plates)
-def energy_beside(history):
+@stroked("Pa", plates)
+def energy_beside(stroke):
     """Strain energy at -46 um: the highest at the start of the stroke, the highest and the least once it is settled."""
-    stroke = loaded(history)
     settled, values = _settled(stroke), energy(stroke, DEPTH, -BESIDE)
     return {"start": values[~settled].max(), "highest late": values[settled].max(), "least late": values[settled].min()}
 
@@ -371,7 +356,7 @@ def islands_of_contact(history):
     return {"fewest": late.min(), "most": late.max(), "median": np.median(late), "end": found[-1]}
 
 
-@measure("impulses", plates)
+@stroked("impulses", plates)
 def plate_impulses(history):
     """Mean number of impulses of a receptor 46 um to the right, in the whole stroke and at its beginning."""
     rate = plate_rate(history)
@@ -381,15 +366,15 @@ def plate_impulses(history):
 
 CONVEXITIES = (
     # stroke distance over which the centre node touches
-    Measure("contact_length", "mm", lambda h: {k: 1e3 * v for k, v in contact_lengths(loaded(h)).items()}, wavy),
+    Stroke("contact_length", "mm", lambda h: {k: 1e3 * v for k, v in contact_lengths(h).items()}, wavy),
     # largest value at the centre, and 915 um under it, while the convexity passes
-    Measure("convexity_pressure", "Pa", lambda h: peaks(loaded(h), features.centre_pressure), wavy),
-    Measure("convexity_energy", "Pa", lambda h: peaks(loaded(h), energy_at(RECEPTOR_DEPTH)), wavy),
+    Stroke("convexity_pressure", "Pa", lambda h: peaks(h, features.centre_pressure), wavy),
+    Stroke("convexity_energy", "Pa", lambda h: peaks(h, energy_at(RECEPTOR_DEPTH)), wavy),
     # from one of the two peaks 560 um under the centre to the other; NaN where there are not two
-    Measure("energy_peaks_apart", "mm", lambda h: _double_peaks(h, energy_at(SHALLOW)), in_full),
-    Measure("rate_peaks_apart", "mm", lambda h: _double_peaks(h, _rate_at_560_um), in_full),
+    Stroke("energy_peaks_apart", "mm", lambda h: _double_peaks(h, energy_at(SHALLOW)), in_full),
+    Stroke("rate_peaks_apart", "mm", lambda h: _double_peaks(h, _rate_at_560_um), in_full),
     *(
-        Measure(name, unit, lambda h, column=column: burst_values(loaded(h), column), waves)
+        Stroke(name, unit, lambda h, column=column: burst_values(h, column), waves)
         for name, unit, column in (
             ("burst_width", "mm", BURST_WIDTH),
             ("burst_time", "s", BURST_TIME),
@@ -399,24 +384,24 @@ CONVEXITIES = (
         )
     ),
     # mean numbers of impulses at the distances of each hollow, and while the centre of the skin, dragged back, is under it
-    Measure("impulses_in_hollows", "impulses", lambda h: _in_hollows(h, distance), in_full),
-    Measure("impulses_under_hollows", "impulses", lambda h: _in_hollows(h, place), in_full),
+    Stroke("impulses_in_hollows", "impulses", lambda h: _in_hollows(h, distance), in_full),
+    Stroke("impulses_under_hollows", "impulses", lambda h: _in_hollows(h, place), in_full),
 )
 
 TRACES = (
-    Measure("curvature_factor", "Pa m", lambda h: _scaled_curvature(loaded(h))[1], wavy),
+    Stroke("curvature_factor", "Pa m", lambda h: _scaled_curvature(h)[1], wavy),
     # of the centre pressure behind that of the stepped surface, and their correlation when shifted
-    Measure("lag_of_stepped", "mm", lambda h, runs: 1e3 * _lag(h, runs)[0], only_ten, beside=True),
-    Measure("likeness_of_stepped", "1", lambda h, runs: _lag(h, runs)[1], only_ten, beside=True),
-    Measure("energy_by_eq_4_4", "Pa", lambda h, runs: _by_eq_4_4(loaded(h), runs)[1].max(), in_full, beside=True),
+    Stroke("lag_of_stepped", "mm", lambda h, runs: 1e3 * _lag(h, runs)[0], only_ten, beside=True),
+    Stroke("likeness_of_stepped", "1", lambda h, runs: _lag(h, runs)[1], only_ten, beside=True),
+    Stroke("energy_by_eq_4_4", "Pa", lambda h, runs: _by_eq_4_4(h, runs)[1].max(), in_full, beside=True),
     # the constant shift with which Eq 4-4 comes closest to the stroke at 10 mm/s
-    Measure("receptor_shift", "mm", lambda h, runs: 1e3 * runs.once(stroke_law)[1], named([FULL["10"]]), beside=True),
+    Stroke("receptor_shift", "mm", lambda h, runs: 1e3 * runs.once(stroke_law)[1], named([FULL["10"]]), beside=True),
 )
 
 PLATES = (
-    Measure("receptors_in_three_places", "count", lambda h: len(_three(h)), plates),
+    Stroke("receptors_in_three_places", "count", lambda h: len(_three(h)), plates),
     Measure("direction", "1", lambda h: directional_index(h, DEPTH, -BESIDE), plates),
-    Measure("highest_of_three", "Pa", lambda h: max(v.max() for v in _three(h).values()), plates),
+    Stroke("highest_of_three", "Pa", lambda h: max(v.max() for v in _three(h).values()), plates),
     Measure("steps_cut", "count", lambda h: h["cutbacks"].sum(), plates),
     Measure("smallest_volume", "1", lambda h: h["min_detF"].min(), plates),
 )

@@ -26,14 +26,14 @@ def leg_end(history: xr.Dataset, depth: float) -> int:
 def leg_of(history: xr.Dataset, depth: float) -> int:
     """Number of the leg that presses to `depth` (m). Raises KeyError if there is none."""
     for number, leg in enumerate(scene_of(history).motion):
-        if abs(getattr(leg, "press_to_depth", np.inf) - depth) < 1e-9:
+        if leg.depth is not None and abs(leg.depth - depth) < 1e-9:
             return number
     raise KeyError(f"no press to {depth * 1e3:g} mm")
 
 
 def pressed_depths(history: xr.Dataset) -> list[float]:
     """Depths (m) that the scene's legs press to, in their order."""
-    return [leg.press_to_depth for leg in scene_of(history).motion if hasattr(leg, "press_to_depth")]
+    return [leg.depth for leg in scene_of(history).motion if leg.depth is not None]
 
 
 def force_N(history: xr.Dataset) -> np.ndarray:

@@ -102,7 +102,7 @@ def measures_table(histories: Histories, coarse: Histories, meshes: Meshes) -> p
     for scene in histories:
         for measure in MEASURES.values():
             values = _read(measure, scene, fine, meshes)
-            others = _read(measure, scene, rough, {}) if measure.of == "history" and values else {}
+            others = _read(measure, scene, rough, {}) if measure.of in ("history", "stroke") and values else {}
             for condition, value in values.items():
                 rows.append((scene, measure.name, condition, measure.unit, value, others.get(condition, np.nan)))
     return pd.DataFrame(rows, columns=COLUMNS)

@@ -347,12 +347,12 @@ class Products:
     def all_tables(self) -> list[Job]:
         """Tables of all the results, of the receptors, and of the scenes' summaries."""
         c, jobs = self.config, []
-        compared = [*c.scenes, *(scene for scene in c.calibration_scenes if scene in (PLATE, RAMP))]
+        scenes = dict.fromkeys([*c.scenes, *c.variants, *c.calibration_scenes])
         if names := [name for name in TABLES if name in c.table_names]:
             every = {
-                "histories": self.histories(dict.fromkeys([*c.scenes, *c.variants, *c.calibration_scenes])),
+                "histories": self.histories(scenes),
                 "meshes": self.meshes(c.scenes),
-                "coarse": self.companions(dict.fromkeys(compared)),
+                "coarse": self.companions(scene for scene in scenes if scene in self.coarse),
             }
             measures = {"measures": [self.result("measures.csv")]}
             jobs.append(Job("measures", "measures", every, measures, mem_mb=2000))

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -151,10 +152,7 @@ def belief(frame: pd.DataFrame) -> Figure:
         ],
         3.9,
     )
-    left, right = fig.subplots(1, 2, width_ratios=(1, 0.9))
-    ends = np.array([0.08, 100.0])
-    left.fill_between(ends, ends, 1e-3, color="0.95", lw=0)
-    left.loglog(ends, ends, color=GREY, lw=0.8)
+    left, right = _truth_and_belief(fig)
     scenes = list(asked["scene"].unique())
     groups = asked.groupby("accuracy", sort=False)
     for (accuracy, part), marker, colour in zip(groups, "osD", ("#c8553d", "#1f77a4", "#3d8f57"), strict=True):
@@ -164,14 +162,28 @@ def belief(frame: pd.DataFrame) -> Figure:
         right.semilogx(true / believed, [scenes.index(scene) for scene in part["scene"]], marker, color=colour, ms=4)
         if accuracy != "draft":
             left.axvline(100 * float(accuracy), color=colour, lw=0.6, ls=(0, (1, 2)))
-    left.set(xlabel="believed error (%)", ylabel="true error (%)", xlim=ends, ylim=ends)
     left.legend(loc="upper left")
-    right.set_xlim(right=max(2.0, right.get_xlim()[1]))
-    right.axvline(1, color=GREY, lw=0.8)
-    right.set_yticks(range(len(scenes)), [scene.replace("_", " ") for scene in scenes], fontsize=6.5)
-    right.invert_yaxis()
-    right.set_xlabel("truth / belief")
+    _named(right, [scene.replace("_", " ") for scene in scenes])
     return fig
+
+
+def _truth_and_belief(fig: Figure) -> tuple[Axes, Axes]:
+    """Axes of true over believed error, with the line where they agree; and of their ratio, by rows."""
+    left, right = fig.subplots(1, 2, width_ratios=(1, 0.9))
+    ends = np.array([0.08, 100.0])
+    left.fill_between(ends, ends, 1e-3, color="0.95", lw=0)
+    left.loglog(ends, ends, color=GREY, lw=0.8)
+    left.set(xlabel="believed error (%)", ylabel="true error (%)", xlim=ends, ylim=ends)
+    return left, right
+
+
+def _named(ax: Axes, rows: list[str]) -> None:
+    """Names of the rows of ratios, and what they are."""
+    ax.set_xlim(right=max(2.0, ax.get_xlim()[1]))
+    ax.axvline(1, color=GREY, lw=0.8)
+    ax.set_yticks(range(len(rows)), rows, fontsize=6.5)
+    ax.invert_yaxis()
+    ax.set_xlabel("truth / belief")
 
 
 @styled
@@ -189,10 +201,7 @@ def drawn(frame: pd.DataFrame) -> Figure:
         ],
         3.9,
     )
-    left, right = fig.subplots(1, 2, width_ratios=(1, 0.9))
-    ends = np.array([0.08, 100.0])
-    left.fill_between(ends, ends, 1e-3, color="0.95", lw=0)
-    left.loglog(ends, ends, color=GREY, lw=0.8)
+    left, right = _truth_and_belief(fig)
     classes = list(asked["class"].unique())
     for place, (name, marker) in enumerate(zip(classes, "os^DvPX*", strict=False)):
         part = asked[asked["class"] == name]
@@ -200,14 +209,9 @@ def drawn(frame: pd.DataFrame) -> Figure:
         colour = f"C{place}"
         left.loglog(believed, true, marker, color=colour, ms=4.5, mfc="white", label=name)
         right.semilogx(true / believed, np.full(len(part), place), marker, color=colour, ms=4, mfc="white")
-    left.set(xlabel="believed error (%)", ylabel="true error (%)", xlim=ends, ylim=ends)
     left.legend(loc="upper left", fontsize=6.5)
-    right.axvline(1, color=GREY, lw=0.8)
-    right.set_xlim(right=max(2.0, right.get_xlim()[1]))
     counts = [f"{name} ({int(covers[asked['class'] == name].sum())} of {(asked['class'] == name).sum()})" for name in classes]
-    right.set_yticks(range(len(classes)), counts, fontsize=6.5)
-    right.invert_yaxis()
-    right.set_xlabel("truth / belief")
+    _named(right, counts)
     return fig
 
 
