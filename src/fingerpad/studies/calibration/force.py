@@ -326,88 +326,37 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
             row |= {"data": found.count, "rss (N2)": found.rss, "aicc": found.aicc}
         rows.append(row)
 
-    add(
-        "stated in the thesis",
-        "mean",
-        "modulus constant",
-        1.0,
-        "1",
-        note=f"moduli {ratio}, epidermis {young / 1e6:g} MPa; {length * 1e3:g} mm contact length",
-    )
+    add("stated in the thesis", "mean", "modulus constant", 1.0, "1",
+        note=f"moduli {ratio}, epidermis {young / 1e6:g} MPa; {length * 1e3:g} mm contact length")  # fmt: skip
     for who, found in constants.items():
         note = f"equal weights in N, {length * 1e3:g} mm contact length, moduli {ratio}; interval from the misfit, not from noise"
         add("constant", who, "modulus constant", _of(found), "1", found, note)
         add("constant", who, "Young's modulus of the epidermis", tuple(young / 1e6 * v for v in _of(found)), "MPa")
     subjects = [who for who in forces if who != MEAN]
     if len(subjects) > 1:
-        add(
-            "constant",
-            "all",
-            "modulus constant, geometric mean",
-            group_interval([constants[w].values[0] for w in subjects]),
-            "1",
-            note="interval from the scatter between subjects",
-        )
+        add("constant", "all", "modulus constant, geometric mean", group_interval([constants[w].values[0] for w in subjects]),
+            "1", note="interval from the scatter between subjects")  # fmt: skip
     weighted = fit_constant(curves["plate"], *_si(forces[last]), length, relative=True)
-    add(
-        "weights",
-        last,
-        "modulus constant",
-        _of(weighted),
-        "1",
-        None,
-        "equal relative weights: what the choice of weights changes",
-    )
+    add("weights", last, "modulus constant", _of(weighted), "1", None,
+        "equal relative weights: what the choice of weights changes")  # fmt: skip
     both = fit_constant_and_length(curves["plate"], *_si(forces[last]), {"s": 1.0, "length": length}, sigma=constants[last].sigma)
-    add(
-        "identifiability",
-        last,
-        "modulus constant x contact length",
-        tuple(length * 1e3 * v for v in _of(constants[last])),
-        "mm",
-        note="the only thing that force tells",
-    )
-    add(
-        "identifiability",
-        last,
-        "correlation of log constant and log length",
-        ridge_correlation(both),
-        "1",
-        note="each known beforehand within a factor 10; a pressure or a width under known force would part them",
-    )
-    add(
-        "identifiability",
-        last,
-        "rank of the sensitivities",
-        float(np.linalg.matrix_rank(both.jacobian, tol=1e-9 * abs(both.jacobian).max())),
-        "1",
-        both,
-    )
+    add("identifiability", last, "modulus constant x contact length", tuple(length * 1e3 * v for v in _of(constants[last])),
+        "mm", note="the only thing that force tells")  # fmt: skip
+    add("identifiability", last, "correlation of log constant and log length", ridge_correlation(both), "1",
+        note="each known beforehand within a factor 10; a pressure or a width under known force would part them")  # fmt: skip
+    add("identifiability", last, "rank of the sensitivities",
+        float(np.linalg.matrix_rank(both.jacobian, tol=1e-9 * abs(both.jacobian).max())), "1", both)  # fmt: skip
     depth, force = _si(forces[last])
     for d, needed in zip(depth, force / curves["plate"].force_at(depth), strict=True):
         add("effective length", last, f"length needed at {d * 1e3:g} mm", needed * 1e3, "mm", note="with the thesis's moduli")
     for (who, model), found in lengths.items():
         _, parameter, units, scale = LENGTHS[model]
-        add(
-            model,
-            who,
-            parameter,
-            tuple(scale * v for v in _of(found)),
-            units,
-            found,
-            f"with the thesis's moduli; force tells {_TOLD[model]} only",
-        )
+        add(model, who, parameter, tuple(scale * v for v in _of(found)), units, found,
+            f"with the thesis's moduli; force tells {_TOLD[model]} only")  # fmt: skip
     if "instantaneous" in curves:
         found = fit_constant(curves["instantaneous"], *_si(forces[last]), length)
-        add(
-            "moduli read as instantaneous",
-            last,
-            "modulus constant",
-            _of(found),
-            "1",
-            found,
-            "the moduli then relax to a part of themselves before the force is read",
-        )
+        add("moduli read as instantaneous", last, "modulus constant", _of(found), "1", found,
+            "the moduli then relax to a part of themselves before the force is read")  # fmt: skip
         add(
             "moduli read as instantaneous",
             last,
@@ -423,30 +372,12 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
     if coarse is not None:
         rough = ElasticCurve.from_history(coarse).force_at(depth)
         error = np.abs(rough / curves["plate"].force_at(depth) - 1).max()
-        add(
-            "cost",
-            "",
-            "discretisation error of the elastic curve",
-            100 * error,
-            "%",
-            note="largest difference to twice the edge, at the measured depths",
-        )
-    add(
-        "cost",
-        "",
-        "finite element simulations for all fits of the constant",
-        1.0,
-        "1",
-        note="readings of the moduli and bone positions take one more each",
-    )
-    add(
-        "cost",
-        "",
-        "Newton iterations of the elastic curve",
-        float(plate.newton_iterations.sum()),
-        "1",
-        note=f"{plate.sizes['time'] - 1} load increments",
-    )
+        add("cost", "", "discretisation error of the elastic curve", 100 * error, "%",
+            note="largest difference to twice the edge, at the measured depths")  # fmt: skip
+    add("cost", "", "finite element simulations for all fits of the constant", 1.0, "1",
+        note="readings of the moduli and bone positions take one more each")  # fmt: skip
+    add("cost", "", "Newton iterations of the elastic curve", float(plate.newton_iterations.sum()), "1",
+        note=f"{plate.sizes['time'] - 1} load increments")  # fmt: skip
     return pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)
 
 

@@ -208,12 +208,8 @@ def _estimates(curve, varied, coarse, target, axis, published) -> pd.DataFrame:
 
     study = "friction"
     add(study, "coefficient", best.coefficient, note=f"the thesis states none; mean stretch over the waves at 10 mm/s {mean}")
-    add(
-        study,
-        "coefficient, rounded",
-        rounded(best.coefficient),
-        note=f"to {STEP:g}: that of the scenes; interval: the next two rows",
-    )
+    add(study, "coefficient, rounded", rounded(best.coefficient),
+        note=f"to {STEP:g}: that of the scenes; interval: the next two rows")  # fmt: skip
     for side, shift in (("least", ABOUT), ("most", -ABOUT)):
         value = curve.coefficient_at(target + shift)
         note = f"mean stretch {-1e3 * (target + shift):.3g} mm; about is read as +-{about:g} mm, not a 95 % interval"
@@ -238,13 +234,8 @@ def _estimates(curve, varied, coarse, target, axis, published) -> pd.DataFrame:
     fine = VARIATIONS[STROKE]
     if STROKE in coarse and fine in varied:
         change = 100 * (varied[fine].mean / stretch(coarse[STROKE]).mean - 1)
-        add(
-            "friction",
-            "change of the stretch by mesh and steps of the thesis's size",
-            change,
-            "%",
-            "the curve rests on coarser ones",
-        )
+        add("friction", "change of the stretch by mesh and steps of the thesis's size", change, "%",
+            "the curve rests on coarser ones")  # fmt: skip
     for row in published.itertuples():
         value = f"{row.low:g}" if np.isnan(row.high) else f"{row.low:g} to {row.high:g}"
         middle = row.low if np.isnan(row.high) else (row.low + row.high) / 2

@@ -61,16 +61,8 @@ def fit(frame: pd.DataFrame) -> Figure:
     left.plot(stated[DEPTH], stated[FORCE], color=GREY, ls=(0, (4, 1.8)))
     top = max(1.6, 1.1 * float(frame.loc[~simulated, FORCE].max()))
     inside = stated[stated[FORCE] < 0.93 * top].iloc[-1]
-    left.annotate(
-        "moduli stated\nin the thesis",
-        (inside[DEPTH], inside[FORCE]),
-        xytext=(-14, 0),
-        textcoords="offset points",
-        ha="right",
-        va="center",
-        color=GREY,
-        fontsize=7.5,
-    )
+    left.annotate("moduli stated\nin the thesis", (inside[DEPTH], inside[FORCE]), xytext=(-14, 0), textcoords="offset points",
+                  ha="right", va="center", color=GREY, fontsize=7.5)  # fmt: skip
     left.set(
         xlabel="indentation depth (mm)", ylabel="force (N)", title="each subject, and the mean", ylim=(0, top), xlim=(0, 2.5)
     )
@@ -113,26 +105,12 @@ def identifiability(frame: pd.DataFrame) -> Figure:
     s, length = (np.sqrt(axis[0] * axis[-1]) for axis in (grid.columns, grid.index))
     left.plot(grid.columns, s * length / grid.columns, color=INK, lw=1.2)
     left.plot([1.0], [length], "X", color="#c8553d", ms=8, mec="white", mew=0.8)
-    left.annotate(
-        "stated in the thesis\n(the length inferred)",
-        (1.0, length),
-        xytext=(0.97, 0.95),
-        textcoords="axes fraction",
-        fontsize=7,
-        color="white",
-        ha="right",
-        va="top",
-        arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.6},
-    )
-    left.set(
-        xscale="log",
-        yscale="log",
-        xlabel="modulus constant (1)",
-        ylabel="contact length (mm)",
-        title="misfit over both; line: their best product",
-        xlim=(grid.columns[0], grid.columns[-1]),
-        ylim=(grid.index[0], grid.index[-1]),
-    )
+    left.annotate("stated in the thesis\n(the length inferred)", (1.0, length), xytext=(0.97, 0.95),
+                  textcoords="axes fraction", fontsize=7, color="white", ha="right", va="top",
+                  arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.6})  # fmt: skip
+    left.set(xscale="log", yscale="log", xlabel="modulus constant (1)", ylabel="contact length (mm)",
+             title="misfit over both; line: their best product", xlim=(grid.columns[0], grid.columns[-1]),
+             ylim=(grid.index[0], grid.index[-1]))  # fmt: skip
     for axis in (left.xaxis, left.yaxis):
         axis.set_major_locator(mpl.ticker.LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
@@ -150,13 +128,8 @@ def identifiability(frame: pd.DataFrame) -> Figure:
         level = frame.loc[row.Index, "rise (1)"]
         right.axhline(level, color=GREY, lw=0.7)
         right.text(1.49, level + 0.3, textwrap.fill(row.series, 16), color=GREY, fontsize=7, ha="right", va="bottom")
-    right.set(
-        xlabel="value over best value (1)",
-        ylabel="rise of the misfit (1)",
-        title="profiles, the other refitted",
-        ylim=(-0.8, 25),
-        xlim=(0.5, 1.5),
-    )
+    right.set(xlabel="value over best value (1)", ylabel="rise of the misfit (1)", title="profiles, the other refitted",
+              ylim=(-0.8, 25), xlim=(0.5, 1.5))  # fmt: skip
     right.text(1.0, 18, "modulus constant\nx contact length", ha="center", va="center", fontsize=8)
     right.text(0.52, 0.5, "either alone", va="bottom", fontsize=8)
     return fig
@@ -178,17 +151,8 @@ def residuals(frame: pd.DataFrame) -> Figure:
     for model, (style, colour) in MODEL_LINES.items():
         for who, rows in residual[residual["series"] == model].groupby("subject"):
             mean = who == thick
-            left.plot(
-                rows[DEPTH],
-                1e3 * rows["residual (N)"],
-                color=colour,
-                ls=style,
-                lw=2.0 if mean else 0.7,
-                alpha=1 if mean else 0.75,
-                marker="o",
-                ms=3.5 if mean else 2,
-                label=model if mean else None,
-            )
+            left.plot(rows[DEPTH], 1e3 * rows["residual (N)"], color=colour, ls=style, lw=2.0 if mean else 0.7,
+                alpha=1 if mean else 0.75, marker="o", ms=3.5 if mean else 2, label=model if mean else None)  # fmt: skip
     left.axhline(0, color=GREY, lw=0.7)
     left.set(xlabel="indentation depth (mm)", ylabel="measured less simulated (mN)", title="residuals")
     low, high = left.get_ylim()
@@ -199,24 +163,13 @@ def residuals(frame: pd.DataFrame) -> Figure:
     colours = _colours(list(needed["subject"].unique()))
     for k, (who, rows) in enumerate(needed.groupby("subject", sort=False)):
         marker = "*" if who == "mean" else MARKERS[k % len(MARKERS)]
-        right.plot(
-            rows[DEPTH],
-            rows["effective_length (mm)"],
-            marker,
-            color=colours[who],
-            ms=8 if who == "mean" else 4.5,
-            label=_title_of(who),
-        )
+        right.plot(rows[DEPTH], rows["effective_length (mm)"], marker, color=colours[who], ms=8 if who == "mean" else 4.5,
+                   label=_title_of(who))  # fmt: skip
     for model, rows in fitted.groupby("series", sort=False):
         style, colour = MODEL_LINES[model]
         right.plot(rows[DEPTH], rows["effective_length (mm)"], color=colour, ls=style)
-    right.set(
-        xlabel="indentation depth (mm)",
-        ylabel="effective length (mm)",
-        title="measured force / simulated force per length",
-        ylim=(0, None),
-        xlim=(0, 2.5),
-    )
+    right.set(xlabel="indentation depth (mm)", ylabel="effective length (mm)",
+              title="measured force / simulated force per length", ylim=(0, None), xlim=(0, 2.5))  # fmt: skip
     right.legend(loc="upper left", ncols=2, fontsize=7)
     return fig
 
@@ -256,23 +209,10 @@ def prony(frame: pd.DataFrame) -> Figure:
     below.set(xlabel="time (s)", ylabel="off the simulation\n(% of the peak)")
     told = frame[frame["panel"] == "amplitudes"]
     for marker, (speed, rows) in zip(MARKERS, told.groupby("series", sort=False), strict=False):
-        right.plot(
-            rows["tau (s)"],
-            rows["half_width (1)"],
-            marker=marker,
-            color=INK,
-            lw=0.9,
-            ms=5,
-            mfc="white" if marker == "o" else INK,
-            label=f"ramp of {speed}",
-        )
-    right.set(
-        xscale="log",
-        yscale="log",
-        xlabel="time constant (s)",
-        ylabel="95 % half-width of an amplitude\nover the steady force (1)",
-        title="error of an amplitude",
-    )
+        right.plot(rows["tau (s)"], rows["half_width (1)"], marker=marker, color=INK, lw=0.9, ms=5,
+                   mfc="white" if marker == "o" else INK, label=f"ramp of {speed}")  # fmt: skip
+    right.set(xscale="log", yscale="log", xlabel="time constant (s)",
+              ylabel="95 % half-width of an amplitude\nover the steady force (1)", title="error of an amplitude")  # fmt: skip
     right.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
     right.yaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
     right.legend(loc="upper right")
@@ -311,12 +251,8 @@ def friction(frame: pd.DataFrame) -> Figure:
     left.text(
         (start + end) / 2, 0.985, "waves", transform=left.get_xaxis_transform(), color=GREY, fontsize=7, ha="center", va="top"
     )
-    left.set(
-        xlabel="stroke distance (mm)",
-        ylabel="lateral displacement of the centre (mm)",
-        title="strokes; number: coefficient of friction",
-        xlim=(0, 1.1 * frame[DISTANCE].max()),
-    )
+    left.set(xlabel="stroke distance (mm)", ylabel="lateral displacement of the centre (mm)",
+             title="strokes; number: coefficient of friction", xlim=(0, 1.1 * frame[DISTANCE].max()))  # fmt: skip
     curve, estimate = panels["stretch"], panels["estimate"].iloc[0]
     right.fill_between(curve[COEFFICIENT], curve["lowest (mm)"], curve["highest (mm)"], color=INK, alpha=0.13, lw=0)
     right.plot(curve[COEFFICIENT], curve[LATERAL], "o-", color=INK, ms=3, lw=1.2)

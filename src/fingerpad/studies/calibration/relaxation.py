@@ -329,21 +329,11 @@ def _estimates(model, clean, truth, found, told, amplitudes, fixed, noisy, sigma
         order = np.argsort(-used.values[2::2])
         slow = [1 + 2 * order[0], 2 + 2 * order[0]]
         add(title, "correlation of log beta_1 and log tau_1", float(used.correlation[slow[0], slow[1]]), "1")
-    add(
-        "Prony series: separability",
-        "share of volume change",
-        model.share,
-        "1",
-        note="from the elastic curves of both readings of the moduli",
-    )
+    add("Prony series: separability", "share of volume change", model.share, "1",
+        note="from the elastic curves of both readings of the moduli")  # fmt: skip
     worst = 100 * np.abs(model.force(truth) - clean).max() / clean.max()
-    add(
-        "Prony series: separability",
-        "largest error of the hereditary integral",
-        worst,
-        "% of the peak",
-        note="against the full simulation with the same series",
-    )
+    add("Prony series: separability", "largest error of the hereditary integral", worst, "% of the peak",
+        note="against the full simulation with the same series")  # fmt: skip
     misfit = float(np.sqrt(np.mean((noisy[1:] - fixed @ amplitudes) ** 2)) / sigma)
     for k, tau in enumerate(taus, start=1):
         add(
@@ -362,12 +352,6 @@ def _estimates(model, clean, truth, found, told, amplitudes, fixed, noisy, sigma
         share = record["largest share of force (1)"]
         note = f"for noise of {NOISE:.1%}; a branch of unit strength adds at most {share:.3g} of the held force"
         add(study, quantity, record["half_width (1)"], "1", note=note)
-    add(
-        "cost",
-        "finite element simulations for the series",
-        float(found.simulations),
-        "1",
-        note="beside the elastic curve",
-        subject="",
-    )
+    add("cost", "finite element simulations for the series", float(found.simulations), "1", note="beside the elastic curve",
+        subject="")  # fmt: skip
     return pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)

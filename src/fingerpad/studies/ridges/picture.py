@@ -83,12 +83,8 @@ def offset(frame: pd.DataFrame) -> Figure:
         arrowprops={"arrowstyle": "-", "lw": 0.6, "color": INK},
     )  # fmt: skip
     ax.axhline(0, color=GREY, lw=0.6)
-    ax.set(
-        xlim=(-250, 250),
-        ylim=(-0.8, 0.8),
-        xlabel="offset from the ridge's tip (µm)",
-        ylabel=f"directional index at {DEPTH * 1e6:.0f} µm",
-    )
+    ax.set(xlim=(-250, 250), ylim=(-0.8, 0.8), xlabel="offset from the ridge's tip (µm)",
+           ylabel=f"directional index at {DEPTH * 1e6:.0f} µm")  # fmt: skip
     ax.legend(loc="upper right")
     return fig
 
