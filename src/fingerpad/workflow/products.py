@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -42,16 +42,16 @@ class Job:
     """One process of the workflow.
 
     Attributes:
-        name: the rule's. run: module of `fingerpad.workflow.jobs`. inputs, outputs: files by what they are to the job.
-        values: parameters likewise. modules: further modules that the job imports by name. also: outputs beside the others.
-        caption, category, labels: for the report, of the outputs called picture(s), table(s).
+        run: module of `fingerpad.workflow.jobs`. inputs, outputs: files by what they are to the job. values: parameters likewise.
+        called: the rule's name, if it is not the module's. modules: further modules that the job imports by name. also: outputs
+        beside the others. caption, category, labels: for the report, of the outputs called picture(s), table(s).
     """
 
-    name: str
     run: str
     inputs: Mapping[str, list[str]]
     outputs: Mapping[str, list[str]]
     values: Mapping[str, list[str]] = field(default_factory=dict)
+    called: str = ""
     modules: tuple[str, ...] = ()
     category: str = ""
     caption: str = "table"
@@ -61,6 +61,11 @@ class Job:
     runtime: int = 10
     priority: int = 0
     threads: int = 1
+
+    @property
+    def name(self) -> str:
+        """The rule's."""
+        return self.called or self.run
 
     @property
     def sources(self) -> list[str]:
@@ -232,33 +237,24 @@ class Products:
             batches.setdefault(name if moves_along(self.scene(name)) else self._family(name), []).append(name)
         return batches
 
-    def simulations(self) -> list[Job]:
+    def simulations(self) -> Iterator[Job]:
         """Scenes -> plans, meshes, histories, summaries."""
-        jobs = []
         for batch, names in self.batches().items():
             cases = [(name, "simulations", self.config.accuracy) for name in names]
             if self.config.companion_accuracy is not None:
                 cases += [(name, "coarse", self.config.companion_accuracy) for name in names if name in self.coarse]
             places = [self.result(f"{fidelity}/{name}") for name, fidelity, _ in cases]
-            jobs.append(
-                Job(
-                    f"simulate_{batch}".replace(".", "_").replace("-", "_"),
-                    "simulate",
-                    self._read(*names),
-                    {"histories": [f"{place}/history.nc" for place in places]},
-                    {
-                        "scenes": [self.scene(name) for name, *_ in cases],
-                        "accuracies": ["as_stated" if accuracy is None else str(accuracy) for *_, accuracy in cases],
-                        "written": self._written(*names),
-                    },
-                    also=[f"{place}/{name}" for place in places for name in ("mesh.msh", "plan.json", "summary.json")],
-                    mem_mb=2000,
-                    runtime=60,
-                    # the longest first, so that no core waits for them in the end
-                    priority=2 if moves_along(self.scene(names[0])) else 0,
-                )
-            )
-        return jobs
+            values = {
+                "scenes": [self.scene(name) for name, *_ in cases],
+                "accuracies": ["as_stated" if accuracy is None else str(accuracy) for *_, accuracy in cases],
+                "written": self._written(*names),
+            }
+            also = [f"{place}/{name}" for place in places for name in ("mesh.msh", "plan.json", "summary.json")]
+            called = f"simulate_{batch}".replace(".", "_").replace("-", "_")
+            # the longest first, so that no core waits for them in the end
+            first = 2 if moves_along(self.scene(names[0])) else 0
+            made = {"histories": [f"{place}/history.nc" for place in places]}
+            yield Job("simulate", self._read(*names), made, values, called, also=also, mem_mb=2000, runtime=60, priority=first)
 
     def _read(self, *names: str) -> dict[str, list[str]]:
         """What jobs read of scenes: their files, and the specimens, profiles and meshes that these name.
@@ -288,7 +284,7 @@ class Products:
     def picture_of(self, number: str) -> str:
         return f"{self.config.figures}/fig_{number}.png"
 
-    def figures(self) -> list[Job]:
+    def figures(self) -> Iterator[Job]:
         """Histories and meshes -> figures: those of a chapter's module that rest on the same simulations share a process."""
         batch_of = {name: batch for batch, names in self.batches().items() for name in names}
         groups: dict[tuple, list[Figure]] = {}
@@ -296,57 +292,37 @@ class Products:
             batches = frozenset(batch_of[scene] for scene in figure.needs)
             groups.setdefault((figure.module, batches), []).append(figure)
         reference = self.at("config/reference/thesis_numbers.csv")
-        jobs = []
         for (module, _), group in groups.items():
             needs = list(dict.fromkeys(scene for figure in group for scene in figure.needs))
-            compared = list(dict.fromkeys(scene for figure in group for scene in figure.companions))
             patterns = {pattern for figure in group for pattern in figure.measured}
-            measured = sorted(str(path) for pattern in patterns for path in Path(reference).parent.glob(pattern))
-            chapter = group[0].number.split("-")[0]
-            jobs.append(
-                Job(
-                    f"figures_{group[0].number.replace('-', '_')}",
-                    "figures",
-                    {
-                        "reference": [reference],
-                        "histories": self.histories(needs),
-                        "meshes": self.meshes(needs),
-                        "coarse": self.companions(compared),
-                        "measured": measured,
-                    },
-                    {"pictures": [self.picture_of(figure.number) for figure in group]},
-                    {"chapter": [module]},
-                    (module,),
-                    f"Chapter {chapter}",
-                    "figure",
-                    {self.picture_of(f.number): {"figure": f.number, "shows": f.title} for f in group},
-                )
-            )
-        return jobs
+            read = {
+                "reference": [reference],
+                "histories": self.histories(needs),
+                "meshes": self.meshes(needs),
+                "coarse": self.companions(dict.fromkeys(scene for figure in group for scene in figure.companions)),
+                "measured": sorted(str(path) for pattern in patterns for path in Path(reference).parent.glob(pattern)),
+            }
+            labels = {self.picture_of(f.number): {"figure": f.number, "shows": f.title} for f in group}
+            called, category = f"figures_{group[0].number.replace('-', '_')}", f"Chapter {group[0].number.split('-')[0]}"
+            made, told = {"pictures": list(labels)}, {"chapter": [module]}
+            yield Job("figures", read, made, told, called, (module,), category, "figure", labels)
 
-    def catalogue(self) -> list[Job]:
+    def catalogue(self) -> Iterator[Job]:
         """figures/README.md, of the configuration that draws them all."""
-        if self.config.name != "thesis":
-            return []
-        titles = json.dumps({figure.number: figure.title for figure in self.drawn}, ensure_ascii=False)
-        listed = {"catalogue": [self.at("config/reference/figures.csv")]}
-        return [Job("catalogue", "catalogue", listed, {"readme": ["figures/README.md"]}, {"titles": [titles]})]
+        if self.config.name == "thesis":
+            titles = json.dumps({figure.number: figure.title for figure in self.drawn}, ensure_ascii=False)
+            read = {"catalogue": [self.at("config/reference/figures.csv")]}
+            yield Job("catalogue", read, {"readme": ["figures/README.md"]}, {"titles": [titles]})
 
-    def animations(self) -> list[Job]:
+    def animations(self) -> Iterator[Job]:
         """Moving pictures."""
-        return [
-            Job(
-                f"animation_{scene}",
-                "animation",
-                {"history": self.histories([scene])},
-                {"gif": [f"{self.config.studies}/animation_{scene}.gif"]},
-            )
-            for scene in self.config.animations
-        ]
+        for scene in self.config.animations:
+            made = {"gif": [f"{self.config.studies}/animation_{scene}.gif"]}
+            yield Job("animation", {"history": self.histories([scene])}, made, called=f"animation_{scene}")
 
-    def all_tables(self) -> list[Job]:
+    def all_tables(self) -> Iterator[Job]:
         """Tables of all the results, of the receptors, and of the scenes' summaries."""
-        c, jobs = self.config, []
+        c = self.config
         scenes = dict.fromkeys([*c.scenes, *c.variants, *c.calibration_scenes])
         if names := [name for name in TABLES if name in c.table_names]:
             every = {
@@ -355,17 +331,15 @@ class Products:
                 "coarse": self.companions(scene for scene in scenes if scene in self.coarse),
             }
             measures = {"measures": [self.result("measures.csv")]}
-            jobs.append(Job("measures", "measures", every, measures, mem_mb=2000))
+            yield Job("measures", every, measures, mem_mb=2000)
             read = measures | {"reference": [self.at("config/reference/thesis_numbers.csv")]}
-            jobs.append(Job("tables", "tables", read, {"tables": self.tables(names)}, category="Tables"))
+            yield Job("tables", read, {"tables": self.tables(names)}, category="Tables")
         if "mesh_quality" in c.table_names:
-            quality = {"table": self.tables(["mesh_quality"])}
-            jobs.append(Job("mesh_quality", "mesh_quality", {"meshes": self.meshes(c.scenes)}, quality, category="Tables"))
+            made = {"table": self.tables(["mesh_quality"])}
+            yield Job("mesh_quality", {"meshes": self.meshes(c.scenes)}, made, category="Tables")
         if "summary" in c.table_names:
-            summaries = [self.result(f"simulations/{scene}/summary.json") for scene in dict.fromkeys([*c.scenes, *c.variants])]
-            jobs.append(
-                Job("summary", "summary", {"summaries": summaries}, {"table": self.tables(["summary"])}, category="Tables")
-            )
+            read = [self.result(f"simulations/{scene}/summary.json") for scene in dict.fromkeys([*c.scenes, *c.variants])]
+            yield Job("summary", {"summaries": read}, {"table": self.tables(["summary"])}, category="Tables")
         if names := [name for name in RECEPTOR_TABLES if name in c.table_names]:
             felt = self._of([*c.scenes, *c.variants], "ramp40", "ramp150", "press10", "press15", "stroke", "stroke_sub")
             read = {
@@ -375,47 +349,34 @@ class Products:
                     s for s in self._of(c.scenes, "ramp40", "stroke") if s.startswith("ramp40_") or s == "stroke_10"
                 ),
             }
-            jobs.append(Job("receptor_tables", "receptor_tables", read, {"tables": self.tables(names)}, category="Tables"))
-        return jobs
+            yield Job("receptor_tables", read, {"tables": self.tables(names)}, category="Tables")
 
     def _of(self, names: Iterable[str], *families: str) -> list[str]:
         """Those of `names` that belong to some families."""
         return [name for name in names if self._family(name) in families]
 
-    def meanings(self) -> list[Job]:
+    def meanings(self) -> Iterator[Job]:
         """The study of the definitions of strain energy, if the configuration has the nine surfaces."""
-        nine = self._of(self.config.scenes, "ramp40")
-        if len(nine) < 9:
-            return []
-        read = {"histories": self.histories(nine), "coarse": self.companions(nine)}
-        picture = self.pictures(["strain_energy_meanings"])
-        return [
-            Job(
-                "strain_energy_meanings",
-                "strain_energy_meanings",
-                read,
-                {"picture": picture},
-                category="Receptors",
-                caption="strain_energy_meanings",
-            )
-        ]
+        name, nine = "strain_energy_meanings", self._of(self.config.scenes, "ramp40")
+        if len(nine) >= 9:
+            read, made = {"histories": self.histories(nine), "coarse": self.companions(nine)}, {"picture": self.pictures([name])}
+            yield Job(name, read, made, category="Receptors", caption=name)
 
     # -- studies -----------------------------------------------------------------------------------------------------------
 
-    def calibration(self) -> list[Job]:
+    def calibration(self) -> Iterator[Job]:
         """The pad calibrated to measured forces; the Prony series and friction, if the configuration has their scenes."""
         c = self.config
         if not c.calibration_scenes:
-            return []
-        names, estimates, jobs = ["fit", "identifiability", "residuals"], ["estimates"], []
+            return
+        names, estimates = ["fit", "identifiability", "residuals"], ["estimates"]
 
         def data(*names: str) -> list[str]:
             return [self.result(f"calibration/{name}.csv") for name in names]
 
         steady = [scene for scene in c.calibration_scenes if scene != RAMP]
         read = {"forces": self.forces, "histories": self.histories(steady), "coarse": self.companions([PLATE])}
-        made = {"data": data(*names, *estimates), "specimens": [self.result("specimens")]}
-        jobs.append(Job("calibrate", "calibrate", read, made))
+        yield Job("calibrate", read, {"data": data(*names, *estimates), "specimens": [self.result("specimens")]})
         if RAMP in c.calibration_scenes:
             read = {
                 "relaxation": [self.at("config/reference/relaxation.csv")],
@@ -424,17 +385,15 @@ class Products:
                 **self._read(RAMP),
             }
             values = self._told(RAMP) | {"accuracy": [str(c.accuracy or "as_stated")]}
-            jobs.append(Job("calibrate_prony", "calibrate_prony", read, {"data": data("prony", "prony_estimates")}, values))
+            yield Job("calibrate_prony", read, {"data": data("prony", "prony_estimates")}, values)
             names, estimates = [*names, "prony"], [*estimates, "prony_estimates"]
         if c.friction_coefficients:
             sweep = [self.result(f"friction/{mu:g}/history.nc") for mu in c.friction_coefficients]
-            coarse_mesh = [self.result(f"coarse/{STROKE}/mesh.msh")]
-            read = {"mesh": coarse_mesh, **self._read(STROKE)}
-            values = self._told(STROKE) | {"accuracy": [str(c.companion_accuracy)]}
+            read = {"mesh": [self.result(f"coarse/{STROKE}/mesh.msh")], **self._read(STROKE)}
+            told = self._told(STROKE) | {"accuracy": [str(c.companion_accuracy)]}
             for k in (0, 1):  # in two processes, for two cores
-                values["coefficients"] = [f"{mu:g}" for mu in c.friction_coefficients[k::2]]
-                made = {"histories": sweep[k::2]}
-                jobs.append(Job(f"strokes_with_friction_{k + 1}", "strokes_with_friction", read, made, dict(values), mem_mb=2000))
+                values, made = told | {"coefficients": [f"{mu:g}" for mu in c.friction_coefficients[k::2]]}, sweep[k::2]
+                yield Job(run := "strokes_with_friction", read, {"histories": made}, values, f"{run}_{k + 1}", mem_mb=2000)
             read = {
                 "thesis": [self.at("config/reference/thesis_numbers.csv")],
                 "published": [self.at("config/reference/friction.csv")],
@@ -442,26 +401,25 @@ class Products:
                 "histories": self.histories(c.friction_scenes),
                 "coarse": self.companions([STROKE]),
             }
-            jobs.append(Job("calibrate_friction", "calibrate_friction", read, {"data": data("friction", "friction_estimates")}))
+            yield Job("calibrate_friction", read, {"data": data("friction", "friction_estimates")})
             names, estimates = [*names, "friction"], [*estimates, "friction_estimates"]
-        study = "fingerpad.studies.calibration.picture"
-        jobs.append(self._study_pictures("calibration", names, data(*names), study, "Calibration"))
-        table = {"table": self.tables(["calibration"])}
-        jobs.append(
-            Job("calibration_table", "joined", {"parts": data(*estimates)}, table, category="Tables", caption="calibration")
-        )
-        return jobs
+        yield self._study_pictures("calibration", names, data(*names), "fingerpad.studies.calibration.picture", "Calibration")
+        yield self._joined("calibration_table", data(*estimates), "calibration", category="Tables", caption="calibration")
+
+    def _joined(self, called: str, parts: list[str], table: str, **options) -> Job:
+        return Job("joined", {"parts": parts}, {"table": self.tables([table])}, called=called, **options)
 
     def _study_pictures(self, name: str, names: list[str], data: list[str], module: str, category: str) -> Job:
         made = {"pictures": self.pictures(names, f"{name}_")}
         labels = {path: {"study": Path(path).stem.replace("_", " ")} for path in made["pictures"]}
-        return Job(f"{name}_pictures", "pictures", {"data": data}, made, {"study": [module]}, (module,), category, name, labels)
+        told = {"study": [module]}
+        return Job("pictures", {"data": data}, made, told, f"{name}_pictures", (module,), category, name, labels)
 
-    def ridges(self) -> list[Job]:
+    def ridges(self) -> Iterator[Job]:
         """The study of ridges, if the configuration varies their height."""
         c = self.config
         if not c.ridge_heights:
-            return []
+            return
         pairs = list(dict.fromkeys([(h, FRICTION) for h in c.ridge_heights] + [(HEIGHT, mu) for mu in c.ridge_frictions]))
         both = [[self.result(f"ridges/{h:g}_{mu:g}_{mesh}/history.nc") for mesh in ("thesis", "coarse")] for h, mu in pairs]
         groups = [sum(both[k : k + 2], []) for k in range(0, len(both), 2)]
@@ -469,97 +427,70 @@ class Products:
             base = f"ridges/{HEIGHT:g}_{FRICTION:g}"
             groups += [[self.result(f"{base}_{mesh}/history.nc") for mesh in meshes] for meshes in RIDGE_MESHES]
         read, told = self._read(RIDGED), self._told(RIDGED)
-        jobs = [
-            Job(f"ridge_cases_{k}", "ridge_cases", read, {"histories": group}, told, mem_mb=2000, runtime=30, priority=1)
-            for k, group in enumerate(groups, start=1)
-        ]
+        for k, group in enumerate(groups, start=1):
+            yield Job(run := "ridge_cases", read, {"histories": group}, told, f"{run}_{k}", mem_mb=2000, runtime=30, priority=1)
         cases = [history for group in groups for history in group]
         names = ["offset", "height", "friction", "mesh", "outer"]
         read = {"cases": cases, "histories": self.histories(OUTER), "coarse": self.companions(OUTER[:1])}
         data = [self.result(f"ridges/{name}.csv") for name in names]
-        jobs.append(Job("ridge_data", "ridge_data", read, {"data": data}))
-        return [*jobs, self._study_pictures("ridges", names, data, "fingerpad.studies.ridges.picture", "Ridges")]
+        yield Job("ridge_data", read, {"data": data})
+        yield self._study_pictures("ridges", names, data, "fingerpad.studies.ridges.picture", "Ridges")
 
-    def accuracy(self) -> list[Job]:
+    def accuracy(self) -> Iterator[Job]:
         """What accuracy costs in time, and whether runs know their error."""
         family, sweeps, outside = (offered()[key] for key in ("FAMILY", "SWEEPS", "OUTSIDE"))
-        jobs = []
+        base, long = family["210"], {"mem_mb": 3000, "runtime": 60}
         for sweep in sweeps:
-            scene = family[sweep.split("_")[0]]
-            made, values = {"records": [self.result(f"accuracy/{sweep}.json")]}, {"sweep": [sweep], **self._told(scene)}
-            jobs.append(Job(f"accuracy_{sweep}", "accuracy_sweep", self._read(scene), made, values, mem_mb=3000, runtime=60))
+            scene, made = family[sweep.split("_")[0]], {"records": [self.result(f"accuracy/{sweep}.json")]}
+            told = {"sweep": [sweep], **self._told(scene)}
+            yield Job("accuracy_sweep", self._read(scene), made, told, f"accuracy_{sweep}", **long)
         read = self._read(*family.values()) | {"records": [self.result(f"accuracy/{sweep}.json") for sweep in sweeps]}
         tables = self.tables(["accuracy", "accuracy_orders", "accuracy_planner", "presets"])
-        values = {"scenes": [self.scene(scene) for scene in family.values()], "written": self._written(*family.values())}
-        jobs.append(Job("accuracy_tables", "accuracy_tables", read, {"tables": tables}, values, (), "Accuracy", "accuracy"))
+        told = {"scenes": [self.scene(scene) for scene in family.values()], "written": self._written(*family.values())}
+        yield Job("accuracy_tables", read, {"tables": tables}, told, category="Accuracy", caption="accuracy")
         rows = [self.result(f"accuracy/belief/{name}.csv") for name in outside]
-        base = family["210"]
         for k in range(0, len(outside), 7):
-            values = {"names": list(outside[k : k + 7]), **self._told(base)}
-            name, made = f"accuracy_belief_{k // 7 + 1}", {"rows": rows[k : k + 7]}
-            jobs.append(Job(name, "accuracy_belief", self._read(base), made, values, mem_mb=2000, runtime=60))
-        believed = self.tables(["accuracy_belief"])
-        jobs.append(Job("accuracy_beliefs", "joined", {"parts": rows}, {"table": believed}))
+            told, made = {"names": list(outside[k : k + 7]), **self._told(base)}, {"rows": rows[k : k + 7]}
+            yield Job(run := "accuracy_belief", self._read(base), made, told, f"{run}_{k // 7 + 1}", mem_mb=2000, runtime=60)
+        yield self._joined("accuracy_beliefs", rows, "accuracy_belief")
         parts = [self.result(f"accuracy/drawn/{kind}.csv") for kind in offered()["CLASSES"]]
         for kind, part in zip(offered()["CLASSES"], parts, strict=True):
-            values = {"kind": [kind], **self._told(base)}
-            jobs.append(
-                Job(
-                    f"accuracy_drawn_{kind}",
-                    "accuracy_drawn",
-                    self._read(base),
-                    {"rows": [part]},
-                    values,
-                    mem_mb=3000,
-                    runtime=60,
-                )
-            )
-        drawn = self.tables(["accuracy_drawn"])
-        jobs.append(Job("accuracy_drawn", "joined", {"parts": parts}, {"table": drawn}))
-        for name, table, pictures in (
-            ("accuracy_pictures", tables[0], ("error", "error_stroke", "growth")),
-            ("accuracy_belief_picture", believed[0], ("belief",)),
-            ("accuracy_drawn_picture", drawn[0], ("drawn",)),
+            told = {"kind": [kind], **self._told(base)}
+            yield Job(run := "accuracy_drawn", self._read(base), {"rows": [part]}, told, f"{run}_{kind}", **long)
+        yield self._joined("accuracy_drawn", parts, "accuracy_drawn")
+        for called, table, pictures in (
+            ("accuracy_pictures", "accuracy", ("error", "error_stroke", "growth")),
+            ("accuracy_belief_picture", "accuracy_belief", ("belief",)),
+            ("accuracy_drawn_picture", "accuracy_drawn", ("drawn",)),
         ):
-            made = {"pictures": self.pictures(pictures, "accuracy_")}
+            read, made = {"table": self.tables([table])}, {"pictures": self.pictures(pictures, "accuracy_")}
             labels = {path: {"study": Path(path).stem} for path in made["pictures"]}
-            jobs.append(Job(name, "accuracy_pictures", {"table": [table]}, made, {}, (), "Accuracy", "accuracy", labels))
-        return jobs
+            yield Job("accuracy_pictures", read, made, {}, called, (), "Accuracy", "accuracy", labels)
 
-    def stability(self) -> list[Job]:
+    def stability(self) -> Iterator[Job]:
         """Hard cases -> how stable the default method is in them, beside simpler methods."""
         methods = [method.replace(" ", "_") for method in offered()["METHODS"]]
         data = [self.result(f"stability/{method}.csv") for method in methods]
-        jobs = [
-            Job(
-                f"stability_{m}",
-                "stability_method",
-                {"files": [self.thesis_specimen()]},
-                {"data": [d]},
-                {"method": [m]},
-                runtime=30,
-            )
-            for m, d in zip(methods, data, strict=True)
-        ]
+        read = {"files": [self.thesis_specimen()]}
+        for m, d in zip(methods, data, strict=True):
+            yield Job("stability_method", read, {"data": [d]}, {"method": [m]}, f"stability_{m}", runtime=30)
         made = {"picture": self.pictures(["stability"]), "table": self.tables(["stability"])}
-        return [*jobs, Job("stability_picture", "stability_picture", {"methods": data}, made, {}, (), "Studies", "study")]
+        yield Job("stability_picture", {"methods": data}, made, category="Studies", caption="study")
 
-    def effects(self) -> list[Job]:
+    def effects(self) -> Iterator[Job]:
         """What each effect changes and costs, and the planner's choices and rules against that."""
-        parts = ("changes", "choices")
+        parts, read = ("changes", "choices"), {"files": [self.thesis_specimen()]}
         data = [self.result(f"effects/{part}.csv") for part in parts]
-        jobs = [
-            Job(f"effects_{p}", "effects_study", {"files": [self.thesis_specimen()]}, {"data": [d]}, {"part": [p]}, runtime=30)
-            for p, d in zip(parts, data, strict=True)
-        ]
-        tables = self.tables(["effects", "planner_choices", "planner_rules"])
-        made = {"picture": self.pictures(["effects"]), "tables": tables}
-        return [*jobs, Job("effects_picture", "effects_picture", {"parts": data}, made, {}, (), "Studies", "study")]
+        for p, d in zip(parts, data, strict=True):
+            yield Job("effects_study", read, {"data": [d]}, {"part": [p]}, f"effects_{p}", runtime=30)
+        made = {"picture": self.pictures(["effects"]), "tables": self.tables(["effects", "planner_choices", "planner_rules"])}
+        yield Job("effects_picture", {"parts": data}, made, category="Studies", caption="study")
 
-    def peers(self) -> list[Job]:
+    def peers(self) -> Iterator[Job]:
         """The same press through a public finite element package."""
         files = [self.thesis_specimen(), self.at("config/specimens/homogeneous.yaml")]
-        return [Job("peers_table", "peers", {"files": files}, {"table": self.tables(["peers"])}, category="Tables", mem_mb=2000)]
+        made = {"table": self.tables(["peers"])}
+        yield Job("peers", {"files": files}, made, called="peers_table", category="Tables", mem_mb=2000)
 
     def map_of_touch(self) -> list[Job]:
         """A sweep over curvature, force and rate."""
