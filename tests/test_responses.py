@@ -19,13 +19,13 @@ from fingerpad.measures.responses import (
     SHALLOW_DEPTH,
     TRIALS,
     predicted_rate,
-    pressed,
     rate_in,
     shallow_law,
     skin_sample,
     time_mean,
     windowed,
 )
+from fingerpad.measures.runs import FAST, NINE
 from fingerpad.measures.table import Measures
 from fingerpad.receptors.laws import SpatialSum
 from fingerpad.receptors.recordings import read_rates
@@ -77,7 +77,7 @@ def test_impulses_of_the_raster_are_as_many_as_the_rate_says_and_the_same_again(
     frame, again = (_frame("4-2", made, reference) for _ in range(2))
     pd.testing.assert_frame_equal(frame, again)
     counts = frame[frame[IMPULSE].notna()].groupby(["surface", "series"]).size()
-    for label, history in pressed(made, "ramp150").items():
+    for label, history in FAST.histories(made).items():
         rate = predicted_rate(history)
         due = time_mean(rate[TIME], rate[IMPULSE_RATE]) * np.ptp(rate[TIME])
         if due > 5:
@@ -108,7 +108,7 @@ def test_pictures_say_predicted_inside_the_axes(made, reference, rates, number):
 def test_error_is_relative_to_the_largest_rate(made, reference):
     coarse = {name: _scaled(history, 1.01) for name, history in made.items()}
     frame = _frame("4-25", made, reference, coarse=coarse).set_index("surface")
-    fine, rough = ({k: rate_in(h, "hold") for k, h in pressed(histories, "ramp150").items()} for histories in (made, coarse))
+    fine, rough = ({k: rate_in(h, "hold") for k, h in FAST.histories(histories).items()} for histories in (made, coarse))
     for label in ("flat", "210", "1260"):
         expected = 100 * abs(rough[label] - fine[label]) / max(fine.values())
         assert frame.loc[label, features.ERROR] == pytest.approx(expected)
@@ -187,7 +187,7 @@ def test_line_of_eq_4_4_goes_through_the_points_of_a_pad_that_obeys_it(made, ref
 
 
 def test_energies_at_600_um_are_scaled_to_the_mean_of_those_at_915_um(made):
-    surfaces = pressed(made)
+    surfaces = NINE.histories(made)
     law, factor = shallow_law(surfaces)
 
     def mean(depth):
@@ -249,7 +249,7 @@ def test_rates_saturate_at_the_highest_curvature(made):
     assert not _holds(made, "TR85", ramp40_k1260=_scaled(made["ramp40_k1260"], 3.0))
     level = {k: 160 + 0.6 * v for k, v in synthetic.CURVATURE.items()} | {"1260": 160 + 0.6 * 660}
     straight = {}
-    for label, history in pressed(made).items():
+    for label, history in NINE.histories(made).items():
         name = features.scene_name("ramp40", label)
         straight[name] = _scaled(history, level[label] / features.energy(history, 915e-6).max())
     assert _holds(made, "TR85", **straight)
@@ -257,7 +257,7 @@ def test_rates_saturate_at_the_highest_curvature(made):
 
 @pytest.mark.parametrize("id_", ["TR86", "TR89"])
 def test_peak_rate_is_linear_in_peak_pressure_and_energy_rate(made, id_):
-    surfaces = {features.scene_name("ramp40", k): h for k, h in pressed(made).items()}
+    surfaces = {features.scene_name("ramp40", k): h for k, h in NINE.histories(made).items()}
     follow, stray = {}, {}
     for name, history in surfaces.items():
         peak = rate_in(history, "peak")

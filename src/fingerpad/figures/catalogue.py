@@ -7,6 +7,7 @@ from os import PathLike
 
 import pandas as pd
 
+from fingerpad.publishing.write import markdown
 from fingerpad.reference_data import Column, read_table
 
 CATALOGUE = {
@@ -77,5 +78,4 @@ def readme(catalogue: pd.DataFrame, made: Mapping[str, str]) -> str:
 
 
 def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
-    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
-    return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in rows)])
+    return markdown(pd.DataFrame(rows, columns=list(head))).rstrip("\n")

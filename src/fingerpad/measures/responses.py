@@ -13,14 +13,12 @@ import xarray as xr
 
 from fingerpad.measures.features import (
     PRESSURE,
-    SURFACES,
     Histories,
     centre_node,
     centre_pressure,
     energy,
     ramp_end,
     receptor_index,
-    scene_name,
 )
 from fingerpad.measures.measure import speed_of, waves
 from fingerpad.measures.quantities import (
@@ -44,6 +42,7 @@ from fingerpad.measures.quantities import (
     TIME,
     P,
 )
+from fingerpad.measures.runs import NINE
 from fingerpad.measures.skin import skin_curvature
 from fingerpad.measures.strokes import FULL, convexities, loaded, passage, place
 from fingerpad.receptors.fits import SkinSample, constant_shift, linear, r_squared, spatial_sum
@@ -81,12 +80,6 @@ def curvature_of(history: xr.Dataset) -> float:
 def is_stroke(history: xr.Dataset) -> bool:
     """Whether anything slid or was stepped."""
     return "stroke_distance" in history and bool(np.ptp(history["stroke_distance"].values) > 0)
-
-
-def pressed(histories: Histories, programme: str = "ramp40") -> dict[str, xr.Dataset]:
-    """Histories of the nine surfaces in a force programme, by label, as far as they are there."""
-    names = {label: scene_name(programme, label) for label in SURFACES}
-    return {label: histories[name] for label, name in names.items() if name in histories}
 
 
 def strokes(histories: Histories) -> dict[str, xr.Dataset]:
@@ -139,7 +132,7 @@ def stroke_law(histories: Histories, depth: float = RECEPTOR_DEPTH) -> tuple[Spa
 
     Raises KeyError if one of them was not simulated.
     """
-    law = fit_sum([histories[scene_name("ramp40", label)] for label in SURFACES], depth)
+    law = fit_sum([histories[scene] for scene in NINE.scenes.values()], depth)
     return law, constant_shift(law, skin_sample(histories[FULL["10"]], depth))
 
 

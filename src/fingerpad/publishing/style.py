@@ -27,33 +27,13 @@ BAND = "0.955"
 INK = "0.15"
 
 RC = {
-    "font.family": "DejaVu Sans",
-    "font.size": 8.5,
-    "axes.titlesize": 8.5,
-    "axes.labelsize": 8.5,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "legend.fontsize": 8,
-    "axes.edgecolor": INK,
-    "axes.labelcolor": INK,
-    "text.color": INK,
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "axes.linewidth": 0.7,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.titlelocation": "left",
-    "axes.titlepad": 4,
-    "xtick.major.width": 0.7,
-    "ytick.major.width": 0.7,
-    "lines.linewidth": 1.4,
-    "lines.solid_capstyle": "round",
-    "legend.frameon": False,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "axes.formatter.use_mathtext": True,
-    "axes.formatter.limits": (-4, 5),
-}
+    "font.family": "DejaVu Sans", "font.size": 8.5, "axes.titlesize": 8.5, "axes.labelsize": 8.5, "xtick.labelsize": 8,
+    "ytick.labelsize": 8, "legend.fontsize": 8, "axes.edgecolor": INK, "axes.labelcolor": INK, "text.color": INK,
+    "xtick.color": INK, "ytick.color": INK, "axes.linewidth": 0.7, "axes.spines.top": False, "axes.spines.right": False,
+    "axes.titlelocation": "left", "axes.titlepad": 4, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
+    "lines.linewidth": 1.4, "lines.solid_capstyle": "round", "legend.frameon": False, "figure.facecolor": "white",
+    "savefig.facecolor": "white", "axes.formatter.use_mathtext": True, "axes.formatter.limits": (-4, 5),
+}  # fmt: skip
 
 DASHED, DOTTED = (0, (4, 1.8)), (0, (1, 1.4))
 

@@ -36,7 +36,7 @@ from fingerpad.measures.features import (
     scene_name,
 )
 from fingerpad.measures.quantities import SED, TIME
-from fingerpad.measures.responses import pressed
+from fingerpad.measures.runs import NINE
 from fingerpad.publishing import style
 
 MEANINGS = {
@@ -61,7 +61,7 @@ LINES = {"600 um": "--", "915 um": "-"}
 def frame_meanings(histories: Histories, coarse: Histories) -> pd.DataFrame:
     """Strain energy density over time by definition, depth and surface (40 gf/s), with its change from the top of the ramp on."""
     parts = []
-    for label, history in pressed(histories).items():
+    for label, history in NINE.histories(histories).items():
         for panel, variable in MEANINGS.items():
             for series, depth in DEPTHS.items():
                 read = partial(energy, depth=depth, name=variable)

@@ -25,21 +25,11 @@ LEVELS = ("draft", 0.05, 0.02)
 FINEST = "finest"
 """Name of the run the others are held to."""
 OUTSIDE = (
-    "curvature_79",
-    "curvature_420",
-    "curvature_2500",
-    "plate_5_gf",
-    "curvature_315_at_50_gf",
-    "curvature_630_at_5_gf_in_33_ms",
-    "curvature_157_stiff_epidermis",
-    "curvature_210_thin_epidermis",
-    "plate_soft_fat",
-    "curvature_105_to_1_mm_at_8_mm_per_s",
-    "curvature_840_steady_10_gf",
-    "curvature_210_nearly_incompressible",
-    "plate_10_gf_stroked_back",
-    "plate_30_gf_stroked_slowly",
-)
+    "curvature_79", "curvature_420", "curvature_2500", "plate_5_gf", "curvature_315_at_50_gf",
+    "curvature_630_at_5_gf_in_33_ms", "curvature_157_stiff_epidermis", "curvature_210_thin_epidermis", "plate_soft_fat",
+    "curvature_105_to_1_mm_at_8_mm_per_s", "curvature_840_steady_10_gf", "curvature_210_nearly_incompressible",
+    "plate_10_gf_stroked_back", "plate_30_gf_stroked_slowly",
+)  # fmt: skip
 """Names of the scenes of :func:`outside`. The last but one showed that errors of strokes add to those of presses; the last was
 added to check what the planner has made of that."""
 
@@ -137,14 +127,9 @@ def beliefs(scene: Scene, name: str, levels: tuple = LEVELS) -> list[dict[str, A
         cost = json.loads(run.attrs["cost"])
         rows.append(
             {
-                "scene": name,
-                "accuracy": str(level),
-                "believed error (%)": 100 * float(run.attrs["estimated_error"]),
-                "true error (%)": 100 * error,
-                "worst quantity": worst,
-                "nodes": cost["nodes"],
-                "steps": int(run.sizes["time"] - 1),
-                "process time (s)": cost["cpu_s"],
+                "scene": name, "accuracy": str(level), "believed error (%)": 100 * float(run.attrs["estimated_error"]),
+                "true error (%)": 100 * error, "worst quantity": worst, "nodes": cost["nodes"],
+                "steps": int(run.sizes["time"] - 1), "process time (s)": cost["cpu_s"],
             }
-        )
+        )  # fmt: skip
     return rows

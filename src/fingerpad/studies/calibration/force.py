@@ -358,13 +358,9 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
         add("moduli read as instantaneous", last, "modulus constant", _of(found), "1", found,
             "the moduli then relax to a part of themselves before the force is read")  # fmt: skip
         add(
-            "moduli read as instantaneous",
-            last,
-            "constant over that of the long-term reading",
-            found.values[0] / constants[last].values[0],
-            "1",
-            note="1 / g_inf but for the bulk modulus, which does not relax",
-        )
+            "moduli read as instantaneous", last, "constant over that of the long-term reading",
+            found.values[0] / constants[last].values[0], "1", note="1 / g_inf but for the bulk modulus, which does not relax",
+        )  # fmt: skip
     for name, title in (("less_fat", "0.75 mm less fat"), ("more_fat", "0.75 mm more fat")):
         if name in curves:
             found = fit_constant(curves[name], *_si(forces[last]), length)

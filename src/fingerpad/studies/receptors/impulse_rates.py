@@ -15,7 +15,8 @@ from scipy.interpolate import PchipInterpolator
 
 from fingerpad.measures.features import Histories, energy, force_gf
 from fingerpad.measures.quantities import TIME
-from fingerpad.measures.responses import IMPULSE_RATE, RECEPTOR_DEPTH, curvature_of, predicted_rate, pressed, windowed
+from fingerpad.measures.responses import IMPULSE_RATE, RECEPTOR_DEPTH, curvature_of, predicted_rate, windowed
+from fingerpad.measures.runs import surfaces
 from fingerpad.receptors.fits import GainAndThreshold, gain_and_threshold, jackknife, linear
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
 
@@ -65,7 +66,9 @@ def matched_histories(histories: Histories, group: pd.DataFrame) -> dict[float, 
         ramp = rows["ramp_gf_per_s"].iloc[0]
         programmes = [f"ramp{ramp:g}", f"press{force:g}"] if ramp == ramp else ["ramp40", f"press{force:g}"]
         for programme in programmes:
-            chosen = [h for h in pressed(histories, programme).values() if abs(float(force_gf(h)[-1]) / force - 1) < 0.01]
+            chosen = [
+                h for h in surfaces(programme).histories(histories).values() if abs(float(force_gf(h)[-1]) / force - 1) < 0.01
+            ]
             if len(chosen) >= 4:
                 found[force] = sorted(chosen, key=curvature_of)
                 break

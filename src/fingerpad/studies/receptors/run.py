@@ -21,12 +21,12 @@ from fingerpad.measures.responses import (
     RECEPTOR_DEPTH,
     contact_nodes,
     fit_nodes,
-    pressed,
     pressure_by_law,
     skin_sample,
     skin_shift,
     strokes,
 )
+from fingerpad.measures.runs import FAST, NINE
 from fingerpad.measures.strokes import SUB
 from fingerpad.receptors.fits import constant_shift, jackknife, r_squared, rms, spatial_sum
 from fingerpad.receptors.laws import NODE_TERMS, TERM_UNITS, THESIS_RATE, SpatialSum
@@ -50,7 +50,7 @@ def receptor_fits(histories: Histories, coarse: Histories, rates: pd.DataFrame) 
         "discretisation" is by how much the estimate differs when fitted to the companions.
     """
     table = pd.DataFrame([*_simulated_laws(histories, intervals=True), *_rate_law(histories, rates)], columns=FIT_COLUMNS)
-    if len(pressed(coarse)) == len(pressed(histories)) > 1:
+    if len(NINE.histories(coarse)) == len(NINE.histories(histories)) > 1:
         rough = pd.DataFrame(_simulated_laws(coarse, intervals=False))
         key = ["law", "scenes", "receptor_depth (um)", "quantity"]
         matched = table[key].merge(rough.drop_duplicates(key)[[*key, "estimate"]], on=key, how="left")["estimate"].to_numpy(float)
@@ -60,7 +60,7 @@ def receptor_fits(histories: Histories, coarse: Histories, rates: pd.DataFrame) 
 
 
 def _simulated_laws(histories: Histories, intervals: bool) -> Iterator[dict]:
-    surfaces = pressed(histories)
+    surfaces = NINE.histories(histories)
     yield from _node_laws(surfaces, intervals)
     yield from _sums(histories, surfaces, intervals)
 
@@ -165,7 +165,7 @@ def _sums(histories: Histories, surfaces: dict[str, xr.Dataset], intervals: bool
 def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterator[dict]:
     """How the sum fitted to the slow ramps does on what it was not fitted to: fast ramps, and strokes with four shifts."""
     um, title, what = depth * 1e6, "4-4, constants of ramp40", "residual over the energy"
-    fast = [skin_sample(history, depth) for history in pressed(histories, "ramp150").values()]
+    fast = [skin_sample(history, depth) for history in FAST.histories(histories).values()]
     if fast:
         own = np.concatenate([s.energy for s in fast])
         predicted = np.concatenate([law.strain_energy(s.x, s.pressure, s.indentation) for s in fast])

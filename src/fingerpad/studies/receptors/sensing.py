@@ -13,7 +13,6 @@ from fingerpad.measures.responses import (
     fit_sum,
     is_stroke,
     predicted_rate,
-    pressed,
     rapidly_adapting_rate,
     skin_sample,
     strokes,
@@ -43,7 +42,7 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
     Raises:
         ValueError: no surface was pressed at 40 gf/s, so there is nothing to fit the sum to.
     """
-    surfaces = pressed(histories)
+    surfaces = NINE.histories(histories)
     if not surfaces:
         raise ValueError("the sensor's constants are fitted to scenes ramp40_*; there is none among the histories")
     laws = {True: fit_sum(surfaces.values(), RECEPTOR_DEPTH), False: fit_sum(surfaces.values(), RECEPTOR_DEPTH, with_depth=False)}
@@ -121,7 +120,7 @@ def rapidly_adapting(histories: Histories) -> pd.DataFrame:
     """
     rows = []
     for name, (key, law) in RAPIDLY_ADAPTING.items():
-        for label, history in pressed(histories).items():
+        for label, history in NINE.histories(histories).items():
             frame = rapidly_adapting_rate(history, law, key)
             time, rate = frame[TIME].to_numpy(), frame[IMPULSE_RATE].to_numpy()
             top = float(history["time"].values[ramp_end(history)])
