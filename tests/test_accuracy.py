@@ -245,7 +245,7 @@ def test_tolerance_is_met_by_the_cheapest(scenes, curvature):
 
 def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
     outside = belief.outside(scenes["210"])
-    assert tuple(outside) == belief.OUTSIDE and len(outside) >= 12
+    assert tuple(outside) == tuple(belief.OUTSIDE) and len(outside) >= 12
     assert len({scene.model_dump_json() for scene in outside.values()}) == len(outside)
     for scene in outside.values():
         for accuracy in belief.LEVELS:

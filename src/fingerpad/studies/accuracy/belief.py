@@ -24,14 +24,6 @@ LEVELS = ("draft", 0.05, 0.02)
 """Accuracies that are asked for."""
 FINEST = "finest"
 """Name of the run the others are held to."""
-OUTSIDE = (
-    "curvature_79", "curvature_420", "curvature_2500", "plate_5_gf", "curvature_315_at_50_gf",
-    "curvature_630_at_5_gf_in_33_ms", "curvature_157_stiff_epidermis", "curvature_210_thin_epidermis", "plate_soft_fat",
-    "curvature_105_to_1_mm_at_8_mm_per_s", "curvature_840_steady_10_gf", "curvature_210_nearly_incompressible",
-    "plate_10_gf_stroked_back", "plate_30_gf_stroked_slowly",
-)  # fmt: skip
-"""Names of the scenes of :func:`outside`. The last but one showed that errors of strokes add to those of presses; the last was
-added to check what the planner has made of that."""
 
 
 def covered(rows: pd.DataFrame) -> float:
@@ -45,42 +37,37 @@ def _press(grams: float, rate: float | None = 40.0, hold: float | None = 2.0) ->
     return (first, Hold(hold=hold)) if hold else (first,)
 
 
-def _layers(scene: Scene, **changes: dict[str, float]) -> dict[str, Any]:
-    layers = scene.specimen.layers
-    update = {name: getattr(layers, name).model_copy(update=values) for name, values in changes.items()}
-    return {"specimen": scene.specimen.model_copy(update={"layers": layers.model_copy(update=update)})}
+def _under(curvature: float, **changes: Any) -> dict[str, Any]:
+    return {"stimulus": Cylinder(curvature=curvature)} | changes
+
+
+LAYER = "specimen.layers.{}.{}".format
+OUTSIDE: dict[str, dict[str, Any]] = {
+    "curvature_79": _under(78.74),
+    "curvature_420": _under(419.95),
+    "curvature_2500": _under(2500.0),
+    "plate_5_gf": {"stimulus": Flat(), "motion": _press(5.0)},
+    "curvature_315_at_50_gf": _under(314.96, motion=_press(50.0)),
+    "curvature_630_at_5_gf_in_33_ms": _under(629.92, motion=_press(5.0, rate=150.0)),
+    "curvature_157_stiff_epidermis": _under(157.48) | {LAYER("epidermis", "youngs_modulus"): 0.45e6},
+    "curvature_210_thin_epidermis": _under(209.97) | {"specimen.outline.epidermis_thickness": 0.5e-3},
+    "plate_soft_fat": {"stimulus": Flat(), LAYER("fat", "youngs_modulus"): 5e3},
+    "curvature_105_to_1_mm_at_8_mm_per_s": _under(104.99, motion=(PressToDepth(press_to_depth=1e-3, speed=8e-3), Hold(hold=1.0))),
+    "curvature_840_steady_10_gf": _under(840.0, motion=_press(10.0, rate=None, hold=None)),
+    "curvature_210_nearly_incompressible":
+        _under(209.97) | {LAYER(k, "poisson_ratio"): 0.4995 for k in ("epidermis", "dermis", "fat")},
+    "plate_10_gf_stroked_back":
+        {"stimulus": Flat(), "friction": 0.4, "motion": (*_press(10.0, hold=None), Slide(slide=-4e-3, speed=20e-3))},
+    "plate_30_gf_stroked_slowly":
+        {"stimulus": Flat(), "friction": 0.5, "motion": (*_press(30.0, hold=None), Slide(slide=3e-3, speed=5e-3))},
+}  # fmt: skip
+"""Scenes outside the study by what is different in them. The last but one showed that errors of strokes add to those of presses;
+the last was added to check what the planner has made of that."""
 
 
 def outside(base: Scene) -> dict[str, Scene]:
-    """Scenes outside the study by what is different in them: curvature, force, speed, layers, depth control, a stroke."""
-
-    def cylinder(curvature):
-        return {"stimulus": Cylinder(curvature=curvature)}
-
-    def outline(**values):
-        specimen = base.specimen
-        return {"specimen": specimen.model_copy(update={"outline": specimen.outline.model_copy(update=values)})}
-
-    nearly = {"poisson_ratio": 0.4995}
-    back, slowly = Slide(slide=-4e-3, speed=20e-3), Slide(slide=3e-3, speed=5e-3)
-    changes = {
-        "curvature_79": cylinder(78.74),
-        "curvature_420": cylinder(419.95),
-        "curvature_2500": cylinder(2500.0),
-        "plate_5_gf": {"stimulus": Flat(), "motion": _press(5.0)},
-        "curvature_315_at_50_gf": cylinder(314.96) | {"motion": _press(50.0)},
-        "curvature_630_at_5_gf_in_33_ms": cylinder(629.92) | {"motion": _press(5.0, rate=150.0)},
-        "curvature_157_stiff_epidermis": cylinder(157.48) | _layers(base, epidermis={"youngs_modulus": 0.45e6}),
-        "curvature_210_thin_epidermis": cylinder(209.97) | outline(epidermis_thickness=0.5e-3),
-        "plate_soft_fat": {"stimulus": Flat()} | _layers(base, fat={"youngs_modulus": 5e3}),
-        "curvature_105_to_1_mm_at_8_mm_per_s": cylinder(104.99)
-        | {"motion": (PressToDepth(press_to_depth=1e-3, speed=8e-3), Hold(hold=1.0))},
-        "curvature_840_steady_10_gf": cylinder(840.0) | {"motion": _press(10.0, rate=None, hold=None)},
-        "curvature_210_nearly_incompressible": cylinder(209.97) | _layers(base, epidermis=nearly, dermis=nearly, fat=nearly),
-        "plate_10_gf_stroked_back": {"stimulus": Flat(), "friction": 0.4, "motion": (*_press(10.0, hold=None), back)},
-        "plate_30_gf_stroked_slowly": {"stimulus": Flat(), "friction": 0.5, "motion": (*_press(30.0, hold=None), slowly)},
-    }
-    return {name: base.model_copy(update=update | {"accuracy": "fine"}) for name, update in changes.items()}
+    """The scenes of :data:`OUTSIDE`, to be run finely."""
+    return {name: base.varied(changes | {"accuracy": "fine"}) for name, changes in OUTSIDE.items()}
 
 
 def ends(history) -> dict[str, np.ndarray]:
@@ -98,11 +85,9 @@ def difference(found: dict[str, Any], truth: dict[str, Any]) -> tuple[float, str
 
 
 def prepared(name: str, base: Scene) -> Scene:
-    """One scene of :func:`outside` with the receptors that are looked at, to be run finely."""
-    receptors = base.outputs.receptors.model_copy(update={"depths": DEPTHS, "offsets": (0.0,)})
-    return outside(base)[name].model_copy(
-        update={"outputs": base.outputs.model_copy(update={"receptors": receptors, "snapshots": ()})}
-    )
+    """One scene of :func:`outside` with the receptors that are looked at."""
+    looked = {"outputs.receptors.depths": DEPTHS, "outputs.receptors.offsets": (0.0,), "outputs.snapshots": ()}
+    return outside(base)[name].varied(looked)
 
 
 def finest(scene: Scene) -> Plan:
@@ -122,7 +107,7 @@ def beliefs(scene: Scene, name: str, levels: tuple = LEVELS) -> list[dict[str, A
     truth = simulate(scene, finest(scene))
     rows = []
     for level in (*levels, FINEST):
-        run = truth if level == FINEST else simulate(scene.model_copy(update={"accuracy": level}))
+        run = truth if level == FINEST else simulate(scene.with_accuracy(level))
         error, worst = difference(ends(run), ends(truth)) if run is not truth else (np.nan, "")
         cost = json.loads(run.attrs["cost"])
         rows.append(
