@@ -17,7 +17,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 from fingerpad.files import write_atomically
-from fingerpad.measures.features import PRESSURE
+from fingerpad.measures.features import PRESSURE, profile
 from fingerpad.measures.measure import speed_of
 from fingerpad.measures.steady import force_N
 from fingerpad.measures.strokes import profile_and_height
@@ -112,9 +112,8 @@ def _frames(history: xr.Dataset) -> list[np.ndarray]:
 
 def _profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
     """Deformed position (mm) and pressure (kPa) of the upper skin nodes at an output."""
-    upper = history["skin_y"].values > 0
-    x = history["skin_x"].values + history["skin_displacement_x"].values[index]
-    return 1e3 * x[upper], 1e-3 * history[PRESSURE].values[index, upper]
+    (x, p), upper = profile(history, index), history["skin_y"].values > 0
+    return 1e3 * x[upper], 1e-3 * p[upper]
 
 
 def _speed(history: xr.Dataset) -> str:

@@ -29,6 +29,7 @@ from fingerpad.measures.features import (
     is_simulated,
     phase_indices,
     ramp_end,
+    receptors_at,
     surface_nodes,
     width,
 )
@@ -129,8 +130,7 @@ def profiles_and_receptors(data: Data) -> pd.DataFrame:
     for label, history, coarse in data.runs(THREE):
         for z in (800e-6, 915e-6):
             error = error_percent(history, coarse, *at_ends(sed(z).read))
-            row = np.flatnonzero(abs(history["receptor_depth"].values - z) < 1e-6)
-            row = row[np.argsort(history["receptor_offset"].values[row])]
+            row = receptors_at(history, z)
             for index, phase in ((ramp_end(history), TOP), (history.sizes["time"] - 1, STEADY)):
                 part = {"surface": label, "panel": f"{z * 1e6:.0f} um", "phase": phase, TIME: history["time"].values[index]}
                 part |= {X: history["receptor_offset"].values[row] * 1e3}

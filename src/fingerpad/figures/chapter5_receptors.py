@@ -184,8 +184,7 @@ def by_pressure(data: Data) -> pd.DataFrame:
         parts.append(pd.DataFrame({"source": SIMULATED} | shared | {SED: sample.energy, ERROR: error}))
         shifts = {"constant shift": shift, "shift of the skin": skin_shift(stroke)}
         for how, source in BY_PRESSURE.items():
-            values = law.strain_energy(sample.x, sample.pressure, sample.indentation, shifts[how])
-            parts.append(pd.DataFrame({"source": source} | shared | {SED: values}))
+            parts.append(pd.DataFrame({"source": source} | shared | {SED: sample.by(law, shifts[how])}))
     return pd.concat(parts, ignore_index=True)
 
 

@@ -86,6 +86,12 @@ def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> in
     return index
 
 
+def receptors_at(history: xr.Dataset, depth: float) -> np.ndarray:
+    """Indices of the receptors at `depth` (m), from left to right."""
+    row = np.flatnonzero(abs(history["receptor_depth"].values - depth) < 1e-6)
+    return row[np.argsort(history["receptor_offset"].values[row])]
+
+
 def energy(history: xr.Dataset, depth: float, offset: float = 0.0, name: str = "strain_energy_density") -> np.ndarray:
     """Strain energy density (time) in Pa at one receptor."""
     return history[name].values[:, receptor_index(history, depth, offset)]

@@ -11,7 +11,16 @@ import xarray as xr
 
 from fingerpad.measures import features
 from fingerpad.measures.direction import BESIDE, DEPTH
-from fingerpad.measures.features import PRESSURE, PRESSURE_SCALE, centre_node, energy, profile, ramp_end, surface_nodes
+from fingerpad.measures.features import (
+    PRESSURE,
+    PRESSURE_SCALE,
+    centre_node,
+    energy,
+    profile,
+    ramp_end,
+    receptors_at,
+    surface_nodes,
+)
 from fingerpad.measures.measure import Measure, Together, deep, forced, held, measure, named, slides, strokes, waves, wavy
 from fingerpad.measures.quantities import BURST_RATE, IMPULSE_RATE, SED, SED_LAW, TIME
 from fingerpad.measures.responses import (
@@ -289,8 +298,7 @@ def energy_peak_offset(history):
     """Distance of the largest energy from the centre at top and end, the larger, over the spacing of the receptors."""
     found = {}
     for depth in (800e-6, 915e-6):
-        row = np.flatnonzero(abs(history["receptor_depth"].values - depth) < 1e-6)
-        row = row[np.argsort(history["receptor_offset"].values[row])]
+        row = receptors_at(history, depth)
         offset = history["receptor_offset"].values[row]
         if len(row) < 5:
             raise KeyError("receptors beside the centre")

@@ -244,7 +244,7 @@ def _by_eq_4_4(history: xr.Dataset, runs: Together) -> tuple[np.ndarray, np.ndar
     """Strain energy (time) Pa at 915 um as simulated and by Eq 4-4 with a constant shift of the receptor."""
     law, shift = runs.once(stroke_law)
     s = skin_sample(history, RECEPTOR_DEPTH)
-    return s.energy, law.strain_energy(s.x, s.pressure, s.indentation, shift)
+    return s.energy, s.by(law, shift)
 
 
 @measure("1", in_full, beside=True)

@@ -142,8 +142,7 @@ def energy_from_pressure(history: xr.Dataset, depth: float, law: SpatialSum, shi
     shift: m, of the receptor to the side: a constant, or `skin_shift`.
     """
     sample = skin_sample(history, depth)
-    predicted = law.strain_energy(sample.x, sample.pressure, sample.indentation, shift)
-    frame = pd.DataFrame({TIME: history["time"].values, SED: sample.energy, SED_LAW: predicted})
+    frame = pd.DataFrame({TIME: history["time"].values, SED: sample.energy, SED_LAW: sample.by(law, shift)})
     return frame.assign(**{DISTANCE: history["stroke_distance"].values * 1e3}) if is_stroke(history) else frame
 
 

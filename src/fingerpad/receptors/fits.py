@@ -32,6 +32,10 @@ class SkinSample:
     energy: np.ndarray
     reference: np.ndarray | float = 0.0
 
+    def by(self, law: SpatialSum, shift: np.ndarray | float = 0.0) -> np.ndarray:
+        """Strain energy (time) Pa by Eq 4-4, of a receptor that is a shift (m) to the side."""
+        return law.strain_energy(self.x, self.pressure, self.indentation, shift)
+
 
 def linear(terms: np.ndarray, data: np.ndarray) -> np.ndarray:
     """Constants (p,) of ``data = terms @ constants`` by least squares; terms (n, p) of any scales."""
@@ -72,7 +76,7 @@ def constant_shift(law: SpatialSum, sample: SkinSample, bounds: tuple[float, flo
     """The one lateral shift (m) of a receptor with which a law comes closest to the strain energy of a stroke."""
 
     def misfit(shift: float) -> float:
-        return float(((law.strain_energy(sample.x, sample.pressure, sample.indentation, shift) - sample.energy) ** 2).sum())
+        return float(((sample.by(law, shift) - sample.energy) ** 2).sum())
 
     grid = np.linspace(*bounds, 25)
     best = int(np.argmin([misfit(shift) for shift in grid]))

@@ -149,7 +149,7 @@ def _sums(histories: Histories, surfaces: dict[str, xr.Dataset], intervals: bool
 
         found = _with_intervals(constants, samples, intervals)
         law = SpatialSum(found[0, 0] * 1e-3, found[2, 0] if with_depth else 0.0, found[1, 0])
-        energies = [(s.energy, law.strain_energy(s.x, s.pressure, s.indentation)) for s in samples]
+        energies = [(s.energy, s.by(law)) for s in samples]
         both = [np.concatenate(side) for side in zip(*energies, strict=True)]
         title = "4-4" if with_depth else "4-4 without depth of indentation"
         names, units = ["r", "A2", "A1"][: 2 + with_depth], ["mm", "1/m", "1/m2"][: 2 + with_depth]
@@ -168,7 +168,7 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterato
     fast = [skin_sample(history, depth) for history in FAST.histories(histories).values()]
     if fast:
         own = np.concatenate([s.energy for s in fast])
-        predicted = np.concatenate([law.strain_energy(s.x, s.pressure, s.indentation) for s in fast])
+        predicted = np.concatenate([s.by(law) for s in fast])
         yield _relative(title, f"ramp150, {len(fast)} surfaces", what, own, predicted, depth=um)
     moving = {name: history for name, history in strokes(histories).items() if name not in SUB.values()}
     if not moving:
@@ -187,8 +187,7 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterato
             ("the skin's shift", skin, ""),
             ("a share of the skin's shift", share * skin, f"{share:.2f} of it"),
         ):
-            predicted = law.strain_energy(sample.x, sample.pressure, sample.indentation, value)
-            yield _relative(title, name, f"{what}, {how}", sample.energy, predicted, note, um)
+            yield _relative(title, name, f"{what}, {how}", sample.energy, sample.by(law, value), note, um)
 
 
 def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
@@ -197,7 +196,7 @@ def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
     for shift in np.arange(-1.2e-3, 0.5e-3, 0.1e-3):
         sample = skin_sample(history, depth, shift)
         law = spatial_sum([sample])
-        predicted = law.strain_energy(sample.x, sample.pressure, sample.indentation, shift)
+        predicted = sample.by(law, shift)
         if best is None or rms(predicted - sample.energy) < rms(best[0] - sample.energy):
             best = predicted, law, shift
     predicted, law, shift = best
@@ -208,9 +207,7 @@ def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
 def _share_of_skin(law: SpatialSum, sample, skin: np.ndarray) -> float:
     """The share of the skin's lateral displacement with which the law comes closest to a stroke, to a hundredth."""
     shares = np.arange(0, 1.505, 0.01)
-    left = [
-        rms(law.strain_energy(sample.x, sample.pressure, sample.indentation, share * skin) - sample.energy) for share in shares
-    ]
+    left = [rms(sample.by(law, share * skin) - sample.energy) for share in shares]
     return float(shares[int(np.argmin(left))])
 
 
