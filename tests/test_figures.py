@@ -16,6 +16,8 @@ from fingerpad.figures.geometry import boundaries, inward, loops
 from fingerpad.figures.grammar import Panels
 from fingerpad.figures.registry import CHAPTERS, FIGURES
 from fingerpad.measures import features as ft
+from fingerpad.measures.quantities import CURVATURE, RADIUS
+from fingerpad.measures.table import MEASURES, reading
 from fingerpad.publishing.style import COLOURS, spread
 from fingerpad.publishing.write import publish, write_frame, write_picture
 from fingerpad.reference_data import empty_reference, read_reference
@@ -315,3 +317,15 @@ def test_a_changed_axis_is_noticed_in_the_picture(tmp_path):
     fig.axes[0].set_ylim(0, 1.6)
     write_picture(fig, tmp_path / "b.png", BASELINE_DPI)
     assert similarity(tmp_path / "a.png", tmp_path / "b.png") < SIMILARITY
+
+
+def test_panels_of_pairs_have_axes_of_their_own():
+    first, second = picture("5-4").axes
+    assert [ax.get_xlabel() for ax in (first, second)] == [CURVATURE.label, RADIUS.label]
+    (bends,), (radii,) = ([line.get_xdata() for line in ax.get_lines()] for ax in (first, second))
+    np.testing.assert_allclose(np.sort(1e3 / bends), radii, rtol=1e-4)
+
+
+def test_a_reading_is_the_measure_of_its_name():
+    history = synthetic.history("ramp40_k210")
+    assert reading("rate", "peak")(history) == MEASURES["rate"](history)["peak"] > reading("rate", "end")(history)

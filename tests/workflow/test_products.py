@@ -96,6 +96,12 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
     assert {"ramp150_flat", "press10_flat"} <= coarse < every
 
 
+def test_the_table_of_measures_has_every_companion_there_is(thesis):
+    """Also of variants that only a figure compares: without it their rows in the comparison state no error."""
+    coarse = {Path(p).parent.name for p in thesis.jobs["measures"].inputs["coarse"]}
+    assert coarse == thesis.products.coarse and "ramp150_k315" in coarse
+
+
 def test_studies_are_not_part_of_the_default(thesis):
     runs = {thesis.jobs[name].run for name in thesis.default()}
     assert not runs & {"accuracy_sweep", "accuracy_belief", "stability_method", "effects_study", "peers"}

@@ -85,9 +85,10 @@ def velocity_hardly_matters_for_contact(m):
     return Trend(spread[worst] <= HARDLY, spread[worst], "spread over velocities " + listed(spread, "%", 2))
 
 
-@trend("TR32")
-def contact_length_falls(m):
-    return stepwise(m.find("contact_length", TEN), "mm", -1)
+@trend("TR32", quantity="contact_length")
+@trend("TR64", quantity="burst_width")
+def falls_from_convexity_to_convexity(m, quantity):
+    return stepwise(m.find(quantity, TEN), "mm", -1)
 
 
 @trend("TR69")
@@ -231,11 +232,6 @@ def impulses_under_convexities_only(m):
 def burst_rate_grows(m):
     found = stepwise(m.find("burst_rate", TEN), "impulses/s")
     return Trend(found.holds, found.shown, f"{found.note}; largest rates " + listed(m.find("convexity_rate", TEN), "impulses/s"))
-
-
-@trend("TR64")
-def burst_width_falls(m):
-    return stepwise(m.find("burst_width", TEN), "mm", -1)
 
 
 @trend("TR65")

@@ -210,16 +210,13 @@ def surfaces_above(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     style.header_legend(panels[UM[0]].figure, handles, handlelength=1.0, columnspacing=1.2, fontsize=7)
 
 
-def force_and_pressure(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Force trace above, centre pressure below."""
-    upper, lower = fig.subplots(2, 1, sharex=True, height_ratios=[1, 3.2])
-    flat = frame[frame["surface"] == "flat"]
-    upper.plot(flat[TIME], flat[FORCE], color=style.INK)
-    axs.limit_axis(upper, frame, FORCE)
-    upper.set(ylabel="force (gf)", yticks=[0, 10, 20, 30])
-    axs.limit_axes(lower, frame, TIME, P_CENTRE)
-    lower.set(xlabel=TIME.label, ylabel=P_CENTRE.label)
-    Lines(ends=2.62)(lower, frame, replace(spec, y=(P_CENTRE,)))
+def force_or_pressure(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
+    """The force of all, or nine traces of the pressure, named at their ends."""
+    if spec.y == (FORCE,):
+        ax.plot(TIME, FORCE, data=frame[frame["surface"] == "flat"], color=style.INK)
+        ax.set_yticks([0, 10, 20, 30])
+    else:
+        Lines(ends=2.62)(ax, frame, spec)
 
 
 def every_node(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
@@ -282,7 +279,9 @@ FIGURES = (
     Figure("4-8", "Contact width, 40 gf/s ramp to 20 gf, 2 s hold", NINE, TIME, (WIDTH,), {TIME: "T105", WIDTH: "T104"},
            one_panel(2.54), after=implied_widths, extra=bars_of_the_hold),
     Figure("4-10", "Contact pressure at the centre of the fingerpad", NINE, TIME, (FORCE, P_CENTRE),
-           {TIME: "T124", FORCE: "T122", P_CENTRE: "T123"}, Own(height=6.6, paint=force_and_pressure)),
+           {TIME: "T124", FORCE: "T122", P_CENTRE: "T123"},
+           Panels(height=6.6, pairs=((TIME, FORCE), (TIME, P_CENTRE)), shape=(2, 1), fill=force_or_pressure,
+                  share={"sharex": True, "height_ratios": (1, 3.2)})),
     Figure("4-11", "Contact pressure across the contact region", NINE, X, (P,), {X: "T134", P: PRESSURE_IDS},
            nine(SURFACES, 6.8, header=0.2, fill=Phases(), xlabel="horizontal location (mm)"),
            rows=lambda data: data.profiles(NINE).drop(columns=DOWN), extra=phase_legend()),
