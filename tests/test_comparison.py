@@ -194,6 +194,12 @@ def test_only_results_have_a_discretisation_error(table):
     assert numbers["discretisation_error"].isna().equals(numbers["role"].isin(GIVEN))
 
 
+def test_every_published_result_states_its_error():
+    published = pd.read_csv(CONFIG.parent / "figures/tables/thesis_comparison.csv")
+    results = published[published["role"].isin(("result", "calibrated")) & published["simulated"].notna()]
+    assert len(results) > 150 and results["discretisation_error"].notna().all()
+
+
 def test_results_are_given_in_four_digits_and_inputs_in_full(table):
     results = table[~table["role"].isin(GIVEN)]
     assert all(float(f"{v:.4g}") == v for v in results["simulated"].dropna())

@@ -45,7 +45,7 @@ def test_index_is_the_contrast_of_the_two_ways(made):
     assert directional_index(ridged, DEPTH, BESIDE) == pytest.approx(-0.5)
     assert directional_index(ridged, DEPTH, 0.0) == 0.0
     assert directional_index(made["plate_stroke_right"], DEPTH, -BESIDE) == 0.0
-    with pytest.raises(KeyError, match="no receptor 800 um deep"):
+    with pytest.raises(KeyError, match="no receptor at depth 800 um"):
         directional_index(ridged, 800e-6, 0.0)
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from fingerpad.measures.features import PRESSURE
+from fingerpad.measures.features import PRESSURE, energy
 
 STEADY = 2e-3
 """Where the mean of the index begins, m of stroke."""
@@ -39,13 +39,8 @@ def both_ways(
     """
     slid = history.stroke_distance.values
     where = np.flatnonzero(np.abs(slid) >= steady * (1 - 1e-9))
-    found = []
-    for x in (offset, -offset):
-        miss = np.hypot(history.receptor_depth.values - depth, history.receptor_offset.values - (tip + x))
-        if miss.min() > 0.6e-6:
-            raise KeyError(f"no receptor {depth * 1e6:g} um deep at {x * 1e6:g} um")
-        found.append(history.strain_energy_density.values[where, int(miss.argmin())])
-    return found[0], found[1]
+    right, left = (energy(history, depth, tip + x)[where] for x in (offset, -offset))
+    return right, left
 
 
 def directional_index(history: xr.Dataset, depth: float, offset: float, steady: float = STEADY, tip: float = 0.0) -> float:

@@ -14,7 +14,7 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
-from fingerpad.measures.features import PRESSURE, SIMULATED, Histories, profile
+from fingerpad.measures.features import PRESSURE, SIMULATED, Histories, energy, profile
 from fingerpad.measures.quantities import DISTANCE, SED, P, X
 from fingerpad.measures.strokes import loaded
 from fingerpad.results import scene_of
@@ -159,13 +159,7 @@ def outer_frame(strokes: Histories, coarse: Histories) -> pd.DataFrame:
         stroke = loaded(strokes[name])
         way_mm = 1e3 * abs(stroke.stroke_distance.values)
         for x in (-BESIDE, 0.0, BESIDE):
-            at = int(np.hypot(stroke.receptor_depth.values - DEPTH, stroke.receptor_offset.values - x).argmin())
-            rows = {
-                "panel": way,
-                "series": f"{x * 1e6:.0f} µm",
-                DISTANCE: way_mm,
-                SED: stroke.strain_energy_density.values[:, at],
-            }
+            rows = {"panel": way, "series": f"{x * 1e6:.0f} µm", DISTANCE: way_mm, SED: energy(stroke, DEPTH, x)}
             parts.append(pd.DataFrame(rows))
     stroke = loaded(strokes[OUTER[0]])
     way_mm = 1e3 * abs(stroke.stroke_distance.values)
