@@ -65,13 +65,15 @@ K210 = NINE.only(("210",))
 THREE = FAST.only(("flat", "158", "1260"))
 SHOWN = sed(SHOWN_DEPTH)
 HOLD = {"xlim": (0, 2.5), "xticks": [0, 1, 2]}
-WIDTH_IDS = dict(zip(SURFACES, "T106 T108 T110 T112 T114 T115 T116 T118 T120".split(), strict=True))
 PRESSURE_IDS = {label: f"T{125 + k}" for k, label in enumerate(SURFACES)}
 
 
-def by_surface(ids: str, labels: tuple[str, ...] = SURFACES) -> dict[str, str]:
-    """Ids of the thesis's axes, one a surface in their order."""
+def by_surface(ids: str, labels: tuple = SURFACES) -> dict:
+    """Ids of the thesis's axes, one a surface (or another label) in their order."""
     return dict(zip(labels, ids.split(), strict=True))
+
+
+WIDTH_IDS = by_surface("T106 T108 T110 T112 T114 T115 T116 T118 T120")
 
 
 def one_panel(x_label: float, height: float = 4.6) -> Panels:
@@ -319,7 +321,7 @@ FIGURES = (
     Figure("4-23", "Strain energy density 915 µm under the centre", NINE, TIME, (SHOWN,), {TIME: "T189", SED: "T188"},
            one_panel(2.62)),
     Figure("4-24", "Strain energy density at nine depths under the centre", NINE, TIME, (SED,),
-           {SED: dict(zip(UM, "T192 T193 T194 T195 T196 T197 T198a T198b T198c".split(), strict=True))},
+           {SED: by_surface("T192 T193 T194 T195 T196 T197 T198a T198b T198c", UM)},
            nine(UM, 7.2, header=0.22, by=RECEPTOR, limit="y", set=HOLD, fill=Lines(by="surface"),
                 titles=lambda z: f"{z:.0f} µm ({'epidermis' if z < 850 else 'dermis'})"),
            key=RECEPTOR, extra=surfaces_above,

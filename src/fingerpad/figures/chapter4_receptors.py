@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 from fingerpad.figures import axes as axs
-from fingerpad.figures.chapter4 import HOLD, K210, by_surface
+from fingerpad.figures.chapter4 import HOLD, K210, WIDTH_IDS, by_surface
 from fingerpad.figures.grammar import Data, Figure, Own, Panels, below, nine
 from fingerpad.measures.features import (
     ERROR,
@@ -643,7 +643,7 @@ FIGURES = (
                        ylabel="impulse rate (impulses/s)"),
              {GIVEN_RATE: "T096", CURVATURE: "T162"}, remarks=(STEADY_NOTE,)),
     Figure("4-9", "Predicted rate against the inverse of the contact width in the hold", NINE, INVERSE_WIDTH, (IMPULSE_RATE,),
-           {INVERSE_WIDTH: by_surface("T106 T108 T110 T112 T114 T115 T116 T118 T120"),
+           {INVERSE_WIDTH: WIDTH_IDS,
             IMPULSE_RATE: by_surface("T107 T109 T111 T113 T117 T119 T121", ("flat", "79", "105", "158", "420", "630", "1260"))},
            nine(SURFACES, 7.0, fill=rate_over_width, limit=""), rows=rate_and_width, how=OF_THE_LARGEST,
            remarks=(f"{DEEP} Time runs leftwards: the contact grows.",)),
