@@ -73,3 +73,23 @@ def test_contact_laws_hold_at_every_step(run, stimulus, finite):
     np.testing.assert_allclose(history.force, wanted, rtol=1e-4)
     np.testing.assert_array_less(0, np.diff(history.indentation_depth))
     assert history.energy_balance_error[-1] < 0.02
+
+
+STEADY = {"motion": [{"press_to_force": "20 gf"}, {"press_to_depth": "1.2 mm"}]}
+
+
+def check_steady(run, stimulus, legs, factor=1.0):
+    """Legs of one step and of four end in the same state; their work is known well enough to balance the energy."""
+    once, often = (run(stimulus=stimulus, **legs, accuracy={"skin_edge": "400 um", "steps": n}) for n in (2, 8))
+    assert once.sizes["time"] == 3 and often.sizes["time"] == 9 and not once.cutbacks.any()
+    for name in ("force", "indentation_depth", "contact_width", "peak_pressure", "strain_energy_density"):
+        first, second = factor * once[name].values[-1], often[name].values[-1]
+        np.testing.assert_allclose(first, second, rtol=1e-4, err_msg=f"truth: {name}")
+    assert once.energy_balance_error[1:].max() < 0.08, "truth: work = energy; a straight line from zero is off by 0.19"
+
+
+@pytest.mark.parametrize("stimulus", [{"shape": "flat"}, {"shape": "cylinder", "curvature": "1260 1/m"}])
+def test_steady_press_in_one_step(run, stimulus, must_fail):
+    """A steady press does not depend on its load increments, and one step knows its work."""
+    check_steady(run, stimulus, STEADY)
+    must_fail(check_steady, run, stimulus, STEADY, factor=1.001)

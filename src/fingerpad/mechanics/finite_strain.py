@@ -46,7 +46,7 @@ class FiniteStrainBody:
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
         self._loops = [(kernels.loops(part.law), part.constants, part.elements) for part in self.laws]
         self._dilatation = np.zeros((len(space.cells), space.psi.shape[2]))
-        self._lag = self._dilatation.copy()
+        self._lag, self._predicted = self._dilatation.copy(), None
         self._mesh = (space.cells, space.grad, space.weight, space.psi)
         self.branches = Branches(prony, space.weight.shape) if prony else None
         self._factor, self._history = 1.0, None
@@ -62,11 +62,15 @@ class FiniteStrainBody:
             self._factor, history = self.branches.begin(dt)
             self._history = np.ascontiguousarray(history[..., :3])
 
-    def displace(self, u: np.ndarray, lag: np.ndarray | None = None) -> None:
-        """Put the body at ``u`` (a predictor); the lagged dilatation becomes that of ``u`` unless given."""
+    def displace(self, u: np.ndarray, lag: np.ndarray | None = None) -> np.ndarray:
+        """Put the body at ``u`` (a predictor); the lagged dilatation becomes that of ``u`` unless given.
+
+        Returns the internal force there (n, 2) N/m, in the step begun last.
+        """
         self.u = np.array(u)
-        self.internal_force()
-        self._lag = self._dilatation.copy() if lag is None else lag
+        force = self.internal_force()
+        self._lag, self._predicted = self._dilatation.copy() if lag is None else lag, None
+        return force
 
     def internal_force(self) -> np.ndarray:
         """(n, 2) N/m at the current displacement."""
@@ -86,6 +90,9 @@ class FiniteStrainBody:
             self._data = self.space.pattern.new_data()
         self._data[:] = 0
         force = np.zeros_like(self.u)
+        if self._predicted is not None:
+            kernels.predict_dilatation(*self._predicted, *self._mesh, self._lag)
+            self._predicted = None
         lag = self._lag if self.lagged else self._dilatation
         self.smallest_jacobian = min(
             loops.assemble_tangent(
@@ -103,7 +110,7 @@ class FiniteStrainBody:
 
     def advance(self, du: np.ndarray, share: float = 1.0) -> None:
         """Accept ``share`` of the linear step ``du`` (n, 2); the predicted dilatation becomes the next lag."""
-        kernels.predict_dilatation(self.u, share * du, *self._mesh, self._lag)
+        self._predicted = self.u, share * du  # worked out only when a tangent is asked for
         self.u = self.u + share * du
 
     def commit(self) -> None:
@@ -136,13 +143,14 @@ class FiniteStrainBody:
     def save(self):
         """Everything needed to come back to this state."""
         history = self.branches and (self.branches.state(), self.branch_work, self._stretch)
-        return self.u.copy(), self._dilatation.copy(), self._lag.copy(), history
+        return self.u.copy(), self._dilatation.copy(), history
 
     def restore(self, state) -> None:
         """Come back to a saved state."""
-        self.u, self._dilatation, self._lag = (np.array(part) for part in state[:3])
+        self.u, self._dilatation = (np.array(part) for part in state[:2])
+        self._lag, self._predicted = self._dilatation.copy(), None
         if self.branches is not None:
-            branches, self.branch_work, self._stretch = state[3]
+            branches, self.branch_work, self._stretch = state[2]
             self.branches.restore(branches)
 
     def energies(self) -> tuple[float, float, float]:

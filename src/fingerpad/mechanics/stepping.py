@@ -145,7 +145,7 @@ class QuasiStatic:
         self._set_zone(*skin.start)
         self.height = self._first_touch()
         self._unloaded = body.save()
-        self._previous = self._fitting = None
+        self._previous = self._fitting = self._stiffness = None
         self._easy = False
         self.total_iterations = self.total_halvings = self.factorisations = 0
 
@@ -213,7 +213,7 @@ class QuasiStatic:
         # what was put in has come out again: the balance goes on from here
         self.work = self._gross = self._most_work = 0.0 if self.friction is None else self.friction.dissipated
         self._energies = (0.0, 0.0, 0.0)
-        self._previous = self._fitting = None
+        self._previous = self._fitting = self._stiffness = None
 
     def _attempt(self, dt, control, target):
         """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure."""
@@ -268,6 +268,7 @@ class QuasiStatic:
         else:
             step = self.friction.solve(zone, part, *known, self._motion(zone.nodes), **goal)
         self._softened |= step.softened
+        self._stiff = step.stiffness
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
         u, depth = body.u, self.depth
         share = 1.0
@@ -337,7 +338,7 @@ class QuasiStatic:
         return push + pull, pull
 
     def _check_energy(self, work, energies, lost, moved):
-        """A false equilibrium shows: its energy is not what was put in (trapezoidal, so a large first step has a margin).
+        """A false equilibrium shows: its energy is not what was put in (which large steps know with a margin).
 
         Small steps of a stroke (``moved``) have no such excuse: what goes missing in them, where nodes jump over edges, adds up.
         """
@@ -350,6 +351,21 @@ class QuasiStatic:
         if abs(work - change) > margin or abs(missing) > share * (self._gross + abs(work)):
             raise _StepFailure("the energy found is not the work that was done")
         self._missing = missing
+
+    def _pressing_work(self, force, way, stiffness):
+        """Work (J/m) of the force on a way (m) into the pad: by the trapezoidal rule, which is right for small steps.
+
+        A steady step is as large as it likes: where contact begins or ends the force grows by a power of the way, which the
+        ``stiffness`` (N/m^2; None: not known) at the other end tells; else it is a cubic with the stiffness of either end.
+        """
+        trapezoidal = 0.5 * (self.force + force) * way
+        if stiffness is None:
+            return trapezoidal
+        if not self.force or not force:
+            most, slope = max(self.force, force), stiffness if force else self._stiffness
+            power = slope * abs(way) / most if slope and most else 1.0
+            return most * way / (1 + max(power, 0.0))
+        return trapezoidal - (0.0 if self._stiffness is None else way**2 / 12 * (stiffness - self._stiffness))
 
     def _advance(self, dt, control, target, distance, predict):
         """One substep with predictor, check and commit."""
@@ -375,7 +391,8 @@ class QuasiStatic:
             if force < -1e-9 * self.nodal_force.sum():
                 raise _StepFailure("the indenter is pulled instead of pushed")
             self.body.commit()
-            work = 0.5 * (self.force + force) * (self.depth - state[3])
+            stiffness = self._stiff if dt >= STEADY * 0.5**self.settings.max_halvings else None
+            work = self._pressing_work(force, self.depth - state[3], stiffness)
             work += 0.5 * (self._tangential + tangential) * (distance - state[4])
             lost = self.friction.commit(self._range, pull, self._motion(self.zone.nodes)) if self.friction else 0.0
             energies = self.body.energies()
@@ -385,7 +402,7 @@ class QuasiStatic:
             raise
         for observe in self.observers:
             observe(self.body, dt)
-        self.force, self._tangential = float(force), float(tangential)
+        self.force, self._tangential, self._stiffness = float(force), float(tangential), stiffness
         self.work += float(work)
         self._gross += abs(float(work))
         self._most_force, self._most_work = max(self._most_force, self.force), max(self._most_work, abs(self.work))

@@ -5,9 +5,16 @@ from __future__ import annotations
 from fingerpad.scenes.scene import Scene
 from fingerpad.stimuli.motion import STEADY, programme
 
+_MOST_INCREMENTS = 8
+
 
 def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | None = None, present=None):
-    """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`)."""
+    """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`).
+
+    A steady press is one step, which is cut where Newton's method does not converge. Friction remembers how it was loaded, and
+    who gives the number of steps by hand (``slide_step`` None) wants to see them: then there are more.
+    """
+    on_the_way = bool(scene.friction) or slide_step is None
     return programme(
         scene.motion,
         steps=steps_per_leg,
@@ -16,6 +23,7 @@ def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | 
         snapshots=scene.outputs.snapshots,
         present=present,
         slide_step=slide_step,
+        increments=min(steps_per_leg, _MOST_INCREMENTS) if on_the_way else 1,
     )
 
 

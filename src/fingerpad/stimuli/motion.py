@@ -60,12 +60,14 @@ class Reached(NamedTuple):
 
 
 class Stepping(NamedTuple):
-    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of a slide (m)."""
+    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of a slide (m), and
+    increments of a steady press."""
 
     steps: int
     contact_length: float
     timed: bool
     slide_step: float | None
+    increments: int = 1
 
 
 class Outlook(NamedTuple):
@@ -134,12 +136,9 @@ LEGS: dict[str, type[Leg]] = {}
 _PUSH = ": the stimulus must press into the skin"
 
 
-def _ramp(start: float, end: float, speed: float | None, steps: int) -> tuple[list[float], np.ndarray, float | None]:
-    """Values from start to end, durations and the last of these; steady without a speed.
-
-    A steady press is path-independent: increments only guide Newton's method and let the energy be balanced.
-    """
-    count = min(steps, 8) if speed is None else steps
+def _ramp(start: float, end: float, speed: float | None, how: Stepping) -> tuple[list[float], np.ndarray, float | None]:
+    """Values from start to end, durations and the last of these; steady without a speed."""
+    count = how.increments if speed is None else how.steps
     last = None if speed is None else abs(end - start) / speed / count
     values = [start + (end - start) * k / count for k in range(1, count)] + [end]
     return values, np.full(count, STEADY if speed is None else last), last
@@ -169,7 +168,7 @@ class PressToForce(Leg):
 
     def path(self, at, last, reached, how):
         rate = self.rate and self.rate / how.contact_length
-        values, sizes, last = _ramp(reached.force, self.press_to_force / how.contact_length, rate, how.steps)
+        values, sizes, last = _ramp(reached.force, self.press_to_force / how.contact_length, rate, how)
         return sizes, [Goal(value, None, at.distance) for value in values], last
 
     def ahead(self, outlook):
@@ -196,7 +195,7 @@ class PressToDepth(Leg):
         return self.press_to_depth
 
     def path(self, at, last, reached, how):
-        values, sizes, last = _ramp(reached.depth, self.press_to_depth, self.speed, how.steps)
+        values, sizes, last = _ramp(reached.depth, self.press_to_depth, self.speed, how)
         return sizes, [Goal(None, value, at.distance) for value in values], last
 
     def ahead(self, outlook):
@@ -240,7 +239,7 @@ class Lift(Leg):
         return None if self.lift == "steady" else self.lift
 
     def path(self, at, last, reached, how):
-        values, sizes, last = _ramp(reached.depth, reached.touching, self.speed, how.steps)
+        values, sizes, last = _ramp(reached.depth, reached.touching, self.speed, how)
         return sizes, [Goal(None, value, at.distance) for value in values], last
 
     def ahead(self, outlook):
@@ -419,6 +418,7 @@ def programme(
     snapshots: Sequence[float] = (),
     present: Callable[[], tuple[float, ...]] | None = None,
     slide_step: float | None = None,
+    increments: int = 1,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
@@ -430,8 +430,9 @@ def programme(
         present: asked when a leg begins for what has been :class:`Reached` so far, which a change between force and depth
             control needs, and a lift; without it such a leg is taken to start from zero, and a lift to end there.
         slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
+        increments: of a steady press. Without friction its end does not depend on them.
     """
-    how = Stepping(steps, contact_length, timed, slide_step)
+    how = Stepping(steps, contact_length, timed, slide_step, increments)
     time, at, last = 0.0, Goal(None, None, 0.0), None
     for number, leg in enumerate(legs):
         reached = Reached(*present()) if present else Reached(at.force or 0.0, at.depth or 0.0)
