@@ -30,6 +30,11 @@ class FiniteStrainBody:
 
     geometrically_linear = False
 
+    @property
+    def factor(self) -> float:
+        """Share of the long-term isochoric stress that answers at once in the step begun last."""
+        return self._factor
+
     def __init__(
         self,
         space: Space,
@@ -116,11 +121,13 @@ class FiniteStrainBody:
     def commit(self) -> None:
         """The step has converged: let the branches move on, and add up the work that was done on them."""
         if self.branches is not None:
-            before, stretch = self.branches.q.sum(0), self._right_cauchy_green()
-            self.branches.commit(self.isochoric_stress())
-            mean = 0.5 * (before + self.branches.q.sum(0))[..., :3] * [0.5, 0.5, 1.0]
-            change = np.sum(mean * (stretch - self._stretch), axis=2)
-            self.branch_work += float(np.sum(self.space.weight * change))
+            branches, stress, stretch = self.branches, self.isochoric_stress(), np.empty_like(self._stretch)
+            q = np.empty_like(branches.q)
+            mesh = self.space.cells, self.space.grad, self.space.weight
+            self.branch_work += kernels.commit_branches(
+                self.u, *mesh, *branches.coefficients, stress, branches.q, branches.last, self._stretch, q, stretch
+            )
+            branches.restore((q, stress))
             self._stretch = stretch
 
     def _deformation_gradient(self):
@@ -167,9 +174,8 @@ class FiniteStrainBody:
             network += 0.5 * np.sum(self.space.weight * self._pointwise[:, None] * (jac - 1) ** 2)
         spring = 0.0
         if self.branches is not None:
-            for beta, q in zip(self.branches.prony.beta, self.branches.q, strict=True):
-                square = deviator_square(push_forward(f, q)) / self.shear[:, None]
-                spring += float(np.sum(self.space.weight * square)) / (4 * beta)
+            mesh = self.space.cells, self.space.grad, self.space.weight
+            spring = kernels.spring_energy(self.u, *mesh, self.shear, self.branches.prony.beta, self.branches.q)
         return float(network), spring, self.branch_work
 
 

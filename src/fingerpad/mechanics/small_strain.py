@@ -22,6 +22,11 @@ class SmallStrainBody:
     geometrically_linear = True
     smallest_jacobian = 1.0
 
+    @property
+    def factor(self) -> float:
+        """Share of the long-term deviatoric stress that answers at once in the step begun last."""
+        return self._factor
+
     def __init__(
         self,
         space: Space,
