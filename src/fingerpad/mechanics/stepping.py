@@ -268,9 +268,13 @@ class QuasiStatic:
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
 
     def _factors_fit(self):
-        """Are there factors of this zone, and of a step in which as much of the stress answers at once?"""
+        """Are there factors of this zone, and of a step in which as much of the stress answers at once?
+
+        A linear body sees to that by itself.
+        """
         return (
             self._factors is not None
+            and not self.body.geometrically_linear
             and self._factors[0] is self.solver
             and abs(self.body.factor - self._factors[1]) <= self.settings.stiffening * self.body.factor
         )
