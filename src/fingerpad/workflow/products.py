@@ -492,23 +492,22 @@ class Products:
         made = {"table": self.tables(["peers"])}
         yield Job("peers", {"files": files}, made, called="peers_table", category="Tables", mem_mb=2000)
 
-    def map_of_touch(self) -> list[Job]:
+    def map_of_touch(self) -> Iterator[Job]:
         """A sweep over curvature, force and rate."""
-        return self._published_sweep("map_of_touch", {})
+        yield from self._published_sweep("map_of_touch", {})
 
-    def five_hundred_fingers(self) -> list[Job]:
+    def five_hundred_fingers(self) -> Iterator[Job]:
         """A sweep over what is not known of a finger."""
-        return self._published_sweep("five_hundred_fingers", {"table": self.tables(["five_hundred_fingers"])})
+        yield from self._published_sweep("five_hundred_fingers", {"table": self.tables(["five_hundred_fingers"])})
 
-    def _published_sweep(self, name: str, more: dict[str, list[str]]) -> list[Job]:
-        file, folder = self.at(f"config/sweeps/{name}.yaml"), f"results/sweeps/{name}"
-        made = {"dataset": [f"{folder}/sweep.nc"]}
+    def _published_sweep(self, name: str, more: dict[str, list[str]]) -> Iterator[Job]:
+        folder = f"results/sweeps/{name}"
+        read = {"sweep": [self.at(f"config/sweeps/{name}.yaml")], "files": [self.thesis_specimen()]}
+        made, table = {"dataset": [f"{folder}/sweep.nc"]}, f"{folder}/sweep.csv"
         run = ("fingerpad.sweeps.batch", "fingerpad.workflow.jobs.sweep_batch", "fingerpad.workflow.jobs.sweep_collect")
-        read = {"sweep": [file], "files": [self.thesis_specimen()]}
-        table = f"{folder}/sweep.csv"
-        sweep = Job(f"sweep_{name}", "sweep", read, made, modules=run, also=[table], mem_mb=2000, runtime=120, threads=ALL_CORES)
-        made = {"picture": self.pictures([name])} | more
-        return [sweep, Job(name, name, {"scenes": [table]}, made, {}, (), "Studies", "study")]
+        many = {"mem_mb": 2000, "runtime": 120, "threads": ALL_CORES}
+        yield Job("sweep", read, made, called=f"sweep_{name}", modules=run, also=[table], **many)
+        yield Job(name, {"scenes": [table]}, {"picture": self.pictures([name])} | more, category="Studies", caption="study")
 
     def jobs(self) -> list[Job]:
         """All of them."""
