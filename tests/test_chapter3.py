@@ -14,9 +14,9 @@ from fingerpad.figures.registry import FIGURES
 from fingerpad.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
 from fingerpad.measures.table import Measures
 from fingerpad.reference_data import empty_reference, read_reference
-from fingerpad.results import summary
+from fingerpad.results import VARIABLES, summary
 from fingerpad.scenes.families import read_family
-from fingerpad.scenes.scene import Bar, Hold, Line, PressToDepth
+from fingerpad.scenes.scene import Bar, Line
 
 ROOT = Path(__file__).parents[1]
 SCENES = ROOT / "config" / "scenes"
@@ -45,21 +45,6 @@ def test_plan_of_a_steady_scene_has_no_time_steps_and_the_relaxed_moduli(name):
 
 
 @pytest.mark.slow
-def test_steady_state_is_what_a_long_hold_ends_in():
-    """Force, depth, width, pressures and the skin's shape, of the 1/8 inch cylinder at 1 mm."""
-    steady = load_scene(SCENES / "steady_cylinder_1_8_inch.yaml").model_copy(
-        update={"motion": (PressToDepth(press_to_depth=1 * MM),)}
-    )
-    held = steady.model_copy(update={"motion": (PressToDepth(press_to_depth=1 * MM, speed=2 * MM), Hold(hold=100.0))})
-    assert plan(held).timed
-    one, other = (simulate(scene).isel(time=-1) for scene in (steady, held))
-    assert float(one.force) == pytest.approx(float(other.force), rel=1e-3)
-    assert float(one.contact_width) == pytest.approx(float(other.contact_width), rel=1e-2)
-    assert float(one.peak_pressure) == pytest.approx(float(other.peak_pressure), rel=5e-3)
-    assert np.allclose(one.skin_displacement_y, other.skin_displacement_y, atol=1e-6)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "name, stimulus",
     [
@@ -77,13 +62,15 @@ def test_edges_reach_two_millimetres_leg_by_leg_without_cuts_and_true_peaks_are_
     assert totals["legs"][-1]["depth_mm"] == pytest.approx(2.0) and totals["run"]["cutbacks"] == 0
     sharp = isinstance(stimulus, Bar) and stimulus.fillet == 0
     assert totals["run"]["peak_pressure_singular"] == sharp and totals["run"]["min_detF"] > 0.1
+    assert totals["run"]["complementarity_error"] < 1e-3 and history.contact_pressure.min() >= 0
+    assert all(np.isfinite(history[name]).all() for name in VARIABLES if name in history)
     forces = [leg["force_N_per_m"] for leg in totals["legs"]]
     assert (np.diff([0.0, *forces]) > 0).all()
 
 
 @pytest.mark.slow
 def test_full_fields_of_a_steady_scene_are_those_of_the_ends_of_its_legs():
-    history = simulate(load_scene(SCENES / "steady_cylinder_1_8_inch.yaml"))
+    history = simulate(load_scene(SCENES / "steady_cylinder_1_8_inch.yaml").with_accuracy("draft"))
     assert history.sizes["snapshot"] == 4
     apex = int(np.argmin(np.hypot(*(history.node_position.values - [0, history.node_position.values[:, 1].max()]).T)))
     sunk = -history.snapshot_displacement.values[:, apex, 1]

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 import yaml
+from test_hard_strokes import LOAD, kept_force, lost_and_found, sound_stroke, turned_round
 
 from fingerpad.cli import main
 from fingerpad.mechanics import stepping
@@ -88,6 +89,28 @@ def test_separation_and_return(speed):
     name = f"unloaded to separation at {speed} mm/s"
     assert float(end(name, 2).force) == 0 and float(end(name, 2).contact_width) == 0
     assert float(end(name).force) > 10
+
+
+STROKES = [
+    name for name, case in CATALOGUE.items() if "friction" in case.scene and any("slide" in leg for leg in case.scene["motion"])
+]
+
+
+@pytest.mark.parametrize("name", STROKES)
+def test_strokes_keep_the_law_of_friction(name):
+    history, friction = done(name).history, CATALOGUE[name].scene["friction"]
+    sound_stroke(history, friction, energy=CATALOGUE[name].limits.energy)
+    if "on a plate" in name:
+        turned_round(history, friction)
+    elif name.endswith("two waves"):
+        kept_force(history, friction)
+    elif "loses contact" in name:
+        lost_and_found(history)
+    elif name.startswith("ridges"):
+        there = history.isel(time=np.flatnonzero(history.leg == 1))
+        assert float(there.tangential_force[-1]) == pytest.approx(friction * LOAD, rel=1e-3) and history.min_detF.min() > 0.8
+    elif "frictionless cylinder" in name:
+        assert float(history.tangential_force.min()) < -0.04 * LOAD  # down the slope of the pad
 
 
 def test_featherweight():

@@ -13,7 +13,7 @@ from fingerpad import load_scene, simulate
 from fingerpad.cli import main
 from fingerpad.mechanics import stepping
 from fingerpad.results import read_history, summary
-from fingerpad.scenes.scene import Bar, Cylinder, Discretisation, Hold, Layer, Layers, Line, PressToDepth, PressToForce
+from fingerpad.scenes.scene import Cylinder, Discretisation, Hold, Layer, Layers, PressToDepth, PressToForce
 
 pytestmark = pytest.mark.stability
 
@@ -61,20 +61,10 @@ def sound(history, cuts=0, energy=0.02):
 @pytest.mark.parametrize("nu", [0.48, 0.49999])
 def test_pressure_does_not_oscillate(base, nu):
     """Nodal pressures under a cylinder stay within 2 % of their own 5-point average away from the edge."""
-    end = simulate(scene(base, nu=nu, accuracy="thesis")).isel(time=-1)
+    end = simulate(scene(base, motion=(force(20, 40),), nu=nu, accuracy="thesis")).isel(time=-1)
     inside = np.abs(end.skin_x) < 0.7 * float(end.contact_width) / 2
     ripple = np.abs(end.contact_pressure - end.contact_pressure_smoothed)[inside] / float(end.centre_pressure)
     assert ripple.max() < 0.02
-
-
-@pytest.mark.parametrize(
-    "stimulus", [Bar(width=1.5875e-3, fillet=0.1e-3), Bar(width=1.5875e-3), Line()], ids=["bar", "sharp", "line"]
-)
-def test_edges(base, stimulus):
-    """The 1/16 inch bar, rounded or sharp, and the line load reach 2 mm on fine meshes; the sharp one is marked singular."""
-    totals = sound(simulate(scene(base, stimulus, (depth(2.0),), accuracy="thesis")))
-    assert totals["legs"][-1]["depth_mm"] == pytest.approx(2.0)
-    assert totals["run"]["peak_pressure_singular"] == (stimulus == Bar(width=1.5875e-3))
 
 
 def test_whole_load_in_one_step(base):

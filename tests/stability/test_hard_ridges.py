@@ -1,4 +1,7 @@
-"""Strokes over ridged pads under hard conditions: high, sharp tips of ten times the modulus, friction 1, ridges of the skin."""
+"""Strokes over ridged pads under hard conditions: high tips of ten times the modulus, friction 1, ridges of the skin.
+
+Sharp tips are stroked in the catalogue of hard cases.
+"""
 
 import numpy as np
 import pytest
@@ -22,7 +25,6 @@ def base():
 CASES = {
     "as the scenes": ({"inner": {}}, 0.65),
     "high, full friction": ({"inner": {"height": 0.3 * MM}}, 1.0),
-    "high and sharp, full friction": ({"inner": {"height": 0.3 * MM, "shape": "sharp"}}, 1.0),
     "high, aside, limiting": ({"inner": {"height": 0.3 * MM, "phase": 0.1 * MM, "limiting": 0.5}}, 1.0),
     "outer, full friction": ({"inner": {"height": 0.3 * MM}, "outer": {"height": 0.06 * MM}}, 1.0),
 }
