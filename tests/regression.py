@@ -1,11 +1,12 @@
 """Figure regression: plotted data compared tightly, pictures loosely, with the committed ones.
 
-Two kinds of baselines, both committed:
+Baselines, all committed:
 
-- ``tests/baselines/fig_<number>.csv`` and ``.png``: every figure from simulations on coarse meshes, which the
-  tests run afresh. They catch a change of the mechanics, of a figure's data or of its drawing.
-- ``tests/baselines/thesis.csv``: a summary of every curve in ``figures/thesis/*.csv``. It catches a change of
-  the published data even where the thesis-resolution results are not at hand, or were overwritten.
+- ``tests/baselines/fig_<number>.csv``: every figure from simulations on coarse meshes, which the tests run afresh. They catch a
+  change of the mechanics or of a figure's data.
+- ``tests/baselines/thesis.csv``: a summary of every curve in ``figures/thesis/*.csv``. It catches a change of the published data
+  even where the thesis-resolution results are not at hand, or were overwritten.
+- ``figures/thesis/*.png`` themselves: they catch a change of a figure's drawing.
 
 A deliberate change is accepted by ``make regression-update``, then committed.
 """
@@ -31,7 +32,7 @@ SIMILARITY = 0.98
 """Least structural similarity of two pictures, averaged where either has ink (1: the same)."""
 
 BASELINE_DPI = 60
-"""Resolution of the baseline pictures."""
+"""Resolution of pictures that are compared with each other only."""
 
 
 def tolerance(column: str) -> float:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from functools import cache, wraps
+from functools import cache
 
 import numpy as np
 import xarray as xr
 
-from fingerpad.results import FRICTION_VARIABLES, VARIABLES, skin_arc
+from fingerpad.results import FRICTION_VARIABLES, VARIABLES, Arrays, add_snapshots, arrays, skin_arc
 from fingerpad.scenes.scene import Outline
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.pad import MeshSize, PadMesh
@@ -17,18 +17,10 @@ from fingerpad.stimuli.shapes import shape_from
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
 CURVATURE = dict(zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True))
 OUTLINE = {
-    "apex_height": 6e-3,
-    "apex_radius": 7.9e-3,
-    "half_width": 8.5e-3,
-    "depth_below": 6.2e-3,
-    "epidermis_thickness": 0.85e-3,
-    "dermis_thickness": 0.85e-3,
-    "stratum_corneum_thickness": 0.35e-3,
-    "bone_centre_height": -1.5e-3,
-    "bone_half_width": 4e-3,
-    "bone_half_height": 2.5e-3,
-    "nail_half_width": 5e-3,
-}
+    "apex_height": 6e-3, "apex_radius": 7.9e-3, "half_width": 8.5e-3, "depth_below": 6.2e-3, "epidermis_thickness": 0.85e-3,
+    "dermis_thickness": 0.85e-3, "stratum_corneum_thickness": 0.35e-3, "bone_centre_height": -1.5e-3, "bone_half_width": 4e-3,
+    "bone_half_height": 2.5e-3, "nail_half_width": 5e-3,
+}  # fmt: skip
 DEPTHS = np.array([560, 600, 640, 765, 800, 845, 870, 915, 960]) * 1e-6
 LOAD = 19.6133  # N/m
 KNOWN = (0, 79, 210, 420, 1260)  # 1/m, surfaces with measured values (below: end of hold)
@@ -64,28 +56,33 @@ def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
     return made | {name: stroke(name, scale, edge) for name in STROKES}
 
 
-def _as_simulated(make):
-    """A maker whose histories have every variable and coordinate that simulated ones have: what is not made up is zero."""
-
-    @wraps(make)
-    def made(*args, **keys) -> xr.Dataset:
-        data = make(*args, **keys)
-        if "receptor" not in data.sizes:
-            data = data.assign_coords({name: ("receptor", np.empty(0)) for name in ("receptor_depth", "receptor_offset")})
-        apex = int(np.argmin(np.where(data.skin_y > 0, abs(data.skin_x), np.inf)))
-        data = data.drop_vars("skin_arc", errors="ignore")
-        data = data.assign_coords(skin_arc=("skin_node", skin_arc(data.skin_x.values, data.skin_y.values, apex)))
-        rubbed = bool(json.loads(data.attrs["scene"])["friction"])
-        for name, (dims, units, long_name) in VARIABLES.items():
-            if name not in data and (rubbed or name not in FRICTION_VARIABLES):
-                fill = np.full([data.sizes[dim] for dim in dims], float(name == "min_detF"))
-                data[name] = (dims, fill, {"units": units, "long_name": long_name})
-        return data.set_xindex("skin_arc")
-
-    return made
+def _of(variables: dict[str, np.ndarray]) -> dict:
+    """Variables of a history by their values alone: dimensions and units are those of simulated ones."""
+    said = {name: dict(zip(("units", "long_name"), VARIABLES[name][1:], strict=True)) for name in variables}
+    return {name: (VARIABLES[name][0], values, said[name]) for name, values in variables.items()}
 
 
-@_as_simulated
+def _filled(data: xr.Dataset) -> xr.Dataset:
+    """The history with every variable that simulated ones have: what is not made up is zero."""
+    rubbed = bool(json.loads(data.attrs["scene"])["friction"])
+    missing = [name for name in VARIABLES if name not in data and (rubbed or name not in FRICTION_VARIABLES)]
+    sizes = {name: [data.sizes[dim] for dim in VARIABLES[name][0]] for name in missing}
+    return data.assign(_of({name: np.full(sizes[name], float(name == "min_detF")) for name in missing}))
+
+
+def _made(scene: dict, variables: dict[str, np.ndarray], time, skin, receptors=((), ())) -> xr.Dataset:
+    """A history of its values: times (nt,), skin nodes and receptors (depths, offsets) where they are."""
+    x, y = skin
+    places = {"skin_x": x, "skin_y": y, "skin_arc": skin_arc(x, y, _apex(x, y))}
+    at = {"receptor_depth": np.array(receptors[0], float), "receptor_offset": np.array(receptors[1], float)}
+    attributes = {"title": f"made up: {scene['name']}", "scene": scene}
+    return _filled(arrays(variables, {"time": time, **places, **at}, attributes).labelled())
+
+
+def _apex(x: np.ndarray, y: np.ndarray) -> int:
+    return int(np.argmin(np.where(y > 0, abs(x), np.inf)))
+
+
 def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """One made-up history that follows the dataset's contract."""
     programme, surface = name.split("_")
@@ -104,52 +101,35 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     pressure = np.array(
         [_pressure(skin_x, skin_y, LOAD * f, w, programme != "homogeneous") for f, w in zip(load, width, strict=True)]
     )
-    centre = int(np.argmin(np.where(skin_y > 0, abs(skin_x), np.inf)))
-
     offsets = np.round(np.arange(-5e-3, 5.01e-3, 0.25e-3), 9)
     points = [(z, 0.0) for z in DEPTHS]
     if programme == "ramp150":
         points += [(z, o) for z in (800e-6, 915e-6) for o in offsets if o != 0]
     receptor_depth, receptor_offset = np.array(points).T
     surface_energy = np.interp(receptor_depth, (560e-6, 600e-6, 849e-6, 851e-6, 960e-6), (0.8, 1.0, 3.0, 1.1, 0.95))
-    shallow = receptor_depth < 850e-6
-    peak = np.where(shallow, at(ENERGY_600) * 0.5, at(ENERGY_915)) * surface_energy
+    peak = np.where(receptor_depth < 850e-6, at(ENERGY_600) * 0.5, at(ENERGY_915)) * surface_energy
     peak = peak * np.exp(-((receptor_offset / (0.5 * at(WIDTH) + 0.8e-3)) ** 2))
     energy = np.outer(load**1.2 * (1 - 0.18 * crept), peak)
     network = np.outer(load**1.2 * (1 + 0.15 * crept), peak)
 
     bump = np.exp(-((skin_x / (0.6 * at(WIDTH) + 1e-3)) ** 2)) * (skin_y > 0)
-    full = {
-        "force": ("time", LOAD * load, "N/m"),
-        "tangential_force": ("time", 0 * load, "N/m"),
-        "indentation_depth": ("time", depth, "m"),
-        "contact_width": ("time", width, "m"),
-        "centre_pressure": ("time", pressure[:, centre], "Pa"),
-        "peak_pressure": ("time", pressure.max(axis=1), "Pa"),
-        "contact_pressure": (("time", "skin_node"), pressure, "Pa"),
-        "contact_pressure_smoothed": (("time", "skin_node"), pressure, "Pa"),
-        "skin_displacement_x": (
-            ("time", "skin_node"),
-            np.outer(depth, 0.02 * np.sin(skin_x / 2e-3) * bump),
-            "m",
-        ),
-        "skin_displacement_y": (("time", "skin_node"), -np.outer(depth, bump), "m"),
-        "strain_energy_density": (("time", "receptor"), energy, "Pa"),
-        "strain_energy_network": (("time", "receptor"), network, "Pa"),
-        "strain_energy_recoverable": (("time", "receptor"), network * 1.05, "Pa"),
-        "strain_energy_long_term_moduli": (("time", "receptor"), energy * 1.5, "Pa"),
-        "strain_energy_half_stress_strain": (("time", "receptor"), (energy + network) / 2, "Pa"),
+    scaled = {
+        "indentation_depth": depth,
+        "contact_width": width,
+        "centre_pressure": pressure[:, _apex(skin_x, skin_y)],
+        "peak_pressure": pressure.max(axis=1),
+        "contact_pressure": pressure,
+        "contact_pressure_smoothed": pressure,
+        "skin_displacement_x": np.outer(depth, 0.02 * np.sin(skin_x / 2e-3) * bump),
+        "skin_displacement_y": -np.outer(depth, bump),
+        "strain_energy_density": energy,
+        "strain_energy_network": network,
+        "strain_energy_recoverable": network * 1.05,
+        "strain_energy_long_term_moduli": energy * 1.5,
+        "strain_energy_half_stress_strain": (energy + network) / 2,
     }
-    data = {k: (dims, v * scale if k != "force" else v, {"units": unit}) for k, (dims, v, unit) in full.items()}
-    data["leg"] = ("time", leg)
-    coords = {
-        "time": ("time", time, {"units": "s"}),
-        "receptor_depth": ("receptor", receptor_depth, {"units": "m"}),
-        "receptor_offset": ("receptor", receptor_offset, {"units": "m"}),
-        "skin_x": ("skin_node", skin_x, {"units": "m"}),
-        "skin_y": ("skin_node", skin_y, {"units": "m"}),
-    }
-    return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(_scene(name, label, rate))})
+    data = {"force": LOAD * load, "leg": leg} | {variable: scale * values for variable, values in scaled.items()}
+    return _made(_scene(name, label, rate), data, time, (skin_x, skin_y), (receptor_depth, receptor_offset))
 
 
 MM, INCH = 1e-3, 25.4e-3
@@ -169,7 +149,6 @@ PRESSED = {
 """Presses to depths: stimulus, depths in mm leg by leg, and speed in mm/s and end in s of a ramp and hold (None: steady)."""
 
 
-@_as_simulated
 def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up press to depths: force as the square of depth, half of it relaxing, a smooth dent of the skin."""
     stimulus, targets, timed = PRESSED[name]
@@ -192,23 +171,17 @@ def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     def dent(x, y):
         return np.exp(-((x / 2e-3) ** 2)) * np.clip((y - 1e-3) / 5e-3, 0, 1)
 
-    ends = depth[[np.flatnonzero(leg == k)[-1] for k in range(len(targets))]]
-    fields = np.zeros((len(ends), *points.shape))
-    fields[..., 1] = -scale * np.outer(ends, dent(*points.T))
+    last = [np.flatnonzero(leg == k)[-1] for k in range(len(targets))]
+    fields = np.zeros((len(last), *points.shape))
+    fields[..., 1] = -scale * np.outer(depth[last], dent(*points.T))
     data = {
-        "force": ("time", scale * 20 * (depth / MM) ** 2 * (1 + overstress)),
-        "indentation_depth": ("time", depth),
-        "skin_displacement_x": (("time", "skin_node"), np.zeros((len(time), len(skin_x)))),
-        "skin_displacement_y": (("time", "skin_node"), -scale * np.outer(depth, dent(skin_x, skin_y))),
-        "leg": ("time", leg),
-        "node_position": (("node", "axis"), points),
-        "element_nodes": (("element", "element_node"), mesh().cells),
-        "element_region": ("element", mesh().region),
-        "snapshot_displacement": (("snapshot", "node", "axis"), fields),
+        "force": scale * 20 * (depth / MM) ** 2 * (1 + overstress),
+        "indentation_depth": depth,
+        "skin_displacement_y": -scale * np.outer(depth, dent(skin_x, skin_y)),
+        "leg": leg,
     }
-    coords = {"time": ("time", time), "skin_x": ("skin_node", skin_x), "skin_y": ("skin_node", skin_y)}
-    scene = _scene(name, "flat", 40) | {"stimulus": stimulus, "motion": motion}
-    return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(scene)})
+    made = _made(_scene(name, "flat", 40) | {"stimulus": stimulus, "motion": motion}, data, time, (skin_x, skin_y))
+    return _with_fields(made, time[last], fields, np.zeros((len(last), len(mesh().cells))))
 
 
 WAVY = {"half_angle": np.radians(9.0), "lead_in": 8e-3, "run_out": 15e-3, "fillet": 0.0}
@@ -221,7 +194,6 @@ STROKES = {
 """Scenes over the wavy surface: length and step of the way in mm, velocity in mm/s (None: stepped, pressed anew each time)."""
 
 
-@_as_simulated
 def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up stroke: skin that lies on the surface, dragged along, pressed harder where it is more curved."""
     way, step, speed = STROKES[name]
@@ -241,7 +213,7 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     shape = shape_from(stimulus)
     skin_x, skin_y = _skin(edge)
     upper = skin_y > 0
-    centre = int(np.argmin(np.where(upper, abs(skin_x), np.inf)))
+    centre = _apex(skin_x, skin_y)
     depth = 1.1 * MM * load + shape.outline(d)
     x = skin_x - np.outer(drag, upper)
     under = x + d[:, None]
@@ -254,33 +226,25 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         scale * touches * load[:, None] * np.maximum(3000 + 30 * bend, 300) * np.sqrt(np.clip(1 - (x / (4 * MM)) ** 2, 0.01, 1))
     )
     felt = np.convolve(np.pad(pressure[:, centre], 8, mode="edge"), np.ones(17) / 17, "valid")
-    full = {
-        "force": ("time", LOAD * load, "N/m"),
-        "stroke_distance": ("time", d, "m"),
-        "indentation_depth": ("time", depth, "m"),
-        "centre_pressure": ("time", pressure[:, centre], "Pa"),
-        "peak_pressure": ("time", pressure.max(axis=1), "Pa"),
-        "contact_pressure": (("time", "skin_node"), pressure, "Pa"),
-        "centre_lateral_displacement": ("time", -scale * drag, "m"),
-        "skin_displacement_x": (("time", "skin_node"), x - skin_x, "m"),
-        "skin_displacement_y": (("time", "skin_node"), y - skin_y, "m"),
-        "strain_energy_density": (("time", "receptor"), np.outer(felt, (0.02, 0.04)), "Pa"),
-    }
-    data = {k: (dims, v, {"units": unit}) for k, (dims, v, unit) in full.items()} | {"leg": ("time", (d > 0).astype(int))}
-    if name == "stroke_10":
-        data |= _full_fields(time[start::40])
-    coords = {
-        "time": ("time", time, {"units": "s"}),
-        "receptor_depth": ("receptor", np.array([560e-6, 915e-6]), {"units": "m"}),
-        "receptor_offset": ("receptor", np.zeros(2), {"units": "m"}),
-        "skin_x": ("skin_node", skin_x, {"units": "m"}),
-        "skin_y": ("skin_node", skin_y, {"units": "m"}),
+    data = {
+        "force": LOAD * load,
+        "stroke_distance": d,
+        "indentation_depth": depth,
+        "centre_pressure": pressure[:, centre],
+        "peak_pressure": pressure.max(axis=1),
+        "contact_pressure": pressure,
+        "centre_lateral_displacement": -scale * drag,
+        "skin_displacement_x": x - skin_x,
+        "skin_displacement_y": y - skin_y,
+        "strain_energy_density": np.outer(felt, (0.02, 0.04)),
+        "leg": (d > 0).astype(int),
     }
     scene = _scene(name, "flat", 40)
     press = {"press_to_force": scene["motion"][0]["press_to_force"], "rate": None}
     on = {"step": way * MM, "every": MM} if speed is None else {"slide": way * MM, "speed": speed * MM, "keep": "force"}
     scene |= {"stimulus": stimulus, "motion": [press, on], "friction": 0.0 if speed is None else 0.7}
-    return xr.Dataset(data, coords, {"title": f"made up: {name}", "scene": json.dumps(scene)})
+    made = _made(scene, data, time, (skin_x, skin_y), ((560e-6, 915e-6), (0.0, 0.0)))
+    return _dragged(made, time[start::40]) if name == "stroke_10" else made
 
 
 RIDGES = {
@@ -301,18 +265,18 @@ PLATES = {
 def _receptors(data: xr.Dataset, depths, offsets, values) -> xr.Dataset:
     """The dataset with other receptors; values (time, receptor)."""
     grid = [each.ravel() for each in np.meshgrid(depths, offsets, indexing="ij")]
+    old = {name: data[name].attrs for name in ("receptor_depth", "receptor_offset")}
     data = data.drop_vars([n for n in (*data.data_vars, *data.coords) if "receptor" in data[n].dims])
-    places = {"receptor_depth": ("receptor", grid[0]), "receptor_offset": ("receptor", grid[1])}
-    return data.assign_coords(places).assign(strain_energy_density=(("time", "receptor"), values(*grid), {"units": "Pa"}))
+    places = {name: ("receptor", where, old[name]) for name, where in zip(old, grid, strict=True)}
+    return _filled(data.assign_coords(places).assign(_of({"strain_energy_density": values(*grid)})))
 
 
-def _with_ridges(data: xr.Dataset, name: str, ridges) -> xr.Dataset:
+def _with_ridges(data: xr.Dataset, name: str, ridges, **keys) -> xr.Dataset:
     scene = json.loads(data.attrs["scene"])
-    scene = scene | {"name": name, "specimen": scene["specimen"] | {"ridges": ridges}}
-    return data.assign_attrs(scene=json.dumps(scene))
+    scene |= {"name": name, "specimen": scene["specimen"] | {"ridges": ridges}} | keys
+    return _filled(data.assign_attrs(scene=json.dumps(scene)))
 
 
-@_as_simulated
 def ridged(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up press of a pad with ridges: that of the plain pad, twice the energy at the centre and 1.3 times beside it."""
     plain = history("ramp40_" + name.rsplit("_", 1)[1], scale, edge)
@@ -322,17 +286,16 @@ def ridged(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     return _with_ridges(_receptors(plain, [915e-6], [-46e-6, 0.0, 46e-6], values), name, RIDGES)
 
 
-@_as_simulated
 def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up stroke of a plate: 200 Pa, with ridges three times as much on the side that the plate leaves."""
     pad, sign = PLATES[name]
     way = np.concatenate([np.zeros(5), np.arange(0.25, 50.1, 0.25)]) * MM
     base = history("ramp40_flat", scale, edge).isel(time=np.minimum(np.arange(len(way)), 20))
     time = np.minimum(np.arange(len(way)) * 0.125, 0.5) + way / (10 * MM)
-    base = base.drop_vars("leg").assign_coords(time=("time", time))
-    base = base.assign(stroke_distance=("time", -sign * way), leg=("time", (way > 0).astype(int)))
-    base = base.assign(force=("time", np.minimum(np.arange(len(way)) / 4, 1.0) * LOAD))
-    base = base.assign(cutbacks=("time", np.zeros(len(way), int)), min_detF=("time", np.full(len(way), 0.95)))
+    base = base.assign_coords(time=("time", time, base.time.attrs))
+    own = {"stroke_distance": -sign * way, "leg": (way > 0).astype(int), "min_detF": np.full(len(way), 0.95)}
+    base = base.assign(_of(own | {"force": np.minimum(np.arange(len(way)) / 4, 1.0) * LOAD}))
+
     slid = np.minimum(way / MM, 1.0)[:, None]
 
     def values(z, x):
@@ -349,27 +312,25 @@ def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Datas
         "ridged": RIDGES,
         "ridged_outer": RIDGES | {"outer": {"period": None, "height": 60e-6, "shape": "smooth"}},
     }
-    made = _with_ridges(made, name, ridges[pad])
-    scene = json.loads(made.attrs["scene"])
     slide = {"slide": -sign * 50 * MM, "speed": 10 * MM, "keep": "force"}
-    return made.assign_attrs(scene=json.dumps(scene | {"motion": [scene["motion"][0], slide], "friction": 0.65}))
+    return _with_ridges(made, name, ridges[pad], motion=[json.loads(made.attrs["scene"])["motion"][0], slide], friction=0.65)
 
 
-def _full_fields(times: np.ndarray) -> dict:
+def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
+    """The history with full fields: displacements (n, nodes, 2) m and mean stresses (n, elements) Pa at n times."""
+    whole, body, indenter = Arrays.of(data), mesh(), np.zeros((len(times), 2, 2))
+    add_snapshots(whole, times, body.points, body.cells, body.region, displacement, pressure, body.regions, indenter)
+    return whole.labelled()
+
+
+def _dragged(data: xr.Dataset, times: np.ndarray) -> xr.Dataset:
     """Full fields at some times: a pad dragged along, and pressed under the middle."""
     points, cells = mesh().points, mesh().cells
     moved = np.zeros((len(times), *points.shape))
     moved[..., 0] = -MM * np.clip(points[:, 1] / 6e-3, 0, 1)
     middle = points[cells].mean(axis=1)
     stress = -3000 * np.exp(-((middle[:, 0] / 3e-3) ** 2) - ((middle[:, 1] - 5e-3) / 3e-3) ** 2)
-    return {
-        "snapshot_time": ("snapshot", times),
-        "node_position": (("node", "axis"), points),
-        "element_nodes": (("element", "element_node"), cells),
-        "element_region": ("element", mesh().region),
-        "snapshot_displacement": (("snapshot", "node", "axis"), moved),
-        "snapshot_pressure": (("snapshot", "element"), np.tile(stress, (len(times), 1))),
-    }
+    return _with_fields(data, times, moved, np.tile(stress, (len(times), 1)))
 
 
 def _skin(edge: float) -> tuple[np.ndarray, np.ndarray]:

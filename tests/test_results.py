@@ -19,7 +19,6 @@ import pytest
 import xarray as xr
 from scipy.spatial import cKDTree
 
-import synthetic
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_atomically
 from fingerpad.receptors.material_points import MaterialPoints
@@ -277,22 +276,6 @@ def test_nothing_half_written(tmp_path):
     assert target.read_text() == "before" and list(tmp_path.iterdir()) == [target]
 
 
-def test_no_code_of_an_absent_effect_runs(monkeypatch):
-    """A steady, light scene never enters viscoelasticity or the finite-strain body."""
-    from fingerpad.mechanics import finite_strain, small_strain, viscoelasticity
-
-    def never(*_, **__):
-        raise AssertionError("an effect that the plan left out was executed")
-
-    monkeypatch.setattr(viscoelasticity.Branches, "__init__", never)
-    monkeypatch.setattr(small_strain, "step_coefficients", never)
-    monkeypatch.setattr(finite_strain.FiniteStrainBody, "__init__", never)
-    scene = load_scene(SCENES / "ramp40_flat.yaml").with_accuracy("draft")
-    leg = scene.motion[0].model_copy(update={"press_to_force": 1e-3 * scene.motion[0].press_to_force, "rate": None})
-    history = simulate(scene.model_copy(update={"motion": (leg,)}))
-    assert float(history.force[-1]) > 0
-
-
 def test_without_viscosity_there_is_one_strain_energy():
     """A pad without a Prony series has one strain energy, whatever it is called; with one, the five differ."""
     scene = load_scene(SCENES / "ramp40_k1260.yaml").with_accuracy("draft")
@@ -303,20 +286,3 @@ def test_without_viscosity_there_is_one_strain_energy():
     for name in (f"strain_energy_{other}" for other in others):
         np.testing.assert_allclose(end[name], end.strain_energy_network, rtol=1e-12, err_msg=name)
         assert float(abs(viscous[name] / viscous.strain_energy_network - 1).min()) > 0.005, name
-
-
-@pytest.mark.parametrize("name", ["ramp40_flat", "steady_line", "stroke_10", "ridged_40_flat", "plate_stroke_left"])
-def test_made_up_histories_have_the_variables_of_simulated_ones(name):
-    """What figures and measures are tested on has every variable and coordinate, on the dimensions that they have in a run."""
-    makers = (
-        (synthetic.PRESSED, synthetic.pressed),
-        (synthetic.STROKES, synthetic.stroke),
-        (synthetic.PLATES, synthetic.plate_stroke),
-    )
-    make = next((make for known, make in makers if name in known), synthetic.ridged if "ridged" in name else synthetic.history)
-    made = make(name)
-    friction = FRICTION_VARIABLES if json.loads(made.attrs["scene"])["friction"] else ()
-    wanted = {n: dims for n, (dims, _, _) in VARIABLES.items() if n not in FRICTION_VARIABLES or n in friction}
-    assert {n: made[n].dims for n in made.data_vars if not n.startswith(FIELDS)} == wanted
-    assert {n: made[n].dims for n in COORDINATES} == {n: (dim,) for n, (dim, _, _) in COORDINATES.items()}
-    assert np.all(np.diff(made.skin_arc) > 0)
