@@ -1,7 +1,5 @@
 """The laws from skin to impulses: integrals and constants given back, impulses that count right, sensors, rates, facts."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -384,15 +382,6 @@ def test_a_wrong_recording_is_refused_in_one_line(tmp_path, row, message):
     with pytest.raises(ReferenceDataError) as error:
         read_rates(tmp_path)
     assert message in str(error.value) and "\n" not in str(error.value) and "mine.csv" in str(error.value)
-
-
-def test_the_job_fails_with_one_line_and_no_table(tmp_path):
-    (tmp_path / "mine.csv").write_text(f"{HEADER}\n{WRONG['no source'][0]}\n")
-    log, table = tmp_path / "job.log", tmp_path / "candidate_stimuli.csv"
-    files = ["--log", log, "--rates", tmp_path / "mine.csv", "--histories", "--coarse", "--tables", table]
-    done = subprocess.run([sys.executable, "-m", "fingerpad.workflow", "receptor_tables", *files], capture_output=True, text=True)
-    assert done.returncode == 1 and done.stderr.count("\n") == 1 and "column source" in done.stderr
-    assert not table.exists()
 
 
 # -- histories -------------------------------------------------------------------------------------------------------------------
