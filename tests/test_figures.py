@@ -19,7 +19,7 @@ from fingerpad.measures import features as ft
 from fingerpad.measures.quantities import CURVATURE, RADIUS
 from fingerpad.measures.table import MEASURES, reading
 from fingerpad.publishing.style import COLOURS, spread
-from fingerpad.publishing.write import publish, write_frame, write_picture
+from fingerpad.publishing.write import publish, without_round_off, write_frame, write_picture
 from fingerpad.reference_data import empty_reference, read_reference
 from regression import BASELINE_DPI, SIMILARITY, differences, similarity, summary, summary_differences, tolerance
 
@@ -329,3 +329,11 @@ def test_panels_of_pairs_have_axes_of_their_own():
 def test_a_reading_is_the_measure_of_its_name():
     history = synthetic.history("ramp40_k210")
     assert reading("rate", "peak")(history) == MEASURES["rate"](history)["peak"] > reading("rate", "end")(history)
+
+
+def test_round_off_is_published_as_zero():
+    """What is 1e-11 of a column's largest differs between machines; what is more, and text, stays."""
+    frame = pd.DataFrame({"of": ["a", "b", "c"], "x (mm)": [2.0, -1e-12, 3e-11], "y": [np.nan, 1e-30, -1e-40]})
+    found = without_round_off(frame.copy())
+    assert list(found["x (mm)"]) == [2.0, 0.0, 3e-11] and list(found["of"]) == ["a", "b", "c"]
+    assert found["y"].isna().tolist() == [True, False, False] and list(found["y"][1:]) == [1e-30, 0.0]

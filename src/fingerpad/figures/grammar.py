@@ -44,6 +44,7 @@ from fingerpad.measures.runs import Runs
 from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height, rms_error
 from fingerpad.measures.table import MEASURES
 from fingerpad.publishing import style
+from fingerpad.publishing.write import without_round_off
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.reference_data import read_force_depth, read_surface_profiles
 
@@ -172,14 +173,6 @@ def below(rows: pd.DataFrame, *others: pd.DataFrame) -> pd.DataFrame:
     if "source" not in rows:
         rows.insert(0, "source", SIMULATED)
     return pd.concat([rows, *(part for part in others if len(part))], ignore_index=True)
-
-
-def without_round_off(frame: pd.DataFrame, least: float = 1e-11) -> pd.DataFrame:
-    """The frame with zeros for what is below `least` of a column's largest: so that two machines publish the same bytes."""
-    for column in frame.select_dtypes("float"):
-        size = frame[column].abs()
-        frame[column] = frame[column].mask(size < least * size.max(), 0.0)
-    return frame
 
 
 def stacked(parts: Mapping[object, pd.DataFrame], column: str = "panel") -> pd.DataFrame:

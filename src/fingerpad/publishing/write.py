@@ -19,6 +19,14 @@ FLOAT_FORMAT = "%.6g"
 TEXT_COLUMNS = ("source", "surface", "phase", "layer", "panel", "series", "quantity", "pad", "convexity")
 
 
+def without_round_off(frame: pd.DataFrame, least: float = 1e-11) -> pd.DataFrame:
+    """The frame with zeros for what is below `least` of a column's largest: so that two machines publish the same bytes."""
+    for column in frame.select_dtypes("float"):
+        size = frame[column].abs()
+        frame[column] = frame[column].mask(size < least * size.max(), 0.0)
+    return frame
+
+
 def write_frame(frame: pd.DataFrame, path: Path) -> None:
     """Write a frame as CSV, six significant digits."""
     write_atomically(path, lambda p: frame.to_csv(p, index=False, float_format=FLOAT_FORMAT, lineterminator="\n"))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 
 from fingerpad.measures.inputs import read_results
-from fingerpad.publishing.write import write_frame
+from fingerpad.publishing.write import without_round_off, write_frame
 from fingerpad.reference_data import read_friction
 from fingerpad.studies.calibration.friction import calibrate_friction
 
@@ -16,4 +16,4 @@ def run(job):
     sweep, published = read_results(job.sweep)[0].values(), read_friction(job.published[0])
     result = calibrate_friction(sweep, histories, coarse, pd.read_csv(job.thesis[0]), published)
     for path, frame in zip(job.data, (result.friction, result.estimates), strict=True):
-        write_frame(frame, Path(path))
+        write_frame(without_round_off(frame), Path(path))

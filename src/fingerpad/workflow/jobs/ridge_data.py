@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from fingerpad.measures.inputs import read_results
-from fingerpad.publishing.write import write_frame
+from fingerpad.publishing.write import without_round_off, write_frame
 from fingerpad.studies.ridges.frames import frames
 
 
@@ -12,4 +12,4 @@ def run(job):
     strokes, _, coarse = read_results([*job.histories, *job.coarse])
     made = frames(read_results(job.cases)[0], strokes, coarse)
     for path in map(Path, job.data):
-        write_frame(made[path.stem], path)
+        write_frame(without_round_off(made[path.stem]), path)
