@@ -84,6 +84,14 @@ def difference(found: dict[str, Any], truth: dict[str, Any]) -> tuple[float, str
     return off[worst], worst
 
 
+def record(history, error: float, worst: str, **more: Any) -> dict[str, Any]:
+    """What a run believes, how wrong it is and in what, and what it took."""
+    cost = json.loads(history.attrs["cost"])
+    believed = {"believed error (%)": 100 * float(history.attrs["estimated_error"]), "true error (%)": 100 * error}
+    took = {"nodes": cost["nodes"], "steps": int(history.sizes["time"] - 1), "process time (s)": cost["cpu_s"]}
+    return believed | {"worst quantity": worst} | more | took
+
+
 def prepared(name: str, base: Scene) -> Scene:
     """One scene of :func:`outside` with the receptors that are looked at."""
     looked = {"outputs.receptors.depths": DEPTHS, "outputs.receptors.offsets": (0.0,), "outputs.snapshots": ()}
@@ -109,12 +117,5 @@ def beliefs(scene: Scene, name: str, levels: tuple = LEVELS) -> list[dict[str, A
     for level in (*levels, FINEST):
         run = truth if level == FINEST else simulate(scene.with_accuracy(level))
         error, worst = difference(ends(run), ends(truth)) if run is not truth else (np.nan, "")
-        cost = json.loads(run.attrs["cost"])
-        rows.append(
-            {
-                "scene": name, "accuracy": str(level), "believed error (%)": 100 * float(run.attrs["estimated_error"]),
-                "true error (%)": 100 * error, "worst quantity": worst, "nodes": cost["nodes"],
-                "steps": int(run.sizes["time"] - 1), "process time (s)": cost["cpu_s"],
-            }
-        )  # fmt: skip
+        rows.append({"scene": name, "accuracy": str(level)} | record(run, error, worst))
     return rows

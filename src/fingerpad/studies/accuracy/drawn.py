@@ -19,7 +19,7 @@ from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Bar, Sampled, Scene
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.files import write_pad
-from fingerpad.studies.accuracy.belief import FINEST, difference, ends
+from fingerpad.studies.accuracy.belief import FINEST, difference, ends, record
 from fingerpad.studies.accuracy.run import split
 from fingerpad.studies.stability.hard_cases import FLAT, cylinder, force, scene_of
 
@@ -153,19 +153,6 @@ def beliefs(name: str, kind: str, document: dict[str, Any], folder: Path) -> lis
         if last.unbounded_peak:
             found.pop("peak_pressure"), exact.pop("peak_pressure")
         error, worst = difference(found, exact) if history is run else (np.nan, "")
-        cost = json.loads(history.attrs["cost"])
-        rows.append(
-            {
-                "scene": name,
-                "class": kind,
-                "accuracy": level,
-                "believed error (%)": 100 * float(history.attrs["estimated_error"]),
-                "true error (%)": 100 * error,
-                "worst quantity": worst,
-                "runs": len(json.loads(history.attrs["runs"])),
-                "nodes": cost["nodes"],
-                "steps": int(history.sizes["time"] - 1),
-                "process time (s)": cost["cpu_s"],
-            }
-        )
+        found = record(history, error, worst, runs=len(json.loads(history.attrs["runs"])))
+        rows.append({"scene": name, "class": kind, "accuracy": level} | found)
     return rows
