@@ -9,7 +9,8 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.measures.features import Histories, ramp_end
-from fingerpad.measures.responses import CANDIDATES, RECEPTOR_DEPTH, curvature_of, pressed, stimulus, windowed
+from fingerpad.measures.responses import CANDIDATES, RECEPTOR_DEPTH, curvature_of, stimulus, windowed
+from fingerpad.measures.runs import NINE
 from fingerpad.receptors.fits import gain_and_threshold, leave_one_out, r_squared, rms
 from fingerpad.studies.receptors.impulse_rates import across, assignments, kind, matched_histories, rate_sets
 
@@ -29,7 +30,7 @@ def candidate_stimuli(histories: Histories, rates: pd.DataFrame) -> pd.DataFrame
         The last columns need no rates: what is left at the end of the hold of what was there at its beginning, least and most
         of the nine surfaces at 40 gf/s. The recorded rates fall.
     """
-    rows, surfaces = [], pressed(histories)
+    rows, surfaces = [], NINE.histories(histories)
     for title, group in rate_sets(rates[rates["receptor"] == "SA-I"]):
         matched = matched_histories(histories, group)
         if matched is None:
