@@ -333,7 +333,7 @@ def test_a_reading_is_the_measure_of_its_name():
 
 def test_round_off_is_published_as_zero():
     """What is 1e-11 of a column's largest differs between machines; what is more, and text, stays."""
-    frame = pd.DataFrame({"of": ["a", "b", "c"], "x (mm)": [2.0, -1e-12, 3e-11], "y": [np.nan, 1e-30, -1e-40]})
+    frame = pd.DataFrame({"of": ["a", "b", "c"], "x (mm)": [2.0, -1e-12, 3e-11], "y": [np.nan, 1e-30, -1e-42]})
     found = without_round_off(frame.copy())
     assert list(found["x (mm)"]) == [2.0, 0.0, 3e-11] and list(found["of"]) == ["a", "b", "c"]
     assert found["y"].isna().tolist() == [True, False, False] and list(found["y"][1:]) == [1e-30, 0.0]
