@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fingerpad import load_scene, plan, simulate
+from fingerpad.planning.bounds import PlanError
 from fingerpad.results import summary
 from fingerpad.specimen import write_pad
 from fingerpad.specimen.build import build_pad_mesh
@@ -68,7 +69,7 @@ def reference(built, tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    ("change", "element", "tolerance"), [(linear, "Q1P0", 0.03), (triangles, "P2B", 0.01), (linear_triangles, "P2B", 0.03)]
+    ("change", "element", "tolerance"), [(linear, "Q2P1", 0.01), (triangles, "P2B", 0.01), (linear_triangles, "P2B", 0.03)]
 )
 def test_every_element_gives_the_same_answer(change, element, tolerance, built, reference, tmp_path):
     """Linear and quadratic quads and triangles on the same nodes agree in depth, width, pressure and strain energy."""
@@ -89,3 +90,55 @@ def test_symmetric_external_mesh_is_halved(built, reference, tmp_path):
     assert whole.nodes == len(built.points)
     assert full["depth_mm"] == pytest.approx(leg["depth_mm"], rel=1e-4)
     assert full["strain_energy_Pa"] == pytest.approx(leg["strain_energy_Pa"], rel=1e-3)
+
+
+BAR = {"shape": "bar", "width": "1/16 inch", "fillet": "0.1 mm"}, [{"press_to_depth": "1 mm"}], {}
+LIGHT = {"shape": "flat"}, [{"press_to_force": "2 gf"}], {"finite_strain": False}
+
+
+@pytest.mark.parametrize(("stimulus", "motion", "effects"), [BAR, LIGHT], ids=["filleted bar", "small strain"])
+def test_linear_quads_are_raised_where_the_accuracy_needs_it(stimulus, motion, effects, tmp_path):
+    """As they are they miss a converged strain energy by 7 and 35 %, raised by 1 and 3; the plan says why."""
+    document = {"stimulus": stimulus, "motion": motion, "effects": effects}
+    truth = summary(simulate(load_scene({**document, "accuracy": "fine"})))["legs"][-1]
+    built = load_scene({**document, "accuracy": "draft"})
+    write_pad(linear(build_pad_mesh(built.specimen.outline, plan(built).mesh_size)), tmp_path / "my.msh")
+    found = {}
+    for element in ("Q1P0", None):
+        accuracy = {"tolerance": 0.06, "once": True} | ({"element": element} if element else {})
+        scene = load_scene({**document, "accuracy": accuracy, "specimen": {"mesh": str(tmp_path / "my.msh")}})
+        chosen = plan(scene)
+        assert chosen.element == (element or "Q2P1")
+        assert ("linear quads raised" in chosen.specimen[-1]) is not bool(element)
+        leg = summary(simulate(scene, chosen))["legs"][-1]
+        found[element] = np.abs(np.array(leg["strain_energy_Pa"]) / truth["strain_energy_Pa"] - 1).max()
+        assert leg["centre_pressure_Pa"] == pytest.approx(truth["centre_pressure_Pa"], rel=0.04)
+    assert found["Q1P0"] > 0.06 and found[None] < 0.03
+
+
+def test_linear_quads_stay_where_they_do_or_are_asked_for(built, tmp_path):
+    """By a tolerance they meet, by hand, and quads of nine nodes by hand; triangles fit no quads."""
+    write_pad(linear(built), tmp_path / "my.msh")
+    (tmp_path / "scene.yaml").write_text(TEXT.format(mesh="my.msh"))
+    scene = load_scene(tmp_path / "scene.yaml")
+    expected = {0.5: "Q1P0", 0.01: "Q2P1", "fine": "Q2P1"}
+    assert {accuracy: plan(scene.with_accuracy(accuracy)).element for accuracy in expected} == expected
+    for element in ("Q1P0", "Q2P1"):
+        assert plan(scene.with_accuracy({"element": element})).element == element
+    with pytest.raises(PlanError, match="P2B does not fit the mesh of quad4; allowed: Q1P0 or Q2P1"):
+        plan(scene.with_accuracy({"element": "P2B"}))
+
+
+def test_a_raised_skin_bends_as_its_nodes_do(built):
+    """Middles lie on the section to a hundredth of what their chords miss it by; corners and flat sides stay."""
+    raised, true = linear(built).raised(), built.points[built.curves["skin"][:, 2]]
+    chords = built.points[built.curves["skin"][:, :2]].mean(1)
+    found = raised.points[raised.curves["skin"][:, 2]]
+    off, before = np.linalg.norm(found - true, axis=1), np.linalg.norm(chords - true, axis=1)
+    near = np.abs(true[:, 0]) < 3e-3
+    assert off[near].max() < 0.02 * before[near].max()
+    square = PadMesh(
+        np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), np.array([[0, 1, 2, 3]]), "quad4", np.zeros(1, int),
+        {"skin": np.array([[0, 3], [3, 2], [2, 1]])}, False,
+    ).raised()  # fmt: skip
+    np.testing.assert_array_equal(square.points[square.cells[0, 4:]], [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]])

@@ -500,10 +500,14 @@ def test_linear_triangles_can_be_elevated(tmp_path):
     assert len(raised.points) == len(places(raised.points))
     middle = raised.points[raised.cells[:, 3:]]
     corners = raised.points[raised.cells[:, :3]]
-    np.testing.assert_allclose(middle, 0.5 * (corners + corners[:, [1, 2, 0]]), atol=1e-18)
+    bent = np.isin(raised.cells[:, 3:], raised.curves["skin"][:, 2])  # the skin's sides bend as it does
+    np.testing.assert_allclose(middle[~bent], (0.5 * (corners + corners[:, [1, 2, 0]]))[~bent], atol=1e-18)
+    ends = raised.points[raised.curves["skin"][:, :2]]
+    np.testing.assert_allclose(np.hypot(*middle[bent].T), np.hypot(*ends[0, 0]), rtol=1e-3)  # their chords: 8.6e-3
     for name, facets in raised.curves.items():
         np.testing.assert_array_equal(facets[:, :2], mesh.curves[name])
-        np.testing.assert_allclose(raised.points[facets[:, 2]], raised.points[facets[:, :2]].mean(axis=1), atol=1e-18)
+        if name != "skin":
+            np.testing.assert_allclose(raised.points[facets[:, 2]], raised.points[facets[:, :2]].mean(axis=1), atol=1e-18)
     assert len(skin_chain(raised)) == 25
     raised.right_half()
 

@@ -130,7 +130,7 @@ class Simulation:
     def __init__(self, scene: Scene, plan: Plan, mesh: PadMesh | None, fields: bool = False):
         self.cpu, self.wall = time.process_time(), time.perf_counter()
         self.scene, self.plan = scene, plan
-        self.whole = (mesh or mesh_for(scene, plan)).elevated()
+        self.whole = (mesh or mesh_for(scene, plan)).elevated(plan.element)
         self.mesh = self.whole.right_half() if plan.effects["symmetry"].on else self.whole
         self.share = 0.5 if self.mesh.half else 1.0
         specimen = scene.specimen

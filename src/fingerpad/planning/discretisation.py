@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
-from fingerpad.planning.bounds import PlanError, micrometres
+from fingerpad.planning.bounds import PlanError, micrometres, percent
 from fingerpad.planning.contact import contact_reach, earliest_half_width, is_uneven, moves_along
 from fingerpad.planning.errors import THESIS_ROWS, estimated_error
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
@@ -84,12 +85,42 @@ def usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
 
 
 def element_for(by_hand: Discretisation | None, external: PadMesh | None) -> str:
-    natural = KINDS[external.element if external else "quad9"].solved
-    if by_hand is None or by_hand.element is None or by_hand.element == natural:
+    """The element to solve with: the one asked for, if the mesh has it or can be raised to it, else the mesh's own.
+
+    Raises:
+        PlanError: it does not fit the mesh.
+    """
+    kind = external.element if external else "quad9"
+    natural = KINDS[kind].solved
+    fitting = (natural, "Q2P1") if kind == "quad4" else (natural,)
+    if by_hand is None or by_hand.element is None:
         return natural
+    if by_hand.element in fitting:
+        return by_hand.element
     raise PlanError(
-        f"accuracy.element: {by_hand.element} does not fit the mesh of {external.element if external else 'quad9'}; "
-        f"allowed: {natural}"
+        f"accuracy.element: {by_hand.element} does not fit the mesh of {kind}; allowed: {' or '.join(dict.fromkeys(fitting))}"
+    )
+
+
+def raised_for(
+    by_hand: Discretisation | None, external: PadMesh, tolerance: float, error: Callable[[PadMesh], float]
+) -> tuple[PadMesh, str]:
+    """An external mesh, its linear quads raised to quadratic ones where the accuracy needs it, and why it was ("": it was not).
+
+    Args:
+        tolerance: relative, what is asked. error: expected of a contact on a mesh.
+    """
+    if external.element != "quad4":
+        return external, ""
+    asked = by_hand.element if by_hand else None
+    if asked == "Q2P1":
+        return external.raised(), "linear quads raised to quadratic ones of the same corners: asked for in the scene"
+    if asked or (by_hand and by_hand.tolerance is None) or error(external) <= tolerance:
+        return external, ""
+    raised = external.raised()
+    return raised, (
+        f"linear quads raised to quadratic ones of the same corners: they would be wrong by {percent(error(external))}, "
+        f"{percent(tolerance)} is asked, these by {percent(error(raised))}"
     )
 
 

@@ -35,6 +35,7 @@ from fingerpad.planning.discretisation import (
     mesh_size_for,
     peak_is_unbounded,
     preset_for,
+    raised_for,
     usual_edge,
     wander_of,
 )
@@ -50,7 +51,7 @@ from fingerpad.planning.surface import Surface, surface_of
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen import counted, quality_of
 from fingerpad.specimen.measures import apex_edge
-from fingerpad.specimen.pad import MeshSize
+from fingerpad.specimen.pad import MeshSize, PadMesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -228,6 +229,15 @@ def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, t
     if by_hand and by_hand.steps:
         steps_per_leg, slide_step = max(1, round(by_hand.steps / len(scene.motion))), None
     steps = sum(1 for _ in schedule(scene, steps_per_leg, timed, slide_step=slide_step))
+    time, narrowest, raised = steps_per_leg if timed else None, earliest_half_width(scene, contact, timed), ""
+    if external is not None:
+
+        def on_mesh(mesh: PadMesh) -> float:
+            edge = coarseness(mesh, rules) * apex_edge(mesh)
+            found = estimated_error(edge, narrowest, time, moves, rules=rules, uneven=is_uneven(scene))
+            return max(found, edges_error(profile, edge, rounding, rules)[0])
+
+        external, raised = raised_for(by_hand, external, tolerance, on_mesh)
     element = element_for(by_hand, external)
     if external is None:
         # on its way over a surface the contact is also flat
@@ -249,8 +259,6 @@ def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, t
     may_change = rules.profile_share * tolerance
     surface = surface_of(measured, edge, way_of(scene), pad, partial(worst_contact, scene, pad, profile), may_change)
     around = None if size is None else size.skin_edge
-    time = steps_per_leg if timed else None
-    narrowest = earliest_half_width(scene, contact, timed)
     at_edge = edge if size is None else min([edge, *(each for _, each in size.focus)])
     if size is not None and profile.edge_radius and scene.tolerance is None:
         # presets are fine beside the face, not where it ends and the pressure is largest
@@ -271,7 +279,7 @@ def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, t
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
         linear + mesh, _cost(nodes, steps, effects, rules), linear, at_edges,
         max(sources, key=sources.get), scene.tolerance, scene.once, peak_is_unbounded(profile, at_edge, rounding, rules),
-        specimen_said(scene.specimen, external), surface,
+        (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface,
     )  # fmt: skip
 
 

@@ -118,22 +118,61 @@ class PadMesh:
         curves["symmetry"] = rim[on_axis[rim[:, :2]].all(axis=1)][:, [1, 0, *range(2, rim.shape[1])]]
         return replace(self, points=points, cells=cells, region=self.region[kept], curves=curves, half=True)
 
-    def elevated(self) -> PadMesh:
-        """The same mesh with mid-side nodes if it is made of linear triangles (tri3 -> tri6); else itself."""
-        if self.element != "tri3":
+    def elevated(self, solved: str | None = None) -> PadMesh:
+        """The mesh with mid-side nodes where it needs some: of linear triangles always, of quads for the element "Q2P1"."""
+        return self.raised() if self.element == "tri3" or (self.element == "quad4" and solved == "Q2P1") else self
+
+    def raised(self) -> PadMesh:
+        """The same elements with mid-side nodes (tri3 -> tri6), and quads with a centre node (quad4 -> quad9).
+
+        Sides stay straight but for the skin's, which bend as it does: on a polygon pressure would jump from node to node. A mesh
+        that has these nodes is itself.
+        """
+        if KINDS[self.element].quadratic:
             return self
-        edges = element_edges(self.cells, "tri3")
+        edges = element_edges(self.cells, self.element)
         pairs, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
         first, count = len(self.points), len(self.cells)
         middle = first + index.reshape(-1).astype(np.int32)
-        points = np.concatenate((self.points, self.points[pairs].mean(axis=1)))
-        cells = np.column_stack((self.cells, middle.reshape(3, count).T)).astype(np.int32)
-        known = dict(zip(map(tuple, pairs.tolist()), range(first, len(points)), strict=True))
+        parts, cells = [self.points, self.points[pairs].mean(axis=1)], [self.cells, middle.reshape(-1, count).T]
+        if self.element == "quad4":
+            parts.append(self.points[self.cells].mean(axis=1))
+            cells.append(first + len(pairs) + np.arange(count, dtype=np.int32)[:, None])
+        known = dict(zip(map(tuple, pairs.tolist()), range(first, first + len(pairs)), strict=True))
+        skin = self.curves[SKIN]
+        sides = np.array([known[min(pair), max(pair)] for pair in skin.tolist()]) - first
+        owner = np.empty(len(pairs), dtype=np.int64)
+        owner[index.reshape(-1)] = np.arange(len(edges)) % count
+        parts[1][sides] += _bulge(self.points[skin], _areas(self.points[self.cells[owner[sides]]]))
         curves = {
             name: np.array([(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32).reshape(-1, 3)
             for name, facets in self.curves.items()
         }
-        return replace(self, points=points, cells=cells, element="tri6", curves=curves)
+        element = "tri6" if self.element == "tri3" else "quad9"
+        cells = np.column_stack(cells).astype(np.int32)
+        return replace(self, points=np.concatenate(parts), cells=cells, element=element, curves=curves)
+
+
+def _areas(corners: np.ndarray) -> np.ndarray:
+    """Areas (n,) of polygons with corners (n, m, 2) counter-clockwise."""
+    x, y = np.moveaxis(corners, -1, 0)
+    return 0.5 * (x * np.roll(y, -1, 1) - np.roll(x, -1, 1) * y).sum(1)
+
+
+def _bulge(ends: np.ndarray, areas: np.ndarray) -> np.ndarray:
+    """How far (n, 2) m the middles of a line's sides lie beside their chords, if it turns evenly from side to side.
+
+    ``ends`` (n, 2, 2) m, one side after the other; ``areas`` (n,) of their elements, of whose depth it is a quarter at most.
+    Turns by more than 30 degrees are corners.
+    """
+    chord = ends[:, 1] - ends[:, 0]
+    length = np.hypot(*chord.T)
+    turn = np.diff(np.unwrap(np.arctan2(chord[:, 1], chord[:, 0])))
+    bend = np.where(np.abs(turn) <= np.radians(30), turn / (0.5 * (length[1:] + length[:-1])), np.nan)
+    both = np.stack([np.append(np.nan, bend), np.append(bend, np.nan)])
+    bend = np.where(np.isnan(both), 0.0, both).sum(0) / np.maximum(np.isfinite(both).sum(0), 1)
+    rise = np.clip(-bend * length**2 / 8, -areas / length / 4, areas / length / 4)
+    return rise[:, None] * np.column_stack([-chord[:, 1], chord[:, 0]]) / length[:, None]
 
 
 def element_edges(cells: np.ndarray, element: str) -> np.ndarray:
