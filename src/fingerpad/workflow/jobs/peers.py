@@ -1,7 +1,7 @@
-"""A press by this package and by a public one -> both answers and what they cost, in one process."""
+"""A press by this package and by public ones -> their answers and what they cost, a process each, in turn."""
 
 from fingerpad.publishing.write import publish_table
-from fingerpad.studies.peers import study
+from fingerpad.studies.peers.run import study
 
 
 def run(job):

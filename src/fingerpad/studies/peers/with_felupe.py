@@ -1,0 +1,44 @@
+"""The press in FElupe, as its user would write it: a nearly incompressible solid, its own rigid contact, PARDISO."""
+
+import json
+import sys
+import time
+
+import numpy as np
+
+STIFFNESS = 300.0  # of the contact, in those of the nodes: the force is then right to 1e-4 (30 under a cylinder, or it diverges)
+
+
+def press(problem, increments):
+    """Force (N/m), iterations and process time (s) of the loop; FElupe's error where it does not converge."""
+    import felupe as fem
+    from pypardiso import spsolve
+
+    radius = 1 / problem["curvature"] if problem["curvature"] else 0.0
+    above = [0.0, problem["points"][:, 1].max() + radius]
+    mesh = fem.Mesh(np.vstack([problem["points"], above]), problem["cells"], "quad")
+    field = fem.FieldContainer([fem.FieldPlaneStrain(fem.RegionQuad(mesh), dim=2)])
+    solid = fem.SolidBodyNearlyIncompressible(fem.NeoHooke(mu=float(problem["mu"])), field, bulk=float(problem["bulk"]))
+    how = {"points": problem["skin"], "centerpoint": -1, "items": [solid]}
+    if radius:
+        contact = fem.ContactRigidCylinder(field, radius=radius, multiplier=STIFFNESS / 10, **how)
+    else:
+        contact = fem.ContactRigidPlane(field, normal=[0, -1], multiplier=STIFFNESS, **how)
+    number = np.arange(mesh.npoints)
+    move = fem.Boundary(field[0], mask=number == number[-1], skip=(1, 0))
+    boundaries = {
+        "fixed": fem.Boundary(field[0], mask=np.isin(number, problem["held"])),
+        "aside": fem.Boundary(field[0], mask=number == number[-1], skip=(0, 1)),
+        "move": move,
+    }
+    ramp = {move: -problem["depth"] * np.linspace(0, 1, increments + 1)[1:]}
+    step = fem.Step([solid, contact], ramp=ramp, boundaries=boundaries)
+    start = time.process_time()
+    iterations = sum(done.iterations for done in step.generate(x0=field, solver=spsolve, tol=1e-6, verbose=0))
+    loop = time.process_time() - start
+    return -contact.results.force.toarray().ravel()[2 * mesh.npoints - 1], iterations, loop
+
+
+if __name__ == "__main__":
+    force, iterations, loop = press(dict(np.load(sys.argv[1])), int(sys.argv[2]))
+    print(json.dumps({"force": float(force), "iterations": iterations, "loop": loop}))
