@@ -167,7 +167,7 @@ class QuasiStatic:
         self._set_zone(*skin.start)
         self.height = self._first_touch()
         self._unloaded = body.save()
-        self._factors = self._stiffness = None
+        self._factors = self._stiffness = self._gaps = None
         self._past: list[_Past] = []
         self._quadratic = False
         self.total_iterations = self.total_halvings = self.factorisations = 0
@@ -195,6 +195,13 @@ class QuasiStatic:
     def _evaluate(self, nodes):
         position = self.points[nodes] + self.body.u[nodes]
         return self.profile.evaluate(position - np.array([-self.distance, self.height - self.depth]))
+
+    def _zone_gaps(self):
+        """Gaps of the zone, their gradients and curvatures, worked out once where the body and the profile are."""
+        where = self.zone, self.body.u, self.height, self.depth, self.distance
+        if self._gaps is None or not all(a is b for a, b in zip(where, self._gaps[0], strict=True)):
+            self._gaps = where, self._evaluate(self.zone.nodes)
+        return self._gaps[1]
 
     def _first_touch(self) -> float:
         """Height of the profile's origin at which it just touches the undeformed skin."""
@@ -286,7 +293,7 @@ class QuasiStatic:
         """
         body, zone, part, settings = self.body, self.zone, self._range, self.settings
         space = body.space
-        gap, gradient, curvature = self._evaluate(zone.nodes)
+        gap, gradient, curvature = self._zone_gaps()
         if reuse:
             schur, internal = self._schur, self._internal
         else:
@@ -322,7 +329,7 @@ class QuasiStatic:
         self.nodal_force[:] = 0
         self.active[:] = False
         self.nodal_force[part], self.active[part] = step.force, step.active
-        gap, gradient, _ = self._evaluate(zone.nodes)
+        gap, gradient, _ = self._zone_gaps()
         push, stuck = step.force[:, None] * gradient, 0.0
         if self.friction is not None:
             self.friction.accept(part, step)
