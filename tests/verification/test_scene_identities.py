@@ -93,3 +93,25 @@ def test_steady_press_in_one_step(run, stimulus, must_fail):
     """A steady press does not depend on its load increments, and one step knows its work."""
     check_steady(run, stimulus, STEADY)
     must_fail(check_steady, run, stimulus, STEADY, factor=1.001)
+
+
+SHARP = {"shape": "cylinder", "curvature": "1259.84 1/m"}
+#: m, at the top of the ramp: the same on meshes of 7,353 and 21,565 nodes
+WIDTH = 0.5886e-3
+
+
+def check_narrow_contact(run, accuracy):
+    """Width and rate of the strain energy where a sharp cylinder's ramp ends."""
+    history = run(stimulus=SHARP, accuracy=accuracy)
+    top = int(np.flatnonzero(history.leg == 0)[-1])
+    width = float(history.contact_width[top])
+    np.testing.assert_allclose(width, WIDTH, rtol=0.01, err_msg="truth: the width on finer meshes")
+    energy, time = history.strain_energy_density.values[: top + 1, 2], history.time.values[: top + 1]
+    rate = np.diff(energy) / np.diff(time)
+    assert rate.argmax() >= len(rate) - 2, "truth: the rate is highest where the ramp ends"
+
+
+def test_narrow_contacts_have_nodes(run, must_fail):
+    """A preset refines under a contact of a few edges, whose width and rates nodes that join one by one would bend."""
+    check_narrow_contact(run, "draft")
+    must_fail(check_narrow_contact, run, {"skin_edge": "268.8 um", "steps": 20})
