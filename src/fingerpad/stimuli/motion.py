@@ -68,6 +68,19 @@ class Stepping(NamedTuple):
     timed: bool
     slide_step: float | None
     increments: int = 1
+    parts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
+
+    def way(self, start: float, way: float) -> np.ndarray:
+        """Places (m) along the surface at which the steps of a slide end: every ``slide_step``, and each of these in as
+        many ``parts`` as are wanted of one so far (k,) m from the start, in the middle of it, at a place (k,) m."""
+        if not self.slide_step:
+            return start + way * np.arange(1, self.steps + 1) / self.steps
+        count = math.ceil(abs(way) / self.slide_step * (1 - 1e-9))
+        ends = start + way * np.arange(count + 1) / count
+        if self.parts is None:
+            return ends[1:]
+        parts = self.parts((ends[1:] + ends[:-1]) / 2 - start, (ends[1:] + ends[:-1]) / 2)
+        return np.concatenate([np.linspace(a, b, n + 1)[1:] for a, b, n in zip(ends, ends[1:], parts, strict=False)])
 
 
 class Outlook(NamedTuple):
@@ -273,14 +286,16 @@ class Slide(Leg):
         return self.keep
 
     def path(self, at, last, reached, how):
-        count = math.ceil(abs(self.slide) / how.slide_step * (1 - 1e-9)) if how.slide_step else how.steps
+        places = how.way(at.distance, self.slide)
         if self.keep == "force":
             force, depth = reached.force if at.force is None else at.force, None
         else:
             force, depth = None, reached.depth if at.depth is None else at.depth
-        last = None if self.speed is None else abs(self.slide) / self.speed / count
-        goals = [Goal(force, depth, at.distance + self.slide * k / count) for k in range(1, count + 1)]
-        return np.full(count, last or STEADY), goals, last
+        goals = [Goal(force, depth, float(place)) for place in places]
+        if self.speed is None:
+            return np.full(len(places), STEADY), goals, None
+        sizes = np.abs(np.diff(places, prepend=at.distance)) / self.speed
+        return sizes, goals, float(sizes[-1])
 
     def ahead(self, outlook):
         kept = {"force": math.nan, "depth": math.nan} | {self.keep: getattr(outlook, self.keep)}
@@ -419,6 +434,7 @@ def programme(
     present: Callable[[], tuple[float, ...]] | None = None,
     slide_step: float | None = None,
     increments: int = 1,
+    parts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
@@ -431,8 +447,10 @@ def programme(
             control needs, and a lift; without it such a leg is taken to start from zero, and a lift to end there.
         slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
         increments: of a steady press. Without friction its end does not depend on them.
+        parts: into how many (k,) the longest steps of a slide are cut, by their distance (k,) m from where it begins (negative in
+            strokes the other way) and their place (k,) m along the surface.
     """
-    how = Stepping(steps, contact_length, timed, slide_step, increments)
+    how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
     time, at, last = 0.0, Goal(None, None, 0.0), None
     for number, leg in enumerate(legs):
         reached = Reached(*present()) if present else Reached(at.force or 0.0, at.depth or 0.0)
