@@ -41,6 +41,8 @@ $(INSTALLED): requirements.lock pyproject.toml workflow/scripts/system_libraries
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --use-pep517 --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
 	sh workflow/scripts/system_libraries.sh $(BIN)/python
+# Python itself keeps what it compiles only where PYTHONDONTWRITEBYTECODE is not set.
+	$(BIN)/python -m compileall -q src
 	$(BIN)/python workflow/scripts/compile_kernels.py
 	@cp requirements.lock $@
 
