@@ -33,7 +33,7 @@ def fingers(frame: pd.DataFrame) -> Figure:
     worst = found["total_95 (1)"].max()
     q2 = found.groupby("measure", sort=False)["q2 (1)"].first()
     note = [
-        f"{len(frame)} fingers drawn from published ranges (sources: config/sweeps/five_hundred_fingers.yaml), each "
+        f"{len(frame)} fingers drawn from published and some assumed ranges (config/sweeps/five_hundred_fingers.yaml), each "
         f"pressed with another surface to 20 gf at 40 gf/s and held for 1 s; {len(frame) - len(done)} not converged. Plane "
         f"strain, draft mesh (error {100 * done['estimated_error (1)'].median():.0f} % in the middle), not measured. Receptor "
         "at 915 µm, Eq 5-1 with the thesis's constants.",

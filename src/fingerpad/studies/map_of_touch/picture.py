@@ -72,7 +72,8 @@ def contours(frame: pd.DataFrame) -> Figure:
         f"strain, not measured. Error the runs estimate of themselves: {100 * error.median():.0f} % in the middle, "
         f"{100 * error.max():.0f} % at most (few gf, sharp). Dots: the thesis's nine surfaces at its 20 gf.",
         "Depth, width, peak pressure, strain energy: end of the hold, ramp of 40 gf/s. Rates: largest during the press, by "
-        "Eq 5-1 with the thesis's constants. Small strain: largest change of these four by leaving finite strain out.",
+        "Eq 5-1 with the thesis's constants, which has no ceiling. Small strain: largest change of these four by leaving finite "
+        "strain out.",
     ]
     fig = study_figure("A map of touch: curvature, force and ramp rate", note, 4.9)
     axes = fig.subplots(2, 4, sharex=True, sharey=True)
