@@ -30,7 +30,7 @@ def run_batch(todo: Path, records: Path) -> None:
     spec = json.loads(todo.read_text(encoding="utf-8"))
     base = Scene.model_validate(spec["base"])
     unfinished = records.with_suffix(UNFINISHED)
-    signal.signal(signal.SIGTERM, _stop)  # whoever ends this process in order is not the scene's fault
+    before = signal.signal(signal.SIGTERM, _stop)  # whoever ends this process in order is not the scene's fault
     write, watch = Writer(unfinished), _Watch(records.with_suffix(".at"))
     try:
         for number, key, changes in spec["scenes"]:
@@ -46,6 +46,7 @@ def run_batch(todo: Path, records: Path) -> None:
             print(number, key, record["diagnosis"] or "done", flush=True)
     finally:
         write.close()
+        signal.signal(signal.SIGTERM, before)
     unfinished.replace(records)
 
 
