@@ -30,6 +30,7 @@ from fingerpad.measures.features import (
     phase_indices,
     ramp_end,
     receptors_at,
+    skin_at,
     surface_nodes,
     width,
 )
@@ -91,7 +92,7 @@ def skin(data: Data) -> pd.DataFrame:
         error = error_percent(history, coarse, *at_ends(depth))
         keep = history["skin_y"].values > 0
         for index, phase in phase_indices(history)[-2:]:
-            x, y = (history[f"skin_{k}"].values + history[f"skin_displacement_{k}"].values[index] for k in "xy")
+            x, y = skin_at(history, index)
             parts.append(pd.DataFrame({"surface": label, "phase": phase, X: x[keep] * 1e3, Y: y[keep] * 1e3, ERROR: error}))
     return pd.concat(parts, ignore_index=True)
 

@@ -17,7 +17,7 @@ import xarray as xr
 
 from fingerpad.figures import axes as axs
 from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, nine, stack
-from fingerpad.measures.features import ERROR, PRESSURE, SIMULATED, centre_pressure, error_percent, is_simulated, profile
+from fingerpad.measures.features import ERROR, PRESSURE, SIMULATED, centre_pressure, error_percent, is_simulated, profile, skin_at
 from fingerpad.measures.quantities import (
     CURVATURE,
     DISTANCE,
@@ -81,7 +81,7 @@ def locations(data: Data, runs: Runs) -> pd.DataFrame:
         index = int(np.argmin(abs(distance(stroke) - location * 1e-3)))
         reached = distance(stroke)[index]
         x, p = profile(stroke, index)
-        y = stroke["skin_y"].values + stroke["skin_displacement_y"].values[index]
+        y = skin_at(stroke, index)[1]
         shown = (abs(x) <= 5e-3) & (stroke["skin_y"].values > 0)
         over = np.linspace(-5e-3, 5e-3, 201)
         skin = {"series": "skin", X: x[shown] * 1e3, Y: y[shown] * 1e3, P: p[shown]}

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from fingerpad.measures.features import ERROR, error_percent
+from fingerpad.measures.features import ERROR, error_percent, skin_at
 from fingerpad.measures.quantities import X, Y
 from fingerpad.measures.steady import leg_of, pressed_depths
 from fingerpad.publishing import style
@@ -107,8 +107,7 @@ def surface_deflection(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.
     """Lateral position (m) on the deformed skin and height there over the undeformed skin at that place (m)."""
     x, y = history["skin_x"].values, history["skin_y"].values
     upper = np.flatnonzero(y > 0)
-    moved_x = x[upper] + history["skin_displacement_x"].values[index, upper]
-    moved_y = y[upper] + history["skin_displacement_y"].values[index, upper]
+    moved_x, moved_y = (each[upper] for each in skin_at(history, index))
     return moved_x, moved_y - np.interp(moved_x, x[upper], y[upper])
 
 

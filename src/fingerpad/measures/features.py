@@ -107,10 +107,15 @@ def energy_rate(history: xr.Dataset, depth: float) -> pd.DataFrame:
     return pd.DataFrame({"time (s)": time, "strain_energy_rate (Pa/s)": rate})
 
 
+def skin_at(history: xr.Dataset, index: int | slice = slice(None)) -> tuple[np.ndarray, np.ndarray]:
+    """Deformed positions x, y (m) of the skin nodes at one output (skin_node), or at all of them (time, skin_node)."""
+    x, y = (history[f"skin_{k}"].values + history[f"skin_displacement_{k}"].values[index] for k in "xy")
+    return x, y
+
+
 def profile(history: xr.Dataset, index: int, name: str = PRESSURE) -> tuple[np.ndarray, np.ndarray]:
     """Deformed lateral position (m) and pressure (Pa) of the skin nodes at one output."""
-    x = history["skin_x"].values + history["skin_displacement_x"].values[index]
-    return x, history[name].values[index]
+    return skin_at(history, index)[0], history[name].values[index]
 
 
 def in_contact(history: xr.Dataset, index: int, margin: int = 1) -> np.ndarray:

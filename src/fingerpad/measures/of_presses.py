@@ -19,6 +19,7 @@ from fingerpad.measures.features import (
     profile,
     ramp_end,
     receptors_at,
+    skin_at,
     surface_nodes,
 )
 from fingerpad.measures.measure import Measure, Together, deep, forced, held, measure, named, slides, strokes, waves, wavy
@@ -112,7 +113,7 @@ def inverse_width(history):
 @measure("mm", pressing)
 def skin_height(history):
     node = centre_node(history)
-    return 1e3 * (history["skin_y"].values[node] + history["skin_displacement_y"].values[-1, node])
+    return 1e3 * skin_at(history, -1)[1][node]
 
 
 @measure("N", named([PLATE]))
@@ -207,7 +208,7 @@ def critical_distance(history):
         pressure = history[PRESSURE].values[:, node]
         index = int(pressure.argmax())
         if 0 < index < ramp_end(history):
-            x = float(history["skin_x"].values[node] + history["skin_displacement_x"].values[index, node])
+            x = float(skin_at(history, index)[0][node])
             distances.append(float(history["contact_width"].values[index]) / 2 - x)
     return 1e3 * np.mean(distances) if distances else np.nan
 

@@ -19,6 +19,7 @@ from fingerpad.measures.features import (
     energy,
     ramp_end,
     receptor_index,
+    skin_at,
 )
 from fingerpad.measures.measure import speed_of, waves
 from fingerpad.measures.quantities import (
@@ -113,8 +114,8 @@ def sunk(history: xr.Dataset) -> np.ndarray:
 def skin_sample(history: xr.Dataset, depth: float, reference: np.ndarray | float = 0.0) -> SkinSample:
     """Pressure on the skin and strain energy at a depth (m) under its centre, for Eq 4-4."""
     nodes = upper_skin(history)
-    x = (history["skin_x"].values + history["skin_displacement_x"].values)[:, nodes]
-    return SkinSample(x, history[PRESSURE].values[:, nodes], sunk(history), energy(history, depth), reference)
+    x, _ = skin_at(history)
+    return SkinSample(x[:, nodes], history[PRESSURE].values[:, nodes], sunk(history), energy(history, depth), reference)
 
 
 def skin_shift(history: xr.Dataset) -> np.ndarray:
@@ -165,7 +166,7 @@ def contact_nodes(history: xr.Dataset, count: int | None = None) -> pd.DataFrame
     """
     nodes = upper_skin(history)
     x_rest = history["skin_x"].values[nodes]
-    x = x_rest + history["skin_displacement_x"].values[:, nodes]
+    x = skin_at(history)[0][:, nodes]
     down = -history["skin_displacement_y"].values[:, nodes]
     pressure, time, top = history[PRESSURE].values[:, nodes], history["time"].values, ramp_end(history)
     speed = np.concatenate(

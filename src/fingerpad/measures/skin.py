@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from fingerpad.measures.features import skin_at
+
 WINDOW = 0.25e-3
 """Half of the arc length (m) that a curvature is fitted over: three to four nodes to either side at the thesis's resolution."""
 
@@ -51,6 +53,4 @@ def local_curvature(x: np.ndarray, y: np.ndarray, node: int, window: float = WIN
 
 def skin_curvature(history: xr.Dataset, node: int, window: float = WINDOW) -> np.ndarray:
     """Curvature (time) 1/m of the deformed skin at a skin node, as `local_curvature` defines it."""
-    x = history["skin_x"].values + history["skin_displacement_x"].values
-    y = history["skin_y"].values + history["skin_displacement_y"].values
-    return local_curvature(x, y, node, window)
+    return local_curvature(*skin_at(history), node, window)
