@@ -33,10 +33,10 @@ def fingers(frame: pd.DataFrame) -> Figure:
     worst = found["total_95 (1)"].max()
     q2 = found.groupby("measure", sort=False)["q2 (1)"].first()
     note = [
-        f"{len(frame)} fingers drawn from published and some assumed ranges (config/sweeps/five_hundred_fingers.yaml), each "
-        f"pressed with another surface to 20 gf at 40 gf/s and held for 1 s; {len(frame) - len(done)} not converged. Plane "
-        f"strain, draft mesh (error {100 * done['estimated_error (1)'].median():.0f} % in the middle), not measured. Receptor "
-        "at 915 µm, Eq 5-1 with the thesis's constants.",
+        f"{len(frame)} fingers drawn from published and some assumed ranges: config/sweeps/five_hundred_fingers.yaml.",
+        f"Each pressed with another surface to 20 gf at 40 gf/s and held for 1 s; {len(frame) - len(done)} not converged. Plane "
+        f"strain, draft mesh (error {100 * done['estimated_error (1)'].median():.0f} % in the middle), not measured. Receptor at "
+        "915 µm, Eq 5-1 with the thesis's constants.",
         "Dots: fingers. Bands: 5, 25, 75 and 95 % of fingers by an emulator (polynomial in all unknowns) that explains "
         f"{100 * q2.min():.1f} to {100 * q2.max():.1f} % of the variance of scenes left out. Matrix: total Sobol index at "
         f"{SHOWN:.0f} 1/m, SALib on the emulator, 95 % interval at most ±{worst:.2f}; rows by their sum.",
