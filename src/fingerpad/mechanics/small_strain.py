@@ -22,11 +22,6 @@ class SmallStrainBody:
     geometrically_linear = True
     smallest_jacobian = 1.0
 
-    @property
-    def factor(self) -> float:
-        """Share of the long-term deviatoric stress that answers at once in the step begun last."""
-        return self._factor
-
     def __init__(
         self,
         space: Space,
@@ -71,9 +66,8 @@ class SmallStrainBody:
             branch = np.tensordot(beta * self._decay, self.v, axes=1) - np.sum(beta * self._gamma) * self._last
             self._begin(factor, branch)
 
-    def displace(self, u: np.ndarray, lag=None) -> np.ndarray:
+    def displace(self, u: np.ndarray, lag=None) -> None:
         self.u = np.array(u)
-        return self.internal_force()
 
     def internal_force(self) -> np.ndarray:
         """(n, 2) N/m at the current displacement."""
