@@ -6,20 +6,22 @@ from pathlib import Path
 import matplotlib
 import pytest
 
+from fingerpad.cli import main
+
 pytestmark = pytest.mark.unit
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 
 
-def block(language):
-    (text,) = re.findall(rf"```{language}\n(.*?)```", README, re.S)
+def block(language, first=""):
+    (text,) = re.findall(rf"```{language}\n({re.escape(first)}.*?)```", README, re.S)
     return text
 
 
 def test_the_scene_and_the_three_verbs(tmp_path, monkeypatch, capsys):
     """The README's scene, run by the README's Python lines, gives its frozen depth and width."""
     matplotlib.use("Agg")
-    (tmp_path / "my_scene.yaml").write_text(block("yaml"), encoding="utf-8")
+    (tmp_path / "my_scene.yaml").write_text(block("yaml", "# my_scene.yaml"), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     names = {}
     exec(block("python"), names)
@@ -31,6 +33,14 @@ def test_the_scene_and_the_three_verbs(tmp_path, monkeypatch, capsys):
 
 
 FROZEN_DEPTH_MM = 0.747176
+
+
+def test_the_sweep_is_one_of_the_scene(tmp_path, capsys):
+    """The README's sweep of the README's scene is planned: eight curvatures, four forces."""
+    for name in ("my_scene.yaml", "my_sweep.yaml"):
+        (tmp_path / name).write_text(block("yaml", f"# {name}"), encoding="utf-8")
+    assert main(["plan", str(tmp_path / "my_sweep.yaml")]) == 0
+    assert "32 scenes" in capsys.readouterr().out
 
 
 def test_files_that_are_named_exist():
