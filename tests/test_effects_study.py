@@ -13,14 +13,14 @@ import pytest
 
 from fingerpad import plan, simulate
 from fingerpad.planning.plan import Rules
-from fingerpad.studies.effects.picture import LEAST, NAMES, assemble, effects
+from fingerpad.studies.effects.picture import LEAST, assemble, effects, looks
 from fingerpad.studies.effects.run import (
     DECIDES,
-    PAIRS,
     alternatives,
     changes,
     evidence,
     generated,
+    pairs,
     planned,
     rules_table,
     study,
@@ -171,8 +171,8 @@ def test_alternatives_flip_one_effect_each():
 
 
 def test_pairs_cover_every_effect_where_it_matters_or_not():
-    assert {pair.effect for pair in PAIRS} == set(NAMES)
-    for pair in PAIRS:
+    assert {pair.effect for pair in pairs()} == set(looks())
+    for pair in pairs():
         scene = scene_of({"accuracy": "draft", **pair.document}, pair.label)
         ways = [pair.switch(scene, on) for on in (True, False)]
         assert ways[0] != ways[1]
@@ -186,8 +186,8 @@ def test_every_rule_says_what_it_decides():
 
 def test_a_small_study_is_drawn_and_tabulated():
     """Symmetry alone, and made-up choices: markers right and left, a wrong choice in red, rules with evidence."""
-    pairs = study(PAIRS[1:2], repeats=1)
-    assert pairs["change"].item() < 1e-3 and pairs["unknowns with"].item() < 0.6 * pairs["unknowns without"].item()
+    one = study(pairs()[1:2], repeats=1)
+    assert one["change"].item() < 1e-3 and one["unknowns with"].item() < 0.6 * one["unknowns without"].item()
     choice = {"seed": 1, "scene": "s", "stimulus": "flat", "accuracy": 0.02, "worth": 0.1, "of": "depth", "why": ""}
     found = pd.DataFrame(
         [
@@ -195,11 +195,11 @@ def test_a_small_study_is_drawn_and_tabulated():
             choice | {"effect": "finite_strain", "planned": "off", "share": 5.0, "verdict": "wrongly left out"},
         ]
     )
-    table = evidence(pairs, found)
+    table = evidence(one, found)
     assert table["wrongly left out"].sum() == 1 and len(table) == 3
-    rules = rules_table(pairs, found).set_index("rule")
+    rules = rules_table(one, found).set_index("rule")
     assert "left out in 1 scenes, worth up to 5" in rules.loc["small_strain_error", "evidence"]
-    fig = effects(assemble(pairs, found))
+    fig = effects(assemble(one, found))
     left, right = fig.axes
     assert sum(matplotlib.colors.same_color(line.get_color(), "#c8303d") for line in right.lines) == 1
     assert left.get_ylim()[0] < LEAST

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from fingerpad.planning import effects
@@ -10,10 +11,13 @@ from fingerpad.planning.effects import EFFECTS, in_order, registered
 from fingerpad.planning.plan import RULES, Plan, PlanError, plan
 from fingerpad.scenes.effects import EFFECTS as NAMES
 from fingerpad.simulation import simulate
-from fingerpad.studies.effects.run import DECIDES, PAIRS
+from fingerpad.studies.effects.picture import assemble, looks
+from fingerpad.studies.effects.picture import effects as picture
+from fingerpad.studies.effects.run import DECIDES, pairs, study
 from fingerpad.studies.stability.hard_cases import FLAT, scene_of
 
 pytestmark = pytest.mark.unit
+FIGURES = Path(__file__).parents[1] / "figures"
 
 
 def decide(case: Case) -> Effect:
@@ -23,7 +27,9 @@ def decide(case: Case) -> Effect:
 
 EFFECT = PlannedEffect(
     name="cold", question="is the finger cold?", decide=decide, possible=lambda case: case.scene.specimen.ridges is None,
-    after=("ridges",), dearer=lambda rules: 3.0, shown=(Shown("light", True, {"stimulus": FLAT}),), title="cold fingers",
+    after=("ridges",), dearer=lambda rules: 3.0,
+    shown=(Shown("light", True, {"stimulus": FLAT, "motion": [{"press_to_force": "1 gf"}]}),),
+    title="cold fingers",
 )  # fmt: skip
 
 
@@ -54,13 +60,26 @@ def test_an_own_effect_goes_from_scene_to_run(monkeypatch):
     assert "cold" not in EFFECTS and "cold" not in NAMES
 
 
+def test_an_own_effect_goes_into_the_picture_of_the_study():
+    """Its scene is run with and without it, and a point with its name stands beside those of the choices published."""
+    choices = pd.read_csv(FIGURES / "studies" / "effects.csv").query("panel == 'planner'")
+    with registered(EFFECT):
+        frame = assemble(study([pair for pair in pairs() if pair.effect == "cold"], repeats=1), choices)
+        figure = picture(frame)
+        assert looks()["cold"].title == "cold fingers"
+    assert frame["change"].iloc[0] == 0, "nothing in a run knows of it"
+    left, _ = figure.axes[:2]
+    assert "cold fingers: light" in [text.get_text() for text in left.texts]
+    assert "cold" not in looks() and not any(pair.effect == "cold" for pair in pairs())
+
+
 def test_the_register_is_the_files_and_the_scene_language():
     files = {path.stem for path in Path(effects.__file__).parent.glob("*.py")} - {"__init__"}
     assert files == set(EFFECTS) == set(NAMES) == set(plan(scene()).effects)
     assert all(effect.name == name and effect.question and effect.shown and effect.title for name, effect in EFFECTS.items())
     order = [effect.name for effect in in_order()]
     assert all(order.index(first) < order.index(name) for name, effect in EFFECTS.items() for first in effect.after)
-    assert {pair.effect for pair in PAIRS} >= set(EFFECTS)
+    assert {pair.effect for pair in pairs()} >= set(EFFECTS)
     assert DECIDES["pressing_friction"].startswith("friction of a press") and rule(1.0, "x").metadata["decides"] == "x"
 
 
@@ -75,12 +94,9 @@ def test_a_tolerance_has_room_for_one_error_only():
 
 def test_committed_rules_are_those_of_the_planner():
     """Values, decisions and evidence, from the committed data of the study."""
-    import pandas as pd
-
     from fingerpad.studies.effects.run import rules_table
 
-    figures = Path(__file__).parents[1] / "figures"
-    data = pd.read_csv(figures / "studies" / "effects.csv")
+    data = pd.read_csv(FIGURES / "studies" / "effects.csv")
     changes, choices = (data[data["panel"] == panel] for panel in ("changes", "planner"))
-    committed = pd.read_csv(figures / "tables" / "planner_rules.csv", dtype=str, keep_default_na=False)
+    committed = pd.read_csv(FIGURES / "tables" / "planner_rules.csv", dtype=str, keep_default_na=False)
     assert rules_table(changes, choices).astype(str).to_dict("records") == committed.to_dict("records")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
@@ -16,12 +18,22 @@ LEAST = 1e-6
 DRAFT = 0.06
 """What a draft, as in the left panel, lets effects that are left out change."""
 WRONG, RED = ("wrongly left out", "carried for nothing"), "#c8303d"
-NAMES = {name: effect.title or name.replace("_", " ") for name, effect in EFFECTS.items()} | {
-    "local refinement": "local refinement",
-    "full-field output": "full-field output",
-}
-MARKERS = {name: effect.marker for name, effect in EFFECTS.items()} | {"local refinement": "P", "full-field output": "X"}
-COLOURS = dict(zip(NAMES, mpl.colormaps["viridis"](np.linspace(0, 0.85, len(NAMES))), strict=True))
+
+
+class Look(NamedTuple):
+    """How an effect is shown."""
+
+    title: str
+    marker: str
+    colour: tuple[float, ...]
+
+
+def looks() -> dict[str, Look]:
+    """Every effect of the planner, registered when this is asked, and what else is switched in the study."""
+    titles = {name: (effect.title or name.replace("_", " "), effect.marker) for name, effect in EFFECTS.items()}
+    titles |= {"local refinement": ("local refinement", "P"), "full-field output": ("full-field output", "X")}
+    colours = mpl.colormaps["viridis"](np.linspace(0, 0.85, len(titles)))
+    return {name: Look(*said, tuple(colour)) for (name, said), colour in zip(titles.items(), colours, strict=True)}
 
 
 def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
@@ -62,11 +74,13 @@ def _legend(ax, handles: list[Line2D]) -> None:
 
 
 def _changes(ax, rows: pd.DataFrame) -> None:
+    known = looks()
     change = rows["change"].clip(lower=LEAST)
     for row, y in zip(rows.to_dict("records"), change, strict=True):
-        colour = COLOURS[row["effect"]]
+        look = known[row["effect"]]
+        colour = look.colour
         face = colour if str(row["planned"]) == "True" else "white"
-        ax.plot(row["cost ratio"], y, MARKERS[row["effect"]], color=colour, mfc=face, ms=6, mew=1.2)
+        ax.plot(row["cost ratio"], y, look.marker, color=colour, mfc=face, ms=6, mew=1.2)
     ax.axvline(1, color=GREY, lw=0.7)
     ax.axhline(DRAFT, color=GREY, lw=0.7, ls=(0, (4, 1.8)))
     ax.text(0.11, DRAFT * 1.15, "a draft's accuracy", fontsize=6, color=GREY)
@@ -84,8 +98,8 @@ def _changes(ax, rows: pd.DataFrame) -> None:
     logs = np.log10(change.to_numpy())
     places = 10 ** spread(logs, 0.33, np.log10(LEAST / 2) + 0.1, 0.62)
     for row, y, place in zip(rows.to_dict("records"), change, places, strict=True):
-        ax.plot([row["cost ratio"], 12], [y, place], color=COLOURS[row["effect"]], lw=0.4, alpha=0.6, zorder=0)
-        name = NAMES[row["effect"]].split(" (")[0]
+        ax.plot([row["cost ratio"], 12], [y, place], color=known[row["effect"]].colour, lw=0.4, alpha=0.6, zorder=0)
+        name = known[row["effect"]].title.split(" (")[0]
         ax.text(12.8, place, f"{name}: {row['scene']}", fontsize=5.6, va="center", color=INK, clip_on=False)
 
 
@@ -96,21 +110,21 @@ def _floor(axis) -> None:
 
 
 def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
-    names = [name for name in NAMES if name in set(rows["effect"])]
+    known = {name: look for name, look in looks().items() if name in set(rows["effect"])}
     shift = np.random.default_rng(0)
-    for k, name in enumerate(names):
+    for k, (name, look) in enumerate(known.items()):
         for row in rows[rows["effect"] == name].dropna(subset="share").to_dict("records"):
             wrong = row["verdict"] in WRONG
             carried = "carried" in row["verdict"]
             ax.plot(
-                max(row["share"], LEAST), k + (0.2 if carried else -0.2) + shift.uniform(-0.13, 0.13), MARKERS[name], ms=4,
-                mew=0.9, color=RED if wrong else COLOURS[name], mfc=COLOURS[name] if carried and not wrong else "white",
+                max(row["share"], LEAST), k + (0.2 if carried else -0.2) + shift.uniform(-0.13, 0.13), look.marker, ms=4,
+                mew=0.9, color=RED if wrong else look.colour, mfc=look.colour if carried and not wrong else "white",
             )  # fmt: skip
     ax.axvline(1, color=INK, lw=0.9)
     ax.axvline(0.1, color=GREY, lw=0.9, ls=(0, (4, 1.8)))
-    ax.set(xscale="log", xlim=(LEAST / 2, 200), ylim=(-0.6, len(names) - 0.4), xlabel="worth over accuracy (1)")
+    ax.set(xscale="log", xlim=(LEAST / 2, 200), ylim=(-0.6, len(known) - 0.4), xlabel="worth over accuracy (1)")
     _floor(ax.xaxis)
-    ax.set_yticks(range(len(names)), [NAMES[name].replace(" (", "\n(") for name in names], fontsize=7)
+    ax.set_yticks(range(len(known)), [look.title.replace(" (", "\n(") for look in known.values()], fontsize=7)
     ax.set_title(f"the planner's choices in {scenes} scenes", pad=18)
     wrong = int(rows["verdict"].isin(WRONG).sum())
     _legend(ax, [_dot("carried"), _dot("left out", mfc="white"), _dot(f"wrong ({wrong})", color=RED, mfc="white")])

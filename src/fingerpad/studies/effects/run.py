@@ -125,12 +125,7 @@ def _fields(scene: Scene, on: bool) -> tuple[Scene, Plan]:
 
 
 MIDDLE = cylinder(209.97)
-PAIRS = (
-    *(
-        Pair(name, shown.label, shown.matters, shown.document, _switched(name, shown.state))
-        for name, effect in EFFECTS.items()
-        for shown in effect.shown
-    ),
+BESIDE = (
     Pair("local refinement", "needle, 10,000 1/m", True, {"stimulus": cylinder(1e4), "motion": RAMP}, _focused),
     Pair("local refinement", "210 1/m", False, {"stimulus": MIDDLE, "motion": RAMP}, _focused),
     Pair(
@@ -142,15 +137,26 @@ PAIRS = (
         {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": {"every": "0.05 s"}}}, _fields,
     ),
 )  # fmt: skip
+"""What is not an effect of the planner, but costs like one."""
 
 
-def study(pairs: tuple[Pair, ...] = PAIRS, repeats: int = 5) -> pd.DataFrame:
-    """Changes and cost ratios of every pair: one row each; costs are process times, medians of ``repeats`` runs in turn.
+def pairs() -> tuple[Pair, ...]:
+    """What shows the effects that are registered when this is asked, and what is :data:`BESIDE` them."""
+    own = (
+        Pair(name, shown.label, shown.matters, shown.document, _switched(name, shown.state))
+        for name, effect in EFFECTS.items()
+        for shown in effect.shown
+    )
+    return (*own, *BESIDE)
+
+
+def study(shown: Iterable[Pair] | None = None, repeats: int = 5) -> pd.DataFrame:
+    """Changes and cost ratios of every pair, or of some: a row each; costs: process times, medians of ``repeats`` in turn.
 
     What ridges change is told on a mesh that has them, where they are flattened; what they cost, beside the smooth pad's mesh.
     """
     rows = []
-    for pair in pairs:
+    for pair in pairs() if shown is None else shown:
         scene = scene_of({"accuracy": "draft", **pair.document}, pair.label)
         ways = [pair.switch(scene, on) for on in (True, False)]
         seconds = [[], []]
@@ -361,7 +367,9 @@ DECIDES = {
     "fillet_order": "that power",
     "edge_error": "error under a true edge, over edge / half width of the face",
     "edge_floor": "error under a true edge, at least",
-    "passing": "factor on the error of strokes over surfaces that are not flat",
+    "edge_finest": "error that a mesh is at most made for there",
+    "passing": "factor on the error of strokes over surfaces that are not flat, and of measured profiles",
+    "profile_share": "share of a tolerance that the smoothing of a measured profile may use up before a longer one is tried",
     "linear_triangle": "by how much coarser quadratic triangles of external meshes count than their edges",
     "linear_quad": "by how much coarser linear quads of external meshes count than their edges",
     "least_edge": "shortest element edge that is made (m)",
@@ -392,7 +400,11 @@ WHERE = {
     "time_order": "figures/tables/accuracy_orders.csv",
     "edge_share": "figures/tables/accuracy_belief.csv",
     "safety": "figures/tables/accuracy_belief.csv",
-    **dict.fromkeys(("fillet_error", "fillet_order", "edge_error", "edge_floor", "passing"), "figures/tables/accuracy_drawn.csv"),
+    **dict.fromkeys(
+        ("fillet_error", "fillet_order", "edge_error", "edge_floor", "edge_finest", "passing"),
+        "figures/tables/accuracy_drawn.csv",
+    ),
+    "profile_share": "tests/test_measured_profiles.py",
     **dict.fromkeys(("linear_triangle", "linear_quad"), "figures/tables/accuracy.csv"),
     "least_edge": "chosen: a tenth of a micrometre, below which skin is no continuum",
     "least_half_width": "chosen: two of the shortest edges",
