@@ -333,7 +333,8 @@ class Products:
             measures = {"measures": [self.result("measures.csv")]}
             yield Job("measures", every, measures, mem_mb=2000)
             read = measures | {"reference": [self.at("config/reference/thesis_numbers.csv")]}
-            yield Job("tables", read, {"tables": self.tables(names)}, category="Tables")
+            pages = [f"{c.tables}/thesis_comparison_chapter{k}.md" for k in (3, 4, 5)] if TABLES[0] in names else []
+            yield Job("tables", read, {"tables": self.tables(names)}, category="Tables", also=pages)
         if "mesh_quality" in c.table_names:
             made = {"table": self.tables(["mesh_quality"])}
             yield Job("mesh_quality", {"meshes": self.meshes(c.scenes)}, made, category="Tables")

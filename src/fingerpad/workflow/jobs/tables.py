@@ -1,10 +1,13 @@
-"""The measures of all scenes and the thesis's numbers -> the tables that are made of them."""
+"""The measures of all scenes and the thesis's numbers -> the tables that are made of them, the comparison in pages."""
 
 from pathlib import Path
 
+from fingerpad.claims.pages import pages
 from fingerpad.claims.tables import TABLES
+from fingerpad.files import write_text
 from fingerpad.measures.table import Measures, read_measures
 from fingerpad.publishing.write import publish_table
+from fingerpad.reference_data import read_reference
 
 
 def run(job):
@@ -12,4 +15,8 @@ def run(job):
     measures = read_measures(job.measures[0])
     for table in job.tables:
         both = Measures.in_table(measures), Measures.in_table(measures, "companion")
-        publish_table(TABLES[Path(table).stem](*both, job.reference[0]), table)
+        path = Path(table)
+        publish_table(TABLES[path.stem](*both, job.reference[0]), path)
+        if path.stem == "thesis_comparison":
+            for chapter, text in pages(path, read_reference(job.reference[0])).items():
+                write_text(path.with_name(f"{path.stem}_chapter{chapter}.md" if chapter else f"{path.stem}.md"), text)
