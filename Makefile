@@ -5,6 +5,7 @@ BIN := $(VENV)/bin
 # The lock file as it was installed: a target of this Makefile and the environment the workflow's rules depend on.
 INSTALLED := $(VENV)/installed.lock
 SNAKEMAKE := $(BIN)/snakemake
+DOCS := $(VENV)/docs.lock
 
 # Tests run in so many processes, each with whole files of them.
 WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
@@ -13,7 +14,7 @@ WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help setup figures studies smoke test bench lint report specimens regression-update schemas adopt unlock clean
+.PHONY: help setup figures studies smoke test bench lint report archive docs specimens regression-update schemas adopt unlock clean
 
 help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
@@ -21,7 +22,9 @@ help:
 	@echo "make smoke              set up, then the same workflow with config/smoke.yaml (coarse, under results/smoke)"
 	@echo "make studies            set up, then run the studies of accuracy, stability, effects and peers anew"
 	@echo "make bench              set up, then measure and print the benchmark table"
-	@echo "make report             pack the figures, their captions and the run's statistics into results/report.zip"
+	@echo "make report             make figures, then pack figures, tables and the run's statistics into results/report.zip"
+	@echo "make archive            make figures, then copy inputs, code, outputs and costs into results/archive, an RO-Crate"
+	@echo "make docs               set up, then build the documentation, docs/_build/html"
 	@echo "make specimens          calibrate, and take the calibrated specimens over into config/specimens"
 	@echo "make regression-update  accept a deliberate change of the figures"
 	@echo "make lint               style, formatting and the import contracts"
@@ -67,7 +70,21 @@ lint: $(INSTALLED)
 	$(BIN)/lint-imports
 
 report: figures
-	PYTHONWARNINGS=ignore::RuntimeWarning $(SNAKEMAKE) --report results/report.zip
+	$(SNAKEMAKE) report_pages
+	PYTHONWARNINGS=ignore::RuntimeWarning $(SNAKEMAKE) all report_pages --report results/report.zip \
+	  --report-stylesheet workflow/report/report.css --report-metadata workflow/report/metadata.yaml
+
+archive: figures
+	$(BIN)/python -m fingerpad.workflow.archive config/thesis.yaml results/archive
+
+docs: $(DOCS)
+	$(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going docs docs/_build/html
+	@echo "docs/_build/html/index.html"
+
+# What the documentation needs beside the workflow, into the same environment; the rules do not depend on it.
+$(DOCS): docs/requirements.lock $(INSTALLED)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r docs/requirements.lock
+	@cp docs/requirements.lock $@
 
 regression-update: figures
 	FINGERPAD_UPDATE_BASELINES=1 $(BIN)/python -m pytest -q tests/test_figure_regression.py
@@ -86,4 +103,4 @@ unlock: $(INSTALLED)
 	$(SNAKEMAKE) --unlock
 
 clean:
-	rm -rf results .snakemake
+	rm -rf results .snakemake docs/_build docs/generated

@@ -70,6 +70,7 @@ localrules:
     stability,
     effects,
     peers,
+    report_pages,
 
 
 rule all:
@@ -109,6 +110,12 @@ rule ridges:
     input:
         [PRODUCTS.picture_of(f.number) for f in PRODUCTS.drawn if f.number in ("5-25", "5-26", "5-28", "5-29")],
         PRODUCTS.targets("ridges"),
+
+
+rule report_pages:
+    """A page a figure, study and table: what `make report` packs."""
+    input:
+        PRODUCTS.targets("report"),
 
 
 rule accuracy:

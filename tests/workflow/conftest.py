@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TREE = ("Snakefile", "config", "profiles", "pyproject.toml", "requirements.lock", "src", "workflow")
+TREE = (".test", "CITATION.cff", "Snakefile", "config", "profiles", "pyproject.toml", "requirements.lock", "src", "workflow")
 COMPILED_TOO = shutil.ignore_patterns("*.egg-info", "*.tmp.*", "*.pyc.*")  # all but what is being written
 QUIET = ("--quiet", "host")
 SMOKE = ("--configfile", "config/smoke.yaml")
@@ -46,6 +46,12 @@ class Project:
             capture_output=True,
             text=True,
         )
+
+    def python(self, module: str, *arguments: str) -> subprocess.CompletedProcess:
+        """Run a module of the tree's package in it."""
+        environment = os.environ | {"PYTHONPATH": str(self.root / "src")} | self.environment
+        words = [sys.executable, "-m", module, *arguments]
+        return subprocess.run(words, cwd=self.root, env=environment, capture_output=True, text=True)
 
     def run(self, *arguments: str, folder: Path | None = None, **environment: str) -> str:
         """Run the workflow; its whole output."""

@@ -156,6 +156,28 @@ def test_smoke_writes_under_its_results_only_and_skips_what_it_lacks(smoke):
     assert not {"calibrate_friction", "ridge_cases", "catalogue"} & {smoke.jobs[name].run for name in names}
 
 
+# -- the report ------------------------------------------------------------------------------------------------------------
+
+
+def test_the_report_has_a_page_a_figure_study_and_table_in_the_order_of_numbers(thesis):
+    jobs = {name: job for name, job in thesis.jobs.items() if job.run == "report_pages"}
+    assert {job.category for job in jobs.values()} == {"Chapter 3", "Chapter 4", "Chapter 5", "Studies", "Tables"}
+    assert not set(jobs) & thesis.default()
+    four = [job.reported("pages", page) for job in (jobs["report_chapter_4"],) for page in job.outputs["pages"]]
+    order = sorted((entry["labels"] for entry in four), key=lambda labels: labels["no."])
+    assert [labels["figure"] for labels in order[:2]] == ["4-2", "4-3"] and order[-1]["figure"] == "4-29"
+    assert jobs["report_chapter_4"].inputs["judged"] == ["figures/tables/thesis_comparison_chapter4.md"]
+    studies = {Path(page).stem for page in jobs["report_studies"].outputs["pages"]}
+    assert {"animation_stroke_10", "ridges_offset", "calibration_fit", "accuracy_error", "stability"} <= studies
+    assert {"thesis_comparison", "accuracy", "peers"} <= {Path(page).stem for page in jobs["report_tables"].outputs["pages"]}
+
+
+def test_published_studies_are_shown_and_not_made_for_the_report(thesis):
+    needed = {thesis.jobs[name].run for name in thesis.needed(thesis.products.targets("report"))}
+    assert not needed & {"accuracy_sweep", "stability_method", "effects_study", "peers", "sweep"}
+    assert "figures/studies/stability.png" in thesis.jobs["report_studies"].values["published"]
+
+
 # -- what an edit makes again ----------------------------------------------------------------------------------------------
 
 
@@ -166,7 +188,7 @@ def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
         assert names and {thesis.jobs[name].run for name in names} == {"figures"}
         own = {name for name in names if thesis.jobs[name].values["chapter"] == [module]}
         assert own == {name for name in thesis.default() if thesis.jobs[name].values.get("chapter") == [module]}
-        chapters = [{thesis.jobs[name].category for name in part} for part in (names, own)]
+        chapters = [{name.split("_")[1] for name in part} for part in (names, own)]
         assert chapters[0] == chapters[1], f"drawn again by an edit in {module}"
 
 

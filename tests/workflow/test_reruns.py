@@ -5,12 +5,16 @@ Which jobs an edit reruns in the full configuration is asked of the package in t
 
 import json
 import os
+import re
+import shutil
 import signal
 import subprocess
 import sys
 import time
+import zipfile
 from contextlib import ExitStack
 
+import pandas as pd
 import pytest
 import yaml
 
@@ -153,6 +157,123 @@ def test_a_failed_job_says_why_where_it_failed(clone):
     assert done.returncode != 0
     said = [line for line in done.stderr.splitlines() if line.startswith("calibrate: ")]
     assert len(said) == 1 and "forces/mine.csv: row 1: column indenter is missing; allowed: subject" in said[0]
+
+
+# -- the report and the archive of a run ---------------------------------------------------------------------------------------
+
+LISTEN = """<script>
+window.problems = [];
+window.addEventListener("error", (event) => problems.push(String(event.message || event.target.src)), true);
+console.error = (...words) => problems.push(words.join(" "));
+</script>"""
+LOOK = """<script>
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+const framed = (uri) => new Promise((done) => {
+  const frame = document.createElement("iframe");
+  frame.style = "width: 900px; height: 700px; position: fixed; top: 0";
+  frame.onload = () => done(frame);
+  frame.src = uri;
+  document.body.append(frame);
+});
+window.addEventListener("load", async () => {
+  await wait(500);
+  const graph = !!document.querySelector("#rulegraph");
+  const seen = {first: document.querySelector("#app").innerText, graph, rows: {}, pages: []};
+  for (const category of Object.keys(categories)) {
+    app.showCategory(category);
+    await wait(200);
+    seen.rows[category] = [...document.querySelectorAll("tbody tr")].map((row) => row.innerText.trim());
+  }
+  for (const entry of Object.values(results)) {
+    const frame = await framed(entry.data_uri), inside = frame.contentDocument;
+    await wait(50);
+    seen.pages.push({
+      name: entry.name, title: inside.querySelector("h1").innerText, cells: inside.querySelectorAll("td").length,
+      pictures: [...inside.images].map((image) => [image.naturalWidth, image.getBoundingClientRect().right]),
+      wide: inside.documentElement.scrollWidth, words: inside.body.innerText.length});
+    frame.remove();
+  }
+  const told = document.createElement("pre");
+  told.id = "seen";
+  told.textContent = JSON.stringify({...seen, problems});
+  document.body.append(told);
+});
+</script>"""
+
+
+@pytest.fixture(scope="module")
+def report(finished):
+    """The folder of the report, unpacked."""
+    finished.run(*SMOKE, "report_pages")
+    how = ("--report-stylesheet", "workflow/report/report.css", "--report-metadata", "workflow/report/metadata.yaml")
+    finished.run(*SMOKE, "all", "report_pages", "--report", "results/report.zip", *how)
+    with zipfile.ZipFile(finished.root / "results/report.zip") as packed:
+        packed.extractall(finished.root / "results/unpacked")
+    return finished.root / "results/unpacked/report"
+
+
+def test_the_report_opens_in_a_browser_and_shows_everything_whole(report):
+    """Driven in headless Chromium: words first, categories, every picture loaded and within its page, no error on the console."""
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    if browser is None:
+        pytest.skip("no Chromium here (apt-get install chromium)")
+    text = (report / "report.html").read_text(encoding="utf-8")
+    probe = report / "probe.html"
+    probe.write_text(text.replace("<head>", f"<head>{LISTEN}", 1).replace("</body>", f"{LOOK}</body>"), encoding="utf-8")
+    flags = ("--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files", "--window-size=1280,900")
+    words = [browser, *flags, "--virtual-time-budget=60000", "--dump-dom", probe.as_uri()]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    (found,) = re.findall(r'<pre id="seen">(.*?)</pre>', done.stdout, re.S)
+    seen = json.loads(found.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
+    assert seen["problems"] == []
+    assert "What happens in the skin" in seen["first"] and "How to cite" in seen["first"] and not seen["graph"]
+    assert set(seen["rows"]) == {"Chapter 3", "Chapter 4", "Chapter 5", "Studies", "Tables"}
+    assert [row.split()[1] for row in seen["rows"]["Chapter 4"]] == ["4-12", "4-14", "4-15", "4-16", "4-17"]
+    pages = {page["name"]: page for page in seen["pages"]}
+    assert pages["fig_4-12.html"]["title"].startswith("4-12: ") and pages["fig_4-12.html"]["cells"] > 0
+    assert pages["thesis_comparison.html"]["cells"] > 1000 and not pages["thesis_comparison.html"]["pictures"]
+    pictures = [picture for page in seen["pages"] for picture in page["pictures"]]
+    assert len(pictures) >= 12 and all(width > 300 and right <= 900 for width, right in pictures)
+    assert all(page["wide"] <= 900 and page["words"] > 100 for page in seen["pages"])
+
+
+def test_the_archive_is_a_crate_in_which_everything_leads_somewhere(finished):
+    """Every entity once, every reference to one, every file there, what each job and scene took."""
+    made = finished.python("fingerpad.workflow.archive", "config/smoke.yaml", "results/archive")
+    assert made.returncode == 0, made.stderr
+    crate = finished.root / "results/archive"
+    graph = json.loads((crate / "ro-crate-metadata.json").read_text(encoding="utf-8"))["@graph"]
+    known = {entity["@id"]: entity for entity in graph}
+    assert len(known) == len(graph)
+    named = {each["@id"] for entity in graph for value in entity.values() for each in _references(value)}
+    assert {name for name in named if "://" not in name} <= set(known)
+    for name, entity in known.items():
+        if {"File", "Dataset"} & {entity["@type"], *entity["@type"]} and name != "./":
+            assert (crate / name).exists(), name
+    parts = {each["@id"] for each in known["./"]["hasPart"]}
+    assert {"Snakefile", "config/smoke.yaml", "results/smoke/figures/fig_4-12.png", "costs.csv"} < parts
+    run = known["#run"]
+    assert run["instrument"] == {"@id": "Snakefile"} and run["startTime"] < run["endTime"]
+    drawn = known["#job-figures_4_12"]
+    assert {"@id": "results/smoke/simulations/homogeneous_flat/"} in drawn["object"]
+    assert {"@id": "results/smoke/figures/fig_4-12.csv"} in drawn["result"]
+    costs = pd.read_csv(crate / "costs.csv")
+    assert {f"#job-{job}" for job in costs["job"]} == {each["@id"] for each in known["./"]["mentions"]} - {"#run"}
+    assert costs.set_index("scene").loc["simulations/homogeneous_flat", "process time (s)"] > 0
+
+
+def _references(value):
+    if isinstance(value, dict) and set(value) == {"@id"}:
+        yield value
+    elif isinstance(value, list):
+        for each in value:
+            yield from _references(each)
+
+
+def test_there_is_nothing_to_archive_where_nothing_has_run(fresh):
+    done = fresh.python("fingerpad.workflow.archive", "config/smoke.yaml", "results/archive")
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and "run the workflow first" in done.stderr
+    assert not (fresh.root / "results/archive").exists()
 
 
 # -- the full configuration ------------------------------------------------------------------------------------------------

@@ -1,11 +1,14 @@
 """Snakemake asked for targets, in a tree where nothing has run: what test_products finds of the package, and how it is said."""
 
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
+import yaml
 
 pytestmark = pytest.mark.workflow
 
+ROOT = Path(__file__).resolve().parents[2]
 SMOKE = ("--configfile", "config/smoke.yaml")
 
 
@@ -76,6 +79,19 @@ def test_from_another_folder_and_as_a_module(fresh, tmp_path_factory):
     )
     jobs = fresh.planned("results/mine/tables/summary.csv", folder=elsewhere)
     assert set(jobs) == {"touch_simulate_own", "touch_simulate_ramp40", "touch_summary"}
+
+
+def test_as_the_catalogue_of_workflows_finds_and_tries_it(clone):
+    """By workflow/Snakefile, its profile found by itself, in the folder .test with the configuration that is there."""
+    there = ("--snakefile", "workflow/Snakefile", "--directory", ".test", "--configfile", ".test/config/config.yaml")
+    text = clone.run("--dry-run", *there)
+    jobs = clone.jobs_in(text)
+    assert "profiles/default" in text
+    assert jobs["figures_4_12"] == {f"results/test/figures/fig_4-12.{kind}" for kind in ("csv", "png")}
+    assert {"simulate_homogeneous_flat", "simulate_ramp40", "summary"} < set(jobs)
+    listed = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
+    assert listed["report"] is True and listed["mandatory-flags"]["flags"] == ""
+    assert {"conda", "apptainer"} <= set(listed["software-stack-deployment"]) and (ROOT / "config/README.md").exists()
 
 
 def test_a_sweep_is_a_target_that_a_configuration_names(fresh, tmp_path):

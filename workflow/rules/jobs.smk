@@ -17,7 +17,7 @@ def shown(job):
     """The outputs of a job by their keys, marked for the report, histories as never empty."""
     for key, paths in job.outputs.items():
         flags = [(path, job.reported(key, path)) for path in paths]
-        marked = [report(path, **(how | {"caption": f"../report/{how['caption']}"})) if how else path for path, how in flags]
+        marked = [report(path, **how) if how else path for path, how in flags]
         yield key, ensure(marked, non_empty=True) if key == "histories" else directory(marked) if key == "specimens" else marked
 
 

@@ -27,6 +27,10 @@ RIDGE_MESHES = (("fine",), ("curved", "straight", "shifted"))
 """Further meshes for that case, by process."""
 RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rapidly_adapting")
 TABLES = ("thesis_comparison", "sensitivity")
+PARTS = ("animations", "all_tables", "calibration", "ridges", "meanings")
+"""What is part of the default target beside figures and simulations."""
+SHOWN = ("picture", "pictures", "table", "tables", "gif")
+"""Outputs that are for people."""
 UNTOLD = ("files", "scene_files", "measured", "written")
 """Inputs that a job finds by itself, beside others or named in them, and what only says when to run it again."""
 
@@ -44,7 +48,7 @@ class Job:
     Attributes:
         run: module of `fingerpad.workflow.jobs`. inputs, outputs: files by what they are to the job. values: parameters likewise.
         called: the rule's name, if it is not the module's. modules: further modules that the job imports by name. also: outputs
-        beside the others. caption, category, labels: for the report, of the outputs called picture(s), table(s).
+        beside the others. category, labels: of the outputs called pages, which the report shows.
     """
 
     run: str
@@ -54,7 +58,6 @@ class Job:
     called: str = ""
     modules: tuple[str, ...] = ()
     category: str = ""
-    caption: str = "table"
     labels: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     also: list[str] = field(default_factory=list)
     mem_mb: int = 1000
@@ -87,11 +90,12 @@ class Job:
         return [*told, *(("output", key) for key in self.outputs), *values]
 
     def reported(self, key: str, path: str) -> dict[str, object] | None:
-        """How the report shows an output, if it does: caption, category and labels."""
-        if key not in ("picture", "pictures", "table", "tables") or not self.category:
-            return None
-        labels = self.labels.get(path) or {("table" if "table" in key else "study"): Path(path).stem.replace("_", " ")}
-        return {"caption": f"{self.caption}.rst", "category": self.category, "labels": dict(labels)}
+        """How the report shows an output, if it does: category and labels."""
+        return {"category": self.category, "labels": dict(self.labels[path])} if key == "pages" else None
+
+
+def _digest(path: str) -> str:
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
 
 
 @cache
@@ -302,10 +306,9 @@ class Products:
                 "coarse": self.companions(dict.fromkeys(scene for figure in group for scene in figure.companions)),
                 "measured": sorted(str(path) for pattern in patterns for path in Path(reference).parent.glob(pattern)),
             }
-            labels = {self.picture_of(f.number): {"figure": f.number, "shows": f.title} for f in group}
-            called, category = f"figures_{group[0].number.replace('-', '_')}", f"Chapter {group[0].number.split('-')[0]}"
-            made, told = {"pictures": list(labels)}, {"chapter": [module]}
-            yield Job("figures", read, made, told, called, (module,), category, "figure", labels)
+            called = f"figures_{group[0].number.replace('-', '_')}"
+            made, told = {"pictures": [self.picture_of(f.number) for f in group]}, {"chapter": [module]}
+            yield Job("figures", read, made, told, called, (module,))
 
     def catalogue(self) -> Iterator[Job]:
         """figures/README.md, of the configuration that draws them all."""
@@ -333,14 +336,13 @@ class Products:
             measures = {"measures": [self.result("measures.csv")]}
             yield Job("measures", every, measures, mem_mb=2000)
             read = measures | {"reference": [self.at("config/reference/thesis_numbers.csv")]}
-            pages = [f"{c.tables}/thesis_comparison_chapter{k}.md" for k in (3, 4, 5)] if TABLES[0] in names else []
-            yield Job("tables", read, {"tables": self.tables(names)}, category="Tables", also=pages)
+            yield Job("tables", read, {"tables": self.tables(names)}, also=self._comparison_pages())
         if "mesh_quality" in c.table_names:
             made = {"table": self.tables(["mesh_quality"])}
-            yield Job("mesh_quality", {"meshes": self.meshes(c.scenes)}, made, category="Tables")
+            yield Job("mesh_quality", {"meshes": self.meshes(c.scenes)}, made)
         if "summary" in c.table_names:
             read = [self.result(f"simulations/{scene}/summary.json") for scene in dict.fromkeys([*c.scenes, *c.variants])]
-            yield Job("summary", {"summaries": read}, {"table": self.tables(["summary"])}, category="Tables")
+            yield Job("summary", {"summaries": read}, {"table": self.tables(["summary"])})
         if names := [name for name in RECEPTOR_TABLES if name in c.table_names]:
             felt = self._of([*c.scenes, *c.variants], "ramp40", "ramp150", "press10", "press15", "stroke", "stroke_sub")
             read = {
@@ -350,7 +352,7 @@ class Products:
                     s for s in self._of(c.scenes, "ramp40", "stroke") if s.startswith("ramp40_") or s == "stroke_10"
                 ),
             }
-            yield Job("receptor_tables", read, {"tables": self.tables(names)}, category="Tables")
+            yield Job("receptor_tables", read, {"tables": self.tables(names)})
 
     def _of(self, names: Iterable[str], *families: str) -> list[str]:
         """Those of `names` that belong to some families."""
@@ -361,7 +363,7 @@ class Products:
         name, nine = "strain_energy_meanings", self._of(self.config.scenes, "ramp40")
         if len(nine) >= 9:
             read, made = {"histories": self.histories(nine), "coarse": self.companions(nine)}, {"picture": self.pictures([name])}
-            yield Job(name, read, made, category="Receptors", caption=name)
+            yield Job(name, read, made)
 
     # -- studies -----------------------------------------------------------------------------------------------------------
 
@@ -404,17 +406,16 @@ class Products:
             }
             yield Job("calibrate_friction", read, {"data": data("friction", "friction_estimates")})
             names, estimates = [*names, "friction"], [*estimates, "friction_estimates"]
-        yield self._study_pictures("calibration", names, data(*names), "fingerpad.studies.calibration.picture", "Calibration")
-        yield self._joined("calibration_table", data(*estimates), "calibration", category="Tables", caption="calibration")
+        yield self._study_pictures("calibration", names, data(*names), "fingerpad.studies.calibration.picture")
+        yield self._joined("calibration_table", data(*estimates), "calibration")
 
-    def _joined(self, called: str, parts: list[str], table: str, **options) -> Job:
-        return Job("joined", {"parts": parts}, {"table": self.tables([table])}, called=called, **options)
+    def _joined(self, called: str, parts: list[str], table: str) -> Job:
+        return Job("joined", {"parts": parts}, {"table": self.tables([table])}, called=called)
 
-    def _study_pictures(self, name: str, names: list[str], data: list[str], module: str, category: str) -> Job:
+    def _study_pictures(self, name: str, names: list[str], data: list[str], module: str) -> Job:
         made = {"pictures": self.pictures(names, f"{name}_")}
-        labels = {path: {"study": Path(path).stem.replace("_", " ")} for path in made["pictures"]}
         told = {"study": [module]}
-        return Job("pictures", {"data": data}, made, told, f"{name}_pictures", (module,), category, name, labels)
+        return Job("pictures", {"data": data}, made, told, f"{name}_pictures", (module,))
 
     def ridges(self) -> Iterator[Job]:
         """The study of ridges, if the configuration varies their height."""
@@ -435,7 +436,7 @@ class Products:
         read = {"cases": cases, "histories": self.histories(OUTER), "coarse": self.companions(OUTER[:1])}
         data = [self.result(f"ridges/{name}.csv") for name in names]
         yield Job("ridge_data", read, {"data": data})
-        yield self._study_pictures("ridges", names, data, "fingerpad.studies.ridges.picture", "Ridges")
+        yield self._study_pictures("ridges", names, data, "fingerpad.studies.ridges.picture")
 
     def accuracy(self) -> Iterator[Job]:
         """What accuracy costs in time, and whether runs know their error."""
@@ -448,7 +449,7 @@ class Products:
         read = self._read(*family.values()) | {"records": [self.result(f"accuracy/{sweep}.json") for sweep in sweeps]}
         tables = self.tables(["accuracy", "accuracy_orders", "accuracy_planner", "presets"])
         told = {"scenes": [self.scene(scene) for scene in family.values()], "written": self._written(*family.values())}
-        yield Job("accuracy_tables", read, {"tables": tables}, told, category="Accuracy", caption="accuracy")
+        yield Job("accuracy_tables", read, {"tables": tables}, told)
         rows = [self.result(f"accuracy/belief/{name}.csv") for name in outside]
         for k in range(0, len(outside), 7):
             told, made = {"names": list(outside[k : k + 7]), **self._told(base)}, {"rows": rows[k : k + 7]}
@@ -465,8 +466,7 @@ class Products:
             ("accuracy_drawn_picture", "accuracy_drawn", ("drawn",)),
         ):
             read, made = {"table": self.tables([table])}, {"pictures": self.pictures(pictures, "accuracy_")}
-            labels = {path: {"study": Path(path).stem} for path in made["pictures"]}
-            yield Job("accuracy_pictures", read, made, {}, called, (), "Accuracy", "accuracy", labels)
+            yield Job("accuracy_pictures", read, made, {}, called)
 
     def stability(self) -> Iterator[Job]:
         """Hard cases -> how stable the default method is in them, beside simpler methods."""
@@ -476,7 +476,7 @@ class Products:
         for m, d in zip(methods, data, strict=True):
             yield Job("stability_method", read, {"data": [d]}, {"method": [m]}, f"stability_{m}", runtime=30)
         made = {"picture": self.pictures(["stability"]), "table": self.tables(["stability"])}
-        yield Job("stability_picture", {"methods": data}, made, category="Studies", caption="study")
+        yield Job("stability_picture", {"methods": data}, made)
 
     def effects(self) -> Iterator[Job]:
         """What each effect changes and costs, and the planner's choices and rules against that."""
@@ -485,13 +485,13 @@ class Products:
         for p, d in zip(parts, data, strict=True):
             yield Job("effects_study", read, {"data": [d]}, {"part": [p]}, f"effects_{p}", runtime=30)
         made = {"picture": self.pictures(["effects"]), "tables": self.tables(["effects", "planner_choices", "planner_rules"])}
-        yield Job("effects_picture", {"parts": data}, made, category="Studies", caption="study")
+        yield Job("effects_picture", {"parts": data}, made)
 
     def peers(self) -> Iterator[Job]:
         """The same press through a public finite element package."""
         files = [self.thesis_specimen(), self.at("config/specimens/homogeneous.yaml")]
         made = {"table": self.tables(["peers"])}
-        yield Job("peers", {"files": files}, made, called="peers_table", category="Tables", mem_mb=2000)
+        yield Job("peers", {"files": files}, made, called="peers_table", mem_mb=2000)
 
     def map_of_touch(self) -> Iterator[Job]:
         """A sweep over curvature, force and rate."""
@@ -508,13 +508,56 @@ class Products:
         run = ("fingerpad.sweeps.batch", "fingerpad.workflow.jobs.sweep_batch", "fingerpad.workflow.jobs.sweep_collect")
         many = {"mem_mb": 2000, "runtime": 120, "threads": ALL_CORES}
         yield Job("sweep", read, made, called=f"sweep_{name}", modules=run, also=[table], **many)
-        yield Job(name, {"scenes": [table]}, {"picture": self.pictures([name])} | more, category="Studies", caption="study")
+        yield Job(name, {"scenes": [table]}, {"picture": self.pictures([name])} | more)
+
+    # -- for people and archives -------------------------------------------------------------------------------------------
+
+    def report(self) -> Iterator[Job]:
+        """A page a figure, study and table, by category: of what the configuration makes, and of studies published beside it."""
+        c = self.config
+        jobs = [job for part in PARTS for job in getattr(self, part)()]
+        made = [path for job in jobs for key in SHOWN for path in job.outputs.get(key, [])]
+        titles = {self.picture_of(f.number): f"{f.number}: {f.title}" for f in self.drawn}
+        for chapter in dict.fromkeys(f.number.split("-")[0] for f in self.drawn):
+            shown = [self.picture_of(f.number) for f in self.drawn if f.number.startswith(f"{chapter}-")]
+            yield self._pages(f"Chapter {chapter}", shown, titles=titles)
+        others = (("Studies", c.studies, (".png", ".gif", ".webm", ".mp4")), ("Tables", c.tables, (".csv",)))
+        for category, folder, endings in others:
+            shown = [path for path in made if Path(path).parent == Path(folder) and path.endswith(endings)]
+            there = sorted(p.as_posix() for p in Path(folder).glob("*") if p.suffix in endings and p.as_posix() not in shown)
+            if shown or there:
+                yield self._pages(category, shown, there)
+
+    def _pages(self, category: str, shown: list[str], published: Iterable[str] = (), titles: Mapping[str, str] = {}) -> Job:
+        """Pages of pictures or tables, some of which are made here (`shown`); of the others the content counts."""
+        name, published = category.lower().replace(" ", "_"), list(published)
+        sources = [*shown, *published]
+        said = [titles.get(path) or Path(path).stem.replace("_", " ").capitalize() for path in sources]
+        pages = [self.result(f"report/{name}/{Path(path).stem}.html") for path in sources]
+        labels = {}
+        for page, title in zip(pages, said, strict=True):
+            number, _, shows = title.partition(": ")
+            place = number.split("-")[-1].zfill(2)  # labels are sorted as text
+            labels[page] = {"no.": place, "figure": number, "shows": shows} if shows else {category.lower()[:-1]: title}
+        judged = [path for path in self._comparison_pages() if titles and path.endswith(f"chapter{category[-1]}.md")]
+        read = {"shown": shown, "judged": judged}
+        told = {"published": published, "titles": said, "written": [_digest(path) for path in published]}
+        return Job(
+            "report_pages", {k: v for k, v in read.items() if v}, {"pages": pages}, {k: v for k, v in told.items() if v},
+            f"report_{name}", category=category, labels=labels,
+        )  # fmt: skip
+
+    def _comparison_pages(self) -> list[str]:
+        """The comparison with the thesis, a page a chapter."""
+        there = TABLES[0] in self.config.table_names
+        return [f"{self.config.tables}/{TABLES[0]}_chapter{chapter}.md" for chapter in (3, 4, 5)] if there else []
 
     def jobs(self) -> list[Job]:
         """All of them."""
         parts = (
             self.simulations, self.figures, self.catalogue, self.animations, self.all_tables, self.meanings, self.calibration,
             self.ridges, self.accuracy, self.stability, self.effects, self.peers, self.map_of_touch, self.five_hundred_fingers,
+            self.report,
         )  # fmt: skip
         jobs = [job for part in parts for job in part()]
         # a scene read back from a history is filled up with the thesis's specimen, though it lacks nothing

@@ -1,0 +1,425 @@
+"""What the pages say of the published tables: every number in them is read here, at each build, and none is typed into a page.
+
+``{{ name }}`` in a page is ``numbers()["name"]``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import pandas as pd
+
+ROOT = Path(__file__).parents[2]
+AGREES = {"inside", "plausible", "trend_holds"}
+_NUMBERS: dict[str, Callable[[], object]] = {}
+
+
+@cache
+def table(path: str) -> pd.DataFrame:
+    """A published CSV file, by its path in the repository without the ending."""
+    return pd.read_csv(ROOT / f"{path}.csv")
+
+
+def numbers() -> dict[str, str]:
+    """All of them, as text."""
+    return {name: str(read()) for name, read in _NUMBERS.items()}
+
+
+def number(read: Callable[[], object]) -> Callable[[], object]:
+    """Enter a number under the name of the function that reads it."""
+    _NUMBERS[read.__name__] = read
+    return read
+
+
+def digits(value: float, count: int = 2) -> str:
+    """A number to so many significant digits, without an exponent where that reads better."""
+    text = f"{value:.{count}g}"
+    return f"{float(text):,.0f}" if "e+" in text else re.sub(r"e-0?(\d+)", r" x 10^-\1", text)
+
+
+def several(values, count: int = 2, joint: str = " to ") -> str:
+    """The least and the most of some numbers; one of them if they read the same."""
+    ends = dict.fromkeys((digits(min(values), count), digits(max(values), count)))
+    return joint.join(ends)
+
+
+# -- the thesis ----------------------------------------------------------------------------------------------------------------
+
+
+def compared(*of: str) -> pd.DataFrame:
+    """Rows of the comparison that have been judged, with the form of their statement in the thesis; of some figures only."""
+    rows = table("figures/tables/thesis_comparison")
+    rows = rows.join(table("config/reference/thesis_numbers").set_index("id")["form"], on="id")
+    rows = rows[rows["verdict"] != "not_comparable"]
+    return rows[rows["figure"].isin(of)] if of else rows
+
+
+def verdict(figure: str) -> str:
+    """How many of the thesis's statements on a figure hold here, in a sentence; empty where none can be answered."""
+    rows = compared(figure)
+    rows = rows[rows["role"].isin(["result", "trend"])]
+    if not len(rows):
+        return ""
+    good, count = rows["verdict"].isin(AGREES).sum(), len(rows)
+    what = "statement of the thesis holds" if count == 1 else "statements of the thesis hold"
+    return f"{good} of {count} {what} here"
+
+
+def _share(role: str, axis: bool | None = None) -> tuple[int, int]:
+    rows = compared()
+    rows = rows[rows["role"].isin(role.split())]
+    if axis is not None:
+        rows = rows[rows["form"].eq("axis") == axis]
+    return rows["verdict"].isin(AGREES).sum(), len(rows)
+
+
+@number
+def results_inside():
+    return "{} of {}".format(*_share("result", axis=False))
+
+
+@number
+def results_plausible():
+    return "{} of {}".format(*_share("result", axis=True))
+
+
+@number
+def trends_hold():
+    return "{} of {}".format(*_share("trend"))
+
+
+@number
+def inputs_as_stated():
+    return "{} of {}".format(*_share("input count"))
+
+
+@number
+def calibrated_inside():
+    return "{} of {}".format(*_share("calibrated"))
+
+
+def _row(key: str, column: str = "simulated"):
+    return table("figures/tables/thesis_comparison").set_index("id").loc[key, column]
+
+
+def _noted(key: str, pattern: str) -> str:
+    found = re.search(pattern, _row(key, "note"))
+    if not found:
+        raise ValueError(f"thesis_comparison: the note of {key} says nothing like {pattern}")
+    return found[1]
+
+
+@number
+def stroke_correlation():
+    return digits(_row("TR26"))
+
+
+@number
+def pressure_spread():
+    return digits(float(_noted("TR29", r"spread by ([\d.]+) % on average")))
+
+
+@number
+def energy_spread():
+    return digits(float(_noted("TR30", r"spread by ([\d.]+) % on average")))
+
+
+@number
+def double_peaks():
+    return f"{_row('TR41'):.0f} of {_row('TR41', 'thesis_low'):.0f}"
+
+
+@number
+def eq_4_4_worst():
+    return digits(table("figures/tables/receptor_fits").query("law == '4-4'")["r_squared"].min())
+
+
+# -- friction, force ------------------------------------------------------------------------------------------------------------
+
+
+def _calibrated(study: str, quantity: str, subject: str | None = None) -> pd.Series:
+    rows = table("figures/tables/calibration").query("study == @study and quantity == @quantity")
+    return (rows if subject is None else rows[rows["subject"] == subject]).iloc[0]
+
+
+@number
+def friction():
+    return digits(_calibrated("friction", "coefficient, rounded")["estimate"])
+
+
+@number
+def friction_range():
+    ends = (_calibrated("friction", f"{end} coefficient for about 1 mm")["estimate"] for end in ("least", "most"))
+    return several(list(ends))
+
+
+@number
+def friction_on_fitted_pad():
+    return digits(_calibrated("friction: moduli fitted to measured forces", "coefficient for 1 mm")["estimate"])
+
+
+@number
+def modulus_times_length():
+    row = _calibrated("identifiability", "modulus constant x contact length")
+    return f"{row['estimate']:.1f} mm ({row['low_95']:.1f} to {row['high_95']:.1f})"
+
+
+# -- ridges ---------------------------------------------------------------------------------------------------------------------
+
+
+def _ridge_meshes(panel: str) -> pd.DataFrame:
+    return table("figures/studies/ridges_mesh").query("panel == @panel")
+
+
+@number
+def ridge_ratio():
+    row = _ridge_meshes("resolved").set_index("series").loc["thesis"]
+    return digits(row["right (Pa)"] / row["left (Pa)"])
+
+
+@number
+def ridge_index():
+    return digits(_ridge_meshes("resolved").set_index("series").loc["thesis", "directional_index (1)"])
+
+
+@number
+def ridge_index_meshes():
+    return several(_ridge_meshes("resolved")["directional_index (1)"])
+
+
+@number
+def ridge_index_drawn():
+    return several(_ridge_meshes("drawn")["directional_index (1)"])
+
+
+@number
+def ridge_index_none():
+    rows = table("figures/studies/ridges_height")
+    flat = rows[rows["series"].str.startswith("thesis") & (rows["ridge_height (um)"] == 0)]
+    return digits(flat["directional_index (1)"].iloc[0], 1)
+
+
+# -- receptors ------------------------------------------------------------------------------------------------------------------
+
+
+@number
+def rate_misfit():
+    rows = table("figures/tables/receptor_fits").query("law == \"5-1, thesis's constants\" and residual_units == 'impulses/s'")
+    return digits(rows[rows["scenes"].str.startswith("Cysyk")]["residual_rms"].iloc[0])
+
+
+@number
+def best_candidate():
+    rows = table("figures/tables/candidate_stimuli")
+    row = rows[rows["rates"].str.startswith("Cysyk") & (rows["rank"] == 1)].iloc[0]
+    return f"{row['candidate']} {row['depth']}"
+
+
+# -- accuracy -------------------------------------------------------------------------------------------------------------------
+
+_FAMILY = ("flat", "210", "1260", "stroke")
+
+
+@number
+def presets():
+    """The table of presets, as Markdown."""
+    rows = table("figures/tables/presets")
+    lines = ["| preset | nodes | flat | 210 1/m | 1260 1/m | stroke | a press takes | the stroke |", "|" + "---|" * 8]
+    for name in ("draft", "thesis", "fine"):
+        of = rows[rows["preset"] == name].set_index("scene")
+        errors = [f"{digits(of.loc[scene, 'error (%)'])} %" for scene in _FAMILY]
+        times = of["process time (s)"]
+        took = [f"{digits(times.drop('stroke').mean())} s", f"{digits(times['stroke'])} s"]
+        lines.append("| " + " | ".join([name, f"{of['nodes'].max():,}", *errors, *took]) + " |")
+    return "\n".join(lines)
+
+
+@number
+def growth_exponent():
+    return digits(table("figures/studies/accuracy_growth").query("element == 'Q2P1'")["exponent"].iloc[0], 3)
+
+
+def _without(model: str = "finite elements", strain: str | None = None) -> pd.Series:
+    rows = table("figures/tables/accuracy").query("model == @model")
+    return (rows if strain is None else rows[rows["strain"] == strain])["error (%)"]
+
+
+@number
+def small_strain_errors():
+    return several(_without(strain="small"))
+
+
+@number
+def half_plane_worst():
+    return digits(_without("elastic half-plane").max())
+
+
+@number
+def water_bed_worst():
+    return digits(_without("water bed").max())
+
+
+def _covered(name: str) -> tuple[int, int]:
+    rows = table(f"figures/tables/{name}").dropna(subset=["true error (%)"])
+    return (rows["true error (%)"] <= rows["believed error (%)"]).sum(), len(rows)
+
+
+@number
+def beliefs_covered():
+    return "{} of {}".format(*_covered("accuracy_belief"))
+
+
+@number
+def belief_scenes():
+    return table("figures/tables/accuracy_belief")["scene"].nunique()
+
+
+@number
+def drawn_covered():
+    return "{} of {}".format(*_covered("accuracy_drawn"))
+
+
+# -- stability, effects, peers ---------------------------------------------------------------------------------------------------
+
+
+def _outcomes(method: str) -> pd.Series:
+    rows = table("figures/studies/stability").drop_duplicates(["case", "method"])
+    return rows[rows["method"] == method]["outcome"].str.split(":").str[0].value_counts()
+
+
+@number
+def hard_cases():
+    return table("figures/tables/stability")["case"].nunique()
+
+
+@number
+def hard_cases_stable():
+    return _outcomes("default").get("stable", 0)
+
+
+@number
+def linear_quads_wrong():
+    return _outcomes("full Q1").get("wrong", 0)
+
+
+@number
+def triangles_wrong():
+    return _outcomes("plain P2").get("wrong", 0)
+
+
+@number
+def triangles_unsound():
+    return _outcomes("plain P2").get("unsound", 0)
+
+
+@number
+def newton_unsound():
+    return _outcomes("plain Newton").get("unsound", 0)
+
+
+@number
+def newton_gives_up():
+    return _outcomes("plain Newton").get("fails cleanly", 0)
+
+
+def _effects(effect: str) -> pd.DataFrame:
+    rows = table("figures/tables/effects")
+    return rows[(rows["effect"] == effect) & rows["cost ratio"].notna()].set_index("scene")
+
+
+@number
+def finite_strain_costs():
+    return several(_effects("finite_strain")["cost ratio"])
+
+
+@number
+def finite_strain_plate():
+    return digits(100 * _effects("finite_strain").loc["20 gf, flat", "change"])
+
+
+@number
+def finite_strain_light():
+    return digits(100 * _effects("finite_strain").loc["0.02 gf, 210 1/m", "change"])
+
+
+@number
+def half_pad_costs():
+    return several(_effects("symmetry")["cost ratio"])
+
+
+@number
+def ridges_cost():
+    return digits(_effects("ridges").loc["inner, 0.15 mm high", "cost ratio"])
+
+
+@number
+def high_ridges_change():
+    return digits(100 * _effects("ridges").loc["inner, 0.15 mm high", "change"])
+
+
+@number
+def low_ridges_change():
+    return digits(100 * _effects("ridges").loc["inner, 3 um high", "change"])
+
+
+@number
+def choices():
+    return len(table("figures/tables/planner_choices"))
+
+
+@number
+def choice_scenes():
+    return len(table("figures/tables/planner_choices")[["seed", "scene"]].drop_duplicates())
+
+
+@number
+def worst_left_out():
+    rows = table("figures/tables/planner_choices")
+    return digits(rows[rows["verdict"] == "rightly left out"].query("planned == 'off'")["share"].max())
+
+
+@number
+def wrong_choices():
+    return (~table("figures/tables/planner_choices")["verdict"].str.startswith("rightly")).sum()
+
+
+def _peers() -> pd.DataFrame:
+    return table("figures/tables/peers").query("package != 'fingerpad'")
+
+
+@number
+def peer_package():
+    return _peers()["package"].iloc[0]
+
+
+@number
+def peer_force():
+    return digits(_peers()["force off (1)"].max(), 1)
+
+
+@number
+def peer_energy():
+    return digits(_peers()["energy off (1)"].max(), 1)
+
+
+@number
+def peer_cost():
+    return several(_peers()["cost ratio (1)"], joint=" and ")
+
+
+def _swept(what: str, scenes: int, quantity: str) -> float:
+    rows = table("figures/tables/sweeps").query("what == @what and scenes == @scenes and quantity == @quantity")
+    return rows["value"].iloc[0]
+
+
+@number
+def thousand_presses():
+    return digits(_swept("steady presses, finite strain, 2 cores", 1000, "wall time, all included"))
+
+
+@number
+def thousand_cheap_presses():
+    return digits(_swept("steady press, small strain", 1000, "process time a scene, all included") * 1000)
