@@ -1,6 +1,7 @@
 """The documentation without building it: tutorials run, numbers are there, links lead somewhere, figures have questions."""
 
 import importlib
+import pkgutil
 import re
 import shlex
 import subprocess
@@ -85,6 +86,15 @@ def test_links_lead_to_files():
         ):
             if "generated/" not in target and "://" not in target:
                 assert (page.parent / target).exists(), f"{page.relative_to(ROOT)}: {target}"
+
+
+def test_the_code_that_pages_refer_to_is_there_and_in_the_reference():
+    documented = "".join(path.read_text(encoding="utf-8") for path in (DOCS / "reference").glob("*.rst"))
+    for page in PAGES:
+        for role, name in re.findall(r"\{py:(\w+)\}`([\w.]+)`", page.read_text(encoding="utf-8")):
+            assert pkgutil.resolve_name(name) is not None
+            module = name if role == "mod" else name.rpartition(".")[0]
+            assert re.search(rf"(automodule:: {module}|auto\w+:: {name})$", documented, re.M), f"{page.name}: {name}"
 
 
 def test_every_figure_has_a_question_and_every_question_a_file(extension):

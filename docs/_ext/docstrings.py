@@ -1,10 +1,12 @@
-"""The package's docstrings as reStructuredText: what goes on over a line's end belongs to its entry, and | is a bar."""
+"""The package's docstrings as reStructuredText: what goes on over a line's end belongs to its entry, | is a bar, and what is
+indented for no other reason is shown as it is."""
 
 import re
 
-SECTIONS = re.compile(r"^(Args|Attributes|Raises|Returns|Yields):$")
+SECTIONS = re.compile(r"^(Args|Attributes|Raises|Returns|Yields):")
 ENTRY = re.compile(r"^\s+\*{0,2}[A-Za-z_][\w.]*(, \*{0,2}[A-Za-z_][\w.]*)*( \(.*?\))?:(\s|$)")
 LITERAL = re.compile(r"(``.*?``|`.*?`)")
+LIST = re.compile(r"^\s*([-*]|\d+\.) ")
 
 
 def setup(app):
@@ -14,16 +16,20 @@ def setup(app):
 
 def tidy(lines: list[str]) -> None:
     """Mend the lines of a docstring, in place."""
-    section, literal = "", False
-    for number, line in enumerate(lines):
-        if found := SECTIONS.match(line):
-            section = found[1]
-        elif line and not line.startswith(" "):
-            section = ""
-        elif section in ("Args", "Attributes") and line.startswith("    ") and not ENTRY.match(line):
-            lines[number] = line = f"    {line}"
+    made, section, literal, said = [], "", False, ""
+    for line in lines:
+        indented = line.startswith("    ")
         if line and not line.startswith(" "):
-            literal = False
+            found = SECTIONS.match(line)
+            section, literal = found[1] if found else "", False
+        elif indented and section in ("Args", "Attributes") and not ENTRY.match(line):
+            line = f"    {line}"
+        elif indented and not section and not literal and made and not made[-1] and not LIST.match(said):
+            literal = True
+            if not said.endswith("::"):
+                made += ["::", ""]
         if not literal:
-            lines[number] = "".join(part if LITERAL.fullmatch(part) else part.replace("|", r"\|") for part in LITERAL.split(line))
-        literal = literal or line.endswith("::")
+            line = "".join(part if LITERAL.fullmatch(part) else part.replace("|", r"\|") for part in LITERAL.split(line))
+        made.append(line)
+        said = line or said
+    lines[:] = made
