@@ -12,14 +12,11 @@ os.environ |= {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "PYTHONWARNINGS":
 os.environ |= {"COLUMNS": "90", "TTY_COMPATIBLE": "0"}
 os.environ["FINGERPAD"] = str(HERE.parent)
 
-from nbclient import NotebookClient  # noqa: E402
 from published import numbers  # noqa: E402 (beside this file)
-
-NotebookClient.coalesce_streams.default_value = True  # what a command prints is one text, however it comes
 
 project, author, language = "fingerpad", "The fingerpad developers", "en"
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode", "sphinx_design"]
-extensions += ["docstrings", "mathml", "written"]  # of docs/_ext
+extensions += ["docstrings", "mathml", "streams", "written"]  # of docs/_ext
 exclude_patterns = ["_build", "_ext", "requirements.*"]
 templates_path, html_static_path, html_css_files = [], ["_static"], ["pages.css"]
 html_theme, html_title = "furo", "fingerpad"

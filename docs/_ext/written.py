@@ -191,7 +191,7 @@ def _prose(text: str) -> str:
 
 
 def _section(schema: Mapping) -> str:
-    lines = ["| key | takes | left out | |", "|---|---|---|---|"]
+    lines = ["| key | takes | left out | meaning |", "|---|---|---|---|"]
     required = set(schema.get("required", ()))
     for key, part in schema["properties"].items():
         left_out = "must be there" if key in required else _default(part)
@@ -213,7 +213,7 @@ def _takes(part: Mapping) -> str:
         return f"[{_words(name).lower()}](#keys-{_slug(name)})"
     for many in ("anyOf", "oneOf"):
         if many in part:
-            said = dict.fromkeys(_takes(each) for each in part[many])
+            said = dict.fromkeys(word for each in part[many] for word in _takes(each).split(" or "))
             return " or ".join(filter(None, said))
     if "const" in part:
         return f"`{part['const']}`"
@@ -236,8 +236,8 @@ def _takes(part: Mapping) -> str:
 
 def _bounds(part: Mapping) -> str:
     words = {"minimum": "from", "exclusiveMinimum": "above", "maximum": "to", "exclusiveMaximum": "below"}
-    said = " and".join(f" {word} {part[key]:g}" for key, word in words.items() if key in part)
-    return said.replace("from", "of at least") if "from" in said and "to" not in said.split() else said
+    said = " and".join(f" {word} {part[key]:,g}" for key, word in words.items() if key in part)
+    return said.replace(" and to", " to") if "maximum" in part else said.replace("from", "of at least")
 
 
 # -- command line and results ---------------------------------------------------------------------------------------------------

@@ -177,11 +177,13 @@ const framed = (uri) => new Promise((done) => {
 });
 window.addEventListener("load", async () => {
   await wait(500);
-  const graph = !!document.querySelector("#rulegraph");
+  const graph = !!document.querySelector("div#rulegraph");
   const seen = {first: document.querySelector("#app").innerText, graph, rows: {}, pages: []};
   for (const category of Object.keys(categories)) {
+    app.setView({navbarMode: "menu"});
+    await wait(100);
     app.showCategory(category);
-    await wait(200);
+    await wait(100);
     seen.rows[category] = [...document.querySelectorAll("tbody tr")].map((row) => row.innerText.trim());
   }
   for (const entry of Object.values(results)) {
@@ -204,9 +206,9 @@ window.addEventListener("load", async () => {
 @pytest.fixture(scope="module")
 def report(finished):
     """The folder of the report, unpacked."""
-    finished.run(*SMOKE, "report_pages")
+    finished.run(*SMOKE, "--", "report_pages")
     how = ("--report-stylesheet", "workflow/report/report.css", "--report-metadata", "workflow/report/metadata.yaml")
-    finished.run(*SMOKE, "all", "report_pages", "--report", "results/report.zip", *how)
+    finished.run(*SMOKE, "--report", "results/report.zip", *how, "--", "all", "report_pages")
     with zipfile.ZipFile(finished.root / "results/report.zip") as packed:
         packed.extractall(finished.root / "results/unpacked")
     return finished.root / "results/unpacked/report"
@@ -219,7 +221,8 @@ def test_the_report_opens_in_a_browser_and_shows_everything_whole(report):
         pytest.skip("no Chromium here (apt-get install chromium)")
     text = (report / "report.html").read_text(encoding="utf-8")
     probe = report / "probe.html"
-    probe.write_text(text.replace("<head>", f"<head>{LISTEN}", 1).replace("</body>", f"{LOOK}</body>"), encoding="utf-8")
+    before, _, after = text.replace("<head>", f"<head>{LISTEN}", 1).rpartition("</body>")
+    probe.write_text(f"{before}{LOOK}</body>{after}", encoding="utf-8")
     flags = ("--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files", "--window-size=1280,900")
     words = [browser, *flags, "--virtual-time-budget=60000", "--dump-dom", probe.as_uri()]
     done = subprocess.run(words, capture_output=True, text=True, timeout=300)

@@ -7,6 +7,7 @@ by the profiles Workflow RO-Crate 1.0 and Process and Workflow Run Crate 0.5 (Le
 from __future__ import annotations
 
 import base64
+import hashlib
 import json
 import shutil
 import sys
@@ -30,6 +31,7 @@ PROFILES = {
     "https://w3id.org/ro/wfrun/workflow/0.5": ("Workflow Run Crate", "0.5"),
     "https://w3id.org/workflowhub/workflow-ro-crate/1.0": ("Workflow RO-Crate", "1.0"),
 }
+CONTEXT = ["https://w3id.org/ro/crate/1.1/context", {"sha256": "https://w3id.org/ro/terms/workflow-run#sha256"}]
 SNAKEMAKE = "https://w3id.org/workflowhub/workflow-ro-crate#snakemake"
 LICENSE = "https://spdx.org/licenses/GPL-3.0-or-later"
 BIOSCHEMAS = "https://bioschemas.org/profiles/{}/1.0-RELEASE"
@@ -58,8 +60,8 @@ def archive(file: str | Path, out: str | Path) -> Path:
     costs = _costs(finished)
     write_frame(costs, partial / "costs.csv")
     graph = list(_graph(str(file), finished, placed, partial))
-    crate = {"@context": ["https://w3id.org/ro/crate/1.1/context", "https://w3id.org/ro/terms/workflow-run/context"]}
-    write_text(partial / "ro-crate-metadata.json", json.dumps(crate | {"@graph": graph}, indent=1, ensure_ascii=False) + "\n")
+    crate = {"@context": CONTEXT, "@graph": graph}
+    write_text(partial / "ro-crate-metadata.json", json.dumps(crate, indent=1, ensure_ascii=False) + "\n")
     shutil.rmtree(out, ignore_errors=True)
     partial.rename(out)
     return Path(out)
@@ -256,10 +258,10 @@ def _data(path: str, folder: Path, more: Mapping) -> dict:
     if path.endswith("/"):
         return {"@id": path, "@type": "Dataset", "name": path, "description": f"Results: {path}"} | more
     kind = KINDS.get(Path(path).suffix, "text/plain")
-    size = (folder / path).stat().st_size
+    data = (folder / path).read_bytes()
     described = {"README.md": {"about": {"@id": "./"}}}.get(path, {})
     return {"@id": path, "@type": "File", "name": Path(path).name, "description": path, "encodingFormat": kind,
-            "contentSize": str(size)} | described | more  # fmt: skip
+            "contentSize": str(len(data)), "sha256": hashlib.sha256(data).hexdigest()} | described | more  # fmt: skip
 
 
 def main(words: list[str]) -> int:
