@@ -5,10 +5,12 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fingerpad.planning.estimates import PadEstimate, layer_kernel
 from fingerpad.planning.plan import RULES, PlanError, plan, read_plan
+from fingerpad.planning.schedule import schedule
 from fingerpad.scenes.scene import (
     Bar,
     Cylinder,
@@ -165,12 +167,18 @@ def test_friction_may_be_asked_for_where_there_is_a_coefficient(ramp, stroke):
 
 @pytest.mark.parametrize(("accuracy", "slide_step"), [("draft", 0.5e-3), ("thesis", 0.25e-3), ("fine", 0.125e-3)])
 def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
-    """Steps of a slide follow the preset, not the speed; the cost follows the steps."""
+    """Steps of a slide follow the preset and the surface, not the speed; the cost follows the steps."""
     chosen = plan(
         changed(slid(stroke, speed=40e-3), accuracy=accuracy, outputs=stroke.outputs.model_copy(update={"snapshots": ()}))
     )
-    per_leg = {"draft": 10, "thesis": 20, "fine": 40}[accuracy]
-    assert chosen.slide_step == slide_step and chosen.steps == per_leg + round(80e-3 / slide_step)
+    ramp, slide = {"draft": (10, 401), "thesis": (20, 540), "fine": (40, 802)}[accuracy]
+    assert chosen.slide_step == slide_step and chosen.steps == ramp + slide > ramp + 80e-3 / slide_step
+    ends = np.array([step.distance for step in schedule(stroke, *chosen.stepping) if step.leg == 1])
+    assert np.diff(ends).max() <= slide_step * (1 + 1e-9) and np.isin(np.arange(1, 161), np.round(ends / 0.5e-3, 9)).all()
+    for arc in stroke.stimulus.segments:
+        if arc.curvature > 0:  # dragged along, the skin meets an arc later than its place says
+            passing = np.count_nonzero((ends > arc.start + 0.5e-3) & (ends < arc.end + 0.5e-3))
+            assert passing >= (16 if accuracy == "draft" else 23)
     half = plan(changed(stroke, accuracy=accuracy, motion=(stroke.motion[0], Slide(slide=40e-3, speed=10e-3))))
     cost, half_cost = (p.predicted_cost_s - RULES.seconds_start for p in (chosen, half))
     assert half_cost / cost == pytest.approx(half.steps / chosen.steps)
@@ -280,7 +288,9 @@ def test_presets_and_tolerances_order_cost_and_error(ramp):
 
 def test_mesh_follows_edges_and_needles(ramp):
     """Edges of the profile and contacts narrower than the mesh get finer skin there; broad ones do not."""
-    assert plan(ramp).mesh_size.focus == ()
+    assert plan(changed(ramp, stimulus=Flat())).mesh_size.focus == ()
+    sharp = plan(changed(ramp, stimulus=Cylinder(curvature=1259.84)))
+    assert sharp.contact_edge == pytest.approx(sharp.contact.half_width / 9) and sharp.estimated_error < 0.03
     bar = plan(changed(ramp, stimulus=Bar(width=1.5875e-3, fillet=0.1e-3))).mesh_size
     assert bar.focus[0][0] == pytest.approx(0.79375e-3) and bar.focus[0][1] <= 0.05e-3
     assert plan(changed(ramp, stimulus=Line())).mesh_size.focus

@@ -50,10 +50,11 @@ def test_steps_are_split_at_snapshots():
 
 
 def test_press_without_a_rate_takes_no_time():
-    """A steady press is load increments to the relaxed state."""
-    steps = list(programme((PressToDepth(press_to_depth=1e-3),), steps=20, contact_length=1.0))
-    assert {step.dt for step in steps} == {STEADY} and {step.time for step in steps} == {0.0}
-    assert steps[-1].depth == 1e-3 and len(steps) == 8
+    """A steady press is one step to the relaxed state, or the load increments asked for."""
+    for increments in (1, 8):
+        steps = list(programme((PressToDepth(press_to_depth=1e-3),), steps=20, contact_length=1.0, increments=increments))
+        assert {step.dt for step in steps} == {STEADY} and {step.time for step in steps} == {0.0}
+        assert steps[-1].depth == 1e-3 and len(steps) == increments
 
 
 def test_changing_control_starts_from_where_the_pad_is():
@@ -113,7 +114,7 @@ def test_slide_keeps_what_is_there_when_control_changes(keep, kept):
 def test_slow_slide_takes_no_time():
     """Without a speed every step of a slide ends relaxed."""
     steps = list(programme((PressToForce(press_to_force=1.0), Slide(slide=1e-3)), steps=9, contact_length=1.0, slide_step=1e-4))
-    assert {step.dt for step in steps} == {STEADY} and {step.time for step in steps} == {0.0} and len(steps) == 18
+    assert {step.dt for step in steps} == {STEADY} and {step.time for step in steps} == {0.0} and len(steps) == 11
 
 
 def test_step_and_repeat_presses_afresh_at_every_place():

@@ -8,7 +8,15 @@ import synthetic
 from fingerpad.claims.comparison import TRENDS
 from fingerpad.figures.animation import animate
 from fingerpad.measures import strokes as st
-from fingerpad.measures.features import centre_node, centre_pressure, energy
+from fingerpad.measures.features import (
+    centre_node,
+    centre_pressure,
+    energy,
+    error_percent,
+    over_time,
+    pressure_profiles,
+    ramp_end,
+)
 from fingerpad.measures.table import MEASURES, Measures
 
 pytestmark = pytest.mark.unit
@@ -112,7 +120,22 @@ def test_error_of_a_trace_is_relative_to_the_trace_whatever_the_outputs(made):
     back = [h.assign(stroke_distance=-h["stroke_distance"]) for h in (fine, coarse)]
     assert st.rms_error(*back, centre_pressure) == pytest.approx(1.0, rel=1e-6)  # strokes the other way
     thinned = coarse.isel(time=np.r_[:4, 4 : coarse.sizes["time"] : 2])
-    assert 1.0 < st.rms_error(fine, thinned, centre_pressure) < 30
+    assert st.rms_error(fine, thinned, centre_pressure) == pytest.approx(1.0, rel=1e-6)  # not how few outputs there are
+
+
+def test_error_of_a_ramp_and_hold_is_that_of_its_curve():
+    """Whatever is wrong between the ends of the legs counts too, and outputs need not be the same."""
+    fine, coarse = synthetic.history("ramp40_k210"), synthetic.history("ramp40_k210", 1.01)
+    read = over_time(centre_pressure)
+    assert error_percent(fine, coarse, read) == pytest.approx(1.0, rel=0.05)
+    thinned = fine.isel(time=np.unique(np.r_[0 : fine.sizes["time"] : 2, ramp_end(fine), fine.sizes["time"] - 1]))
+    assert error_percent(fine, thinned, read) < 0.5 and error_percent(fine, fine, pressure_profiles) == 0
+    assert error_percent(fine, coarse, pressure_profiles) > 0.5
+    middle = ramp_end(fine) // 2
+    wrong = fine["centre_pressure"].copy()
+    wrong[middle] *= 1.5
+    assert error_percent(fine, fine.assign(centre_pressure=wrong), read) > 1
+    assert np.isnan(error_percent(fine, None, read))
 
 
 # --- trends: each holds in what is made for it, and fails in a mutant --------------------------------------

@@ -4,6 +4,7 @@ Draft meshes, small distances; coefficients of 1.5 are in the catalogue of hard 
 it is for pressing, and besides: friction only takes energy, stays within mu times the normal force and opposes the slip.
 """
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -71,9 +72,15 @@ def turned_round(history, friction):
         assert sign * float(ends.centre_lateral_displacement[-1]) <= (-5e-4 * friction if friction else 1e-9)
 
 
+def few_factors(history):
+    """Three factorisations a step in the mean at most, and the iterations that kept factors allow."""
+    assert json.loads(history.attrs["cost"])["factorisations"] <= 3 * (history.sizes["time"] - 1)
+    assert float(history.newton_iterations[1:].mean()) <= 5
+
+
 def kept_force(history, friction):
-    """Over two convexities and the hollow between no coefficient costs more than three iterations a step."""
-    assert float(history.newton_iterations[1:].mean()) <= 3
+    """Over two convexities and the hollow between no coefficient costs more than three factorisations a step."""
+    few_factors(history)
     np.testing.assert_allclose(history.force[11:], LOAD, rtol=1e-3)
 
 
@@ -248,8 +255,9 @@ def test_gratings_with_sharp_edges(base, height, land, friction):
 
 @pytest.mark.slow
 def test_full_stroke(base):
-    """80 mm over all eight convexities: no cut, three iterations a step, and no step dearer at the end than at the start."""
+    """80 mm over all eight convexities: no cut, three factorisations a step, and no step dearer at the end than at the start."""
     history = stroke(base, Wavy(), 0.7, PRESS, slide(80, 40.0))
     sound_stroke(history, 0.7)
+    few_factors(history)
     effort = history.newton_iterations.values[history.leg.values == 1]
-    assert effort.mean() <= 3 and effort[80:].mean() < 1.5 * effort[:80].mean()
+    assert effort[80:].mean() < 1.5 * effort[:80].mean()

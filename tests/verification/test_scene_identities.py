@@ -73,3 +73,45 @@ def test_contact_laws_hold_at_every_step(run, stimulus, finite):
     np.testing.assert_allclose(history.force, wanted, rtol=1e-4)
     np.testing.assert_array_less(0, np.diff(history.indentation_depth))
     assert history.energy_balance_error[-1] < 0.02
+
+
+STEADY = {"motion": [{"press_to_force": "20 gf"}, {"press_to_depth": "1.2 mm"}]}
+
+
+def check_steady(run, stimulus, legs, factor=1.0):
+    """Legs of one step and of four end in the same state; their work is known well enough to balance the energy."""
+    once, often = (run(stimulus=stimulus, **legs, accuracy={"skin_edge": "400 um", "steps": n}) for n in (2, 8))
+    assert once.sizes["time"] == 3 and often.sizes["time"] == 9 and not once.cutbacks.any()
+    for name in ("force", "indentation_depth", "contact_width", "peak_pressure", "strain_energy_density"):
+        first, second = factor * once[name].values[-1], often[name].values[-1]
+        np.testing.assert_allclose(first, second, rtol=1e-4, err_msg=f"truth: {name}")
+    assert once.energy_balance_error[1:].max() < 0.08, "truth: work = energy; a straight line from zero is off by 0.19"
+
+
+@pytest.mark.parametrize("stimulus", [{"shape": "flat"}, {"shape": "cylinder", "curvature": "1260 1/m"}])
+def test_steady_press_in_one_step(run, stimulus, must_fail):
+    """A steady press does not depend on its load increments, and one step knows its work."""
+    check_steady(run, stimulus, STEADY)
+    must_fail(check_steady, run, stimulus, STEADY, factor=1.001)
+
+
+SHARP = {"shape": "cylinder", "curvature": "1259.84 1/m"}
+#: m, at the top of the ramp: the same on meshes of 7,353 and 21,565 nodes
+WIDTH = 0.5886e-3
+
+
+def check_narrow_contact(run, accuracy):
+    """Width and rate of the strain energy where a sharp cylinder's ramp ends."""
+    history = run(stimulus=SHARP, accuracy=accuracy)
+    top = int(np.flatnonzero(history.leg == 0)[-1])
+    width = float(history.contact_width[top])
+    np.testing.assert_allclose(width, WIDTH, rtol=0.01, err_msg="truth: the width on finer meshes")
+    energy, time = history.strain_energy_density.values[: top + 1, 2], history.time.values[: top + 1]
+    rate = np.diff(energy) / np.diff(time)
+    assert rate.argmax() >= len(rate) - 2, "truth: the rate is highest where the ramp ends"
+
+
+def test_narrow_contacts_have_nodes(run, must_fail):
+    """A preset refines under a contact of a few edges, whose width and rates nodes that join one by one would bend."""
+    check_narrow_contact(run, "draft")
+    must_fail(check_narrow_contact, run, {"skin_edge": "268.8 um", "steps": 20})

@@ -22,11 +22,11 @@ from fingerpad.measures.features import (
     STEADY,
     SURFACES,
     TOP,
-    at_ends,
     depth,
     energy_rate,
     error_percent,
     is_simulated,
+    over_time,
     phase_indices,
     ramp_end,
     receptors_at,
@@ -89,7 +89,7 @@ def skin(data: Data) -> pd.DataFrame:
     """Deformed skin at the top of the ramp and in steady state: the upper side, one row a node."""
     parts = []
     for label, history, coarse in data.runs(NINE):
-        error = error_percent(history, coarse, *at_ends(depth))
+        error = error_percent(history, coarse, over_time(depth))
         keep = history["skin_y"].values > 0
         for index, phase in phase_indices(history)[-2:]:
             x, y = skin_at(history, index)
@@ -123,7 +123,7 @@ def nodes(data: Data) -> pd.DataFrame:
         TIME: np.tile(history["time"].values, len(shown)),
         P: history[PRESSURE].values[:, shown].T.ravel(),
     }
-    return pd.DataFrame(rows | {ERROR: error_percent(history, coarse, *at_ends(P_CENTRE.read))})
+    return pd.DataFrame(rows | {ERROR: error_percent(history, coarse, over_time(P_CENTRE.read))})
 
 
 def profiles_and_receptors(data: Data) -> pd.DataFrame:
@@ -132,7 +132,7 @@ def profiles_and_receptors(data: Data) -> pd.DataFrame:
     parts = [pressure.assign(panel="pressure")]
     for label, history, coarse in data.runs(THREE):
         for z in (800e-6, 915e-6):
-            error = error_percent(history, coarse, *at_ends(sed(z).read))
+            error = error_percent(history, coarse, over_time(sed(z).read))
             row = receptors_at(history, z)
             for index, phase in ((ramp_end(history), TOP), (history.sizes["time"] - 1, STEADY)):
                 part = {"surface": label, "panel": f"{z * 1e6:.0f} um", "phase": phase, TIME: history["time"].values[index]}

@@ -24,12 +24,12 @@ from fingerpad.measures.features import (
     PRESSURE,
     SIMULATED,
     SURFACES,
-    at_ends,
     centre_pressure,
     energy,
     error_percent,
     force_gf,
     is_simulated,
+    over_time,
     ramp_end,
     surface_nodes,
 )
@@ -228,7 +228,7 @@ def nodes_by_law(data: Data) -> pd.DataFrame:
         for series, constants in (("one set", together), ("a set for each", fit_nodes("4-1", own))):
             law = pressure_by_law("4-1", own, constants)[[TIME, P_LAW]]
             parts.append(law.assign(series=f"Eq 4-1, {series}", **{NODE: round(x, 5)}))
-    error = error_percent(history, coarse, *at_ends(centre_pressure))
+    error = error_percent(history, coarse, over_time(centre_pressure))
     return pd.concat(parts, ignore_index=True).assign(**{ERROR: error})
 
 
@@ -240,7 +240,7 @@ def energy_by_pressure(data: Data) -> pd.DataFrame:
     shown = partial(energy, depth=RECEPTOR_DEPTH)
     parts = [
         energy_from_pressure(history, RECEPTOR_DEPTH, law).assign(
-            surface=label, source=source, **{ERROR: error_percent(history, coarse, *at_ends(shown))}
+            surface=label, source=source, **{ERROR: error_percent(history, coarse, over_time(shown))}
         )
         for label, history, coarse in runs
     ]

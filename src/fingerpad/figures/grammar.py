@@ -29,13 +29,13 @@ from fingerpad.measures.features import (
     SIMULATED,
     Feature,
     Histories,
-    at_ends,
     centre_node,
     error_percent,
     in_contact,
     is_simulated,
-    peak_pressure,
+    over_time,
     phase_indices,
+    pressure_profiles,
     profile,
 )
 from fingerpad.measures.quantities import CURVATURE, DISTANCE, DOWN, HEIGHT, TIME, P, Q, X
@@ -94,7 +94,7 @@ class Data:
             if runs.stroke:
                 error = rms_error(history, coarse, *reads)
             else:
-                error = error_percent(history, coarse, *(feature for read in reads for feature in at_ends(read)))
+                error = error_percent(history, coarse, *(over_time(read) for read in reads))
             part = {"source": SIMULATED, runs.column: name} | {q: q.read(shown) for q in columns}
             parts.append(pd.DataFrame(part | {ERROR: error}))
         return pd.concat(parts, ignore_index=True)
@@ -103,7 +103,7 @@ class Data:
         """Pressure over the contact at the shown outputs: one row a node, at its deformed position."""
         parts = []
         for name, history, coarse in self.runs(runs):
-            error = error_percent(history, coarse, *at_ends(peak_pressure))
+            error = error_percent(history, coarse, pressure_profiles)
             for index, phase in phase_indices(history):
                 x, p = profile(history, index)
                 keep = in_contact(history, index)

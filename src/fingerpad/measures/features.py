@@ -32,7 +32,7 @@ RAMP_FRACTIONS = (0.2, 0.4, 0.6, 0.8)
 Histories = Mapping[str, xr.Dataset]
 Meshes = Mapping[str, "PadMesh"]
 Trace = Callable[[xr.Dataset], np.ndarray]
-Feature = Callable[[xr.Dataset], float]
+Feature = Callable[[xr.Dataset], float | np.ndarray]
 
 PRESSURE_SCALE = 0.04
 """Factor of the pressure traces of Fig 4-21, of the thesis's choosing."""
@@ -141,20 +141,46 @@ def surface_nodes(history: xr.Dataset) -> np.ndarray:
 
 
 def error_percent(fine: xr.Dataset, coarse: xr.Dataset | None, *features: Feature) -> float:
-    """Largest relative difference (%) of scalar features between a history and its coarse companion.
+    """Largest relative difference (%) of features between a history and its coarse companion.
 
-    The features are values at matching moments (top of the ramp, end), so the two may differ in output times.
-    NaN without a companion.
+    Features are values at matching moments, so the two may differ in output times; of those that are whole curves the root mean
+    square counts, relative to the curve's. NaN without a companion.
     """
     if coarse is None:
         return float("nan")
-    pairs = [(f(fine), f(coarse)) for f in features]
-    return max(100 * abs(a - b) / abs(a) if a else 0.0 for a, b in pairs)
+    pairs = [(np.atleast_1d(f(fine)), np.atleast_1d(f(coarse))) for f in features]
+    return max(100 * float(np.linalg.norm(a - b) / np.linalg.norm(a)) if a.any() else 0.0 for a, b in pairs)
 
 
-def at_ends(trace: Trace) -> tuple[Feature, Feature]:
-    """Features of a trace: its value at the top of the ramp and at the end."""
-    return (lambda d: float(trace(d)[ramp_end(d)])), (lambda d: float(trace(d)[-1]))
+def over_time(trace: Trace) -> Feature:
+    """Feature of a trace of a ramp and hold: the curve, at moments that histories with other outputs have in common.
+
+    Ten in the ramp, ten in the hold and closer together at first; the trace is interpolated to them leg by leg.
+    """
+    share = np.linspace(0.1, 1.0, 10)
+
+    def curve(history: xr.Dataset) -> np.ndarray:
+        from scipy.interpolate import PchipInterpolator  # here, for it is slow to import
+
+        time, values, top = history["time"].values, trace(history), ramp_end(history)
+        parts = []
+        for part, moments in ((slice(0, top + 1), share), (slice(top, None), share**2)):
+            t, known = time[part], values[part]
+            if len(t) > 1 and (np.diff(t) > 0).all():
+                parts.append(PchipInterpolator(t, known)(t[0] + moments * (t[-1] - t[0])))
+            else:
+                parts.append(known[-1:])
+        return np.concatenate(parts)
+
+    return curve
+
+
+def pressure_profiles(history: xr.Dataset) -> np.ndarray:
+    """Feature: pressure over the skin at the top of the ramp and at the end, at places that all meshes have in common."""
+    at = np.linspace(-5e-3, 5e-3, 401)
+    upper = history["skin_y"].values > 0
+    shown = [profile(history, index) for index in (ramp_end(history), -1)]
+    return np.concatenate([np.interp(at, x[upper], pressure[upper], 0.0, 0.0) for x, pressure in shown])
 
 
 def depth(history: xr.Dataset) -> np.ndarray:

@@ -186,7 +186,8 @@ def lag(x: np.ndarray, later: np.ndarray, at: np.ndarray, earlier: np.ndarray, m
 def rms_error(fine: xr.Dataset, coarse: xr.Dataset | None, *traces: Trace) -> float:
     """Largest difference (%) of traces of a history and its companion: root mean square over the stroke, relative to the trace's.
 
-    The companion has other outputs and is interpolated at the history's stroke distances. NaN without a companion.
+    They are compared at the outputs of the one that has fewer, to which the other is interpolated: what is found comes from the
+    mesh and the steps, not from how densely a trace is drawn. NaN without a companion.
     """
     if coarse is None:
         return float("nan")
@@ -194,8 +195,8 @@ def rms_error(fine: xr.Dataset, coarse: xr.Dataset | None, *traces: Trace) -> fl
     way = np.sign(distance(fine)[-1])  # distances grow downwards in strokes the other way
     worst = 0.0
     for trace in traces:
-        own = trace(fine)
-        other = np.interp(way * distance(fine), way * distance(coarse), trace(coarse))
+        at = min(distance(fine), distance(coarse), key=len)
+        own, other = (np.interp(way * at, way * distance(h), trace(h)) for h in (fine, coarse))
         size = float(np.sqrt(np.mean(own**2)))
         worst = max(worst, 100 * float(np.sqrt(np.mean((own - other) ** 2))) / size if size else 0.0)
     return worst

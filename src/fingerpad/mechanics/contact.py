@@ -60,6 +60,7 @@ class ContactStep:
     active: np.ndarray  # (nz,) bool
     pivots: int
     softened: bool = False  # part of the gaps' second derivative was left out: the state was not stable with it
+    stiffness: float | None = None  # N/m^2, of the force against the depth while the same nodes touch
 
 
 def _solver(matrix):
@@ -189,7 +190,12 @@ def solve_contact(
             schur, curvature = soften(error, schur, curvature, previous_force, answer.bent)
             softened = True
             continue
-        return ContactStep(answer.displacement(f, dd), dd, f, on, pivots, softened)
+        return ContactStep(answer.displacement(f, dd), dd, f, on, pivots, softened, _stiffness(answer, on))
+
+
+def _stiffness(answer, on):
+    lever = answer.lever[on]
+    return answer.corner + float(lever @ np.linalg.solve(answer.compliance[np.ix_(on, on)], lever)) if on.any() else 0.0
 
 
 def stable(matrix, compliance, active):

@@ -30,6 +30,11 @@ class FiniteStrainBody:
 
     geometrically_linear = False
 
+    @property
+    def factor(self) -> float:
+        """Share of the long-term isochoric stress that answers at once in the step begun last."""
+        return self._factor
+
     def __init__(
         self,
         space: Space,
@@ -46,7 +51,7 @@ class FiniteStrainBody:
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
         self._loops = [(kernels.loops(part.law), part.constants, part.elements) for part in self.laws]
         self._dilatation = np.zeros((len(space.cells), space.psi.shape[2]))
-        self._lag = self._dilatation.copy()
+        self._lag, self._predicted = self._dilatation.copy(), None
         self._mesh = (space.cells, space.grad, space.weight, space.psi)
         self.branches = Branches(prony, space.weight.shape) if prony else None
         self._factor, self._history = 1.0, None
@@ -62,11 +67,15 @@ class FiniteStrainBody:
             self._factor, history = self.branches.begin(dt)
             self._history = np.ascontiguousarray(history[..., :3])
 
-    def displace(self, u: np.ndarray, lag: np.ndarray | None = None) -> None:
-        """Put the body at ``u`` (a predictor); the lagged dilatation becomes that of ``u`` unless given."""
+    def displace(self, u: np.ndarray, lag: np.ndarray | None = None) -> np.ndarray:
+        """Put the body at ``u`` (a predictor); the lagged dilatation becomes that of ``u`` unless given.
+
+        Returns the internal force there (n, 2) N/m, in the step begun last.
+        """
         self.u = np.array(u)
-        self.internal_force()
-        self._lag = self._dilatation.copy() if lag is None else lag
+        force = self.internal_force()
+        self._lag, self._predicted = self._dilatation.copy() if lag is None else lag, None
+        return force
 
     def internal_force(self) -> np.ndarray:
         """(n, 2) N/m at the current displacement."""
@@ -86,6 +95,9 @@ class FiniteStrainBody:
             self._data = self.space.pattern.new_data()
         self._data[:] = 0
         force = np.zeros_like(self.u)
+        if self._predicted is not None:
+            kernels.predict_dilatation(*self._predicted, *self._mesh, self._lag)
+            self._predicted = None
         lag = self._lag if self.lagged else self._dilatation
         self.smallest_jacobian = min(
             loops.assemble_tangent(
@@ -103,17 +115,19 @@ class FiniteStrainBody:
 
     def advance(self, du: np.ndarray, share: float = 1.0) -> None:
         """Accept ``share`` of the linear step ``du`` (n, 2); the predicted dilatation becomes the next lag."""
-        kernels.predict_dilatation(self.u, share * du, *self._mesh, self._lag)
+        self._predicted = self.u, share * du  # worked out only when a tangent is asked for
         self.u = self.u + share * du
 
     def commit(self) -> None:
         """The step has converged: let the branches move on, and add up the work that was done on them."""
         if self.branches is not None:
-            before, stretch = self.branches.q.sum(0), self._right_cauchy_green()
-            self.branches.commit(self.isochoric_stress())
-            mean = 0.5 * (before + self.branches.q.sum(0))[..., :3] * [0.5, 0.5, 1.0]
-            change = np.sum(mean * (stretch - self._stretch), axis=2)
-            self.branch_work += float(np.sum(self.space.weight * change))
+            branches, stress, stretch = self.branches, self.isochoric_stress(), np.empty_like(self._stretch)
+            q = np.empty_like(branches.q)
+            mesh = self.space.cells, self.space.grad, self.space.weight
+            self.branch_work += kernels.commit_branches(
+                self.u, *mesh, *branches.coefficients, stress, branches.q, branches.last, self._stretch, q, stretch
+            )
+            branches.restore((q, stress))
             self._stretch = stretch
 
     def _deformation_gradient(self):
@@ -136,13 +150,14 @@ class FiniteStrainBody:
     def save(self):
         """Everything needed to come back to this state."""
         history = self.branches and (self.branches.state(), self.branch_work, self._stretch)
-        return self.u.copy(), self._dilatation.copy(), self._lag.copy(), history
+        return self.u.copy(), self._dilatation.copy(), history
 
     def restore(self, state) -> None:
         """Come back to a saved state."""
-        self.u, self._dilatation, self._lag = (np.array(part) for part in state[:3])
+        self.u, self._dilatation = (np.array(part) for part in state[:2])
+        self._lag, self._predicted = self._dilatation.copy(), None
         if self.branches is not None:
-            branches, self.branch_work, self._stretch = state[3]
+            branches, self.branch_work, self._stretch = state[2]
             self.branches.restore(branches)
 
     def energies(self) -> tuple[float, float, float]:
@@ -159,9 +174,8 @@ class FiniteStrainBody:
             network += 0.5 * np.sum(self.space.weight * self._pointwise[:, None] * (jac - 1) ** 2)
         spring = 0.0
         if self.branches is not None:
-            for beta, q in zip(self.branches.prony.beta, self.branches.q, strict=True):
-                square = deviator_square(push_forward(f, q)) / self.shear[:, None]
-                spring += float(np.sum(self.space.weight * square)) / (4 * beta)
+            mesh = self.space.cells, self.space.grad, self.space.weight
+            spring = kernels.spring_energy(self.u, *mesh, self.shear, self.branches.prony.beta, self.branches.q)
         return float(network), spring, self.branch_work
 
 

@@ -93,7 +93,7 @@ class Coulomb:
                 continue
             dd = depth_change if depth_change is not None else dd
             du = answer.displacement(np.concatenate([f, tau]), dd)
-            return FrictionStep(du, dd, f, on, pivots, softened, tau, state)
+            return FrictionStep(du, dd, f, on, pivots, softened, tangential=tau, state=state)
 
     def accept(self, part: slice, step: FrictionStep) -> None:
         """Take over forces and states of a solution."""

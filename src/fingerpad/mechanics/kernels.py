@@ -95,6 +95,58 @@ def deformation_gradient(u, conn, grad, out):
             out[e, q, 1, 1] = 1.0 + f22
 
 
+@njit(**_JIT)
+def commit_branches(u, conn, grad, weight, decay, gain, stress, before, last, stretch, q, now):
+    """Branch stresses ``q`` (nb, ne, nq, 4) after a step to ``stress`` (ne, nq, 4), from those ``before`` it.
+
+    ``decay``, ``gain`` (nb,) of the step; ``last`` (ne, nq, 4) stress and ``stretch`` (ne, nq, 3) C 11, 22, 12 before it, those
+    after it into ``now``. Returns the work done on the branches, by the trapezoidal rule, J/m.
+    """
+    work = 0.0
+    for e in range(len(conn)):
+        for p in range(weight.shape[1]):
+            g11, g12, g21, g22 = _gradient(u, conn[e], grad[e, p])
+            g11 += 1.0
+            g22 += 1.0
+            now[e, p, 0] = g11 * g11 + g21 * g21
+            now[e, p, 1] = g12 * g12 + g22 * g22
+            now[e, p, 2] = g11 * g12 + g21 * g22
+            m11 = m22 = m12 = 0.0
+            for b in range(len(decay)):
+                for c in range(4):
+                    q[b, e, p, c] = decay[b] * before[b, e, p, c] + gain[b] * (stress[e, p, c] - last[e, p, c])
+                m11 += before[b, e, p, 0] + q[b, e, p, 0]
+                m22 += before[b, e, p, 1] + q[b, e, p, 1]
+                m12 += before[b, e, p, 2] + q[b, e, p, 2]
+            change = m11 * (now[e, p, 0] - stretch[e, p, 0]) + m22 * (now[e, p, 1] - stretch[e, p, 1])
+            work += 0.25 * weight[e, p] * (change + 2.0 * m12 * (now[e, p, 2] - stretch[e, p, 2]))
+    return work
+
+
+@njit(**_JIT)
+def spring_energy(u, conn, grad, weight, mu, beta, q):
+    """Energy of the Maxwell springs, tau_i : tau_i / (4 beta_i mu) of the pushed-forward deviatoric branch stress, J/m."""
+    energy = 0.0
+    for e in range(len(conn)):
+        for p in range(weight.shape[1]):
+            f11, f12, f21, f22 = _gradient(u, conn[e], grad[e, p])
+            f11 += 1.0
+            f22 += 1.0
+            for b in range(len(beta)):
+                s11, s22, s12, t33 = q[b, e, p, 0], q[b, e, p, 1], q[b, e, p, 2], q[b, e, p, 3]
+                a11 = f11 * s11 + f12 * s12
+                a12 = f11 * s12 + f12 * s22
+                a21 = f21 * s11 + f22 * s12
+                a22 = f21 * s12 + f22 * s22
+                t11 = a11 * f11 + a12 * f12
+                t22 = a21 * f21 + a22 * f22
+                t12 = a11 * f21 + a12 * f22
+                mean = (t11 + t22 + t33) / 3.0
+                square = (t11 - mean) ** 2 + (t22 - mean) ** 2 + (t33 - mean) ** 2 + 2.0 * t12 * t12
+                energy += weight[e, p] * square / (4.0 * beta[b] * mu[e])
+    return energy
+
+
 @cache
 def loops(law: Law) -> SimpleNamespace:
     """The element loops of a law, its formulas compiled into them: assemble_tangent, internal_force and isochoric_stress.

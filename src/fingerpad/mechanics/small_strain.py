@@ -22,6 +22,11 @@ class SmallStrainBody:
     geometrically_linear = True
     smallest_jacobian = 1.0
 
+    @property
+    def factor(self) -> float:
+        """Share of the long-term deviatoric stress that answers at once in the step begun last."""
+        return self._factor
+
     def __init__(
         self,
         space: Space,
@@ -66,8 +71,9 @@ class SmallStrainBody:
             branch = np.tensordot(beta * self._decay, self.v, axes=1) - np.sum(beta * self._gamma) * self._last
             self._begin(factor, branch)
 
-    def displace(self, u: np.ndarray, lag=None) -> None:
+    def displace(self, u: np.ndarray, lag=None) -> np.ndarray:
         self.u = np.array(u)
+        return self.internal_force()
 
     def internal_force(self) -> np.ndarray:
         """(n, 2) N/m at the current displacement."""

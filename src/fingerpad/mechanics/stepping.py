@@ -37,9 +37,10 @@ class NewtonSettings:
 
     A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was.
     ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
-    only descends. A step of a stroke begins with the factors of the one before, if that was as long; a first or second
-    iteration with its own factors that ends within ``chord`` tolerances is followed by one with the same. A push that points
-    farther than ``aside`` (rad) from the vertical is one at the pad's side.
+    only descends. Factors are kept, from step to step too, while each iteration with them ends within ``chord`` tolerances and
+    leaves no more than ``gain`` of the residual, no step needs more than ``patience`` of them, and what answers at once in a step
+    has changed by no more than ``stiffening``. A push that points farther than ``aside`` (rad) from the vertical is one at the
+    pad's side.
     """
 
     force_tolerance: float = 1e-4
@@ -49,7 +50,10 @@ class NewtonSettings:
     snap_iterations: int = 60
     max_halvings: int = 10
     energy_share: float = 0.35
-    chord: float = 30.0
+    chord: float = 100.0
+    gain: float = 0.3
+    patience: int = 3
+    stiffening: float = 0.1
     aside: float = np.radians(50.0)
 
 
@@ -95,6 +99,24 @@ class Record:
     tangential: np.ndarray | None = None  # (ns,) N/m along the tangent; the three only with friction
     slip: np.ndarray | None = None  # (ns,) m, of the skin over the profile in this step
     state: np.ndarray | None = None  # (ns,) 0 open, 1 sticks, 2 slips
+
+
+@dataclass(frozen=True)
+class _Past:
+    """A state before a step of ``dt`` s: displacement (n, 2) m, nodal forces (ns,) N/m and depth m."""
+
+    dt: float
+    u: np.ndarray
+    force: np.ndarray
+    depth: float
+
+    def plus(self, weights, others):
+        """Linear combination of this state and others."""
+        states = [self, *others]
+        parts = [
+            sum(w * getattr(state, name) for w, state in zip(weights, states, strict=True)) for name in ("u", "force", "depth")
+        ]
+        return _Past(self.dt, *parts)
 
 
 def first_touch(skin: np.ndarray, profile) -> float:
@@ -145,8 +167,9 @@ class QuasiStatic:
         self._set_zone(*skin.start)
         self.height = self._first_touch()
         self._unloaded = body.save()
-        self._previous = self._fitting = None
-        self._easy = False
+        self._factors = self._stiffness = self._gaps = None
+        self._past: list[_Past] = []
+        self._quadratic = False
         self.total_iterations = self.total_halvings = self.factorisations = 0
 
     # -- geometry ---------------------------------------------------------------------------------------------------
@@ -173,6 +196,13 @@ class QuasiStatic:
         position = self.points[nodes] + self.body.u[nodes]
         return self.profile.evaluate(position - np.array([-self.distance, self.height - self.depth]))
 
+    def _zone_gaps(self):
+        """Gaps of the zone, their gradients and curvatures, worked out once where the body and the profile are."""
+        where = self.zone, self.body.u, self.height, self.depth, self.distance
+        if self._gaps is None or not all(a is b for a, b in zip(where, self._gaps[0], strict=True)):
+            self._gaps = where, self._evaluate(self.zone.nodes)
+        return self._gaps[1]
+
     def _first_touch(self) -> float:
         """Height of the profile's origin at which it just touches the undeformed skin."""
         height = first_touch(self.points[self.skin.nodes] + np.array([self.distance, 0.0]), self.profile)
@@ -197,7 +227,7 @@ class QuasiStatic:
         self.nodal_force, self.active, self.depth, self.distance = state[1].copy(), state[2].copy(), *state[3:5]
         if self.friction is not None:
             self.friction.restore(state[5])
-        self._fitting = None
+        self._factors = None
 
     def _start_again(self, distance):
         """Lift the profile off, let the body recover, and come down to first touch at another stroke distance (m)."""
@@ -213,36 +243,48 @@ class QuasiStatic:
         # what was put in has come out again: the balance goes on from here
         self.work = self._gross = self._most_work = 0.0 if self.friction is None else self.friction.dissipated
         self._energies = (0.0, 0.0, 0.0)
-        self._previous = self._fitting = None
+        self._factors = self._stiffness = None
+        self._past.clear()
 
-    def _attempt(self, dt, control, target):
+    def _attempt(self, control, target):
         """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure."""
-        body, settings = self.body, self.settings
-        body.begin_step(dt)
-        limit, iteration = settings.max_iterations, 0
+        settings = self.settings
+        limit, iteration, before = settings.max_iterations, 0, np.inf
         self._softened = False
-        near = self.distance != self._begin[2] and self._fitting == (self.solver, dt)
-        if near:
-            self._internal = body.internal_force()
+        keep, reused = self._factors_fit(), 0
         while iteration < limit:
             iteration += 1
             if self._softened:
                 limit = settings.max_iterations + settings.snap_iterations
             if self._zone_is_tight():
                 self._grow_zone()
-                near = False
+                keep = False
             try:
-                residual, gap, gradient = self.iterate(control, target, reuse=near)
+                residual, gap, gradient = self.iterate(control, target, reuse=keep)
             except (FactorisationError, ContactError) as error:
                 raise _StepFailure(str(error)) from error
             if not np.isfinite(residual):
                 raise _StepFailure("the residual is not finite")
+            reused = reused + 1 if keep else 0
             if residual <= 1.0 and not self._zone_is_tight() and not self._touches_elsewhere():
-                before, self._easy = self._easy, iteration <= 2 and not self._softened
-                self._fitting = (self.solver, dt) if before and self._easy else None
+                if self._softened or reused > settings.patience:
+                    self._factors = None
                 return iteration, residual, gap, gradient
-            near = iteration <= 2 and not near and 1.0 < residual <= settings.chord and not self._softened
+            keep = residual <= min(settings.chord, settings.gain * before) and not self._softened and self._factors_fit()
+            before = residual
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
+
+    def _factors_fit(self):
+        """Are there factors of this zone, and of a step in which as much of the stress answers at once?
+
+        A linear body sees to that by itself.
+        """
+        return (
+            self._factors is not None
+            and not self.body.geometrically_linear
+            and self._factors[0] is self.solver
+            and abs(self.body.factor - self._factors[1]) <= self.settings.stiffening * self.body.factor
+        )
 
     def iterate(self, control, target, reuse=False):
         """One Newton iteration; returns the residual over its tolerance and the new gap and gradient of the zone.
@@ -251,7 +293,7 @@ class QuasiStatic:
         """
         body, zone, part, settings = self.body, self.zone, self._range, self.settings
         space = body.space
-        gap, gradient, curvature = self._evaluate(zone.nodes)
+        gap, gradient, curvature = self._zone_gaps()
         if reuse:
             schur, internal = self._schur, self._internal
         else:
@@ -259,6 +301,7 @@ class QuasiStatic:
             if not body.smallest_jacobian > 0:
                 raise _StepFailure("an element has turned inside out")
             self.factorisations += 1
+            self._factors = self.solver, body.factor
         load = -internal if self.external is None else self.external - internal
         reduced = self.solver.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
@@ -268,6 +311,7 @@ class QuasiStatic:
         else:
             step = self.friction.solve(zone, part, *known, self._motion(zone.nodes), **goal)
         self._softened |= step.softened
+        self._stiff = step.stiffness
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
         u, depth = body.u, self.depth
         share = 1.0
@@ -285,7 +329,7 @@ class QuasiStatic:
         self.nodal_force[:] = 0
         self.active[:] = False
         self.nodal_force[part], self.active[part] = step.force, step.active
-        gap, gradient, _ = self._evaluate(zone.nodes)
+        gap, gradient, _ = self._zone_gaps()
         push, stuck = step.force[:, None] * gradient, 0.0
         if self.friction is not None:
             self.friction.accept(part, step)
@@ -337,7 +381,7 @@ class QuasiStatic:
         return push + pull, pull
 
     def _check_energy(self, work, energies, lost, moved):
-        """A false equilibrium shows: its energy is not what was put in (trapezoidal, so a large first step has a margin).
+        """A false equilibrium shows: its energy is not what was put in (which large steps know with a margin).
 
         Small steps of a stroke (``moved``) have no such excuse: what goes missing in them, where nodes jump over edges, adds up.
         """
@@ -351,31 +395,47 @@ class QuasiStatic:
             raise _StepFailure("the energy found is not the work that was done")
         self._missing = missing
 
+    def _pressing_work(self, force, way, stiffness):
+        """Work (J/m) of the force on a way (m) into the pad: by the trapezoidal rule, which is right for small steps.
+
+        A steady step is as large as it likes: where contact begins or ends the force grows by a power of the way, which the
+        ``stiffness`` (N/m^2; None: not known) at the other end tells; else it is a cubic with the stiffness of either end.
+        """
+        trapezoidal = 0.5 * (self.force + force) * way
+        if stiffness is None:
+            return trapezoidal
+        if not self.force or not force:
+            most, slope = max(self.force, force), stiffness if force else self._stiffness
+            power = slope * abs(way) / most if slope and most else 1.0
+            return most * way / (1 + max(power, 0.0))
+        return trapezoidal - (0.0 if self._stiffness is None else way**2 / 12 * (stiffness - self._stiffness))
+
     def _advance(self, dt, control, target, distance, predict):
         """One substep with predictor, check and commit."""
         state = self.save()
         self._begin = self.body.u, self.depth, self.distance
+        body, past = self.body, _Past(dt, self.body.u, self.nodal_force, self.depth)
         try:
             self.distance = distance
-            if predict is not None and self._previous is not None:
-                u, forces, depth = self._previous
-                body_u, ratio = self.body.u, predict
-                self.body.displace(body_u + ratio * (body_u - u))
-                if not self.body.smallest_jacobian > 0.1:
-                    self.body.displace(body_u)
-                else:
-                    self.nodal_force = np.maximum(self.nodal_force + ratio * (self.nodal_force - forces), 0)
-                    self.depth = self.depth + ratio * (self.depth - depth)
-            else:
-                self.body.displace(self.body.u)
-            iterations, residual, gap, gradient = self._attempt(dt, control, target)
+            body.begin_step(dt)
+            guesses = self._predictions(dt) if predict else []
+            self._internal = body.displace(guesses[-1 if self._quadratic else 0].u if guesses else body.u)
+            if guesses and not body.smallest_jacobian > 0.1:
+                self._internal = body.displace(past.u)
+            elif guesses:
+                guess = guesses[-1 if self._quadratic else 0]
+                self.nodal_force, self.depth = np.maximum(guess.force, 0), guess.depth
+            iterations, residual, gap, gradient = self._attempt(control, target)
+            if guesses:
+                self._quadratic = np.argmin([np.linalg.norm((body.u - guess.u)[self.zone.nodes]) for guess in guesses]) > 0
             self._gradient, self._gap = gradient, gap
             push, pull = self._forces(gradient)
             tangential, force = 0.0 - push.sum(0)
             if force < -1e-9 * self.nodal_force.sum():
                 raise _StepFailure("the indenter is pulled instead of pushed")
             self.body.commit()
-            work = 0.5 * (self.force + force) * (self.depth - state[3])
+            stiffness = self._stiff if dt >= STEADY * 0.5**self.settings.max_halvings else None
+            work = self._pressing_work(force, self.depth - state[3], stiffness)
             work += 0.5 * (self._tangential + tangential) * (distance - state[4])
             lost = self.friction.commit(self._range, pull, self._motion(self.zone.nodes)) if self.friction else 0.0
             energies = self.body.energies()
@@ -385,13 +445,31 @@ class QuasiStatic:
             raise
         for observe in self.observers:
             observe(self.body, dt)
-        self.force, self._tangential = float(force), float(tangential)
+        self.force, self._tangential, self._stiffness = float(force), float(tangential), stiffness
         self.work += float(work)
         self._gross += abs(float(work))
         self._most_force, self._most_work = max(self._most_force, self.force), max(self._most_work, abs(self.work))
         self._energies = energies
-        self._previous = (state[0][0], state[1], state[3])
+        self._past = [past, *self._past[:1]]
         return iterations, residual
+
+    def _predictions(self, dt):
+        """Where the path goes on to in a step of ``dt``: along the straight line through the last two states, and along the
+        parabola through the last three if there are as many."""
+        now, found = _Past(dt, self.body.u, self.nodal_force, self.depth), []
+        sizes = [past.dt for past in self._past]
+        if sizes:
+            ratio = dt / sizes[0]
+            found.append(now.plus([1 + ratio, -ratio], self._past[:1]))
+        if len(sizes) > 1:
+            one, both = sizes[0], sum(sizes)
+            weights = [
+                (dt + one) * (dt + both) / (one * both),
+                -dt * (dt + both) / (one * sizes[1]),
+                dt * (dt + one) / (both * sizes[1]),
+            ]
+            found.append(now.plus(weights, self._past))
+        return found
 
     def run(self, steps: Iterable[Step], on_step: Callable[[Record], None] | None = None) -> list[Record]:
         """Walk the schedule; returns one record per scheduled step.
@@ -415,17 +493,19 @@ class QuasiStatic:
             start = self.distance
             smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh
             done, size, iterations, halvings = 0.0, 1.0, 0, 0
-            ratio = step.dt / last.dt if smooth else None
+            if not smooth:
+                self._past.clear()
+            predict = smooth
             while done < 1.0:
                 size = min(size, 1.0 - done)
                 whole = done + size >= 1.0
                 goal = target if whole else begin + (done + size) * (target - begin)
                 place = step.distance if whole else start + (done + size) * (step.distance - start)
                 try:
-                    used, residual = self._advance(size * step.dt, control, goal, place, ratio if size == 1.0 else None)
+                    used, residual = self._advance(size * step.dt, control, goal, place, predict and size == 1.0)
                 except _StepFailure as failure:
-                    if ratio is not None and size == 1.0:
-                        ratio = None  # first doubt the predictor, then the step
+                    if predict and size == 1.0:
+                        predict = False  # first doubt the predictor, then the step
                         continue
                     size /= 2
                     halvings += 1

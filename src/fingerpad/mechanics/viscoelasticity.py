@@ -38,6 +38,11 @@ class Branches:
         history = np.tensordot(self._decay, self.q, axes=1) - weight.sum() * self.last
         return factor, history
 
+    @property
+    def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
+        """Decay (nb,) of the branches and their gain (nb,) a change of the isochoric stress, of the step begun last."""
+        return self._decay, self.prony.beta * self._gamma
+
     def commit(self, stress: np.ndarray) -> None:
         """Accept the new isochoric stress (..., 4) of the step begun last."""
         gain = (self.prony.beta * self._gamma).reshape(-1, *(1,) * stress.ndim)

@@ -143,11 +143,9 @@ def mesh_size_for(
     offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
     fine = max(rules.fine_half_width, 1.3 * half_width, half_width + wander, offsets)
     focus, radial = (), None
+    edges = max(preset.edges if scene.specimen.ridges is None else 0.0, rules.edges_per_half_width)
     if preset.focus is not None:
-        # fine all over the contact, somewhat wider than it is estimated, and not at the apex only
-        reach = 1.2 * min(half_width, contact_reach(scene, contact))
-        places = np.linspace(0.0, reach, max(2, round(reach / preset.focus / 2) + 1))
-        focus, radial = tuple((float(x), preset.focus) for x in places), preset.focus
+        focus, radial = _all_over(min(half_width, contact_reach(scene, contact)), preset.focus)
     if profile.edges:
         edge = _edge_size(profile, preset, None if scene.tolerance is None else preset.tolerance, rounding, rules)
         places = {abs(x) for x in profile.edges}
@@ -157,8 +155,10 @@ def mesh_size_for(
         focus += tuple((x, edge) for x in sorted(places))
         if scene.tolerance is not None:
             radial = min(edge, radial or edge)
-    elif preset.focus is None and _refined_at_apex(scene) and preset.skin_edge > contact.half_width:
-        focus = ((0.0, max(contact.half_width / rules.edges_per_half_width, rules.least_edge)),)
+    elif preset.focus is None and _refined_at_apex(scene) and contact.half_width < edges * preset.skin_edge:
+        # its edge passes from node to node, and the curves of a narrow contact show how far these are apart
+        edge = max(contact.half_width / edges, rules.least_edge)
+        focus, radial = _all_over(contact_reach(scene, contact), edge)
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
@@ -167,6 +167,13 @@ def mesh_size_for(
         focus=focus,
         skin_radial_edge=radial,
     )
+
+
+def _all_over(half_width: float, edge: float) -> tuple[tuple[tuple[float, float], ...], float]:
+    """Places (m) with that ``edge`` (m) all over a contact, somewhat wider than it is estimated; and the edge below it."""
+    reach = 1.2 * half_width
+    places = np.linspace(0.0, reach, max(2, round(reach / edge / 2) + 1))
+    return tuple((float(x), edge) for x in places), edge
 
 
 def _refined_at_apex(scene: Scene) -> bool:

@@ -13,7 +13,8 @@ from fingerpad.planning.errors import MeasuredErrors
 class Preset:
     """A discretisation: edges m, steps per leg, longest step of a slide m.
 
-    ``tolerance`` is what an effect left out may change. ``focus`` is the edge m to which the mesh is refined in the contact,
+    ``tolerance`` is what an effect left out may change. ``edges`` are at least in half of a contact that stays where it is.
+    ``focus`` is the edge m to which the mesh is refined in the contact,
     along the skin and into it (None: not refined unless the contact is narrower than an edge).
     """
 
@@ -23,6 +24,7 @@ class Preset:
     growth: float
     tolerance: float
     slide_step: float | None
+    edges: float = 0.0
     focus: float | None = None
 
 
@@ -51,18 +53,18 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         most_runs: of a scene whose run missed its tolerance; most_nodes_again: of a mesh on which it is run again.
         least_steps: of a leg; fewer would do for its end, but a curve of fewer is none.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
+        edges_per_half_width: least edges in a contact to either side; presets have more.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
         skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
-        edges_per_half_width: a contact with less than one edge to either side gets this many under the apex.
         seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
             finite and with small strain, and per node and step for output.
     """
 
     presets: Mapping[str, Preset] = field(
         default_factory=lambda: {
-            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3),
-            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3),
-            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3),
+            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3, 4.5),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 9.0),
+            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3, 14.0),
         }
     )
     errors: MeasuredErrors = field(default_factory=MeasuredErrors)
@@ -90,8 +92,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     least_steps: int = 10
     fine_half_width: float = 3.4e-3
     skin_stretch: float = 1.0e-3
-    edges_per_half_width: float = 2.0
     inertia_limit: float = 0.1
+    edges_per_half_width: float = 2.0
     seconds_start: float = 1.2
     seconds_finite: float = 3.0e-6
     seconds_small: float = 1.0e-6

@@ -60,12 +60,27 @@ class Reached(NamedTuple):
 
 
 class Stepping(NamedTuple):
-    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of a slide (m)."""
+    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of a slide (m), and
+    increments of a steady press."""
 
     steps: int
     contact_length: float
     timed: bool
     slide_step: float | None
+    increments: int = 1
+    parts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
+
+    def way(self, start: float, way: float) -> np.ndarray:
+        """Places (m) along the surface at which the steps of a slide end: every ``slide_step``, and each of these in as
+        many ``parts`` as are wanted of one so far (k,) m from the start, in the middle of it, at a place (k,) m."""
+        if not self.slide_step:
+            return start + way * np.arange(1, self.steps + 1) / self.steps
+        count = math.ceil(abs(way) / self.slide_step * (1 - 1e-9))
+        ends = start + way * np.arange(count + 1) / count
+        if self.parts is None:
+            return ends[1:]
+        parts = self.parts((ends[1:] + ends[:-1]) / 2 - start, (ends[1:] + ends[:-1]) / 2)
+        return np.concatenate([np.linspace(a, b, n + 1)[1:] for a, b, n in zip(ends, ends[1:], parts, strict=False)])
 
 
 class Outlook(NamedTuple):
@@ -134,12 +149,9 @@ LEGS: dict[str, type[Leg]] = {}
 _PUSH = ": the stimulus must press into the skin"
 
 
-def _ramp(start: float, end: float, speed: float | None, steps: int) -> tuple[list[float], np.ndarray, float | None]:
-    """Values from start to end, durations and the last of these; steady without a speed.
-
-    A steady press is path-independent: increments only guide Newton's method and let the energy be balanced.
-    """
-    count = min(steps, 8) if speed is None else steps
+def _ramp(start: float, end: float, speed: float | None, how: Stepping) -> tuple[list[float], np.ndarray, float | None]:
+    """Values from start to end, durations and the last of these; steady without a speed."""
+    count = how.increments if speed is None else how.steps
     last = None if speed is None else abs(end - start) / speed / count
     values = [start + (end - start) * k / count for k in range(1, count)] + [end]
     return values, np.full(count, STEADY if speed is None else last), last
@@ -169,7 +181,7 @@ class PressToForce(Leg):
 
     def path(self, at, last, reached, how):
         rate = self.rate and self.rate / how.contact_length
-        values, sizes, last = _ramp(reached.force, self.press_to_force / how.contact_length, rate, how.steps)
+        values, sizes, last = _ramp(reached.force, self.press_to_force / how.contact_length, rate, how)
         return sizes, [Goal(value, None, at.distance) for value in values], last
 
     def ahead(self, outlook):
@@ -196,7 +208,7 @@ class PressToDepth(Leg):
         return self.press_to_depth
 
     def path(self, at, last, reached, how):
-        values, sizes, last = _ramp(reached.depth, self.press_to_depth, self.speed, how.steps)
+        values, sizes, last = _ramp(reached.depth, self.press_to_depth, self.speed, how)
         return sizes, [Goal(None, value, at.distance) for value in values], last
 
     def ahead(self, outlook):
@@ -240,7 +252,7 @@ class Lift(Leg):
         return None if self.lift == "steady" else self.lift
 
     def path(self, at, last, reached, how):
-        values, sizes, last = _ramp(reached.depth, reached.touching, self.speed, how.steps)
+        values, sizes, last = _ramp(reached.depth, reached.touching, self.speed, how)
         return sizes, [Goal(None, value, at.distance) for value in values], last
 
     def ahead(self, outlook):
@@ -274,14 +286,16 @@ class Slide(Leg):
         return self.keep
 
     def path(self, at, last, reached, how):
-        count = math.ceil(abs(self.slide) / how.slide_step * (1 - 1e-9)) if how.slide_step else how.steps
+        places = how.way(at.distance, self.slide)
         if self.keep == "force":
             force, depth = reached.force if at.force is None else at.force, None
         else:
             force, depth = None, reached.depth if at.depth is None else at.depth
-        last = None if self.speed is None else abs(self.slide) / self.speed / count
-        goals = [Goal(force, depth, at.distance + self.slide * k / count) for k in range(1, count + 1)]
-        return np.full(count, last or STEADY), goals, last
+        goals = [Goal(force, depth, float(place)) for place in places]
+        if self.speed is None:
+            return np.full(len(places), STEADY), goals, None
+        sizes = np.abs(np.diff(places, prepend=at.distance)) / self.speed
+        return sizes, goals, float(sizes[-1])
 
     def ahead(self, outlook):
         kept = {"force": math.nan, "depth": math.nan} | {self.keep: getattr(outlook, self.keep)}
@@ -419,6 +433,8 @@ def programme(
     snapshots: Sequence[float] = (),
     present: Callable[[], tuple[float, ...]] | None = None,
     slide_step: float | None = None,
+    increments: int = 1,
+    parts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
@@ -430,8 +446,11 @@ def programme(
         present: asked when a leg begins for what has been :class:`Reached` so far, which a change between force and depth
             control needs, and a lift; without it such a leg is taken to start from zero, and a lift to end there.
         slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
+        increments: of a steady press. Without friction its end does not depend on them.
+        parts: into how many (k,) the longest steps of a slide are cut, by their distance (k,) m from where it begins (negative in
+            strokes the other way) and their place (k,) m along the surface.
     """
-    how = Stepping(steps, contact_length, timed, slide_step)
+    how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
     time, at, last = 0.0, Goal(None, None, 0.0), None
     for number, leg in enumerate(legs):
         reached = Reached(*present()) if present else Reached(at.force or 0.0, at.depth or 0.0)

@@ -25,7 +25,7 @@ class Profile:
         curvature with which it bulges at the skin. dip: m, by which it reaches below its point at x = 0.
         length: m, of the surface along x from x = 0; a motion must stay on it. reach: m, first and last x where there is one.
         known: m, first and last x of measured points; contact beyond them is with a guess. smoothing: m, cut-off wavelength at
-        which a measured surface was smoothed; 0 if it was not.
+        which a measured surface was smoothed; 0 if it was not. segments: pieces of lines and arcs that it is made of, if it is.
     """
 
     symmetric: ClassVar[bool] = True
@@ -43,6 +43,7 @@ class Profile:
     reach: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
     known: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
     smoothing: ClassVar[float] = 0.0
+    segments: ClassVar[tuple] = ()
 
     def evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Distance (n,) m, gradient (n, 2) and curvature (n,) 1/m at ``points`` (n, 2) m."""

@@ -29,9 +29,9 @@ from fingerpad.measures.features import (
     SIMULATED,
     SURFACES,
     Histories,
-    at_ends,
     energy,
     error_percent,
+    over_time,
     ramp_end,
     scene_name,
 )
@@ -68,7 +68,7 @@ def frame_meanings(histories: Histories, coarse: Histories) -> pd.DataFrame:
                 values, top = read(history), ramp_end(history)
                 rows = {"source": SIMULATED, "panel": panel, "series": series, "surface": label, TIME: history["time"].values}
                 rows |= {SED: values, CHANGE: 100 * (values / values[top] - 1)}
-                error = error_percent(history, coarse.get(scene_name("ramp40", label)), *at_ends(read))
+                error = error_percent(history, coarse.get(scene_name("ramp40", label)), over_time(read))
                 parts.append(pd.DataFrame(rows | {ERROR: error}))
     return pd.concat(parts, ignore_index=True)
 

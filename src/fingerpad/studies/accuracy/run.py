@@ -125,6 +125,7 @@ def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
     growth = min(RULES.presets["thesis"].growth ** scale, 3.0)
     thickness = scene.specimen.outline.epidermis_thickness
     size = replace(size, skin_edge=size.skin_edge * scale, layer_edge=thickness / point.rows, growth=growth)
+    size = replace(size, focus=(), skin_radial_edge=None)  # uniform ones: what elements are worth, wherever they are
     slide_step = chosen.slide_step * DEFAULT_STEPS / point.steps
     update = {"element": point.element, "mesh_size": size, "contact_edge": size.skin_edge}
     return scene, replace(chosen, **update, steps_per_leg=point.steps, slide_step=slide_step)
