@@ -13,8 +13,8 @@ pytestmark = pytest.mark.unit
 def rows(method, depth, **changed):
     row = {
         "case": "a", "group": "g", "method": method, "hard": "it is", "stable": "as all", "outcome": "stable", "completed": 1.0,
-        "message": "", "saved": "", "cuts": 0.0, "iterations": 2.0, "energy": 0.003, "complementarity": 1e-9, "det_f": 0.5,
-        "checkerboard": 0.02, "halving": 0.01, "limit cuts": 0, "limit iterations": 4, "limit energy": 0.03,
+        "message": "", "saved": "", "cuts": 0.0, "factorisations": 2.0, "energy": 0.003, "complementarity": 1e-9, "det_f": 0.5,
+        "checkerboard": 0.02, "halving": 0.01, "limit cuts": 0, "limit factorisations": 4, "limit energy": 0.03,
         "limit complementarity": 1e-3, "limit det_f": 0.1, "limit checkerboard": np.inf, "limit halving": 0.05, "depth_mm": depth,
         "force_N_per_m": 19.6,
     }  # fmt: skip

@@ -145,7 +145,7 @@ def test_what_is_beyond_the_method_leaves_the_last_state_and_a_cause(name, tmp_p
 
 @pytest.mark.parametrize(
     ("name", "method", "measure"),
-    [("nu 0.4999, flat", "plain P2", "checkerboard"), ("one load step, flat, nu 0.4999", "plain Newton", "iterations")],
+    [("nu 0.4999, flat", "plain P2", "checkerboard"), ("one load step, flat, nu 0.4999", "plain Newton", "factorisations")],
 )
 def test_what_the_method_buys(name, method, measure):
     """Mutants: without pressure modes pressure oscillates, without the lagged pressure Newton's method needs more."""
@@ -163,11 +163,11 @@ def test_full_quads_lock():
 
 def test_a_run_outside_its_limits_is_told():
     """No failure is silent: each measure on the wrong side of its limit is named."""
-    fine = {"cuts": 0, "iterations": 3, "energy": 0.01, "complementarity": 1e-9, "det_f": 0.9, "checkerboard": np.nan}
+    fine = {"cuts": 0, "factorisations": 3, "energy": 0.01, "complementarity": 1e-9, "det_f": 0.9, "checkerboard": np.nan}
     assert excess(fine, Limits()) == []
     for name, value in {
         "cuts": 1,
-        "iterations": 5,
+        "factorisations": 5,
         "energy": 0.5,
         "complementarity": 0.1,
         "det_f": 0.01,

@@ -85,8 +85,10 @@ class PardisoCondensation:
         self._handle = PyPardisoSolver(mtype=-2)
         self._handle.perm = perm
         self._handle.iparm[:] = 0
-        # own settings; METIS; pivot perturbation; Bunch-Kaufman; report inertia; Schur complement and its factors
-        for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 36: 2 if len(self.condensed) else 0}.items():
+        # numpy's thread limits do not reach a library that is loaded after them, and two threads on one matrix cost twice the time
+        self._handle.libmkl.MKL_Set_Num_Threads(ctypes.c_int(int(os.environ.get("OMP_NUM_THREADS", "1"))))
+        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia; Schur complement and its factors
+        for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 24: 1, 36: 2 if len(self.condensed) else 0}.items():
             self._handle.iparm[i - 1] = value
         self._data = self._dummy = np.zeros(max(pattern.size, pattern.nonzeros))
         self._call(11, self._dummy, np.zeros(pattern.size))

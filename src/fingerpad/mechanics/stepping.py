@@ -39,7 +39,7 @@ class NewtonSettings:
     ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
     only descends. Factors are kept, from step to step too, while each iteration with them ends within ``chord`` tolerances and
     leaves no more than ``gain`` of the residual, no step needs more than ``patience`` of them, and what answers at once in a step
-    has changed by no more than ``stiffening``. A push that points farther than ``aside`` (rad) from the vertical is one at the
+    has changed by no more than ``stiffening``. A zone ``spare`` times as wide as it need be is drawn together. A push that points farther than ``aside`` (rad) from the vertical is one at the
     pad's side.
     """
 
@@ -51,10 +51,11 @@ class NewtonSettings:
     max_halvings: int = 10
     energy_share: float = 0.35
     chord: float = 100.0
-    gain: float = 0.3
+    outlook: float = 2.0
     patience: int = 3
     stiffening: float = 0.1
     aside: float = np.radians(50.0)
+    spare: float = 1.4
 
 
 @dataclass(frozen=True)
@@ -184,6 +185,15 @@ class QuasiStatic:
         more = max(8, (last - first) // 3)
         self._set_zone(first - more if first else 0, last + more)
 
+    def _follow(self):
+        """Draw the zone together round a contact that has moved on: it is condensed, so every iteration pays for its size."""
+        on = np.flatnonzero(self.active)
+        if len(on):
+            more = max(12, np.ptp(on) // 4)
+            first, last = max(on[0] - more, 0), min(on[-1] + 1 + more, len(self.skin.nodes))
+            if len(self.zone.nodes) > self.settings.spare * (last - first):
+                self._set_zone(first, last)
+
     def _zone_is_tight(self):
         """Does contact reach an end of the zone that is not an end of the skin?"""
         on = np.flatnonzero(self.active[self._range])
@@ -246,8 +256,11 @@ class QuasiStatic:
         self._factors = self._stiffness = None
         self._past.clear()
 
-    def _attempt(self, control, target):
-        """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure."""
+    def _attempt(self, control, target, guessed=False):
+        """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure.
+
+        From a state that was ``guessed`` Newton's method converges at once or not well.
+        """
         settings = self.settings
         limit, iteration, before = settings.max_iterations, 0, np.inf
         self._softened = False
@@ -270,7 +283,10 @@ class QuasiStatic:
                 if self._softened or reused > settings.patience:
                     self._factors = None
                 return iteration, residual, gap, gradient
-            keep = residual <= min(settings.chord, settings.gain * before) and not self._softened and self._factors_fit()
+            if guessed and residual > before:
+                raise _StepFailure("the state that was guessed is a bad one")
+            ahead = residual * (residual / before) ** settings.outlook
+            keep = residual <= settings.chord and ahead <= 1.0 and not self._softened and self._factors_fit()
             before = residual
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
 
@@ -425,7 +441,7 @@ class QuasiStatic:
             elif guesses:
                 guess = guesses[-1 if self._quadratic else 0]
                 self.nodal_force, self.depth = np.maximum(guess.force, 0), guess.depth
-            iterations, residual, gap, gradient = self._attempt(control, target)
+            iterations, residual, gap, gradient = self._attempt(control, target, bool(guesses))
             if guesses:
                 self._quadratic = np.argmin([np.linalg.norm((body.u - guess.u)[self.zone.nodes]) for guess in guesses]) > 0
             self._gradient, self._gap = gradient, gap
@@ -491,11 +507,14 @@ class QuasiStatic:
                     raise
                 begin = 0.0 if control == "force" else self.depth
             start = self.distance
-            smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh
+            # a steady press goes in strides as long as its way: what the last one did is no guide to the next
+            strides = step.dt >= STEADY and step.distance == self.distance
+            smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh and not strides
             done, size, iterations, halvings = 0.0, 1.0, 0, 0
             if not smooth:
                 self._past.clear()
             predict = smooth
+            self._follow()
             while done < 1.0:
                 size = min(size, 1.0 - done)
                 whole = done + size >= 1.0

@@ -30,7 +30,7 @@ class Limits:
     """The worst that a stable run may measure (see :mod:`fingerpad.studies.stability.run` for the measures)."""
 
     cuts: float = limit(0, "at most {:g} cuts")
-    iterations: float = limit(4, "at most {:g} iterations a step")
+    factorisations: float = limit(4, "at most {:g} factorisations a step")
     energy: float = limit(0.03, "energy balanced within {:.0%}")
     complementarity: float = limit(1e-3, "complementarity within {:g}")
     det_f: float = limit(0.1, "det F above {:g}")
@@ -178,7 +178,7 @@ def _catalogue():
     for name, stimulus in (("sharp bar", SHARP_BAR), ("bar, fillet 0.03 mm", ROUNDED_BAR), ("line load", LINE)):
         for target in (1, 2):
             hard = "det F varies wildly within the element under an edge; nodes pop round it"
-            limits = Limits(**STEADY, **EDGE, iterations=8, cuts=2)
+            limits = Limits(**STEADY, **EDGE, factorisations=8, cuts=2)
             yield Case(f"{name}, {target} mm", group, hard, {"stimulus": stimulus, "motion": [depth(target)]}, limits)
 
     group = "deep"
@@ -186,7 +186,7 @@ def _catalogue():
         for ratio in (0.48, 0.4999):
             hard = "3 mm into 5.5 mm of soft tissue: large strains, a contact as wide as the pad"
             scene = {"stimulus": stimulus, "motion": [depth(3)], "specimen": poisson(ratio)}
-            yield Case(f"3 mm, {name}, nu {ratio:g}", group, hard, scene, Limits(**STEADY, iterations=6))
+            yield Case(f"3 mm, {name}, nu {ratio:g}", group, hard, scene, Limits(**STEADY, factorisations=6))
 
     group = "layers"
     for name, modulus in (("soft skin, 1:10", "1.5 kPa"), ("stiff skin, 1e4:1", "150 MPa")):
@@ -242,7 +242,7 @@ def _catalogue():
     motion = [force(20), {"step": "6 mm", "every": "2 mm"}]
     yield Case(
         "start with no contact, whole load at once", group, "nothing touches, no force gives a scale, the surface is not over it",
-        {"stimulus": TWO_WAVES, "motion": motion}, Limits(energy=0.35, iterations=7, checkerboard=0.15), 4,
+        {"stimulus": TWO_WAVES, "motion": motion}, Limits(energy=0.35, factorisations=7, checkerboard=0.15), 4,
     )  # fmt: skip
     for name, stimulus in (("flat", FLAT), ("210 1/m", cylinder(209.97))):
         motion = [PRESS, force(0.01, 400), hold(0.5), PRESS]
@@ -258,7 +258,7 @@ def _catalogue():
         yield Case(f"steps of {share:g} tau", group, hard, scene, Limits(energy=0.05, **NARROW))
     for name, stimulus in (("flat", FLAT), ("1260 1/m", cylinder(1259.84))):
         scene = {"stimulus": stimulus, "motion": [force(20)], "specimen": poisson(0.4999)}
-        limits = Limits(energy=0.35, iterations=6, **NARROW)
+        limits = Limits(energy=0.35, factorisations=6, **NARROW)
         yield Case(f"one load step, {name}, nu 0.4999", group, "the whole load from nothing in one step", scene, limits, 1)
     for rate in (1e-3, 1e4):
         scene = {

@@ -7,6 +7,7 @@ case's.
 
 from __future__ import annotations
 
+import json
 import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -82,7 +83,9 @@ def simulation(case: Case, method: str, folder: Path, refined: int = 1) -> Simul
     """A case ready to run by a method with its steps divided by ``refined``; None where the method has no such mesh."""
     scene = case.read(folder)
     chosen = plan(scene)
-    slide_step = chosen.slide_step and chosen.slide_step / refined
+    # without a slide, its step stands for steps that are given by hand: what is pressed is pressed in as many
+    slides = chosen.slide_step and any(leg.strokes for leg in scene.motion)
+    slide_step = chosen.slide_step / refined if slides else None
     chosen = replace(chosen, steps_per_leg=case.steps_per_leg * refined, slide_step=slide_step)
     if method == METHODS[0]:
         return Simulation(scene, chosen, None)
@@ -121,7 +124,7 @@ def measures(history: xr.Dataset) -> dict[str, float]:
     boards = [checkerboard(pressure, smoothed) for pressure, smoothed in pressures]
     return {
         "cuts": float(history.cutbacks.sum()),
-        "iterations": float(history.newton_iterations[1:].mean()),
+        "factorisations": json.loads(history.attrs["cost"])["factorisations"] / max(history.sizes["time"] - 1, 1),
         "energy": float(np.abs(history.external_work - kept).max() / max(work.max(), 1e-300)),
         "complementarity": float(history.complementarity_error.max()),
         "det_f": float(history.min_detF.min()),
