@@ -73,7 +73,8 @@ def test_edges_reach_their_depth(name):
 def test_holds_stay_between_the_two_elastic_limits(share):
     """In steps of 1e-4 to 1e3 times the longest time constant."""
     depths = done(f"steps of {share:g} tau").history.indentation_depth.values[10:]
-    assert np.all(np.diff(depths) > -1e-9) and 0.5e-3 < depths.min() < depths.max() < 0.76e-3
+    # forces balance within a ten-thousandth, and so the depth stands still
+    assert np.all(np.diff(depths) > -1e-4 * depths.max()) and 0.5e-3 < depths.min() < depths.max() < 0.76e-3
 
 
 @pytest.mark.parametrize("shape", ["flat", "210 1/m"])

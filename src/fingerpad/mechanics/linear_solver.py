@@ -85,7 +85,7 @@ class PardisoCondensation:
         self._handle = PyPardisoSolver(mtype=-2)
         self._handle.perm = perm
         self._handle.iparm[:] = 0
-        # numpy's thread limits do not reach a library that is loaded after them, and two threads on one matrix cost twice the time
+        # numpy's thread limits do not reach a library that is loaded later, and two threads on one matrix take twice the time
         self._handle.libmkl.MKL_Set_Num_Threads(ctypes.c_int(int(os.environ.get("OMP_NUM_THREADS", "1"))))
         # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia; Schur complement and its factors
         for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 24: 1, 36: 2 if len(self.condensed) else 0}.items():

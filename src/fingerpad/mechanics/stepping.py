@@ -37,10 +37,10 @@ class NewtonSettings:
 
     A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was.
     ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
-    only descends. Factors are kept, from step to step too, while each iteration with them ends within ``chord`` tolerances and
-    leaves no more than ``gain`` of the residual, no step needs more than ``patience`` of them, and what answers at once in a step
-    has changed by no more than ``stiffening``. A zone ``spare`` times as wide as it need be is drawn together. A push that points farther than ``aside`` (rad) from the vertical is one at the
-    pad's side.
+    only descends. Factors are kept, from step to step too, while what they leave is within ``chord`` tolerances and they would
+    end, as they go on, ``outlook`` iterations later, no step needs more than ``patience`` of them, and what answers at once in a
+    step has changed by no more than ``stiffening``. A zone ``spare`` times as wide as it need be is drawn together. A push that
+    points farther than ``aside`` (rad) from the vertical is one at the pad's side.
     """
 
     force_tolerance: float = 1e-4

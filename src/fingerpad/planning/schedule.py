@@ -10,6 +10,8 @@ from fingerpad.scenes.scene import Scene
 from fingerpad.stimuli.motion import STEADY, programme
 
 _MOST_INCREMENTS = 8
+_ROUND_EDGES = 4
+"""Increments of a steady press by a stimulus with edges, round which nodes pop."""
 _OUTPUTS = 28
 """Steps while an arc of the surface passes: the centre touches the sharpest convexities for three quarters of their length."""
 _MOST_PARTS = 8
@@ -35,7 +37,7 @@ def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | 
         snapshots=scene.outputs.snapshots,
         present=present,
         slide_step=slide_step,
-        increments=min(steps_per_leg, _MOST_INCREMENTS) if on_the_way else 1,
+        increments=min(steps_per_leg, _MOST_INCREMENTS if on_the_way else _ROUND_EDGES if scene.stimulus.singular else 1),
         parts=partial(_parts, scene, slide_step) if slide_step else None,
     )
 

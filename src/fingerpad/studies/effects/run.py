@@ -383,7 +383,7 @@ DECIDES = {
     "least_steps": "steps of a leg for a tolerance, at least",
     "fine_half_width": "fine skin mesh to either side of the apex, at least (m)",
     "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
-    "edges_per_half_width": "local refinement of presets: edges in the contact's half-width where the mesh has less than one",
+    "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (4.5, 9, 14)",
     "inertia_limit": "scenes with rho v^2 / mu above this are refused",
     "seconds_start": "predicted cost: start of a process (s)",
     "seconds_finite": "predicted cost: a node and Newton iteration, finite strain (s)",

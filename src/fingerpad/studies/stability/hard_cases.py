@@ -248,7 +248,8 @@ def _catalogue():
         motion = [PRESS, force(0.01, 400), hold(0.5), PRESS]
         hard = "unloaded to 1/2000 of the force, a node or two in contact, and on again"
         yield Case(f"almost to separation, {name}", group, hard, {"stimulus": stimulus, "motion": motion}, Limits(**NARROW))
-    scene = {"stimulus": cylinder(209.97), "motion": [force(1e-4)]}
+    # by hand, for a mesh that is made for so narrow a contact has many nodes in it
+    scene = {"stimulus": cylinder(209.97), "motion": [force(1e-4)], "accuracy": by_hand | {"steps": 4}}
     yield Case("one node in contact", group, "a ten-thousandth of a gram-weight; no active set yet", scene, Limits(**STEADY))
 
     group = "steps"
