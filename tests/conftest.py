@@ -3,6 +3,7 @@
 LONGEST = (
     "test_hard_case_catalogue.py",
     "test_reruns.py",
+    "test_docs.py",
     "test_figure_regression.py",
     "test_hard_strokes.py",
     "test_friction.py",
