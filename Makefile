@@ -20,7 +20,7 @@ help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
 	@echo "make test               set up, then run the tests"
 	@echo "make smoke              set up, then the same workflow with config/smoke.yaml (coarse, under results/smoke)"
-	@echo "make studies            set up, then run the studies of accuracy, stability, effects and peers anew"
+	@echo "make studies            set up, then run the studies of accuracy, stability, effects, peers and reconstruction anew"
 	@echo "make bench              set up, then measure and print the benchmark table"
 	@echo "make report             make figures, then pack figures, tables and the run's statistics into results/report.zip"
 	@echo "make archive            make figures, then copy inputs, code, outputs and costs into results/archive, an RO-Crate"
@@ -53,7 +53,7 @@ figures: $(INSTALLED)
 	$(SNAKEMAKE)
 
 studies: $(INSTALLED)
-	$(SNAKEMAKE) accuracy stability effects peers
+	$(SNAKEMAKE) accuracy stability effects peers reconstruction
 
 smoke: $(INSTALLED)
 	$(SNAKEMAKE) --configfile config/smoke.yaml

@@ -71,6 +71,7 @@ localrules:
     effects,
     peers,
     report_pages,
+    reconstruction,
 
 
 rule all:
@@ -140,3 +141,9 @@ rule peers:
     """The same press through a public finite element package, if it is installed: a table."""
     input:
         peers_if_installed,
+
+
+rule reconstruction:
+    """The pad of 1999, inferred from the thesis's figures: tables and pictures; about an hour of one core, not part of all."""
+    input:
+        PRODUCTS.targets("reconstruction"),

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.claims.comparison import COLUMNS, GIVEN, TRENDS, summary, thesis_comparison
+from fingerpad.claims.comparison import COLUMNS, GIVEN, TRENDS, scores, summary, thesis_comparison
 from fingerpad.claims.reasons import REASONS, reason
 from fingerpad.claims.rows import SETS, Number, numbers
 from fingerpad.claims.sensitivity import NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
@@ -169,14 +169,73 @@ def test_a_role_that_does_not_go_with_its_row_is_refused(tmp_path, row, role):
         read_reference(tmp_path / "wrong.csv")
 
 
-def test_the_summary_counts_results_and_trends_and_leaves_out_what_was_put_in():
-    roles = ["input", "count", "calibrated", *["result"] * 5, "trend", "trend"]
-    verdicts = ["inside", "plausible", "inside", "inside", "outside", "plausible", "outside", "not_comparable"]
-    rows = pd.DataFrame({"id": list("abcdefghij"), "role": roles, "verdict": [*verdicts, "trend_holds", "trend_fails"]})
-    forms = ["value", "axis", "range", "value", "value", "axis", "axis", "axis", "trend", "trend"]
-    text = summary(rows, pd.DataFrame({"form": forms}, index=list("abcdefghij")))
-    assert text.startswith("**1 of 2 results are inside") and "1 of 2 are plausible" in text and "1 of 2 trends hold" in text
-    assert "2 of 2 inputs and counts" in text and "1 of 1 numbers that a parameter was chosen by" in text
+@pytest.fixture(scope="module")
+def scored():
+    """Made-up rows: role, score and same_as as in the reference, form, verdict; and the reference that they are of."""
+    given = [
+        ("a", "input", "", "", "value", "inside"),
+        ("b", "count", "", "", "axis", "plausible"),
+        ("c", "calibrated", "", "", "range", "inside"),  # calibrated: fitted, whatever else
+        ("d", "result", "fitted", "", "value", "outside"),
+        ("e", "result", "", "", "value", "inside"),
+        ("f", "result", "", "e", "value", "inside"),  # the same number again
+        ("g", "result", "", "", "axis", "outside"),
+        ("h", "result", "", "", "axis", "plausible"),
+        ("i", "result", "", "", "unlike", "not_comparable"),
+        ("j", "trend", "", "", "trend", "trend_holds"),
+        ("k", "trend", "", "", "trend", "trend_fails"),
+        ("l", "trend", "none", "", "trend", "trend_holds"),
+    ]
+    reference = pd.DataFrame(given, columns=["id", "role", "score", "same_as", "form", "verdict"]).set_index("id")
+    return reference.reset_index()[["id", "role", "verdict"]], reference
+
+
+def test_scores_tell_what_was_held_out_from_what_was_fitted_and_count_nothing_twice(scored):
+    found = scores(*scored).set_index(["kind", "score"])
+    told = {key: tuple(map(int, row)) for key, row in zip(found.index, found.to_numpy(), strict=True)}
+    assert told == {
+        ("value or range", "fitted"): (1, 2), ("value or range", "held out"): (1, 1), ("value or range", "all"): (2, 3),
+        ("axis", "fitted"): (0, 0), ("axis", "held out"): (1, 2), ("axis", "all"): (1, 2),
+        ("trend", "fitted"): (0, 0), ("trend", "held out"): (1, 2), ("trend", "all"): (1, 2),
+    }  # fmt: skip
+
+
+def test_the_summary_begins_with_what_was_held_out(scored):
+    text = summary(*scored)
+    assert (
+        text.startswith("**Held out: 1 of 1 (fitted 1 of 2, all 2 of 3) values")
+        and "1 of 2 (fitted 0 of 0, all 1 of 2) axes" in text
+    )
+    assert "2 of 2 inputs and counts" in text and "1 rows repeat" in text and "1 trends hold by construction" in text
+
+
+def test_every_row_that_is_scored_none_or_not_comparable_says_why(table):
+    reference = read_reference(REFERENCE)
+    why = reference[reference["score"].eq("none") | reference["form"].eq("unlike")]
+    assert len(why) > 40 and why["reason"].ne("").all()
+    for id_, row in why.iterrows():
+        assert REASONS[row["reason"]].split(";")[0] in table.loc[id_, "note"], id_
+
+
+def test_a_row_that_repeats_another_has_its_measure_and_a_bound_on_its_curve():
+    """Their largest curve is one and the same, or of one skin: counting both would count a curve twice."""
+    reference = read_reference(REFERENCE)
+    for id_, row in reference[reference["same_as"] != ""].iterrows():
+        other = reference.loc[row["same_as"]]
+        alike = {row["measure"], other["measure"]} in (
+            {row["measure"]},
+            {"sunk", "depth"},
+            {"highest_pressure", "centre_pressure"},
+        )
+        assert alike and {"ramp40_k1260", "nine"} & {row["of"], other["of"]} or row["of"] == other["of"], id_
+
+
+def test_a_tick_is_below_the_end_of_its_axis():
+    reference = read_reference(REFERENCE)
+    ticks = reference[reference["tick"].notna()]
+    assert (
+        len(ticks) > 60 and ticks["form"].eq("axis").all() and (ticks["tick"] < ticks["high"]).all() and (ticks["tick"] > 0).all()
+    )
 
 
 def test_outside_rows_say_by_how_much(table):
@@ -211,22 +270,33 @@ def test_results_are_given_in_four_digits_and_inputs_in_full(table):
     [
         ("value", 0.5, np.nan, 0.2, 0.59, 0.0, "inside"),
         ("value", 0.5, np.nan, 0.2, 0.61, 0.0, "outside"),
-        ("value", 0.5, np.nan, 0.0, 0.52, 0.03, "inside"),
+        ("value", 0.5, np.nan, 0.0, 0.508, 0.03, "inside"),
+        ("value", 0.5, np.nan, 0.0, 0.52, 0.03, "outside"),  # the error helps by 2 % at most
         ("value", 9, np.nan, 0.0, 8, 0.0, "outside"),
         ("value", np.nan, np.nan, np.nan, 8, 0.0, "not_comparable"),
         ("range", 1.0, 1.5, np.nan, 0.83, 0.02, "outside"),
         ("range", 1.0, 1.5, np.nan, 0.99, 0.02, "inside"),
         ("range", 1.0, 1.5, np.nan, 1.6, 0.0, "outside"),
+        ("range", 1.0, 1.5, np.nan, 1.6, 0.2, "outside"),
         ("axis", 0, 10000, np.nan, 9900, 0.0, "plausible"),
         ("axis", 0, 10000, np.nan, 10050, 100.0, "plausible"),
         ("axis", 0, 10000, np.nan, 10500, 100.0, "outside"),
         ("axis", 0, 10000, np.nan, 4900, 0.0, "outside"),
         ("axis", 0, 10000, np.nan, np.nan, 0.0, "not_comparable"),
+        ("unlike", 0, 45, np.nan, 30, 0.0, "not_comparable"),
         ("estimate", 1.5, np.nan, np.nan, 1.5, 0.0, "not_comparable"),
     ],
 )
 def test_rules_of_judgement(form, low, high, tolerance, value, error, verdict):
     entry = {"form": form, "low": low, "high": high, "tolerance": tolerance}
+    assert judge(value, error, entry)[0] == verdict
+
+
+@pytest.mark.parametrize(
+    "value, error, verdict", [(7900, 0, "outside"), (7900, 150, "plausible"), (7000, 900, "outside"), (8100, 0, "plausible")]
+)
+def test_an_axis_ends_at_the_tick_after_its_largest_curve(value, error, verdict):
+    entry = {"form": "axis", "low": 0, "high": 10000, "tolerance": np.nan, "tick": 8000.0}
     assert judge(value, error, entry)[0] == verdict
 
 

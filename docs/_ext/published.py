@@ -68,37 +68,50 @@ def verdict(figure: str) -> str:
     return f"{good} of {count} {what} here"
 
 
-def _share(role: str, axis: bool | None = None) -> tuple[int, int]:
+def _share(kind: str, score: str) -> str:
+    """Rows that agree: of a kind (range, axis or trend), held out or fitted; repeated and unscored ones left out."""
     rows = compared()
-    rows = rows[rows["role"].isin(role.split())]
-    if axis is not None:
-        rows = rows[rows["form"].eq("axis") == axis]
-    return rows["verdict"].isin(AGREES).sum(), len(rows)
+    rows = rows[rows["score"] == score]
+    kinds = rows["form"].map({"axis": "axis", "trend": "trend"}).fillna("range")
+    rows = rows[kinds == kind]
+    return f"{rows['verdict'].isin(AGREES).sum()} of {len(rows)}"
 
 
 @number
-def results_inside():
-    return "{} of {}".format(*_share("result", axis=False))
+def ranges_held_out():
+    return _share("range", "held out")
 
 
 @number
-def results_plausible():
-    return "{} of {}".format(*_share("result", axis=True))
+def axes_held_out():
+    return _share("axis", "held out")
 
 
 @number
-def trends_hold():
-    return "{} of {}".format(*_share("trend"))
+def trends_held_out():
+    return _share("trend", "held out")
+
+
+@number
+def fitted_inside():
+    return "{}, {} and {}".format(*(_share(kind, "fitted") for kind in ("range", "axis", "trend")))
 
 
 @number
 def inputs_as_stated():
-    return "{} of {}".format(*_share("input count"))
+    rows = compared()
+    rows = rows[rows["role"].isin(["input", "count"])]
+    return f"{rows['verdict'].isin(AGREES).sum()} of {len(rows)}"
 
 
 @number
-def calibrated_inside():
-    return "{} of {}".format(*_share("calibrated"))
+def pressure_change():
+    return digits(abs(_row("TR29")))
+
+
+@number
+def energy_change():
+    return digits(abs(_row("TR30")))
 
 
 def _row(key: str, column: str = "simulated"):

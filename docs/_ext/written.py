@@ -155,6 +155,7 @@ DOCUMENTS = {
     "scene": ("Scene", "What is touched, what touches it, how it moves, what is recorded and how well."),
     "specimen": ("Specimen", "A pad, in a file that scenes name: `{outline: thesis}` is that of `config/specimens/thesis.yaml`."),
     "sweep": ("Sweep", "One scene to thousands."),
+    "reconstruction": ("Unknowns", "What the thesis does not say of its pad, with priors: for `snakemake reconstruction`."),
     "workflow": ("Configuration", "What the workflow simulates, draws and tabulates, and where it puts it."),
 }
 
@@ -168,6 +169,7 @@ def language() -> Iterator[tuple[str, str]]:
         title, about = DOCUMENTS[kind]
         elsewhere = () if kind == "scene" else made["scene"]["$defs"]
         example = {"scene": "scenes/examples/every_key", "specimen": "specimens/thesis", "sweep": "sweeps/example"}
+        example["reconstruction"] = "reconstruction/unknowns"
         whole = f"../../../config/{example.get(kind, 'thesis')}.yaml"
         parts = [f"# {title}", about, _section(schema)]
         for name, part in schema.get("$defs", {}).items():

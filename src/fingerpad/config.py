@@ -149,6 +149,7 @@ def workflow_json_schema() -> dict[str, Any]:
 def schemas() -> dict[str, dict]:
     """Return the JSON schema of each kind of YAML file, by the stem of its schema file."""
     from fingerpad.scenes.scene import scene_json_schema, specimen_json_schema
+    from fingerpad.studies.reconstruction.unknowns import unknowns_json_schema
     from fingerpad.sweeps.language import sweep_json_schema
 
     dialect = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
@@ -157,6 +158,7 @@ def schemas() -> dict[str, dict]:
         "scene": scene_json_schema(),
         "specimen": specimen_json_schema(),
         "sweep": sweep_json_schema(),
+        "reconstruction": dialect | unknowns_json_schema(),
     }
 
 

@@ -214,12 +214,15 @@ def read_reference(path: str | PathLike) -> pd.DataFrame:
     """Table of numbers printed in the thesis, indexed by id.
 
     Columns figure, quantity, condition, low, high, units, kind (stated | axis_range | garbled), form (value |
-    range | axis | estimate | trend | layout), tolerance, role (input: stated by the thesis and by the scenes; count: of the
-    model itself; calibrated: a parameter was chosen by it; result; trend; empty for a layout), source; and how this model
+    range | axis | estimate | unlike: what is shown is not the model's | trend | layout), tolerance, tick (the last of an axis but
+    one, if simulated curves alone set its end), role (input: stated by the thesis and by the scenes; count: of the
+    model itself; calibrated: a parameter was chosen by it; result; trend; empty for a layout), score (fitted: the pad was, or is
+    reconstructed, by it; none: earns nothing, the reason says why; empty: held out), same_as (row of the same number of the same
+    curve, which alone counts), source; and how this model
     answers: measure (a name of `fingerpad.measures.table.MEASURES`), at (its condition), of (scenes), reason (of a known
-    difference). Raises ValueError for a repeated id or an unknown kind, form or role.
+    difference, or of not being judged). Raises ValueError for a repeated id, an unknown kind, form, role, score or row.
     """
-    words = ["role", "measure", "at", "of", "reason"]
+    words = ["role", "score", "same_as", "measure", "at", "of", "reason"]
     text = dict.fromkeys(["id", "figure", "condition", "units", *words], str)
     table = pd.read_csv(path, dtype=text).set_index("id")
     table[words] = table[words].fillna("")
@@ -227,8 +230,10 @@ def read_reference(path: str | PathLike) -> pd.DataFrame:
         raise ValueError(f"{path}: repeated id {table.index[table.index.duplicated()][0]}")
     for column, allowed in {
         "kind": {"stated", "axis_range", "garbled"},
-        "form": {"value", "range", "axis", "estimate", "trend", "layout"},
+        "form": {"value", "range", "axis", "estimate", "unlike", "trend", "layout"},
         "role": {"input", "count", "calibrated", "result", "trend", ""},
+        "score": {"fitted", "none", ""},
+        "same_as": {*table.index[table["same_as"] == ""], ""},
     }.items():
         unknown = set(table[column]) - allowed
         if unknown:

@@ -1,4 +1,7 @@
-"""The likeliest reasons of known differences, by their word in the column `reason` of `thesis_numbers.csv`."""
+"""Reasons of known differences, and of rows not being judged, by their word in the column `reason` of `thesis_numbers.csv`.
+
+A reason says what a run has shown or what the thesis's text says; what no run has tested is called open.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +9,9 @@ from collections.abc import Callable
 
 from fingerpad.claims.rows import Number
 from fingerpad.measures.runs import NINE
-from fingerpad.measures.steady import PLATE
 from fingerpad.measures.table import Measures
 
-_RAMP = "likeliest: the stiff transient of the ramp; state of the moduli and load per length are not stated"
-_LENGTH = "likeliest: contact length; a constant one of 10 mm is too long for a shallow press, see table calibration"
+_PAD = "the pad's: other states of the moduli, radii, fat and line loads, together, change it (table reconstruction)"
 _RADIUS = "chosen for the contact widths of Fig 4-9"
 SMALL_RADIUS = "sensitivity_radius_flat"
 """The flat plate on a pad of the smaller radius that the thesis's node positions hint at."""
@@ -18,12 +19,7 @@ SMALL_RADIUS = "sensitivity_radius_flat"
 
 def _settled(m: Measures, number: Number) -> str:
     """With the pressure that the hold settles to."""
-    return f"{m(number.measure, number.scenes[0], 'end'):.0f} Pa at the end of the hold; {_RAMP}"
-
-
-def _at_2_mm(m: Measures, number: Number) -> str:
-    """With the force at the depth of the last measured point."""
-    return f"{m('steady', PLATE, '2 mm'):.3g} N at 2 mm; {_LENGTH}"
+    return f"{m(number.measure, number.scenes[0], 'end'):.0f} Pa at the end of the hold; {_PAD}"
 
 
 def _radius(m: Measures, number: Number) -> str:
@@ -36,26 +32,24 @@ def _radius(m: Measures, number: Number) -> str:
 
 
 REASONS: dict[str, str | Callable[[Measures, Number], str]] = {
-    "bending": "likeliest: the bending of the stiff epidermis over the section",
+    "arranged": "the thesis sets the same depth and width up; here the depth alone is made the same",
+    "bending": "open: every pad tried bends its epidermis more than that (study reconstruction)",
     "bulk": "mostly the bulk modulus, which does not relax with the shear modulus as the estimate lets the whole force do",
-    "burst": "likeliest: the energy hardly passes the threshold, which is that of one receptor; "
-    "a recorded burst has no threshold",
-    "elements": "quadratic elements carry four nodes each; linear ones would number as the nodes do",
+    "by_construction": "holds by construction: of the half that is solved, of rigid contact, or of Eq 5-1",
+    "definition": "not of the energy that is shown; says what another definition would do",
+    "elements": "'10,000 nodes and elements' is one number for two: quadratic elements carry three or four nodes each",
     "fibre": "the axis is that of another receptor's recording; the constants are those of Figs 5-20 and 5-21",
-    "length": _LENGTH,
-    "length_at_2_mm": _at_2_mm,
-    "line_load": "likeliest: the load per contact length, which is not stated",
-    "moduli": "likeliest: state of the moduli and thickness of the fat, neither is stated",
+    "future": "asked for in chapter 6 as future work; no result of the thesis",
+    "illegible": "the scanned labels leave open where the axis ends, or of which surface the number is",
+    "pad": _PAD,
+    "pad_settled": _settled,
+    "panels": "panels taken as exchanged: as captioned, the layered pad would pass the axis that Fig 4-11 ends at",
     "profiles": "edges and peaks of the pressure lie where the surface has its arcs; "
     "what lags by a millimetre is the skin (T232a)",
     "radius": _radius,
-    "ramp": _RAMP,
-    "receptor": "likeliest: these recordings are of another receptor than the constants of Eq 5-1, "
-    "which are printed for one only",
-    "recording": "the axis is that of a recording; the thesis too finds the dynamic peak off",
-    "settled": _settled,
+    "recorded": "recordings are shown there, alone or with a line that was fitted to them, and set the axis",
+    "ridge_sizes": "hangs on the sizes of ridges, which are not stated; the thesis calls their resolution insufficient",
     "subjects": "one of the five subjects; the data of four are at hand (Dandekar, Raju and Srinivasan 2003)",
-    "tick": "5000 Pa is the last legible tick: Fig 4-11 shows the same curves up to 8000 Pa",
 }
 
 

@@ -15,6 +15,8 @@ ALIKE = 0.15
 """Largest relative difference of values that are about the same."""
 HARDLY = 10.0
 """Largest spread (%) over the velocities that hardly matters: standard deviation over mean."""
+NEGLIGIBLE = 15.0
+"""Largest change (%) of a peak from the slowest to the fastest stroke that is "small and negligible" (section 5.4)."""
 FOLLOWS = 0.9
 """Least correlation of a trace that follows another."""
 

@@ -12,15 +12,15 @@ from fingerpad.measures.runs import CYLINDERS, FAST, NINE, PADS, RIDGED_NINE
 
 TWIN = 0.01
 """Least excess of an off-centre pressure peak over the centre's, relative, to count as one."""
-BROAD = ("flat", "79", "105", "158", "210")
-"""Surfaces whose contact is wider than twice the critical distance of 0.5 mm by half as much again."""
+BROAD = ("flat", "79", "105", "158", "210", "315", "420")
+"""Surfaces whose pressure peak has left the centre: all "except for the two highest curvatures" (section 4.4)."""
 LINEAR = 0.9
 """Least R2 of a line to call points linear."""
 DELAY = 0.02
 """s; least time to the first impulse to call it delayed: a fraction of what a raster of 2.4 s lets one see."""
-AGREES = 0.1
-"""Largest root-mean-square residual, relative, to call traces in agreement."""
-CORRELATED = 0.99
+AGREES, PANELS = 0.1, 8
+"""Largest root-mean-square residual, relative, to call traces in agreement; of how many of the nine for all to be."""
+CORRELATED = 0.98
 """Least correlation of traces over time that rise and fall alike."""
 
 PLATE, SHARPEST, K210 = NINE["flat"], NINE["1260"], NINE["210"]
@@ -212,7 +212,7 @@ def pressure_gives_energy(m):
     left = m.find("residual_of_eq_4_4", PLATE)
     falls = sum(fall > 0 for fall in m.find("fall_by_eq_4_4", PLATE).values())
     note = f"residual {min(left.values()):.0%} to {max(left.values()):.0%}; falls in the hold by Eq 4-4 under {falls} surfaces"
-    return everywhere({label: share <= AGREES for label, share in left.items()}, note)
+    return everywhere({label: share <= AGREES for label, share in left.items()}, note, PANELS)
 
 
 # --- predicted rates -------------------------------------------------------------------------------------

@@ -6,7 +6,19 @@ from itertools import pairwise
 
 import numpy as np
 
-from fingerpad.claims.trends import ALIKE, FOLLOWS, HARDLY, Trend, everywhere, listed, of_each, spreads, stepwise, trend
+from fingerpad.claims.trends import (
+    ALIKE,
+    FOLLOWS,
+    HARDLY,
+    NEGLIGIBLE,
+    Trend,
+    everywhere,
+    listed,
+    of_each,
+    spreads,
+    stepwise,
+    trend,
+)
 from fingerpad.measures.direction import OFFSETS
 from fingerpad.measures.responses import BIN
 from fingerpad.measures.runs import NINE, PLAIN, RIDGED, SPEEDS, SUB_SPEEDS, WITHIN_350, WITHIN_400
@@ -75,7 +87,7 @@ def velocity_hardly_matters(m, quantity, trace):
     worst, whole = max(spread, key=spread.get), m("spread_of_traces", FULL["1"], trace)
     note = f"peaks spread by {np.mean(list(spread.values())):.1f} % on average, at most {spread[worst]:.1f} % (K = {worst}); "
     note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + listed(change, "%", 2)
-    return Trend(spread[worst] <= HARDLY, spread[worst], note)
+    return Trend(max(map(abs, change.values())) <= NEGLIGIBLE, max(change.values(), key=abs), note)
 
 
 @trend("TR31")

@@ -10,9 +10,14 @@ value without low
     the thesis does not state it: not judged.
 estimate
     not a number of the thesis, nor a truth: never judged, the remark says by how much the number differs.
+unlike
+    a recording, another receptor's or an illegible axis, which says nothing of the model: never judged.
 axis
-    the thesis shows only an axis. Plausible, and no more, if the largest plotted value stays below its end and fills
-    at least `FILL` of it, since a plot is drawn to be filled.
+    the thesis shows only an axis. Plausible, and no more, if the largest plotted value stays below its end and above the
+    last tick but one (`tick`), where an axis that the curves alone set would have ended; where that is not known it has to
+    fill at least `FILL` of it.
+
+The discretisation error helps by no more than `HELP` of the bound: a number that is inside only by a large error is outside.
 """
 
 from __future__ import annotations
@@ -22,7 +27,9 @@ from collections.abc import Mapping
 import numpy as np
 
 FILL = 0.5
-"""Least share of a thesis axis that its largest curve should fill."""
+"""Least share of a thesis axis that its largest curve should fill, where no tick is known."""
+HELP = 0.02
+"""Largest share of a bound by which the discretisation error may bring a number inside: the accuracy that is asked for."""
 
 
 def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
@@ -31,7 +38,7 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
     Parameters
     ----------
     value, error : the number and its discretisation error, both in the row's units.
-    entry : low, high, form and tolerance of the reference row.
+    entry : low, high, form and tolerance of the reference row, and its tick if it has one.
 
     Returns
     -------
@@ -42,20 +49,29 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
         return "not_comparable", "the simulation does not show it"
     if entry["form"] == "estimate":
         return "not_comparable", f"an estimate to compare with, not a truth; {value / low - 1:+.0%}"
+    if entry["form"] == "unlike":
+        return "not_comparable", ""
     if entry["form"] == "value" and np.isnan(low):
         return "not_comparable", "not stated in the thesis"
+
+    def helped(bound: float) -> float:
+        return min(error, HELP * abs(bound))
+
     if entry["form"] == "value":
-        allowed = max(float(entry["tolerance"]) * abs(low), error, 1e-6 * abs(low))
+        allowed = max(float(entry["tolerance"]) * abs(low), helped(low), 1e-6 * abs(low))
         if abs(value - low) <= allowed:
             return "inside", ""
         return "outside", f"by {value - low:+.3g} ({value / low - 1:+.0%})"
     if entry["form"] == "axis":
-        if value > high + error:
+        if value > high + helped(high):
             return "outside", f"{value / high - 1:.0%} above the axis's end"
-        if value < FILL * high - error:
+        tick = float(entry.get("tick", np.nan))
+        if np.isfinite(tick) and value < tick - helped(tick):
+            return "outside", f"{1 - value / tick:.0%} below the last tick but one, {tick:g}: the axis would have ended there"
+        if np.isnan(tick) and value < FILL * high - helped(FILL * high):
             return "outside", f"fills only {value / high:.0%} of the axis"
         return "plausible", f"fills {value / high:.0%} of the axis"
-    if low - error <= value <= high + error:
+    if low - helped(low) <= value <= high + helped(high):
         return "inside", ""
     near = low if value < low else high
     return "outside", f"by {value - near:+.3g} ({value / near - 1:+.0%})"

@@ -493,6 +493,22 @@ class Products:
         made = {"table": self.tables(["peers"])}
         yield Job("peers", {"files": files}, made, called="peers_table", mem_mb=2000)
 
+    def reconstruction(self) -> Iterator[Job]:
+        """The pad that made the thesis's figures: evidence, pads simulated, what is inferred, and what that predicts."""
+        evidence = {"evidence": [self.at("config/reference/reconstruction_evidence.csv")]}
+        unknowns, named = {"unknowns": [self.at("config/reconstruction/unknowns.yaml")]}, {"files": [self.thesis_specimen()]}
+        records, design = [self.result("reconstruction/design.jsonl")], [f"{self.config.studies}/reconstruction_design.csv"]
+        long = {"runtime": 180, "mem_mb": 2000}
+        yield Job("reconstruction_design", unknowns | named, {"design": design}, {"records": records}, **long)
+        tables = self.tables(f"reconstruction_{name}" for name in ("posterior", "readings", "emulator", "recovery", "families"))
+        parts = [self.result(f"reconstruction/{name}.csv") for name in ("samples", "predicted")]
+        read = unknowns | named | evidence
+        yield Job("reconstruction_inference", read | {"design": design}, {"tables": tables, "parts": parts}, **long)
+        made = {"table": self.tables(["reconstruction_epidermis"])}
+        yield Job("reconstruction_epidermis", evidence | named | {"posterior": tables[:1]}, made, **long)
+        made = {"pictures": self.pictures(["posterior", "evidence"], "reconstruction_")}
+        yield Job("reconstruction_pictures", unknowns | evidence | {"parts": parts}, made)
+
     def map_of_touch(self) -> Iterator[Job]:
         """A sweep over curvature, force and rate."""
         yield from self._published_sweep("map_of_touch", {})
@@ -556,7 +572,8 @@ class Products:
         """All of them."""
         parts = (
             self.simulations, self.figures, self.catalogue, self.animations, self.all_tables, self.meanings, self.calibration,
-            self.ridges, self.accuracy, self.stability, self.effects, self.peers, self.map_of_touch, self.five_hundred_fingers,
+            self.ridges, self.accuracy, self.stability, self.effects, self.peers, self.reconstruction, self.map_of_touch,
+            self.five_hundred_fingers,
             self.report,
         )  # fmt: skip
         jobs = [job for part in parts for job in part()]

@@ -1,0 +1,300 @@
+"""The reconstruction of the pad of 1999: evidence, priors, scaling, emulator and inference, each against a known answer."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from fingerpad.documents import SceneError
+from fingerpad.reference_data import ReferenceDataError, read_reference
+from fingerpad.scenes.scene import load_scene
+from fingerpad.simulation import simulate
+from fingerpad.studies.reconstruction import pads
+from fingerpad.studies.reconstruction.design import FITTED, run_design, table
+from fingerpad.studies.reconstruction.epidermis import judged
+from fingerpad.studies.reconstruction.evidence import Evidence, read_evidence, values_of
+from fingerpad.studies.reconstruction.inference import EPIDERMIS, SOFT, Problem, infer, recovery, shares_of
+from fingerpad.studies.reconstruction.unknowns import LOAD, STIFFNESS, read_unknowns
+
+pytestmark = pytest.mark.unit
+CONFIG = Path(__file__).parents[1] / "config"
+EVIDENCE, UNKNOWNS = CONFIG / "reference/reconstruction_evidence.csv", CONFIG / "reconstruction/unknowns.yaml"
+
+
+@pytest.fixture(scope="module")
+def evidence():
+    return Evidence(read_evidence(EVIDENCE))
+
+
+@pytest.fixture(scope="module")
+def known():
+    return read_unknowns(UNKNOWNS)
+
+
+# --- evidence ----------------------------------------------------------------------------------------------
+
+
+def test_the_evidence_says_where_it_is_from_and_agrees_with_the_comparison(evidence):
+    reference = read_reference(CONFIG / "reference/thesis_numbers.csv")
+    for row in evidence.rows.itertuples():
+        for id_ in row.thesis_ids.split():
+            role, score = reference.loc[id_, ["role", "score"]]
+            if row.role == "fitted":  # T061 counts subjects, T328 is of all cylinders
+                assert score == "fitted" or id_ in ("T061", "T328"), (row.id, id_)
+            elif role != "calibrated":
+                assert score == "" or reference.loc[id_, "same_as"] or row.id == "L1", (row.id, id_)
+    fitted = evidence.of_role("fitted").rows
+    assert set(fitted["surface"]) == set(FITTED)
+    held = evidence.of_role("held_out").rows
+    assert len(held) > len(fitted) and {"79", "105", "210", "315", "630"} <= set(held["surface"])
+
+
+@pytest.mark.parametrize(
+    "column, cell, wrong",
+    [
+        ("unit", "mm", "row 2, column unit: 'mm'; allowed: N"),
+        ("high", "-1", "row 2, column high: '-1'; allowed: more than 0"),
+        ("id", "P2", "column id: 'P2' is there twice"),
+        ("role", "seen", "column role: 'seen'; allowed: fitted, held_out, apart"),
+        ("measure", "peak", "column unit: 'N'; allowed: no such measure"),
+    ],
+)
+def test_wrong_evidence_is_refused_in_one_line(tmp_path, column, cell, wrong):
+    table = pd.read_csv(EVIDENCE, dtype=str).fillna("")
+    table.loc[0, column] = cell
+    table.to_csv(tmp_path / "evidence.csv", index=False)
+    with pytest.raises(ReferenceDataError, match=wrong):
+        read_evidence(tmp_path / "evidence.csv")
+
+
+def test_what_is_inside_is_as_good_and_what_is_outside_counts_by_tolerances(evidence):
+    low, high, tolerance = (evidence.rows[k].to_numpy() for k in ("low", "high", "tolerance"))
+    for inside in (low, high, (low + high) / 2):
+        assert evidence.distance(inside) == 0
+    assert evidence.departure(high + 2 * tolerance) == pytest.approx(2)
+    assert evidence.departure(low - 3 * tolerance) == pytest.approx(3)
+    assert evidence.distance(high + tolerance) == pytest.approx(len(high))
+    assert evidence.departure(high + 5 * tolerance, more=np.sqrt(24) * tolerance) == pytest.approx(1)
+    assert sum(evidence.by_family(high + tolerance).values()) == pytest.approx(len(high))
+
+
+def test_a_factor_on_all_moduli_multiplies_pressures_and_not_lengths(evidence):
+    values = np.ones(len(evidence.rows))
+    one, half = (evidence.shown(values, np.array(s), np.array(10.0)) for s in (1.0, 0.5))
+    same = evidence.rows["unit"].isin(("mm", "1")).to_numpy()
+    assert (half[same] == one[same]).all() and (half[~same] == 0.5 * one[~same]).all() and 20 < same.sum() < 60
+    force = evidence.rows["unit"].eq("N").to_numpy()
+    assert (evidence.shown(values, np.array(1.0), np.array(20.0))[force] == 2 * one[force]).all()
+
+
+def test_a_pad_is_inside_the_evidence_that_it_would_have_left(evidence):
+    rng = np.random.default_rng(3)
+    low, high = (evidence.rows[k].to_numpy() for k in ("low", "high"))
+    for _ in range(20):
+        shown = low + (high - low) * rng.uniform(-1.5, 2.5, len(low))
+        ratio = evidence.rows["measure"].str.contains("over")
+        least = np.where(evidence.rows["measure"] == "late_change", -0.9, np.where(ratio, 0.5, 0.0))
+        most = np.where(evidence.rows["measure"] == "late_change", 0.9, np.where(ratio, 1.9, np.inf))
+        left = evidence.as_thesis(shown := np.clip(shown, least, most))
+        assert left.distance(shown) == pytest.approx(0)
+        assert (left.rows["high"] > left.rows["low"]).all()
+    moved = evidence.as_thesis(low + 1.5 * (high - low)).rows
+    axis = (evidence.rows["low"] > 0) & (evidence.rows["unit"] != "1")
+    assert moved["low"][axis].to_numpy() == pytest.approx(high[axis])
+
+
+# --- unknowns ----------------------------------------------------------------------------------------------
+
+
+def test_priors_have_the_quantiles_that_they_state(known):
+    load, bulk, radius = (known.unknowns[k] for k in ("line_load", "bulk_modulus", "apex_radius"))
+    assert load.at(np.array([0.0, 0.5, 1.0])) == pytest.approx([14.5, 17.0, 20.0], abs=0.01)
+    assert radius.at(np.array([0.25])) == pytest.approx([8.25])
+    assert bulk.at(np.array([0.5])) == pytest.approx([np.sqrt(1.7364)])
+
+
+def test_shares_and_values_of_the_design_are_each_others_inverse_and_even(known):
+    drawn = known.draw()
+    shares = known.to_unit(drawn)
+    assert shares.shape == (known.design.pads, len(known.axes)) and shares.min() >= 0 and shares.max() <= 1
+    back = known.from_unit(shares)
+    assert all(back[name] == pytest.approx(drawn[name]) for name in known.axes)
+    assert np.abs(shares[:64].mean(axis=0) - 0.5).max() < 0.02  # of any power of two of the first
+
+
+@pytest.mark.parametrize(
+    "change, wrong",
+    [
+        ({"apex_radius": {"range": ["12 mm", "7 mm"], "prior": "uniform", "source": "x"}}, "is not rising"),
+        ({"apex_radius": {"range": ["7 in", "12 in"], "prior": "uniform", "source": "x"}}, "not a number with a known unit"),
+        ({"apex_radius": {"range": ["7 mm", "12 mm"], "source": "x"}}, "says not one prior"),
+    ],
+)
+def test_wrong_unknowns_are_refused_in_one_line(tmp_path, known, change, wrong):
+    import yaml
+
+    document = yaml.safe_load(UNKNOWNS.read_text())
+    document["unknowns"] |= change
+    (tmp_path / "unknowns.yaml").write_text(yaml.safe_dump(document))
+    with pytest.raises(SceneError, match=wrong):
+        read_unknowns(tmp_path / "unknowns.yaml")
+
+
+# --- pads --------------------------------------------------------------------------------------------------
+
+
+def test_the_pad_of_the_thesis_file_is_on_the_axes_of_the_design():
+    found, thesis = pads.scene(pads.TODAY, "158").specimen, load_scene(CONFIG / "scenes/ramp40_k158.yaml").specimen
+    for name in type(found.outline).model_fields:
+        assert getattr(found.outline, name) == pytest.approx(getattr(thesis.outline, name)), name
+    for layer in ("epidermis", "dermis", "fat"):
+        for key in ("youngs_modulus", "poisson_ratio"):
+            assert getattr(getattr(found.layers, layer), key) == pytest.approx(getattr(getattr(thesis.layers, layer), key))
+    assert found.contact_length == pytest.approx(10e-3)
+    assert found.prony == thesis.prony and not pads.scene(pads.TODAY, "158").friction
+
+
+def test_the_bulk_modulus_changes_and_the_shear_modulus_stays():
+    for factor in (1.0, 1.3, 1.7364):
+        nu = pads.poisson_for(factor)
+        ratio = 2 * (1 + nu) / (3 * (1 - 2 * nu))
+        assert ratio == pytest.approx(factor * 2 * 1.48 / (3 * 0.04))
+        layer = pads.scene(pads.TODAY | {"bulk_modulus": factor}, "flat").specimen.layers.dermis
+        assert layer.youngs_modulus / (2 * (1 + nu)) == pytest.approx(0.015e6 / 2.96) and layer.poisson_ratio == pytest.approx(nu)
+
+
+@pytest.mark.verification
+def test_moduli_read_as_instantaneous_are_a_factor_on_load_and_bulk_modulus():
+    """The reading `instantaneous` against a simulation with `moduli: instantaneous`: lengths equal, pressures by the factor."""
+    left, mesh = 1 - 0.055 - 0.3691, {"accuracy": {"skin_edge": "200 um", "steps": 6}}
+    pad = pads.TODAY | {LOAD: pads.TODAY[LOAD] / left, "bulk_modulus": 1 / left}
+    as_told = pads.scene(pads.TODAY, "158").varied({"specimen.moduli": "instantaneous"})
+    scenes = (as_told, pads.scene(pad, "158"), pads.scene(pad | {"bulk_modulus": 1.0}, "158"))
+    direct, scaled, other = (pads.of_press(simulate(scene.varied(mesh))) for scene in scenes)
+    for name, unit in pads.MEASURES.items():
+        factor = 1 if unit in pads.SCALE_FREE else left
+        assert factor * scaled[name] == pytest.approx(direct[name], rel=1e-6), name
+    assert left * other["energy_915"] > 1.1 * direct["energy_915"]  # so the bulk modulus is an unknown of its own
+
+
+def test_a_design_goes_on_where_it_was_stopped(tmp_path, known, monkeypatch):
+    done = []
+
+    def read(pad, surface):
+        done.append((pad["apex_radius"], surface))
+        if pad["friction"] > 0.45 and surface == "420":
+            raise SceneError("too rough")
+        return dict.fromkeys(pads.units(surface), 1.0)
+
+    monkeypatch.setattr(pads, "read", read)
+    few = known.model_copy(update={"design": known.design.model_copy(update={"pads": 16})})
+    run_design(few, tmp_path / "design.jsonl", seconds=0.0)
+    first = len(done)
+    run_design(few, tmp_path / "design.jsonl")
+    assert len({pad for pad, _ in done}) == 16 and len(done) > first
+    run_design(few, tmp_path / "design.jsonl")
+    found = table(tmp_path / "design.jsonl")
+    assert len(found) == 16 == found["pad"].nunique() and found["diagnosis"].str.contains("too rough").any()
+
+
+# --- emulator ----------------------------------------------------------------------------------------------
+
+
+def _smooth(x):
+    """Three measures of pads at shares (n, 4): an exact quadratic in the logarithm, a wavy one, and one with a sign."""
+    a, b, c, _ = x.T
+    return pd.DataFrame(
+        {"flat: peak": np.exp(1 + a + a * b), "flat: width_end": 2 + np.sin(3 * a) * c, "flat: late_change": a - b**2}
+    )
+
+
+def test_the_emulator_states_the_error_that_it_makes():
+    from fingerpad.studies.reconstruction.emulator import Emulator
+
+    rng = np.random.default_rng(5)
+    x, new = rng.random((150, 4)), rng.random((500, 4))
+    made = Emulator.fit(x, _smooth(x))
+    truth, found = _smooth(new).to_numpy(), made(new)
+    assert list(made.logarithmic) == [True, True, False] and made.q2.min() > 0.99
+    assert found[:, 0] == pytest.approx(truth[:, 0], rel=1e-3) and found[:, 2] == pytest.approx(truth[:, 2], abs=1e-3)
+    really = np.sqrt(np.mean(np.log(found[:, 1] / truth[:, 1]) ** 2))
+    assert 0.3 * made.error[1] < really < 2 * made.error[1] < 0.05
+    one = made.only(["flat: late_change", "flat: peak"])
+    assert one(new) == pytest.approx(found[:, [2, 0]]) and one.error == pytest.approx(made.error[[2, 0]])
+    noisy = Emulator.fit(x, _smooth(x) * np.exp(0.1 * rng.normal(size=(150, 3))))
+    assert noisy.error[0] == pytest.approx(0.1, rel=0.35)
+
+
+# --- inference ---------------------------------------------------------------------------------------------
+
+
+class _Known:
+    """Stands for an emulator: a measure that is the pad's radius, and one that is the load over the state."""
+
+    logarithmic, error = np.array([False, False]), np.zeros(2)
+
+    def __init__(self, known):
+        self.known = known
+
+    def __call__(self, shares):
+        pad = self.known.from_unit(np.asarray(shares))
+        return np.stack([pad["apex_radius"], 100 * pad[LOAD]], axis=-1)
+
+
+def _problem(known, reading, radius=(8.0, 9.0), pressure=(1600.0, 1800.0), tolerance=(0.01, 1.0)):
+    rows = pd.DataFrame({
+        "surface": "flat", "measure": ["width_end", "peak"], "factor": 1.0,
+        "low": [radius[0], pressure[0]], "high": [radius[1], pressure[1]],
+        "unit": ["mm", "Pa"], "tolerance": tolerance, "family": ["width", "pressure"], "role": "fitted",
+    })  # fmt: skip
+    return Problem(known, reading, _Known(known), Evidence(rows))
+
+
+def test_the_posterior_of_an_interval_is_the_interval_and_its_evidence_its_share_of_the_prior(known):
+    found = infer(_problem(known, "long_term", pressure=(0.0, 1e6)), draws=2**13)
+    radius = found.problem.pad(found.samples)["apex_radius"]
+    assert 7.9 < radius.min() and radius.max() < 9.1 and radius.mean() == pytest.approx(8.5, abs=0.06)
+    assert found.log_evidence == pytest.approx(np.log(1 / 5), abs=2 * found.error)
+    assert found.least_distance == pytest.approx(0, abs=1e-6)
+    fat = found.problem.pad(found.samples)["fat_thickness"]  # of which nothing is told
+    assert np.quantile(fat, [0.05, 0.95]) == pytest.approx([3.2, 6.8], abs=0.25)
+
+
+def test_readings_compare_by_their_evidence(known):
+    """A pressure that is 100 times the line load: instantaneous moduli with 17 N/m show 1700 Pa as well, and no 2400 Pa."""
+    wide = {"tolerance": (0.01, 100.0)}
+    fits = infer(_problem(known, "instantaneous", pressure=(1600.0, 1800.0), **wide), draws=2**13)
+    not_ = infer(_problem(known, "long_term", pressure=(2400.0, 2600.0), **wide), draws=2**13)
+    share = shares_of([fits, not_]).set_index("reading")["probability (1)"]
+    assert share["instantaneous"] > 0.999 and fits.table().set_index("quantity").loc[SOFT, "median"] == 0.5759
+    pad = fits.problem.pad(fits.samples)
+    assert pad[EPIDERMIS] == pytest.approx(0.5759) and pad["bulk_modulus"] == pytest.approx(1.7364)
+    assert pad[STIFFNESS] == pytest.approx(1) and pad[LOAD] == pytest.approx(pad["line_load"] / 0.5759)
+
+
+def test_known_pads_are_found_again(known):
+    found = recovery(_problem(known, "long_term", radius=(8.0, 8.5)), trials=3, draws=2**13)
+    told = found[found["quantity"] == "apex_radius"]
+    assert told["covered"].all() and (told["high 95 %"] - told["low 5 %"]).max() < 0.6
+    assert len(found) == 3 * 9 and found["covered"].mean() > 0.7
+
+
+# --- inside the epidermis ----------------------------------------------------------------------------------
+
+
+def test_a_reading_of_the_epidermal_energies_is_the_cause_only_if_all_depths_are_inside(evidence):
+    depths = (560, 600, 640, 765, 800, 845)
+    low = {f"{z} um (Pa)": v for z, v in zip(depths, (700, 900, 800, 1500, 1500, 2500), strict=True)} | {"915 um (Pa)": 500.0}
+    high = {k: 2 * v for k, v in low.items()}
+    found = judged(pd.DataFrame([{"tried": "a"} | high, {"tried": "b"} | low]), evidence)
+    assert (
+        list(found["depths inside"]) == ["0 of 6", "6 of 6"]
+        and found["distance (1)"].iloc[1] == 0 < found["distance (1)"].iloc[0]
+    )
+    assert found["dermis over the first row's (1)"].tolist() == [1.0, 0.5]
+
+
+def test_values_are_found_by_their_keys(evidence):
+    few = values_of({"flat: peak": 7.0}, evidence)
+    assert np.nansum(few) == 7.0 * sum(k == "flat: peak" for k in evidence.keys)
