@@ -118,6 +118,17 @@ def test_the_reference_has_every_key_of_a_scene(extension):
     assert "| `shape` | `cylinder` |" in page and "a length" not in page
 
 
+def test_the_documentation_is_locked_to_what_the_workflow_is_locked_to():
+    """Into the same environment: it may add packages, and move none."""
+
+    def pins(path):
+        return {match[0] for match in re.finditer(r"^[\w.-]+==[^ ;\\]+", path.read_text(encoding="utf-8"), re.M)}
+
+    workflow = pins(ROOT / "requirements.lock")
+    names = {pin.split("==")[0] for pin in workflow}
+    assert not {pin for pin in pins(DOCS / "requirements.lock") if pin.split("==")[0] in names} - workflow
+
+
 def test_docstrings_are_mended(extension):
     lines = [
         "Sum |x|, ``|y|``.",
