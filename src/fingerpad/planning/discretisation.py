@@ -51,14 +51,15 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     thesis, known = rules.presets["thesis"], rules.errors
     timed = bool(scene.specimen.prony) and any(duration is not None for duration in leg_durations(scene))
     moves, half_width = moves_along(scene), earliest_half_width(scene, contact, timed)
-    still = not moves and scene.specimen.mesh is None and scene.specimen.ridges is None
+    ridges = scene.specimen.ridges
+    still = not moves and scene.specimen.mesh is None and (ridges is None or ridges.outer is None)
     uneven = is_uneven(scene)
-    outer = 3 if scene.specimen.ridges is not None and scene.specimen.ridges.outer is not None else 1  # columns of outer ridges
+    outer = 3 if ridges is not None and ridges.outer is not None else 1  # columns of outer ridges
     found = []
     for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):
         edge, growth = known.edge * THESIS_ROWS / rows, min(thesis.growth ** (THESIS_ROWS / rows), 3.0)
         time = steps if timed else None
-        for finer in [2**k for k in range(_FINEST_FOCUS)] if still else (1,):
+        for finer in 2 ** np.arange(0, _FINEST_FOCUS, 0.5) if still else (1,):
             # the right half has about 7 columns and 4 rows an element across the epidermis
             more = np.log(finer) / np.log(growth)
             wide = 1.2 * contact_reach(scene, contact) / edge * (finer - 1)
