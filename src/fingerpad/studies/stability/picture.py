@@ -23,7 +23,7 @@ DEFAULT, *TEACHING = METHODS
 MEASURES = {
     "completed": ("completed", "reached the end of the motion"),
     "cuts": ("step cuts", "times a load step had to be halved, in all"),
-    "factorisations": ("factorisations a step", "matrices factorised, mean of the steps"),
+    "factorisations": ("factors a step", "matrices factorised, mean of the steps"),
     "energy": ("energy balance", "work less stored and dissipated energy, over the largest work"),
     "complementarity": ("complementarity", "forces across gaps: force times gap over force times node spacing"),
     "det_f": ("least det F", "least volume left of any point; elements fold at 0"),
