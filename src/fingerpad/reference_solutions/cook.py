@@ -9,7 +9,6 @@ Taylor 2000, 7.769 for E = 250; 16.44 for E = 1.125).
 
 from dataclasses import dataclass
 
-CORNERS = ((0.0, 0.0), (48.0, 44.0), (48.0, 60.0), (0.0, 44.0))
 MID_EDGE = (48.0, 52.0)
 CORNER = (48.0, 60.0)
 

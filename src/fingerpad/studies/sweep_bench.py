@@ -165,10 +165,10 @@ def main(most: int = 1000) -> None:
         rows += of_collecting(scenes)
     for scenes in (most // 10, most, 10 * most):
         rows += of_laying_out(scenes)
-    for kind, scenes in zip(KINDS, (most, most // 10, most), strict=True):
+    for kind, scenes in zip(KINDS, (most // 5, most // 10, most), strict=True):
         rows += of_worker(kind, scenes)
     rows += of_command(press, most, (1, 2))
-    rows += of_command(small, most // 10, (2,)) + of_command(small, most, (2,)) + of_command(small, 10 * most, (2,), 1)
+    rows += of_command(small, most // 10, (2,)) + of_command(small, most, (2,), 1) + of_command(small, 10 * most, (2,), 1)
     publish_table(pd.DataFrame(rows), "figures/tables/sweeps.csv")
 
 

@@ -28,7 +28,6 @@ from fingerpad.units import DIMENSIONS, QuantityError, parse_quantity, unit_of
 
 MOST = 1_000_000
 """Scenes of a sweep."""
-DESIGNS = ("grid", "latin_hypercube", "sobol")
 _FILES = ("csv", "mesh")
 """Keys whose values are paths."""
 
