@@ -1,5 +1,6 @@
 """The reconstruction of the pad of 1999: evidence, priors, scaling, emulator and inference, each against a known answer."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pandas as pd
 import pytest
 
 from fingerpad.documents import SceneError
+from fingerpad.planning.plan import plan
 from fingerpad.reference_data import ReferenceDataError, read_reference
 from fingerpad.scenes.scene import load_scene
 from fingerpad.simulation import simulate
@@ -162,6 +164,28 @@ def test_the_bulk_modulus_changes_and_the_shear_modulus_stays():
         assert ratio == pytest.approx(factor * 2 * 1.48 / (3 * 0.04))
         layer = pads.scene(pads.TODAY | {"bulk_modulus": factor}, "flat").specimen.layers.dermis
         assert layer.youngs_modulus / (2 * (1 + nu)) == pytest.approx(0.015e6 / 2.96) and layer.poisson_ratio == pytest.approx(nu)
+
+
+def test_a_pad_without_fat_beside_its_bone_cannot_be():
+    """A thin shell of fat: the clearance is that of the apex; a wide high bone reaches the skin, which the mesh then refuses."""
+    assert 0.1 < pads.clearance(pads.TODAY) < 3.8
+    thin = pads.TODAY | {"bone_half_width": 2.5, "fat_thickness": 3.0}
+    assert pads.clearance(thin | {"fat_thickness": 3.2}) > pads.clearance(thin) - 0.21 > 0
+    wide = pads.TODAY | {"apex_radius": 7.5, "bone_half_width": 6.4, "fat_thickness": 3.1}
+    assert pads.clearance(wide) < 0
+    with pytest.raises(ValueError, match="reaches the bone|inside the skin"):
+        plan(pads.scene(wide, "flat"))
+
+
+def test_pads_that_cannot_be_have_no_posterior(known):
+    class Room:
+        def __call__(self, shares):
+            return 8.5 - known.from_unit(np.asarray(shares))["apex_radius"][:, None]
+
+    found = infer(replace(_problem(known, "long_term", pressure=(0.0, 1e6)), room=Room()), draws=2**13)
+    assert found.problem.pad(found.samples)["apex_radius"].max() < 8.5 and found.log_evidence == pytest.approx(
+        np.log(0.1), abs=0.1
+    )
 
 
 @pytest.mark.verification

@@ -12,7 +12,7 @@ All readings are judged by the same rows, so that their evidences compare.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -28,6 +28,8 @@ DRAWS, BLOCK = 2**17, 2**14
 """Pads drawn from the prior of each reading; how many the emulator predicts at once."""
 SAMPLES = 1000
 """Pads of a posterior."""
+LEAST_ROOM = 0.05
+"""mm of fat that a pad has at least, wherever it is thinnest: more than the emulator is off."""
 INTERVAL = 0.9
 """Of the intervals that are given: between the quantiles that leave half of the rest on either side."""
 
@@ -38,12 +40,14 @@ class Problem:
 
     Attributes:
         known: the unknowns. reading: its name. emulator: of exactly the evidence's keys, in their order. evidence: the rows.
+        room: an emulator of `pads.clearance`: pads without any cannot be. None: all can.
     """
 
     known: Unknowns
     reading: str
     emulator: Emulator
     evidence: Evidence
+    room: Emulator | None = None
 
     @cached_property
     def names(self) -> list[str]:
@@ -87,7 +91,15 @@ class Problem:
         """(n,) of pads (n, names)."""
         shown = self.shown(values)
         own = np.where(self.emulator.logarithmic, np.abs(shown) * self.emulator.error, self.emulator.error)
-        return -0.5 * (self.evidence.departure(shown, own) ** 2).sum(axis=-1)
+        found = -0.5 * (self.evidence.departure(shown, own) ** 2).sum(axis=-1)
+        return np.where(self.can_be(values), found, -np.inf)
+
+    def can_be(self, values: np.ndarray) -> np.ndarray:
+        """(n,) which of pads (n, names) have room for their bone."""
+        if self.room is None:
+            return np.ones(len(values), bool)
+        pad = self.pad(values)
+        return self.room(self.known.to_unit({name: pad[name] for name in self.known.axes}))[:, 0] > LEAST_ROOM
 
 
 @dataclass(frozen=True)
@@ -154,12 +166,12 @@ def recovery(problem: Problem, trials: int, seed: int = 7, draws: int = DRAWS) -
     """
     rng, rows = np.random.default_rng(seed), []
     for trial in range(trials):
-        truth = problem.at(rng.random(len(problem.names)))
+        drawn = problem.at(rng.random((100, len(problem.names))))
+        truth = drawn[problem.can_be(drawn)][0]
         shown = problem.shown(truth[None])[0]
         own = np.where(problem.emulator.logarithmic, np.abs(shown) * problem.emulator.error, problem.emulator.error)
-        made = Problem(
-            problem.known, problem.reading, problem.emulator, problem.evidence.as_thesis(shown + own * rng.normal(size=len(own)))
-        )
+        left = problem.evidence.as_thesis(shown + own * rng.normal(size=len(own)))
+        made = replace(problem, evidence=left)
         found = infer(made, draws, seed + trial)
         tail = (1 - INTERVAL) / 2
         low, high = np.quantile(found.samples, [tail, 1 - tail], axis=0)

@@ -16,6 +16,7 @@ from fingerpad.measures import features
 from fingerpad.measures.of_presses import ENERGIES
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.simulation import simulate
+from fingerpad.specimen.outline import OutlineCurve
 from fingerpad.studies.reconstruction.unknowns import LOAD, STIFFNESS
 
 SURFACES = {
@@ -97,6 +98,15 @@ def changes(pad: Mapping[str, float]) -> dict[str, object]:
 def scene(pad: Mapping[str, float], surface: str) -> Scene:
     """A pad's scene. Raises SceneError for a pad that cannot be, one line."""
     return base(surface).varied(changes(pad))
+
+
+def clearance(pad: Mapping[str, float]) -> float:
+    """Least thickness of fat anywhere round the bone, mm; a pad that cannot be has none, or less."""
+    outline = scene(pad, PLATE).specimen.outline
+    layers = outline.epidermis_thickness + outline.dermis_thickness
+    bare = OutlineCurve(outline.model_copy(update={"epidermis_thickness": 1e-5, "dermis_thickness": 1e-5}))
+    skin = bare.point(np.linspace(0.0, np.pi, 121))
+    return 1e3 * float(np.hypot(*(skin - bare.bone_point(bare.bone_foot(skin))).T).min() - layers)
 
 
 def of_plate(history: xr.Dataset) -> dict[str, float]:

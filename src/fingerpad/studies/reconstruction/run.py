@@ -60,6 +60,13 @@ def emulated(known: Unknowns, evidence: Evidence, design: pd.DataFrame) -> Emula
     return Emulator.fit(known.to_unit({name: whole[name].to_numpy() for name in known.axes}), whole[keys])
 
 
+def roomy(known: Unknowns, count: int = 256) -> Emulator:
+    """An emulator of the fat where it is thinnest, of the first pads of the design whatever became of them."""
+    drawn = pd.DataFrame(known.draw()).head(count)
+    room = pd.DataFrame({"pad: clearance": [pads.clearance(pad) for pad in drawn.to_dict("records")]})
+    return Emulator.fit(known.to_unit({name: drawn[name].to_numpy() for name in known.axes}), room)
+
+
 def defined_by(evidence: Evidence, measure: str) -> Evidence:
     """The evidence with the strain energy at 915 um taken for another definition."""
     rows = evidence.rows.assign(measure=evidence.rows["measure"].replace("energy_915", measure))
@@ -70,18 +77,24 @@ def study(known: Unknowns, evidence: Evidence, design: pd.DataFrame, trials: int
     """Everything that needs no further simulation."""
     fitted = evidence.of_role("fitted")
     emulator = emulated(known, fitted, design)
-    posteriors, tables = {}, []
+    room, posteriors, tables = roomy(known), {}, []
     for definition, measure in ENERGIES.items():
         rows = defined_by(fitted, measure)
-        found = {name: infer(Problem(known, name, emulator.only(rows.keys), rows)) for name in known.readings}
+        found = {name: infer(Problem(known, name, emulator.only(rows.keys), rows, room)) for name in known.readings}
         print(definition, {name: round(p.log_evidence, 2) for name, p in found.items()}, flush=True)
         tables.append(shares_of(found.values()).assign(**{"strain energy": definition}))
         posteriors = posteriors or found  # of the headline's definition
     readings = pd.concat(tables, ignore_index=True)
     weight = np.exp(readings["log evidence (1)"] - readings["log evidence (1)"].max())
     readings["probability (1)"] = weight / weight.sum()
-    recovered = recovery(Problem(known, FREEST, emulator.only(fitted.keys), fitted), trials)
-    return Study(posteriors, readings, emulator.summary(), recovered, samples_of(posteriors))
+    recovered = recovery(Problem(known, FREEST, emulator.only(fitted.keys), fitted, room), trials)
+    return Study(
+        posteriors,
+        readings,
+        pd.concat([emulator.summary(), room.summary()], ignore_index=True),
+        recovered,
+        samples_of(posteriors),
+    )
 
 
 def samples_of(posteriors: Mapping[str, Posterior], count: int = 1500) -> pd.DataFrame:
