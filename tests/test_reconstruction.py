@@ -17,6 +17,7 @@ from fingerpad.studies.reconstruction.design import FITTED, run_design, table
 from fingerpad.studies.reconstruction.epidermis import judged
 from fingerpad.studies.reconstruction.evidence import Evidence, read_evidence, values_of
 from fingerpad.studies.reconstruction.inference import EPIDERMIS, SOFT, Problem, infer, recovery, shares_of
+from fingerpad.studies.reconstruction.specimen import most_probable, specimen_text
 from fingerpad.studies.reconstruction.unknowns import LOAD, STIFFNESS, read_unknowns
 
 pytestmark = pytest.mark.unit
@@ -322,3 +323,38 @@ def test_a_reading_of_the_epidermal_energies_is_the_cause_only_if_all_depths_are
 def test_values_are_found_by_their_keys(evidence):
     few = values_of({"flat: peak": 7.0}, evidence)
     assert np.nansum(few) == 7.0 * sum(k == "flat: peak" for k in evidence.keys)
+
+
+# --- what is published -------------------------------------------------------------------------------------
+
+TABLES = CONFIG.parent / "figures/tables"
+
+
+def test_the_committed_specimen_is_that_of_the_committed_tables():
+    posterior, readings = (pd.read_csv(TABLES / f"reconstruction_{name}.csv") for name in ("posterior", "readings"))
+    text = specimen_text(posterior, readings)
+    assert (CONFIG / "specimens/reconstructed.yaml").read_text(encoding="utf-8") == text
+    named = dict.fromkeys(("outline", "layers", "prony"), "reconstructed")
+    document = {"specimen": named, "stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}
+    scene = load_scene(document, str(CONFIG / "scenes/pressed"))
+    best = posterior[posterior["reading"] == most_probable(readings)].set_index("quantity")["best pad"]
+    outline = scene.specimen.outline
+    assert 1e3 * outline.apex_radius == pytest.approx(best["apex_radius"], rel=1e-3)
+    fat = outline.soft_thickness - outline.epidermis_thickness - outline.dermis_thickness
+    assert 1e3 * fat == pytest.approx(best["fat_thickness"], rel=2e-3)
+    assert scene.specimen.moduli == "instantaneous"
+
+
+def test_published_results_meet_what_was_asked_of_them(evidence):
+    """The control: today's pad is far off; pads known beforehand are found again 9 times in 10; the emulator says its error."""
+    families, recovered, emulator, readings = (
+        pd.read_csv(TABLES / f"reconstruction_{name}.csv") for name in ("families", "recovery", "emulator", "readings")
+    )
+    distance = families.set_index("pad")["distance, fitted (1)"]
+    assert distance["today's pad"] > 20 * distance.drop("today's pad").min()
+    whole = recovered.set_index("quantity").loc["all"]
+    assert whole["covered"] >= 0.9 * whole["trials"]
+    assert set(emulator["surface"] + ": " + emulator["measure"]) > set(evidence.of_role("fitted").keys)
+    assert emulator["error of pads left out (%)"].median() < 3
+    log = readings[readings["strain energy"] == "instantaneous elastic"].set_index("reading")["log evidence (1)"]
+    assert log["instantaneous"] - log["long_term"] > 5

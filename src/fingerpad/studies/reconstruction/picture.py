@@ -33,10 +33,10 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
     columns = list(frame.columns[1:])
     today = {**pads.TODAY, SCALED: pads.TODAY["load_over_state"], "plate_length": 10.0, SOFT: 1.0, EPIDERMIS: 1.0}
     shares = frame["reading"].value_counts(normalize=True)
-    told = ", ".join(f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.005)
+    told = ", ".join(f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01)
     note = [
-        f"{len(frame)} samples of the posterior over readings of the moduli by their evidence: {told}.",
-        "Factors are on the thesis's moduli as long-term ones; 0.576 is what the Prony series leaves of an instantaneous one. "
+        f"{len(frame)} samples of the posterior, readings of the moduli by their evidence: {told}.",
+        "Factors are on the thesis's moduli taken for long-term ones: 0.576 is what the series leaves of instantaneous ones.",
         "Numbers: rank correlations. Orange: the pad of config/specimens/thesis.yaml. Fitted to chapter 3 and half of chapter 4.",
     ]
     fig = study_figure("What the thesis's figures say of its pad", note, 7.4)

@@ -23,7 +23,7 @@ def most_probable(readings: pd.DataFrame) -> str:
 def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
     """The file's text, of the tables of the study: the best pad of the most probable reading.
 
-    Moduli are written in the state that the model takes them for, long-term, so that a factor is visible in their size.
+    Moduli are written as printed where the reading is a state of all of them, and else as long-term ones, times its factors.
     """
     reading = most_probable(readings)
     rows = posterior[posterior["reading"] == reading].set_index("quantity")
@@ -39,18 +39,16 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
         return f"inferred: {low:.3g} to {high:.3g}" if high > 1.0001 * low else "as the reading says"
 
     nu = pads.poisson_for(value("bulk_modulus", 6))
-    soft = 1e-6 * pads.SOFT * value(SOFT) * (1 + nu) / (1 + pads.POISSON)
-    hard = 1e-6 * pads.EPIDERMIS * value(EPIDERMIS) * (1 + nu) / (1 + pads.POISSON)
+    moduli = [1e-6 * e * value(k) * (1 + nu) / (1 + pads.POISSON) for e, k in ((pads.EPIDERMIS, EPIDERMIS), (pads.SOFT, SOFT))]
+    state, told = "long_term", (interval(EPIDERMIS, 0.15), interval(SOFT, 0.015))
+    if reading == state or reading == "instantaneous":  # as printed
+        state, nu, moduli, told = reading, pads.POISSON, [1e-6 * pads.EPIDERMIS, 1e-6 * pads.SOFT], ("stated", "stated")
     skin, fat = value("epidermis_thickness"), value("fat_thickness")
     top = 1e3 * (pads.APEX - pads.BELOW) - skin - fat
     bottom = -1e3 * pads.BONE_BOTTOM
     length = 1e3 * pads.FORCE / value(SCALED)
     low, high = 1e3 * pads.FORCE / rows.loc[SCALED, ["high 95 %", "low 5 %"]]
-    layers = {
-        "epidermis": (hard, interval(EPIDERMIS, 0.15)),
-        "dermis": (soft, interval(SOFT, 0.015)),
-        "fat": (soft, interval(SOFT, 0.015)),
-    }
+    layers = {"epidermis": (moduli[0], told[0]), "dermis": (moduli[1], told[1]), "fat": (moduli[1], told[1])}
     lines = [
         "# yaml-language-server: $schema=../../workflow/schemas/specimen.schema.json",
         f"# The pad that the thesis's figures are most likely of: {says}",
@@ -68,12 +66,12 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
         f'  bone_half_width: "{value("bone_half_width"):.4g} mm"  # {interval("bone_half_width")}',
         f'  bone_half_height: "{(top - bottom) / 2:.5g} mm"  # assumed: its bottom stays',
         f'  nail_half_width: "{value("nail_half_width"):.4g} mm"  # {interval("nail_half_width")}: its figures hardly tell',
-        "layers:                                # in MPa; stated as 0.15, 0.015 and 0.015 in a state that is not",
+        "layers:                                # stated as 0.15, 0.015 and 0.015 MPa, in a state that is not",
         *(
             f'  {name}: {{youngs_modulus: "{e:.6g} MPa", poisson_ratio: {nu:.6g}}}  # {told}'
             for name, (e, told) in layers.items()
         ),
-        "moduli: long_term                      # the state of the moduli as they are written here",
+        f"moduli: {state:<30} # inferred: odds against long-term ones in figures/tables/reconstruction_readings.md",
         "prony:                                 # stated: Eq 3-1",
         '  - {g: 0.055, tau: "3.25 s"}',
         '  - {g: 0.3691, tau: "0.3414 s"}',
