@@ -118,6 +118,18 @@ def test_the_reference_has_every_key_of_a_scene(extension):
     assert "| `shape` | `cylinder` |" in page and "a length" not in page
 
 
+def test_parts_of_the_language_are_described_once_and_every_written_page_is_in_a_menu(extension):
+    written = extension("written")
+    pages = dict(written._pages())
+    text = "".join(pages.values())
+    labels = re.findall(r"^\((keys-[\w-]+)\)=", text, re.M)
+    assert len(labels) == len(set(labels)) > 30
+    assert set(re.findall(r"\(#(keys-[\w-]+)\)", text)) <= set(labels)
+    menu = (DOCS / "index.md").read_text(encoding="utf-8").split() + pages["tables/index.md"].split()
+    for name in pages:
+        assert f"generated/{name[:-3]}" in menu or name.removeprefix("tables/")[:-3] in menu, name
+
+
 def test_the_documentation_is_locked_to_what_the_workflow_is_locked_to():
     """Into the same environment: it may add packages, and move none."""
 

@@ -164,16 +164,16 @@ def language() -> Iterator[tuple[str, str]]:
     """A page a kind of YAML file, from the schemas that are made of the typed models."""
     from fingerpad.config import schemas
 
-    made = schemas()
-    for kind, schema in made.items():
-        title, about = DOCUMENTS[kind]
-        elsewhere = () if kind == "scene" else made["scene"]["$defs"]
+    made, said = schemas(), set()
+    for kind in sorted(made, key=lambda kind: kind != "scene"):  # what several kinds have is said where it is of a scene
+        schema, (title, about) = made[kind], DOCUMENTS[kind]
         example = {"scene": "scenes/examples/every_key", "specimen": "specimens/thesis", "sweep": "sweeps/example"}
         example["reconstruction"] = "reconstruction/unknowns"
         whole = f"../../../config/{example.get(kind, 'thesis')}.yaml"
         parts = [f"# {title}", about, _section(schema)]
         for name, part in schema.get("$defs", {}).items():
-            if "properties" in part and name not in elsewhere:
+            if "properties" in part and name not in said:
+                said.add(name)
                 parts += [f"(keys-{_slug(name)})=\n## {_words(name)}", _prose(part.get("description", ""))]
                 parts += [_section(part)]
         parts += ["## A whole file", f"```{{literalinclude}} {whole}\n:language: yaml\n```"]
