@@ -150,6 +150,61 @@ def eq_4_4_worst():
     return digits(table("figures/tables/receptor_fits").query("law == '4-4'")["r_squared"].min())
 
 
+# -- the pad of 1999 ------------------------------------------------------------------------------------------------------------
+
+
+def _reading(name: str, column: str) -> float:
+    rows = table("figures/tables/reconstruction_readings").query("`strain energy` == 'instantaneous elastic'")
+    return float(rows.set_index("reading").loc[name, column])
+
+
+@number
+def decades_for_instantaneous():
+    ahead = _reading("instantaneous", "log evidence (1)") - _reading("long_term", "log evidence (1)")
+    return f"{ahead / 2.302585:.0f}"
+
+
+def _inferred(quantity: str) -> str:
+    rows = table("figures/tables/reconstruction_posterior").query("reading == 'instantaneous' and quantity == @quantity")
+    row = rows.iloc[0]
+    return f"{row['median']:.2g} {row['unit']} ({row['low 5 %']:.2g} to {row['high 95 %']:.2g})"
+
+
+@number
+def inferred_radius():
+    return _inferred("apex_radius")
+
+
+@number
+def inferred_fat():
+    return _inferred("fat_thickness")
+
+
+@number
+def inferred_load():
+    return _inferred("line_load")
+
+
+def _distance(pad: str) -> float:
+    return float(table("figures/tables/reconstruction_families").set_index("pad").loc[pad, "distance, fitted (1)"])
+
+
+@number
+def distance_today():
+    return digits(_distance("today's pad"))
+
+
+@number
+def distance_inferred():
+    return digits(_distance("best of instantaneous"))
+
+
+@number
+def held_out_inferred():
+    rows = table("figures/tables/reconstruction_families").set_index("pad")["inside, held out"]
+    return f"{rows['best of instantaneous']} ({rows.iloc[0]} by this pad)"
+
+
 # -- friction, force ------------------------------------------------------------------------------------------------------------
 
 
