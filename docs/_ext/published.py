@@ -455,27 +455,28 @@ def wrong_choices():
 
 
 def _peers() -> pd.DataFrame:
-    return table("figures/tables/peers").query("package != 'fingerpad'")
+    rows = table("figures/tables/peers")
+    return rows[~rows["package"].str.startswith("fingerpad")]
 
 
 @number
-def peer_package():
-    return _peers()["package"].iloc[0]
+def peer_packages():
+    return " and ".join(_peers()["package"].unique())
 
 
 @number
 def peer_force():
-    return digits(_peers()["force off (1)"].max(), 1)
+    return digits(100 * _peers()["force off (1)"].max(), 1)
 
 
 @number
-def peer_energy():
-    return digits(_peers()["energy off (1)"].max(), 1)
+def peer_process():
+    return several(_peers()["process ratio (1)"])
 
 
 @number
-def peer_cost():
-    return several(_peers()["cost ratio (1)"], joint=" and ")
+def peer_loop():
+    return several(_peers()["loop ratio (1)"])
 
 
 def _swept(what: str, scenes: int, quantity: str) -> float:
