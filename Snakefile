@@ -78,7 +78,7 @@ rule all:
     """Every figure and table of the configuration, and the simulations they rest on."""
     default_target: True
     input:
-        PRODUCTS.targets("catalogue", "animations", "all_tables", "calibration", "ridges", "meanings", figures=""),
+        PRODUCTS.targets("catalogue", "animations", "views", "all_tables", "calibration", "ridges", "meanings", figures=""),
         PRODUCTS.histories(PRODUCTS.config.scenes),
 
 

@@ -41,11 +41,12 @@ def tolerance(column: str) -> float:
 
 
 def split_curves(frame: pd.DataFrame) -> Iterable[tuple[str, pd.DataFrame]]:
-    """Curves of a frame: rows equal in every text column, with a name made of them."""
+    """Curves of a frame: rows equal in every text column, with a name made of them; what the thesis says in words is none."""
+    frame = frame[~frame["source"].astype(str).str.startswith("thesis statement")]
     keys = [c for c in TEXT_COLUMNS if c in frame]
     keys += [c for c in ("receptor_depth (um)", "node_x (mm)") if c in frame]
     for names, rows in frame.groupby(keys, dropna=False, sort=False):
-        yield ", ".join(str(n) for n in names if n == n), rows.drop(columns=keys)
+        yield ", ".join(f"{n:g}" if isinstance(n, float) else str(n) for n in names if n == n), rows.drop(columns=keys)
 
 
 def differences(frame: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:

@@ -18,7 +18,7 @@ from fingerpad.figures.registry import CHAPTERS, FIGURES
 from fingerpad.measures import features as ft
 from fingerpad.measures.quantities import CURVATURE, RADIUS
 from fingerpad.measures.table import MEASURES, reading
-from fingerpad.publishing.style import COLOURS, spread
+from fingerpad.publishing.style import COLOURS, INK, spread
 from fingerpad.publishing.write import publish, without_round_off, write_frame, write_picture
 from fingerpad.reference_data import empty_reference, read_reference
 from regression import BASELINE_DPI, SIMILARITY, differences, similarity, summary, summary_differences, tolerance
@@ -98,11 +98,11 @@ def test_saved_data_are_those_of_the_frame(number):
 def test_picture_says_what_it_is_and_no_text_leaves_it(number):
     fig = picture(number)
     notes = " ".join(t.get_text() for t in fig.texts)
-    assert notes.startswith(f"Fig. {number} {FIGURES[number].title}")
+    assert notes.replace("\n", " ").startswith(f"after Cysyk 1999, Fig. {number} {FIGURES[number].title}")
     if number in RATES:
         assert "Predicted" in notes and "Discretisation error" in notes and "not measured" in notes
     elif number in CHECKED:
-        assert "Simulated" in notes and "Discretisation error ≤ 1.0 %" in notes
+        assert "Simulated" in notes and "Discretisation error 1.0 %" in notes
     else:
         assert "not measured" in notes
     width, height = fig.get_size_inches() * fig.dpi
@@ -141,15 +141,14 @@ def test_axis_is_extended_and_marked_where_the_data_leave_the_thesiss():
     highest = frame("4-15")["peak_pressure (Pa)"].max()
     ax = picture("4-15").axes[0]
     assert highest > 10000 and ax.get_ylim()[1] > highest
-    assert "thesis axis range" in [t.get_text() for t in ax.texts]
+    assert "thesis axis range" in [t.get_text().replace("\n", " ") for t in ax.texts]
 
 
 def test_phases_of_a_pressure_figure_have_their_line_styles():
-    ax = picture("4-11").axes[-1]
-    styles = [line.get_linestyle() for line in ax.lines]
-    assert styles.count("-") == 1 and styles.count("--") == len(styles) - 1
-    widths = sorted(line.get_linewidth() for line in ax.lines)
-    assert widths[-1] > widths[-2]  # the top of the ramp is the thick one
+    lines = picture("4-11").axes[-1].lines
+    thick, thin = max(lines, key=lambda line: line.get_linewidth()), [line.get_color() for line in lines]
+    assert thick.get_color() == COLOURS["1260"] and thin.count(INK) == 1 and thin.count("0.57") == len(lines) - 2
+    assert {line.get_linestyle() for line in lines} == {"-"}  # dashes on a dozen nodes look like an asymmetry
 
 
 def test_scaled_pressure_is_the_centre_pressure_times_four_hundredths():
@@ -179,11 +178,6 @@ def test_phases_end_with_the_top_of_the_ramp_and_the_steady_state():
     assert [p for _, p in shown[-2:]] == [ft.TOP, ft.STEADY]
     assert history["time"].values[shown[-2][0]] == 0.5 and shown[-1][0] == history.sizes["time"] - 1
     assert len(shown) == 2 + len(ft.RAMP_FRACTIONS)
-
-
-def test_surfaces_have_nine_different_colours_growing_lighter():
-    light = [0.3 * r + 0.59 * g + 0.11 * b for r, g, b in map(mpl.colors.to_rgb, COLOURS.values())]
-    assert len(light) == 9 and (np.diff(light) > 0).all() and light[-1] < 0.75
 
 
 @pytest.mark.parametrize("values", [[1.0, 1.01, 1.02, 5.0], [0.0, 0.0, 0.0], [9.9, 9.95, 10.0]])

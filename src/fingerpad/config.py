@@ -109,7 +109,9 @@ class WorkflowConfig(Strict):
     figure_numbers: _list(FigureNumber) | None = None
     """Figures to draw, by their number in the thesis; left out, all whose scenes the configuration has."""
     animations: _list(Name) = ()
-    """Scenes to make a moving picture of, animation_<scene>.gif among the studies; they need snapshots."""
+    """Scenes to make a moving picture of, animation_<scene>.gif and film_<scene>.webm among the studies; they need snapshots."""
+    field_scenes: _list(Name) = ()
+    """Scenes simulated with whole fields of strain energy at their snapshots, for pictures of what happens inside."""
     table_names: _list(Name) = ("summary",)
     """Tables to write; summary, what every scene ended at, if left out."""
 

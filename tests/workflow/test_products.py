@@ -11,6 +11,7 @@ import yaml
 
 from fingerpad.config import read_config
 from fingerpad.documents import SceneError
+from fingerpad.workflow.chapters import offered
 from fingerpad.workflow.products import Job, Products
 
 pytestmark = pytest.mark.workflow
@@ -42,7 +43,7 @@ class Plan:
         return names
 
     def default(self) -> set[str]:
-        parts = ("catalogue", "animations", "all_tables", "calibration", "ridges", "meanings")
+        parts = ("catalogue", "animations", "views", "all_tables", "calibration", "ridges", "meanings")
         return self.needed(self.products.targets(*parts, figures=""))
 
     def rerun(self, edited: str) -> set[str]:
@@ -88,6 +89,11 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
     assert {f"figures/studies/calibration_{n}.png" for n in STUDY_FIGURES} | {"figures/tables/calibration.md"} <= outputs
     assert {f"figures/studies/ridges_{n}.png" for n in RIDGES} | {"figures/studies/strain_energy_meanings.png"} <= outputs
     assert {"figures/README.md", "figures/studies/animation_stroke_10.gif", "results/thesis/specimens"} <= outputs
+    views = {*offered()["VIEWS"], "scorecard", "candidate_stimuli"}
+    assert {f"figures/studies/{n}.{kind}" for n in views for kind in ("png", "csv")} <= outputs
+    assert {f"results/thesis/pdf/{n}.pdf" for n in ("fig_4-10", "overview", "calibration_fit")} <= outputs
+    fields = {Path(p).parent.name for p in outputs if p.startswith("results/thesis/fields/")}
+    assert fields == set(thesis.config.field_scenes)
     every = set(thesis.config.every_scene)
     assert {Path(p).parent.name for p in outputs if p.startswith("results/thesis/simulations/")} == every
     coarse = {Path(p).parent.name for p in outputs if p.startswith("results/thesis/coarse/")}
@@ -198,9 +204,12 @@ def test_an_edited_figure_grammar_redraws_figures_only(thesis):
     assert names == {name for name in thesis.default() if thesis.jobs[name].run == "figures"}
 
 
-def test_an_edited_claim_remakes_the_tables_only(thesis):
-    for module in ("comparison", "trends_pressing", "reasons"):
+def test_an_edited_claim_remakes_the_tables_and_the_figures_that_say_whether_it_holds(thesis):
+    for module in ("comparison", "reasons"):
         assert thesis.rerun(f"src/fingerpad/claims/{module}.py") == {"tables"}
+    for module in ("trends_pressing", "said"):
+        runs = {thesis.jobs[name].run for name in thesis.rerun(f"src/fingerpad/claims/{module}.py")}
+        assert runs == {"figures"} | ({"tables"} if module == "trends_pressing" else set())
 
 
 def test_an_edited_kernel_reruns_simulations(thesis):

@@ -26,7 +26,8 @@ def command(job):
 
     def told(wildcards, input, output):
         given = {"input": input, "output": output}
-        words = [sys.executable, "-m", "fingerpad.workflow", job.run, "--log", log_of(job)]
+        words = ["env", f"FINGERPAD_VECTORS={job.vectors}"] if job.vectors else []
+        words += [sys.executable, "-m", "fingerpad.workflow", job.run, "--log", log_of(job)]
         for place, key in job.words:
             values = job.values[key] if place == "params" else given[place].get(key)
             words += [f"--{key}", *([values] if isinstance(values, str) else values)]

@@ -1,6 +1,8 @@
-"""A moving picture of one stroke: the surface slides over the pad, its layers deform, the pressure follows.
+"""Moving pictures: a surface on the pad, its layers deform, pressure, what a receptor feels and what it answers follow.
 
-Made from the full fields (snapshots) of a history, one frame each. The same history gives the same bytes.
+Made from the full fields (snapshots) of a history, one frame each: an animated GIF and a film (WebM). The same history gives
+the same bytes of the GIF. Colours end at what the shown part of the pad has between its extremes: a singular point, such as the
+end of the nail's clamp, does not own the scale.
 """
 
 from __future__ import annotations
@@ -14,42 +16,72 @@ import numpy as np
 import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from fingerpad.files import write_atomically
-from fingerpad.measures.features import PRESSURE, profile
+from fingerpad.measures.features import PRESSURE, force_gf, profile
 from fingerpad.measures.measure import speed_of
-from fingerpad.measures.steady import force_N
+from fingerpad.measures.quantities import IMPULSE_RATE, SED, TIME
+from fingerpad.measures.responses import is_stroke, predicted_rate
 from fingerpad.measures.strokes import profile_and_height
 from fingerpad.publishing import style
 from fingerpad.results import scene_of
 from fingerpad.specimen.element_kinds import kind_of
 
-SIZE, DPI = (6.4, 6.2), 100  # inch, dots an inch
+SIZE, DPI = (5.4, 5.7), 100  # inch, dots an inch
 FRAME_TIME = 100  # ms
-COLOURS = mpl.colormaps["YlOrRd"]
-SHADES, GREYS = 96, 48  # in the one palette of all frames
-HALF_WIDTH, LOW, HIGH = 10.5, -6.6, 7.4  # mm, of the section shown
+MOST_FRAMES = 46
+"""Frames of a GIF: more snapshots than these are thinned; the film has all."""
+SHADES, GREYS = 64, 32  # in the one palette of all frames
+HALF_WIDTH, LOW, HIGH = 10.0, -6.6, 7.6  # mm, of the section shown
+JUDGED = -1.0  # mm, above which elements set the scale of the colours
+FIELD = "snapshot_strain_energy_density"
 
 
-def animate(history: xr.Dataset, path: str | PathLike) -> None:
-    """Write the stroke of a history with snapshots as an animated GIF. Raises ValueError for a history without snapshots."""
+def animate(history: xr.Dataset, gif: str | PathLike, film: str | PathLike | None = None) -> None:
+    """Write a history with snapshots as an animated GIF, and as a film (WebM) if asked.
+
+    Raises:
+        ValueError: the history has no snapshots.
+    """
     if "snapshot_time" not in history:
         raise ValueError("the history has no snapshots to make a moving picture of")
     with style.theme():
-        frames = _frames(history)
-    palette = _palette()
-    first, *others = (_indexed(frame, palette) for frame in frames)
-    options = {"save_all": True, "append_images": others, "duration": FRAME_TIME, "loop": 0, "optimize": False}
+        frames, colours = _frames(history)
+    palette = _palette(colours)
+    few = frames[:: -(-len(frames) // MOST_FRAMES)]
+    first, *others = (_indexed(frame, palette) for frame in few)
+    longer = FRAME_TIME * len(frames) // len(few)
+    options = {"save_all": True, "append_images": others, "duration": longer, "loop": 0, "optimize": False}
     stream = io.BytesIO()
     first.save(stream, format="GIF", **options)
-    write_atomically(Path(path), lambda p: p.write_bytes(stream.getvalue()))
+    write_atomically(Path(gif), lambda p: p.write_bytes(stream.getvalue()))
+    if film is not None:
+        write_atomically(Path(film), lambda p: _write_film(frames, p))
 
 
-def _palette() -> np.ndarray:
-    """The colours (n, 3) of all frames: those of the map, and greys from black to white."""
-    mapped = (255 * COLOURS(np.linspace(0, 1, SHADES))[:, :3]).round()
-    return np.concatenate([mapped, np.repeat(np.linspace(0, 255, GREYS).round()[:, None], 3, axis=1)]).astype(np.uint8)
+def _write_film(frames: list[np.ndarray], path: Path) -> None:
+    """Frames (height, width, 3) as WebM (VP9), by the ffmpeg that imageio-ffmpeg brings along."""
+    from imageio_ffmpeg import write_frames  # here, for only films need it
+
+    high, wide = frames[0].shape[:2]
+    exact = ["-crf", "34", "-b:v", "0", "-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "webm"]
+    writer = write_frames(
+        str(path), (wide, high), fps=1000 / FRAME_TIME, codec="libvpx-vp9", output_params=exact, macro_block_size=2, quality=None
+    )
+    writer.send(None)
+    for frame in frames:
+        writer.send(np.ascontiguousarray(frame).tobytes())
+    writer.close()
+
+
+def _palette(colours: mpl.colors.Colormap) -> np.ndarray:
+    """The colours (n, 3) of all frames: those of the map, greys from black to white, and the highlight."""
+    mapped = (255 * colours(np.linspace(0, 1, SHADES))[:, :3]).round()
+    mark = 255 * np.array([mpl.colors.to_rgb(style.HIGHLIGHT)])
+    greys = np.repeat(np.linspace(0, 255, GREYS).round()[:, None], 3, axis=1)
+    return np.concatenate([mapped, greys, mark]).round().astype(np.uint8)
 
 
 def _indexed(frame: np.ndarray, palette: np.ndarray):
@@ -64,50 +96,78 @@ def _indexed(frame: np.ndarray, palette: np.ndarray):
     return image
 
 
-def _frames(history: xr.Dataset) -> list[np.ndarray]:
-    """One picture (height, width, 3) a snapshot."""
-    time, shape = history["time"].values, profile_and_height(history)[0]
+def _coloured(history: xr.Dataset, middle: np.ndarray) -> tuple[np.ndarray, Normalize, mpl.colors.Colormap, str]:
+    """Values (snapshot, element) to be coloured, their scale, map and label: strain energy if there is some, else mean stress."""
+    judged = (middle[:, 1] > JUDGED) & (abs(middle[:, 0]) < 8)
+    if FIELD in history:
+        values = np.maximum(history[FIELD].values, 1e-6)
+        high = float(np.percentile(values[:, judged], 99.8))
+        return values, LogNorm(3e-3 * high, high), mpl.colormaps[style.FIELD], "strain energy density (Pa)"
+    values = -1e-3 * history["snapshot_pressure"].values
+    high = float(np.percentile(values[:, judged], 99.8))
+    return values, Normalize(0.0, high), mpl.colormaps[style.FIELD], "mean stress, compression (kPa)"
+
+
+def _frames(history: xr.Dataset) -> tuple[list[np.ndarray], mpl.colors.Colormap]:
+    """One picture (height, width, 3) a snapshot, and the map of their colours."""
+    time = history["time"].values
     at = [int(abs(time - t).argmin()) for t in history["snapshot_time"].values]
-    heights = profile_and_height(history)[1]
-    stress = -1e-3 * history["snapshot_pressure"].values
+    shape, heights = profile_and_height(history)
     cells = history["element_nodes"].values[:, : kind_of(history.sizes["element_node"]).corners]
-    points = history["node_position"].values + history["snapshot_displacement"].values
+    rest = history["node_position"].values
+    points = rest + history["snapshot_displacement"].values
+    values, norm, colours, label = _coloured(history, 1e3 * rest[cells].mean(axis=1))
     layer_lines = _borders(points[0], cells, history["element_region"].values)
+    stroke = is_stroke(history)
+    distance = history["stroke_distance"].values if "stroke_distance" in history else np.zeros(len(time))
 
     fig = Figure(figsize=SIZE, dpi=DPI, layout="constrained")
     canvas = FigureCanvasAgg(fig)
-    section, below = fig.subplots(2, 1, sharex=True, height_ratios=[3.1, 1.0])
-    low, high = 0.0, float(np.percentile(stress, 99.5))
-    body = PolyCollection(1e3 * points[0][cells], array=stress[0], cmap=COLOURS, edgecolor="face", lw=0.3)
-    body.set_clim(low, high)
-    lines = LineCollection(1e3 * points[0][layer_lines], colors=style.INK, lw=0.8)
+    grid = fig.add_gridspec(3, 2, height_ratios=[3.2, 1.0, 1.0])
+    section, below = fig.add_subplot(grid[0, :]), fig.add_subplot(grid[1:, 0])
+    felt, answer = fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[2, 1])
+    body = PolyCollection(1e3 * points[0][cells], array=values[0], cmap=colours, norm=norm, edgecolor="face", lw=0.2)
+    lines = LineCollection(1e3 * points[0][layer_lines], colors=style.INK, lw=0.7)
     section.add_collection(body)
     section.add_collection(lines)
-    section.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(LOW, HIGH), aspect="equal", ylabel="y (mm)")
-    fig.colorbar(body, ax=section, label="mean stress, compression (kPa)", shrink=0.8, pad=0.02, extend="both")
+    section.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(LOW, HIGH), aspect="equal", ylabel="y (mm)", xlabel="x (mm)")
+    fig.colorbar(body, ax=section, label=label, shrink=0.8, pad=0.01, extend="both")
     x = np.linspace(-HALF_WIDTH, HALF_WIDTH, 721)
-    distance = np.interp(history["snapshot_time"].values, time, history["stroke_distance"].values)
     top = 1.05e-3 * float(history[PRESSURE].values[at].max())
-    below.set(ylim=(0, top), xlabel="x (mm)", ylabel="contact pressure\n(kPa)")
+    reach = 1.15e3 * float(history["contact_width"].values.max())
+    below.set(ylim=(0, top), xlim=(-reach / 2 - 1.5 * stroke, reach / 2 + 1.5 * stroke), xlabel="x (mm)")
+    below.set_ylabel("contact pressure (kPa)")
     (curve,) = below.plot([], [], color=style.INK)
+    rate = predicted_rate(history)
+    passed = rate[TIME] >= (time[history["leg"].values > 0][0] if stroke else 0.0)
+    for ax, column, words in ((felt, SED, "energy, 915 µm\n(Pa)"), (answer, IMPULSE_RATE, "rate, Eq 5-1\n(impulses/s)")):
+        ax.plot(rate[TIME], rate[column], color=style.GREY, lw=0.8)
+        ax.set(xlim=(0, rate[TIME].iloc[-1]), ylim=(0, 1.1 * rate.loc[passed, column].max()), ylabel=words)
+    felt.tick_params(labelbottom=False)
+    answer.set_xlabel("time (s)")
+    dots = [ax.plot([], [], "o", color=style.HIGHLIGHT, ms=5)[0] for ax in (felt, answer)]
     title = section.set_title("", fontfamily="DejaVu Sans Mono")
-    speed = _speed(history)
+    words, force = _heading(history), force_gf(history)
 
     frames, block = [], None
     for k, index in enumerate(at):
         if block is not None:
             block.remove()
-        surface = 1e3 * (heights[index] + shape.outline(x * 1e-3 + distance[k]))
-        block = section.fill_between(x, surface, HIGH + 1, color="0.72", ec=style.INK, lw=1.0)
+        surface = 1e3 * (heights[index] + shape.outline(x * 1e-3 + distance[index]))
+        shown = np.isfinite(surface) & (surface < HIGH + 1)
+        block = section.fill_between(x[shown], surface[shown], HIGH + 1, color="0.72", ec=style.INK, lw=0.8)
         body.set_verts(1e3 * points[k][cells])
-        body.set_array(stress[k])
+        body.set_array(values[k])
         lines.set_segments(1e3 * points[k][layer_lines])
         curve.set_data(*_profile(history, index))
-        title.set_text(f"{speed}{1e3 * distance[k]:5.1f} mm   {force_N(history)[index]:.2f} N")
+        for dot, column in zip(dots, (SED, IMPULSE_RATE), strict=True):
+            dot.set_data([time[index]], [np.interp(time[index], rate[TIME], rate[column])])
+        moved = f"{1e3 * distance[index]:5.1f} mm   " if stroke else ""
+        title.set_text(f"{words}{time[index]:5.2f} s   {moved}{force[index]:4.1f} gf")
         canvas.draw()
         fig.set_layout_engine("none")  # laid out once: nothing moves between frames
         frames.append(np.array(canvas.buffer_rgba())[..., :3])
-    return frames
+    return frames, colours
 
 
 def _profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
@@ -116,10 +176,13 @@ def _profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
     return 1e3 * x[upper], 1e-3 * p[upper]
 
 
-def _speed(history: xr.Dataset) -> str:
-    """Heading: the stroking velocity of the scene, if it states one."""
-    speed = speed_of(scene_of(history))
-    return f"stroked at {1e3 * speed:g} mm/s   " if speed else ""
+def _heading(history: xr.Dataset) -> str:
+    """What is shown: the stroking velocity of the scene, or the curvature that is pressed."""
+    scene = scene_of(history)
+    if speed := speed_of(scene):
+        return f"stroked at {1e3 * speed:g} mm/s   "
+    curvature = getattr(scene.stimulus, "curvature", None)
+    return f"K = {curvature:.0f} 1/m   " if curvature else ""
 
 
 def _borders(points: np.ndarray, cells: np.ndarray, region: np.ndarray) -> np.ndarray:

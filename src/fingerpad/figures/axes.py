@@ -6,6 +6,7 @@ Pictures are made from a frame whose rows say by their `source` what they are: s
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,10 +21,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PHASE_LINES = {
-    PHASES[0]: {"linestyle": (0, (1, 1.6)), "linewidth": 1.0},
-    TOP: {"linestyle": (0, (4, 1.8)), "linewidth": 1.9},
-    STEADY: {"linestyle": "-", "linewidth": 1.4},
+    PHASES[0]: {"linestyle": "-", "linewidth": 0.6, "color": "0.57"},
+    TOP: {"linestyle": "-", "linewidth": 1.8},
+    STEADY: {"linestyle": "-", "linewidth": 0.9, "color": style.INK},
 }
+"""Thin grey on the way, thick in the surface's colour at the top, thin black in the end."""
+FIRST, SECOND = {"linestyle": "-", "linewidth": 1.3}, {"linestyle": style.DASHED, "linewidth": 1.1}
+"""Two quantities of one run."""
+STATEMENT = "thesis statement ("
+"""How the source of a row begins that holds what the thesis says of a figure, and whether it is so here."""
 SURFACE = "surface"
 """Panel of the rows that hold the shape of a stroked surface."""
 
@@ -34,10 +40,11 @@ def surface_name(label: str) -> str:
 
 
 def look(name: str) -> dict[str, object]:
-    """Colour of a surface (``210``) or a velocity (``10 mm/s``); of anything else none."""
+    """Colour of a surface (``210``) or colour and line of a velocity (``10 mm/s``); of anything else none."""
     speed = name.removesuffix(" mm/s")
-    colour = style.COLOURS.get(name) or (style.SPEED_COLOURS.get(speed) if speed != name else None)
-    return {"color": colour} if colour else {}
+    if speed != name and speed in style.SPEED_COLOURS:
+        return style.look_of("speed (mm/s)", speed)
+    return style.look_of("curvature (1/m)", name) if name in style.COLOURS else {}
 
 
 def rows_of(frame: pd.DataFrame, column: str, value: object) -> pd.DataFrame:
@@ -48,25 +55,30 @@ def rows_of(frame: pd.DataFrame, column: str, value: object) -> pd.DataFrame:
 # --- notes -----------------------------------------------------------------------------------------------
 
 
-def footnote(frame: pd.DataFrame, how: str = "") -> list[str]:
-    """Lines under a picture: provenance, discretisation error (and `how` it is taken), and how thesis values are marked."""
-    first = "Simulated in plane strain, not measured."
-    if frame[ERROR].notna().any():
-        error = f"Discretisation error {_error_text(frame)}{how and f' ({how})'}"
-        first += f" {error}: difference to a mesh of up to twice the edge and half the time steps."
-    lines = [first]
-    if frame.loc[~is_simulated(frame), "source"].str.contains("axis range").any():
-        lines.append(
-            "Axes end where those of Cysyk (1999) end; a grey band marks the thesis's axis range where the simulation needs more."
-        )
-    return style.wrapped(lines)
+def footnote(frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH) -> list[str]:
+    """What a picture shows: simulated or predicted, with which discretisation error (and `how` it is taken: the difference to a
+    mesh of up to twice the edge and half the time steps), from which strain energy."""
+    own = frame[is_simulated(frame)]
+    shown = [column for column in own if own[column].notna().any()]
+    predicted = any("(impulses/s)" in c or c.startswith(("burst_", "impulse_time", "trial")) for c in shown)
+    error = f"Discretisation error {_error_text(frame)}" if frame[ERROR].notna().any() else ""
+    energy = predicted or any(c.startswith("strain_energy") for c in shown)
+    of = " from strain energy" if predicted else ""
+    meant = (" on instantaneous moduli" if predicted else "; strain energy on instantaneous moduli") if energy else ""
+    first = f"Predicted by Eq 5-1{of}{meant}, not measured" if predicted else f"Simulated, not measured{meant}"
+    if width < style.NOTE_WIDTH / 2:  # of a column
+        first = "Predicted by Eq 5-1, not measured" if predicted else "Simulated, not measured"
+    line = ". ".join(filter(None, (first, error)))
+    if error and how and len(line) + len(how) + 4 <= width:
+        line += f" ({how})"
+    return style.wrapped([line + "."], width)
 
 
 def _error_text(frame: pd.DataFrame) -> str:
-    """``≤ 1.2 %``; where one surface stands out, ``≤ 6.8 % for K = 1260 1/m, ≤ 1.9 % otherwise``."""
+    """``1.2 %``; where one surface stands out, ``6.8 % for K = 1260 1/m, 1.9 % otherwise``."""
 
     def shown(value: float) -> str:
-        return f"≤ {value:.1f} %" if value >= 0.1 else f"≤ {value:.1g} %"
+        return f"{value:.1f} %" if value >= 0.1 else f"{value:.1g} %"
 
     if "surface" in frame:
         worst = frame.groupby("surface")[ERROR].max().sort_values(ascending=False)
@@ -76,21 +88,56 @@ def _error_text(frame: pd.DataFrame) -> str:
     return shown(frame[ERROR].max())
 
 
+def statement_row(ids: str, words: str, condition: str, verdict: str, number: str, detail: str) -> dict[str, str]:
+    """A row that holds what the thesis says of a figure, and how it is here: for a figure's frame."""
+    return {"source": f"{STATEMENT}{ids}): " + " | ".join((words, condition, verdict, number, detail))}
+
+
+def statement(frame: pd.DataFrame, width: int = style.NOTE_WIDTH) -> list[str]:
+    """``Thesis: ... Here: holds / fails (number).``, as long as a line allows; nothing without such a row."""
+    rows = frame["source"].astype(str)
+    if not (found := rows[rows.str.startswith(STATEMENT)].tolist()):
+        return []
+    room = width if width > style.NOTE_WIDTH / 2 else 2 * width - 8  # of a column two lines
+    words, condition, verdict, number, detail = found[0].partition("): ")[2].split(" | ")
+    for of, why in ((condition, detail), ("", detail), (condition, number), ("", number), ("", "")):
+        line = f"Thesis: {words}{of and f' ({of})'}. Here: {verdict}{why and f' ({why})'}."
+        if len(line) <= room:
+            break
+    count = found[0].partition("; ")[2].partition(" hold): ")[0]
+    if count not in ("", "1 of 1") and len(line) + 38 <= room:
+        line += f" In all {count} such statements hold."
+    return style.wrapped([line], width)
+
+
 # --- limits ----------------------------------------------------------------------------------------------
 
 
-def limit_axis(ax: Axes, frame: pd.DataFrame, column: str, axis: str = "y", text: bool = True) -> None:
+def limit_axis(ax: Axes, frame: pd.DataFrame, column: str, axis: str = "y", text: bool = True, marked: bool = True) -> None:
     """Set one axis to the thesis's range found in `frame` and extend it only if simulated data leave it.
 
     Where it must be extended, the thesis's range is shaded and, with `text`, labelled (one of several alike panels
-    needs it). Without a range in the frame the axis is left to the data.
+    needs it). Without a range in the frame the axis is left to the data. An uncertain reading has a broken bracket.
+    Not `marked`: the limits alone.
     """
-    _mark(ax, **{axis: _set_limits(ax, frame, column, axis)}, text=text)
+    found = _set_limits(ax, frame, column, axis)
+    if marked:
+        _mark(ax, **{axis: found}, text=text)
 
 
 def limit_axes(ax: Axes, frame: pd.DataFrame, x: str, y: str, text: bool = True) -> None:
     """Set both axes as `limit_axis` does; where both are extended, what the thesis shows is one rectangle."""
     _mark(ax, _set_limits(ax, frame, x, "x"), _set_limits(ax, frame, y, "y"), text)
+
+
+@dataclass(frozen=True)
+class Range:
+    """What the thesis's axis shows, in data units: whether the data leave it, and whether its reading is uncertain."""
+
+    low: float
+    high: float
+    left: bool
+    uncertain: bool
 
 
 def together(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
@@ -100,10 +147,11 @@ def together(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
     return pd.concat([frame, *(own.assign(**{first: own[other]}) for other in others)], ignore_index=True) if others else frame
 
 
-def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> tuple[float, float] | None:
-    """Set the limits of one axis; the thesis's range if the data leave it."""
-    ranges = ~is_simulated(frame) & frame["source"].str.contains("axis range")
-    values = frame.loc[ranges, column].dropna()
+def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> Range | None:
+    """Set the limits of one axis; the thesis's range if the data leave it or its reading is uncertain."""
+    ranges = ~is_simulated(frame) & frame["source"].str.contains("axis range") & frame[column].notna()
+    values = frame.loc[ranges, column]
+    doubt = bool(frame.loc[ranges, "source"].str.contains("uncertain").any())
     data = frame.loc[is_simulated(frame) | frame["source"].str.startswith("measured"), column].dropna()
     set_limits = ax.set_ylim if axis == "y" else ax.set_xlim
     if values.empty:
@@ -113,7 +161,7 @@ def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> tuple[
     low, high = values.min(), values.max()
     if axis == "x" and not data.empty and low < 0 and data.abs().max() > high:  # a profile wider than the axis
         set_limits(-data.abs().max() * 1.04, data.abs().max() * 1.04)
-        return low, high
+        return Range(low, high, True, doubt)
     slack = 1e-3 * (high - low)
     free = axis == "y" and not data.empty
     below, above = (
@@ -123,45 +171,63 @@ def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> tuple[
     set_limits(
         data.min() - 0.06 * (high - data.min()) if below else low, data.max() + 0.06 * (data.max() - low) if above else high
     )
-    return (low, high) if below or above else None
+    return Range(low, high, below or above, doubt) if below or above or (doubt and axis == "y") else None
 
 
-def _mark(ax: Axes, x: tuple[float, float] | None = None, y: tuple[float, float] | None = None, text: bool = True) -> None:
+def _mark(ax: Axes, x: Range | None = None, y: Range | None = None, text: bool = True) -> None:
     """Shade the thesis's range where an axis goes beyond it, with a bracket beside a vertical one."""
-    from matplotlib.patches import Rectangle
-
-    band = {"color": style.BAND, "lw": 0, "zorder": 0}
-    if x and y:
-        ax.add_patch(Rectangle((x[0], y[0]), x[1] - x[0], y[1] - y[0], **band))
-    elif x:
-        ax.axvspan(*x, **band)
-    elif y:
-        ax.axhspan(*y, **band)
+    if x and y and x.left and y.left:
+        thesis_box(ax, (x.low, x.high), (y.low, y.high), x.uncertain or y.uncertain)
+    elif x and x.left:
+        ax.axvspan(x.low, x.high, **_band(x.uncertain))
+    elif y and y.left:
+        ax.axhspan(y.low, y.high, **_band(y.uncertain))
     if y:
         bracket = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
         line = {"arrowstyle": "|-|,widthA=.2,widthB=.2", "color": style.GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
-        ax.annotate("", (1.02, y[0]), (1.02, y[1]), arrowprops=line, **bracket)
-    if y and text:
-        ax.annotate("thesis axis range", (1.03, sum(y) / 2), xycoords=("axes fraction", "data"), rotation=90,
-                    ha="left", va="center", fontsize=6, color=style.GREY)  # fmt: skip
+        line["ls"] = (0, (2, 2)) if y.uncertain else "-"
+        ax.annotate("", (1.02, y.low), (1.02, y.high), arrowprops=line, **bracket)
+        words = "thesis axis,\nuncertain" if y.uncertain else "thesis axis\nrange"
+        says = {"rotation": 90 if text else 0, "ha": "left", "va": "center", "multialignment": "center", "linespacing": 1.0}
+        ax.annotate(words if text else "?" * y.uncertain, (1.03, (y.low + y.high) / 2), xycoords=("axes fraction", "data"),
+                    fontsize=6, color=style.GREY, **says)  # fmt: skip
+
+
+def _band(uncertain: bool) -> dict[str, object]:
+    """How the thesis's range is shaded: an uncertain one is hatched."""
+    plain = {"lw": 0, "zorder": 0}
+    return plain | ({"fc": "white", "ec": "0.9", "hatch": "///"} if uncertain else {"color": style.BAND})
+
+
+def thesis_box(ax: Axes, x: tuple[float, float], y: tuple[float, float], uncertain: bool) -> None:
+    """What the thesis's axes show as a rectangle; hatched, with a question mark, if a reading of them is uncertain."""
+    from matplotlib.patches import Rectangle
+
+    ax.add_patch(Rectangle((x[0], y[0]), x[1] - x[0], y[1] - y[0], **_band(uncertain)))
+    if uncertain:
+        ax.annotate("?", (x[1], y[1]), (-2, -2), textcoords="offset points", ha="right", va="top", fontsize=6.5, color=style.GREY)
 
 
 def wide_limits(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
     """Axes of the thesis's ranges, and of the data where they leave them at either end; what the thesis shows is then shaded."""
-    from matplotlib.patches import Rectangle
-
-    box = []
+    box, doubt = [], False
     for column, set_limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
-        ranges = rows.loc[~is_simulated(rows) & rows["source"].str.contains("axis range"), column].dropna()
+        marks = rows["source"].str.contains("axis range") & rows[column].notna()
+        ranges = rows.loc[~is_simulated(rows) & marks, column]
+        doubt |= bool(rows.loc[marks, "source"].str.contains("uncertain").any())
         data = rows.loc[~rows["source"].str.contains("axis range"), column].dropna()
         low, high = (ranges.min(), ranges.max()) if len(ranges) else (min(0.0, data.min()), data.max())
         wide = min(low, data.min()), max(high, data.max(), low + 1e-9)
         margin = 0.05 * (wide[1] - wide[0])
-        set_limits(low if wide[0] == low else wide[0] - margin, high if wide[1] == high and len(ranges) else wide[1] + margin)
+        on_the_axis = data.min() <= low + 0.2 * margin  # so that it does not cut the points
+        set_limits(
+            wide[0] - (margin if wide[0] < low else 0.4 * margin * on_the_axis),
+            high if wide[1] == high and len(ranges) else wide[1] + margin,
+        )
         box.append((low, high, wide != (low, high) and len(ranges) > 0))
-    if any(beyond for *_, beyond in box) and all(len(rows[column].dropna()) for column in (x, y)):
+    if (doubt or any(beyond for *_, beyond in box)) and all(len(rows[column].dropna()) for column in (x, y)):
         (left, right, _), (bottom, top, _) = box
-        ax.add_patch(Rectangle((left, bottom), right - left, top - bottom, color=style.BAND, lw=0, zorder=0))
+        thesis_box(ax, (left, right), (bottom, top), doubt)
 
 
 def leave_room_for_brackets(fig: Figure) -> None:
@@ -184,18 +250,18 @@ def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
     rows = shape_of(frame)
     x, y = rows[DISTANCE].to_numpy(), rows[HEIGHT].to_numpy()
     top = y.max() + 0.35
-    ax.fill_between(x, y, top, color="0.87", lw=0)
-    ax.plot(x, y, color=style.INK, lw=1.0)
+    ax.fill_between(x, y, top, color=style.PALE, lw=0)
+    ax.plot(x, y, color=style.INK, lw=0.9)
     ax.set(xlim=(x[0], x[-1]), ylim=(y.min() - 0.1, top), yticks=[-0.4, 0])
     ax.tick_params(labelbottom=False)
-    ax.set_ylabel("mm")
+    ax.set_ylabel("height\n(mm)")
     runs = [run for _, run in rows.groupby((rows[CURVATURE].diff() != 0).cumsum()) if run[CURVATURE].iloc[0] > 0 and len(run) > 2]
     room = 0.034 * (x[-1] - x[0])
     if x[-1] in runs[-1][DISTANCE].to_numpy() and np.ptp(runs[-1][DISTANCE]) < room:  # cut off by the picture's end
         runs.pop()
     places = [(run[DISTANCE].iloc[0] + run[DISTANCE].iloc[-1]) / 2 for run in runs]
     for run, place in zip(runs, style.spread(places, room, x[0] + room / 2, x[-1] - room / 2), strict=True):
-        ax.text(place, top - 0.06, f"{run[CURVATURE].iloc[0]:.0f}", ha="center", va="top", fontsize=6.5)
+        ax.text(place, top - 0.06, f"{run[CURVATURE].iloc[0]:.0f}", ha="center", va="top", fontsize=6)
 
 
 def below_surface(fig: Figure, frame: pd.DataFrame, count: int, along: bool = True) -> list[Axes]:

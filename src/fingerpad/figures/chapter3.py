@@ -19,6 +19,7 @@ from fingerpad.figures.geometry import (
     LAYERS,
     NOTE,
     boundaries,
+    densify,
     draw_indenter,
     draw_mesh,
     inward,
@@ -32,7 +33,7 @@ from fingerpad.figures.geometry import (
     surface_deflection,
 )
 from fingerpad.figures.grammar import Data, Figure, Own, Panels, below
-from fingerpad.measures.features import ERROR, error_percent, is_simulated, ramp_end
+from fingerpad.measures.features import ERROR, SIMULATED, error_percent, is_simulated, ramp_end
 from fingerpad.measures.quantities import DEFLECTION, DEPTH, NEWTON, TIME, X, Y
 from fingerpad.measures.runs import NINE, Runs
 from fingerpad.measures.steady import (
@@ -64,10 +65,8 @@ SECTIONS = {
 }
 """Panels of Fig 3-11: scene and depth (m)."""
 SHOWN = 7.5  # mm, half of the surface shown: beyond it the flanks are too steep for a deflection at a distance
-STATE_LINES = {"undeformed": {"ls": (0, (3, 2)), "lw": 0.8, "color": style.GREY}, "deformed": {"ls": "-", "lw": 1.3}}
-MODEL = "Lines: simulated in plane strain, not measured."
-NOT_AVAILABLE = "The recordings of subjects that Cysyk (1999) shows here are not available: the model stands alone."
-BAND = "Grey band: axis range of Cysyk (1999) where more is shown."
+STATE_LINES = {"undeformed": {"ls": "-", "lw": 0.6, "color": style.GREY}, "deformed": {"lw": 1.2}}
+MODEL = "Lines: simulated, not measured."
 
 
 def note_of(words: Callable[[str], list[str]]) -> Callable[[pd.DataFrame], list[str]]:
@@ -75,8 +74,8 @@ def note_of(words: Callable[[str], list[str]]) -> Callable[[pd.DataFrame], list[
 
     def note(frame: pd.DataFrame) -> list[str]:
         worst = frame[ERROR].max()
-        error = f"Discretisation error ≤ {worst:.2g} %" if np.isfinite(worst) else "Discretisation error not computed"
-        return style.wrapped(words(error), style.NOTE_WIDTH - 12)
+        error = f"Discretisation error {worst:.2g} %" if np.isfinite(worst) else "Discretisation error not computed"
+        return words(error)
 
     return note
 
@@ -96,13 +95,14 @@ def section_lines(data: Data) -> pd.DataFrame:
 def three_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     """Boundaries of the section: layers, symmetry, stratum corneum."""
     axes = fig.subplots(1, 3, sharey=True)
-    titles = ("(a) layers and bone", "(b) symmetric, smooth, offset", "(c) with stratum corneum")
+    titles = ("layers and bone", "layers offset from the skin", "with stratum corneum")
     lines = {layer: rows[[X, Y]].to_numpy() for layer, rows in frame.groupby("layer")}
     skin, apex = lines["stratum corneum"], {layer: line[:, 1].max() for layer, line in lines.items()}
     for ax, title in zip(axes, titles, strict=True):
         ax.set(title=title, aspect="equal", xlim=(-10, 10), ylim=(-8.2, 9.6), xlabel=X.label, yticks=[-6, -3, 0, 3, 6])
+        ax.tick_params(labelleft=True)
     axes[0].set_ylabel(Y.label)
-    small = {"ha": "center", "fontsize": 7}
+    small = {"ha": "center", "fontsize": 6.5}
 
     fill(axes[0], {k: v for k, v in lines.items() if k != "epidermis"}, merged=True)
     bands = {"epidermis": ("stratum corneum", "dermis", -7.0), "dermis": ("dermis", "fat", -1.0)}
@@ -112,17 +112,26 @@ def three_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     axes[0].text(0, (lines["bone"][:, 1].min() + apex["bone"]) / 2, "bone", va="center", **small)
     axes[0].text(0, -7.3, f"{np.ptp(skin[:, 0]):.1f} × {np.ptp(skin[:, 1]):.1f} mm", va="center", **small)
 
-    for layer in ("stratum corneum", "dermis", "fat", "bone"):
-        x, y = lines[layer].T
-        axes[1].plot(x, y, color=style.INK, lw=1.0)
-        axes[1].plot(-x, y, color=style.COLOURS["630"], lw=1.0, ls=(0, (2, 3)))
-    axes[1].axvline(0, ymax=0.83, color=style.GREY, lw=0.6, ls=(0, (6, 2, 1, 2)))
     thick = apex["stratum corneum"] - apex["dermis"], apex["dermis"] - apex["fat"]
-    text = f"epidermis {thick[0]:.2f} mm, dermis {thick[1]:.2f} mm\ndashed: mirror image"
+    offset_construction(axes[1], lines, thick)
+    text = f"epidermis {thick[0]:.2f} mm, dermis {thick[1]:.2f} mm\ndots: so far along the normals of the skin"
     axes[1].text(0, 9.3, text, va="top", **small)
 
     fill(axes[2], lines, merged=False)
     point_out(axes[2], f"stratum corneum, {apex['stratum corneum'] - apex['epidermis']:.2f} mm", (0, 5.85), (0, 8.3))
+
+
+def offset_construction(ax: Axes, lines: dict[str, np.ndarray], thick: tuple[float, float]) -> None:
+    """The boundaries, and points on the normals of the skin at the layers' thicknesses (mm), which lie on them."""
+    for layer in ("stratum corneum", "dermis", "fat", "bone"):
+        ax.plot(*lines[layer].T, color=style.INK, lw=0.8)
+    skin = densify(lines["stratum corneum"], 0.2)
+    moved = [inward(skin, depth) for depth in (thick[0], sum(thick))]
+    for k in range(0, len(skin) - 1, 16):
+        feet = [line[k] for line in moved]
+        if skin[k, 1] > -1.0:
+            ax.plot(*np.transpose([skin[k], feet[-1]]), color=style.HIGHLIGHT, lw=0.6)
+            ax.plot(*np.transpose(feet), "o", color=style.HIGHLIGHT, ms=1.8)
 
 
 def upper(loop: np.ndarray, x: float) -> float:
@@ -134,7 +143,7 @@ def upper(loop: np.ndarray, x: float) -> float:
 def point_out(ax: Axes, text: str, at: tuple[float, float], label: tuple[float, float]) -> None:
     """Name a place with a hairline."""
     line = {"arrowstyle": "-", "lw": 0.6, "color": style.INK, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate(text, at, label, ha="center", va="center", fontsize=7, arrowprops=line)
+    ax.annotate(text, at, label, ha="center", va="center", fontsize=6.5, arrowprops=line)
 
 
 def fill(ax: Axes, lines: dict[str, np.ndarray], merged: bool) -> None:
@@ -148,14 +157,16 @@ def fill(ax: Axes, lines: dict[str, np.ndarray], merged: bool) -> None:
 def shaded_mesh(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """The mesh, layers shaded."""
     draw_mesh(ax, frame)
-    ax.legend(handles=layer_patches(), loc="upper left", handlelength=1.2, bbox_to_anchor=(0.0, 1.02))
+    held = style.handle("held, as is the bone", color=style.INK, lw=2.4)
+    ax.legend(handles=[*layer_patches(), held], loc="upper left", handlelength=1.2, bbox_to_anchor=(0.0, 1.02))
     value = quality_of(frame)
     text = (
         f"{value['nodes (1)']:,.0f} nodes\n{value['elements (1)']:,.0f} elements\n"
-        f"smallest edge {value['smallest_edge (um)']:.0f} µm\n"
+        f"nodes under the contact {value['node_spacing_under_contact (um)']:.0f} µm apart\n"
+        f"smallest edge, behind the bone {value['smallest_edge (um)']:.0f} µm\n"
         f"worst scaled Jacobian {value['worst_scaled_jacobian (1)']:.2f}"
     )
-    ax.text(9.9, 6.75, text, ha="right", va="top", fontsize=7.5, linespacing=1.4)
+    ax.text(9.9, 6.75, text, ha="right", va="top", fontsize=6.5, linespacing=1.4)
 
 
 # --- 3-6, 3-7: beside what was measured ------------------------------------------------------------------
@@ -194,28 +205,45 @@ def deflections(data: Data) -> pd.DataFrame:
 def at_depths(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     """Simulated (lines) and measured (points), a colour a depth."""
     simulated = rows[is_simulated(rows)]
-    for k, (name, curve) in enumerate(simulated.groupby("series", sort=False)):
-        ax.plot(curve[X], curve[DEFLECTION], color=style.SHADES[k], lw=1.2, label=name)
+    looks = style.ordered("depth", simulated["series"])
+    for name, curve in simulated.groupby("series", sort=False):
+        look = looks[name]
+        ax.plot(curve[X], curve[DEFLECTION], color=look["color"], ls=look["ls"], lw=1.2)
         points = rows[~is_simulated(rows) & (rows["series"] == name)]
-        ax.plot(points[X], points[DEFLECTION], style.MARKERS[k], color=style.SHADES[k], ms=4)
+        ax.plot(points[X], points[DEFLECTION], look["marker"], color=look["color"], ms=3)
     axs.limit_axis(ax, rows, X, "x")
-    ax.legend(title="depth", loc="lower left", fontsize=7, title_fontsize=7, handlelength=1.2, borderaxespad=0.1)
+    bare = {} if "cylinder" in rows["panel"].iloc[0] else {"marker": ""}
+    handles = [style.handle(name, **look | bare, ms=3) for name, look in looks.items()]
+    ax.legend(handles=handles, title="depth", loc="lower left", handlelength=2.4, borderaxespad=0.1)
+    if "cylinder" not in rows["panel"].iloc[0]:
+        words = "steep walls:\nthe blade is\n0.1 mm wide"
+    else:
+        words = misfit_at_the_rim(rows)
+    ax.text(0.99, 0.03, words, transform=ax.transAxes, ha="right", fontsize=6)
+    ax.set_title(rows["panel"].iloc[0])
+
+
+def misfit_at_the_rim(rows: pd.DataFrame) -> str:
+    """In words, how far the deepest measured profile and the model are apart at its outermost point."""
+    points = rows[~is_simulated(rows) & rows[DEFLECTION].notna() & rows["series"].notna()]
+    points = points[points["series"] == rows.loc[is_simulated(rows), "series"].iloc[-1]].sort_values(X)
+    if points.empty:
+        return ""
+    last = points.iloc[-1]
+    curve = rows[is_simulated(rows) & (rows["series"] == last["series"])].sort_values(X)
+    here = float(np.interp(last[X], curve[X], curve[DEFLECTION]))
+    return f"at {last[X]:g} mm,\n{last['series']} deep:\n{last[DEFLECTION]:+.2f} measured\n{here:+.2f} model".replace("-", "−")
 
 
 def one_bracket(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     """Beside the last panel, for all."""
     for ax in list(panels.values())[:-1]:
-        for artist in [t for t in ax.texts if t.get_text() in ("", "thesis axis range")]:
+        for artist in [t for t in ax.texts if t.get_text() == "" or t.get_text().startswith("thesis axis")]:
             artist.remove()
 
 
 def deflection_words(error: str) -> list[str]:
-    return [
-        f"{MODEL} {error}. The line is a blade with a round tip of 0.1 mm radius.",
-        "Points: measured under cylinders of 3.17 and 9.52 mm diameter (MIT Touch Lab, of the kind of Srinivasan 1989; mean of "
-        "both sides, digitised by a third party). They stand in for the three subjects' profiles under a line load, which are "
-        f"not available. {BAND}",
-    ]
+    return [f"{MODEL} {error}. Points: measured (MIT Touch Lab; digitised by a third party)."]
 
 
 def forces_over_depth(data: Data) -> pd.DataFrame:
@@ -223,31 +251,45 @@ def forces_over_depth(data: Data) -> pd.DataFrame:
     ((_, plate, coarse),) = data.runs(STEADY_PLATE)
     ends = [partial(steady_force, depth=z) for z in pressed_depths(plate)]
     model = pd.DataFrame({"series": "model", DEPTH: DEPTH.read(plate), NEWTON: NEWTON.read(plate)})
-    points = []
+    points, fitted = [], []
     if data.measured is not None:
         rows = data.measured[(data.measured["indenter"] == "flat plate") & (data.measured["speed_mm_per_s"] == 0)]
         for subject, part in rows.groupby("subject", sort=False):
             values = {"series": f"subject {subject}", DEPTH: part["depth_mm"], NEWTON: part["force_N"]}
             points.append(pd.DataFrame({"source": measured_source(part), **values}))
-    return below(model.assign(**{ERROR: error_percent(plate, coarse, *ends)}), *points)
+        here = np.interp(rows["depth_mm"], model[DEPTH], model[NEWTON])
+        factor = float(here @ rows["force_N"] / (here @ here))
+        source = f"{SIMULATED}: times {factor:.3g}, closest to the measured forces"
+        fitted = [model.assign(source=source, series="model, fitted", **{NEWTON: factor * model[NEWTON]})]
+    rows = model.assign(**{ERROR: error_percent(plate, coarse, *ends)})
+    rows.insert(0, "source", SIMULATED)
+    return below(pd.concat([rows, *fitted], ignore_index=True), *points)
 
 
 def model_and_subjects(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
-    model = frame[is_simulated(frame)]
-    ax.plot(model[DEPTH], model[NEWTON], color=style.INK, label="model, 10 mm contact length")
+    model, fitted = (frame[frame["series"] == name] for name in ("model", "model, fitted"))
+    ax.plot(model[DEPTH], model[NEWTON], color=style.INK, label="model, contact length 10 mm")
     others = frame[~is_simulated(frame) & frame["series"].notna()]
-    for k, (name, rows) in enumerate(others.groupby("series", sort=False)):
-        ax.plot(rows[DEPTH], rows[NEWTON], style.MARKERS[k % 4], color=style.SHADES[k % 4], ms=5, label=name)
+    if len(fitted):
+        factor = float((fitted[NEWTON] / model[NEWTON].to_numpy()).max())
+        length = f"model times {factor:.2f}: a length of {10 * factor:.1f} mm, or softer"
+        ax.plot(fitted[DEPTH], fitted[NEWTON], color=style.HIGHLIGHT, ls=style.DASHED, label=length)
+        ends = [others[DEPTH].min(), others[DEPTH].max()]
+        mean = [others.loc[np.isclose(others[DEPTH], at), NEWTON].mean() for at in ends]
+        over = np.interp(ends, model[DEPTH], model[NEWTON]) / mean
+        words = (
+            f"model over the mean of the subjects: {over[0]:.1f} at {ends[0]:g} mm, {over[1]:.1f} at {ends[1]:g} mm.\n"
+            "A plane section touches as long a stretch of the finger\nat every depth; a finger touches more of it the deeper."
+        )
+        ax.text(0.03, 0.55, words, transform=ax.transAxes, va="top", fontsize=6.5)
+    looks = style.ordered("subject", others["series"])
+    for name, rows in others.groupby("series", sort=False):
+        look = {"color": looks[name]["color"], "marker": looks[name]["marker"], "ls": "none"}
+        ax.plot(rows[DEPTH], rows[NEWTON], **look, ms=4.5, label=name)
 
 
 def force_words(error: str) -> list[str]:
-    return [
-        f"{MODEL.replace('Lines', 'Line')} {error}. Moduli of the default specimen (0.15, 0.015 and 0.015 MPa), contact "
-        "length 10 mm: not fitted to these subjects. Force tells modulus x contact length alone: "
-        "see figures/studies/calibration_fit.",
-        "Points: measured (Dandekar, Raju and Srinivasan 2003; digitised by a third party), four subjects, the same plate and "
-        f"depths; Cysyk (1999) shows five subjects. {BAND}",
-    ]
+    return [f"{MODEL} {error}. Points: measured (Dandekar et al. 2003; digitised by a third party)."]
 
 
 # --- 3-8, 3-9: ramp and hold -----------------------------------------------------------------------------
@@ -270,28 +312,29 @@ def ramp_and_hold(data: Data, runs: Runs, until: float) -> pd.DataFrame:
 
 def forces_over_time(ax: Axes, frame: pd.DataFrame, spec: Figure, at_curves: bool) -> None:
     """Curves and steady levels, each with its name and peak over steady force: at the curve's end or in a legend."""
-    simulated, dashes = frame[is_simulated(frame)], {"lw": 0.8, "ls": (0, (2, 2))}
-    for colour, (name, rows) in zip(style.SHADES, simulated.groupby("series", sort=False), strict=False):
+    simulated, dashes = frame[is_simulated(frame)], {"lw": 0.7, "ls": (0, (2, 2)), "color": style.GREY}
+    looks = style.ordered("depth", simulated["series"])
+    for name, rows in simulated.groupby("series", sort=False):
+        look = {part: looks[name][part] for part in ("color", "ls")}
         curve, steady = (rows[rows["phase"] == phase] for phase in ("ramp and hold", "steady state"))
-        ax.plot(steady[TIME], steady[NEWTON], color=colour, **dashes)
+        ax.plot(steady[TIME], steady[NEWTON], **dashes)
         label = f"{name}: peak / steady {curve[NEWTON].max() / steady[NEWTON].iloc[0]:.2f}"
-        ax.plot(curve[TIME], curve[NEWTON], color=colour, label="_" * at_curves + label)
+        ax.plot(curve[TIME], curve[NEWTON], **look, label="_" * at_curves + label)
         if at_curves:
             end, away = curve.iloc[-1], {"xytext": (-2, 5), "textcoords": "offset points", "ha": "right"}
-            ax.annotate(label, (end[TIME], end[NEWTON]), color=colour, fontsize=8, **away)
-    ax.plot([], [], color=style.INK, label="steady state, solved as such", **dashes)
+            ax.annotate(label, (end[TIME], end[NEWTON]), fontsize=6.5, **away)
+    ax.plot([], [], label="steady state, solved as such", **dashes)
 
 
 def model_alone(frame: pd.DataFrame) -> list[str]:
-    marks = f" {BAND}" if (~is_simulated(frame)).any() else ""
-    return note_of(lambda error: [f"{MODEL} {error}. Contact length 10 mm.", NOT_AVAILABLE + marks])(frame)
+    return note_of(lambda error: [f"{MODEL} {error}. Contact length 10 mm; the recordings are not public."])(frame)
 
 
 def held(number: str, title: str, scenes: Mapping[str, str], unit: str, until: float, thesis: tuple[str, str], at_curves: bool):
     """Figs 3-8 and 3-9."""
     runs = Runs("series", {f"{label} {unit}": scene for label, scene in scenes.items()})
     return Figure(number, title, (STEADY_PLATE, runs), TIME, (NEWTON,), dict(zip((TIME, NEWTON), thesis, strict=True)),
-                  Panels(height=4.0, fill=partial(forces_over_time, at_curves=at_curves), legend={"loc": "upper right"}),
+                  Panels(height=3.0, fill=partial(forces_over_time, at_curves=at_curves), legend={"loc": "upper right"}),
                   rows=partial(ramp_and_hold, runs=runs, until=until), note=model_alone)  # fmt: skip
 
 
@@ -300,24 +343,30 @@ def held(number: str, title: str, scenes: Mapping[str, str], unit: str, until: f
 
 def under_the_bar(data: Data) -> pd.DataFrame:
     """The section, undeformed and under the 1/16 inch bar at 2 mm: closed layer boundaries, the bar's lower side."""
-    history, layers = data.histories[BAR], ("skin", "dermis", "fat", "bone")
+    history, layers = data.histories[BAR], ("skin", "corneum", "dermis", "fat", "bone")
     error = section_error(history, data.coarse.get(BAR))
-    pressed = section_rows("1/16 inch bar, 2 mm", "deformed", section(history, 2e-3), (*layers, "indenter"), error)
-    before = section_rows("undeformed", "undeformed", section(history, 0.0), layers, error)
+    pressed = section_rows("1/16 inch bar, 2 mm", "deformed", section(history, 2e-3, corneum=True), (*layers, "indenter"), error)
+    before = section_rows("undeformed", "undeformed", section(history, 0.0, corneum=True), layers, error)
     return pd.concat([before, pressed], ignore_index=True)
 
 
 def shaded_section(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
-    for layer in ("skin", "dermis", "fat", "bone"):
+    named = {"skin": "stratum corneum", "corneum": "epidermis"}
+    for layer in ("skin", "corneum", "dermis", "fat", "bone"):
         loop = rows[rows["layer"] == layer]
-        colour = style.LAYER_COLOURS["epidermis" if layer == "skin" else layer]
+        colour = style.LAYER_COLOURS[named.get(layer, layer)]
         ax.fill(loop[X], loop[Y], facecolor=colour, edgecolor=style.INK, lw=0.7)
     draw_indenter(ax, rows)
 
 
 def name_layers(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    for name, y in {"epidermis": 5.57, "dermis": 4.72, "fat": 2.4, "bone": -1.8}.items():
-        panels["undeformed"].text(0, y, name, ha="center", va="center", fontsize=6 if name.endswith("dermis") else 7)
+    for name, y in {"epidermis": 5.4, "dermis": 4.72, "fat": 2.4, "bone": -1.8}.items():
+        panels["undeformed"].text(0, y, name, ha="center", va="center", fontsize=5.5 if name.endswith("dermis") else 6.5)
+    panels["undeformed"].annotate("stratum corneum", (-3.0, 5.25), (-5.4, 6.9), ha="center", fontsize=6.5,
+                                  arrowprops={"arrowstyle": "-", "lw": 0.6, "shrinkA": 0, "shrinkB": 0})  # fmt: skip
+    for ax in panels.values():
+        ax.plot([7.4, 9.4], [-6.2, -6.2], color=style.INK, lw=1.6, solid_capstyle="butt")
+        ax.text(8.4, -6.0, "2 mm", ha="center", va="bottom", fontsize=6.5)
 
 
 def six_indentations(data: Data) -> pd.DataFrame:
@@ -334,7 +383,7 @@ def six_indentations(data: Data) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-LINES = dict(zip(("corneum", "dermis", "fat"), style.SHADES, strict=False))
+LINES = {name: style.look_of("boundary", name) for name in ("corneum", "dermis", "fat")}
 
 
 def boundaries_of_layers(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
@@ -343,22 +392,20 @@ def boundaries_of_layers(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     ax.fill(bone[X], bone[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
     draw_indenter(ax, rows)
     for (state, layer), line in rows[rows["layer"].isin(LINES)].groupby(["phase", "layer"], sort=False):
-        ax.plot(line[X], line[Y], **{"color": LINES[layer]} | STATE_LINES["deformed" if alone else state])
+        above = line[Y] > -1.2  # the ends of a line at the picture's rim are crumbs
+        ax.plot(line[X].where(above), line[Y], **LINES[layer] | STATE_LINES["deformed" if alone else state])
 
 
 def name_boundaries(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    names = ("outside of the living epidermis", "epidermis to dermis", "dermis to fat")
-    handles = [style.handle(name, color=colour) for name, colour in zip(names, LINES.values(), strict=True)]
+    names = ("stratum corneum to epidermis", "epidermis to dermis", "dermis to fat")
+    handles = [style.handle(name, **look) for name, look in zip(names, LINES.values(), strict=True)]
     fig = panels["no load"].figure
     style.header_legend(fig, [*handles, style.handle("undeformed", **STATE_LINES["undeformed"])], columnspacing=1.4)
     panels["no load"].set_ylabel(Y.label)
 
 
 def section_words(extra: str) -> Callable[[str], list[str]]:
-    return lambda error: [
-        f"Simulated in plane strain, not measured. {error} (displacement of the layers under the indenters). {extra}",
-        "The MRI sections of Cysyk (1999) are not available: nothing stands in their place.",
-    ]
+    return lambda error: [f"Simulated, not measured. {error} (of the layers under the indenters). {extra}"]
 
 
 FIGURES = (
@@ -366,20 +413,20 @@ FIGURES = (
            rows=section_lines, meshes=True, note=lambda frame: [NOTE]),
     Figure("3-5", "Finite element mesh of the fingerpad", FLAT, X, (Y,), {X: "T039a", Y: "T040a"},
 
-           Panels(height=5.3, fill=shaded_mesh, limit="",
+           Panels(height=5.0, fill=shaded_mesh, limit="",
                   set={"aspect": "equal", "xlim": (-10, 10), "ylim": (-6.6, 6.6), "xticks": range(-10, 11, 2),
                        "yticks": range(-6, 7, 2)}),
            meshes=True, note=lambda frame: [NOTE],
            rows=lambda data: mesh_rows(data.meshes[FLAT["flat"]], stratum_corneum(data.histories[FLAT["flat"]]))),
     Figure("3-6", "Surface deflection in the steady state", Runs("panel", PROFILES), X, (DEFLECTION,),
            {X: "T059", DEFLECTION: "T058a"},
-           Panels(height=3.6, by="panel", names=tuple(PROFILES), shape=(1, 3), fill=at_depths, limit="y", alike=True,
-                  titles=lambda name: f"({'abc'[list(PROFILES).index(name)]}) {name}", xlabel="distance from the axis (mm)",
+           Panels(height=2.9, by="panel", names=tuple(PROFILES), shape=(1, 3), fill=at_depths, limit="y", alike=True,
+                  xlabel="distance from the axis (mm)",
                   each=True, set={"xticks": [-10, -5, 0, 5, 10]}, share={"sharey": True}),
            rows=deflections, extra=one_bracket,
            measured="surface_profiles", note=note_of(deflection_words)),
     Figure("3-7", "Steady force under a flat plate", STEADY_PLATE, DEPTH, (NEWTON,), {DEPTH: "T063", NEWTON: "T062a"},
-           Panels(height=4.0, fill=model_and_subjects, legend={"loc": "upper left"}),
+           Panels(height=3.2, fill=model_and_subjects, legend={"loc": "upper left"}),
            rows=forces_over_depth, measured="force_depth", note=note_of(force_words)),
     held("3-8", "Force in ramp and hold, 2 mm/s to four depths", DEPTH_SCENES, "mm", 10.0, ("T067", "T066a"), True),
     held("3-9", "Force in ramp and hold to 1 mm, three speeds", SPEED_SCENES, "mm/s", 1.5, ("T071", "T070a"), False),
@@ -390,16 +437,14 @@ FIGURES = (
                   set={"aspect": "equal", "xlim": (-10, 10), "ylim": (-6.8, 7.4), "xticks": range(-10, 11, 5),
                        "yticks": (-6, -3, 0, 3, 6)}),
            rows=under_the_bar, extra=name_layers,
-           note=note_of(section_words("The stratum corneum is part of the outermost layer. The bar's edges have a radius of "
-                                      "0.1 mm."))),
+           note=note_of(section_words("The thesis's MRI sections are not public."))),
     Figure("3-11", "Layer boundaries under five indentations, steady state",
            Runs("panel", {panel: scene for panel, (scene, _) in SECTIONS.items()}), X, (Y,), {},
 
-           Panels(height=4.3, header=0.2, by="panel", names=tuple(SECTIONS), shape=(2, 3), fill=boundaries_of_layers, limit="",
+           Panels(height=3.6, header=0.16, by="panel", names=tuple(SECTIONS), shape=(2, 3), fill=boundaries_of_layers, limit="",
                   titles=str, share={"sharex": True, "sharey": True},
                   set={"aspect": "equal", "xlim": (-8.4, 8.4), "ylim": (-1.5, 6.5), "xticks": (-6, -3, 0, 3, 6),
                        "yticks": (0, 3, 6)}),
            rows=six_indentations, extra=name_boundaries,
-           note=note_of(section_words("The outermost line is 0.35 mm under the skin (the stratum corneum is left out, as in the "
-                                      "thesis): indenters stand off."))),
+           note=note_of(section_words("As in the thesis, without the stratum corneum."))),
 )  # fmt: skip

@@ -77,7 +77,7 @@ def by_surface(ids: str, labels: tuple = SURFACES) -> dict:
 WIDTH_IDS = by_surface("T106 T108 T110 T112 T114 T115 T116 T118 T120")
 
 
-def one_panel(x_label: float, height: float = 4.6) -> Panels:
+def one_panel(x_label: float, height: float = 2.7) -> Panels:
     """Nine traces against time, named at their ends."""
     return Panels(height=height, fill=Lines(ends=x_label))
 
@@ -162,15 +162,19 @@ def energy_rates(data: Data) -> pd.DataFrame:
 
 
 def bars_of_the_hold(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    """The thesis's ranges for the hold as bars on the right."""
+    """The thesis's ranges for the hold as bars at the right, broken where their reading is uncertain."""
     (ax,) = panels.values()
     ranges = frame[frame["source"].str.startswith("thesis range of Fig 4-9")]
-    for column, (label, ends) in enumerate(ranges.groupby("surface", sort=False)[WIDTH]):
-        x = 2.935 + 0.025 * (column % 3)
-        ax.plot([x, x], [ends.min(), ends.max()], color=style.COLOURS[label], lw=3.5, alpha=0.4, solid_capstyle="butt")
-    if not ranges.empty:
-        text = "bars: range of the hold on\nthe axes of thesis Fig. 4-9"
-        ax.text(2.99, 5.45, text, ha="right", va="bottom", fontsize=7, color=style.GREY)
+    if ranges.empty:
+        return
+    side = ax.inset_axes((1.03, 0, 0.2, 1), sharey=ax)
+    for (label, rows), column in zip(ranges.groupby("surface", sort=False), range(len(SURFACES)), strict=False):
+        doubt = rows["source"].str.contains("uncertain").any()
+        side.plot([column] * 2, [rows[WIDTH].min(), rows[WIDTH].max()], **axs.look(label), lw=2.2, solid_capstyle="butt",
+                  ls=(0, (0.6, 0.5)) if doubt else "-")  # fmt: skip
+    side.set(xticks=[], xlim=(-0.7, len(SURFACES) - 0.3))
+    side.tick_params(labelleft=False)
+    side.set_title("range of the hold,\nthesis's Fig. 4-9\n(broken: uncertain)", fontsize=6)
 
 
 def phase_legend(*phases: str):
@@ -178,7 +182,8 @@ def phase_legend(*phases: str):
 
     def extra(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
         fig = next(iter(panels.values())).figure
-        style.header_legend(fig, [style.handle(p, color=style.INK, **axs.PHASE_LINES[p]) for p in phases or PHASES])
+        looks = {p: axs.look("210") | axs.PHASE_LINES[p] for p in phases or PHASES}
+        style.header_legend(fig, [style.handle(p, **look) for p, look in looks.items()])
 
     return extra
 
@@ -189,28 +194,42 @@ def half_millimetres(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None
     phase_legend()(panels, frame)
 
 
+def own_widths(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """Every surface on as much of the axis as it touches."""
+    for label, ax in panels.items():
+        reach = 1.12 * frame.loc[is_simulated(frame) & (frame["surface"] == label), X].abs().max()
+        ax.set_xlim(-reach, reach)
+    phase_legend()(panels, frame)
+
+
+def pad_titles(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    panels["homogeneous"].set_title("homogeneous pad, its modulus such that it sinks as deep")
+    panels["layered"].set_title("layered pad")
+    phase_legend()(panels, frame)
+
+
 def mark_critical_distance(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     (ax,) = panels.values()
     critical = frame.loc[frame["source"].str.startswith("distance stated"), X]
     if not critical.empty:
-        y = 0.045 * ax.get_ylim()[1]
+        y = 0.93 * ax.get_ylim()[1]
         ends = {"arrowstyle": "|-|,widthA=.3,widthB=.3", "color": style.GREY, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (critical.min(), y), (critical.max(), y), arrowprops=ends)
         text = f"{np.ptp(critical):.1f} mm from the edge:\ncritical distance\nstated in the thesis"
-        ax.text(critical.max() + 0.02, y, text, ha="left", va="bottom", fontsize=7, color=style.GREY)
+        ax.text(critical.max() + 0.02, y, text, ha="left", va="center", fontsize=6.5, color=style.GREY)
     phase_legend()(panels, frame)
 
 
 def energy_and_pressure(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    looks = {"strain energy density": STEADY, "scaled pressure": TOP}
-    handles = [style.handle(name, color=style.INK, **axs.PHASE_LINES[phase]) for name, phase in looks.items()]
+    looks = {"strain energy density": axs.FIRST, "scaled pressure": axs.SECOND}
+    handles = [style.handle(name, color=style.INK, **look) for name, look in looks.items()]
     style.header_legend(panels["flat"].figure, handles)
 
 
 def surfaces_above(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     names = {label: "flat plate" if label == "flat" else f"{label} 1/m" for label in SURFACES}
-    handles = [style.handle(name, color=style.COLOURS[label]) for label, name in names.items()]
-    style.header_legend(panels[UM[0]].figure, handles, handlelength=1.0, columnspacing=1.2, fontsize=7)
+    handles = [style.handle(name, **axs.look(label), lw=2) for label, name in names.items()]
+    style.header_legend(panels[UM[0]].figure, handles, handlelength=1.0, columnspacing=1.2)
 
 
 def force_or_pressure(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
@@ -223,14 +242,14 @@ def force_or_pressure(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def every_node(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
-    """One trace a contact node, the centre solid."""
+    """One trace a contact node, the centre thick."""
     rows = frame[is_simulated(frame)]
-    looks = {name: {"color": style.COLOURS["210"]} | axs.PHASE_LINES[name] for name in (STEADY, PHASES[0])}
+    thick, thin = axs.look("210") | {"lw": 1.8}, {"color": style.GREY, "lw": 0.7}
     for x, trace in rows.groupby(NODE):
-        ax.plot(trace[TIME], trace[P], **looks[STEADY if abs(x) < 1e-6 else PHASES[0]])
+        ax.plot(trace[TIME], trace[P], **thick if abs(x) < 1e-6 else thin)
     spacing = np.diff(np.sort(rows[NODE].unique())).mean()
-    names = "centre node", f"other nodes, about {spacing * 1e3:.0f} µm apart"
-    ax.legend(handles=[style.handle(name, **look) for name, look in zip(names, looks.values(), strict=True)], loc="upper right")
+    names = {"centre node": thick, f"other nodes, about {spacing * 1e3:.0f} µm apart": thin}
+    ax.legend(handles=[style.handle(name, **look) for name, look in names.items()], loc="upper right")
 
 
 def three_by_three(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
@@ -238,7 +257,7 @@ def three_by_three(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     axes = fig.subplots(3, 3)
     ticks = {"flat": (-5, 0, 5), "158": (-4, -2, 0, 2, 4), "1260": (-2, 0, 2)}
     titles = {
-        "pressure": P.label,
+        "pressure": "contact pressure (kPa)",
         "800 um": "strain energy density (Pa)\n800 µm, epidermis",
         "915 um": "strain energy density (Pa)\n915 µm, dermis",
     }
@@ -249,6 +268,8 @@ def three_by_three(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
             shown = replace(spec, y=(P if panel == "pressure" else SED,))
             axs.limit_axis(ax, rows, shown.y[0])
             Phases()(ax, rows, shown)
+            if panel == "pressure":
+                style.in_kilo(ax.yaxis)
             ax.set(xlim=(ticks[label][0], ticks[label][-1]), xticks=ticks[label])
     for top, bottom, label in zip(axes[0], axes[-1], ticks, strict=True):
         top.set_title(axs.surface_name(label))
@@ -263,70 +284,70 @@ def legs_of_rates(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
         time, rate = rows[TIME].to_numpy(), rows[RATE].to_numpy()
         jump = int(np.flatnonzero(np.diff(time) == 0)[0]) + 1
         for leg in (slice(jump), slice(jump, None)):
-            ax.plot(time[leg], rate[leg], color=style.COLOURS[label])
+            ax.plot(time[leg], rate[leg], **axs.look(label))
         ax.plot(time[jump - 1 : jump + 1], rate[jump - 1 : jump + 1], color=style.GREY, lw=0.5, zorder=1)
         ends[label] = (time[jump - 1], rate[jump - 1])
-    style.label_ends(ax, ends, ends["flat"][0] * 1.3, "curvature (1/m)")
+    style.label_ends(ax, ends, ends["flat"][0] * 1.5, "curvature (1/m)")
     lowest = frame.loc[is_simulated(frame), RATE].min()
-    text = f"hold: rates below zero (to {lowest:.0f} Pa/s), off the axis"
-    ax.text(1.75, 60, text, ha="center", fontsize=7, color=style.GREY)
+    text = f"hold: rates below zero\n(to {lowest:.0f} Pa/s), off the axis"
+    ax.text(0.97, 0.05, text, transform=ax.transAxes, ha="right", fontsize=6.5, color=style.GREY)
 
 
 FIGURES = (
     Figure("4-6", "Skin profile at the top of the ramp and in steady state, 20 gf", NINE, X, (Y,), {X: "T100", Y: "T101"},
-           nine(SURFACES, 6.6, header=0.2, fill=Phases(order=(STEADY, TOP)), limit="x", ylabel=Y,
+           nine(SURFACES, 5.6, header=0.16, fill=Phases(order=(STEADY, TOP)), limit="x", ylabel=Y,
                 set={"ylim": (3, 6), "xticks": [-10, 0, 10], "yticks": [3, 4, 5, 6]}),
            rows=skin, extra=phase_legend(TOP, STEADY)),
     Figure("4-7", "Indentation depth, 40 gf/s ramp to 20 gf, 2 s hold", NINE, TIME, (DEPTH,), {TIME: "T103", DEPTH: "T102"},
-           one_panel(2.62)),
+           one_panel(2.62), width=style.COLUMN_WIDTH),
     Figure("4-8", "Contact width, 40 gf/s ramp to 20 gf, 2 s hold", NINE, TIME, (WIDTH,), {TIME: "T105", WIDTH: "T104"},
-           one_panel(2.54), after=implied_widths, extra=bars_of_the_hold),
+           one_panel(2.54, 3.2), after=implied_widths, extra=bars_of_the_hold),
     Figure("4-10", "Contact pressure at the centre of the fingerpad", NINE, TIME, (FORCE, P_CENTRE),
            {TIME: "T124", FORCE: "T122", P_CENTRE: "T123"},
-           Panels(height=6.6, pairs=((TIME, FORCE), (TIME, P_CENTRE)), shape=(2, 1), fill=force_or_pressure,
+           Panels(height=4.9, pairs=((TIME, FORCE), (TIME, P_CENTRE)), shape=(2, 1), fill=force_or_pressure,
                   share={"sharex": True, "height_ratios": (1, 3.2)})),
     Figure("4-11", "Contact pressure across the contact region", NINE, X, (P,), {X: "T134", P: PRESSURE_IDS},
-           nine(SURFACES, 6.8, header=0.2, fill=Phases(), xlabel="horizontal location (mm)"),
-           rows=lambda data: data.profiles(NINE).drop(columns=DOWN), extra=phase_legend()),
+           nine(SURFACES, 5.9, header=0.16, fill=Phases(), xlabel="horizontal location (mm)", limit="y"),
+           rows=lambda data: data.profiles(NINE).drop(columns=DOWN), extra=own_widths),
     Figure("4-12", "Flat plate: pressure on a homogeneous and on the layered pad", PADS, X, (P,),
            {X: "T137", P: {"homogeneous": "T135", "layered": "T136"}},
-           Panels(height=6.3, header=0.2, by="pad", names=tuple(PADS), shape=(2, 1), fill=Phases(colour="flat"), each=True,
-                  set={"xlabel": X.label},
-                  titles=lambda pad: f"({'ab'[list(PADS).index(pad)]}) {pad} pad"),
-           key="pad", rows=lambda data: data.profiles(PADS).drop(columns=DOWN), extra=phase_legend()),
+           Panels(height=3.1, header=0.16, by="pad", names=tuple(PADS), shape=(1, 2), fill=Phases(colour="flat"), each=True,
+                  share={"sharey": True}, set={"xlabel": X.label}),
+           key="pad", rows=lambda data: data.profiles(PADS).drop(columns=DOWN), extra=pad_titles),
     Figure("4-13", "Contact pressure against vertical displacement of every contact node", NINE, DOWN, (P,),
            {DOWN: {k: "T143" if k in SURFACES[:3] else "T144" for k in SURFACES},
             # of 79 and 105 those of Fig 4-11: only a tick at 5000 Pa is legible in Fig 4-13 itself (T139)
             P: by_surface("T138 T126 T127 T140 T140 T140 T141 T141 T142")},
-           nine(SURFACES, 6.8, header=0.2, fill=Phases()),
+           nine(SURFACES, 5.9, header=0.16, fill=Phases()),
            rows=lambda data: data.profiles(NINE, half=True).drop(columns=X), extra=half_millimetres),
     Figure("4-14", "Pressure from the centre outwards over time, K = 210 1/m", K210, X, (P,), {X: "T146", P: "T145"},
-           Panels(height=4.7, header=0.2, fill=Phases(), xlabel="distance from the centre (mm)"),
+           Panels(height=3.5, header=0.16, fill=Phases(), xlabel="distance from the centre (mm)"),
            rows=lambda data: data.profiles(K210, half=True).drop(columns=DOWN), after=critical_distance,
            extra=mark_critical_distance),
     Figure("4-15", "Maximum and centre pressure, K = 210 1/m", K210, TIME, (P_PEAK, P_CENTRE), {TIME: "T149", P_PEAK: "T148"},
-           Panels(height=4.2,
-                  fill=Lines(looks={P_CENTRE: axs.PHASE_LINES[TOP]}, names={P_PEAK: "maximum", P_CENTRE: "centre node"}),
-                  ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6})),
+           Panels(height=2.6,
+                  fill=Lines(looks={P_PEAK: axs.FIRST, P_CENTRE: axs.SECOND | {"color": style.HIGHLIGHT}},
+                             names={P_PEAK: "maximum", P_CENTRE: "centre node"}),
+                  ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6}), width=style.COLUMN_WIDTH),
     Figure("4-16", "Pressure at each node of the contact region, K = 210 1/m", K210, TIME, (P,), {TIME: "T151", P: "T150"},
-           Panels(height=4.6, fill=every_node), rows=nodes),
+           Panels(height=3.4, fill=every_node), rows=nodes),
     Figure("4-20", "Pressure and strain energy profiles, 150 gf/s ramp to 20 gf", THREE, X, (P,), {},
-           Own(height=7.0, header=0.2, paint=three_by_three), rows=profiles_and_receptors, after=axes_of_three),
+           Own(height=6.2, header=0.16, paint=three_by_three), rows=profiles_and_receptors, after=axes_of_three),
     Figure("4-21", f"Strain energy density at 915 µm and contact pressure × {PRESSURE_SCALE}, centre", NINE, TIME,
            (SHOWN, P_SCALED),
            {SED: by_surface("T173 T174 T175 T176 T177a T177b T178 T179", tuple(k for k in SURFACES if k != "158"))},
-           nine(SURFACES, 6.8, header=0.2, limit="y", set=HOLD,
-                fill=Lines(looks={SED: axs.PHASE_LINES[STEADY], P_SCALED: axs.PHASE_LINES[TOP]}),
+           nine(SURFACES, 5.9, header=0.16, limit="y", set=HOLD,
+                fill=Lines(looks={SED: axs.FIRST, P_SCALED: axs.SECOND}),
                 ylabel=f"strain energy density, contact pressure × {PRESSURE_SCALE} (Pa)"),
            checked=(SHOWN, P_CENTRE), extra=energy_and_pressure),
     Figure("4-23", "Strain energy density 915 µm under the centre", NINE, TIME, (SHOWN,), {TIME: "T189", SED: "T188"},
-           one_panel(2.62)),
+           one_panel(2.62, 3.0), width=style.COLUMN_WIDTH),
     Figure("4-24", "Strain energy density at nine depths under the centre", NINE, TIME, (SED,),
            {SED: by_surface("T192 T193 T194 T195 T196 T197 T198a T198b T198c", UM)},
-           nine(UM, 7.2, header=0.22, by=RECEPTOR, limit="y", set=HOLD, fill=Lines(by="surface"),
+           nine(UM, 6.2, header=0.18, by=RECEPTOR, limit="y", set=HOLD, fill=Lines(by="surface"),
                 titles=lambda z: f"{z:.0f} µm ({'epidermis' if z < 850 else 'dermis'})"),
            key=RECEPTOR, extra=surfaces_above,
            rows=lambda data: pd.concat([data.traces(NINE, (TIME, sed(z))).assign(**{RECEPTOR: round(z * 1e6)}) for z in DEPTHS])),
     Figure("4-28", "Rate of strain energy density 915 µm under the centre", NINE, TIME, (RATE,), {TIME: "T206", RATE: "T205"},
-           Panels(height=4.8, fill=legs_of_rates), rows=energy_rates),
+           Panels(height=3.0, fill=legs_of_rates), rows=energy_rates, width=style.COLUMN_WIDTH),
 )  # fmt: skip

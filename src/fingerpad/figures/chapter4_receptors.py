@@ -87,19 +87,24 @@ if TYPE_CHECKING:
 
 AVERAGED = 100
 """Trials that the frequency of Fig 4-3 is the mean of."""
+OFTEN = 8
+"""Impulses/s from which on a train has enough of them in Fig 4-3 that their mean frequency is not biased."""
 PRINTED = ("T083", "T084", "T085", "T086", "T087")
 """Mean rates of the hold that can be read beside the rasters of Fig 4-2."""
 
 RATES = "impulse_rates"
-LAW_NOTE = (
-    "Predicted, not recorded: Eq. 5-1 with the thesis's constants (0.081 (impulses/s)/Pa, 150 Pa; 0.0182 impulses/Pa, 100 Pa/s)"
-)
+LAW_NOTE = "Eq 5-1 with the thesis's constants (0.081 (impulses/s)/Pa, 150 Pa; 0.0182 impulses/Pa, 100 Pa/s)"
 DEEP = f"{LAW_NOTE}, 915 µm under the centre."
 STEADY_NOTE = f"{DEEP} Steady: mean of the last half of the hold."
 GOODWIN = "Goodwin 1995, first second", "monkey, spheres; ours: cylinders"
 HALF_SPACE = "half-space; ours: layered pad"
+SCALED = "The thesis prints no constants for this depth: energies are scaled to their mean at 915 µm over the nine surfaces."
+BESIDE = (
+    "Left: mean over the hold; the recorded rates are not public. Goodwin, Browning and Wheat (1995), digitised by a third "
+    "party: impulses in the first second (force rate not stated). TouchSim (Saal et al. 2017): a half-space."
+)
 PEAK_WORDS = "peak rate (impulses/s)"
-OF_THE_LARGEST = "of what is plotted, relative to the largest"
+OF_THE_LARGEST = "of the largest"
 PEAK, STEADY, HELD = (reading("rate", window) for window in ("peak", "steady", "hold"))
 
 # --- rows ------------------------------------------------------------------------------------------------
@@ -326,13 +331,13 @@ def peak_rates(data: Data) -> pd.DataFrame:
 
 def stamp(ax: Axes, text: str = "predicted", x: float = 0.985, y: float = 0.03, va: str = "bottom") -> None:
     """A word in the picture, so that it is not taken for a recording."""
-    ax.text(x, y, text, transform=ax.transAxes, fontsize=8, style="italic", color=style.GREY, ha="right", va=va)
+    ax.text(x, y, text, transform=ax.transAxes, style="italic", color=style.GREY, ha="right", va=va)
 
 
 def points(ax: Axes, rows: pd.DataFrame, x: str, y: str, **look) -> None:
     """One point a surface, in the surfaces' colours."""
     look = {"marker": "o", "s": 30, "zorder": 3, "clip_on": False} | look
-    ax.scatter(rows[x], rows[y], color=[style.COLOURS[label] for label in rows["surface"]], **look)
+    ax.scatter(rows[x], rows[y], color=[axs.look(label)["color"] for label in rows["surface"]], **look)
 
 
 def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
@@ -342,7 +347,7 @@ def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
     rows = frame[frame["source"].str.contains(r"stated in the thesis|^measured")]
     printed = rows["source"].str.startswith("stated")
     for mine, look, label in (
-        (rows[printed], {"marker": "s", "mfc": "none", "mec": style.INK}, "printed in the thesis (scan)"),
+        (rows[printed], {"marker": "s", "mfc": "none", "mec": style.INK}, "printed in the thesis, uncertain"),
         (rows[~printed], {"marker": "D", "color": style.INK}, "recorded"),
     ):
         if mine.empty:
@@ -367,7 +372,7 @@ def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     place = {label: k for k, label in enumerate(SURFACES)}
     for (label, series), train in frame[frame[IMPULSE].notna()].groupby(["surface", "series"]):
         row = place[label] + (int(series.split()[1]) - 1) * 0.2 - 0.3
-        ax.vlines(train[IMPULSE], row - 0.07, row + 0.07, color=style.COLOURS[label], lw=0.9)
+        ax.vlines(train[IMPULSE], row - 0.07, row + 0.07, **axs.look(label), lw=0.8)
     ax.set(xlim=(0, force[TIME].max()), ylim=(8.6, -0.6), xlabel=TIME.label, ylabel=CURVATURE.label, yticks=range(9))
     ax.set_yticklabels(["flat plate", *SURFACES[1:]])
     ax.tick_params(left=False)
@@ -376,11 +381,12 @@ def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     outside = {"transform": ax.get_yaxis_transform(), "ha": "right"}
     rows = frame[frame["panel"] == "mean rate of the hold"]
     for label, rate in zip(rows["surface"], rows[GIVEN_RATE], strict=True):
-        ax.text(1.062, place[label], f"{rate:.1f}", va="center", color=style.COLOURS[label], **outside)
+        ax.text(1.062, place[label], f"{rate:.1f}", va="center", **outside)
     curvatures = rows.set_index("surface")[CURVATURE]
     for entry in frame[frame["source"].str.startswith(("stated", "measured"))].to_dict("records"):
         at = [float((curvatures - k).abs().argmin()) for k in (entry[CURVATURE], entry[DOUBT]) if k == k]
-        ax.text(1.128, np.mean(at), f"{entry[GIVEN_RATE]:.1f}", va="center", color=style.GREY, **outside)
+        printed = f"{entry[GIVEN_RATE]:.1f}" + "?" * ("uncertain" in entry["source"])
+        ax.text(1.135, np.mean(at), printed, va="center", color=style.GREY, **outside)
     outside |= {"fontsize": 6.5}
     ax.text(1.066, -0.62, "predicted", color=style.INK, va="bottom", **outside)
     ax.text(1.135, -0.62, "printed", color=style.GREY, va="bottom", **outside)
@@ -394,15 +400,17 @@ def nine_frequencies(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     ends, both = {}, frame.assign(**{FREQUENCY: frame[[FREQUENCY, IMPULSE_RATE]].max(axis=1)})
     axs.limit_axis(ax, both[(both[TIME] <= 2) | both[TIME].isna()], FREQUENCY, text=False)
     for label in SURFACES:
-        rows, look = frame[frame["surface"] == label], {"color": style.COLOURS[label]}
+        rows, look = frame[frame["surface"] == label], axs.look(label)
         rate, frequency = rows[rows["series"] == "rate"], rows[rows["series"] != "rate"]
         jump = int(np.flatnonzero(np.diff(rate[TIME]) == 0)[0]) + 1
         for leg in (rate[:jump], rate[jump:]):
-            ax.plot(leg[TIME], leg[IMPULSE_RATE], lw=3.2, alpha=0.25, **look)
-        ax.plot(frequency[TIME], frequency[FREQUENCY], lw=1.0, **look)
+            ax.plot(leg[TIME], leg[IMPULSE_RATE], lw=1.3, **look)
+        often = np.interp(frequency[TIME], rate[TIME], rate[IMPULSE_RATE]) >= OFTEN
+        ax.plot(frequency[TIME], frequency[FREQUENCY].where(often), ".", ms=2, **look | {"ls": "none"})
         ends[label] = (2.0, float(np.interp(2.0, rate[TIME], rate[IMPULSE_RATE])))
     style.label_ends(ax, ends, 2.12, "curvature (1/m)")
-    stamp(ax, "predicted, not recorded", y=0.97, va="top")
+    dots = f"dots: mean frequency of its impulses,\nwhere over {OFTEN} a second"
+    stamp(ax, f"predicted, not recorded\nlines: rate\n{dots}", x=0.8, y=0.99, va="top")
 
 
 def points_and_line(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
@@ -412,40 +420,41 @@ def points_and_line(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     ax.plot(line[x], line[y], color=style.GREY, lw=1, label=source_text(line))
     own = frame[frame["source"] == SIMULATED]
     points(ax, own, x, y)
-    name_points(ax, own, x, y)
+    name_points(ax, own, x, y, line)
     mine = frame[frame["source"].str.startswith("measured")]
     if len(mine):
         ax.plot(mine[x], mine[y], "D", color=style.INK, ms=4.5, label="recorded")
-    stamp(ax)
+    stamp(ax, "predicted")
 
 
-def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
-    """Curvatures beside points; those at the same place share a label."""
+def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, line: pd.DataFrame) -> None:
+    """Curvatures beside points, on the side away from the line; those at the same place share a label."""
     rows = rows.sort_values([x, y])
     place = rows[[x, y]].to_numpy() / np.array([np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())])
     groups = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(place, axis=0).T) > 0.03)])
     for _, group in rows.groupby(groups):
         at = group[[x, y]].mean()
         across, up = ax.transLimits.transform(at)
-        left = up < 0.06 or across > 0.9  # at the floor and the right end labels are above to the left
+        left = up < 0.06 or at[y] > np.interp(at[x], line[x], line[y])  # at the floor above the point
+        left &= across > 0.08
         how = {"va": "bottom" if left else "top", "ha": "right" if left else "left"}
         away = (-5, 4) if left else (5, -4)
-        ax.annotate(", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=7, color=style.GREY, **how)
+        ax.annotate(", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=6.5, **how)
 
 
 def peak_and_steady_over_curvature(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """Peak (triangles) and steady rate (crosses), dotted, with their lines."""
     own = frame[frame["source"] == SIMULATED]
     for column, marker, name in ((GIVEN_RATE, "^", "peak"), (STEADY_RATE, "P", "steady")):
-        ax.plot(own[CURVATURE], own[column], ":", color=style.GREY, lw=0.9)
+        ax.plot(own[CURVATURE], own[column], ":", color=style.GREY, lw=0.9, zorder=1)
         points(ax, own, CURVATURE, column, marker=marker, s=38)
         line = frame[frame["source"].str.contains("line") & frame[column].notna()]
         ax.plot(line[CURVATURE], line[column], color=style.INK, lw=1)
         draw_given(ax, frame[frame[column].notna()], column)
         end = line.iloc[-1]
         ax.annotate(f"{name}: {source_text(line)}", (end[CURVATURE], end[column]), (0, 5), textcoords="offset points",
-                    ha="right", fontsize=7, color=style.INK)  # fmt: skip
-    kinds = [style.handle(f"{name} rate", ls="none", marker=m, color=style.INK) for m, name in (("^", "peak"), ("P", "steady"))]
+                    ha="right", fontsize=6.5, color=style.INK)  # fmt: skip
+    kinds = [style.handle(f"{name} rate", ls=":", marker=m, color=style.INK) for m, name in (("^", "peak"), ("P", "steady"))]
     ax.legend(handles=kinds + ax.get_legend_handles_labels()[0][:1], loc="upper left")
     stamp(ax)
 
@@ -458,16 +467,16 @@ def rate_over_width(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     ax.locator_params(axis="x", nbins=4)
     if own[IMPULSE_RATE].max() == 0:
         ax.text(0.5, 0.2, "below the threshold:\nno impulses predicted", transform=ax.transAxes, ha="center", va="center",
-                fontsize=7, color=style.GREY)  # fmt: skip
+                fontsize=6.5, color=style.GREY)  # fmt: skip
 
 
 def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     """Twelve panels: dotted simulated, solid and dashed by Eq 4-1."""
     axes = fig.subplots(4, 3, sharex=True, sharey=True)
     looks = {
-        "simulated": (P, {"ls": (0, (1, 1.2)), "lw": 1.8, "color": style.COLOURS["210"]}),
-        "Eq 4-1, one set": (P_LAW, {"ls": "-", "lw": 1.1, "color": style.INK}),
-        "Eq 4-1, a set for each": (P_LAW, {"ls": (0, (4, 1.5)), "lw": 0.9, "color": style.GREY}),
+        "simulated": (P, axs.look("210") | {"lw": 1.6}),
+        "Eq 4-1, one set": (P_LAW, {"ls": style.DASHED, "lw": 1.0, "color": style.INK}),
+        "Eq 4-1, a set for each": (P_LAW, {"ls": style.DOTTED, "lw": 1.0, "color": style.HIGHLIGHT}),
     }
     wide = frame.assign(**{P: frame[P].fillna(frame[P_LAW])})
     nodes = frame[is_simulated(frame)].groupby(NODE)
@@ -477,11 +486,12 @@ def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
         for series, (column, look) in looks.items():
             own = rows[rows["series"] == series]
             ax.plot(own[TIME], own[column], **look)
-        axs.limit_axis(ax, wide, P, text=k == 5)
+        axs.limit_axis(ax, wide, P, marked=k == 5)
+        style.in_kilo(ax.yaxis)
         ax.set(title=f"x = {x:.3g} mm", **HOLD)
     axes[3, 1].set_xlabel(TIME.label)
-    axes[2, 0].set_ylabel(P.label, y=1.15)
-    names = {"Eq 4-1, one set": "Eq. 4-1, one set of constants", "Eq 4-1, a set for each": "a set for each node"}
+    axes[2, 0].set_ylabel("contact pressure (kPa)", y=1.15)
+    names = {"Eq 4-1, one set": "Eq 4-1, one set of constants", "Eq 4-1, a set for each": "a set for each node"}
     style.header_legend(fig, [style.handle(names.get(name, name), **look) for name, (_, look) in looks.items()])
 
 
@@ -491,17 +501,12 @@ def energy_and_law(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     ax.plot(own[TIME], own[SED], "o", ms=2.4, mfc="none", mew=0.7, **axs.look(own["surface"].iloc[0]))
     ax.plot(own[TIME], own[SED_LAW], color=style.INK, lw=1)
     left = np.sqrt(np.mean((own[SED] - own[SED_LAW]) ** 2) / np.mean(own[SED] ** 2))
-    ax.text(0.97, 0.06, f"r.m.s. residual {left:.0%}", transform=ax.transAxes, ha="right", fontsize=7, color=style.GREY)
+    ax.text(0.97, 0.06, f"r.m.s. residual {left:.0%}", transform=ax.transAxes, ha="right", fontsize=6.5, color=style.GREY)
 
 
-def note_with(words, how: str = ""):
-    """A note: the usual lines, and words that depend on the frame."""
-    return lambda frame: axs.footnote(frame, how) + style.wrapped([words(frame)], 132)
-
-
-def constants_note(frame: pd.DataFrame) -> str:
-    constants = source_text(frame[is_simulated(frame)]).removeprefix("Eq 4-4 with ").replace("m2", "m²")
-    return f"Points simulated; lines by Eq. 4-4 with one set of constants for all nine surfaces: {constants}."
+def left_note(how: str) -> Callable[[pd.DataFrame], list[str]]:
+    """The usual line, of what is in no panel of its own: the large panel at the left."""
+    return lambda frame: axs.footnote(frame[frame["panel"].isna() | frame["panel"].isin(("600 um", "915 um"))], how)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -520,20 +525,21 @@ class Beside:
     def draw(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
         frame = frame if "panel" in frame else frame.assign(panel=np.nan)
         axes = fig.subplots(1, len(self.ratios), width_ratios=self.ratios)
-        for ax, tag, name in zip(axes, "ab", self.names, strict=False):
+        for ax, name in zip(axes, self.names, strict=False):
             ranges = frame["source"].str.contains("axis range")
             rows = frame[frame["panel"].isna() if name is None else (frame["panel"] == name) | ranges]
             axs.wide_limits(ax, rows, CURVATURE, GIVEN_RATE)
             self.fill(ax, rows)
-            ax.set(xlabel=CURVATURE.label, title=f"({tag}) {name.replace('um', 'µm')}" if name else "")
+            ax.set(xlabel=CURVATURE.label, title=name.replace("um", "µm") if name else "")
             ax.legend(**self.legend)
         axes[0].set_ylabel(self.ylabel)
-        for ax, (name, words) in zip(axes[len(self.names) :], self.others.items(), strict=True):
-            beside(ax, frame[frame["panel"] == name], *words)
+        for ax, (name, (title, mismatch)) in zip(axes[len(self.names) :], self.others.items(), strict=True):
+            beside(ax, frame[frame["panel"] == name], title, mismatch)
+            ax.set_ylabel(f"mean rate, {title.partition(', ')[2]} (impulses/s)")
         return {}
 
 
-def points_and_law(ax: Axes, rows: pd.DataFrame, words: str = "predicted by Eq. 5-1") -> None:
+def points_and_law(ax: Axes, rows: pd.DataFrame, words: str = "predicted by Eq 5-1") -> None:
     """Points by Eq 5-1, and a linear function as a line."""
     line = rows[rows["source"].str.contains("linear")]
     label = source_text(line).replace("peak energy", "peak\nenergy")
@@ -544,60 +550,48 @@ def points_and_law(ax: Axes, rows: pd.DataFrame, words: str = "predicted by Eq. 
 
 
 def stamped_law(ax: Axes, rows: pd.DataFrame) -> None:
-    points_and_law(ax, rows, "Eq. 5-1, predicted from strain energy")
+    points_and_law(ax, rows, "Eq 5-1, predicted from strain energy")
     stamp(ax)
 
 
 def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str) -> None:
-    """A panel of rates measured elsewhere or of another model (points), with ours (lines)."""
-    ax.set_title(f"{title}\n{mismatch}", fontsize=7.5)
+    """A panel of rates measured elsewhere or of another model (points), with ours of the same force (lines): how far apart they
+    are."""
+    ax.set_title(f"{title}\n{mismatch}")
     if rows.empty:
         ax.text(0.5, 0.5, "no rates given", transform=ax.transAxes, ha="center", color=style.GREY)
         return
-    own = is_simulated(rows)
-    theirs = list(rows.loc[~own, "series"].unique())
-    shades = list(style.colours("viridis", 0.15, 0.75, range(3)).values())
-    for k, (name, curve) in enumerate(rows[~own].groupby("series", sort=False)):
-        look = {"marker": "os^D"[k % 4], "color": shades[k % 3], "ms": 4.5}
-        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], ls="none", label=name, **look)
-    keys = "series" if "series" in rows and rows.loc[own, "series"].notna().any() else "source"
-    for name, curve in rows[own].groupby(keys, sort=False):
-        same = [i for i, s in enumerate(theirs) if name.split()[-2:] == s.split()[-2:]]
-        label = source_text(curve) if keys == "source" else name
+    own, times = is_simulated(rows), []
+    curves = dict(list(rows[own].groupby("series", sort=False))) if "series" in rows else {}
+    fitted, curves = not curves, curves or {"linear in the pressure, fitted": rows[own]}
+    for marker, (name, theirs) in zip(style.MARKERS, rows[~own].groupby("series", sort=False), strict=False):
+        same = [ours for ours in curves if ours.split()[-2:] == name.split()[-2:]] or list(curves)[:1]
+        look = style.look_of("force (gf)", _force(name), "color") | {"marker": marker, "ls": "none", "ms": 3.5}
+        ax.plot(theirs[CURVATURE], theirs[GIVEN_RATE], **look, label=name)
+        ours = curves[same[0]].sort_values(CURVATURE)
+        at = np.interp(theirs[CURVATURE], ours[CURVATURE], ours[GIVEN_RATE])
+        times += list((theirs[GIVEN_RATE] / at)[at > 1])
+    for name, curve in curves.items():
         curve = curve.sort_values(CURVATURE)
-        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], color=shades[same[0]] if same else style.INK, lw=1.1, label=label)
-    ax.set(xlim=(0, 1.04 * rows[CURVATURE].max()), ylim=(0, 1.5 * rows[GIVEN_RATE].max()), xlabel=CURVATURE.label)
-    ax.legend(loc="upper left", fontsize=7, handlelength=1.6, borderaxespad=0.2, labelspacing=0.3)
+        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], **style.look_of("force (gf)", _force(name)), lw=1.1, label=name)
+    ax.set(xlim=(0, 1.04 * rows[CURVATURE].max()), ylim=(0, 1.6 * rows[GIVEN_RATE].max()), xlabel=CURVATURE.label)
+    far = f"theirs over ours: {np.median(times):.1f} (median)" if times and not fitted else ""
+    ax.legend(title=far, alignment="left", loc="upper left", fontsize=6, handlelength=1.8, borderaxespad=0.2, labelspacing=0.3)
+
+
+def _force(name: str) -> str:
+    """The force (gf) that a series names; 20 where it names none."""
+    return next((force for force in ("10", "15") if f"{force} g" in name), "20")
 
 
 def draw_rates(ax: Axes, frame: pd.DataFrame, spec: Figure | None = None) -> None:
     """Predicted rates against curvature, with what was recorded under the same protocol."""
     own = frame[is_simulated(frame) & frame["surface"].notna()]
     ax.plot(own[CURVATURE], own[GIVEN_RATE], color=style.GREY, lw=0.9, zorder=1)
-    ax.plot([], [], "o-", color=style.GREY, lw=0.9, label="predicted by Eq. 5-1")
+    ax.plot([], [], "o-", color=style.GREY, lw=0.9, label="predicted by Eq 5-1")
     points(ax, own, CURVATURE, GIVEN_RATE)
     draw_given(ax, frame)
     stamp(ax, "points: predicted")
-
-
-def others_note(frame: pd.DataFrame, depth: str) -> str:
-    scaled = source_text(frame[is_simulated(frame)]).partition(", energies ")[2]
-    more = f" The thesis prints no constants for {depth}: energies {scaled}, the same mean as at 915 µm." if scaled else ""
-    return (
-        f"{LAW_NOTE}, {depth} under the centre.{more} Left: mean over the hold; the recorded rates are not public. Middle: "
-        "Goodwin, Browning and Wheat (1995), digitised by a third party, impulses in the first second (force rate not stated). "
-        "Right: TouchSim (Saal et al. 2017), a half-space, the last second of its hold."
-    )
-
-
-def energy_rate_note(frame: pd.DataFrame) -> str:
-    scale = source_text(frame[frame["source"].str.contains("energies")]).partition("times ")[2]
-    return (
-        f"{LAW_NOTE}. Points: both terms; line: the linear function of the peak rate of strain energy closest to them, as the "
-        f"thesis predicts the recorded peaks, which are not public. (a) energies times {scale}: the thesis prints no constants "
-        "for 600 µm. Right: TouchSim (Saal et al. 2017), a half-space, mean of the first 200 ms, ramp of 100 ms; ours at 150 "
-        "gf/s (133 ms), 915 µm."
-    )
 
 
 def of_rates(number: str, title: str, rows, layout, thesis: Mapping, runs=NINE, **options) -> Figure:
@@ -608,7 +602,7 @@ def of_rates(number: str, title: str, rows, layout, thesis: Mapping, runs=NINE, 
 
 def points_of(fill, legend: bool = True, **options) -> Panels:
     """One panel of points, on axes that hold all of them."""
-    return Panels(height=4.6, limit="wide", fill=fill, legend={"loc": "upper left"} if legend else None, **options)
+    return Panels(height=3.0, limit="wide", fill=fill, legend={"loc": "upper left"} if legend else None, **options)
 
 
 def from_depth(number: str, depth: float, axis: str) -> Figure:
@@ -616,23 +610,23 @@ def from_depth(number: str, depth: float, axis: str) -> Figure:
     words = f"{depth * 1e6:.0f} µm"
     title = f"Predicted mean rate of the hold from strain energy at {words}, 40 gf/s"
     return of_rates(number, title, partial(mean_rates, depth=depth),
-                    Beside(height=4.4, fill=draw_rates, ratios=(1.7, 1, 1),
+                    Beside(height=3.1, fill=draw_rates, ratios=(1.7, 1, 1),
                            others={"published": GOODWIN, "TouchSim": ("TouchSim, steady", HALF_SPACE)}),
                     {GIVEN_RATE: axis, CURVATURE: "T202"}, (NINE, *LOWER.values()),
-                    note=note_with(partial(others_note, depth=words), OF_THE_LARGEST))  # fmt: skip
+                    note=left_note(OF_THE_LARGEST), remarks=(LAW_NOTE, BESIDE))  # fmt: skip
 
 
 FIGURES = (
     Figure("4-2", "Predicted impulses, 150 gf/s ramp to 20 gf, 2 s hold", FAST, TIME, (IMPULSE,), {FORCE: "T080"},
-           Own(height=6.4, paint=trains), rows=trains_and_rates, measured=RATES, how="of the rate, relative to the largest",
+           Own(height=5.0, paint=trains), rows=trains_and_rates, measured=RATES, how="of the largest rate",
            remarks=(f"{LAW_NOTE}, strain energy 915 µm under the centre; integrate-and-fire, coefficient of variation of the "
                     f"intervals {VARIATION} (assumed), seed {SEED}. Right: mean predicted rate of the hold; grey: rates printed "
                     "beside the recordings in Fig. 4-2 of Cysyk (1999), from a scan, where a rate between two rows may belong to "
                     "either.",)),
     Figure("4-3", "Predicted instantaneous frequency, 40 gf/s ramp to 20 gf", NINE, TIME, (FREQUENCY,),
            {TIME: "T091", FREQUENCY: "T090"},
-           Panels(height=4.9, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}), rows=frequencies,
-           how="of the peak rate, relative to the largest",
+           Panels(height=3.4, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}), rows=frequencies,
+           how="of the largest peak",
            remarks=(f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses (integrate-and-fire, "
                     f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",)),
     of_rates("4-4", "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf", steady_over_peak,
@@ -645,35 +639,35 @@ FIGURES = (
     Figure("4-9", "Predicted rate against the inverse of the contact width in the hold", NINE, INVERSE_WIDTH, (IMPULSE_RATE,),
            {INVERSE_WIDTH: WIDTH_IDS,
             IMPULSE_RATE: by_surface("T107 T109 T111 T113 T117 T119 T121", ("flat", "79", "105", "158", "420", "630", "1260"))},
-           nine(SURFACES, 7.0, fill=rate_over_width, limit=""), rows=rate_and_width, how=OF_THE_LARGEST,
+           nine(SURFACES, 5.8, fill=rate_over_width, limit=""), rows=rate_and_width, how=OF_THE_LARGEST,
            remarks=(f"{DEEP} Time runs leftwards: the contact grows.",)),
-    Figure("4-17", "Pressure at twelve nodes and its decay by Eq. 4-1, K = 210 1/m", K210, TIME, (P, P_LAW),
-           {TIME: "T155", P: "T154"}, Own(height=6.9, header=0.2, paint=twelve_nodes), rows=nodes_by_law,
-           remarks=("Eq. 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the edge's) + A3, from the peak "
+    Figure("4-17", "Pressure at twelve nodes and its decay by Eq 4-1, K = 210 1/m", K210, TIME, (P, P_LAW),
+           {TIME: "T155", P: "T154"}, Own(height=6.2, header=0.16, paint=twelve_nodes), rows=nodes_by_law,
+           remarks=("Eq 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the edge's) + A3, from the peak "
                     "of a node on; constants by least squares. Nodes count from one spacing inside the edge on.",)),
     of_rates("4-18", "Predicted peak rate against peak contact pressure", peaks_over_pressure,
              points_of(points_and_line, ylabel=PEAK_WORDS),
-             {P_PEAK: "T159", GIVEN_RATE: "T160"}, x=P_PEAK),
+             {P_PEAK: "T159", GIVEN_RATE: "T160"}, x=P_PEAK, width=style.COLUMN_WIDTH),
     of_rates("4-19", "Mean rate from mean contact pressure, against curvature", linear_in_pressure,
-             Beside(height=4.3, fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
+             Beside(height=3.1, fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
              {GIVEN_RATE: "T161", CURVATURE: "T162"},
              remarks=(f"{DEEP} Left: mean over the hold, as in the thesis, whose recorded rates are not public. Right: Goodwin, "
                       "Browning and Wheat (1995), digitised by a third party, impulses in the first second at 20 gf; gain and "
                       "threshold of the line fitted to them.",)),
-    Figure("4-22", "Strain energy density at 915 µm, and from contact pressure by Eq. 4-4", NINE, TIME, (SED, SED_LAW),
+    Figure("4-22", "Strain energy density at 915 µm, and from contact pressure by Eq 4-4", NINE, TIME, (SED, SED_LAW),
            {SED: by_surface("T181 T182 T183 T184 T185 T186 T187a T187b T187c")},
-           nine(SURFACES, 6.8, fill=energy_and_law, limit="y", set=HOLD), rows=energy_by_pressure,
-           note=note_with(constants_note)),
+           nine(SURFACES, 5.8, fill=energy_and_law, limit="y", set=HOLD | {"xlim": (0, 2.58)}), rows=energy_by_pressure,
+           remarks=("Points simulated; lines by Eq 4-4 with one set of constants for all nine surfaces.",)),
     of_rates("4-25", "Predicted mean rate of the hold, 150 gf/s ramp to 20 gf", held_rates,
-             points_of(draw_rates), {GIVEN_RATE: "T201", CURVATURE: "T202"}, FAST,
+             points_of(draw_rates), {GIVEN_RATE: "T201", CURVATURE: "T202"}, FAST, width=style.COLUMN_WIDTH,
              remarks=(f"{DEEP[:-1]}; nothing is fitted here. Squares: mean rates printed beside Fig. 4-2 of Cysyk (1999), read "
                       "from a scan (17.0 without its point); a bar joins the two surfaces that a rate may belong to.",)),
     from_depth("4-26", RECEPTOR_DEPTH, "T203"),
     from_depth("4-27", SHALLOW_DEPTH, "T204"),
     of_rates("4-29", "Predicted peak rate, and from the peak rate of strain energy, against curvature", peak_rates,
-             Beside(height=4.4, fill=points_and_law, ratios=(1.25, 1.25, 1), names=("600 um", "915 um"),
+             Beside(height=3.1, fill=points_and_law, ratios=(1.25, 1.25, 1), names=("600 um", "915 um"),
                     others={"TouchSim": ("TouchSim, first 200 ms", HALF_SPACE)}, ylabel="peak rate (impulses/s)",
-                    legend={"loc": "lower right", "fontsize": 7, "handlelength": 1.4}),
+                    legend={"loc": "lower right", "handlelength": 1.4}),
              {GIVEN_RATE: "T207", CURVATURE: "T208"}, (NINE, FAST),
-             note=note_with(energy_rate_note, OF_THE_LARGEST)),
+             note=left_note(OF_THE_LARGEST), remarks=(LAW_NOTE, SCALED)),
 )  # fmt: skip

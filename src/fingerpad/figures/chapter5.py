@@ -8,6 +8,7 @@ convexities.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -52,12 +53,21 @@ DEEP, SHALLOW = 915e-6, 560e-6  # m, receptors of Figs 5-13 and 5-18, and of 5-2
 TEN = "10 mm/s"
 TEN_RUN, SUB_TEN = SPEEDS.only((TEN,)), SUB_SPEEDS.only((TEN,))
 PRESSED = NINE.only(WITHIN_400[1:])
-RED_DASHED = {"color": style.COLOURS["315"], "ls": style.DASHED}
+OTHER = {"color": style.HIGHLIGHT, "ls": style.DASHED, "lw": 1.1}
+"""The second of two curves."""
 WITH_CURVATURE = Lines(
-    looks={P_CENTRE: {"color": style.INK}, SCALED_CURVATURE: RED_DASHED | {"lw": 1.2}},
-    names={P_CENTRE: "contact pressure", SCALED_CURVATURE: "skin curvature, $A_1 K + A_2$"},
+    looks={P_CENTRE: {"color": style.INK}, SCALED_CURVATURE: OTHER},
+    names={P_CENTRE: "contact pressure", SCALED_CURVATURE: "skin curvature, $A_1 K + A_2$, in contact"},
+    hidden={SCALED_CURVATURE: P_CENTRE},
 )
-BY_SPEED = Lines(looks={f"{v} mm/s": {"linestyle": line, "lw": 1.3} for v, line in style.SPEED_LINES.items()})
+SAMPLED = replace(
+    WITH_CURVATURE,
+    looks={q: look | {"marker": ".", "ms": 4} for q, look in WITH_CURVATURE.looks.items()},
+    names=WITH_CURVATURE.names | {SCALED_CURVATURE: "skin curvature, $A_1 K + A_2$"},
+    hidden={},
+)
+"""The same at the points it was stepped to."""
+BY_SPEED = Lines()
 TOP_OF_STRETCH = -0.5  # mm, where the thesis's axis of Fig 5-15 begins
 
 
@@ -125,9 +135,11 @@ def at_ten(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """The range over the velocities, and one of them."""
     rows, (y,) = frame[is_simulated(frame)], spec.y
     extent = rows.groupby(spec.x)[y].agg(["min", "max"])
-    ax.fill_between(extent.index, *extent.to_numpy().T, color=style.SPEED_COLOURS["10"], alpha=0.25, lw=0, label="1 to 40 mm/s")
+    apart = 100 * ((extent["max"] - extent["min"]) / extent.mean(axis=1)).max()
+    words = f"1 to 40 mm/s: at most {apart:.0f} % apart"
+    ax.fill_between(extent.index, *extent.to_numpy().T, color="#9fc3d6", lw=0, label=words)
     line = rows[rows["series"] == TEN].sort_values(spec.x)
-    ax.plot(line[spec.x], line[y], color=style.INK, marker="o", ms=3, label=TEN)
+    ax.plot(line[spec.x], line[y], color=style.INK, marker="o", ms=3, lw=0.8, label=TEN)
 
 
 def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
@@ -144,22 +156,23 @@ def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
         rows, axes = axs.rows_of(frame, "panel", panel), [fig.add_subplot(grid[row, column]) for row in (1, 2, 3)]
         skin, surface = (rows[rows["series"] == series] for series in ("skin", axs.SURFACE))
         at = skin[DISTANCE].iloc[0]
-        star = {"marker": "*", "ms": 10, "color": style.COLOURS["315"], "mec": "white", "mew": 0.5, "clip_on": False}
+        star = {"marker": "*", "ms": 8, "color": style.HIGHLIGHT, "mec": "white", "mew": 0.5, "clip_on": False}
         window = marks.loc[marks["panel"] == panel, DISTANCE]
         for ax in (trace, axes[0]):
             ax.plot(at, np.interp(at, shape[DISTANCE], shape[HEIGHT]), **star)
-        axes[0].fill_between(shape[DISTANCE], shape[HEIGHT], 1.0, color="0.87", lw=0)
+        axes[0].fill_between(shape[DISTANCE], shape[HEIGHT], 1.0, color=style.PALE, lw=0)
         axes[0].plot(shape[DISTANCE], shape[HEIGHT], color=style.INK, lw=1.0)
         low, high = (window.min(), window.max()) if len(window) else (at - 4, at + 4)
-        axes[0].set(xlim=(low, high), ylim=(-0.52, 0.36), xlabel=DISTANCE.label, title=f"({'abc'[column]}) at {at:g} mm")
-        axes[1].fill_between(surface[X], surface[Y], 6.4, color="0.87", lw=0)
+        axes[0].set(xlim=(low, high), ylim=(-0.52, 0.36), xlabel=DISTANCE.label, title=f"at {at:g} mm")
+        axes[1].fill_between(surface[X], surface[Y], 6.4, color=style.PALE, lw=0)
         axes[1].plot(surface[X], surface[Y], color=style.GREY, lw=0.8)
         axes[1].plot(skin[X], skin[Y], color=style.INK)
         axes[1].set(xlim=(-5, 5), ylim=(4, 6), yticks=[4, 5, 6])
         axs.limit_axis(axes[2], frame, P, text=column == 2)
         axes[2].plot(skin[X], skin[P], color=style.INK)
         axes[2].set(xlim=(-5, 5), xlabel=X.label)
-        for ax, name in zip(axes, (HEIGHT.label, "surface and skin,\ny (mm)", P.label), strict=True):
+        style.in_kilo(axes[2].yaxis)
+        for ax, name in zip(axes, (HEIGHT.label, "surface and skin,\ny (mm)", "contact pressure\n(kPa)"), strict=True):
             ax.tick_params(labelleft=column == 0)
             ax.set_ylabel(name if column == 0 else "")
 
@@ -168,7 +181,7 @@ def zero_line(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     next(iter(panels.values())).axhline(0, color=style.GREY, lw=0.5, zorder=1)
 
 
-LOOKS = {P: {"color": style.INK}, SKIN_CURVATURE: RED_DASHED | {"lw": 1.1}}
+LOOKS = {P: {"color": style.INK}, SKIN_CURVATURE: OTHER | {"lw": 0.9}}
 AT_NODES = tuple(f"X = {place:g} mm" for place in NODES)
 
 
@@ -177,16 +190,19 @@ def two_axes(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     least, highest = frame[SKIN_CURVATURE].min(), frame[P].max()
     for number, (panel, ax) in enumerate(panels.items()):
         rows, right = frame[frame["panel"] == panel], ax.twinx()
+        right.set_label("twin")
+        ax.set_title(panel.replace("-", "−"))
         right.plot(rows[TIME], rows[P], **LOOKS[P])
         right.spines["right"].set_visible(True)
         # zero pressure a third up, as the thesis sets the two apart
         right.set(ylim=(-0.75 * highest, highest), yticks=[0, 5000, 10000])
+        style.in_kilo(right.yaxis)
         ax.set(ylim=(least, -2.0 * least), yticks=[-0.2, 0, 0.2])
         ax.tick_params(labelleft=number % 3 == 0)
         right.tick_params(labelright=number % 3 == 2)
         if number == 5:
-            right.set_ylabel(P.label)
-    names = {P: "contact pressure (right axis)", SKIN_CURVATURE: "skin curvature (left axis)"}
+            right.set_ylabel("contact pressure (kPa)")
+    names = {P: "contact pressure (right axis)", SKIN_CURVATURE: "skin curvature in contact (left axis)"}
     style.header_legend(ax.figure, [style.handle(names[k], **look) for k, look in LOOKS.items()])
 
 
@@ -195,7 +211,7 @@ def from_half_a_millimetre(panels: Mapping[object, Axes], frame: pd.DataFrame) -
     (ax,) = panels.values()
     axs.limit_axis(ax, frame[frame[LATERAL] <= TOP_OF_STRETCH], LATERAL)
     ax.set_ylim(None, TOP_OF_STRETCH)
-    ax.text(2.0, TOP_OF_STRETCH - 0.02, "from 0 at the start,\noff the axis", va="top", fontsize=7, color=style.GREY)
+    ax.text(2.0, TOP_OF_STRETCH - 0.02, "from 0 at the start,\noff the axis", va="top", fontsize=6.5, color=style.GREY)
 
 
 def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
@@ -203,10 +219,10 @@ def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
     windows = {f"{location:g} mm": id_ for location, id_ in zip(LOCATIONS, ("T235", "T236", "T237"), strict=True)}
     ids = {DISTANCE: windows | {axs.SURFACE: "T234"}, HEIGHT: {axs.SURFACE: "T233a", **dict.fromkeys(windows, "T238")}}
     return Figure(number, title, runs, X, (Y, P), ids | {X: "T239", Y: "T239a", P: pressure},
-                  Own(height=7.6, paint=three_locations), key="panel", rows=partial(locations, runs=runs))  # fmt: skip
+                  Own(height=6.2, paint=three_locations), key="panel", rows=partial(locations, runs=runs))  # fmt: skip
 
 
-def below(height: float = 4.6, **options) -> Panels:
+def below(height: float = 3.2, **options) -> Panels:
     """One panel below the surface."""
     return Panels(height=height, **options)
 
@@ -214,18 +230,18 @@ def below(height: float = 4.6, **options) -> Panels:
 FIGURES = (
     Figure("5-4", "Length of each convexity in contact with the centre node", SPEEDS, CURVATURE, (LENGTH,),
            {CURVATURE: "T229", RADIUS: "T230", LENGTH: "T228"},
-           Panels(height=6.0, pairs=((CURVATURE, LENGTH), (RADIUS, LENGTH)), shape=(2, 1), fill=at_ten,
+           Panels(height=3.0, pairs=((CURVATURE, LENGTH), (RADIUS, LENGTH)), shape=(1, 2), fill=at_ten,
                   legend={"loc": "lower right"}),
            rows=lengths, remarks=("Recorded burst widths are not available.",)),
     at_locations("5-5", "Skin and contact pressure, surface stepped over the pad by 1 mm", STEPPED_OVER, "T240"),
     at_locations("5-6", "Skin and contact pressure, surface stroked over the pad at 10 mm/s", SUB_TEN, "T241"),
     Figure("5-7", "Centre pressure and scaled skin curvature, stepped by 1 mm", STEPPED_OVER, DISTANCE,
            (P_CENTRE, SCALED_CURVATURE), {DISTANCE: "T246", P_CENTRE: "T245"},
-           below(fill=WITH_CURVATURE, ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6}),
+           below(fill=SAMPLED, ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6}),
            surface=(0, 50), extra=zero_line),
     Figure("5-8", "Centre pressure, stepped and stroked", (STEPPED_OVER, SUB_TEN), DISTANCE, (P_CENTRE,),
            {DISTANCE: "T248", P_CENTRE: "T247"},
-           below(fill=Lines(looks={"stepped": RED_DASHED, TEN: {"color": style.INK}},
+           below(fill=Lines(looks={"stepped": OTHER | {"marker": ".", "ms": 3}, TEN: {"color": style.INK, "ls": "-"}},
                             names={"stepped": "stepped by 1 mm", TEN: "stroked, 10 mm/s"}),
                  legend={"loc": "upper right", "handlelength": 2.6}),
            surface=(0, 50)),
@@ -234,26 +250,27 @@ FIGURES = (
            surface=(0, 50)),
     Figure("5-10", "Contact pressure and skin curvature at nine nodes, 10 mm/s", SUB_TEN, TIME, (SKIN_CURVATURE,),
            {TIME: "T255", P: "T254", SKIN_CURVATURE: "T253"},
-           nine(AT_NODES, 6.6, header=0.2, by="panel", titles=str, limit="x", fill=Lines(by="panel", looks=LOOKS)),
+           nine(AT_NODES, 5.6, header=0.16, by="panel", titles=str, limit="x",
+                fill=Lines(by="panel", looks=LOOKS, hidden={SKIN_CURVATURE: P})),
            rows=nodes_over_time, extra=two_axes, how=f"{HOW}, centre pressure"),
     Figure("5-11", "Centre pressure and scaled skin curvature, 10 mm/s", TEN_RUN, STROKE_TIME, (P_CENTRE, SCALED_CURVATURE),
-           {TIME: "T257", P_CENTRE: "T256"}, below(4.8, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
+           {TIME: "T257", P_CENTRE: "T256"}, below(3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
            keep=(DISTANCE,), surface=(0, 80)),
     Figure("5-12", "Centre pressure at five stroking velocities", SPEEDS, DISTANCE, (P_CENTRE,),
-           {DISTANCE: "T260", P_CENTRE: "T259"}, stack(7.0), surface=(0, 80)),
+           {DISTANCE: "T260", P_CENTRE: "T259"}, stack(5.6), surface=(0, 80)),
     Figure("5-13", "Strain energy density 915 µm under the centre at five stroking velocities", SPEEDS, DISTANCE, (sed(DEEP),),
-           {DISTANCE: "T262", SED: "T261"}, stack(7.0), surface=(0, 80), constants={RECEPTOR: DEEP * 1e6}),
+           {DISTANCE: "T262", SED: "T261"}, stack(5.6), surface=(0, 80), constants={RECEPTOR: DEEP * 1e6}),
     Figure("5-15", "Lateral displacement of the centre node", SPEEDS.only(SUB_SPEEDS), DISTANCE, (LATERAL,),
            {DISTANCE: "T260", LATERAL: "T266b"},
-           below(4.8, fill=BY_SPEED, limit="x", legend={"loc": "upper right", "ncols": 3, "handlelength": 2.8}),
+           below(3.3, fill=BY_SPEED, limit="x", legend={"loc": "upper right", "ncols": 3, "handlelength": 2.8}),
            surface=(0, 80), extra=from_half_a_millimetre),
     Figure("5-18", "Largest strain energy density 915 µm under the centre", (PRESSED, TEN_RUN), CURVATURE, (SED,),
            {CURVATURE: "T277", SED: "T276"},
-           Panels(height=4.4, legend={"loc": "upper left", "handlelength": 3},
-                  fill=Lines(by="series", names={TEN: f"stroked at {TEN}"},
-                             looks={"ramp and hold": {"marker": "o", "ms": 4, "color": style.INK},
-                                    TEN: RED_DASHED | {"marker": "s", "ms": 4}})),
-           rows=largest_energies),
+           Panels(height=2.8, legend={"loc": "upper left", "handlelength": 3},
+                  fill=Lines(by="series", names={TEN: f"stroked at {TEN}"}, bars=True,
+                             looks={"ramp and hold": {"marker": "o", "ms": 3.5, "color": style.INK},
+                                    TEN: OTHER | {"marker": "s", "ms": 3.5}})),
+           rows=largest_energies, width=style.COLUMN_WIDTH),
     Figure("5-24", "Strain energy density 560 µm under the centre at five stroking velocities", SPEEDS, DISTANCE, (sed(SHALLOW),),
-           {DISTANCE: "T308", SED: "T307"}, stack(7.0), surface=(40, 80), constants={RECEPTOR: SHALLOW * 1e6}),
+           {DISTANCE: "T308", SED: "T307"}, stack(5.6), surface=(40, 80), constants={RECEPTOR: SHALLOW * 1e6}),
 )  # fmt: skip

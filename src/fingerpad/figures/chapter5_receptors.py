@@ -16,7 +16,7 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.figures import axes as axs
-from fingerpad.figures.chapter5 import DEEP, RED_DASHED, SHALLOW, TEN, TEN_RUN
+from fingerpad.figures.chapter5 import DEEP, OTHER, SHALLOW, TEN, TEN_RUN
 from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, below, stack
 from fingerpad.measures.features import ERROR, SIMULATED, error_percent, is_simulated
 from fingerpad.measures.quantities import (
@@ -46,6 +46,7 @@ from fingerpad.measures.responses import (
     plate_rate,
     predicted_rate,
     raster,
+    shallow_law,
     skin_sample,
     skin_shift,
     stroke_histogram,
@@ -55,6 +56,7 @@ from fingerpad.measures.runs import CYLINDERS, NINE, RIDGED, SPEEDS, WITHIN_350,
 from fingerpad.measures.strokes import distance, energy_at, loaded, rms_error
 from fingerpad.measures.table import reading
 from fingerpad.publishing import style
+from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,25 +74,30 @@ BURST = "A burst is the time during which the strain energy is above 150 Pa; its
 RESPONSES = {"peak": "ramp and hold, peak", "end": "ramp and hold, steady state"}
 WITHIN = NINE.only(WITHIN_350)
 STROKED = "stroked at 10 mm/s"
-WAYS = {"right": "(a) plate stroked to the right", "left": "(b) plate stroked to the left"}
+WAYS = {"right": "plate stroked to the right", "left": "plate stroked to the left"}
 RATE_WORDS = "predicted rate\n(impulses/s)"
 
 
 def equation(depth: float = DEEP) -> str:
     """What the pictures say of their rates."""
     return (
-        "Predicted, nothing recorded: Eq 5-1 with the thesis's constants and the simulated strain energy "
+        "Predicted, not recorded: Eq 5-1 with the thesis's constants and the simulated strain energy "
         f"{depth * 1e6:.0f} µm under the centre."
     )
 
 
-def of_rate(column: Q, depth: float = DEEP) -> Q:
+def of_rate(column: Q, depth: float = DEEP, law: ImpulseRate = THESIS_RATE) -> Q:
     """A column of `predicted_rate` at the loaded outputs of a stroke."""
-    return column.reading(lambda stroke: predicted_rate(stroke, depth)[column].to_numpy())
+    return column.reading(lambda stroke: predicted_rate(stroke, depth, law)[column].to_numpy())
 
 
-def rate_error(history: xr.Dataset, coarse: xr.Dataset | None, depth: float = DEEP) -> float:
-    return rms_error(history, coarse, of_rate(IMPULSE_RATE, depth).read)
+def rate_error(history: xr.Dataset, coarse: xr.Dataset | None, depth: float = DEEP, law: ImpulseRate = THESIS_RATE) -> float:
+    return rms_error(history, coarse, of_rate(IMPULSE_RATE, depth, law).read)
+
+
+def law_of(data: Data, depth: float) -> ImpulseRate:
+    """Eq 5-1 at the thesis's depth, and by the one rule of `shallow_law` at another."""
+    return THESIS_RATE if depth == DEEP else shallow_law({k: data.histories[scene] for k, scene in NINE.scenes.items()}, depth)[0]
 
 
 # --- rows ------------------------------------------------------------------------------------------------
@@ -99,25 +106,25 @@ def rate_error(history: xr.Dataset, coarse: xr.Dataset | None, depth: float = DE
 def rasters(data: Data, number: str, low: float, high: float, depth: float = DEEP) -> pd.DataFrame:
     """Predicted impulses of repeated strokes at 10 mm/s over a part of the surface (mm), and their histogram."""
     ((_, history, coarse),) = data.runs(TEN_RUN)
-    repetitions = STROKES_SHOWN[number]
-    rate, impulses = impulses_of(history, repetitions, depth)
+    repetitions, law = STROKES_SHOWN[number], law_of(data, depth)
+    rate, impulses = impulses_of(history, repetitions, depth, law)
     ticks = impulses.rename(columns={"trial": TRIAL})[[TRIAL, DISTANCE]].assign(panel=RASTER)
     bars = stroke_histogram(rate, impulses, repetitions).assign(panel=HISTOGRAM)
     rows = pd.concat([ticks, bars], ignore_index=True)
     rows = rows[rows[DISTANCE].between(low, high)].assign(source=PREDICTED, series=TEN)
-    rows[RECEPTOR], rows[ERROR] = depth * 1e6, rate_error(history, coarse, depth)
+    rows[RECEPTOR], rows[ERROR] = depth * 1e6, rate_error(history, coarse, depth, law)
     return pd.concat([data.surface(TEN_RUN[TEN], low, high), rows], ignore_index=True)
 
 
 def frequencies(data: Data) -> pd.DataFrame:
     """Instantaneous frequency of predicted impulses of a shallow receptor, mean of 12 strokes at every velocity."""
     parts, repetitions = [data.surface(TEN_RUN[TEN], 40, 80)], STROKES_SHOWN["5-23"]
-    at = np.arange(40, 80.01, 0.1)
+    at, law = np.arange(40, 80.01, 0.1), law_of(data, SHALLOW)
     for series, history, coarse in data.runs(SPEEDS):
-        rate, impulses = impulses_of(history, repetitions, SHALLOW)
+        rate, impulses = impulses_of(history, repetitions, SHALLOW, law)
         frequency = mean_frequency(impulses, repetitions, np.interp(at, rate[DISTANCE], rate[TIME]))[FREQUENCY]
         row = {"source": PREDICTED, "panel": series, "series": series, DISTANCE: at, FREQUENCY: frequency}
-        parts.append(pd.DataFrame(row | {RECEPTOR: SHALLOW * 1e6, ERROR: rate_error(history, coarse, SHALLOW)}))
+        parts.append(pd.DataFrame(row | {RECEPTOR: SHALLOW * 1e6, ERROR: rate_error(history, coarse, SHALLOW, law)}))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -222,7 +229,7 @@ def draw_raster(ax: Axes, frame: pd.DataFrame, count: int) -> None:
     """One row of ticks a stroke, the first one above."""
     rows = frame[(frame["panel"] == RASTER) & is_simulated(frame)]
     trains = [rows.loc[rows[TRIAL] == trial, DISTANCE].to_numpy() for trial in range(1, count + 1)]
-    ax.eventplot(trains, lineoffsets=range(1, count + 1), linelengths=0.7, linewidths=0.9, colors=[style.INK])
+    ax.eventplot(trains, lineoffsets=range(1, count + 1), linelengths=0.7, linewidths=0.8, colors=[style.INK], clip_on=False)
     ax.set(ylim=(count + 0.6, 0.4), yticks=[1, count] if count > 5 else range(1, count + 1), ylabel="predicted stroke")
     ax.tick_params(left=False)
 
@@ -261,27 +268,31 @@ def plate_both_ways(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def plate_note(frame: pd.DataFrame) -> list[str]:
-    most = frame.groupby("series").size().idxmax()  # an error relative to next to no response tells nothing
-    where = "The receptor lies 46 µm to the right of the centre, under the flank of a ridge."
-    own = axs.footnote(frame[frame["series"] == most], f"to the {most}, {HOW}")
-    return [*own, equation().replace("under the centre", "deep"), where]
+    """The errors of either way: relative to next to no response one tells little."""
+    errors = frame.groupby("series", sort=False)[ERROR].max()
+    words = ", ".join(f"{error:.0f} % to the {way}" for way, error in errors.items() if error == error)
+    error = f" Discretisation error {words}." if words else ""
+    return [f"Predicted by Eq 5-1, not measured.{error} Receptor 46 µm right of a ridge's tip, 915 µm deep."]
 
 
 def against_velocity(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     """A line a convexity, named at its end."""
     own, ends = frame[frame["source"] == PREDICTED], {}
-    shades = style.colours("plasma", 0.0, 0.82, own["convexity"].unique())
+    shades = {label: style.curvature_colour(float(label)) for label in own["convexity"].unique()}
     for label, rows in own.groupby("convexity", sort=False):
-        ax.plot(rows[SPEED], rows[spec.y[0]], marker="o", ms=3, color=shades[label], lw=1.1)
+        ax.plot(rows[SPEED], rows[spec.y[0]], marker="o", ms=3, color=shades[label], lw=1.0)
+        error = (rows[ERROR] * rows[spec.y[0]] / 100).where(rows[ERROR] > 2, 0.0).fillna(0.0)
+        ax.errorbar(rows[SPEED], rows[spec.y[0]], error, fmt="none", ecolor=shades[label], elinewidth=0.6)
         ends[label] = rows[spec.y[0]].iloc[-1]
     points = frame[frame["source"].str.startswith("measured")]
     ax.plot(points[SPEED], points[spec.y[0]], "x", color=style.INK, ms=4)
     low, high = ax.get_ylim()
-    gap = 0.055 * (high - low)
-    for label, place in zip(ends, style.spread(list(ends.values()), gap, low + gap / 2, high - gap), strict=True):
-        ax.plot([40.4, 42.3], [ends[label], place], color=shades[label], lw=0.6)
-        ax.text(42.5, place, label, color=shades[label], va="center", fontsize=7.5)
-    ax.text(42.5, high, "curvature (1/m)", va="top", fontsize=7)
+    gap = 0.062 * (high - low)
+    places = style.spread(list(ends.values()), gap, low + gap / 2, high - 2 * gap)
+    for label, place in zip(ends, places, strict=True):
+        ax.plot([40.4, 42.3], [ends[label], place], color=shades[label], lw=0.7, clip_on=False)
+        ax.text(42.5, place, label, va="center", fontsize=6.5)
+    ax.text(42.5, max(places) + 1.2 * gap, "curvature\n(1/m)", va="bottom", fontsize=6.5)
 
 
 def rates_from_zero(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
@@ -296,6 +307,14 @@ def three_laws(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
 
 def room_for_brackets(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     axs.leave_room_for_brackets(next(iter(panels.values())).figure)
+
+
+def say_plateaus(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """Between bursts the frequency is that of one long interval."""
+    room_for_brackets(panels, frame)
+    first = next(iter(panels.values()))
+    text = "level stretches: one interval from burst to burst"
+    first.text(0.99, 0.97, text, transform=first.transAxes, ha="right", va="top", fontsize=6.5, color=style.GREY)
 
 
 def aligned(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
@@ -321,84 +340,83 @@ def draw_rate(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     """Predicted rate (line) and the part of it that comes from strain energy (area)."""
     rows = rows[rows["source"] == PREDICTED]
     ax.plot(rows[TIME], rows[IMPULSE_RATE], color=style.INK, lw=1.2, label="predicted by Eq 5-1")
-    colour = style.SPEED_COLOURS["10"]
-    ax.fill_between(rows[TIME], rows[STATIC], color=colour, alpha=0.35, lw=0, label="of this from strain energy alone")
+    ax.fill_between(rows[TIME], rows[STATIC], color="#9fc3d6", lw=0, label="of this from strain energy alone")
 
 
 def legend_of_the_first(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     next(iter(panels.values())).legend(loc="upper right")
 
 
-RED_CROSSES = {"color": style.COLOURS["315"]}
+SCALED = "Energies are scaled as in Figs 4-27 and 4-29: to their mean at 915 µm over the nine surfaces."
+RECORDED = {"color": style.HIGHLIGHT}
 BURST_RATES = {BURST_RATE: "burst_rate"}
 BURSTS = {BURST_WIDTH: "burst_width"} | BURST_RATES
-OWN_BURSTS = {"color": style.INK, "marker": "o", "ms": 3.5}
+OWN_BURSTS = {"color": style.INK, "marker": "o", "ms": 3.5, "lw": 0.8, "ls": "-"}
 FIGURES = (
     Figure("5-1", "Predicted impulses of ten strokes at 10 mm/s", TEN_RUN, DISTANCE, (IMPULSE_RATE,), {DISTANCE: "T217"},
-           Own(height=5.6, paint=ticks_below_surface), rows=partial(rasters, number="5-1", low=0.0, high=70.0), how=HOW,
+           Own(height=4.2, paint=ticks_below_surface), rows=partial(rasters, number="5-1", low=0.0, high=70.0), how=HOW,
            remarks=(equation(), "The recorded stroke ended before the convexity of 315 1/m; bins of 0.5 mm.")),
     Figure("5-2", "Predicted burst width and burst rate, 10 mm/s", TEN_RUN, CURVATURE, tuple(BURSTS),
            {CURVATURE: "T222", BURST_WIDTH: "T220", BURST_RATE: "T221"},
-           Panels(height=6.0, pairs=tuple((CURVATURE, y) for y in BURSTS), shape=(2, 1),
-                  fill=Lines(by="series", looks={TEN: OWN_BURSTS}, recorded=RED_CROSSES)),
+           Panels(height=3.0, pairs=tuple((CURVATURE, y) for y in BURSTS), shape=(1, 2),
+                  fill=Lines(by="series", looks={TEN: OWN_BURSTS}, recorded=RECORDED, bars=True)),
            rows=partial(burst_rows, runs=TEN_RUN, columns=BURSTS), measured="impulse_rates", extra=rates_from_zero,
            remarks=(equation(), BURST, "In the thesis (b) begins at 10 impulses/s.")),
     Figure("5-3", "Predicted burst width and burst rate at five velocities", SPEEDS, SPEED, tuple(BURSTS),
            {SPEED: "T225", BURST_WIDTH: "T223", BURST_RATE: "T224"},
-           Panels(height=7.0, pairs=tuple((SPEED, y) for y in BURSTS), shape=(2, 1), fill=against_velocity),
+           Panels(height=3.4, pairs=tuple((SPEED, y) for y in BURSTS), shape=(1, 2), fill=against_velocity),
            rows=partial(burst_rows, runs=SPEEDS, columns=BURSTS), measured="impulse_rates", remarks=(equation(), BURST)),
     Figure("5-14", "Strain energy density 915 µm under the centre, simulated and by Eq 4-4", (SPEEDS, NINE.without_companions()),
            DISTANCE, (SED,), {DISTANCE: "T262", SED: "T264"},
-           stack(7.4, header=0.2,
+           stack(5.8, header=0.16,
                  fill=Lines(by="source", names={source: source.removeprefix(f"{SIMULATED}: ") for source in BY_PRESSURE.values()},
-                            looks={SIMULATED: {"color": style.INK, "ls": "-", "lw": 1.3},
-                                   BY_PRESSURE["constant shift"]: RED_DASHED | {"lw": 1.2},
-                                   BY_PRESSURE["shift of the skin"]:
-                                       {"color": style.SPEED_COLOURS["10"], "ls": (0, (1, 1.2)), "lw": 1.1}})),
+                            looks={SIMULATED: {"color": style.INK, "ls": "-", "lw": 1.2},
+                                   BY_PRESSURE["constant shift"]: OTHER,
+                                   BY_PRESSURE["shift of the skin"]: {"color": style.GREY, "ls": style.DOTTED, "lw": 1.1}})),
            rows=by_pressure, surface=(0, 80), extra=three_laws,
            remarks=("The error is that of the simulated energy. Eq 4-4 has the constants that fit the nine pressed surfaces;",
                     "its constant shift is the one that fits the stroke at 10 mm/s.")),
     Figure("5-16", "Predicted burst duration at four velocities", FOUR, CURVATURE, (BURST_TIME,),
            {CURVATURE: "T273", BURST_TIME: {series: f"T{269 + k}" for k, series in enumerate(FOUR)}},
-           Panels(height=5.4, by="panel", names=tuple(FOUR), shape=(2, 2), each=True,
-                  fill=Lines(by="series", looks=dict.fromkeys(FOUR, {"marker": "o", "ms": 3.5}), recorded=RED_CROSSES),
+           Panels(height=4.2, by="panel", names=tuple(FOUR), shape=(2, 2), each=True,
+                  fill=Lines(by="series", looks=dict.fromkeys(FOUR, OWN_BURSTS), recorded=RECORDED, bars=True),
                   titles=lambda series: f"v = {series}"),
            key="panel", rows=partial(burst_rows, runs=FOUR, columns={BURST_TIME: "burst_time"}), measured="impulse_rates",
            remarks=(BURST.split(";")[0] + " 915 µm under the centre. Predicted, nothing recorded.",)),
     Figure("5-17", "Predicted impulse rate, stroked and pressed", (WITHIN, TEN_RUN), CURVATURE, (IMPULSE_RATE,),
            {CURVATURE: "T275", IMPULSE_RATE: "T274"},
-           Panels(height=4.6, legend={"loc": "upper left", "handlelength": 3},
-                  fill=Lines(by="series", recorded=RED_CROSSES | {"label": "recorded, stroked"},
-                             looks={STROKED: {"ls": "-", "marker": "s", "ms": 4, "color": style.COLOURS["315"]},
+           Panels(height=3.2, legend={"loc": "upper left", "handlelength": 3},
+                  fill=Lines(by="series", recorded=RECORDED | {"label": "recorded, stroked"}, bars=True,
+                             looks={STROKED: {"ls": "-", "marker": "s", "ms": 3.5, "color": style.HIGHLIGHT},
                                     RESPONSES["peak"]: {"ls": style.DASHED, "marker": "o", "ms": 4, "color": style.INK},
                                     RESPONSES["end"]: {"ls": style.DOTTED, "marker": "o", "ms": 4, "mfc": "white",
                                                        "color": style.INK}},
                              names={series: f"predicted, {series}" for series in (STROKED, *RESPONSES.values())})),
-           rows=stroked_and_pressed,
+           rows=stroked_and_pressed, width=style.COLUMN_WIDTH,
            measured="impulse_rates", remarks=(equation(), "Stroked: " + BURST[0].lower() + BURST[1:])),
     Figure("5-19", "Strain energy, its rate, and predicted impulses of 12 strokes at 10 mm/s", TEN_RUN, STROKE_TIME,
            (SED, RATE, IMPULSE_RATE), {TIME: "T281", SED: "T278", RATE: "T279", IMPULSE_RATE: "T280"},
-
-           Panels(height=6.4, pairs=tuple((TIME, y) for y in (SED, RATE, IMPULSE_RATE)), shape=(3, 1), fill=energy_rate_or_bars,
+           Panels(height=4.8, pairs=tuple((TIME, y) for y in (SED, RATE, IMPULSE_RATE)), shape=(3, 1), fill=energy_rate_or_bars,
                   marked="none", share={"sharex": True}),
            rows=energy_and_histogram, how=HOW, remarks=(equation(),), extra=aligned),
     Figure("5-20", "Predicted impulse rate of a stroke at 10 mm/s", TEN_RUN, STROKE_TIME, (IMPULSE_RATE,),
-           {TIME: "T288", IMPULSE_RATE: "T287"}, Panels(height=4.2, fill=draw_rate, legend={"loc": "upper left"}),
+           {TIME: "T288", IMPULSE_RATE: "T287"}, Panels(height=3.0, fill=draw_rate, legend={"loc": "upper left"}),
            rows=lambda data: over_time(data, (IMPULSE_RATE, STATIC)).assign(source=PREDICTED), how=HOW, remarks=(equation(),)),
     Figure("5-21", "Predicted impulse rate of eight ramps and holds", EIGHT, TIME, (IMPULSE_RATE,),
            {TIME: "T297", IMPULSE_RATE: {label: f"T{289 + k}" for k, label in enumerate(EIGHT)}},
-           Panels(height=7.2, by="surface", names=CYLINDERS, shape=(4, 2), fill=draw_rate, each=True, marked="none",
+           Panels(height=6.0, by="surface", names=CYLINDERS, shape=(4, 2), fill=draw_rate, each=True, marked="none",
                   titles=axs.surface_name, ylabel=RATE_WORDS, share={"sharex": True}),
            rows=pressed_rates, how="largest rate", remarks=(equation(),), extra=legend_of_the_first),
-    Figure("5-22", "Predicted impulses of four strokes at 10 mm/s, receptor 560 µm deep", TEN_RUN, DISTANCE, (),
-           {DISTANCE: "T300"}, Own(height=3.4, paint=ticks_below_surface), how=HOW, remarks=(equation(SHALLOW),),
+    Figure("5-22", "Predicted impulses of four strokes at 10 mm/s, receptor 560 µm deep",
+           (TEN_RUN, NINE.without_companions()), DISTANCE, (),
+           {DISTANCE: "T300"}, Own(height=2.6, paint=ticks_below_surface), how=HOW, remarks=(equation(SHALLOW), SCALED),
            rows=partial(rasters, number="5-22", low=40.0, high=80.0, depth=SHALLOW)),
-    Figure("5-23", "Predicted instantaneous frequency of a receptor 560 µm deep, mean of 12 strokes", SPEEDS, DISTANCE,
-           (FREQUENCY,),
+    Figure("5-23", "Predicted instantaneous frequency of a receptor 560 µm deep, mean of 12 strokes",
+           (SPEEDS, NINE.without_companions()), DISTANCE, (FREQUENCY,),
            {DISTANCE: "T300", FREQUENCY: {series: "T304" if series[:2] in ("20", "40") else "T304a" for series in SPEEDS}},
-           stack(7.0, by="panel", alike=False, marked="none", fill=Lines(looks={FREQUENCY: {"lw": 1.1}}),
+           stack(5.8, by="panel", marked="none", fill=Lines(looks={FREQUENCY: {"lw": 1.0, "ls": "-"}}),
                  ylabel="predicted frequency\n(impulses/s)"),
-           key="panel", rows=frequencies, surface=(40, 80), remarks=(equation(SHALLOW),), extra=room_for_brackets),
+           key="panel", rows=frequencies, surface=(40, 80), remarks=(equation(SHALLOW), SCALED), extra=say_plateaus),
     Figure("5-27", "Predicted impulses of a flat plate stroked both ways at 10 mm/s, inner ridges", RIDGED, DISTANCE,
-           (IMPULSE_RATE,), {}, Own(height=4.6, paint=plate_both_ways), rows=both_ways, note=plate_note),
+           (IMPULSE_RATE,), {}, Own(height=3.6, paint=plate_both_ways), rows=both_ways, note=plate_note),
 )  # fmt: skip

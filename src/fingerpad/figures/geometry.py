@@ -115,30 +115,34 @@ def surface_deflection(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.
 
 
 def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
-    """Outline of every element (one row a point) with its layer, the bone's rim, and the mesh's quality.
+    """Outline of every element (one row a point) with its layer, the bone's rim, the nail's side that is held, and the quality.
 
-    Elements within `corneum` (m) of the skin are of the stratum corneum.
+    Also the skin and the line `corneum` (m) under it, where the stratum corneum ends.
     """
-    from scipy.spatial import cKDTree  # here, for it is slow to import
-
-    corners = mesh.points[mesh.cells[:, : KINDS[mesh.element].corners]]
     layer, lines = np.array(mesh.regions)[mesh.region], boundaries(mesh)
-    depth = cKDTree(densify(lines["skin"], 20e-6)).query(corners.mean(axis=1))[0]
-    layer = np.where((layer == "epidermis") & (depth < corneum), "stratum corneum", layer)
     polygons = [_outline(mesh, nodes) for nodes in mesh.cells]
     counts, points = [len(p) for p in polygons], np.concatenate(polygons) * 1e3
     numbers = {"element": np.repeat(np.arange(len(polygons)), counts), "layer": np.repeat(layer, counts)}
     elements = {"series": "element"} | numbers | {X: points[:, 0].round(4), Y: points[:, 1].round(4)}
     bone = {"series": "rim", "layer": "bone", X: lines["bone"][:, 0] * 1e3, Y: lines["bone"][:, 1] * 1e3}
-    found = quality.quality_of(mesh)
+    skin, inner = densify(lines["skin"], 0.1e-3), inward(densify(lines["skin"], 0.1e-3), corneum)
+    held = mesh.points[loops(mesh.curves["nail"][:, :2])[0]] if "nail" in mesh.curves else np.empty((0, 2))
+    edges = [
+        {"series": series, "layer": "stratum corneum", X: line[:, 0] * 1e3, Y: line[:, 1] * 1e3}
+        for series, line in (("skin", skin), ("inner", inner), ("held", held))
+    ]
+    found, apex = quality.quality_of(mesh), np.abs(lines["skin"][:, 0]) < 1e-3
+    top = apex & (lines["skin"][:, 1] > 0)
     values = {
         "nodes (1)": found["nodes"],
         "elements (1)": found["elements"],
+        "node_spacing_under_contact (um)": 1e6 * float(np.median(np.hypot(*np.diff(lines["skin"][top], axis=0).T))),
         "smallest_edge (um)": found["smallest_edge_m"] * 1e6,
         "worst_scaled_jacobian (1)": found["worst_scaled_jacobian"],
     }
     judged = {"series": "quality", "quantity": list(values), "value": list(values.values())}
-    return pd.concat([pd.DataFrame(each) for each in (elements, bone, judged)], ignore_index=True).assign(**{ERROR: np.nan})
+    parts = [pd.DataFrame(each) for each in (elements, bone, *edges, judged)]
+    return pd.concat(parts, ignore_index=True).assign(**{ERROR: np.nan})
 
 
 def _outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.ndarray:
@@ -162,7 +166,23 @@ def draw_mesh(ax: Axes, frame: pd.DataFrame, line: float = 0.22) -> None:
     colours = [style.LAYER_COLOURS[layer] for layer in elements["layer"].to_numpy()[start]]
     rim = frame[frame["series"] == "rim"]
     ax.fill(rim[X], rim[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
-    ax.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors="0.25", linewidths=line))
+    ax.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors="none"))
+    draw_corneum(ax, *(frame.loc[frame["series"] == name, [X, Y]].to_numpy() for name in ("skin", "inner")))
+    ax.add_collection(PolyCollection(polygons, facecolors="none", edgecolors="0.25", linewidths=line))
+    held = frame[frame["series"] == "held"]
+    if len(held):
+        ax.plot(held[X], held[Y], color=style.INK, lw=2.4, solid_capstyle="butt")
+
+
+def draw_corneum(ax: Axes, skin: np.ndarray, inner: np.ndarray) -> None:
+    """The stratum corneum: between the skin (n, 2) and the line its thickness below, both closed, in mm."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    if len(skin) and len(inner):
+        codes = [[Path.MOVETO, *[Path.LINETO] * (len(line) - 1)] for line in (skin, inner)]
+        ring = Path(np.vstack((skin, inner[::-1])), np.concatenate(codes))
+        ax.add_patch(PathPatch(ring, facecolor=style.LAYER_COLOURS["stratum corneum"], edgecolor="none"))
 
 
 def layer_patches(layers: tuple[str, ...] = LAYERS) -> list:
@@ -199,7 +219,7 @@ def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[st
         # in mm: in m its search for triangles takes many times as long
         motion = LinearNDInterpolator(points[epidermis] * 1e3, moved[epidermis])(inner * 1e3) if depth else 0.0
         lines["corneum"] = inner + motion
-    x = np.linspace(-4e-3, 4e-3, 801)
+    x = np.linspace(-8.4e-3, 8.4e-3, 1681)
     height = scene_of(history).stimulus.outline(x) + points[:, 1].max() - depth
     lines["indenter"] = np.column_stack((x, height))[np.isfinite(height)]
     return lines
@@ -232,5 +252,5 @@ def draw_indenter(ax: Axes, rows: pd.DataFrame) -> None:
     """The indenter from its lower side up to where the picture ends."""
     side = rows[rows["layer"] == "indenter"]
     if len(side):
-        ax.fill_between(side[X], side[Y], np.maximum(side[Y], 7.4), color="0.8", lw=0)
-        ax.plot(side[X], side[Y], color="0.55", lw=0.7)
+        ax.fill_between(side[X], side[Y], np.maximum(side[Y], 7.4), color=style.PALE, lw=0)
+        ax.plot(side[X], side[Y], color=style.GREY, lw=0.7)

@@ -38,7 +38,7 @@ from fingerpad.measures.features import (
     pressure_profiles,
     profile,
 )
-from fingerpad.measures.quantities import CURVATURE, DISTANCE, DOWN, HEIGHT, TIME, P, Q, X
+from fingerpad.measures.quantities import CURVATURE, DISTANCE, DOWN, HEIGHT, P_CENTRE, P_PEAK, TIME, P, Q, X
 from fingerpad.measures.responses import curvature_of
 from fingerpad.measures.runs import Runs
 from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height, rms_error
@@ -59,6 +59,8 @@ Ids = str | Mapping[object, str]
 Look = Mapping[str, object]
 """What a line looks like, in matplotlib's words."""
 HOW = "r.m.s. over the stroke"
+IN_KILO = (P, P_CENTRE, P_PEAK)
+"""Quantities in Pa whose axes say kPa."""
 MEASURED: Mapping[str, tuple[str, Callable[..., pd.DataFrame]]] = {
     "force_depth": ("force_depth/*.csv", read_force_depth),
     "surface_profiles": ("surface_profiles.csv", lambda paths: read_surface_profiles(*paths)),
@@ -220,8 +222,12 @@ class Figure:
         Name of the measured data (a key of `MEASURED`) shown beside; empty: none.
     meshes
         Whether it is made from the meshes of its runs too.
-    how, remarks, note
-        How the error is taken, and lines added to the note; or ``note(frame)``, the whole of it.
+    how, note
+        How the error is taken; or ``note(frame)``, the line under the picture but for the thesis's statement.
+    remarks
+        What a caption says beyond the picture.
+    width
+        Inch: of a page, or of a column for a single curve.
     extra
         ``extra(panels, frame)``: what the layout does not say, on the panels by their names.
     """
@@ -245,6 +251,7 @@ class Figure:
     how: str | None = None
     remarks: tuple[str, ...] = ()
     note: Callable[[pd.DataFrame], Sequence[str]] | None = None
+    width: float = style.PAGE_WIDTH
     extra: Callable[[Mapping[object, Axes], pd.DataFrame], None] | None = None
 
     @property
@@ -307,11 +314,14 @@ class Figure:
         """The picture, a function of the frame alone."""
         with style.theme():
             how = self.how if self.how is not None else HOW if self.surface else ""
-            lines = self.note(frame) if self.note else axs.footnote(frame, how) + style.wrapped(self.remarks, 132)
-            fig = style.sheet(self.title, lines, self.layout.height, self.number, self.layout.header)
+            wide = style.note_width(self.width)
+            lines = style.wrapped(self.note(frame), wide) if self.note else axs.footnote(frame, how, wide)
+            lines += axs.statement(frame, wide)
+            fig = style.sheet(self.title, lines, self.layout.height, self.number, self.layout.header, width=self.width)
             panels = self.layout.draw(fig, frame, self)
             if self.extra:
                 self.extra(panels, frame)
+            style.letter(fig)
             return fig
 
 
@@ -323,7 +333,8 @@ class Lines:
     """Curves of a panel: one a name in the column `by` (left out, that of the runs) and quantity.
 
     `looks` of names (in their order) and quantities go over those of `axes.look`; `names` are what a legend says; `ends`: where
-    (x) surfaces are named directly, under `heading`; `recorded`: what points look like that were measured.
+    (x) surfaces are named directly, under `heading`; `recorded`: what points look like that were measured; `bars`: draw the
+    discretisation error at every point where it is over 2 %; `hidden`: quantity -> that which must be above 0 where it is shown.
     """
 
     by: str = ""
@@ -332,6 +343,8 @@ class Lines:
     ends: float | None = None
     heading: str = "curvature (1/m)"
     recorded: Look = field(default_factory=dict)
+    bars: bool = False
+    hidden: Mapping[str, str] = field(default_factory=dict)
 
     def __call__(self, ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
         own, ends = rows[is_simulated(rows)], {}
@@ -339,7 +352,13 @@ class Lines:
         for name, curve in sorted(curves, key=lambda item: [*self.looks, item[0]].index(item[0])):
             for q in spec.y:
                 label = self.names.get(q) or self.names.get(name, str(name) if len(spec.y) == 1 else q)
-                ax.plot(curve[spec.x], curve[q], label=label, **axs.look(name) | self.looks.get(name, {}) | self.looks.get(q, {}))
+                look = axs.look(name) | self.looks.get(name, {}) | self.looks.get(q, {})
+                y = curve[q].where(curve[self.hidden[q]] > 0) if q in self.hidden else curve[q]
+                ax.plot(curve[spec.x], y, label=label, **look)
+                if self.bars:
+                    error = (curve[ERROR] * y / 100).where(curve[ERROR] > 2, 0.0).fillna(0.0)
+                    bar = {"ecolor": look.get("color", style.INK), "elinewidth": 0.7}
+                    ax.errorbar(curve[spec.x], y, error, fmt="none", **bar)
             ends[name] = (curve[spec.x].iloc[-1], curve[spec.y[-1]].iloc[-1])
         if self.recorded and len(points := rows[rows["source"].str.startswith("measured")]):
             ax.plot(points[spec.x], points[spec.y[0]], **{"ls": "none", "marker": "x", "label": "recorded"} | self.recorded)
@@ -358,8 +377,8 @@ class Phases:
         own = rows[is_simulated(rows)]
         times = [TIME] if TIME in own else []
         for (phase, *_), curve in sorted(own.groupby(["phase", *times]), key=lambda item: self.order.index(item[0][0])):
-            colour = style.COLOURS[self.colour or curve["surface"].iloc[0]]
-            ax.plot(curve[spec.x], curve[spec.y[0]], color=colour, **axs.PHASE_LINES[phase])
+            colour = axs.look(self.colour or curve["surface"].iloc[0])
+            ax.plot(curve[spec.x], curve[spec.y[0]], **colour | axs.PHASE_LINES[phase])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -427,22 +446,27 @@ class Panels:
             if self.titles:
                 ax.set_title(self.titles(name))
             if self.corner:
-                ax.text(0.008, 0.97, self.corner(name), transform=ax.transAxes, va="top", fontsize=8)
+                ax.text(0.008, 0.97, self.corner(name), transform=ax.transAxes, va="top")
+            for axis, q in ((ax.xaxis, spec.x), (ax.yaxis, spec.y[0])):
+                if q in IN_KILO:
+                    style.in_kilo(axis)
         high, wide = grid.shape
         for ax in grid[-1] if self.each else grid[-1, wide // 2 : wide // 2 + 1]:
-            ax.set_xlabel(self.xlabel or spec.x.label)
+            ax.set_xlabel(_in_kilo(self.xlabel or spec.x.label, spec.x))
         for ax in grid[:, 0] if self.each else grid[high // 2 : high // 2 + 1, 0]:
-            ax.set_ylabel(self.ylabel or spec.y[0].label)
+            ax.set_ylabel(_in_kilo(self.ylabel or spec.y[0].label, spec.y[0]))
         if self.legend is not None:
             grid[-1, -1].legend(**self.legend)
         return panels
 
     def _draw_pairs(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
         grid = fig.subplots(*self.shape, **self.share).ravel()
-        for ax, tag, (x, y) in zip(grid, "abcd", self.pairs, strict=False):
+        for ax, (x, y) in zip(grid, self.pairs, strict=False):
             axs.limit_axes(ax, frame, x, y, self.marked is None)
-            ax.set(xlabel=x.label, ylabel=y.label, title="" if self.share else f"({tag})", **self.set)
+            ax.set(xlabel=x.label, ylabel=y.label, **self.set)
             self.fill(ax, frame, replace(spec, x=x, y=(y,)))
+            if y in IN_KILO:
+                style.in_kilo(ax.yaxis)
             if self.share:
                 ax.label_outer()
         if self.legend is not None:
@@ -455,6 +479,10 @@ class Panels:
             return dict(zip(self.names, grid.ravel(), strict=False)), grid
         below = axs.below_surface(fig, frame, len(self.names), along=spec.x == DISTANCE)
         return dict(zip(self.names, below, strict=True)), np.array(below)[:, None]
+
+
+def _in_kilo(words: str, q: Q) -> str:
+    return words.replace("(Pa)", "(kPa)") if q in IN_KILO else words
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -479,4 +507,5 @@ def nine(names: Sequence[object], height: float, **options) -> Panels:
 def stack(height: float, **options) -> Panels:
     """A panel a velocity below the surface."""
     options = {"by": "series", "corner": lambda series: f"v = {series}", "alike": True, "marked": "10 mm/s"} | options
-    return Panels(height=height, names=tuple(f"{v} mm/s" for v in style.SPEED_COLOURS), **options)
+    names = tuple(f"{v} mm/s" for v in style.SPEED_COLOURS)
+    return Panels(height=height, names=names, **{"fill": Lines(looks=dict.fromkeys(names, {"ls": "-"}))} | options)

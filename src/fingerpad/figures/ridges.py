@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Picture
 
-WAYS = {"right": "(a) plate to the right (thesis)", "left": "(b) plate to the left"}
+WAYS = {"right": "plate to the right (thesis)", "left": "plate to the left"}
 LAYERED = "The tip of a ridge is at x = 0, 925 µm deep: at 915 µm the centre lies in the epidermis, x = ±46 µm in the dermis."
 WINDOW = (5.0, 7.0)  # mm, half the width and the height of what Fig 5-25 shows
 DETAIL = (-0.85, 0.85, 4.15, 6.05)  # mm
@@ -34,9 +34,9 @@ FLAT = RIDGED_NINE.only(("flat",)).without_companions()
 PLACES = {"centre, x = 0 (epidermis of the tip)": 0.0, "x = 46 µm (dermis)": BESIDE}
 EXTRA = "centre, 935 µm (dermis)"
 LOOKS = {
-    "x = −46 µm": {"color": style.COLOURS["315"], "ls": "-"},
+    "x = −46 µm": {"color": style.HIGHLIGHT, "ls": "-"},
     "centre": {"color": style.INK, "ls": style.DASHED},
-    "x = 46 µm": {"color": style.SHADES[1], "ls": (0, (1, 1.2))},
+    "x = 46 µm": {"color": style.CATEGORIES[1], "ls": style.DOTTED, "lw": 1.4},
     EXTRA: {"color": style.GREY, "ls": (0, (6, 1.5, 1, 1.5)), "lw": 1.0},
 }
 
@@ -61,11 +61,11 @@ def mesh_and_detail(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     left, right, low, high = DETAIL
     detail.set(xlim=(left, right), ylim=(low, high))
     whole.add_patch(Rectangle((left, low), right - left, high - low, fill=False, ec=style.INK, lw=0.8))
-    small = {"ncols": 4, "handlelength": 1.0, "columnspacing": 0.9, "fontsize": 7, "borderaxespad": 0.2}
+    small = {"ncols": 4, "handlelength": 1.0, "columnspacing": 0.9, "fontsize": 6.5, "borderaxespad": 0.2}
     whole.legend(handles=layer_patches(LAYERS[:-1]), loc="upper left", **small)
     detail.plot([-BESIDE * 1e3, 0, BESIDE * 1e3], [6.0 - DEPTH * 1e3] * 3, "o", mfc="white", mec=style.INK, ms=3.2, mew=0.7)
     value = quality_of(frame)
-    detail.set_title(f"{value['nodes (1)']:,.0f} nodes, smallest edge {value['smallest_edge (um)']:.0f} µm", fontsize=7.5)
+    detail.set_title(f"{value['nodes (1)']:,.0f} nodes, smallest edge {value['smallest_edge (um)']:.0f} µm", fontsize=6.5)
 
 
 def at_two_places(data: Data) -> pd.DataFrame:
@@ -75,20 +75,18 @@ def at_two_places(data: Data) -> pd.DataFrame:
     return rows
 
 
-def enlarge_the_first(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    """The traces at the centre are far below the axis's end: enlarged, in the colours of the other panel's labels."""
-    first, second = panels.values()
-    large = first.inset_axes((0.16, 0.4, 0.72, 0.5))
-    for line in first.get_lines():
-        large.plot(*line.get_data(), color=line.get_color(), lw=1.1)
-    highest = max(frame.loc[frame["panel"] == next(iter(panels)), SED])
-    large.set(xlim=(0, 2.6), ylim=(0, 1.06 * highest))
-    large.set_title("enlarged", fontsize=7.5)
-    large.tick_params(labelsize=7)
-    ends = {}
-    for label, rows in frame[frame["panel"] == list(panels)[1]].groupby("surface", sort=False):
-        ends[label] = (rows[TIME].iloc[-1], rows[SED].iloc[-1])
-    style.label_ends(second, ends, 2.6, "1/m")
+def named_at_both(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """Axes of their own, for the tip of a ridge is stiff, with the surfaces' names, and what the thesis's axis would be."""
+    for panel, ax in panels.items():
+        rows, ends = frame[frame["panel"] == panel], {}
+        for label, trace in rows.groupby("surface", sort=False):
+            ends[label] = (trace[TIME].iloc[-1], trace[SED].iloc[-1])
+        ax.set_ylim(0, 1.1 * rows[SED].max())
+        style.label_ends(ax, ends, 2.6, "1/m")
+        axis = frame.loc[frame["source"].str.contains("axis range"), SED].max()
+        if axis == axis:
+            text = f"thesis's axis: to {axis:.0f} Pa, {axis / rows[SED].max():.1f} times as high"
+            ax.text(0.03, 0.98, text, transform=ax.transAxes, va="top", fontsize=6.5, color=style.GREY)
 
 
 def at_receptors(data: Data, runs: Runs) -> pd.DataFrame:
@@ -118,27 +116,28 @@ def plate_stroked(number: str, pad: str, runs: Runs, axis: str, remark: str) -> 
         beside = frame["series"].isin(["x = −46 µm", "x = 46 µm"]) | ~is_simulated(frame)
         others = frame[~beside].groupby("series")[ERROR].max().dropna()
         how = f"at x = ±46 µm, {HOW}" + "".join(f"; {each} {value:.1f} %" for each, value in others.items())
-        return [*axs.footnote(frame[beside], how), remark]
+        return axs.footnote(frame[beside], how)
 
     title = f"Strain energy density at 915 µm, flat plate stroked at 10 mm/s, {pad}"
     return Figure(number, title, runs, STROKE_TIME, (SED,), {TIME: "T318", SED: axis},
-                  Panels(height=3.9, header=0.2, by="panel", names=tuple(WAYS), shape=(1, 2), alike=True, marked="left",
+                  Panels(height=3.0, header=0.16, by="panel", names=tuple(WAYS), shape=(1, 2), alike=True, marked="left",
                          fill=Lines(by="series", looks=LOOKS), titles=WAYS.get, each=True, share={"sharey": True}),
-                  rows=partial(at_receptors, runs=runs), note=note, extra=name_receptors)  # fmt: skip
+                  rows=partial(at_receptors, runs=runs), note=note, extra=name_receptors,
+                  remarks=(remark,))  # fmt: skip
 
 
 FIGURES = (
     Figure("5-25", "Finite element mesh of the fingerpad with inner ridges", FLAT, X, (Y,), {X: "T309", Y: "T310"},
            Own(height=3.75, paint=mesh_and_detail), rows=elements, meshes=True,
-           note=lambda frame: [NOTE, "The thesis states neither pitch nor height of its ridges: 0.48 mm and 0.15 mm here, see "
-                               "config/reference/ridges.csv.", "Circles: the receptors of Figs 5-28 and 5-29."]),
+           note=lambda frame: [NOTE],
+           remarks=("The thesis states neither pitch nor height of its ridges: 0.48 mm and 0.15 mm here, see "
+                               "config/reference/ridges.csv.", "Circles: the receptors of Figs 5-28 and 5-29.")),
     Figure("5-26", "Strain energy density at 915 µm, pad with inner ridges", RIDGED_NINE, TIME, (SED,),
            {TIME: "T312", SED: "T311"},
-           Panels(height=4.6, by="panel", names=tuple(PLACES), shape=(1, 2), alike=True, marked="none", each=True,
-                  fill=Lines(by="surface"), titles=lambda panel: f"({'ab'[list(PLACES).index(panel)]}) {panel}",
-                  set={"xlim": (0, 3.05)}, share={"sharey": True}),
-           rows=at_two_places, remarks=(LAYERED,), extra=enlarge_the_first),
+           Panels(height=3.4, by="panel", names=tuple(PLACES), shape=(1, 2), each=True, limit="",
+                  fill=Lines(by="surface"), titles=str, set={"xlim": (0, 3.05)}),
+           rows=at_two_places, remarks=(LAYERED,), extra=named_at_both),
     plate_stroked("5-28", "no ridges", PLAIN, "T317",
-                  "Times count from the start of the stroke; the pad was pressed to 20 gram-weight before."),
+                  "Times count from the start of the stroke; the pad was pressed to 20 gf before."),
     plate_stroked("5-29", "inner ridges", RIDGED, "T319", LAYERED),
 )  # fmt: skip

@@ -31,10 +31,12 @@ from fingerpad.measures.responses import (
     mean_frequency,
     plate_rate,
     predicted_rate,
+    shallow_law,
     skin_sample,
     stroke_histogram,
     stroke_law,
 )
+from fingerpad.measures.runs import NINE
 from fingerpad.measures.skin import WINDOW, skin_curvature
 from fingerpad.measures.strokes import (
     FULL,
@@ -61,6 +63,7 @@ from fingerpad.measures.strokes import (
     touching,
 )
 from fingerpad.receptors.fits import r_squared, rms
+from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
 from fingerpad.receptors.spikes import integrated
 
 SHALLOW = 560e-6
@@ -236,8 +239,13 @@ def _double_peaks(stroke: xr.Dataset, trace: features.Trace) -> dict[str, float]
     return {k: peaks_apart(d[where], values[where]) for k, where in _passages(stroke).items() if where.any()}
 
 
-def _rate_at_560_um(stroke: xr.Dataset) -> np.ndarray:
-    return predicted_rate(stroke, SHALLOW)[IMPULSE_RATE].to_numpy()
+def _law_at_560_um(runs: Together) -> ImpulseRate:
+    """By the rule of `shallow_law`."""
+    return shallow_law({label: runs[scene] for label, scene in NINE.scenes.items()}, SHALLOW)[0]
+
+
+def _rate_at_560_um(stroke: xr.Dataset, runs: Together) -> np.ndarray:
+    return predicted_rate(stroke, SHALLOW, runs.once(_law_at_560_um))[IMPULSE_RATE].to_numpy()
 
 
 def _by_eq_4_4(history: xr.Dataset, runs: Together) -> tuple[np.ndarray, np.ndarray]:
@@ -264,20 +272,24 @@ def histogram_bin(history):
     return stroke_histogram(*impulses_of(history, count), count)[IMPULSE_RATE].max()
 
 
-@stroked("impulses/s", in_full)
-def highest_frequency(history):
+@stroked("impulses/s", in_full, beside=True)
+def highest_frequency(history, runs):
     """Largest mean frequency of a receptor at 560 um from 40 mm on, as Fig 5-23 shows it."""
     count = STROKES_SHOWN["5-23"]
-    rate, impulses = impulses_of(history, count, SHALLOW)
+    rate, impulses = impulses_of(history, count, SHALLOW, runs.once(_law_at_560_um))
     at = np.interp(np.arange(40, 80.01, 0.1), rate[DISTANCE], rate[TIME])
     return mean_frequency(impulses, count, at)[FREQUENCY].max()
 
 
 def _impulses(
-    stroke: xr.Dataset, where: Mapping[str, np.ndarray], column: str = IMPULSE_RATE, depth: float = RECEPTOR_DEPTH
+    stroke: xr.Dataset,
+    where: Mapping[str, np.ndarray],
+    column: str = IMPULSE_RATE,
+    depth: float = RECEPTOR_DEPTH,
+    law: ImpulseRate = THESIS_RATE,
 ) -> dict[str, float]:
     """Mean numbers of impulses while conditions (time) hold at both ends of a step."""
-    frame = predicted_rate(stroke, depth)
+    frame = predicted_rate(stroke, depth, law)
     steps = np.diff(integrated(frame[TIME], frame[column]))
     return {k: float(steps[w[1:] & w[:-1]].sum()) for k, w in where.items()}
 
@@ -286,10 +298,10 @@ def _passages(stroke: xr.Dataset) -> dict[str, np.ndarray]:
     return {k: passing(stroke, arc) for k, arc in convexities(stroke).items()}
 
 
-@stroked("impulses", in_full)
-def impulses_at_560_um(stroke):
+@stroked("impulses", in_full, beside=True)
+def impulses_at_560_um(stroke, runs):
     """Mean number of impulses while each convexity passes."""
-    return _impulses(stroke, _passages(stroke), depth=SHALLOW)
+    return _impulses(stroke, _passages(stroke), depth=SHALLOW, law=runs.once(_law_at_560_um))
 
 
 def _in_hollows(stroke: xr.Dataset, under: Callable[[xr.Dataset], np.ndarray]) -> dict[str, float]:
@@ -372,7 +384,7 @@ CONVEXITIES = (
     Stroke("convexity_energy", "Pa", lambda h: peaks(h, energy_at(RECEPTOR_DEPTH)), wavy),
     # from one of the two peaks 560 um under the centre to the other; NaN where there are not two
     Stroke("energy_peaks_apart", "mm", lambda h: _double_peaks(h, energy_at(SHALLOW)), in_full),
-    Stroke("rate_peaks_apart", "mm", lambda h: _double_peaks(h, _rate_at_560_um), in_full),
+    Stroke("rate_peaks_apart", "mm", lambda h, runs: _double_peaks(h, partial(_rate_at_560_um, runs=runs)), in_full, beside=True),
     *(
         Stroke(name, unit, lambda h, column=column: burst_values(h, column), waves)
         for name, unit, column in (

@@ -282,9 +282,11 @@ def raster(frame: pd.DataFrame, repetitions: int, seed: int, variation: float = 
     return out.assign(**{DISTANCE: np.interp(out[TIME], time, frame[DISTANCE])}) if DISTANCE in frame else out
 
 
-def impulses_of(history: xr.Dataset, repetitions: int, depth: float = RECEPTOR_DEPTH) -> tuple[pd.DataFrame, pd.DataFrame]:
+def impulses_of(
+    history: xr.Dataset, repetitions: int, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE
+) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Predicted rate of a stroke from where it begins to slide, and the impulses of some repetitions of it."""
-    frame = predicted_rate(loaded(history), depth)
+    frame = predicted_rate(loaded(history), depth, law)
     return frame, raster(frame, repetitions, SEED)
 
 
@@ -355,15 +357,16 @@ def mean_pressure(history: xr.Dataset, window: str = "hold") -> float:
     return windowed(history, history["time"].values, centre_pressure(history), window)
 
 
-def shallow_law(histories: Mapping[str, xr.Dataset]) -> tuple[ImpulseRate, float]:
-    """Eq 5-1 for the shallow depth, and the factor its energies are multiplied by.
+def shallow_law(histories: Mapping[str, xr.Dataset], depth: float = SHALLOW_DEPTH) -> tuple[ImpulseRate, float]:
+    """Eq 5-1 for another depth (m) than the thesis's, and the factor its energies are multiplied by; histories: of the nine.
 
-    The thesis's constants belong to 915 um and it prints none for 600 um. Energies there are scaled by one number, with which the
-    mean over surfaces of the mean energy in the hold is the same at both depths: what differs is how they depend on curvature.
+    The thesis's constants belong to 915 um and it prints none for 560 or 600 um. Energies there are scaled by one number, with
+    which the mean over surfaces of the mean energy in the hold is the same at both depths: what differs is how they depend on
+    curvature. So do all rates that are predicted from another depth, pressed (Figs 4-27, 4-29) and stroked (5-22, 5-23).
     """
     deep, shallow = (
         np.mean([windowed(h, h["time"].values, energy(h, z), "hold") for h in histories.values()])
-        for z in (RECEPTOR_DEPTH, SHALLOW_DEPTH)
+        for z in (RECEPTOR_DEPTH, depth)
     )
     factor, law = float(deep / shallow), THESIS_RATE
     return (

@@ -1,13 +1,16 @@
-"""One style for every picture: the page, its title and note, colours, line styles, labels that stay apart.
+"""One style for every picture: what each colour, marker and line style means, the page, its title and note, direct labels.
 
-Colours of the surfaces come from one perceptually uniform, colour-blind-safe sequential map, those of velocities from another.
+Pages follow the journals' widths (89 mm a column, 183 mm a page, 170 mm tall at most) with one face at 7 pt, DejaVu Sans, which
+matplotlib ships. Colours mean one thing each (`MEANINGS`): curvatures are one sequence from dark blue to ochre that is even in
+the logarithm and keeps its order in grey and for colour-blind readers; what has no order wears the colours of Okabe and Ito
+(2008), darkened where they are too pale for a line, and a line style and a marker besides. Text is never coloured.
 Matplotlib is imported when something is drawn: what only lists or describes pictures need not load it.
 """
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from typing import TYPE_CHECKING
@@ -17,46 +20,116 @@ import pandas as pd
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-PAGE_WIDTH = 7.0  # inch, the text width of an A4 page
-NOTE_WIDTH = 142  # characters of a footnote's line
-GREY = "0.45"
-BAND = "0.955"
-INK = "0.15"
+INCH = 25.4  # mm
+PAGE_WIDTH, COLUMN_WIDTH, TALLEST = 183 / INCH, 89 / INCH, 170 / INCH  # inch, of a journal's page
+NOTE_SIZE = 6.0  # pt
+NOTE_WIDTH = 152  # characters of a footnote's line on a page
+INK, GREY, PALE, BAND = "0.15", "0.42", "0.8", "0.955"
+"""Text and what is not told apart; remarks and references; solids beyond the skin; the thesis's range."""
+HIGHLIGHT = "#00785a"
+"""The second of two curves, whatever it is: no surface, speed or force is green."""
 
 RC = {
-    "font.family": "DejaVu Sans", "font.size": 8.5, "axes.titlesize": 8.5, "axes.labelsize": 8.5, "xtick.labelsize": 8,
-    "ytick.labelsize": 8, "legend.fontsize": 8, "axes.edgecolor": INK, "axes.labelcolor": INK, "text.color": INK,
-    "xtick.color": INK, "ytick.color": INK, "axes.linewidth": 0.7, "axes.spines.top": False, "axes.spines.right": False,
-    "axes.titlelocation": "left", "axes.titlepad": 4, "xtick.major.width": 0.7, "ytick.major.width": 0.7,
-    "lines.linewidth": 1.4, "lines.solid_capstyle": "round", "legend.frameon": False, "figure.facecolor": "white",
-    "savefig.facecolor": "white", "axes.formatter.use_mathtext": True, "axes.formatter.limits": (-4, 5),
+    "font.family": "DejaVu Sans", "font.size": 7, "axes.titlesize": 7, "axes.labelsize": 7, "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5, "legend.fontsize": 6.5, "legend.title_fontsize": 6.5, "axes.edgecolor": INK, "axes.labelcolor": INK,
+    "text.color": INK, "xtick.color": INK, "ytick.color": INK, "axes.linewidth": 0.6, "axes.spines.top": False,
+    "axes.spines.right": False, "axes.titlelocation": "left", "axes.titlepad": 4, "axes.labelpad": 3, "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6, "xtick.major.size": 2.5, "ytick.major.size": 2.5, "xtick.minor.size": 1.5, "ytick.minor.size": 1.5,
+    "xtick.major.pad": 2.5, "ytick.major.pad": 2.5, "lines.linewidth": 1.1, "lines.markersize": 4,
+    "lines.solid_capstyle": "round", "legend.frameon": False, "figure.facecolor": "white", "savefig.facecolor": "white",
+    "axes.formatter.use_mathtext": True, "axes.formatter.limits": (-4, 5), "pdf.fonttype": 42, "mathtext.fontset": "dejavusans",
+    "hatch.linewidth": 0.4, "errorbar.capsize": 1.5,
 }  # fmt: skip
 
-DASHED, DOTTED = (0, (4, 1.8)), (0, (1, 1.4))
+SOLID, DASHED, DOTTED, DASH_DOT, LONG = "-", (0, (4, 1.8)), (0, (1, 1.4)), (0, (4, 1.5, 1, 1.5)), (0, (8, 2))
+LINES = (SOLID, DASHED, DOTTED, DASH_DOT, LONG, (0, (2.5, 1)))
+MARKERS = "os^Dv<>P"
+Look = Mapping[str, object]
+
+# --- what colours mean -------------------------------------------------------------------------------------
 
 COLOURS = {
-    "flat": "#0d0887", "79": "#3f049c", "105": "#6700a8", "158": "#8d0ba5", "210": "#ad2793", "315": "#c8437b",
-    "420": "#de5f65", "630": "#ef7e50", "1260": "#fb9f3a",
+    "flat": "#01287b", "26": "#422a79", "39": "#5d2b77", "52": "#712d73", "79": "#8d306d", "105": "#9c3367", "158": "#b0385c",
+    "210": "#bc3e55", "315": "#c74c49", "420": "#cc573f", "630": "#d06731", "1260": "#ca8605",
 }  # fmt: skip
-"""Of the nine surfaces, broad to sharp (matplotlib's plasma, 0 to 0.78)."""
-SPEED_COLOURS = {"1": "#440154", "5": "#404588", "10": "#297a8e", "20": "#25ac82", "40": "#86d549"}
-"""Of the stroking velocities in mm/s (viridis, 0 to 0.82)."""
-SPEED_LINES = {"1": DOTTED, "5": (0, (3, 1, 1, 1)), "10": "-", "20": (0, (6, 1.5)), "40": (0, (3.5, 1.5))}
-SHADES = ("#c8553d", "#1f77a4", "#3c8d5a", "#8a4fbf")
-MARKERS = "os^D"
+"""Of curvatures in 1/m: lightness from 20 to 61, where a line on white still has a contrast of 3, even in their logarithm."""
+CATEGORIES = ("#0072b2", "#d55e00", "#009e73", "#b5588f", "#7a6000", "#404040")
+"""Okabe and Ito's blue, vermilion and green; their purple and yellow as dark as a line needs; and grey."""
+
+
+def _looks(names: Sequence[str], colours: Sequence[str] = CATEGORIES, lines: Sequence = LINES) -> dict[str, Look]:
+    return {
+        name: {"color": colours[k % len(colours)], "ls": lines[k % len(lines)], "marker": MARKERS[k % len(MARKERS)]}
+        for k, name in enumerate(names)
+    }
+
+
+MEANINGS: Mapping[str, Mapping[str, Look]] = {
+    "curvature (1/m)": {name: {"color": colour} for name, colour in COLOURS.items()},
+    "speed (mm/s)": _looks(
+        ("1", "5", "10", "20", "40"), ("#00233d", "#004164", "#00608e", "#157fb2", "#3b9bd3"),
+        (DOTTED, (0, (3, 1, 1, 1)), SOLID, LONG, DASHED),
+    ),
+    "force (gf)": _looks(("10", "15", "20"), ("#3d2163", "#704f97", "#a081c1"), (DOTTED, DASHED, SOLID)),
+    "depth": _looks(("first", "second", "third", "fourth"), ("#402613", "#6c4428", "#99633b", "#c48151"),
+                    (DOTTED, DASH_DOT, DASHED, SOLID)),
+    "subject": _looks(("1", "2", "3", "4", "mean"), (*CATEGORIES[:4], INK)),
+    "energy": _looks(("instantaneous elastic", "long-term moduli", "half stress × strain", "recoverable", "long-term network")),
+    "boundary": _looks(("corneum", "dermis", "fat"), ("#402613", "#0072b2", "#7a6000"), (SOLID, DASH_DOT, DOTTED)),
+    "verdict": _looks(("inside", "plausible", "holds", "outside", "fails", "not judged"),
+                      ("#0072b2", "#0072b2", "#0072b2", "#d55e00", "#d55e00", "#737373"), (SOLID,)),
+    "origin": _looks(("stated", "inferred", "assumed"), ("#0072b2", "#7a6000", "#d55e00"), (SOLID, DASHED, DOTTED)),
+}  # fmt: skip
+"""What is told apart -> its values, and how each looks. A test measures contrasts and distances, colour-blind ones too."""
+
+SPEED_COLOURS = {name: look["color"] for name, look in MEANINGS["speed (mm/s)"].items()}
+SPEED_LINES = {name: look["ls"] for name, look in MEANINGS["speed (mm/s)"].items()}
+SHADES = CATEGORIES
 LAYER_COLOURS = {"stratum corneum": "#8c6d52", "epidermis": "#c49a78", "dermis": "#e3b7a8", "fat": "#f6e7c4", "bone": "#b9bec4"}
+"""Areas, always outlined: their lightness falls from the outside in but for the bone, which is grey."""
+FIELD = "cividis"
+"""Map of strain energy and other fields: even for colour-blind readers."""
+
+
+def look_of(meaning: str, name: str, *parts: str) -> dict[str, object]:
+    """Parts (left out: ``color`` and ``ls``) of how a value of `MEANINGS` looks. Curvatures that are not in the table lie on the
+    sequence between its own; KeyError for any other value that is not there."""
+    if meaning == "curvature (1/m)" and name not in COLOURS:
+        return {"color": curvature_colour(float(name))}
+    look = MEANINGS[meaning][name]
+    return {part: look[part] for part in parts or ("color", "ls") if part in look}
+
+
+def curvature_colour(curvature: float) -> str:
+    """Colour of any curvature (1/m; a plate: 0) on the sequence of `COLOURS`, linear in its logarithm between these."""
+    known = np.array([13.0, *(float(name) for name in COLOURS if name != "flat")])
+    channels = np.array([[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in COLOURS.values()])
+    at = np.log(np.clip(curvature, known[0], known[-1]))
+    return "#" + "".join(f"{round(np.interp(at, np.log(known), channel)):02x}" for channel in channels.T)
+
+
+def ordered(meaning: str, names: Iterable[str]) -> dict[str, Look]:
+    """Looks of some names by their order, of a meaning whose values are not known beforehand: ``depth``, ``subject``."""
+    looks = list(MEANINGS[meaning].values())
+    return {name: looks[k % len(looks)] for k, name in enumerate(dict.fromkeys(names))}
+
+
+# --- pages -------------------------------------------------------------------------------------------------
 
 
 def styled(draw: Callable[[pd.DataFrame], Figure]) -> Callable[[pd.DataFrame], Figure]:
-    """Run a drawing function under the shared style, whatever the caller's matplotlib settings are."""
+    """Run a drawing function under the shared style, whatever the caller's matplotlib settings are, and letter its panels."""
 
     @wraps(draw)
     def inner(frame: pd.DataFrame) -> Figure:
         with theme():
-            return draw(frame)
+            fig = draw(frame)
+            letter(fig)
+            return fig
 
     return inner
 
@@ -85,30 +158,73 @@ def wrapped(lines: Iterable[str], width: int = NOTE_WIDTH) -> list[str]:
     return [part for line in lines for part in textwrap.wrap(line, width)]
 
 
-def sheet(title: str, note: Sequence[str], height: float, number: str = "", header: float = 0.0, laid_out: bool = True) -> Figure:
-    """Empty page-wide figure of a height (inch): title above, with the thesis's number if it has one, the note's lines below.
+def note_width(width: float = PAGE_WIDTH) -> int:
+    """Characters of a note's line in a picture so wide (inch)."""
+    return int(NOTE_WIDTH * width / PAGE_WIDTH)
+
+
+def sheet(
+    title: str,
+    note: Sequence[str],
+    height: float,
+    number: str = "",
+    header: float = 0.0,
+    laid_out: bool = True,
+    width: float = PAGE_WIDTH,
+) -> Figure:
+    """Empty figure of a height and width (inch): title above, after the thesis's number if it has one, the note's lines below.
 
     `header` (inch) leaves room under the title. Panels are laid out in between, unless the caller does so (not `laid_out`).
     """
     from matplotlib.figure import Figure
 
-    fig = Figure(figsize=(PAGE_WIDTH, height), layout="constrained" if laid_out else None)
+    fig = Figure(figsize=(width, height), layout="constrained" if laid_out else None)
+    whose = f"after Cysyk 1999, Fig. {number}" if number else ""
+    aside = bool(whose) and width > 1.2 * COLUMN_WIDTH  # the title beside the number, or below it
+    titled = [title] if width > 1.2 * COLUMN_WIDTH else textwrap.wrap(title, 58)
+    lines = 1 if aside or not number else 1 + len(titled)
     if laid_out:
-        top, bottom = (0.30 + header) / height, (0.16 * len(note) + 0.08) / height
+        top, bottom = (0.11 + 0.125 * lines + header) / height, (0.125 * len(note) + 0.07) / height
         pads = {"w_pad": 0.04, "hspace": 0.04} if number else {"w_pad": 0.05}
         fig.get_layout_engine().set(rect=(0.005, bottom, 0.99, 1 - top - bottom), h_pad=0.04, **pads)
-    place = {"y": 1 - 0.09 / height, "ha": "left", "va": "top", "fontsize": 9.5}
-    fig.text(0.012, s=f"Fig. {number}" if number else title, fontweight="bold", **place)
-    if number:
-        fig.text(0.012 + 0.82 / PAGE_WIDTH, s=title, **place)
-    small = {"ha": "left", "va": "bottom", "fontsize": 7, "color": GREY, "linespacing": 1.35}
-    fig.text(0.012, 0.06 / height, "\n".join(note), **small)
+    left, place = 0.08 / width, {"y": 1 - 0.07 / height, "ha": "left", "va": "top"}
+    fig.text(left, s=whose or title, fontweight="bold", **place)
+    if aside:
+        fig.text(left + 1.66 / width, s=title, **place)
+    elif number:
+        fig.text(left, s="\n".join(titled), **place | {"y": 1 - 0.2 / height})
+    small = {"ha": "left", "va": "bottom", "fontsize": NOTE_SIZE, "color": GREY, "linespacing": 1.35}
+    fig.text(left, 0.05 / height, "\n".join(note), **small)
     return fig
 
 
-def study_figure(title: str, note: Sequence[str], height: float, header: float = 0.0) -> Figure:
+def study_figure(title: str, note: Sequence[str], height: float, header: float = 0.0, width: float = PAGE_WIDTH) -> Figure:
     """`sheet` of a study: a bold title, the note's paragraphs wrapped."""
-    return sheet(title, wrapped(note), height, header=header)
+    return sheet(title, wrapped(note, note_width(width)), height, header=header, width=width)
+
+
+def letter(fig: Figure) -> None:
+    """Bold lower-case letters above the left end of the panels, if there is more than one; twins and insets have none."""
+    places: dict[tuple, Axes] = {}
+    for ax in fig.axes:
+        spec = ax.get_subplotspec()
+        if spec is not None and ax.get_visible() and ax.axison and ax.get_label() not in ("<colorbar>", "twin"):
+            places.setdefault((id(spec.get_gridspec()), spec.num1, spec.num2), ax)
+    if len(places) < 2:
+        return
+    for tag, ax in zip("abcdefghijklmnopqrstuvwxyz", places.values(), strict=False):
+        ax.annotate(tag, (0, 1), (-4, 4), "axes fraction", "offset points", ha="right", va="baseline", fontweight="bold",
+                    annotation_clip=False)  # fmt: skip
+
+
+def in_kilo(axis: Axis) -> None:
+    """Ticks of an axis in thousands, and its label, if it has one, in the kilo of its unit."""
+    axis.set_major_formatter(lambda value, _: f"{value / 1000:g}")
+    label = axis.get_label()
+    label.set_text(label.get_text().replace("(Pa", "(kPa"))
+
+
+# --- direct labels -----------------------------------------------------------------------------------------
 
 
 def spread(values: Sequence[float], gap: float, low: float, high: float) -> np.ndarray:
@@ -134,16 +250,15 @@ def label_ends(ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, h
     `ends` maps a surface label to the (x, y) of the trace's last point. Axis limits must be set already.
     """
     low, high = ax.get_ylim()
-    gap = (high - low) * 0.135 / _axes_height(ax)
+    gap = (high - low) * 0.115 / _axes_height(ax)
     labels = list(ends)
     positions = spread([ends[k][1] for k in labels], gap, low + gap * 0.4, high - gap * (1.6 if heading else 0.5))
     for label, position in zip(labels, positions, strict=True):
         x, y = ends[label]
-        ax.plot([x, x_label], [y, position], color=COLOURS[label], lw=0.6, alpha=0.7, clip_on=False)
-        text = "flat plate" if label == "flat" else label
-        ax.text(x_label, position, f" {text}", color=COLOURS[label], va="center", fontsize=8)
+        ax.plot([x, x_label], [y, position], lw=0.7, clip_on=False, **look_of("curvature (1/m)", label, "color"))
+        ax.text(x_label, position, f" {'flat plate' if label == 'flat' else label}", va="center", fontsize=6.5)
     if heading:
-        ax.text(x_label, positions.max() + gap * 1.1, heading, va="center", ha="left", fontsize=7)
+        ax.text(x_label, positions.max() + gap * 1.1, heading, va="center", ha="left", fontsize=6.5)
 
 
 def _axes_height(ax: Axes) -> float:
@@ -152,7 +267,7 @@ def _axes_height(ax: Axes) -> float:
     ratios = spec.get_gridspec().get_height_ratios()
     rows = range(spec.rowspan.start, spec.rowspan.stop)
     share = sum(ratios[r] for r in rows) / sum(ratios)
-    return max(0.5, (ax.figure.get_figheight() - 0.9) * share - 0.2)
+    return max(0.5, (ax.figure.get_figheight() - 0.75) * share - 0.2)
 
 
 def handle(label: str, **look) -> Line2D:
@@ -165,5 +280,5 @@ def handle(label: str, **look) -> Line2D:
 def header_legend(fig: Figure, handles: Sequence[Line2D], **kwargs) -> None:
     """Legend in one row under the title, in the room that `sheet` left by its `header`."""
     kwargs = {"handlelength": 2.6, "handletextpad": 0.4, "borderaxespad": 0.0} | kwargs
-    place = {"loc": "upper left", "bbox_to_anchor": (0.012, 1 - 0.27 / fig.get_figheight())}
+    place = {"loc": "upper left", "bbox_to_anchor": (0.012, 1 - 0.22 / fig.get_figheight())}
     fig.legend(handles=handles, ncols=len(handles), **place, **kwargs)

@@ -51,11 +51,12 @@ DEPTHS = {"600 um": 600e-6, "915 um": 915e-6}
 SHOWN = "915 um"
 CHANGE = "change_in_hold (%)"
 MARKS = {
-    panel: {"color": colour, "marker": "o", "ms": 4, "zorder": 9 - k}
-    for k, (panel, colour) in enumerate(style.colours("viridis", 0, 0.85, MEANINGS).items())
+    panel: style.look_of("energy", panel, "color", "marker") | {"ms": 3.5, "lw": 1.0, "zorder": 9 - k}
+    for k, panel in enumerate(MEANINGS)
 }
-MARKS["long-term moduli"] |= {"ms": 8, "mfc": "none"}  # rings: at 600 um it changes as the first does
+MARKS["long-term moduli"] |= {"ms": 7, "mfc": "none"}  # around others: at 600 um it changes as the first does
 LINES = {"600 um": "--", "915 um": "-"}
+FALLS = {"fc": "white", "ec": "0.88", "hatch": "\\\\\\", "lw": 0, "zorder": 0}
 
 
 def frame_meanings(histories: Histories, coarse: Histories) -> pd.DataFrame:
@@ -82,12 +83,12 @@ def titled(panel: str) -> str:
 def fig_meanings(frame: pd.DataFrame) -> Figure:
     """Above: each definition over time, relative to the top of the ramp; below: its change over the hold for every surface."""
     note = [
-        *axs.footnote(frame),
-        "Rates recorded from slowly adapting receptors peak at the top of the ramp and fall in the hold under every surface "
-        "(Cysyk 1999, section 4.2).",
-        "Grey: where a definition does so. Without viscosity the five are one.",
+        f"{axs.footnote(frame)[0].replace('; strain energy on instantaneous moduli', '')} Recorded rates fall in the "
+        "hold under every "
+        "surface (Cysyk 1999, section 4.2). Hatched: where a definition does so. Without viscosity the five are one.",
     ]
-    fig = style.sheet("Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, under the centre", note, 6.6)
+    title = "Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, under the centre"
+    fig = style.study_figure(title, note, 5.4)
     grid = fig.add_gridspec(2, len(MEANINGS), height_ratios=[1, 1.1])
     axes = [fig.add_subplot(grid[0, k]) for k in range(len(MEANINGS))]
     shown = frame[frame["series"] == SHOWN]
@@ -95,9 +96,9 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
     for ax, panel in zip(axes, MEANINGS, strict=True):
         for label in SURFACES:
             rows = shown[(shown["panel"] == panel) & (shown["surface"] == label)]
-            ax.plot(rows[TIME], 1 + rows[CHANGE] / 100, color=style.COLOURS[label])
+            ax.plot(rows[TIME], 1 + rows[CHANGE] / 100, **axs.look(label))
             ends[label] = (rows[TIME].iloc[-1], 1 + rows[CHANGE].iloc[-1] / 100)
-        ax.axhspan(0, 1, color=style.BAND, lw=0, zorder=0)
+        ax.axhspan(0, 1, **FALLS)
         ax.set(title=titled(panel), xlabel="time (s)", xlim=(0, 2.5), ylim=(0, 1.08 * (1 + shown[CHANGE].max() / 100)))
         ax.tick_params(labelleft=ax is axes[0])
     axes[0].set_ylabel(f"energy over that at the top\nof the ramp, {SHOWN.replace('um', 'µm')}")
@@ -110,11 +111,11 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
             place = [SURFACES.index(label) for label in rows["surface"]]
             ax.plot(place, rows[CHANGE], line, **MARKS[panel])
     ax.axhline(0, color=style.INK, lw=0.7)
-    ax.axhspan(min(0.0, 1.2 * last[CHANGE].min()), 0, color=style.BAND, lw=0, zorder=0)
+    ax.axhspan(min(0.0, 1.2 * last[CHANGE].min()), 0, **FALLS)
     ax.set(ylabel="change over the hold (%)", xlabel="curvature (1/m)", xlim=(-0.3, len(SURFACES) - 0.7))
     ax.set_xticks(range(len(SURFACES)), ["flat plate", *SURFACES[1:]])
     ax.set_ylim(top=ax.get_ylim()[0] + 1.3 * np.ptp(ax.get_ylim()))
     handles = [style.handle(panel, **MARKS[panel]) for panel in MEANINGS]
     handles += [style.handle(series.replace("um", "µm"), color=style.INK, ls=line) for series, line in LINES.items()]
-    ax.legend(handles=handles, loc="upper left", ncols=3, fontsize=7)
+    ax.legend(handles=handles, loc="upper left", ncols=3)
     return fig

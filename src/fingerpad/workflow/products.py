@@ -27,9 +27,9 @@ RIDGE_MESHES = (("fine",), ("curved", "straight", "shifted"))
 """Further meshes for that case, by process."""
 RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rapidly_adapting")
 TABLES = ("thesis_comparison", "sensitivity")
-PARTS = ("animations", "all_tables", "calibration", "ridges", "meanings")
+PARTS = ("animations", "views", "all_tables", "calibration", "ridges", "meanings")
 """What is part of the default target beside figures and simulations."""
-SHOWN = ("picture", "pictures", "table", "tables", "gif")
+SHOWN = ("picture", "pictures", "table", "tables", "gifs", "films")
 """Outputs that are for people."""
 UNTOLD = ("files", "scene_files", "measured", "written")
 """Inputs that a job finds by itself, beside others or named in them, and what only says when to run it again."""
@@ -48,7 +48,8 @@ class Job:
     Attributes:
         run: module of `fingerpad.workflow.jobs`. inputs, outputs: files by what they are to the job. values: parameters likewise.
         called: the rule's name, if it is not the module's. modules: further modules that the job imports by name. also: outputs
-        beside the others. category, labels: of the outputs called pages, which the report shows.
+        beside the others. category, labels: of the outputs called pages, which the report shows. vectors: folder of the pictures
+        as PDF.
     """
 
     run: str
@@ -60,6 +61,7 @@ class Job:
     category: str = ""
     labels: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     also: list[str] = field(default_factory=list)
+    vectors: str = ""
     mem_mb: int = 1000
     runtime: int = 10
     priority: int = 0
@@ -77,10 +79,11 @@ class Job:
 
     @property
     def beside(self) -> list[str]:
-        """What is written beside the outputs: Markdown to tables, their data to pictures, and `also`."""
+        """What is written beside the outputs: Markdown to tables, their data and PDF to pictures, and `also`."""
         pictures = [Path(p) for key in ("picture", "pictures") for p in self.outputs.get(key, [])]
         tables = [Path(p) for key in ("table", "tables") for p in self.outputs.get(key, [])]
-        return [*(str(p.with_suffix(".csv")) for p in pictures), *(str(p.with_suffix(".md")) for p in tables), *self.also]
+        data = [*(str(p.with_suffix(".csv")) for p in pictures), *(str(p.with_suffix(".md")) for p in tables)]
+        return [*data, *(f"{self.vectors}/{p.stem}.pdf" for p in pictures if self.vectors), *self.also]
 
     @property
     def words(self) -> list[tuple[str, str]]:
@@ -125,7 +128,7 @@ class Products:
     def _check(self) -> None:
         """SceneError, one line, for a scene, a figure or a table that there is not."""
         c = self.config
-        for key in ("scenes", "variants", "calibration_scenes", "friction_scenes"):
+        for key in ("scenes", "variants", "calibration_scenes", "friction_scenes", "field_scenes"):
             for i, name in enumerate(getattr(c, key)):
                 self._check_scene((key, i), name)
         for i, number in enumerate(c.figure_numbers or ()):
@@ -318,10 +321,41 @@ class Products:
             yield Job("catalogue", read, {"readme": ["figures/README.md"]}, {"titles": [titles]})
 
     def animations(self) -> Iterator[Job]:
-        """Moving pictures."""
-        for scene in self.config.animations:
-            made = {"gif": [f"{self.config.studies}/animation_{scene}.gif"]}
-            yield Job("animation", {"history": self.histories([scene])}, made, called=f"animation_{scene}")
+        """Moving pictures, each as GIF and as film."""
+        if scenes := self.config.animations:
+            names = [f"{self.config.studies}/animation_{scene}" for scene in scenes]
+            films = [f"{self.config.studies}/film_{scene}.webm" for scene in scenes]
+            made = {"gifs": [f"{name}.gif" for name in names], "films": films}
+            yield Job("animations", {"histories": [self._anywhere(scene) for scene in scenes]}, made)
+
+    def fields(self) -> Iterator[Job]:
+        """Scenes -> histories with whole fields: presses in one process, what moves along in another."""
+        for called, strokes in (("fields_of_presses", False), ("fields_of_strokes", True)):
+            if names := [name for name in self.config.field_scenes if moves_along(self.scene(name)) == strokes]:
+                values = {"scenes": [self.scene(name) for name in names], "written": self._written(*names)}
+                made = {"histories": [self._anywhere(name) for name in names]}
+                yield Job("fields", self._read(*names), made, values, called, mem_mb=2000, runtime=30, priority=1)
+
+    def _anywhere(self, scene: str) -> str:
+        """Result of a scene: with whole fields, if it is of those."""
+        return self.result(f"fields/{scene}/history.nc") if scene in self.config.field_scenes else self.histories([scene])[0]
+
+    def views(self) -> Iterator[Job]:
+        """Pictures of what happens inside, those whose scenes the configuration has, and of the tables that compare."""
+        known, views = {*self.config.every_scene, *self.config.field_scenes}, offered()["VIEWS"]
+        there = [name for name, scenes in views.items() if known.issuperset(scenes)]
+        for called, strokes in (("views_of_presses", False), ("views_of_strokes", True)):
+            if names := [name for name in there if any(moves_along(self.scene(s)) for s in views[name]) == strokes]:
+                read = [self._anywhere(scene) for scene in dict.fromkeys(scene for name in names for scene in views[name])]
+                made = {"pictures": self.pictures(names)}
+                yield Job("views", {"histories": read}, made, called=called)
+        tables = {"scorecard": "thesis_comparison", "candidate_stimuli": "candidate_stimuli"}
+        if names := [name for name, table in tables.items() if table in self.config.table_names]:
+            read = {
+                "tables": self.tables([tables[name] for name in names]),
+                "reference": [self.at("config/reference/thesis_numbers.csv")],
+            }
+            yield Job("table_pictures", read, {"pictures": self.pictures(names)})
 
     def all_tables(self) -> Iterator[Job]:
         """Tables of all the results, of the receptors, and of the scenes' summaries."""
@@ -571,15 +605,16 @@ class Products:
     def jobs(self) -> list[Job]:
         """All of them."""
         parts = (
-            self.simulations, self.figures, self.catalogue, self.animations, self.all_tables, self.meanings, self.calibration,
-            self.ridges, self.accuracy, self.stability, self.effects, self.peers, self.reconstruction, self.map_of_touch,
-            self.five_hundred_fingers,
+            self.simulations, self.figures, self.catalogue, self.animations, self.fields, self.views, self.all_tables,
+            self.meanings, self.calibration, self.ridges, self.accuracy, self.stability, self.effects, self.peers,
+            self.reconstruction, self.map_of_touch, self.five_hundred_fingers,
             self.report,
         )  # fmt: skip
         jobs = [job for part in parts for job in part()]
         # a scene read back from a history is filled up with the thesis's specimen, though it lacks nothing
         named = {"files": [self.thesis_specimen()]}
-        return [replace(job, inputs=named | dict(job.inputs)) if READ_BACK & job.inputs.keys() else job for job in jobs]
+        jobs = [replace(job, inputs=named | dict(job.inputs)) if READ_BACK & job.inputs.keys() else job for job in jobs]
+        return [replace(job, vectors=self.result("pdf")) if {"picture", "pictures"} & job.outputs.keys() else job for job in jobs]
 
     def targets(self, *parts: str, figures: str = "none") -> list[str]:
         """Final outputs of some parts (names of the methods above), and the figures whose number starts so."""

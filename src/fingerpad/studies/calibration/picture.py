@@ -12,22 +12,23 @@ from matplotlib.figure import Figure
 
 from fingerpad.measures.features import is_simulated
 from fingerpad.measures.quantities import DISTANCE, LATERAL
-from fingerpad.publishing.style import GREY, INK, study_figure, styled
+from fingerpad.publishing.style import CATEGORIES, DASHED, DOTTED, GREY, INK, SOLID, ordered, spread, study_figure, styled
 
 DEPTH, FORCE, COEFFICIENT = "depth (mm)", "force (N)", "coefficient (1)"
 MARKERS = "os^Dv<>P"
+TOUCHED = "#c9dbe8"
+"""Shade of what is about a number."""
 MODEL_LINES = {
-    "constant length": ((0, (4, 1.8)), "#8a4fbf"),
-    "elliptical patch": ("-", "#1f77a4"),
-    "plane sections": ((0, (1, 1.2)), "#c8553d"),
+    "constant length": (DASHED, CATEGORIES[3]),
+    "elliptical patch": (SOLID, CATEGORIES[0]),
+    "plane sections": (DOTTED, CATEGORIES[1]),
 }
 
 
 def _colours(names: Sequence[str]) -> dict[str, object]:
     """Colour of each subject; the mean in ink."""
-    subjects = [name for name in names if name != "mean"]
-    shades = mpl.colormaps["viridis"](np.linspace(0.05, 0.8, max(len(subjects), 1)))
-    return dict(zip(subjects, shades, strict=False)) | {"mean": INK}
+    looks = ordered("subject", [name for name in names if name != "mean"])
+    return {name: look["color"] for name, look in looks.items()} | {"mean": INK}
 
 
 def _title_of(who: str) -> str:
@@ -38,12 +39,10 @@ def _title_of(who: str) -> str:
 def fit(frame: pd.DataFrame) -> Figure:
     """Measured steady forces, fitted curves with 95 % bands and the thesis's constant; the mean with the bone moved."""
     note = [
-        "Lines: simulated (2-D plane-strain finite elements, steady state, contact length of the default specimen); moduli times "
-        "a fitted constant, but for the one line with the moduli stated in the thesis. Bands: 95 % confidence of the constant, "
-        "from the misfit of each fit.",
-        f"Points: {_measured(frame)}.",
+        "Lines: simulated, steady state; moduli times a fitted constant (dotted: its 95 % confidence), dashed: the moduli stated "
+        f"in the thesis. Points: {_measured(frame)}."
     ]
-    fig = study_figure("Calibration: steady force under a flat plate", note, 4.2)
+    fig = study_figure("Calibration: steady force under a flat plate", note, 3.4)
     left, right = fig.subplots(1, 2, sharey=True)
     simulated = is_simulated(frame)
     subjects = frame[frame["panel"] == "subjects"]
@@ -53,20 +52,22 @@ def fit(frame: pd.DataFrame) -> Figure:
         rows = subjects[subjects["series"] == who]
         line, points = rows[is_simulated(rows)], rows[~is_simulated(rows)]
         mean = who == "mean"
-        left.fill_between(line[DEPTH], line["force_low (N)"], line["force_high (N)"], color=colours[who], alpha=0.13, lw=0)
+        ends = {"color": colours[who], "lw": 0.5, "ls": DOTTED}
+        for end in ("force_low (N)", "force_high (N)"):  # lines, for overlapping bands show seams that look like curves
+            left.plot(line[DEPTH], line[end], **ends)
         left.plot(line[DEPTH], line[FORCE], color=colours[who], lw=1.8 if mean else 1.1)
         marker = "*" if mean else MARKERS[k % len(MARKERS)]
         left.plot(points[DEPTH], points[FORCE], marker, color=colours[who], ms=8 if mean else 4.5, label=_title_of(who))
     stated = subjects[subjects["series"] == "thesis"]
-    left.plot(stated[DEPTH], stated[FORCE], color=GREY, ls=(0, (4, 1.8)))
+    left.plot(stated[DEPTH], stated[FORCE], color=GREY, ls=DASHED)
     top = max(1.6, 1.1 * float(frame.loc[~simulated, FORCE].max()))
     inside = stated[stated[FORCE] < 0.93 * top].iloc[-1]
-    left.annotate("moduli stated\nin the thesis", (inside[DEPTH], inside[FORCE]), xytext=(-14, 0), textcoords="offset points",
-                  ha="right", va="center", color=GREY, fontsize=7.5)  # fmt: skip
+    left.annotate("moduli stated\nin the thesis", (inside[DEPTH], inside[FORCE]), xytext=(-4, 0), textcoords="offset points",
+                  ha="right", va="center", color=GREY)  # fmt: skip
     left.set(
         xlabel="indentation depth (mm)", ylabel="force (N)", title="each subject, and the mean", ylim=(0, top), xlim=(0, 2.5)
     )
-    left.legend(title="measured", loc="upper left", title_fontsize=8, alignment="left")
+    left.legend(title="measured", loc="upper left", alignment="left")
     bone = frame[frame["panel"] == "bone"]
     styles = ((0, (4, 1.8)), "-", (0, (1, 1.2)))
     for style, (name, rows) in zip(styles, bone.groupby("series", sort=False), strict=False):
@@ -74,7 +75,7 @@ def fit(frame: pd.DataFrame) -> Figure:
     last = subjects[(subjects["series"] == names[-1]) & ~is_simulated(subjects)]
     right.plot(last[DEPTH], last[FORCE], "*" if names[-1] == "mean" else "o", color=INK, ms=8)
     right.set(xlabel="indentation depth (mm)", title=f"{_title_of(names[-1])}, the bone moved, the same constant", xlim=(0, 2.5))
-    right.legend(loc="upper left", title="fat under the apex", title_fontsize=8, alignment="left")
+    right.legend(loc="upper left", title="fat under the apex", alignment="left")
     return fig
 
 
@@ -87,8 +88,9 @@ def _measured(frame: pd.DataFrame) -> str:
 def identifiability(frame: pd.DataFrame) -> Figure:
     """The valley of equal misfit over constant and contact length, and the profiles along each and across."""
     note = [
-        "Simulated forces against measured ones: rise of the sum of squares above its least, over the squared scatter of the "
-        "fit. Along the valley nothing changes: force tells modulus x contact length and nothing of either alone."
+        "Rise of the sum of squares of simulated against measured forces above its least, over the squared scatter of "
+        "the fit. Along "
+        "the valley nothing changes: force tells modulus × contact length, nothing of either alone."
     ]
     fig = study_figure("Calibration: what force can tell", note, 3.7)
     left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
@@ -104,9 +106,9 @@ def identifiability(frame: pd.DataFrame) -> Figure:
     left.clabel(lines, lines.levels[1:], fmt="%g", fontsize=6.5)
     s, length = (np.sqrt(axis[0] * axis[-1]) for axis in (grid.columns, grid.index))
     left.plot(grid.columns, s * length / grid.columns, color=INK, lw=1.2)
-    left.plot([1.0], [length], "X", color="#c8553d", ms=8, mec="white", mew=0.8)
+    left.plot([1.0], [length], "X", color=CATEGORIES[1], ms=7, mec="white", mew=0.8)
     left.annotate("stated in the thesis\n(the length inferred)", (1.0, length), xytext=(0.97, 0.95),
-                  textcoords="axes fraction", fontsize=7, color="white", ha="right", va="top",
+                  textcoords="axes fraction", fontsize=6.5, color="white", ha="right", va="top",
                   arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.6})  # fmt: skip
     left.set(xscale="log", yscale="log", xlabel="modulus constant (1)", ylabel="contact length (mm)",
              title="misfit over both; line: their best product", xlim=(grid.columns[0], grid.columns[-1]),
@@ -117,21 +119,22 @@ def identifiability(frame: pd.DataFrame) -> Figure:
         axis.set_minor_formatter(mpl.ticker.NullFormatter())
     profile = frame[frame["panel"] == "profile"]
     styles = {
-        "modulus constant x contact length": ("-", 1.6),
-        "contact length": ((0, (4, 1.8)), 1.8),
-        "modulus constant": ((0, (1, 1.2)), 1.8),
+        "modulus constant x contact length": (SOLID, 1.4),
+        "contact length": (SOLID, 2.6),
+        "modulus constant": (DOTTED, 1.0),
     }
     for name, (style, width) in styles.items():
         rows = profile[profile["series"] == name]
-        right.plot(rows["relative (1)"], rows["rise (1)"], color=INK, ls=style, lw=width, label=name)
+        colour = "0.75" if width > 2 else INK  # the two alone lie on one another
+        right.plot(rows["relative (1)"], rows["rise (1)"], color=colour, ls=style, lw=width, label=name)
     for row in frame[frame["panel"] == "level"].itertuples():
         level = frame.loc[row.Index, "rise (1)"]
         right.axhline(level, color=GREY, lw=0.7)
-        right.text(1.49, level + 0.3, textwrap.fill(row.series, 16), color=GREY, fontsize=7, ha="right", va="bottom")
+        right.text(1.49, level + 0.3, textwrap.fill(row.series, 16), color=GREY, fontsize=6.5, ha="right", va="bottom")
     right.set(xlabel="value over best value (1)", ylabel="rise of the misfit (1)", title="profiles, the other refitted",
               ylim=(-0.8, 25), xlim=(0.5, 1.5))  # fmt: skip
-    right.text(1.0, 18, "modulus constant\nx contact length", ha="center", va="center", fontsize=8)
-    right.text(0.52, 0.5, "either alone", va="bottom", fontsize=8)
+    right.text(1.0, 18, "modulus constant\nx contact length", ha="center", va="center")
+    right.text(0.52, 0.5, "either alone", va="bottom")
     return fig
 
 
@@ -139,11 +142,11 @@ def identifiability(frame: pd.DataFrame) -> Figure:
 def residuals(frame: pd.DataFrame) -> Figure:
     """Misfit by depth with a constant contact length and with two that grow, and the effective length that force asks for."""
     note = [
-        "Each model of the contact's length has one parameter, fitted to each subject with the thesis's moduli. "
-        "Elliptical patch: length proportional to the simulated width. Plane sections: the pad curved along the finger, "
-        "each section pressed by itself. Thin lines and points: subjects; thick: the mean. Measured forces: see the fit."
+        "Each model of the contact's length has one parameter, fitted with the thesis's moduli. Elliptical patch: "
+        "length proportional "
+        "to the width; plane sections: each pressed by itself. Thin lines, a marker a subject; thick: the mean."
     ]
-    fig = study_figure("Calibration: a contact that grows", note, 3.9)
+    fig = study_figure("Calibration: a contact that grows", note, 3.4)
     left, right = fig.subplots(1, 2)
     residual = frame[frame["panel"] == "residuals"]
     subjects = residual["subject"].unique()
@@ -151,8 +154,9 @@ def residuals(frame: pd.DataFrame) -> Figure:
     for model, (style, colour) in MODEL_LINES.items():
         for who, rows in residual[residual["series"] == model].groupby("subject"):
             mean = who == thick
-            left.plot(rows[DEPTH], 1e3 * rows["residual (N)"], color=colour, ls=style, lw=2.0 if mean else 0.7,
-                alpha=1 if mean else 0.75, marker="o", ms=3.5 if mean else 2, label=model if mean else None)  # fmt: skip
+            marker = "*" if mean else MARKERS[list(subjects).index(who) % len(MARKERS)]
+            left.plot(rows[DEPTH], 1e3 * rows["residual (N)"], color=colour, ls=style, lw=1.8 if mean else 0.6,
+                marker=marker, ms=4.5 if mean else 2.5, label=model if mean else None)  # fmt: skip
     left.axhline(0, color=GREY, lw=0.7)
     left.set(xlabel="indentation depth (mm)", ylabel="measured less simulated (mN)", title="residuals")
     low, high = left.get_ylim()
@@ -170,7 +174,7 @@ def residuals(frame: pd.DataFrame) -> Figure:
         right.plot(rows[DEPTH], rows["effective_length (mm)"], color=colour, ls=style)
     right.set(xlabel="indentation depth (mm)", ylabel="effective length (mm)",
               title="measured force / simulated force per length", ylim=(0, None), xlim=(0, 2.5))  # fmt: skip
-    right.legend(loc="upper left", ncols=2, fontsize=7)
+    right.legend(loc="upper left", ncols=2, fontsize=6.5)
     return fig
 
 
@@ -178,10 +182,9 @@ def residuals(frame: pd.DataFrame) -> Figure:
 def prony(frame: pd.DataFrame) -> Figure:
     """Ramp-and-hold force and its fits, their errors, and how well amplitudes of the measured time constants could be told."""
     note = [
-        "Simulated throughout: no measured time courses are at hand. The force is that of the pad with the series stated in the "
-        "thesis, with known noise; fits start far from it. Time constants of Pawluk and Howe (1999) are measured, their "
-        "abstract gives "
-        "no amplitudes: right, the error any amplitude would have, whatever it is."
+        "Simulated throughout, with known noise: no measured time courses are at hand. Time constants of Pawluk and "
+        "Howe (1999) are "
+        "measured, without amplitudes; right: the error any amplitude would have."
     ]
     fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
     grid = fig.add_gridspec(2, 2, width_ratios=(1.35, 1), height_ratios=(1.5, 1))
@@ -190,10 +193,10 @@ def prony(frame: pd.DataFrame) -> Figure:
     noisy = force[force["series"] == "with noise"]
     top.plot(noisy["time (s)"], noisy[FORCE], ".", color=GREY, ms=4, label="simulated, with noise")
     styles = {
-        "thesis's series, hereditary": ((0, (1, 1.2)), "#8a4fbf"),
-        "fitted, hereditary": ((0, (4, 1.8)), "#c8553d"),
+        "thesis's series, hereditary": (DOTTED, CATEGORIES[3]),
+        "fitted, hereditary": (DASHED, CATEGORIES[1]),
         "fitted, corrected": ("-", INK),
-        "Pawluk and Howe's constants": ((0, (3, 1.2, 1, 1.2)), "#1f77a4"),
+        "Pawluk and Howe's constants": ((0, (3, 1.2, 1, 1.2)), CATEGORIES[0]),
     }
     for name, (style, colour) in styles.items():
         rows = force[force["series"] == name]
@@ -204,7 +207,7 @@ def prony(frame: pd.DataFrame) -> Figure:
         ax.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
     top.tick_params(labelbottom=False)
     top.set(ylabel="force (N)", ylim=(0, 1.6 * noisy[FORCE].max()))
-    top.legend(loc="upper left", fontsize=7, ncols=2, columnspacing=1.2, handlelength=1.8)
+    top.legend(loc="upper left", fontsize=6, ncols=2, columnspacing=0.9, handlelength=1.8)
     below.axhline(0, color=GREY, lw=0.7)
     below.set(xlabel="time (s)", ylabel="off the simulation\n(% of the peak)")
     told = frame[frame["panel"] == "amplitudes"]
@@ -225,40 +228,42 @@ def friction(frame: pd.DataFrame) -> Figure:
     panels = {name: rows for name, rows in frame.groupby("panel", sort=False)}
     published = panels["published"]
     note = [
-        "Lines and points: simulated (2-D plane-strain finite elements; the first two convexities of the wavy surface, 20 gf, "
-        "10 mm/s unless said otherwise). Shaded blue: about 1 mm, the stretch stated in the thesis; dotted: the axis of its "
-        "Fig 5-15; it states no coefficient.",
-        "Published coefficients of fingers, at loads from 1 N on but for the model:",
-        f"{'; '.join(published['source'].unique())}.",
+        "Simulated (the first two convexities, 20 gf, 10 mm/s). Blue: about 1 mm, the stretch the thesis states; "
+        "dotted: the axis of "
+        "its Fig. 5-15. Published coefficients: sources in the CSV.",
     ]
-    fig = study_figure("Calibration: friction from the stretch of the skin", note, 4.4)
+    fig = study_figure("Calibration: friction from the stretch of the skin", note, 3.8)
     grid = fig.add_gridspec(2, 2, height_ratios=(3.2, 1))
     left, right = fig.add_subplot(grid[:, 0]), fig.add_subplot(grid[0, 1])
     below = fig.add_subplot(grid[1, 1], sharex=right)
     about, axis = (panels["stated"].iloc[k] for k in (0, 1))
     for ax in (left, right):
-        ax.axhspan(about["lowest (mm)"], about["highest (mm)"], color="#1f77a4", alpha=0.15, lw=0)
-        ax.axhline(about[LATERAL], color="#1f77a4", lw=0.8)
+        ax.axhspan(about["lowest (mm)"], about["highest (mm)"], color=TOUCHED, lw=0, zorder=0)
+        ax.axhline(about[LATERAL], color=CATEGORIES[0], lw=0.8, zorder=1)
         for end in ("lowest (mm)", "highest (mm)"):
             ax.axhline(axis[end], color=GREY, lw=0.8, ls=(0, (1, 1.6)))
     courses = list(panels["course"].groupby("series", sort=False))
-    for colour, (name, rows) in zip(mpl.colormaps["viridis"](np.linspace(0.05, 0.85, len(courses))), courses, strict=True):
-        left.plot(rows[DISTANCE], rows[LATERAL], color=colour, lw=1.1)
-        left.text(rows[DISTANCE].iloc[-1] + 0.6, rows[LATERAL].iloc[-1], name, color=colour, fontsize=7, va="center")
+    ends = [rows[LATERAL].iloc[-1] for _, rows in courses]
+    gap = 0.035 * np.ptp([*panels["course"][LATERAL], axis["lowest (mm)"], axis["highest (mm)"]])
+    places = spread(ends, gap, min(ends) - 1, max(ends) + 1)
+    for k, ((name, rows), place) in enumerate(zip(courses, places, strict=True)):
+        colour = mpl.colormaps["cividis"](0.8 * k / max(len(courses) - 1, 1))
+        left.plot(rows[DISTANCE], rows[LATERAL], color=colour, lw=1.0)
+        left.text(rows[DISTANCE].iloc[-1] + 0.8, place, name, fontsize=6.5, va="center")
     start, end = panels["waves"][DISTANCE]
     for x in (start, end):
         left.axvline(x, color=GREY, lw=0.6)
     left.text(
-        (start + end) / 2, 0.985, "waves", transform=left.get_xaxis_transform(), color=GREY, fontsize=7, ha="center", va="top"
+        (start + end) / 2, 0.985, "waves", transform=left.get_xaxis_transform(), color=GREY, fontsize=6.5, ha="center", va="top"
     )
     left.set(xlabel="stroke distance (mm)", ylabel="lateral displacement of the centre (mm)",
              title="strokes; number: coefficient of friction", xlim=(0, 1.1 * frame[DISTANCE].max()))  # fmt: skip
     curve, estimate = panels["stretch"], panels["estimate"].iloc[0]
     right.fill_between(curve[COEFFICIENT], curve["lowest (mm)"], curve["highest (mm)"], color=INK, alpha=0.13, lw=0)
     right.plot(curve[COEFFICIENT], curve[LATERAL], "o-", color=INK, ms=3, lw=1.2)
-    right.plot(estimate[COEFFICIENT], estimate[LATERAL], "*", color="#c8553d", ms=9, zorder=4)
+    right.plot(estimate[COEFFICIENT], estimate[LATERAL], "*", color=CATEGORIES[1], ms=8, zorder=4)
     for marker, row in zip("<>^v", panels.get("variations", frame.iloc[:0]).to_dict("records"), strict=False):
-        right.plot(row[COEFFICIENT], row[LATERAL], marker, color="#8a4fbf", ms=4.5, mfc="white", ls="none")
+        right.plot(row[COEFFICIENT], row[LATERAL], marker, color=CATEGORIES[3], ms=4, mfc="white", ls="none")
         above = row[LATERAL] > estimate[LATERAL]
         right.annotate(
             textwrap.fill(row["series"], 20),
@@ -267,11 +272,11 @@ def friction(frame: pd.DataFrame) -> Figure:
             textcoords="offset points",
             ha="left" if above else "right",
             va="center",
-            color="#8a4fbf",
-            fontsize=7,
+            color=INK,
+            fontsize=6.5,
         )
     right.margins(y=0.1)
-    right.set(ylabel="over the waves (mm)", title="mean and range; purple: one thing changed")
+    right.set(ylabel="displacement over the waves (mm)", title="mean and range; open: one thing changed")
     right.tick_params(labelbottom=False)
     for k, row in enumerate(published.iloc[::-1].to_dict("records")):
         measured = str(row["source"]).startswith("measured")
@@ -279,9 +284,9 @@ def friction(frame: pd.DataFrame) -> Figure:
         below.plot(ends, [k, k], color=INK, lw=2.2)
         below.plot(row[COEFFICIENT], k, "o", color=INK, ms=4, mfc=INK if measured else "white")
         label = row["series"] if measured else "assumed in a model"
-        below.text(0.02, k, label, transform=below.get_yaxis_transform(), fontsize=7, va="center")
-    below.axvline(estimate[COEFFICIENT], color="#c8553d", lw=0.8)
-    below.text(estimate[COEFFICIENT] + 0.012, len(published) - 1, f"{estimate[COEFFICIENT]:.3f}", color="#c8553d", va="center")
+        below.text(0.02, k, label, transform=below.get_yaxis_transform(), fontsize=6.5, va="center")
+    below.axvline(estimate[COEFFICIENT], color=CATEGORIES[1], lw=0.8)
+    below.text(estimate[COEFFICIENT] + 0.012, len(published) - 1, f"{estimate[COEFFICIENT]:.3f}", va="center")
     below.set(
         xlabel="coefficient of friction (1)", title="published", yticks=[], ylim=(-0.7, len(published) - 0.3), xlim=(0, 1.12)
     )

@@ -13,7 +13,7 @@ from matplotlib.ticker import MultipleLocator
 
 from fingerpad.measures.direction import BESIDE, DEPTH, KEY
 from fingerpad.measures.quantities import DISTANCE, SED, P, X
-from fingerpad.publishing.style import COLOURS, GREY, INK, LAYER_COLOURS, study_figure, styled
+from fingerpad.publishing.style import CATEGORIES, DASHED, DOTTED, GREY, HIGHLIGHT, INK, LAYER_COLOURS, study_figure, styled
 
 OFFSET, INDEX, BAND = "offset (um)", "directional_index (1)", "discretisation_error (1)"
 HEIGHT, FRICTION, EDGE = "ridge_height (um)", "friction (1)", "element_edge (um)"
@@ -27,12 +27,9 @@ DRAWN = {
 }
 """Meshes with ridges drawn on the thesis's own elements, which the thesis does not describe."""
 RECEPTORS_SWEPT = ("thesis's place: 915 µm deep, x = −46 µm", "epidermis, 25 µm above the flank", "dermis, 25 µm below the flank")
-LOOKS = dict(
-    zip(RECEPTORS_SWEPT, ((INK, "o", "-"), ("#c8553d", "s", (0, (4, 1.8))), ("#1f77a4", "^", (0, (1, 1.2)))), strict=True)
-)
+LOOKS = dict(zip(RECEPTORS_SWEPT, ((INK, "o", "-"), (CATEGORIES[1], "s", DASHED), (CATEGORIES[0], "^", DOTTED)), strict=True))
 DEFINITION = (
-    "Simulated in plane strain, not measured. Directional index: (right − left) / (right + left) of the strain energy while the "
-    "plate moves to the right and to the left, averaged over 2 to 4 mm of stroke."
+    "Simulated. Directional index: (right − left) / (right + left) of the strain energy under a plate, over 2 to 4 mm of stroke."
 )
 
 
@@ -41,8 +38,11 @@ DEFINITION = (
 
 def _curve(ax: Axes, rows: pd.DataFrame, x: str, colour: str, marker: str, line, label: str) -> None:
     """A curve with its band of discretisation error."""
-    ax.fill_between(rows[x], rows[INDEX] - rows[BAND], rows[INDEX] + rows[BAND], color=colour, alpha=0.25, lw=0)
-    ax.plot(rows[x], rows[INDEX], color=colour, ls=line, marker=marker, ms=3.5, label=label)
+    if x != HEIGHT:
+        ax.fill_between(rows[x], rows[INDEX] - rows[BAND], rows[INDEX] + rows[BAND], color=colour, alpha=0.25, lw=0)
+    ax.plot(rows[x], rows[INDEX], color=colour, ls="none" if x == HEIGHT else line, marker=marker, ms=3.5, label=label)
+    if x == HEIGHT:  # five heights tell nothing of what lies between
+        ax.errorbar(rows[x], rows[INDEX], rows[BAND], fmt="none", ecolor=colour, elinewidth=0.8)
 
 
 @styled
@@ -51,11 +51,11 @@ def offset(frame: pd.DataFrame) -> Figure:
     profile_rows = frame[frame["panel"] == "profile"]
     note = [
         DEFINITION,
-        f"Black line: boundary of epidermis and dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the thesis's three receptors, the "
-        "middle one in the epidermis. Map on the fine mesh, not smoothed. Band (where wider than the line): difference to a mesh "
-        "of twice the edge.",
+        f"Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the thesis's receptors. Fine mesh, "
+        "not smoothed; band: "
+        "difference to a mesh of twice the edge.",
     ]
-    fig = study_figure("Ridges: directional index round a ridge", note, 6.4)
+    fig = study_figure("Ridges: directional index round a ridge", note, 5.4)
     top, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1.25, 1.0])
     grid = frame[frame["panel"] == "map"].pivot(index=RECEPTOR, columns=OFFSET, values=INDEX)
     shown = top.pcolormesh(grid.columns, grid.index, grid, cmap="RdBu_r", vmin=-0.6, vmax=0.6, shading="nearest", rasterized=True)
@@ -66,20 +66,20 @@ def offset(frame: pd.DataFrame) -> Figure:
     top.axhline(DEPTH * 1e6, color=INK, lw=0.8, ls=(0, (4, 2)))
     top.plot([-BESIDE * 1e6, 0, BESIDE * 1e6], [DEPTH * 1e6] * 3, "o", mfc="white", mec=INK, ms=5, ls="none")
     top.set(ylim=(1105, 695), ylabel="depth below the skin (µm)")
-    top.text(-244, 712, "epidermis", va="top", fontsize=8)
-    top.text(-244, 1092, "dermis", va="bottom", fontsize=8)
-    looks = {"no ridges": (GREY, "", (0, (4, 1.8))), "inner ridges": (COLOURS["315"], "o", "-")}
+    top.text(-244, 712, "epidermis", va="top", fontsize=6.5)
+    top.text(-244, 1092, "dermis", va="bottom", fontsize=6.5)
+    looks = {"no ridges": (GREY, "", (0, (4, 1.8))), "inner ridges": (HIGHLIGHT, "o", "-")}
     for series, (colour, marker, line) in looks.items():
         rows = profile_rows[profile_rows["series"] == series]
         _curve(ax, rows, OFFSET, colour, marker, line, series)
     inner = profile_rows[profile_rows["series"] == "inner ridges"].set_index(OFFSET)
     epidermis = edge.loc[edge[RECEPTOR] > DEPTH * 1e6, OFFSET]
     ax.axvspan(epidermis.min(), epidermis.max(), color=LAYER_COLOURS["epidermis"], alpha=0.35, lw=0)
-    ax.text(0, -0.72, "epidermis", ha="center", fontsize=7.5)
+    ax.text(0, -0.72, "epidermis", ha="center", fontsize=6.5)
     value, error = inner.loc[-BESIDE * 1e6, [INDEX, BAND]]
     ax.annotate(
         f"{value:.2f} ± {max(error, 0.005):.2g} at −46 µm:\n{(1 + value) / (1 - value):.1f} times the energy",
-        (-BESIDE * 1e6, value), (-75, 0.45), ha="right", va="center", fontsize=7.5,
+        (-BESIDE * 1e6, value), (-75, 0.45), ha="right", va="center", fontsize=6.5,
         arrowprops={"arrowstyle": "-", "lw": 0.6, "color": INK},
     )  # fmt: skip
     ax.axhline(0, color=GREY, lw=0.6)
@@ -107,7 +107,7 @@ def _sweep(frame: pd.DataFrame, column: str, title: str, xlabel: str, extra: str
     ax.axhline(0, color=GREY, lw=0.6)
     ax.set(xlabel=xlabel, ylabel="directional index", ylim=(-0.8, 0.8))
     ax.margins(x=0.03)
-    ax.legend(loc="lower left", fontsize=7.5)
+    ax.legend(loc="lower left", fontsize=6.5)
     return fig
 
 
@@ -132,25 +132,24 @@ def mesh(frame: pd.DataFrame) -> Figure:
     drawn = frame[frame["panel"] == "drawn"]
     note = [
         DEFINITION + f" Receptor {DEPTH * 1e6:.0f} µm deep, {BESIDE * 1e6:.0f} µm left of a ridge's tip.",
-        "Open symbols: the ridges drawn on elements of the thesis's size (0.12 mm wide and high: four to a pitch, about one to a "
-        "height) in three ways; the thesis does not say how its own were drawn, and doubts their resolution itself.",
+        "Open: ridges drawn on elements of the thesis's size (four to a pitch, one to a height) in three ways; it states none.",
     ]
     fig = study_figure("Ridges: how far to believe the directional index", note, 3.9)
     left, right = fig.subplots(1, 2)
-    for column, colour, name in ((RIGHT, COLOURS["315"], "plate to the right"), (LEFT, "#1f77a4", "plate to the left")):
+    for column, colour, name in ((RIGHT, HIGHLIGHT, "plate to the right"), (LEFT, CATEGORIES[1], "plate to the left")):
         left.plot(resolved[EDGE], resolved[column], "o-", color=colour, ms=4, label=name)
     right.plot(resolved[EDGE], resolved[INDEX], "o-", color=INK, ms=4, label="ridges resolved")
     for marker, (series, name) in zip("D^v", DRAWN.items(), strict=True):
         rows = drawn[drawn["series"] == series]
-        for column, colour in ((RIGHT, COLOURS["315"]), (LEFT, "#1f77a4")):
+        for column, colour in ((RIGHT, HIGHLIGHT), (LEFT, CATEGORIES[1])):
             left.plot(rows[EDGE], rows[column], marker, mfc="white", mec=colour, ms=5)
         right.plot(rows[EDGE], rows[INDEX], marker, mfc="white", mec=INK, ms=5, ls="none", label=name)
     for ax in (left, right):
         ax.set(xscale="log", xlabel="element edge along the skin (µm)", xticks=resolved[EDGE], xlim=(58, 310))
         ax.set_xticklabels([f"{e:.0f}" for e in resolved[EDGE]])
         ax.minorticks_off()
-    left.set(ylim=(0, None), ylabel="strain energy density (Pa)", title="(a) energy, both ways")
-    right.set(ylim=(0, 0.6), ylabel="directional index", title="(b) directional index")
+    left.set(ylim=(0, None), ylabel="strain energy density (Pa)", title="energy, both ways")
+    right.set(ylim=(0, 0.6), ylabel="directional index", title="directional index")
     left.legend(loc="upper right", bbox_to_anchor=(1, 0.62))
     right.legend(loc="lower left", title="thesis's elements below", title_fontsize=0.1)
     right.get_legend().set_title("")
@@ -161,18 +160,18 @@ def mesh(frame: pd.DataFrame) -> Figure:
 def outer(frame: pd.DataFrame) -> Figure:
     """Islands of contact under outer ridges: pressure, number on the way, and the receptors' energy both ways."""
     note = [
-        "Simulated in plane strain, not measured. Flat plate, 20 gram-weight, 10 mm/s, friction 0.65; inner ridges "
-        "150 µm and outer ones 60 µm high, 0.48 mm apart. Islands are parted by a node of the skin, or more, not touching.",
-        f"Receptors {DEPTH * 1e6:.0f} µm deep; the one at 0 lies in the epidermis of the tip, the others in the dermis.",
+        "Simulated: flat plate, 20 gf, 10 mm/s, friction 0.65; outer ridges 60 µm high, 0.48 mm apart; islands of 3 to "
+        "5 loaded nodes: "
+        f"their peaks are the mesh's. Receptors {DEPTH * 1e6:.0f} µm deep, that at 0 in the epidermis of the tip.",
     ]
-    fig = study_figure("Ridges of the skin too: contact in islands", note, 6.0)
+    fig = study_figure("Ridges of the skin too: contact in islands", note, 5.0)
     grid = fig.add_gridspec(2, 2)
     axes = [fig.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, 0], grid[1, 1])]
     part = lambda panel, series: frame[(frame["panel"] == panel) & (frame["series"] == series)]  # noqa: E731
-    for series, look in {"pressed": {"color": GREY, "lw": 1.0}, "stroked by 50 mm": {"color": COLOURS["315"], "lw": 1.0}}.items():
+    for series, look in {"pressed": {"color": GREY, "lw": 1.0}, "stroked by 50 mm": {"color": HIGHLIGHT, "lw": 1.0}}.items():
         rows = part("pressure", series)
         axes[0].plot(rows[X], rows[P] / 1e3, label=series, **look)
-    axes[0].set(xlabel="x (mm)", ylabel="contact pressure (kPa)", title="(a) contact pressure", xlim=(-4, 4))
+    axes[0].set(xlabel="x (mm)", ylabel="contact pressure (kPa)", title="contact pressure", xlim=(-4, 4))
     axes[0].set_ylim(0, 1.28 * frame[P].max() / 1e3)
     axes[0].legend(loc="upper left", ncols=2)
     for series, look in {"simulated mesh": {"color": INK}, "companion": {"color": GREY, "ls": (0, (3, 1.5))}}.items():
@@ -181,19 +180,19 @@ def outer(frame: pd.DataFrame) -> Figure:
             axes[1].step(
                 rows[DISTANCE], rows["islands (1)"], where="post", label=series.replace("companion", "coarser mesh"), **look
             )
-    axes[1].set(xlabel="stroke distance (mm)", ylabel="islands", title="(b) number of islands", xlim=(0, 50), ylim=(0, None))
+    axes[1].set(xlabel="stroke distance (mm)", ylabel="islands", title="number of islands", xlim=(0, 50), ylim=(0, None))
     axes[1].yaxis.set_major_locator(MultipleLocator(2))
     axes[1].legend(loc="lower right")
     top = 1.05 * frame[SED].max()
-    for ax, way, tag in ((axes[2], "right", "c"), (axes[3], "left", "d")):
+    for ax, way in ((axes[2], "right"), (axes[3], "left")):
         for series, (colour, line) in RECEPTORS.items():
             rows = part(way, series)
             ax.plot(rows[DISTANCE], rows[SED], color=colour, ls=line, label=f"x = {series}")
-        ax.set(xlabel="stroke distance (mm)", title=f"({tag}) plate to the {way}", xlim=(0, 50), ylim=(0, top))
+        ax.set(xlabel="stroke distance (mm)", title=f"plate to the {way}", xlim=(0, 50), ylim=(0, top))
     axes[2].set_ylabel("strain energy density (Pa)")
     axes[3].legend(loc="center right", bbox_to_anchor=(1.0, 0.52))
     return fig
 
 
-RECEPTORS = {"-46 µm": (COLOURS["315"], "-"), "0 µm": (INK, (0, (4, 1.8))), "46 µm": ("#1f77a4", (0, (1, 1.2)))}
+RECEPTORS = {"-46 µm": (HIGHLIGHT, "-"), "0 µm": (INK, (0, (4, 1.8))), "46 µm": (CATEGORIES[1], (0, (1, 1.2)))}
 STUDIES = {"offset": offset, "height": height, "friction": friction, "mesh": mesh, "outer": outer}

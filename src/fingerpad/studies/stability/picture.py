@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
-from fingerpad.publishing.style import GREY, INK, sheet, styled
+from fingerpad.publishing.style import GREY, INK, TALLEST, sheet, styled
 
 METHODS = {
     "default": "this package\n(default method)",
@@ -123,14 +123,16 @@ def tally(part: pd.DataFrame) -> list[str]:
 def heat_map(frame: pd.DataFrame) -> Figure:
     """Cases by measures for each method; colour tells how much of the limit is used up. ``frame``: of :func:`long`."""
     cases = list(frame["case"].drop_duplicates())
-    below, above = 2.72, 1.42  # inch
-    height = below + above + 0.138 * len(cases)
+    below, above, height = 2.02, 1.22, TALLEST  # inch
+    pitch = (height - below - above) / len(cases)
     fig = sheet("Stability in hard cases", [], height, laid_out=False)
     intro = (
-        "Simulated. A row is a case, a column a measure of how the run went: its worst value over the worst that still counts\n"
-        "as stable in that case (figures/tables/stability.md lists both). Blue: far inside. Yellow: at the limit. Red: beyond."
+        "Simulated. A row is a case, a column a measure of how the run went: its worst value over the worst that still counts as "
+        "stable there\n(figures/tables/stability.md lists both). Blue: far inside. Yellow: at the limit. Red: beyond. "
+        "The three methods to "
+        "the right differ in one thing each."
     )
-    fig.text(0.012, 1 - 0.29 / height, intro, ha="left", va="top", fontsize=7, color=GREY, linespacing=1.35)
+    fig.text(0.012, 1 - 0.24 / height, intro, ha="left", va="top", fontsize=6, color=GREY, linespacing=1.35)
     shown = {m: [n for n in MEASURES if n != ("off" if m == DEFAULT else "halving")] for m in METHODS}
     grid = fig.add_gridspec(1, len(METHODS), left=0.4, right=0.99, top=1 - above / height, bottom=below / height, wspace=0.07)
     norm, colours = TwoSlopeNorm(0.0, -2.0, 1.0), mpl.colormaps["RdYlBu_r"].with_extremes(bad="0.85")
@@ -148,12 +150,12 @@ def heat_map(frame: pd.DataFrame) -> Figure:
             ax.add_patch(mpl.patches.Rectangle((j - 0.5, i - 0.5), 1, 1, color="black", lw=0))
         for i in np.flatnonzero(~np.isin(cases, part["case"])):
             ax.add_patch(mpl.patches.Rectangle((-0.5, i - 0.5), share.shape[1], 1, color="white", lw=0))
-        ax.set_xticks(range(len(shown[method])), [MEASURES[name][0] for name in shown[method]], rotation=90, fontsize=6.5)
-        ax.set_yticks(range(len(cases)), cases if k == 0 else [], fontsize=6.5)
+        ax.set_xticks(range(len(shown[method])), [MEASURES[name][0] for name in shown[method]], rotation=90, fontsize=6)
+        ax.set_yticks(range(len(cases)), cases if k == 0 else [], fontsize=5.8)
         ax.tick_params(length=0, pad=2)
-        ax.set_title(METHODS[method], fontsize=7.5, loc="center", pad=41)
+        ax.set_title(METHODS[method], fontsize=6.5, loc="center", pad=36)
         said = "\n".join(tally(part))
-        ax.annotate(said, (0.5, 1), (0, 40), "axes fraction", "offset points", ha="center", va="top", fontsize=6, color=GREY)
+        ax.annotate(said, (0.5, 1), (0, 36), "axes fraction", "offset points", ha="center", va="top", fontsize=5.6, color=GREY)
         for start in starts[1:]:
             ax.axhline(start - 0.5, color="white", lw=1.8)
         ax.set_xticks(np.arange(share.shape[1] + 1) - 0.5, minor=True)
@@ -164,18 +166,18 @@ def heat_map(frame: pd.DataFrame) -> Figure:
             spine.set_visible(False)
         if k == 0:
             for start, end in zip(starts, [*starts[1:], len(cases)], strict=True):
-                y = 1 - (above + 0.138 * (start + end) / 2) / height
-                fig.text(0.022, y, groups.iloc[start], rotation=90, ha="center", va="center", fontsize=6.5, color=GREY)
+                y = 1 - (above + pitch * (start + end) / 2) / height
+                fig.text(0.022, y, groups.iloc[start], rotation=90, ha="center", va="center", fontsize=6, color=GREY)
     _legend(fig, drawn, height)
     return fig
 
 
 def _legend(fig: Figure, drawn, height: float) -> None:
     """What a colour means, and what a column is."""
-    bar = fig.colorbar(drawn, cax=fig.add_axes((0.03, 1.42 / height, 0.3, 0.11 / height)), orientation="horizontal")
-    bar.set_ticks([-2, -1, 0, 1], labels=["1 %", "10 %", "limit", "10 x"], fontsize=6.5)
+    bar = fig.colorbar(drawn, cax=fig.add_axes((0.03, 0.92 / height, 0.3, 0.1 / height)), orientation="horizontal")
+    bar.set_ticks([-2, -1, 0, 1], labels=["1 %", "10 %", "limit", "10 ×"], fontsize=6)
     bar.minorticks_off()
-    bar.ax.set_title("share of the limit that is used up", fontsize=6.5)
+    bar.ax.set_title("share of the limit that is used up", fontsize=6)
     bar.outline.set_edgecolor(INK)
     kinds = {
         "black": "not completed",
@@ -184,16 +186,10 @@ def _legend(fig: Figure, drawn, height: float) -> None:
     }
     patches = [mpl.patches.Patch(facecolor=colour, edgecolor=GREY, lw=0.4, label=text) for colour, text in kinds.items()]
     fig.legend(
-        handles=patches, loc="upper left", bbox_to_anchor=(0.02, 1.17 / height), fontsize=6.5, handlelength=1, handleheight=1,
+        handles=patches, loc="upper left", bbox_to_anchor=(0.02, 0.66 / height), fontsize=6, handlelength=1, handleheight=1,
         labelspacing=0.35, borderaxespad=0,
     )  # fmt: skip
     for k, (name, meaning) in enumerate(MEASURES.values()):
-        y = (1.62 - 0.132 * k) / height
-        fig.text(0.4, y, name, fontsize=6.5, va="top", fontweight="bold")
-        fig.text(0.53, y, meaning, fontsize=6.5, va="top")
-    note = (
-        "The three methods to the right differ from the default in one thing each, on the same nodes,\n"
-        f"and are given up after 400 iterations. Wrong: the last depth or force is off by more than {OFF:.0%}.\n"
-        "Outside limits: not wrong, but beyond one of the limits."
-    )
-    fig.text(0.4, 0.37 / height, note, fontsize=6.5, color=GREY, va="top", linespacing=1.3)
+        y = (1.06 - 0.108 * k) / height
+        fig.text(0.4, y, name, fontsize=6, va="top", fontweight="bold")
+        fig.text(0.53, y, meaning, fontsize=6, va="top")

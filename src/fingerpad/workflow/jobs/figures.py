@@ -1,9 +1,15 @@
-"""Histories and meshes -> figures of one chapter and the plotted data beside each."""
+"""Histories and meshes -> figures of one chapter and the plotted data beside each, with what the thesis says of it."""
 
 import importlib
+from dataclasses import astuple
 from pathlib import Path
 
+import pandas as pd
+
+from fingerpad.claims.said import said
+from fingerpad.figures.axes import statement_row
 from fingerpad.measures.inputs import read_results
+from fingerpad.measures.table import Measures
 from fingerpad.publishing.write import publish
 from fingerpad.reference_data import read_reference
 
@@ -15,5 +21,14 @@ def run(job):
     results, table = read_results([*job.histories, *job.meshes, *job.coarse]), read_reference(reference)
     for picture in job.pictures:
         spec = specs[Path(picture).stem.removeprefix("fig_")]
-        frame = spec.frame(*results, table, *spec.measurements(Path(reference).parent))
+        frame = with_statement(spec, spec.frame(*results, table, *spec.measurements(Path(reference).parent)), results, table)
         publish(spec.draw(frame), frame, picture)
+
+
+def with_statement(spec, frame, results, reference):
+    """The frame of a figure with a row that holds what the thesis says of it, judged by the figure's own scenes."""
+    histories, meshes, coarse = ({name: each[name] for name in spec.needs if name in each} for each in results)
+    found = said(spec.number, Measures.of(histories, meshes), Measures.of(coarse), reference)
+    if found is None:
+        return frame
+    return pd.concat([frame, pd.DataFrame([statement_row(*astuple(found))])], ignore_index=True)
