@@ -15,7 +15,7 @@ from fingerpad.measures.quantities import DISTANCE, FORCE, IMPULSE, IMPULSE_RATE
 from fingerpad.publishing import style
 from fingerpad.studies.views.frames import BOUND, CORNERS, LEVELS, SKIN_X, SLIP, SLIPS, STATE, STICKING, TRACTION
 
-LABELLED = (("epidermis", ("skin", "dermis"), -6.4, 8.4), ("dermis", ("dermis", "fat"), -5.6, 5.8))
+LABELLED = (("epidermis", ("skin", "dermis"), -4.6, 7.6), ("dermis", ("dermis", "fat"), -7.6, 5.0))
 """Layer, the lines round it, x it is pointed at, and height of its name, mm."""
 ENERGY = "strain energy density on the instantaneous moduli (Pa)"
 
@@ -95,9 +95,9 @@ def overview(frame: pd.DataFrame) -> Figure:
     pad.text(0, 2.3, "fat", ha="center", va="center", fontsize=6)
     pad.text(0, -1.8, "bone", ha="center", va="center", fontsize=6)
     pad.text(0, 7.1, "surface", ha="center", va="center", fontsize=6)
-    pad.set(xlim=(-12.8, 10), ylim=(-6.6, 9), aspect="equal", title="the surface on the pad", xticks=[], yticks=[])
-    pad.plot([5, 10], [-6.1, -6.1], color=style.INK, lw=1.6, solid_capstyle="butt")
-    pad.text(7.5, -5.9, "5 mm", ha="center", va="bottom", fontsize=6)
+    pad.set(xlim=(-12.8, 10), ylim=(-8.4, 9), aspect="equal", title="the surface on the pad", xticks=[], yticks=[])
+    pad.plot([5, 10], [-8.2, -8.2], color=style.INK, lw=1.6, solid_capstyle="butt")
+    pad.text(7.5, -8.0, "5 mm", ha="center", va="bottom", fontsize=6)
     for side in pad.spines.values():
         side.set_visible(False)
     rows = _of(frame, "pressure")
@@ -118,7 +118,7 @@ def overview(frame: pd.DataFrame) -> Figure:
     bar.outline.set_visible(False)
     rows = _of(frame, "energy")
     middle.plot(rows[TIME], rows[SED], color=style.INK)
-    middle.set(ylabel="strain energy\n(Pa)", ylim=(0, 1.12 * rows[SED].max()), title="what the receptor feels")
+    middle.set(ylabel="strain energy\n(Pa)", ylim=(0, 1.12 * rows[SED].max()), title="what it feels")
     rate, ticks = _of(frame, "rate"), _of(frame, "impulses")
     below.plot(rate[TIME], rate[IMPULSE_RATE], color=style.INK)
     top = 1.5 * rate[IMPULSE_RATE].max()
