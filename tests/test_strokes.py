@@ -292,8 +292,8 @@ def test_animation_has_a_frame_a_snapshot_and_the_same_bytes_again(made, tmp_pat
             frames.append(np.asarray(picture.convert("RGB"), int))
     assert len(frames) == 3
     assert all(abs(a - b).max() > 100 for a, b in zip(frames, frames[1:], strict=False))  # the surface has moved on
-    red = frames[1][..., 0] - frames[1][..., 2] > 60
-    assert red.mean() > 0.02  # stress in colours of the map
+    yellow = frames[1][..., 0] - frames[1][..., 2] > 60
+    assert yellow.mean() > 0.005  # stress in colours of the map
 
 
 def test_animation_needs_snapshots(made, tmp_path):
