@@ -87,7 +87,8 @@ def test_as_the_catalogue_of_workflows_finds_and_tries_it(clone):
     text = clone.run("--dry-run", *there)
     jobs = clone.jobs_in(text)
     assert "profiles/default" in text
-    assert jobs["figures_4_12"] == {f"results/test/figures/fig_4-12.{kind}" for kind in ("csv", "png")}
+    files = {f"results/test/figures/fig_4-12.{kind}" for kind in ("csv", "png")} | {"results/test/pdf/fig_4-12.pdf"}
+    assert jobs["figures_4_12"] == files
     assert {"simulate_homogeneous_flat", "simulate_ramp40", "summary"} < set(jobs)
     listed = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
     assert listed["report"] is True and listed["mandatory-flags"]["flags"] == ""
