@@ -22,12 +22,13 @@ from fingerpad.measures.responses import (
     STROKES_SHOWN,
     burst_values,
     predicted_rate,
+    shallow_law,
     skin_sample,
     stroke_law,
 )
-from fingerpad.measures.runs import WITHIN_350
-from fingerpad.measures.table import MEASURES, Measures
-from fingerpad.receptors.laws import SpatialSum
+from fingerpad.measures.runs import NINE, WITHIN_350
+from fingerpad.measures.table import Measures
+from fingerpad.receptors.laws import THESIS_RATE, SpatialSum
 from fingerpad.receptors.recordings import RATES
 from fingerpad.reference_data import empty_reference, read_reference
 
@@ -82,7 +83,9 @@ def test_raster_is_seeded_and_counts_the_integral_of_the_rate(made, number, low,
     assert set(ticks["source"]) == {PREDICTED} and ticks["stroke_distance (mm)"].between(low, high).all()
     assert sorted(ticks[TRIAL].unique()) == list(range(1, STROKES_SHOWN[number] + 1))
     pd.testing.assert_frame_equal(frame, _frame(felt, number))
-    rate = predicted_rate(st.loaded(felt["stroke_10"]), 560e-6 if number == "5-22" else 915e-6)
+    nine = {label: felt[scene] for label, scene in NINE.scenes.items()}
+    depth, law = (560e-6, shallow_law(nine, 560e-6)[0]) if number == "5-22" else (915e-6, THESIS_RATE)
+    rate = predicted_rate(st.loaded(felt["stroke_10"]), depth, law)
     inside = rate["stroke_distance (mm)"].between(low, high)
     expected = np.trapezoid(rate[IMPULSE_RATE][inside], rate["time (s)"][inside])
     assert len(ticks) / STROKES_SHOWN[number] == pytest.approx(expected, rel=0.1)
@@ -238,10 +241,10 @@ def _twin(history, apart):
 
 
 def test_two_peaks_of_the_rate_and_their_distance(made):
-    twins = {name: _twin(made[name], lambda chord: 0.8 * chord) for name in st.FULL.values()}
+    twins = made | {name: _twin(made[name], lambda chord: 0.8 * chord) for name in st.FULL.values()}
     assert all(_holds(twins, id_).holds for id_ in ("T301", "TR72", "TR73"))
     arc = st.convexities(made["stroke_10"])["52"]
-    assert MEASURES["rate_peaks_apart"](twins["stroke_10"])["52"] == pytest.approx(0.8e3 * (arc.end - arc.start), abs=0.5)
+    assert Measures.of(twins)("rate_peaks_apart", "stroke_10", "52") == pytest.approx(0.8e3 * (arc.end - arc.start), abs=0.5)
     single = _with_energy(made["stroke_10"], _bumps(made["stroke_10"], lambda k: 400))
     assert not any(_holds(twins | {"stroke_10": single}, id_).holds for id_ in ("T301", "TR72"))
     wider = _twin(made["stroke_5"], lambda chord: 3e-3 * 6e-3 / chord)

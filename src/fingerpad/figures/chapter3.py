@@ -251,6 +251,7 @@ def forces_over_depth(data: Data) -> pd.DataFrame:
     ((_, plate, coarse),) = data.runs(STEADY_PLATE)
     ends = [partial(steady_force, depth=z) for z in pressed_depths(plate)]
     model = pd.DataFrame({"series": "model", DEPTH: DEPTH.read(plate), NEWTON: NEWTON.read(plate)})
+    model[ERROR] = error_percent(plate, coarse, *ends)
     points, fitted = [], []
     if data.measured is not None:
         rows = data.measured[(data.measured["indenter"] == "flat plate") & (data.measured["speed_mm_per_s"] == 0)]
@@ -261,9 +262,8 @@ def forces_over_depth(data: Data) -> pd.DataFrame:
         factor = float(here @ rows["force_N"] / (here @ here))
         source = f"{SIMULATED}: times {factor:.3g}, closest to the measured forces"
         fitted = [model.assign(source=source, series="model, fitted", **{NEWTON: factor * model[NEWTON]})]
-    rows = model.assign(**{ERROR: error_percent(plate, coarse, *ends)})
-    rows.insert(0, "source", SIMULATED)
-    return below(pd.concat([rows, *fitted], ignore_index=True), *points)
+    model.insert(0, "source", SIMULATED)
+    return below(pd.concat([model, *fitted], ignore_index=True), *points)
 
 
 def model_and_subjects(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:

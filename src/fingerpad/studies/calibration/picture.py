@@ -142,9 +142,9 @@ def identifiability(frame: pd.DataFrame) -> Figure:
 def residuals(frame: pd.DataFrame) -> Figure:
     """Misfit by depth with a constant contact length and with two that grow, and the effective length that force asks for."""
     note = [
-        "Each model of the contact's length has one parameter, fitted with the thesis's moduli. Elliptical patch: "
-        "length proportional "
-        "to the width; plane sections: each pressed by itself. Thin lines, a marker a subject; thick: the mean."
+        "Measured forces less simulated ones, whose contact length has one parameter, fitted with the thesis's moduli. "
+        "Elliptical patch: proportional to the width; plane sections: each pressed by itself. Thin, a marker a subject; thick: "
+        "the mean."
     ]
     fig = study_figure("Calibration: a contact that grows", note, 3.4)
     left, right = fig.subplots(1, 2)
@@ -228,9 +228,8 @@ def friction(frame: pd.DataFrame) -> Figure:
     panels = {name: rows for name, rows in frame.groupby("panel", sort=False)}
     published = panels["published"]
     note = [
-        "Simulated (the first two convexities, 20 gf, 10 mm/s). Blue: about 1 mm, the stretch the thesis states; "
-        "dotted: the axis of "
-        "its Fig. 5-15. Published coefficients: sources in the CSV.",
+        "Simulated (the first two convexities, 20 gf, 10 mm/s). Blue: about 1 mm, the stretch the thesis states; dotted: the "
+        "axis of its Fig. 5-15. Published coefficients were measured by others: sources in the CSV.",
     ]
     fig = study_figure("Calibration: friction from the stretch of the skin", note, 3.8)
     grid = fig.add_gridspec(2, 2, height_ratios=(3.2, 1))
