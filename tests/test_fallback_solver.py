@@ -1,5 +1,9 @@
 """Without PARDISO: SuperLU gives the same answers, pressed, stroked with friction, and by the linear theory."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -41,3 +45,21 @@ def test_fallback_is_taken_where_there_is_no_pardiso(monkeypatch):
     monkeypatch.setattr(linear_solver, "_mkl_path", lambda: None)
     pattern = linear_solver.SymmetricPattern(np.array([[0, 1, 2]]), 3)
     assert linear_solver.condensation(pattern, np.array([1])).name == "superlu"
+
+
+_THREADS_OF_MKL = """
+import numpy as np
+from fingerpad.mechanics.linear_solver import PardisoCondensation, SymmetricPattern
+solver = PardisoCondensation(SymmetricPattern(np.array([[0, 1]]), 2), np.array([0]))
+print(solver._handle.libmkl.MKL_Get_Max_Threads())
+"""
+
+
+@pytest.mark.skipif(not linear_solver.pardiso_available(), reason="PARDISO is not installed here")
+@pytest.mark.parametrize(("given", "taken"), [(None, 1), ("", 1), ("2", 2), ("1,4", 1), ("many", 1)])
+def test_mkl_takes_the_threads_that_the_process_was_given(given, taken):
+    """One unless told otherwise, whatever is set: two threads on one matrix take twice the time."""
+    kept = {name: value for name, value in os.environ.items() if name not in ("OMP_NUM_THREADS", "MKL_NUM_THREADS")}
+    told = kept if given is None else kept | {"OMP_NUM_THREADS": given}
+    done = subprocess.run([sys.executable, "-c", _THREADS_OF_MKL], env=told, capture_output=True, text=True)
+    assert done.stdout.strip() == str(taken), done.stderr

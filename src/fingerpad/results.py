@@ -8,7 +8,6 @@ names on every variable and plan, scene, cost and provenance in its attributes, 
 from __future__ import annotations
 
 import json
-import os
 import platform
 import sys
 from dataclasses import dataclass, field
@@ -22,6 +21,7 @@ from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.provenance import digest, imported_sources
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
+from fingerpad.threads import threads
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -208,7 +208,7 @@ def provenance() -> dict[str, Any]:
         "packages": packages,
         "machine": f"{platform.system()} {platform.machine()}",
         "processor": _processor(),
-        "threads": int(os.environ.get("OMP_NUM_THREADS", "1")),
+        "threads": threads(),
     }
 
 

@@ -15,6 +15,8 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
+from fingerpad.threads import threads
+
 
 class FactorisationError(RuntimeError):
     """The matrix is singular to working precision."""
@@ -86,7 +88,7 @@ class PardisoCondensation:
         self._handle.perm = perm
         self._handle.iparm[:] = 0
         # numpy's thread limits do not reach a library that is loaded later, and two threads on one matrix take twice the time
-        self._handle.libmkl.MKL_Set_Num_Threads(ctypes.c_int(int(os.environ.get("OMP_NUM_THREADS", "1"))))
+        self._handle.libmkl.MKL_Set_Num_Threads(ctypes.c_int(threads()))
         # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia; Schur complement and its factors
         for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 24: 1, 36: 2 if len(self.condensed) else 0}.items():
             self._handle.iparm[i - 1] = value
