@@ -84,8 +84,8 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
     """Above: each definition over time, relative to the top of the ramp; below: its change over the hold for every surface."""
     note = [
         f"{axs.footnote(frame)[0].replace('; strain energy on instantaneous moduli', '')} Recorded rates fall in the "
-        "hold under every "
-        "surface (Cysyk 1999, section 4.2). Hatched: where a definition does so. Without viscosity the five are one.",
+        "hold under every surface (Cysyk 1999, section 4.2). Hatched: where a definition does so. Without viscosity the five "
+        "are one.",
     ]
     title = "Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, under the centre"
     fig = style.study_figure(title, note, 5.4)

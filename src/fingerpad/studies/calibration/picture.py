@@ -88,9 +88,8 @@ def _measured(frame: pd.DataFrame) -> str:
 def identifiability(frame: pd.DataFrame) -> Figure:
     """The valley of equal misfit over constant and contact length, and the profiles along each and across."""
     note = [
-        "Rise of the sum of squares of simulated against measured forces above its least, over the squared scatter of "
-        "the fit. Along "
-        "the valley nothing changes: force tells modulus × contact length, nothing of either alone."
+        "Rise of the sum of squares of simulated against measured forces above its least, over the squared scatter of the fit. "
+        "Along the valley nothing changes: force tells modulus × contact length, nothing of either alone."
     ]
     fig = study_figure("Calibration: what force can tell", note, 3.7)
     left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
@@ -182,9 +181,8 @@ def residuals(frame: pd.DataFrame) -> Figure:
 def prony(frame: pd.DataFrame) -> Figure:
     """Ramp-and-hold force and its fits, their errors, and how well amplitudes of the measured time constants could be told."""
     note = [
-        "Simulated throughout, with known noise: no measured time courses are at hand. Time constants of Pawluk and "
-        "Howe (1999) are "
-        "measured, without amplitudes; right: the error any amplitude would have."
+        "Simulated throughout, with known noise: no measured time courses are at hand. Time constants of Pawluk and Howe "
+        "(1999) are measured, without amplitudes; right: the error any amplitude would have."
     ]
     fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
     grid = fig.add_gridspec(2, 2, width_ratios=(1.35, 1), height_ratios=(1.5, 1))

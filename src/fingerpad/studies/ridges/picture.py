@@ -52,8 +52,7 @@ def offset(frame: pd.DataFrame) -> Figure:
     note = [
         DEFINITION,
         f"Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the thesis's receptors. Fine mesh, "
-        "not smoothed; band: "
-        "difference to a mesh of twice the edge.",
+        "not smoothed; band: difference to a mesh of twice the edge.",
     ]
     fig = study_figure("Ridges: directional index round a ridge", note, 5.4)
     top, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1.25, 1.0])

@@ -127,10 +127,9 @@ def heat_map(frame: pd.DataFrame) -> Figure:
     pitch = (height - below - above) / len(cases)
     fig = sheet("Stability in hard cases", [], height, laid_out=False)
     intro = (
-        "Simulated. A row is a case, a column a measure of how the run went: its worst value over the worst that still counts as "
-        "stable there\n(figures/tables/stability.md lists both). Blue: far inside. Yellow: at the limit. Red: beyond. "
-        "The three methods to "
-        "the right differ in one thing each."
+        "Simulated. A row is a case, a column a measure of how the run went: its worst value over the worst that still counts "
+        "as stable there\n(figures/tables/stability.md lists both). Blue: far inside. Yellow: at the limit. Red: beyond. The "
+        "three methods to the right differ in one thing each."
     )
     fig.text(0.012, 1 - 0.24 / height, intro, ha="left", va="top", fontsize=6, color=GREY, linespacing=1.35)
     shown = {m: [n for n in MEASURES if n != ("off" if m == DEFAULT else "halving")] for m in METHODS}
