@@ -14,7 +14,7 @@ WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help setup figures studies smoke test bench lint report archive docs specimens regression-update schemas adopt unlock clean
+.PHONY: help setup figures studies smoke test bench lint report archive docs specimens pad regression-update schemas adopt unlock clean
 
 help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
@@ -26,6 +26,7 @@ help:
 	@echo "make archive            make figures, then copy inputs, code, outputs and costs into results/archive, an RO-Crate"
 	@echo "make docs               set up, then build the documentation, docs/_build/html"
 	@echo "make specimens          calibrate, and take the calibrated specimens over into config/specimens"
+	@echo "make pad                infer the thesis's pad anew, and take it over into config/specimens/thesis.yaml"
 	@echo "make regression-update  accept a deliberate change of the figures"
 	@echo "make lint               style, formatting and the import contracts"
 	@echo "make schemas            write workflow/schemas from the typed models"
@@ -92,6 +93,11 @@ regression-update: figures
 specimens: $(INSTALLED)
 	$(SNAKEMAKE) calibration
 	cp results/thesis/specimens/calibrated_*.yaml config/specimens/
+
+pad: $(INSTALLED)
+	$(SNAKEMAKE) reconstruction
+	cp results/thesis/reconstruction/thesis.yaml config/specimens/
+	cp results/thesis/reconstruction/bands.csv config/reference/reconstruction_bands.csv
 
 schemas: $(INSTALLED)
 	$(BIN)/python -m fingerpad.config schemas

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 
 import pandas as pd
+import yaml
 
 ROOT = Path(__file__).parents[2]
 AGREES = {"inside", "plausible", "trend_holds"}
@@ -185,13 +186,38 @@ def inferred_load():
     return _inferred("line_load")
 
 
+def _pad():
+    return yaml.safe_load((ROOT / "config/specimens/thesis.yaml").read_text())
+
+
+def _size(text: str) -> float:
+    return float(text.split()[0])
+
+
+@number
+def pad_radius():
+    return _pad()["outline"]["apex_radius"]
+
+
+@number
+def pad_fat():
+    outline = {name: _size(value) for name, value in _pad()["outline"].items()}
+    bone = outline["bone_centre_height"] + outline["bone_half_height"]
+    return f"{outline['apex_height'] - outline['epidermis_thickness'] - outline['dermis_thickness'] - bone:.2g} mm"
+
+
+@number
+def pad_length():
+    return _pad()["contact_length"]
+
+
 def _distance(pad: str) -> float:
     return float(table("figures/tables/reconstruction_families").set_index("pad").loc[pad, "distance, fitted (1)"])
 
 
 @number
-def distance_today():
-    return digits(_distance("today's pad"))
+def distance_chosen():
+    return digits(_distance("chosen one at a time"))
 
 
 @number

@@ -20,7 +20,7 @@ from fingerpad.documents import Problem, Strict, explain
 from fingerpad.fields import filled, listed
 
 LEVELS = ("draft", "thesis", "fine")
-ELASTIC_CURVES = ("calibration_plate", "calibration_less_fat", "calibration_more_fat", "calibration_instantaneous")
+ELASTIC_CURVES = ("calibration_plate", "calibration_less_fat", "calibration_more_fat", "calibration_long_term")
 
 
 def _text(pattern: str, allowed: str) -> Any:

@@ -158,6 +158,30 @@ def read_surface_profiles(path: str | Path) -> pd.DataFrame:
     return read_table(path, SURFACE_PROFILES)
 
 
+BANDS = {
+    "surface": Column(text=True),
+    "measure": Column(text=True),
+    "unit": Column(words=("mm", "Pa")),
+    "low": Column(above=0.0),
+    "high": Column(above=0.0),
+    "pads": Column(above=0.0),
+    "source": Column(text=True),
+}
+"""What the thesis leaves open of its pad: lowest and highest of a measure among pads that show what it shows."""
+
+
+def read_bands(path: str | Path) -> pd.DataFrame:
+    """What pads differ by that the thesis's figures do not tell apart, columns of :data:`BANDS`.
+
+    Raises ReferenceDataError: the file is wrong, or a band is upside down.
+    """
+    frame = read_table(path, BANDS)
+    for row in frame.index[frame["high"] < frame["low"]]:
+        low, high = frame.loc[row, ["low", "high"]]
+        raise ReferenceDataError(f"{path}: row {row + 2}, column high: '{high:g}'; allowed: from {low:g}")
+    return frame
+
+
 def read_friction(path: str | Path) -> pd.DataFrame:
     """Published friction, columns of :data:`FRICTION`; `ReferenceDataError` if the file is wrong or a range is upside down."""
     frame = read_table(path, FRICTION)

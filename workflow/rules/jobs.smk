@@ -1,12 +1,16 @@
 """A rule for every job of the configuration: fingerpad.workflow.products says what each reads and writes, its module what it does.
 
-Inputs beside those are the package's files that the job imports, found by following imports, and the environment as it was
-installed: by content, so that an edit reruns what it can change.
+Inputs beside those are a list of the package's files that the job imports, found by following imports, with their digests, and the
+environment as it was installed: by content, so that an edit reruns what it can change. One list in place of a hundred files, which
+Snakemake would all read again for every job.
 """
 
 import os
 import shlex
 from importlib.util import find_spec
+from pathlib import Path
+
+from fingerpad.files import write_text
 
 # The environment as it was installed by the Makefile, else as it is locked: a changed package reruns what uses it.
 INSTALLED = ROOT / ".venv" / "installed.lock"
@@ -36,6 +40,14 @@ def command(job):
     return told
 
 
+def code_of(job):
+    """The job's list of sources, written anew only where one of them has changed."""
+    path = Path(PRODUCTS.result(f"code/{job.name}.txt"))
+    if not (path.exists() and path.read_text(encoding="utf-8") == job.code):
+        write_text(path, job.code)
+    return str(path)
+
+
 def log_of(job):
     return PRODUCTS.result(f"logs/{job.name}.log")
 
@@ -46,7 +58,7 @@ for job in PRODUCTS.jobs():
         name:
             job.name
         input:
-            job.sources,
+            code_of(job),
             ENVIRONMENT,
             **{key: ancient(paths) if key == "scene_files" else paths for key, paths in job.inputs.items()},
         output:

@@ -11,10 +11,10 @@ from fingerpad.claims.rows import Number
 from fingerpad.measures.runs import NINE
 from fingerpad.measures.table import Measures
 
-_PAD = "the pad's: other states of the moduli, radii, fat and line loads, together, change it (table reconstruction)"
-_RADIUS = "chosen for the contact widths of Fig 4-9"
-SMALL_RADIUS = "sensitivity_radius_flat"
-"""The flat plate on a pad of the smaller radius that the thesis's node positions hint at."""
+_PAD = "of pads that the thesis's figures do not tell apart some are inside and some are not, or none is (study reconstruction)"
+_RADIUS = "inferred from chapters 3 and 4; the fan of printed node positions gives 7.8 to 8.0 mm"
+LARGE_RADIUS = "sensitivity_radius_flat"
+"""The flat plate on a pad with the apex radius of a published section."""
 
 
 def _settled(m: Measures, number: Number) -> str:
@@ -23,12 +23,12 @@ def _settled(m: Measures, number: Number) -> str:
 
 
 def _radius(m: Measures, number: Number) -> str:
-    """With the contact width that the smaller radius gives."""
+    """With the contact width that a published section's radius gives."""
     try:
-        radius, inverse = m("apex_radius", SMALL_RADIUS), m("inverse_width", SMALL_RADIUS, "end")
+        radius, inverse = m("apex_radius", LARGE_RADIUS), m("inverse_width", LARGE_RADIUS, "end")
     except KeyError:
         return _RADIUS
-    return f"{_RADIUS}: {radius:.1f} mm gives {inverse:.3f} 1/mm under the flat plate (T106)"
+    return f"{_RADIUS}; {radius:.1f} mm, of a published section, gives {inverse:.3f} 1/mm under the flat plate (T106)"
 
 
 REASONS: dict[str, str | Callable[[Measures, Number], str]] = {

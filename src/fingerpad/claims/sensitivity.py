@@ -5,10 +5,10 @@ at the accuracy of the companions, so that variant and companion differ by the v
 
 fat
     a flatter bone, with more fat under the apex.
-instantaneous
-    the thesis's moduli read as instantaneous instead of long-term ones.
+long_term
+    the thesis's moduli read as long-term instead of instantaneous ones.
 radius
-    the smaller radius at the apex that the thesis's node positions hint at.
+    the larger radius at the apex of a published section.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from fingerpad.measures.runs import FAST, NINE, PADS, RIDGED_NINE
 from fingerpad.measures.table import Measures
 from fingerpad.reference_data import read_reference
 
-VARIANTS = ("fat", "instantaneous", "radius")
+VARIANTS = ("fat", "long_term", "radius")
 SHAPES = ("flat", "210", "1260")
 """Surfaces the variants are pressed by."""
 

@@ -5,7 +5,7 @@ Pictures are made from a frame whose rows say by their `source` what they are: s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -45,6 +45,10 @@ def look(name: str) -> dict[str, object]:
     if speed != name and speed in style.SPEED_COLOURS:
         return style.look_of("speed (mm/s)", speed)
     return style.look_of("curvature (1/m)", name) if name in style.COLOURS else {}
+
+
+OTHER_PADS = "other pads"
+"""How the source of a row of other pads begins."""
 
 
 def rows_of(frame: pd.DataFrame, column: str, value: object) -> pd.DataFrame:
@@ -138,6 +142,22 @@ class Range:
     high: float
     left: bool
     uncertain: bool
+
+
+def draw_bands(
+    ax: Axes, rows: pd.DataFrame, x: str | None, y: str | None, place: Callable[[pd.Series], float], width: float = 4.0
+) -> None:
+    """What other pads show that the thesis's figures do not tell apart (`Data.bands`): a bar from the lowest to the highest.
+
+    One of `x` and `y` is the column of the bars' ends, the other is None: there ``place(first row of a bar)`` is where it lies.
+    """
+    found = rows[rows["source"].astype(str).str.startswith(OTHER_PADS)]
+    for k in range(0, len(found), 2):
+        low, high = found.iloc[k : k + 2][x or y]
+        at = place(found.iloc[k])
+        ends = ([low, high], [at, at]) if x else ([at, at], [low, high])
+        colour = look(found.iloc[k]["surface"])["color"]
+        ax.plot(*ends, lw=width, color=colour, alpha=0.35, solid_capstyle="butt", zorder=1.5)
 
 
 def together(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:

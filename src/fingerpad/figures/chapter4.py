@@ -82,6 +82,11 @@ def one_panel(x_label: float, height: float = 2.7) -> Panels:
     return Panels(height=height, fill=Lines(ends=x_label))
 
 
+OTHER_PADS = (
+    "Faint bars: the span of other pads that the thesis's figures do not tell apart (figures/tables/reconstruction_posterior.md)."
+)
+
+
 # --- rows of their own -----------------------------------------------------------------------------------
 
 
@@ -104,6 +109,11 @@ def implied_widths(data: Data) -> pd.DataFrame:
         implied[WIDTH] = 1 / implied.pop("inverse")
         implied["source"] = implied["source"].str.replace("thesis axis range", "thesis range of Fig 4-9")
     return implied
+
+
+def energies_of_other_pads(data: Data) -> pd.DataFrame:
+    """How far the highest strain energies of other pads differ, by depth."""
+    return data.bands(SED, {f"energy_{z}": {RECEPTOR: float(z)} for z in UM})
 
 
 def critical_distance(data: Data) -> pd.DataFrame:
@@ -200,6 +210,30 @@ def own_widths(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
         reach = 1.12 * frame.loc[is_simulated(frame) & (frame["surface"] == label), X].abs().max()
         ax.set_xlim(-reach, reach)
     phase_legend()(panels, frame)
+
+
+def beside_each_other(surface: str) -> float:
+    """Time (s) at which the bar of a surface stands, round the top of the ramp."""
+    return 0.5 + 0.03 * (SURFACES.index(surface) - 4)
+
+
+def bars_of_pressure(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """The span of the highest pressures of other pads, at the middle of the contact."""
+    own_widths(panels, frame)
+    for label, ax in panels.items():
+        axs.draw_bands(ax, frame[frame["surface"] == label], None, P, lambda row: 0.0, 5.0)
+
+
+def bars_of_energy(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """The span of the highest strain energies of other pads."""
+    for z, ax in panels.items():
+        rows = axs.rows_of(frame, RECEPTOR, z) if RECEPTOR in frame else frame
+        axs.draw_bands(ax, rows, None, SED, lambda row: beside_each_other(row["surface"]), 2.0)
+
+
+def depths_and_bars(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    surfaces_above(panels, frame)
+    bars_of_energy(panels, frame)
 
 
 def pad_titles(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
@@ -308,7 +342,8 @@ FIGURES = (
                   share={"sharex": True, "height_ratios": (1, 3.2)})),
     Figure("4-11", "Contact pressure across the contact region", NINE, X, (P,), {X: "T134", P: PRESSURE_IDS},
            nine(SURFACES, 5.9, header=0.16, fill=Phases(), xlabel="horizontal location (mm)", limit="y"),
-           rows=lambda data: data.profiles(NINE).drop(columns=DOWN), extra=own_widths),
+           rows=lambda data: data.profiles(NINE).drop(columns=DOWN), extra=bars_of_pressure, measured="pads",
+           after=lambda data: data.bands(P, {"peak": {}}), remarks=(OTHER_PADS,)),
     Figure("4-12", "Flat plate: pressure on a homogeneous and on the layered pad", PADS, X, (P,),
            {X: "T137", P: {"homogeneous": "T135", "layered": "T136"}},
            Panels(height=3.1, header=0.16, by="pad", names=tuple(PADS), shape=(1, 2), fill=Phases(colour="flat"), each=True,
@@ -341,12 +376,13 @@ FIGURES = (
                 ylabel=f"strain energy density, contact pressure × {PRESSURE_SCALE} (Pa)"),
            checked=(SHOWN, P_CENTRE), extra=energy_and_pressure),
     Figure("4-23", "Strain energy density 915 µm under the centre", NINE, TIME, (SHOWN,), {TIME: "T189", SED: "T188"},
-           one_panel(2.62, 3.0), width=style.COLUMN_WIDTH),
+           one_panel(2.62, 3.0), width=style.COLUMN_WIDTH, measured="pads", extra=bars_of_energy, remarks=(OTHER_PADS,),
+           after=lambda data: data.bands(SED, {"energy_915": {}})),
     Figure("4-24", "Strain energy density at nine depths under the centre", NINE, TIME, (SED,),
            {SED: by_surface("T192 T193 T194 T195 T196 T197 T198a T198b T198c", UM)},
            nine(UM, 6.2, header=0.18, by=RECEPTOR, limit="y", set=HOLD, fill=Lines(by="surface"),
                 titles=lambda z: f"{z:.0f} µm ({'epidermis' if z < 850 else 'dermis'})"),
-           key=RECEPTOR, extra=surfaces_above,
+           key=RECEPTOR, extra=depths_and_bars, measured="pads", after=energies_of_other_pads, remarks=(OTHER_PADS,),
            rows=lambda data: pd.concat([data.traces(NINE, (TIME, sed(z))).assign(**{RECEPTOR: round(z * 1e6)}) for z in DEPTHS])),
     Figure("4-28", "Rate of strain energy density 915 µm under the centre", NINE, TIME, (RATE,), {TIME: "T206", RATE: "T205"},
            Panels(height=3.0, fill=legs_of_rates), rows=energy_rates, width=style.COLUMN_WIDTH),

@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 from fingerpad.figures import axes as axs
-from fingerpad.figures.chapter4 import HOLD, K210, WIDTH_IDS, by_surface
+from fingerpad.figures.chapter4 import HOLD, K210, OTHER_PADS, WIDTH_IDS, by_surface
 from fingerpad.figures.grammar import Data, Figure, Own, Panels, below, nine
 from fingerpad.measures.features import (
     ERROR,
@@ -105,6 +105,8 @@ BESIDE = (
 )
 PEAK_WORDS = "peak rate (impulses/s)"
 OF_THE_LARGEST = "of the largest"
+OF = "measure"
+"""Column that says which measure of other pads a bar shows."""
 PEAK, STEADY, HELD = (reading("rate", window) for window in ("peak", "steady", "hold"))
 
 # --- rows ------------------------------------------------------------------------------------------------
@@ -204,6 +206,11 @@ def steady_over_peak(data: Data) -> pd.DataFrame:
 def over_curvature(data: Data) -> pd.DataFrame:
     rows, peak, steady = peak_and_steady(data)
     return below(rows, *(line_through(rows, CURVATURE, column) for column in (GIVEN_RATE, STEADY_RATE)), peak, steady)
+
+
+def widths_of_other_pads(data: Data) -> pd.DataFrame:
+    """How far the inverse contact widths of other pads differ as the hold begins and as it ends."""
+    return data.bands(INVERSE_WIDTH, {m: {OF: m} for m in ("width_top", "width_end")}, lambda width: 1 / width)
 
 
 def rate_and_width(data: Data) -> pd.DataFrame:
@@ -464,6 +471,8 @@ def rate_over_width(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     axs.wide_limits(ax, rows, INVERSE_WIDTH, IMPULSE_RATE)
     own = rows[is_simulated(rows)]
     ax.plot(own[INVERSE_WIDTH], own[IMPULSE_RATE], "o-", ms=3, lw=0.8, **axs.look(own["surface"].iloc[0]))
+    ends = {"width_top": own[IMPULSE_RATE].iloc[0], "width_end": own[IMPULSE_RATE].iloc[-1]}
+    axs.draw_bands(ax, rows, INVERSE_WIDTH, None, lambda row: ends[row[OF]])
     ax.locator_params(axis="x", nbins=4)
     if own[IMPULSE_RATE].max() == 0:
         ax.text(0.5, 0.2, "below the threshold:\nno impulses predicted", transform=ax.transAxes, ha="center", va="center",
@@ -640,7 +649,7 @@ FIGURES = (
            {INVERSE_WIDTH: WIDTH_IDS,
             IMPULSE_RATE: by_surface("T107 T109 T111 T113 T117 T119 T121", ("flat", "79", "105", "158", "420", "630", "1260"))},
            nine(SURFACES, 5.8, fill=rate_over_width, limit=""), rows=rate_and_width, how=OF_THE_LARGEST,
-           remarks=(f"{DEEP} Time runs leftwards: the contact grows.",)),
+           remarks=(f"{DEEP} Time runs leftwards: the contact grows.", OTHER_PADS), measured="pads", after=widths_of_other_pads),
     Figure("4-17", "Pressure at twelve nodes and its decay by Eq 4-1, K = 210 1/m", K210, TIME, (P, P_LAW),
            {TIME: "T155", P: "T154"}, Own(height=6.2, header=0.16, paint=twelve_nodes), rows=nodes_by_law,
            remarks=("Eq 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the edge's) + A3, from the peak "

@@ -46,7 +46,7 @@ from fingerpad.measures.table import MEASURES
 from fingerpad.publishing import style
 from fingerpad.publishing.write import without_round_off
 from fingerpad.receptors.recordings import read_rates
-from fingerpad.reference_data import read_force_depth, read_surface_profiles
+from fingerpad.reference_data import read_bands, read_force_depth, read_surface_profiles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,8 +65,10 @@ MEASURED: Mapping[str, tuple[str, Callable[..., pd.DataFrame]]] = {
     "force_depth": ("force_depth/*.csv", read_force_depth),
     "surface_profiles": ("surface_profiles.csv", lambda paths: read_surface_profiles(*paths)),
     "impulse_rates": ("impulse_rates/*.csv recordings/*.csv", lambda paths: read_rates(*paths)),
+    "pads": ("reconstruction_bands.csv", lambda paths: read_bands(*paths)),
 }
-"""Measured data by name: their files in the folder of reference data (one pattern or more), and their reader."""
+"""Data shown beside simulated ones, measured or of other pads, by name: their files in the folder of reference data (one pattern
+or more), and their reader."""
 
 
 # --- data ------------------------------------------------------------------------------------------------
@@ -156,6 +158,25 @@ class Data:
         heights = profile_and_height(history)[0].outline(x * 1e-3) * 1e3
         part = {"source": f"{SIMULATED}: shape of the stimulus", "panel": axs.SURFACE, DISTANCE: x}
         return pd.DataFrame(part | {HEIGHT: heights, CURVATURE: curvature})
+
+    def bands(
+        self, column: str, measures: Mapping[str, Mapping[str, object]], read: Callable[[float], float] = float
+    ) -> pd.DataFrame:
+        """How far other pads differ that the thesis's figures do not rule out: two rows (its ends) a surface and measure.
+
+        `measures`: name of a measure of `fingerpad.reference_data.read_bands` -> further cells of its rows; `read` makes of an
+        end that of the column.
+        """
+        rows = []
+        for band in () if self.measured is None else self.measured.itertuples():
+            if band.measure in measures:
+                of = {
+                    "surface": band.surface,
+                    "source": f"{axs.OTHER_PADS}: {band.pads:.0f} that the thesis's figures do not tell apart",
+                    **measures[band.measure],
+                }
+                rows += [of | {column: end} for end in sorted((read(band.low), read(band.high)))]
+        return pd.DataFrame(rows)
 
     def axis(self, column: str, ids: Ids, key: str) -> pd.DataFrame:
         """Rows that mark a thesis axis range: two (its ends) for each id that the reference has, `source` saying so."""

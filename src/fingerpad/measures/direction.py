@@ -21,7 +21,7 @@ OFFSETS = {"x = −46 µm": -BESIDE, "centre": 0.0, "x = 46 µm": BESIDE}
 """Offsets (m) of the thesis's three receptors, by the name of their curves."""
 UNDER_TIP = 935e-6
 """Depth (m) of the receptor in the dermis just under the ridge's tip."""
-KEY = (150, 0.65)
+KEY = (150, 0.35)
 """Height (um) and coefficient of the scenes."""
 
 

@@ -158,8 +158,8 @@ def mesh_size_for(
             radial = min(edge, radial or edge)
     elif preset.focus is None and _refined_at_apex(scene) and contact.half_width < edges * preset.skin_edge:
         # its edge passes from node to node, and the curves of a narrow contact show how far these are apart
-        edge = max(contact.half_width / edges, rules.least_edge)
-        focus, radial = _all_over(contact_reach(scene, contact), edge)
+        edge = _staged(max(contact.half_width / edges, rules.least_edge), np.floor)
+        focus, radial = _all_over(_staged(contact_reach(scene, contact), np.ceil), edge)
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
@@ -168,6 +168,11 @@ def mesh_size_for(
         focus=focus,
         skin_radial_edge=radial,
     )
+
+
+def _staged(length: float, rounded: Callable[[float], float]) -> float:
+    """A length (m) rounded to one of four in every octave: contacts of about a size share a mesh, of which a sweep has few."""
+    return float(2.0 ** (rounded(4 * np.log2(length)) / 4))
 
 
 def _all_over(half_width: float, edge: float) -> tuple[tuple[tuple[float, float], ...], float]:

@@ -21,7 +21,7 @@ from fingerpad.workflow.chapters import Figure, offered
 
 RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
 RIDGED, OUTER = "ridged_stroke_right", ("ridged_outer_stroke_right", "ridged_outer_stroke_left")
-HEIGHT, FRICTION = 150, 0.65
+HEIGHT, FRICTION = 150, 0.35
 """Height (um) of ridges and coefficient of friction of RIDGED; the study of ridges varies one at a time."""
 RIDGE_MESHES = (("fine",), ("curved", "straight", "shifted"))
 """Further meshes for that case, by process."""
@@ -78,6 +78,11 @@ class Job:
         return _sources("fingerpad.workflow.__main__", f"fingerpad.workflow.jobs.{self.run}", *self.modules)
 
     @property
+    def code(self) -> str:
+        """`sources` with their digests, a line a file."""
+        return "".join(f"{_digest(path)}  {path}\n" for path in self.sources)
+
+    @property
     def beside(self) -> list[str]:
         """What is written beside the outputs: Markdown to tables, their data and PDF to pictures, and `also`."""
         pictures = [Path(p) for key in ("picture", "pictures") for p in self.outputs.get(key, [])]
@@ -97,6 +102,7 @@ class Job:
         return {"category": self.category, "labels": dict(self.labels[path])} if key == "pages" else None
 
 
+@cache
 def _digest(path: str) -> str:
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
 
@@ -418,7 +424,7 @@ class Products:
             read = {
                 "relaxation": [self.at("config/reference/relaxation.csv")],
                 "mesh": self.meshes([RAMP]),
-                "histories": self.histories([PLATE, "calibration_instantaneous", RAMP]),
+                "histories": self.histories([PLATE, "calibration_long_term", RAMP]),
                 **self._read(RAMP),
             }
             values = self._told(RAMP) | {"accuracy": [str(c.accuracy or "as_stated")]}
@@ -530,18 +536,20 @@ class Products:
     def reconstruction(self) -> Iterator[Job]:
         """The pad that made the thesis's figures: evidence, pads simulated, what is inferred, and what that predicts."""
         evidence = {"evidence": [self.at("config/reference/reconstruction_evidence.csv")]}
-        unknowns, named = {"unknowns": [self.at("config/reconstruction/unknowns.yaml")]}, {"files": [self.thesis_specimen()]}
+        start = self.at("config/specimens/long_term.yaml")
+        unknowns, named = {"unknowns": [self.at("config/reconstruction/unknowns.yaml")]}, {"files": [start]}
         records, design = [self.result("reconstruction/design.jsonl")], [f"{self.config.studies}/reconstruction_design.csv"]
         long = {"runtime": 180, "mem_mb": 2000}
         yield Job("reconstruction_design", unknowns | named, {"design": design}, {"records": records}, **long)
         tables = self.tables(f"reconstruction_{name}" for name in ("posterior", "readings", "emulator", "recovery", "families"))
-        parts = [self.result(f"reconstruction/{name}.csv") for name in ("samples", "predicted")]
+        parts = [self.result(f"reconstruction/{name}.csv") for name in ("samples", "predicted", "bands")]
+        found = {"tables": tables, "parts": parts, "specimen": [self.result("reconstruction/thesis.yaml")]}
         read = unknowns | named | evidence
-        yield Job("reconstruction_inference", read | {"design": design}, {"tables": tables, "parts": parts}, **long)
+        yield Job("reconstruction_inference", read | {"design": design}, found, **long)
         made = {"table": self.tables(["reconstruction_epidermis"])}
         yield Job("reconstruction_epidermis", evidence | named | {"posterior": tables[:1]}, made, **long)
         made = {"pictures": self.pictures(["posterior", "evidence"], "reconstruction_")}
-        yield Job("reconstruction_pictures", unknowns | evidence | {"parts": parts}, made)
+        yield Job("reconstruction_pictures", unknowns | evidence | {"parts": parts[:2], "readings": tables[1:2]}, made)
 
     def map_of_touch(self) -> Iterator[Job]:
         """A sweep over curvature, force and rate."""

@@ -100,8 +100,8 @@ def error_stroke(frame: pd.DataFrame) -> Figure:
         frame,
         "What accuracy costs: a stroke by a flat plate",
         [
-            "Simulated. Error: the largest of the top of the ramp and four places of a stroke of 6 mm with a coefficient of "
-            "friction of 0.65, against a limit extrapolated in mesh and steps (grey: its own uncertainty). The peak rate of "
+            "Simulated. Error: the largest of the top of the ramp and four places of a stroke of 6 mm with the "
+            "calibrated friction, against a limit extrapolated in mesh and steps (grey: its own uncertainty). The peak rate of "
             "strain energy is that of the press before."
         ],
     )

@@ -182,7 +182,7 @@ def calibrate(histories: Mapping[str, xr.Dataset], coarse: Mapping[str, xr.Datas
 
     Args:
         histories: ``calibration_plate``, and where they are there ``calibration_less_fat``, ``calibration_more_fat`` and
-        ``calibration_instantaneous``. coarse: the companion of ``calibration_plate``, or nothing. data: of
+        ``calibration_long_term``. coarse: the companion of ``calibration_plate``, or nothing. data: of
         :func:`fingerpad.reference_data.read_force_depth`.
     """
     plate = histories["calibration_plate"]
@@ -353,13 +353,13 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
         _, parameter, units, scale = LENGTHS[model]
         add(model, who, parameter, tuple(scale * v for v in _of(found)), units, found,
             f"with the thesis's moduli; force tells {_TOLD[model]} only")  # fmt: skip
-    if "instantaneous" in curves:
-        found = fit_constant(curves["instantaneous"], *_si(forces[last]), length)
-        add("moduli read as instantaneous", last, "modulus constant", _of(found), "1", found,
-            "the moduli then relax to a part of themselves before the force is read")  # fmt: skip
+    if "long_term" in curves:
+        found = fit_constant(curves["long_term"], *_si(forces[last]), length)
+        add("moduli read as long-term", last, "modulus constant", _of(found), "1", found,
+            "all of the moduli is then left when the force is read")  # fmt: skip
         add(
-            "moduli read as instantaneous", last, "constant over that of the long-term reading",
-            found.values[0] / constants[last].values[0], "1", note="1 / g_inf but for the bulk modulus, which does not relax",
+            "moduli read as long-term", last, "constant over that of the instantaneous reading",
+            found.values[0] / constants[last].values[0], "1", note="g_inf but for the bulk modulus, which does not relax",
         )  # fmt: skip
     for name, title in (("less_fat", "0.75 mm less fat"), ("more_fat", "0.75 mm more fat")):
         if name in curves:

@@ -58,15 +58,15 @@ def relaxing_part(time: np.ndarray, elastic: np.ndarray, tau: float) -> tuple[np
     return value, change
 
 
-def volume_share(long_term: ElasticCurve, instantaneous: ElasticCurve, depth: float, g_infinity: float) -> float:
+def volume_share(curve: ElasticCurve, other: ElasticCurve, depth: float, ratio: float) -> float:
     """Share k of volume change in the pad's yielding to a plate: force is ``~ G / (1 + k G/G_inf)``, bulk modulus fixed.
 
     Args:
-        long_term: elastic curve at the shear modulus G_inf. instantaneous: at g_infinity * G_inf and the same bulk modulus, which
-        is what is left in the steady state when the moduli are read as instantaneous. depth: m.
+        curve: elastic curve at the shear modulus G_inf. other: at `ratio` * G_inf and the same bulk modulus, which is what the
+        other reading of the moduli, long-term or instantaneous, leaves in the steady state. depth: m.
     """
-    ratio = float(instantaneous.force_at(depth) / (g_infinity * long_term.force_at(depth)))
-    return (ratio - 1) / (1 - ratio * g_infinity)
+    rise = float(other.force_at(depth) / (ratio * curve.force_at(depth)))
+    return (rise - 1) / (1 - rise * ratio)
 
 
 def force_terms(beta: Sequence[float], tau: Sequence[float], share: float) -> tuple[np.ndarray, np.ndarray]:
@@ -228,18 +228,20 @@ class Relaxation:
     estimates: pd.DataFrame
 
 
-def study(plate: xr.Dataset, instantaneous: xr.Dataset, ramp: xr.Dataset, constants: pd.DataFrame, full: FullForce) -> Relaxation:
+def study(plate: xr.Dataset, other: xr.Dataset, ramp: xr.Dataset, constants: pd.DataFrame, full: FullForce) -> Relaxation:
     """Fit the series to the simulated force of `ramp`, and say what it tells of the measured time constants.
 
     Args:
-        plate, instantaneous, ramp: histories of the scenes ``calibration_{plate,instantaneous,ramp_hold}``. constants: of
+        plate, other, ramp: histories of the scenes ``calibration_{plate,long_term,ramp_hold}``. constants: of
         :func:`fingerpad.reference_data.read_relaxation`. full: see :func:`fit_series`.
     """
     specimen = json.loads(ramp.attrs["scene"])["specimen"]
     truth = Prony(tuple(t["g"] for t in specimen["prony"]), tuple(t["tau"] for t in specimen["prony"]))
     length, curve = specimen["contact_length"], ElasticCurve.from_history(plate)
     time, depth, clean = ramp.time.values, ramp.indentation_depth.values, ramp.force.values * length
-    share = volume_share(curve, ElasticCurve.from_history(instantaneous), float(depth.max()), truth.g_infinity)
+    states = [json.loads(h.attrs["scene"])["specimen"]["moduli"] for h in (plate, other)]
+    ratio = {"long_term": 1.0, "instantaneous": truth.g_infinity}  # what is left of the moduli
+    share = volume_share(curve, ElasticCurve.from_history(other), float(depth.max()), ratio[states[1]] / ratio[states[0]])
     model = RampForce(curve, time, depth, length, share)
     sigma = NOISE * clean.max()
     noisy = clean + np.concatenate([[0.0], np.random.default_rng(SEED).normal(0.0, sigma, len(clean) - 1)])

@@ -32,8 +32,12 @@ FORCE = 20 * 9.80665e-3
 """N; 20 gram-weight."""
 EPIDERMIS, SOFT, POISSON = 0.15e6, 0.015e6, 0.48
 """Pa, Pa, 1; printed in section 3.4."""
-BONE_BOTTOM, APEX, BELOW = 4.0e-3, 6.0e-3, 0.85e-3
-"""m; bottom of the bone below the origin, height of the apex, thickness of the dermis: as in config/specimens/thesis.yaml."""
+BONE_BOTTOM, APEX, BELOW, EPIDERMIS_THICKNESS = 4.0e-3, 6.0e-3, 0.85e-3, 0.85e-3
+"""m; bottom of the bone below the origin, height of the apex, thickness of the dermis and the epidermis's: as in `START`."""
+START = "long_term"
+"""The specimen that pads are variations of, config/specimens/long_term.yaml."""
+CHOSEN_LENGTH = 10e-3
+"""m; its contact length."""
 ACCURACY = {"tolerance": 0.05, "once": True}
 SCALE_FREE = ("mm", "1")
 """Units of what does not change with a factor on all moduli and the load."""
@@ -49,7 +53,7 @@ FORCES: dict[str, str] = {"force_05": "N/m", "force_10": "N/m", "force_15": "N/m
 
 
 def base(surface: str) -> Scene:
-    """The scene of a surface on the thesis's pad."""
+    """The scene of a surface on the pad of `START`."""
     name, fast, _ = surface.partition(FAST)
     if name == PLATE:
         motion = [{"press_to_depth": "2 mm", "speed": "2 mm/s"}, {"hold": "6 s"}]
@@ -60,7 +64,8 @@ def base(surface: str) -> Scene:
         motion = [{"press_to_force": "20 gf", "rate": "150 gf/s" if fast else "40 gf/s"}, {"hold": "2 s"}]
         receptors = {"receptors": {"depths": [f"{z} um" for z in DEPTHS]}}
         document = {"stimulus": stimulus, "motion": motion, "outputs": receptors}
-    return load_scene(document | {"accuracy": ACCURACY}, f"reconstruction_{surface}")
+    specimen = {"outline": START, "layers": START, "prony": START, "contact_length": f"{1e3 * CHOSEN_LENGTH:g} mm"}
+    return load_scene(document | {"specimen": specimen, "accuracy": ACCURACY}, f"reconstruction_{surface}")
 
 
 def poisson_for(bulk: float) -> float:
@@ -153,8 +158,8 @@ def units(surface: str) -> dict[str, str]:
     return FORCES if surface == PLATE else MEASURES
 
 
-TODAY = {
-    LOAD: FORCE / 10e-3, STIFFNESS: 1.0, "apex_radius": 11.0, "fat_thickness": 3.8, "bone_half_width": 5.0,
+CHOSEN = {
+    LOAD: FORCE / CHOSEN_LENGTH, STIFFNESS: 1.0, "apex_radius": 11.0, "fat_thickness": 3.8, "bone_half_width": 5.0,
     "epidermis_thickness": 0.85, "bulk_modulus": 1.0, "nail_half_width": 5.0, "friction": 0.0,
 }  # fmt: skip
-"""The pad of config/specimens/thesis.yaml on the axes of the design."""
+"""The pad of `START`, chosen one size at a time, on the axes of the design."""

@@ -10,7 +10,7 @@ from fingerpad.publishing.style import COLOURS, GREY, INK, handle, header_legend
 from fingerpad.studies.reconstruction import pads
 from fingerpad.studies.reconstruction.evidence import FAMILIES, Evidence
 from fingerpad.studies.reconstruction.inference import EPIDERMIS, SOFT
-from fingerpad.studies.reconstruction.run import SHOWN, TODAY
+from fingerpad.studies.reconstruction.run import CHOSEN, SHOWN
 from fingerpad.studies.reconstruction.unknowns import SCALED, Unknowns
 
 LABELS = {
@@ -29,15 +29,16 @@ def posterior_frame(samples: pd.DataFrame, known: Unknowns) -> pd.DataFrame:
 
 @styled
 def posterior_picture(frame: pd.DataFrame) -> Figure:
-    """Histograms on the diagonal, densities of pairs below it, their correlations above it; a line for today's pad."""
+    """Histograms on the diagonal, densities of pairs below it, their correlations above it; a line for the pad chosen before."""
     columns = list(frame.columns[1:])
-    today = {**pads.TODAY, SCALED: pads.TODAY["load_over_state"], "plate_length": 10.0, SOFT: 1.0, EPIDERMIS: 1.0}
+    before = {**pads.CHOSEN, SCALED: pads.CHOSEN["load_over_state"], "plate_length": 10.0, SOFT: 1.0, EPIDERMIS: 1.0}
     shares = frame["reading"].value_counts(normalize=True)
     told = ", ".join(f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01)
     note = [
-        f"{len(frame)} samples of the posterior, readings of the moduli by their evidence: {told}.",
-        "Factors are on the thesis's moduli taken for long-term ones: 0.576 is what the series leaves of instantaneous ones.",
-        "Numbers: rank correlations. Orange: the pad of config/specimens/thesis.yaml. Fitted to chapter 3 and half of chapter 4.",
+        f"{len(frame)} samples, readings of the moduli by their evidence: {told}. Numbers: rank correlations. Orange: the pad "
+        "chosen before, one size at a time.",
+        "Factors are on the moduli taken for long-term ones; of instantaneous ones the Prony series leaves 0.576. Fitted to "
+        "chapter 3 and half of chapter 4.",
     ]
     fig = study_figure("What the thesis's figures say of its pad", note, 7.4)
     n = len(columns)
@@ -59,12 +60,12 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
                 ax.set_yticks([])
             else:
                 ax.hist2d(values[column], values[row], bins=BINS, cmap="Purples", rasterized=True)
-                ax.axhline(today[SHOWN[i]], color=COLOURS["1260"], lw=0.7)
+                ax.axhline(before[SHOWN[i]], color=COLOURS["1260"], lw=0.7)
             low, high = values[column].min(), values[column].max()
             pad = 0.04 * max(high - low, 1e-9)
             ax.set_xlim(low - pad, high + pad)
-            if low - pad <= today[SHOWN[j]] <= high + pad:
-                ax.axvline(today[SHOWN[j]], color=COLOURS["1260"], lw=0.7)
+            if low - pad <= before[SHOWN[j]] <= high + pad:
+                ax.axvline(before[SHOWN[j]], color=COLOURS["1260"], lw=0.7)
             if i > j:
                 low, high = values[row].min(), values[row].max()
                 ax.set_ylim(low - 0.04 * max(high - low, 1e-9), high + 0.04 * max(high - low, 1e-9))
@@ -88,12 +89,12 @@ def evidence_frame(evidence: Evidence, shown: pd.DataFrame) -> pd.DataFrame:
 
 
 @styled
-def evidence_picture(frame: pd.DataFrame) -> Figure:
-    """Every row of the evidence as a bar from its lower to its upper end, with today's pad, the best and others."""
+def evidence_picture(frame: pd.DataFrame, best: str) -> Figure:
+    """Every row of the evidence as a bar from its lower to its upper end, and pads: the most probable one and others.
+
+    best: the name of the most probable one.
+    """
     drawn = frame[frame["pad"].str.startswith("drawn")]
-    bests = frame[frame["pad"].str.startswith("best")]
-    fitted = bests[bests["role"] == "fitted"].groupby("pad")["departure"].apply(lambda d: (d**2).sum())
-    best = fitted.idxmin()
     order = {family: k for k, family in enumerate(FAMILIES)}
     ids = frame.drop_duplicates("id")
     ids = ids.assign(k=ids["family"].map(order)).sort_values(
@@ -103,8 +104,8 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     at = dict(zip(ids["id"], height, strict=True))
     note = [
         "Bars: the interval that a figure leaves, all drawn as long; what is between its ends counts as met. White: not fitted. "
-        f"Best pad: {best.removeprefix('best of ').replace('_', ' ')}; grey: {drawn['pad'].nunique()} pads drawn, simulated. "
-        "Numbers beyond three lengths of the bar stand at the margin.",
+        f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. Numbers beyond three lengths of the bar "
+        "stand at the margin.",
     ]
     fig = study_figure("The evidence, row by row", note, 9.6, header=0.2)
     ax = fig.subplots()
@@ -113,7 +114,7 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     clip = (-2.0, 3.0)
     for part, style in (
         (drawn, dict(marker="o", ms=3, color=GREY, alpha=0.6)),
-        (frame[frame["pad"] == TODAY], dict(marker="D", ms=4, color=COLOURS["1260"])),
+        (frame[frame["pad"] == CHOSEN], dict(marker="D", ms=4, color=COLOURS["1260"])),
         (frame[frame["pad"] == best], dict(marker="o", ms=4.5, color=COLOURS["79"])),
     ):
         part = part[np.isfinite(part["place"])]
@@ -135,8 +136,9 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
             fontsize=7,
         )
     marks = [
-        handle("best pad", marker="o", ls="none", color=COLOURS["79"]), handle("posterior", marker="o", ls="none", color=GREY),
-        handle("pad of config/specimens/thesis.yaml", marker="D", ls="none", color=COLOURS["1260"]),
+        handle("most probable pad", marker="o", ls="none", color=COLOURS["79"]),
+        handle("drawn", marker="o", ls="none", color=GREY),
+        handle("chosen one at a time", marker="D", ls="none", color=COLOURS["1260"]),
     ]  # fmt: skip
     header_legend(fig, marks)
     return fig

@@ -5,7 +5,7 @@ What a posterior says of held-out rows is never taken from the emulator: pads of
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,13 +26,15 @@ from fingerpad.studies.reconstruction.inference import (
 )
 from fingerpad.studies.reconstruction.unknowns import SCALED, Unknowns
 
-TODAY = "today's pad"
+CHOSEN = "chosen one at a time"
 ENERGIES = {"instantaneous elastic": "energy_915", "total stress on long-term moduli": "energy_915_long-term_moduli"}
 """Definitions of the energy whose curves peak at the ramp's end, as those of the thesis do (trends TR20, TR21), by measure."""
-DRAWN, TRIALS, SEED = 4, 10, 1999
+DRAWN, TRIALS, SEED = 12, 10, 1999
 """Pads of the posterior that are simulated; known pads that are to be found again."""
 FREEST = "both_free"
 """The reading that has all others but for the bulk modulus in it, on which recovery is tried."""
+BANDS = ("width_top", "width_end", "peak", *(f"energy_{z}" for z in pads.DEPTHS))
+"""Measures of presses whose spread over pads is shown beside the thesis's figures."""
 SHOWN = (SCALED, "plate_length", "apex_radius", "fat_thickness", "bone_half_width", SOFT, EPIDERMIS)
 """What the picture of the posterior shows."""
 
@@ -125,9 +127,9 @@ def recovery_table(recovered: pd.DataFrame) -> pd.DataFrame:
 
 
 def chosen_pads(posteriors: Mapping[str, Posterior], samples: pd.DataFrame, drawn: int = DRAWN) -> dict[str, dict[str, float]]:
-    """Pads that are simulated under all surfaces: today's, the best of each reading, and some drawn from all samples."""
-    today = dict(pads.TODAY) | {SCALED: pads.TODAY["load_over_state"], SOFT: 1.0, EPIDERMIS: 1.0, "plate_length": 10.0}
-    found = {TODAY: today}
+    """Pads that are simulated under all surfaces: the one chosen before, the best of each reading, some drawn."""
+    chosen = dict(pads.CHOSEN) | {SCALED: pads.CHOSEN["load_over_state"], SOFT: 1.0, EPIDERMIS: 1.0, "plate_length": 10.0}
+    found = {CHOSEN: chosen}
     for name, posterior in posteriors.items():
         pad = posterior.problem.pad(posterior.best[None])
         found[f"best of {name}"] = {k: float(v[0]) for k, v in pad.items()}
@@ -137,24 +139,50 @@ def chosen_pads(posteriors: Mapping[str, Posterior], samples: pd.DataFrame, draw
     return found
 
 
+def simulate_pads(evidence: Evidence, chosen: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
+    """What is read of pads under all surfaces of the evidence; stated moduli of dermis and fat taken for long-term ones."""
+    surfaces, out = list(dict.fromkeys(evidence.rows["surface"])), {}
+    for name, pad in chosen.items():
+        made = simulated({k: pad[k] for k in pads.CHOSEN}, surfaces)
+        out[name] = made["values"]
+        print(name, made["diagnosis"] or "done", made["cpu_s"], flush=True)
+    return out
+
+
 def predicted(
-    evidence: Evidence, chosen: Mapping[str, Mapping[str, float]], surfaces: Iterable[str] | None = None
+    evidence: Evidence, chosen: Mapping[str, Mapping[str, float]], found: Mapping[str, Mapping[str, float]]
 ) -> pd.DataFrame:
     """What pads show, row by row of the evidence; simulated, not emulated.
 
     Columns pad, id, shown, departure (in standard deviations of the row).
     """
-    surfaces = list(surfaces or dict.fromkeys(evidence.rows["surface"]))
     frames = []
     for name, pad in chosen.items():
-        made = simulated({k: pad[k] for k in pads.TODAY}, surfaces)
-        values = values_of(made["values"], evidence)
-        shown = evidence.shown(values, np.array(pad[SOFT]), np.array(pad["plate_length"]))
+        shown = evidence.shown(values_of(found[name], evidence), np.array(pad[SOFT]), np.array(pad["plate_length"]))
         frames.append(
             pd.DataFrame({"pad": name, "id": evidence.rows["id"], "shown": shown, "departure": evidence.departure(shown)})
         )
-        print(name, made["diagnosis"] or "done", made["cpu_s"], flush=True)
     return pd.concat(frames, ignore_index=True)
+
+
+def bands(chosen: Mapping[str, Mapping[str, float]], found: Mapping[str, Mapping[str, float]]) -> pd.DataFrame:
+    """How far the pads drawn from what is believed differ: a row a surface and measure of `BANDS`, lowest and highest of them."""
+    rows = []
+    drawn = {name: found[name] for name in chosen if name.startswith("drawn")}
+    for key in next(iter(drawn.values())):
+        surface, measure = key.split(": ")
+        if measure in BANDS and surface in pads.SURFACES:
+            unit = pads.MEASURES[measure]
+            shown = [
+                values[key] * (1.0 if unit in pads.SCALE_FREE else chosen[name][SOFT])
+                for name, values in drawn.items()
+                if key in values
+            ]
+            row = {"surface": surface, "measure": measure, "unit": unit, "low": min(shown), "high": max(shown)}
+            rows.append(
+                row | {"pads": len(shown), "source": "pads drawn from the posterior of snakemake reconstruction, simulated"}
+            )
+    return pd.DataFrame(rows)
 
 
 def families(evidence: Evidence, found: pd.DataFrame, chosen: Mapping[str, Mapping[str, float]]) -> pd.DataFrame:

@@ -159,7 +159,7 @@ def mesh(frame: pd.DataFrame) -> Figure:
 def outer(frame: pd.DataFrame) -> Figure:
     """Islands of contact under outer ridges: pressure, number on the way, and the receptors' energy both ways."""
     note = [
-        "Simulated: flat plate, 20 gf, 10 mm/s, friction 0.65; outer ridges 60 µm high, 0.48 mm apart; islands of 3 to "
+        "Simulated: flat plate, 20 gf, 10 mm/s, calibrated friction; outer ridges 60 µm high, 0.48 mm apart; islands of 3 to "
         "5 loaded nodes: "
         f"their peaks are the mesh's. Receptors {DEPTH * 1e6:.0f} µm deep, that at 0 in the epidermis of the tip.",
     ]

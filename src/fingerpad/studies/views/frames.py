@@ -279,12 +279,12 @@ def assumptions(histories: Histories) -> pd.DataFrame:
         ("stated", f"dermis {dermis:.2f} mm\n{modulus('dermis')}", -5.2, 3.15),
         ("stated", f"fat\n{modulus('fat')}", -5.0, 1.6),
         ("stated", f"shear modulus relaxes by {relaxed:.0f} %", -6.0, -0.2),
-        ("assumed", "moduli stated are those\nof the relaxed state", -6.6, -2.4),
+        ("inferred", "moduli stated are the\ninstantaneous ones", -6.6, -2.4),
     )
     right = (
         ("inferred", f"radius of the skin at the apex {mm * pad.apex_radius:g} mm", 1.5, top - 0.1),
         ("inferred", f"contact length {mm * scene.specimen.contact_length:g} mm\n(force per length)", 2.6, top - 0.3),
-        ("assumed", "ramp and hold without friction;\nstrokes: μ 0.65, calibrated", 3.4, top - 0.5),
+        ("assumed", "ramp and hold without friction;\nstrokes: μ calibrated", 3.4, top - 0.5),
         ("inferred", f"width {2 * half:g} mm,\nheight {top + mm * pad.depth_below:.1f} mm", half * 0.86, 3.0),
         ("inferred", f"fat under the apex {fat:.1f} mm:\nthe bone's place and size", 1.0, bone + 0.4),
         ("assumed", "bone and nail do not move", 4.6, -2.3),

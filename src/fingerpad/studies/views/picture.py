@@ -203,7 +203,7 @@ def ridges_both_ways(frame: pd.DataFrame) -> Figure:
     """The field round the inner ridges, pressed, and stroked either way."""
     fig = style.study_figure(
         "Why a ridged pad tells the way of a stroke: strain energy round the inner ridges", [
-            "Simulated: flat plate, 20 gf, friction 0.65, ridges 0.48 mm apart and 0.15 mm high (assumed). c is the mirror "
+            "Simulated: flat plate, 20 gf, calibrated friction, ridges 0.48 mm apart and 0.15 mm high (assumed). c is the mirror "
             "image of b, as is its motion. Circles: receptors of the thesis, ±46 µm off the tip of a ridge, 915 µm deep. White "
             "lines: boundaries of layers."
         ], 2.9,
@@ -239,9 +239,9 @@ def space_time(frame: pd.DataFrame) -> Figure:
     """Maps of a stroke over the skin and the stroke distance."""
     fig = style.study_figure(
         "A stroke in space and time: what every place on the skin feels, 10 mm/s", [
-            "Simulated: convexities of 52 to 315 1/m (labels at the right), 20 gf, friction 0.65. Black: where the middle of a "
-            "convexity is over the skin at rest; it is met late, for the skin is dragged along by the surface. Strain energy "
-            "on instantaneous moduli."
+            "Simulated: convexities of 52 to 315 1/m (labels at the right), 20 gf, calibrated friction. Black: where the middle "
+            "of a convexity is over the skin at rest; it is met late, for the skin is dragged along by the surface. Strain "
+            "energy on instantaneous moduli."
         ], 4.9,
     )  # fmt: skip
     maps = frame[frame["series"] == "map"]
@@ -276,7 +276,7 @@ def space_time(frame: pd.DataFrame) -> Figure:
 def stick_slip(frame: pd.DataFrame) -> Figure:
     """Where the contact sticks and where it slips, at four instants, and the share that sticks over the stroke."""
     fig = style.study_figure(
-        "Stick and slip along the contact of a stroke, 10 mm/s, friction 0.65", [
+        "Stick and slip along the contact of a stroke, 10 mm/s", [
             "Simulated. Line: tangential traction; edge of the grey area: pressure times the coefficient of friction, which "
             "bounds it. Where both meet the skin slips (orange), elsewhere it sticks (blue). e: share of the load carried "
             "where it sticks, none later."

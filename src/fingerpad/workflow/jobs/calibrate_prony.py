@@ -11,7 +11,7 @@ from fingerpad.studies.calibration.relaxation import study, with_series
 
 
 def run(job):
-    """`relaxation`, `histories` of plate, instantaneous and `scene`, its `mesh`, `accuracy` -> `data`: prony, estimates."""
+    """`relaxation`, `histories` of plate, long_term and `scene`, its `mesh`, `accuracy` -> `data`: prony, estimates."""
     scene, mesh = load_scene(job.scene[0]), read_pad_mesh(job.mesh[0])
     if job.accuracy != ["as_stated"]:
         scene = scene.with_accuracy(job.accuracy[0])
@@ -21,7 +21,7 @@ def run(job):
         return simulate(with_series(scene, prony), how, mesh=mesh).force.values * scene.specimen.contact_length
 
     histories, _, _ = read_results(job.histories)
-    plate, instantaneous, held = (histories[Path(path).parent.name] for path in job.histories)
-    result = study(plate, instantaneous, held, read_relaxation(job.relaxation[0]), full)
+    plate, other, held = (histories[Path(path).parent.name] for path in job.histories)
+    result = study(plate, other, held, read_relaxation(job.relaxation[0]), full)
     for path, frame in zip(job.data, (result.prony, result.estimates), strict=True):
         write_frame(frame, Path(path))

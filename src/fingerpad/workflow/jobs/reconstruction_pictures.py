@@ -5,13 +5,15 @@ import pandas as pd
 from fingerpad.publishing.write import publish
 from fingerpad.studies.reconstruction.evidence import Evidence, read_evidence
 from fingerpad.studies.reconstruction.picture import evidence_frame, evidence_picture, posterior_frame, posterior_picture
+from fingerpad.studies.reconstruction.specimen import most_probable
 from fingerpad.studies.reconstruction.unknowns import read_unknowns
 
 
 def run(job):
-    """`unknowns`, `evidence`, `parts`: samples, predicted -> `pictures`: posterior, evidence."""
+    """`unknowns`, `evidence`, `parts`: samples, predicted; `readings` -> `pictures`: posterior, evidence."""
     samples, shown = map(pd.read_csv, job.parts)
     frame = posterior_frame(samples, read_unknowns(job.unknowns[0]))
     publish(posterior_picture(frame), frame, job.pictures[0])
     frame = evidence_frame(Evidence(read_evidence(job.evidence[0])), shown)
-    publish(evidence_picture(frame), frame, job.pictures[1])
+    best = f"best of {most_probable(pd.read_csv(job.readings[0]))}"
+    publish(evidence_picture(frame, best), frame, job.pictures[1])
