@@ -19,6 +19,7 @@ LABELS = {
     EPIDERMIS: "epidermis:\nfactor (1)",
 }  # fmt: skip
 BINS = 14
+BEST = "most probable pad"
 
 
 def posterior_frame(samples: pd.DataFrame, known: Unknowns) -> pd.DataFrame:
@@ -80,20 +81,18 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
     return fig
 
 
-def evidence_frame(evidence: Evidence, shown: pd.DataFrame) -> pd.DataFrame:
+def evidence_frame(evidence: Evidence, shown: pd.DataFrame, best: str) -> pd.DataFrame:
     """A row a pad and row of the evidence: its interval, and where in it the number lies, 0 at the lower end, 1 at the upper."""
     rows = shown.merge(
         evidence.rows[["id", "figure", "surface", "measure", "low", "high", "tolerance", "unit", "role", "family"]], on="id"
     )
+    rows["pad"] = rows["pad"].replace(best, BEST)
     return rows.assign(place=(rows["shown"] - rows["low"]) / (rows["high"] - rows["low"]))
 
 
 @styled
-def evidence_picture(frame: pd.DataFrame, best: str) -> Figure:
-    """Every row of the evidence as a bar from its lower to its upper end, and pads: the most probable one and others.
-
-    best: the name of the most probable one.
-    """
+def evidence_picture(frame: pd.DataFrame) -> Figure:
+    """Every row of the evidence as a bar from its lower to its upper end, and pads: the most probable one and others."""
     drawn = frame[frame["pad"].str.startswith("drawn")]
     order = {family: k for k, family in enumerate(FAMILIES)}
     ids = frame.drop_duplicates("id")
@@ -115,7 +114,7 @@ def evidence_picture(frame: pd.DataFrame, best: str) -> Figure:
     for part, style in (
         (drawn, dict(marker="o", ms=3, color=GREY, alpha=0.6)),
         (frame[frame["pad"] == CHOSEN], dict(marker="D", ms=4, color=COLOURS["1260"])),
-        (frame[frame["pad"] == best], dict(marker="o", ms=4.5, color=COLOURS["79"])),
+        (frame[frame["pad"] == BEST], dict(marker="o", ms=4.5, color=COLOURS["79"])),
     ):
         part = part[np.isfinite(part["place"])]
         ax.plot(part["place"].clip(*clip), part["id"].map(at), ls="none", mec="none", **style)
@@ -136,7 +135,7 @@ def evidence_picture(frame: pd.DataFrame, best: str) -> Figure:
             fontsize=7,
         )
     marks = [
-        handle("most probable pad", marker="o", ls="none", color=COLOURS["79"]),
+        handle(BEST, marker="o", ls="none", color=COLOURS["79"]),
         handle("drawn", marker="o", ls="none", color=GREY),
         handle("chosen one at a time", marker="D", ls="none", color=COLOURS["1260"]),
     ]  # fmt: skip

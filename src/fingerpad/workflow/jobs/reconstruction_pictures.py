@@ -14,6 +14,6 @@ def run(job):
     samples, shown = map(pd.read_csv, job.parts)
     frame = posterior_frame(samples, read_unknowns(job.unknowns[0]))
     publish(posterior_picture(frame), frame, job.pictures[0])
-    frame = evidence_frame(Evidence(read_evidence(job.evidence[0])), shown)
     best = f"best of {most_probable(pd.read_csv(job.readings[0]))}"
-    publish(evidence_picture(frame, best), frame, job.pictures[1])
+    frame = evidence_frame(Evidence(read_evidence(job.evidence[0])), shown, best)
+    publish(evidence_picture(frame), frame, job.pictures[1])
