@@ -170,7 +170,7 @@ def test_a_slab_says_what_was_not_given(tmp_path):
         "a slab 20 mm wide: cover 1 mm, foam 4 mm; held: base; free: skin, sides",
         "not given: poisson_ratio of cover: 0.48",
         "not given: prony: none, elastic",
-        "not given: contact_length: 10 mm, thesis",
+        "not given: contact_length: 11.4 mm, thesis",
     )
     assert scene.outputs.receptors.depths == pytest.approx((0.5e-3, 3e-3))
     assert scene.specimen.prony == () and scene.specimen.materials["foam"].youngs_modulus == 50e3

@@ -408,7 +408,7 @@ def test_run_for_real(tmp_path, capsys):
     assert names(out / "vtu") == ["indenter_0.vtu", "snapshot_0.vtu", "snapshots.pvd", "snapshots.vtu.series"]
     ramp, hold = json.loads((out / "summary.json").read_text())["legs"]
     for leg in (ramp, hold):
-        assert leg["force_N_per_m"] == pytest.approx(20 * 9.80665e-3 / 0.01, rel=1e-6)
+        assert leg["force_N_per_m"] == pytest.approx(20 * 9.80665e-3 / 0.0114, rel=1e-6)
     assert hold["depth_mm"] > ramp["depth_mm"] > 0
     assert (ramp["time_s"], hold["time_s"]) == pytest.approx((0.5, 2.5))
     assert capsys.readouterr().err == ""

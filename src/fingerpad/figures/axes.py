@@ -47,7 +47,7 @@ def look(name: str) -> dict[str, object]:
     return style.look_of("curvature (1/m)", name) if name in style.COLOURS else {}
 
 
-OTHER_PADS = "other pads"
+OTHER_PADS = "other model (pads"
 """How the source of a row of other pads begins."""
 
 

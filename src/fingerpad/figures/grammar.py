@@ -172,7 +172,7 @@ class Data:
             if band.measure in measures:
                 of = {
                     "surface": band.surface,
-                    "source": f"{axs.OTHER_PADS}: {band.pads:.0f} that the thesis's figures do not tell apart",
+                    "source": f"{axs.OTHER_PADS} that the thesis's figures do not tell apart: {band.pads:.0f})",
                     **measures[band.measure],
                 }
                 rows += [of | {column: end} for end in sorted((read(band.low), read(band.high)))]
