@@ -163,3 +163,19 @@ def test_points_are_found_where_scikit_fem_maps_them(kind, bent):
         assert MaterialPoints(body, mapped, None).recovery is None
     with pytest.raises(ReceptorError, match="outside"):
         locate(body.space, np.concatenate([mapped[:3], [[3.0, 3.0]]]))
+
+
+@pytest.mark.parametrize("kind", ["quad9", "tri6"])
+def test_points_are_found_in_long_elements_beside_many_narrow_ones(kind):
+    """Under a refined contact: the centre of the element is farther off than those of a hundred in the row below."""
+    mesh = rectangle(200, 2, kind=kind)
+    mesh.points[:, 1] = np.interp(mesh.points[:, 1], [0, 0.5, 1], [0, 0.1, 1])
+    body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, CURVED[kind][0], "finite")
+    points = np.array([[0.5025, 0.15], [0.3025, 0.05], [0.5, 0.15], [0.7025, 0.12]])
+    found = locate(body.space, points)
+    values = body.space.element.shape(found.xi)[0]
+    np.testing.assert_allclose(np.einsum("na,nai->ni", values, body.space.points[body.space.cells[found.element]]), points)
+    receptors = MaterialPoints(body, points, None)
+    assert receptors.recovery is not None and receptors.recovery.shape[0] == len(points)
+    with pytest.raises(ReceptorError, match="outside"):
+        locate(body.space, np.array([[0.5, 0.15], [0.5, 1.2]]))

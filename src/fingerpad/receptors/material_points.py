@@ -49,7 +49,26 @@ def _containing(space, points, tolerance=1e-6):
     a curved map takes no point outside.)"""
     nodes = space.points[space.cells]
     centres = nodes.mean(1)
-    candidates = cKDTree(centres).query(points, k=np.arange(1, min(24, len(centres)) + 1))[1]
+    near = cKDTree(centres).query(points, k=np.arange(1, min(24, len(centres)) + 1))[1]
+    parts = [_among(space, nodes, points, near, tolerance)]
+    for k in np.setdiff1d(np.arange(len(points)), parts[0][0]):  # beside a row of many narrow elements a long one is farther off
+        every = np.argsort(np.hypot(*(centres - points[k]).T), kind="stable")[None]
+        owner, element, xi = _among(space, nodes, points[[k]], every, tolerance)
+        if not len(owner):
+            x, y = points[k] * 1e3
+            raise ReceptorError(f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue")
+        parts.append((owner + k, element, xi))
+    owner, element, xi = (np.concatenate(part) for part in zip(*parts, strict=True))
+    order = np.argsort(owner, kind="stable")
+    return owner[order], Location(element[order], xi[order])
+
+
+def _among(space, nodes, points, candidates, tolerance):
+    """Points' indices (m,), elements (m,) and reference coordinates (m, 2) of what lies in which of its candidates (n, k).
+
+    Args:
+        nodes: (ne, nen, 2) m, of the elements. points: (n, 2) m.
+    """
     low, high = nodes.min(1)[candidates], nodes.max(1)[candidates]
     # a quadratic side bulges beyond the box round its nodes by an eighth of it at most
     owner, column = np.nonzero((np.abs(points[:, None] - (low + high) / 2) <= 0.65 * (high - low)).all(2))
@@ -57,12 +76,7 @@ def _containing(space, points, tolerance=1e-6):
     xi = _inverse_map(space.element, nodes[element], points[owner])
     inside = (xi >= -tolerance).all(1)
     inside &= xi.sum(1) <= 1 + tolerance if space.element.triangle else (xi <= 1 + tolerance).all(1)
-    owner, found = owner[inside], Location(element[inside], xi[inside])
-    outside = np.setdiff1d(np.arange(len(points)), owner)
-    if len(outside):
-        x, y = points[outside[0]] * 1e3
-        raise ReceptorError(f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue")
-    return owner, found
+    return owner[inside], element[inside], xi[inside]
 
 
 def _inverse_map(element, nodes, points):
