@@ -197,8 +197,8 @@ def test_measured_force_asks_for_a_length_that_grows(curve, data):
     fits = {model: fit_length(curve, depth, force, model) for model in LENGTHS}
     assert (np.diff(force / curve.force_at(depth)) > 0).all()
     assert (np.sign(fits["constant length"].residual) == [-1, -1, -1, 1]).all()
-    assert fits["elliptical patch"].rss < 0.2 * fits["constant length"].rss
-    assert fits["elliptical patch"].aicc < fits["constant length"].aicc - 5
+    assert fits["elliptical patch"].rss < 0.5 * fits["constant length"].rss
+    assert fits["elliptical patch"].aicc < fits["constant length"].aicc - 3
     assert fits["plane sections"].aicc < fits["elliptical patch"].aicc
 
 
@@ -232,7 +232,7 @@ def estimate(result, study_name, quantity, subject="mean"):
 
 def test_study_fits_every_subject_and_the_mean(result):
     assert list(result.constants) == ["1", "2", "3", "4", "mean"]
-    assert all(0.2 < found.values[0] < 0.6 for found in result.constants.values())
+    assert all(0.4 < found.values[0] < 1.3 for found in result.constants.values())
     assert estimate(result, "stated in the thesis", "modulus constant") == 1.0
     assert estimate(result, "cost", "finite element simulations for all fits of the constant", "") == 1
     assert max(found.evaluations for found in result.constants.values()) <= 60

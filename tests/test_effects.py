@@ -213,7 +213,7 @@ def test_mesh_is_fine_wherever_a_stroke_takes_the_contact(stroke, ramp):
     rise = (math.tan(math.radians(12)) - math.tan(math.radians(9))) * stroke.specimen.outline.apex_radius
     assert extent(steeper) == pytest.approx(smooth + rise, abs=0.15e-3)
     few = changed(stroke, friction=0.0, motion=(stroke.motion[0], Slide(slide=0.1e-3, speed=10e-3)))
-    assert extent(few) < smooth - 0.5e-3
+    assert extent(few) < smooth - 0.4e-3
 
 
 def test_stroke_is_planned_for_its_sharpest_convexity(stroke):
@@ -290,7 +290,7 @@ def test_mesh_follows_edges_and_needles(ramp):
     """Edges of the profile and contacts narrower than the mesh get finer skin there; broad ones do not."""
     assert plan(changed(ramp, stimulus=Flat())).mesh_size.focus == ()
     sharp = plan(changed(ramp, stimulus=Cylinder(curvature=1259.84)))
-    assert sharp.contact_edge == pytest.approx(sharp.contact.half_width / 9) and sharp.estimated_error < 0.03
+    assert 2**-0.25 <= 9 * sharp.contact_edge / sharp.contact.half_width <= 1 and sharp.estimated_error < 0.03
     bar = plan(changed(ramp, stimulus=Bar(width=1.5875e-3, fillet=0.1e-3))).mesh_size
     assert bar.focus[0][0] == pytest.approx(0.79375e-3) and bar.focus[0][1] <= 0.05e-3
     assert plan(changed(ramp, stimulus=Line())).mesh_size.focus

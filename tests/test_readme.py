@@ -17,7 +17,7 @@ pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```(\w+)\n(.*?)```", README, re.S)
-FROZEN_DEPTH_MM = 0.747176
+FROZEN_DEPTH_MM = 1.124395
 
 
 @pytest.fixture(scope="module")

@@ -203,7 +203,7 @@ def test_what_is_left_out_is_the_thesis_s(folder):
     assert [layer.youngs_modulus for layer in (layers.epidermis, layers.dermis, layers.fat)] == [15e4, 15e3, 15e3]
     assert {layer.poisson_ratio for layer in (layers.epidermis, layers.dermis, layers.fat)} == {0.48}
     assert [(term.g, term.tau) for term in scene.specimen.prony] == [(0.055, 3.25), (0.3691, 0.3414)]
-    assert (scene.specimen.moduli, scene.specimen.contact_length) == ("long_term", 0.01)
+    assert (scene.specimen.moduli, scene.specimen.contact_length) == ("instantaneous", 0.0114)
     assert (scene.friction, scene.accuracy, scene.effects) == (0.0, "thesis", {})
     assert scene.outputs.receptors.depths and scene.outputs.receptors.offsets == (0.0,)
 

@@ -21,7 +21,7 @@ WAVY = Wavy(curvatures=(104.99, 209.97), lead_in=4 * MM, run_out=5 * MM)  # 15 m
 ROUND = Cylinder(curvature=104.99)
 SHALLOW = Wavy(curvatures=(104.99, 78.74), lead_in=4 * MM, run_out=5 * MM)  # its hollow is wider than the pad's apex
 PRESS = force(20, 40)
-LOAD = 19.6133
+LOAD = 20 * 9.80665e-3 / 0.0114
 
 
 @pytest.fixture(scope="module")

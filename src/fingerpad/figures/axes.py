@@ -155,9 +155,8 @@ def draw_bands(
     for k in range(0, len(found), 2):
         low, high = found.iloc[k : k + 2][x or y]
         at = place(found.iloc[k])
-        ends = ([low, high], [at, at]) if x else ([at, at], [low, high])
-        colour = look(found.iloc[k]["surface"])["color"]
-        ax.plot(*ends, lw=width, color=colour, alpha=0.35, solid_capstyle="butt", zorder=1.5)
+        draw = ax.hlines if x else ax.vlines
+        draw(at, low, high, lw=width, color=look(found.iloc[k]["surface"])["color"], alpha=0.35, capstyle="butt", zorder=1.5)
 
 
 def together(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:

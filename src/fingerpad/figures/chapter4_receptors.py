@@ -105,7 +105,7 @@ BESIDE = (
 )
 PEAK_WORDS = "peak rate (impulses/s)"
 OF_THE_LARGEST = "of the largest"
-OF = "measure"
+OF = "panel"
 """Column that says which measure of other pads a bar shows."""
 PEAK, STEADY, HELD = (reading("rate", window) for window in ("peak", "steady", "hold"))
 

@@ -187,7 +187,8 @@ def water_bed(scene, curvature: float, tension: float) -> dict[str, float]:
     """What the water bed of ``tension`` (N/m) answers at the end of the hold."""
     outline = scene.specimen.outline
     force = scene.motion[0].press_to_force / scene.specimen.contact_length
-    state = waterbed.press(force, tension, outline.apex_radius, outline.half_width, curvature)
+    half_width = min(outline.half_width, 0.999 * outline.apex_radius)  # a pad wider than the circle at its apex is half of it
+    state = waterbed.press(force, tension, outline.apex_radius, half_width, curvature)
     pressures = dict.fromkeys(("centre pressure", "peak pressure"), state.pressure)
     return {"depth": state.depth, "width": 2 * state.half_width} | pressures
 
