@@ -89,6 +89,7 @@ $(DOCS): docs/requirements.lock $(INSTALLED)
 
 regression-update: figures
 	FINGERPAD_UPDATE_BASELINES=1 $(BIN)/python -m pytest -q tests/test_figure_regression.py
+	$(BIN)/python docs/_ext/published.py
 
 specimens: $(INSTALLED)
 	$(SNAKEMAKE) calibration

@@ -12,7 +12,9 @@ os.environ |= {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "PYTHONWARNINGS":
 os.environ |= {"COLUMNS": "90", "TTY_COMPATIBLE": "0"}
 os.environ["FINGERPAD"] = str(HERE.parent)
 
-from published import numbers  # noqa: E402 (beside this file)
+from published import fill_pages  # noqa: E402 (beside this file)
+
+fill_pages()
 
 project, author, language = "fingerpad", "The fingerpad developers", "en"
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode", "sphinx_design"]
@@ -28,9 +30,8 @@ nitpicky = True
 # types of signatures have no entry of their own; what pages refer to, tests/test_docs.py looks for
 nitpick_ignore_regex = [("py:.*", r".*")]
 
-myst_enable_extensions = ["colon_fence", "dollarmath", "amsmath", "substitution", "deflist"]
+myst_enable_extensions = ["colon_fence", "dollarmath", "amsmath", "deflist"]
 myst_heading_anchors = 3
-myst_substitutions = numbers()
 
 nb_execution_mode = "force"
 nb_execution_in_temp = nb_execution_raise_on_error = nb_merge_streams = True

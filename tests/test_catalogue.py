@@ -1,9 +1,12 @@
 """The list of the thesis's figures: complete, with something in place of what cannot be drawn, and as committed."""
 
+import re
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
+from fingerpad.claims.comparison import AGREES, holding
 from fingerpad.figures.catalogue import read_catalogue, readme
 from fingerpad.figures.registry import FIGURES
 from fingerpad.reference_data import ReferenceDataError
@@ -14,6 +17,8 @@ LIST = ROOT / "config/reference/figures.csv"
 MADE = {number: spec.title for number, spec in FIGURES.items()}
 COUNTS = {2: 4, 3: 11, 4: 29, 5: 29}
 """Figures of the thesis, by chapter."""
+TABLE = pd.read_csv(ROOT / "figures/tables/thesis_comparison.csv")
+JUDGED = holding(TABLE)
 
 
 @pytest.fixture(scope="module")
@@ -32,11 +37,11 @@ def test_every_figure_drawn_is_one_of_the_thesiss_and_listed_once_in_order():
 
 def test_committed_list_is_what_the_workflow_writes(catalogue):
     committed = (ROOT / "figures/README.md").read_text(encoding="utf-8")
-    assert committed == readme(catalogue, MADE), "run `snakemake catalogue` and commit figures/README.md"
+    assert committed == readme(catalogue, MADE, JUDGED), "run `snakemake catalogue` and commit figures/README.md"
 
 
 def test_every_figure_is_in_one_list(catalogue):
-    text = readme(catalogue, MADE)
+    text = readme(catalogue, MADE, JUDGED)
     drawn, rest = text.split("## Not drawn, and")
     for number in catalogue["number"]:
         assert (f"| [{number}](thesis/fig_{number}.png) |" in drawn) == (number in MADE)
@@ -44,9 +49,20 @@ def test_every_figure_is_in_one_list(catalogue):
 
 
 def test_a_figure_taken_out_is_named_as_missing(catalogue):
-    assert "## Not drawn yet" in readme(catalogue, {n: title for n, title in MADE.items() if n != "5-12"})
-    without = readme(catalogue, {n: title for n, title in MADE.items() if n != "5-1"})
+    assert "## Not drawn yet" in readme(catalogue, {n: title for n, title in MADE.items() if n != "5-12"}, JUDGED)
+    without = readme(catalogue, {n: title for n, title in MADE.items() if n != "5-1"}, JUDGED)
     assert "| 5-1 | impulses of ten strokes and their histogram | recording |\n" in without.split("## Not drawn yet")[1]
+
+
+def test_holds_counts_the_rows_of_the_comparison_that_speak_for_the_model(catalogue):
+    text, seen = readme(catalogue, MADE, JUDGED), 0
+    speaking = TABLE[TABLE["role"].isin(["result", "trend"]) & (TABLE["verdict"] != "not_comparable")]
+    for line in (line for line in text.splitlines() if "thesis_comparison_chapter" in line):
+        number, good, count = re.match(r"\| \[([\d-]+)\].*\[(\d+) of (\d+)\]", line).groups()
+        found = speaking.loc[speaking["figure"] == number, "verdict"]
+        assert (int(good), int(count)) == (found.isin(AGREES).sum(), len(found)) and count != "0"
+        seen += 1
+    assert seen > 40
 
 
 @pytest.mark.parametrize(

@@ -416,7 +416,7 @@ def test_run_for_real(tmp_path, capsys):
 
 def test_as_a_process(tmp_path):
     def fingerpad(*arguments):
-        return subprocess.run([sys.executable, "-m", "fingerpad.cli", *arguments], capture_output=True, text=True)
+        return subprocess.run([sys.executable, "-m", "fingerpad", *arguments], capture_output=True, text=True)
 
     assert fingerpad("--version").returncode == 0
     wrong = fingerpad("run", "no.yaml", "--out", str(tmp_path / "out"))

@@ -65,11 +65,24 @@ def test_tutorials_run(page, tmp_path, monkeypatch):
     plt.close("all")
 
 
-def test_every_number_of_the_pages_is_read_from_the_tables_and_none_is_left_over(extension):
-    numbers = extension("published").numbers()
-    used = {name for page in PAGES for name in re.findall(r"\{\{ (\w+) \}\}", page.read_text(encoding="utf-8"))}
-    assert used <= set(numbers)
-    assert all(re.search(r"\w", text) and "nan" not in text for text in numbers.values())
+def test_the_numbers_of_the_pages_are_those_of_the_tables(extension):
+    published = extension("published")
+    known = published.numbers()
+    assert all(re.search(r"\w", text) and "nan" not in text for text in known.values())
+    for page in published.pages():
+        text = page.read_text(encoding="utf-8")
+        assert text == published.filled(text, known), f"{page.relative_to(ROOT)}: run .venv/bin/python docs/_ext/published.py"
+        assert "{{ " not in text and text.count("<!-- / -->") == len(published.MARKED.findall(text))
+        assert not re.search(r"^<!-- \w+ -->[^\n]", text, re.M), "a line that begins with a comment is no Markdown"
+
+
+def test_a_page_is_filled_in_lines_and_in_blocks(extension):
+    filled, known = extension("published").filled, {"one": "1.5", "rows": "| a |\n|---|"}
+    text = "of <!-- one -->2<!-- / --> mm\n\n<!-- rows -->\nold\n<!-- / -->\n"
+    new = "of <!-- one -->1.5<!-- / --> mm\n\n<!-- rows -->\n| a |\n|---|\n<!-- / -->\n"
+    assert filled(text, known) == new == filled(new, known)
+    with pytest.raises(KeyError):
+        filled("<!-- two --><!-- / -->", known)
 
 
 def test_numbers_read_well(extension):

@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
+import fingerpad
 from fingerpad.scenes.families import read_family
 from fingerpad.scenes.scene import (
     Cylinder,
@@ -48,6 +49,19 @@ THESIS_CURVATURES = {
 def folder(tmp_path):
     """A directory for scenes, with specimens of its own."""
     return pad_folder(tmp_path)
+
+
+def test_a_scene_a_file_and_a_dictionary_are_taken_alike(folder):
+    path = write(folder, RAMP_AND_HOLD)
+    scene = load_scene(path)
+    assert load_scene(scene) is scene
+    assert [fingerpad.plan(given).to_dict() for given in (path, str(path))] == [fingerpad.plan(scene).to_dict()] * 2
+    with pytest.raises(SceneError, match="there is no such file"):
+        fingerpad.simulate(folder / "none.yaml")
+    with pytest.raises(SceneError, match="motion"):
+        fingerpad.simulate({key: value for key, value in RAMP_AND_HOLD.items() if key != "motion"})
+    with pytest.raises(TypeError, match="a scene is a Scene, a file or a dictionary, not int"):
+        fingerpad.simulate(3)
 
 
 @pytest.mark.parametrize(("document", "key", "words"), BAD.values(), ids=BAD)

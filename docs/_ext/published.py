@@ -1,6 +1,7 @@
-"""What the pages say of the published tables: every number in them is read here, at each build, and none is typed into a page.
+"""What the pages say of the published tables and of the pad: every such number is read here, and none is typed into a page.
 
-``{{ name }}`` in a page is ``numbers()["name"]``.
+``<!-- name -->text<!-- / -->`` in a page holds ``numbers()["name"]``, and reads as the text alone wherever Markdown is shown.
+``python docs/_ext/published.py`` writes the present numbers into the pages; so does each build of the documentation.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ from functools import cache
 from pathlib import Path
 
 import pandas as pd
-import yaml
+
+from fingerpad.claims.comparison import AGREES, holding
 
 ROOT = Path(__file__).parents[2]
-AGREES = {"inside", "plausible", "trend_holds"}
+MARKED = re.compile(r"<!-- (\w+) -->(.*?)<!-- / -->", re.S)
 _NUMBERS: dict[str, Callable[[], object]] = {}
 
 
@@ -27,6 +29,32 @@ def table(path: str) -> pd.DataFrame:
 def numbers() -> dict[str, str]:
     """All of them, as text."""
     return {name: str(read()) for name, read in _NUMBERS.items()}
+
+
+def pages() -> list[Path]:
+    """The pages that are written by hand."""
+    ours = (path for path in (ROOT / "docs").rglob("*.md") if not {"_build", "generated"} & set(path.parts))
+    return [ROOT / "README.md", ROOT / "workflow/profiles/slurm/README.md", *sorted(ours)]
+
+
+def filled(text: str, known: dict[str, str]) -> str:
+    """A page with the present numbers. Raises KeyError for a name that is not known."""
+
+    def fill(mark: re.Match) -> str:
+        name = mark[1]
+        lines = "\n" * ("\n" in known[name])  # a table has lines of its own
+        return f"<!-- {name} -->{lines}{known[name]}{lines}<!-- / -->"
+
+    return MARKED.sub(fill, text)
+
+
+def fill_pages() -> None:
+    """Write the present numbers into the pages that say others."""
+    known = numbers()
+    for page in pages():
+        text = page.read_text(encoding="utf-8")
+        if (new := filled(text, known)) != text:
+            page.write_text(new, encoding="utf-8")
 
 
 def number(read: Callable[[], object]) -> Callable[[], object]:
@@ -50,21 +78,18 @@ def several(values, count: int = 2, joint: str = " to ") -> str:
 # -- the thesis ----------------------------------------------------------------------------------------------------------------
 
 
-def compared(*of: str) -> pd.DataFrame:
-    """Rows of the comparison that have been judged, with the form of their statement in the thesis; of some figures only."""
+def compared() -> pd.DataFrame:
+    """Rows of the comparison that have been judged, with the form of their statement in the thesis."""
     rows = table("figures/tables/thesis_comparison")
     rows = rows.join(table("config/reference/thesis_numbers").set_index("id")["form"], on="id")
-    rows = rows[rows["verdict"] != "not_comparable"]
-    return rows[rows["figure"].isin(of)] if of else rows
+    return rows[rows["verdict"] != "not_comparable"]
 
 
 def verdict(figure: str) -> str:
     """How many of the thesis's statements on a figure hold here, in a sentence; empty where none can be answered."""
-    rows = compared(figure)
-    rows = rows[rows["role"].isin(["result", "trend"])]
-    if not len(rows):
+    good, count = holding(table("figures/tables/thesis_comparison")).get(figure, (0, 0))
+    if not count:
         return ""
-    good, count = rows["verdict"].isin(AGREES).sum(), len(rows)
     what = "statement of the thesis holds" if count == 1 else "statements of the thesis hold"
     return f"{good} of {count} {what} here"
 
@@ -184,31 +209,6 @@ def inferred_fat():
 @number
 def inferred_load():
     return _inferred("line_load")
-
-
-def _pad():
-    return yaml.safe_load((ROOT / "config/specimens/thesis.yaml").read_text())
-
-
-def _size(text: str) -> float:
-    return float(text.split()[0])
-
-
-@number
-def pad_radius():
-    return _pad()["outline"]["apex_radius"]
-
-
-@number
-def pad_fat():
-    outline = {name: _size(value) for name, value in _pad()["outline"].items()}
-    bone = outline["bone_centre_height"] + outline["bone_half_height"]
-    return f"{outline['apex_height'] - outline['epidermis_thickness'] - outline['dermis_thickness'] - bone:.2g} mm"
-
-
-@number
-def pad_length():
-    return _pad()["contact_length"]
 
 
 def _distance(pad: str) -> float:
@@ -518,3 +518,112 @@ def thousand_presses():
 @number
 def thousand_cheap_presses():
     return digits(_swept("steady press, small strain", 1000, "process time a scene, all included") * 1000)
+
+
+def duration(seconds: float) -> str:
+    """To two digits, in the unit that suits."""
+    unit, size = next((u, s) for u, s in (("h", 3600.0), ("min", 60.0), ("s", 0.0)) if seconds >= 1.5 * s)
+    return f"{digits(seconds / (size or 1.0))} {unit}"
+
+
+def _pressing(scenes: int) -> str:
+    return duration(scenes * _swept("steady press, finite strain", 100, "process time a scene, all included"))
+
+
+def _laying_out(scenes: int, measured: int) -> str:
+    return duration(scenes * _swept("laying out", measured, "process time a scene"))
+
+
+@number
+def sweep_costs():
+    """The table of what sweeps take, as Markdown."""
+    lines = ["| scenes | batches | laying out | steady presses | dataset and table of 30 measures |", "|" + "---|" * 5]
+    for scenes in (100, 1000, 10_000):
+        collected = [_swept("collecting 30 measures", scenes, what) for what in ("process time", "largest memory")]
+        cells = [f"{scenes:,}", f"{_swept('laying out', scenes, 'batches'):.0f}", _laying_out(scenes, scenes), _pressing(scenes)]
+        lines.append("| " + " | ".join([*cells, f"{duration(collected[0])}, {digits(collected[1])} MB"]) + " |")
+    return "\n".join(lines)
+
+
+@number
+def million_laid_out():
+    return _laying_out(1_000_000, 10_000)
+
+
+@number
+def million_presses():
+    return _pressing(1_000_000)
+
+
+@number
+def memory_growth():
+    return digits(100 * (_swept("steady press, small strain", 1000, "largest memory after scene 100 over memory then") - 1))
+
+
+@number
+def largest_memory():
+    rows = table("figures/tables/sweeps")
+    return digits(rows[rows["quantity"].str.startswith("largest memory") & rows["unit"].eq("MB")]["value"].max())
+
+
+# -- the pad --------------------------------------------------------------------------------------------------------------------
+
+
+@cache
+def pad():
+    """The specimen that scenes have by default, with its inner ridges."""
+    from fingerpad import load_scene
+
+    scene = {"specimen": {"ridges": "inner"}, "stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}
+    return load_scene(scene).specimen
+
+
+def mm(length: float) -> str:
+    return f"{1e3 * length:.3g} mm"
+
+
+@number
+def pad_radius():
+    return mm(pad().outline.apex_radius)
+
+
+@number
+def pad_fat():
+    o = pad().outline
+    layers = o.epidermis_thickness + o.dermis_thickness
+    return mm(o.apex_height - layers - o.bone_centre_height - o.bone_half_height)
+
+
+@number
+def pad_length():
+    return mm(pad().contact_length)
+
+
+@number
+def ridge_sizes():
+    inner = pad().ridges.inner
+    return f"{mm(inner.pitch)} apart, {mm(inner.height)} high"
+
+
+@number
+def section_size():
+    o = pad().outline
+    return f"{mm(2 * o.half_width)} x {mm(o.apex_height + o.depth_below)}"
+
+
+@number
+def layer_thicknesses():
+    o = pad().outline
+    return f"epidermis {mm(o.epidermis_thickness)}, dermis {mm(o.dermis_thickness)}"
+
+
+@number
+def layer_moduli():
+    layers = [getattr(pad().layers, name) for name in ("epidermis", "dermis", "fat")]
+    state = pad().moduli.replace("long_term", "long-term")
+    ratios = several([layer.poisson_ratio for layer in layers])
+    return f"E = {' / '.join(f'{layer.youngs_modulus / 1e6:g}' for layer in layers)} MPa ({state}), nu = {ratios}"
+
+
+if __name__ == "__main__":
+    fill_pages()

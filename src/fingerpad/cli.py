@@ -1,4 +1,4 @@
-"""The command ``fingerpad``: plan, run or mesh one scene, without the workflow; plan or run a sweep of them.
+"""The command ``fingerpad``, or ``python -m fingerpad``: plan, run or mesh one scene, without the workflow; plan or run a sweep.
 
 Exit codes: 0 done; 1 an error of the program (one line; the details are in a file); 2 the input is wrong (one line on
 standard error: file, key, what is wrong, what is allowed); 3 the simulation could not be completed (its last converged state
@@ -540,7 +540,3 @@ def _error_line(totals: dict[str, Any]) -> str:
     if run.get("tolerance_missed"):
         line += f" ({run['tolerance_missed']})"
     return f"{line}; at the edge pressure is unbounded" if run["peak_pressure_singular"] else line
-
-
-if __name__ == "__main__":
-    sys.exit(main())

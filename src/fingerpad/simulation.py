@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from fingerpad.planning.rules import RULES
 from fingerpad.planning.schedule import schedule
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.results import FIELDS, Arrays, add_snapshots, arrays, peak_memory_MB, provenance, skin_arc
-from fingerpad.scenes.scene import Scene
+from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.measures import below_outline, below_skin, touched_side
@@ -44,7 +45,7 @@ _NO_CONTACT = 1e-5  # m, half-width that stands for none
 
 
 def simulate(
-    scene: Scene,
+    scene: Scene | str | Path | Mapping[str, Any],
     plan: Plan | None = None,
     mesh: PadMesh | None = None,
     progress: Callable[[dict[str, Any]], None] | None = None,
@@ -53,22 +54,24 @@ def simulate(
     """Simulate a scene.
 
     Args:
-        scene: a checked scene. plan: how (default: ``fingerpad.plan(scene)``). mesh: the whole pad's mesh (default: built or
-        read as the plan says). A run that misses the tolerance that its plan was asked for is refined and run again, a few
-        times at most, unless the scene says ``once`` or a mesh is given; the history tells of its last plan. progress: called
-        after each step with time_s, end_time_s, contact_width_mm, iterations, cutbacks.
+        scene: a checked scene, or a file or dictionary of one. plan: how (default: ``fingerpad.plan(scene)``). mesh: the whole
+        pad's mesh (default: built or read as the plan says). A run that misses the tolerance that its plan was
+        asked for is refined and run again, a few times at most, unless the scene says ``once`` or a mesh is given; the history
+        tells of its last plan. progress: called after each step with time_s, end_time_s, contact_width_mm, iterations, cutbacks.
         fields: full fields of strain energy, strain and stress as well, at the scene's snapshots, or of the last state.
 
     Returns:
         The history of the whole pad (see :mod:`fingerpad.results`).
 
     Raises:
+        SceneError: the file or the dictionary is wrong.
         PlanError, MeshError, OutlineError: the input cannot be meshed or planned (before anything is solved).
         ReceptorError: a receptor lies outside the soft tissue.
         NonConvergence: a step failed for good; its ``dataset`` is the history up to the last converged step. A
         KeyboardInterrupt has the same ``dataset``, if a step had converged.
     """
-    return _labelled(lambda: solve(scene, plan, mesh, progress, fields))
+    made = load_scene(scene)
+    return _labelled(lambda: solve(made, plan, mesh, progress, fields))
 
 
 def solve(

@@ -37,7 +37,7 @@ def profile(folder: Path) -> Path:
 
 
 def start(file: Path, out: Path, *more: str) -> subprocess.Popen:
-    words = [sys.executable, "-m", "fingerpad.cli", "sweep", str(file), "--out", str(out), *more]
+    words = [sys.executable, "-m", "fingerpad", "sweep", str(file), "--out", str(out), *more]
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, stdin=subprocess.DEVNULL)
 
 

@@ -64,7 +64,7 @@ def test_a_scene_runs_with_the_built_in_specimens_from_any_folder(elsewhere, tmp
         "accuracy: {skin_edge: 1 mm, steps: 2}",
     )
     (tmp_path / "mine.yaml").write_text("\n".join(lines))
-    done = elsewhere("-m", "fingerpad.cli", "run", "mine.yaml", "--out", "results")
+    done = elsewhere("-m", "fingerpad", "run", "mine.yaml", "--out", "results")
     assert done.returncode == 0, done.stderr
     assert {path.name for path in (tmp_path / "results").iterdir()} == {"history.nc", "plan.json", "summary.json"}
 

@@ -30,6 +30,8 @@ from fingerpad.claims.verdicts import is_inside, judge, significant
 from fingerpad.measures.table import Measures
 from fingerpad.reference_data import read_reference
 
+AGREES = ("inside", "plausible", "trend_holds")
+"""Verdicts of what is as the thesis says."""
 GIVEN = ("input", "count")
 """Roles of what goes into the simulations: printed in full, without a discretisation error."""
 
@@ -78,13 +80,20 @@ def scores(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
     kind = table["id"].map(reference["form"]).map(lambda form: {"axis": "axis", "trend": "trend"}.get(form, "value or range"))
     found = table["id"].map(reference.apply(score_of, axis=1))
     judged = table["verdict"].ne("not_comparable") & found.ne("")
-    agree = table["verdict"].isin(("inside", "plausible", "trend_holds"))
+    agree = table["verdict"].isin(AGREES)
     rows = []
     for each in ("value or range", "axis", "trend"):
         for score in (*SCORES, "all"):
             chosen = judged & kind.eq(each) & (found.eq(score) | (score == "all"))
             rows.append((each, score, int((chosen & agree).sum()), int(chosen.sum())))
     return pd.DataFrame(rows, columns=["kind", "score", "agree", "judged"])
+
+
+def holding(table: pd.DataFrame) -> dict[str, tuple[int, int]]:
+    """Of each figure how many of the thesis's statements hold here, results and trends, and of how many that can be judged."""
+    rows = table[table["role"].isin(("result", "trend")) & table["verdict"].ne("not_comparable")]
+    agree = rows["verdict"].isin(AGREES).groupby(rows["figure"]).agg(["sum", "size"])
+    return {figure: (int(good), int(count)) for figure, good, count in agree.itertuples()}
 
 
 def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:

@@ -1,11 +1,12 @@
 """What the thesis says of a figure and whether it is so here, in a line: of the rows of the comparison that are the figure's own.
 
 The line that speaks is the first trend that fails, else the first stated number that is missed, else a trend or a number that
-holds, else the range of an axis; the others are counted.
+holds, else the range of an axis; the others are counted. What the pad was fitted to speaks, as such, where nothing else does.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ import pandas as pd
 from fingerpad.claims import trends_pressing, trends_stroking  # noqa: F401 (enter their trends)
 from fingerpad.claims.rows import Number
 from fingerpad.claims.trends import TRENDS
-from fingerpad.claims.verdicts import judge
+from fingerpad.claims.verdicts import digits, judge
 from fingerpad.measures.table import Measures
 
 
@@ -35,17 +36,22 @@ def said(number: str, fine: Measures, rough: Measures, reference: pd.DataFrame) 
 
     fine, rough: measures of the histories and of their companions. reference: of `read_reference`.
     """
-    rows = reference[(reference["figure"] == number) & reference["role"].isin(("trend", "result"))]
+    rows = reference[(reference["figure"] == number) & (reference["form"] != "layout")]
     drawn = rows["condition"].astype(str).str.contains(DRAWN, regex=False)  # of several definitions only that which is drawn
     rows = rows[drawn | ~rows["quantity"].isin(rows.loc[drawn, "quantity"])]
-    found = [one for _, row in rows.iterrows() if row["form"] != "layout" and (one := _judged(row, fine, rough)) is not None]
-    if not found:
+    for roles in SPEAKING:
+        judged = (_judged(row, fine, rough) for _, row in rows[rows["role"].isin(roles)].iterrows())
+        if found := [one for one in judged if one is not None]:
+            break
+    else:
         return None
     rank, chosen = min(found, key=lambda pair: pair[0])
     holds = sum(one.verdict == "holds" for _, one in found)
     return Said(f"{chosen.ids}; {holds} of {len(found)} hold", *(getattr(chosen, k) for k in _PARTS))
 
 
+SPEAKING = (("trend", "result"), ("calibrated",))
+"""Roles of rows: those after the first speak where no row of the first does."""
 DRAWN = "(headline)"
 """In the condition of a row that is about the strain energy drawn, where others are about other definitions."""
 _PARTS = ("words", "condition", "verdict", "number", "detail")
@@ -56,7 +62,7 @@ def _judged(row: pd.Series, fine: Measures, rough: Measures) -> tuple[int, Said]
         if row["form"] == "trend":
             trend = TRENDS[row.name](fine)
             verdict, *details = "holds" if trend.holds else "fails", *trend.note.split("; ")
-            short = next((each for each in details if each.startswith("not for")), "") or _shown(trend.shown, row["units"])
+            short = next((each for each in details if each.startswith("not for")), "") or _counted(trend.shown, row)
             long = "; ".join(dict.fromkeys(filter(None, (details[0], short if short in details else ""))))
             parts = row.name, _plain(row["quantity"]), _plain(row["condition"]), verdict, short, _plain(long) or short
             return (2 if trend.holds else 0), Said(*parts)
@@ -71,15 +77,17 @@ def _judged(row: pd.Series, fine: Measures, rough: Measures) -> tuple[int, Said]
     verdict, remark = judge(value, float(np.nan_to_num(error)), row)
     if verdict == "not_comparable":
         return None
-    stated = f"{row['low']:g}" if row["form"] == "value" else f"{row['low']:g} to {row['high']:g}"
+    units, scale = ("kPa", 1e-3) if row["units"] == "Pa" and "pressure" in row["quantity"] else (row["units"], 1.0)
+    stated = " to ".join(f"{scale * row[end]:g}" for end in (("low",) if row["form"] == "value" else ("low", "high")))
     axis = "on an axis of " if row["form"] == "axis" else ""
     doubt = ", reading uncertain" if row["kind"] == "garbled" else ""
-    words = f"{_plain(row['quantity'])} {axis}{_shown(stated, row['units'])}{doubt}"
+    words = f"{_plain(row['quantity'])} {axis}{_shown(stated, units)}{doubt}"
+    condition = "; ".join(filter(None, (_plain(row["condition"]), "the pad was fitted to it" * (row["role"] == "calibrated"))))
     holds = verdict in ("inside", "plausible")
-    shown = _shown(value, row["units"])
+    shown = _shown(scale * value, units)
+    remark = re.sub(r"^by \S+ \((.+)\)$", r"\1", remark.partition(", ")[0])
     rank = (4 if holds else 3) if row["form"] == "axis" else 2 if holds else 1
-    return rank, Said(row.name, words, _plain(row["condition"]), "holds" if holds else "fails", shown,
-                                     f"{shown}, {remark}" if remark else shown)  # fmt: skip
+    return rank, Said(row.name, words, condition, "holds" if holds else "fails", shown, ", ".join(filter(None, (shown, remark))))
 
 
 def _plain(text: object) -> str:
@@ -88,5 +96,12 @@ def _plain(text: object) -> str:
 
 
 def _shown(value: float | str, units: str) -> str:
-    text = value if isinstance(value, str) else f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
-    return f"R² {text}" if units == "R2" else text if units == "1" else f"{text} {units}"
+    text = value if isinstance(value, str) else digits(value)
+    return f"R2 {text}" if units == "R2" else text if units == "1" else f"{text} {units}"
+
+
+def _counted(value: float, row: pd.Series) -> str:
+    """The number of a trend where it says something by itself: with its unit, or of how many it counts."""
+    if row["units"] in ("1", "count"):
+        return ""
+    return _shown(f"{value:g} of {row['low']:g}" if row["low"] == row["low"] else value, row["units"])

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from fingerpad.claims.verdicts import digits
 from fingerpad.measures.table import Measures
 
 ALIKE = 0.15
@@ -63,7 +64,7 @@ def ordered(values: Mapping[str, float], what: str, growing: bool = True) -> Tre
     """Whether the values of the surfaces, broad to sharp, only grow (or only fall)."""
     names, numbers = list(values), list(values.values())
     wrong = [f"{a} to {b}" for (a, x), (b, y) in pairwise(values.items()) if (y <= x if growing else y >= x)]
-    note = f"{what}: {numbers[0]:.3g} ({names[0]}) to {numbers[-1]:.3g} ({names[-1]})"
+    note = f"{what}: {digits(numbers[0])} ({names[0]}) to {digits(numbers[-1])} ({names[-1]})"
     return Trend(not wrong, len(values) - len(wrong), note + (f"; not from {', '.join(wrong)}" if wrong else ""))
 
 
@@ -73,9 +74,9 @@ def stepwise(values: Mapping[str, float], unit: str, sign: int = 1) -> Trend:
     return everywhere(dict(zip(values, outcome, strict=True)), listed(values, unit))
 
 
-def listed(values: Mapping[str, float], unit: str, digits: int = 3) -> str:
-    """Labelled values with their unit, to some digits."""
-    return (", ".join(f"{k}: {v:.{digits}g}" for k, v in values.items()) + f" {unit}").rstrip()
+def listed(values: Mapping[str, float], unit: str, count: int = 3) -> str:
+    """Labelled values with their unit, to so many digits."""
+    return (", ".join(f"{k}: {digits(v, count)}" for k, v in values.items()) + f" {unit}").rstrip()
 
 
 def spreads(values: Sequence[Mapping[str, float]]) -> dict[str, float]:

@@ -111,7 +111,8 @@ def largest_and_centre_decay_alike(m):
 @trend("TR16")
 def same_time_constant_at_every_node(m):
     short, long, mean = (m("half_of_fall", K210, k) for k in ("shortest", "longest", "mean"))
-    note = f"half of the fall after {short:.2f} to {long:.2f} s at {m('nodes_past_peak', K210):.0f} nodes past the peak"
+    times = " to ".join(dict.fromkeys((f"{short:.2f}", f"{long:.2f}")))
+    note = f"half of the fall after {times} s at {m('nodes_past_peak', K210):.0f} nodes past the peak"
     return Trend(bool((long - short) / mean <= 0.3), (long - short) / mean, note)
 
 
@@ -141,7 +142,8 @@ def pressure_peaks_off_the_centre(m):
     excess, at = of_each(m, "off_centre_excess", NINE.scenes, "end"), of_each(m, "off_centre_place", NINE.scenes)
     twins = {k: e for k, e in excess.items() if e > TWIN}
     where = ", ".join(f"{k} at ±{at[k]:.2f} mm ({e:+.0%})" for k, e in twins.items())
-    return Trend(set(BROAD) <= set(twins), len(twins), f"end of hold: {where or 'none'}")
+    without = ", ".join(label for label in BROAD if label not in twins)
+    return Trend(not without, len(twins), f"end of hold: {where or 'none'}" + (f"; not for {without}" if without else ""))
 
 
 @trend("TR11")
@@ -254,7 +256,7 @@ def rate_peaks_and_decays(m):
 @trend("TR89", x=("highest_energy_rate", ""), y=("rate", "peak"))
 def linear(m, x, y):
     slope, _, share = straight_line(*(list(of_each(m, q, NINE.scenes, at).values()) for q, at in (x, y)))
-    return Trend(bool(share >= LINEAR and slope > 0), share, "predicted rates, R2 of the line")
+    return Trend(bool(share >= LINEAR and slope > 0), share, f"R2 {share:.3f} of the line through predicted rates")
 
 
 @trend("TR85")
@@ -266,7 +268,7 @@ def rates_saturate(m):
         slope, _, share = straight_line(curvature[:-1], rate[:-1])
         last = (rate[-1] - rate[-2]) / (curvature[-1] - curvature[-2])
         outcome[window] = bool(share >= LINEAR and last < 0.5 * slope)
-        notes.append(f"{window}: R2 {share:.3f} without the highest, slope to it {last / slope:.2f} of the others'")
+        notes.append(f"{window}: R2 {share:.3f} below the highest, then {last / slope:.2f} as steep")
     return everywhere(outcome, "; ".join(notes))
 
 

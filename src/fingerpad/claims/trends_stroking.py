@@ -34,9 +34,9 @@ FELT, UNFELT = 1 / 3, 0.05
 OUTER = {"right": "ridged_outer_stroke_right", "left": "ridged_outer_stroke_left"}
 
 
-def by_speed(m, quantity, scenes=None):
+def by_speed(m, quantity, speeds=tuple(SPEEDS)):
     """A measure of each convexity in the strokes at several velocities: velocity -> convexity -> value."""
-    return {speed: m.find(quantity, scene) for speed, scene in (scenes or SPEEDS.scenes).items()}
+    return {speed: m.find(quantity, SPEEDS[speed]) for speed in speeds}
 
 
 # --- pressure and curvature ------------------------------------------------------------------------------
@@ -47,8 +47,8 @@ def by_speed(m, quantity, scenes=None):
 def pressure_follows_curvature(m, scene):
     likeness, slope = m("curvature_correlation", scene, "centre"), m("curvature_factor", scene)
     offset, misfit = (m("curvature_fit", scene, k) for k in ("offset", "misfit"))
-    note = f"pressure = {slope:.1f} Pa m x curvature + {offset:.0f} Pa, root mean square misfit {misfit:.0f} Pa"
-    return Trend(likeness >= FOLLOWS, likeness, f"correlation {likeness:.3f}; {note}")
+    note = f"pressure = {slope:.1f} Pa m x curvature + {offset:.0f} Pa; root mean square misfit {misfit:.0f} Pa"
+    return Trend(likeness >= FOLLOWS, likeness, f"correlation {likeness:.3f}, {note}")
 
 
 @trend("TR25")
@@ -85,7 +85,8 @@ def velocity_hardly_matters(m, quantity, trace):
     found = list(by_speed(m, quantity).values())
     spread, change = spreads(found), {k: 100 * (found[-1][k] / found[0][k] - 1) for k in found[0]}
     worst, whole = max(spread, key=spread.get), m("spread_of_traces", FULL["1"], trace)
-    note = f"peaks spread by {np.mean(list(spread.values())):.1f} % on average, at most {spread[worst]:.1f} % (K = {worst}); "
+    note = f"peaks change by up to {max(map(abs, change.values())):.0f} %; "
+    note += f"they spread by {np.mean(list(spread.values())):.1f} % on average, at most {spread[worst]:.1f} % (K = {worst}); "
     note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + listed(change, "%", 2)
     return Trend(max(map(abs, change.values())) <= NEGLIGIBLE, max(change.values(), key=abs), note)
 
@@ -94,7 +95,8 @@ def velocity_hardly_matters(m, quantity, trace):
 def velocity_hardly_matters_for_contact(m):
     spread = spreads([m.find("contact_length", FULL[v]) for v in ("5", "10", "20", "40")])
     worst = max(spread, key=spread.get)
-    return Trend(spread[worst] <= HARDLY, spread[worst], "spread over velocities " + listed(spread, "%", 2))
+    note = f"spread at most {spread[worst]:.1f} %; over velocities " + listed(spread, "%", 2)
+    return Trend(spread[worst] <= HARDLY, spread[worst], note)
 
 
 @trend("TR32", quantity="contact_length")
@@ -197,7 +199,7 @@ def falls_below_pressed(m):
 @trend("T301", quantity="rate_peaks_apart", speeds=("10 mm/s",))
 def two_peaks_a_convexity(m, quantity, speeds, shown=""):
     """Under 52 and 79 1/m; the distances shown are of all convexities at one velocity, or of these two at every one."""
-    found = by_speed(m, quantity)
+    found = by_speed(m, quantity, speeds)
     apart = {f"{k} at {v}": found[v][k] for v in speeds for k in ("52", "79")}
     given = {k: v for k, v in (found[shown] if shown else apart).items() if v > 0}
     return everywhere(
@@ -262,7 +264,7 @@ def burst_width_hardly_varies(m):
 @trend("TR67")
 def stroked_rate_between_those_pressed(m):
     low, rate, high = m("rate", NINE["79"], "end"), m("burst_rate", TEN, "79"), m("rate", NINE["79"], "peak")
-    return Trend(low < rate < high, rate, f"K = 79 1/m: steady state {low:.3g}, stroked {rate:.3g}, peak {high:.3g} impulses/s")
+    return Trend(low < rate < high, rate, f"steady {low:.3g}, stroked {rate:.3g}, peak {high:.3g} impulses/s; K = 79 1/m")
 
 
 @trend("TR68")
@@ -275,7 +277,8 @@ def stroked_rate_above_the_peak_pressed(m):
 @trend("TR70")
 def rate_peaks_with_the_energy_rate(m):
     apart = m.find("rate_after_energy_rate", TEN)
-    return everywhere({k: abs(v) <= 1e3 * BIN + 1e-9 for k, v in apart.items()}, "apart " + listed(apart, "mm", 2))
+    note = f"at most {max(map(abs, apart.values())):.2g} mm apart; " + listed(apart, "mm", 2)
+    return everywhere({k: abs(v) <= 1e3 * BIN + 1e-9 for k, v in apart.items()}, note)
 
 
 @trend("TR71")
@@ -291,7 +294,7 @@ def sharpest_answered_to_the_rate(m):
 @trend("TR47")
 def no_direction_without_ridges(m):
     index, spread = m("direction", PLAIN["right"]), m("spread_of_three", PLAIN["right"])
-    note = f"directional index at -46 um; the three receptors differ by {spread:.1f} % at most"
+    note = f"directional index {index:.2g} at -46 um; the three receptors differ by {spread:.1f} % at most"
     return Trend(abs(index) <= UNFELT, index, note)
 
 
@@ -317,7 +320,7 @@ def direction_is_felt(m, strokes):
         note = f"at -46 um {right:.0f} Pa at the end of the stroke to the right, {left:.0f} Pa to the left"
     except KeyError:
         note = "stroke to the left by mirror image"
-    return Trend(abs(index) >= FELT, index, f"directional index; {note}")
+    return Trend(abs(index) >= FELT, index, f"directional index {index:.2f}; {note}")
 
 
 @trend("TR49")
@@ -354,5 +357,6 @@ def one_way_at_the_beginning(m):
     found = {way: tuple(m.find("plate_impulses", RIDGED[way]).values()) for way in RIDGED}
     (few, early), (many, first) = sorted(found.values())
     holds = few >= NONE_LEFT and early > few / 2 and many > 2 * few and first < many / 2
-    note = "; ".join(f"to the {way}: {n:.2g} impulses, {b:.2g} of them in the first 5 mm" for way, (n, b) in found.items())
+    note = f"{few:.2g} impulses one way, {many:.2g} the other; "
+    note += "; ".join(f"to the {way} {n:.2g}, {b:.2g} of them in the first 5 mm" for way, (n, b) in found.items())
     return Trend(holds, many / max(few, 1e-9), f"{note}; mean numbers of a stroke, receptor 46 um to the right")

@@ -85,3 +85,9 @@ def is_inside(value: float, error: float, entry: Mapping) -> bool:
 def significant(value: float, digits: int) -> float:
     """A number rounded to significant digits."""
     return float(f"{value:.{digits}g}")
+
+
+def digits(value: float, count: int = 3) -> str:
+    """A number to so many significant digits in text; a large one to its last whole digit, not as a power of ten."""
+    text = f"{value:.{count}g}"
+    return f"{value:.0f}" if "e+" in text else text

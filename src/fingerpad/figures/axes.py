@@ -5,6 +5,7 @@ Pictures are made from a frame whose rows say by their `source` what they are: s
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -20,12 +21,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+AT_REST = "before contact"
 PHASE_LINES = {
+    AT_REST: {"linestyle": style.DASHED, "linewidth": 0.6, "color": style.GREY},
     PHASES[0]: {"linestyle": "-", "linewidth": 0.6, "color": "0.57"},
     TOP: {"linestyle": "-", "linewidth": 1.8},
     STEADY: {"linestyle": "-", "linewidth": 0.9, "color": style.INK},
 }
-"""Thin grey on the way, thick in the surface's colour at the top, thin black in the end."""
+"""Dashed before, thin grey on the way, thick in the surface's colour at the top, thin black in the end."""
 FIRST, SECOND = {"linestyle": "-", "linewidth": 1.3}, {"linestyle": style.DASHED, "linewidth": 1.1}
 """Two quantities of one run."""
 STATEMENT = "thesis statement ("
@@ -103,15 +106,21 @@ def statement(frame: pd.DataFrame, width: int = style.NOTE_WIDTH) -> list[str]:
     if not (found := rows[rows.str.startswith(STATEMENT)].tolist()):
         return []
     room = width if width > style.NOTE_WIDTH / 2 else 2 * width - 8  # of a column two lines
-    words, condition, verdict, number, detail = found[0].partition("): ")[2].split(" | ")
+    words, condition, verdict, number, detail = _typeset(found[0]).partition("): ")[2].split(" | ")
     for of, why in ((condition, detail), ("", detail), (condition, number), ("", number), ("", "")):
-        line = f"Thesis: {words}{of and f' ({of})'}. Here: {verdict}{why and f' ({why})'}."
+        told = f"; {why}" if "(" in why else why and f" ({why})"
+        line = f"Thesis: {words}{of and f' ({of})'}. Here: {verdict}{told}."
         if len(line) <= room:
             break
     count = found[0].partition("; ")[2].partition(" hold): ")[0]
-    if count not in ("", "1 of 1") and len(line) + 38 <= room:
+    if count and not count.endswith(" of 1") and len(line) + 38 <= room:
         line += f" In all {count} such statements hold."
     return style.wrapped([line], width)
+
+
+def _typeset(text: str) -> str:
+    """With a minus before negative numbers, a space before a percent sign and the square of R²."""
+    return re.sub(r"(?<=\d)%", " %", re.sub(r"(?<![\w.])-(?=\d)", "−", text)).replace("R2 ", "R² ")
 
 
 # --- limits ----------------------------------------------------------------------------------------------
@@ -265,7 +274,7 @@ def shape_of(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
-    """The surface, solid above, with the curvature of each convexity in 1/m."""
+    """The surface, solid above, with the curvature of each convexity."""
     rows = shape_of(frame)
     x, y = rows[DISTANCE].to_numpy(), rows[HEIGHT].to_numpy()
     top = y.max() + 0.35
@@ -279,8 +288,9 @@ def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
     if x[-1] in runs[-1][DISTANCE].to_numpy() and np.ptp(runs[-1][DISTANCE]) < room:  # cut off by the picture's end
         runs.pop()
     places = [(run[DISTANCE].iloc[0] + run[DISTANCE].iloc[-1]) / 2 for run in runs]
-    for run, place in zip(runs, style.spread(places, room, x[0] + room / 2, x[-1] - room / 2), strict=True):
-        ax.text(place, top - 0.06, f"{run[CURVATURE].iloc[0]:.0f}", ha="center", va="top", fontsize=6)
+    units = [" 1/m", *[""] * (len(runs) - 1)]
+    for run, unit, place in zip(runs, units, style.spread(places, room, x[0] + room / 2, x[-1] - room / 2), strict=True):
+        ax.text(place, top - 0.06, f"{run[CURVATURE].iloc[0]:.0f}{unit}", ha="center", va="top", fontsize=6)
 
 
 def below_surface(fig: Figure, frame: pd.DataFrame, count: int, along: bool = True) -> list[Axes]:

@@ -38,23 +38,29 @@ def read_catalogue(path: str | PathLike) -> pd.DataFrame:
     return table
 
 
-def readme(catalogue: pd.DataFrame, made: Mapping[str, str]) -> str:
-    """Text of ``figures/README.md``. made: the figures that are drawn, number -> title."""
+def readme(catalogue: pd.DataFrame, made: Mapping[str, str], judged: Mapping[str, tuple[int, int]]) -> str:
+    """Text of ``figures/README.md``.
+
+    made: the figures that are drawn, number -> title. judged: number -> how many of the thesis's statements on it hold here, and
+    of how many that can be answered; the others are not in it.
+    """
     here = catalogue[catalogue["number"].isin(list(made))]
     drawable = catalogue["kind"].isin(DRAWABLE) | catalogue["stand_in"].str.startswith("predicted")
     never, missing = (catalogue[~catalogue["number"].isin(list(made)) & which] for which in (~drawable, drawable))
     parts = [
         "# Figures",
-        "Written by the workflow from `config/reference/figures.csv` and the titles of the figures drawn; do not edit.",
+        "Written by the workflow from `config/reference/figures.csv`, the titles of the figures drawn and the table that compares"
+        " them with the thesis; do not edit.",
         f"The thesis (Cysyk 1999) has {len(catalogue)} figures. {len(here)} are drawn here from simulations, on the thesis's"
         " axes, each with the plotted data beside it (`thesis/fig_*.csv`). None of the thesis's recordings and photographs is"
-        " public: no recording is drawn, and a figure that stands in for one says *predicted* in the picture.",
+        " public: no recording is drawn, and a figure that stands in for one says *predicted* in the picture. *Holds*: how"
+        " many of the thesis's numbers, axes and trends that belong to a figure are met here, of those that can be answered.",
         "## Drawn here",
         _table(
-            ("figure", "shows", "kind in the thesis", "in place of what is not public"),
+            ("figure", "shows", "holds", "kind in the thesis", "in place of what is not public"),
             [
-                (f"[{row.number}](thesis/fig_{row.number}.png)", made[row.number], row.kind, row.stand_in)
-                for row in here.itertuples()
+                (f"[{number}](thesis/fig_{number}.png)", made[number], _holds(number, judged), kind, stand_in)
+                for number, kind, stand_in in here[["number", "kind", "stand_in"]].itertuples(index=False)
             ],
         ),
         "## Not drawn, and what stands in",
@@ -75,6 +81,13 @@ def readme(catalogue: pd.DataFrame, made: Mapping[str, str]) -> str:
         "`tables/`: numbers, as CSV and Markdown. `studies/`: calibration, moving pictures and further studies.",
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _holds(number: str, judged: Mapping[str, tuple[int, int]]) -> str:
+    """``3 of 4``, with a link to the rows; nothing where the thesis says nothing that can be judged."""
+    if number not in judged:
+        return ""
+    return "[{} of {}](tables/thesis_comparison_chapter{}.md)".format(*judged[number], number[0])
 
 
 def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:

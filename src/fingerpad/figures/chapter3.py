@@ -42,6 +42,7 @@ from fingerpad.measures.steady import (
     PLATE,
     PROFILES,
     SPEED_SCENES,
+    contact_length,
     force_N,
     leg_end,
     pressed_depths,
@@ -246,10 +247,20 @@ def deflection_words(error: str) -> list[str]:
     return [f"{MODEL} {error}. Points: measured (MIT Touch Lab; digitised by a third party)."]
 
 
+LONG = "contact length "
+
+
+def length_in(frame: pd.DataFrame) -> float:
+    """The contact length (mm) that a frame's sources tell; not a number if none does."""
+    told = frame["source"].str.extract(rf"{LONG}([\d.]+) mm")[0].dropna()
+    return float(told.iloc[0]) if len(told) else np.nan
+
+
 def forces_over_depth(data: Data) -> pd.DataFrame:
     """Steady force against the depth of a flat plate, and the measured forces of each subject."""
     ((_, plate, coarse),) = data.runs(STEADY_PLATE)
     ends = [partial(steady_force, depth=z) for z in pressed_depths(plate)]
+    long = 1e3 * contact_length(plate)
     model = pd.DataFrame({"series": "model", DEPTH: DEPTH.read(plate), NEWTON: NEWTON.read(plate)})
     model[ERROR] = error_percent(plate, coarse, *ends)
     points, fitted = [], []
@@ -262,17 +273,18 @@ def forces_over_depth(data: Data) -> pd.DataFrame:
         factor = float(here @ rows["force_N"] / (here @ here))
         source = f"{SIMULATED}: times {factor:.3g}, closest to the measured forces"
         fitted = [model.assign(source=source, series="model, fitted", **{NEWTON: factor * model[NEWTON]})]
-    model.insert(0, "source", SIMULATED)
+    model.insert(0, "source", f"{SIMULATED}: {LONG}{long:g} mm")
     return below(pd.concat([model, *fitted], ignore_index=True), *points)
 
 
 def model_and_subjects(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     model, fitted = (frame[frame["series"] == name] for name in ("model", "model, fitted"))
-    ax.plot(model[DEPTH], model[NEWTON], color=style.INK, label="model, contact length 10 mm")
+    long = length_in(frame)
+    ax.plot(model[DEPTH], model[NEWTON], color=style.INK, label=f"model, {LONG}{long:g} mm")
     others = frame[~is_simulated(frame) & frame["series"].notna()]
     if len(fitted):
         factor = float((fitted[NEWTON] / model[NEWTON].to_numpy()).max())
-        length = f"model times {factor:.2f}: a length of {10 * factor:.1f} mm, or softer"
+        length = f"model times {factor:.2f}: a length of {long * factor:.1f} mm, or softer"
         ax.plot(fitted[DEPTH], fitted[NEWTON], color=style.HIGHLIGHT, ls=style.DASHED, label=length)
         ends = [others[DEPTH].min(), others[DEPTH].max()]
         mean = [others.loc[np.isclose(others[DEPTH], at), NEWTON].mean() for at in ends]
@@ -303,9 +315,11 @@ def ramp_and_hold(data: Data, runs: Runs, until: float) -> pd.DataFrame:
         time = np.append(history["time"].values[history["time"].values < until * (1 - 1e-9)], until)
         error = error_percent(history, coarse, lambda d: float(force_N(d)[ramp_end(d)]), lambda d: float(force_N(d)[-1]))
         values = np.interp(time, history["time"].values, force_N(history))
-        parts.append(pd.DataFrame({"series": series, "phase": "ramp and hold", TIME: time, NEWTON: values, ERROR: error}))
+        source = f"{SIMULATED}: {LONG}{1e3 * contact_length(history):g} mm"
+        part = {"source": source, "series": series, "phase": "ramp and hold", TIME: time, NEWTON: values, ERROR: error}
+        parts.append(pd.DataFrame(part))
         level = partial(steady_force, depth=max(pressed_depths(history)))
-        part = {"series": series, "phase": "steady state", TIME: [0.0, until], NEWTON: level(plate)}
+        part = {"source": source, "series": series, "phase": "steady state", TIME: [0.0, until], NEWTON: level(plate)}
         parts.append(pd.DataFrame(part | {ERROR: error_percent(plate, companion, level)}))
     return pd.concat(parts, ignore_index=True)
 
@@ -327,7 +341,8 @@ def forces_over_time(ax: Axes, frame: pd.DataFrame, spec: Figure, at_curves: boo
 
 
 def model_alone(frame: pd.DataFrame) -> list[str]:
-    return note_of(lambda error: [f"{MODEL} {error}. Contact length 10 mm; the recordings are not public."])(frame)
+    words = f"{LONG.capitalize()}{length_in(frame):g} mm; the recordings are not public."
+    return note_of(lambda error: [f"{MODEL} {error}. {words}"])(frame)
 
 
 def held(number: str, title: str, scenes: Mapping[str, str], unit: str, until: float, thesis: tuple[str, str], at_curves: bool):
@@ -360,10 +375,16 @@ def shaded_section(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
 
 
 def name_layers(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    for name, y in {"epidermis": 5.4, "dermis": 4.72, "fat": 2.4, "bone": -1.8}.items():
-        panels["undeformed"].text(0, y, name, ha="center", va="center", fontsize=5.5 if name.endswith("dermis") else 6.5)
-    panels["undeformed"].annotate("stratum corneum", (-3.0, 5.25), (-5.4, 6.9), ha="center", fontsize=6.5,
-                                  arrowprops={"arrowstyle": "-", "lw": 0.6, "shrinkA": 0, "shrinkB": 0})  # fmt: skip
+    first, names = panels["undeformed"], ("stratum corneum", "epidermis", "dermis", "fat", "bone")
+    rows = frame[frame["panel"] == "undeformed"]
+    loops = [rows.loc[rows["layer"] == layer, [X, Y]].to_numpy() for layer in ("skin", "corneum", "dermis", "fat", "bone")]
+    for name, outer, inner, x in zip(names, loops, loops[1:], (-5.0, 2.6, 5.0, 0.0), strict=False):
+        at = (x, (upper(outer, x) + upper(inner, x)) / 2)
+        if name == "fat":
+            first.text(*at, name, ha="center", va="center", fontsize=6.5)
+        else:
+            point_out(first, name, at, (1.1 * x, 7.0))
+    first.text(0, (loops[-1][:, 1].min() + loops[-1][:, 1].max()) / 2, "bone", ha="center", va="center", fontsize=6.5)
     for ax in panels.values():
         ax.plot([7.4, 9.4], [-6.2, -6.2], color=style.INK, lw=1.6, solid_capstyle="butt")
         ax.text(8.4, -6.0, "2 mm", ha="center", va="bottom", fontsize=6.5)
@@ -441,9 +462,9 @@ FIGURES = (
     Figure("3-11", "Layer boundaries under five indentations, steady state",
            Runs("panel", {panel: scene for panel, (scene, _) in SECTIONS.items()}), X, (Y,), {},
 
-           Panels(height=3.6, header=0.16, by="panel", names=tuple(SECTIONS), shape=(2, 3), fill=boundaries_of_layers, limit="",
+           Panels(height=3.3, header=0.16, by="panel", names=tuple(SECTIONS), shape=(2, 3), fill=boundaries_of_layers, limit="",
                   titles=str, share={"sharex": True, "sharey": True},
-                  set={"aspect": "equal", "xlim": (-8.4, 8.4), "ylim": (-1.5, 6.5), "xticks": (-6, -3, 0, 3, 6),
+                  set={"aspect": "equal", "xlim": (-9.8, 9.8), "ylim": (-1.5, 6.5), "xticks": (-9, -6, -3, 0, 3, 6, 9),
                        "yticks": (0, 3, 6)}),
            rows=six_indentations, extra=name_boundaries,
            note=note_of(section_words("As in the thesis, without the stratum corneum."))),

@@ -91,13 +91,14 @@ OTHER_PADS = (
 
 
 def skin(data: Data) -> pd.DataFrame:
-    """Deformed skin at the top of the ramp and in steady state: the upper side, one row a node."""
+    """Skin at rest, at the top of the ramp and in steady state: the upper side, one row a node."""
     parts = []
     for label, history, coarse in data.runs(NINE):
         error = error_percent(history, coarse, over_time(depth))
         keep = history["skin_y"].values > 0
-        for index, phase in phase_indices(history)[-2:]:
-            x, y = skin_at(history, index)
+        outlines = [(axs.AT_REST, (history["skin_x"].values, history["skin_y"].values))]
+        outlines += [(phase, skin_at(history, index)) for index, phase in phase_indices(history)[-2:]]
+        for phase, (x, y) in outlines:
             parts.append(pd.DataFrame({"surface": label, "phase": phase, X: x[keep] * 1e3, Y: y[keep] * 1e3, ERROR: error}))
     return pd.concat(parts, ignore_index=True)
 
@@ -188,12 +189,14 @@ def bars_of_the_hold(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None
 
 
 def phase_legend(*phases: str):
-    """Legend of the phases' line styles, under the title."""
+    """Legend of the phases' line styles, under the title; a line in the surfaces' colours is in those of some of them."""
 
     def extra(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
         fig = next(iter(panels.values())).figure
-        looks = {p: axs.look("210") | axs.PHASE_LINES[p] for p in phases or PHASES}
-        style.header_legend(fig, [style.handle(p, **look) for p, look in looks.items()])
+        names = list(frame["surface"].dropna().unique()) if "surface" in frame else [SURFACES[0]]
+        some = names if len(names) < 4 else (names[0], names[len(names) // 2], names[-1])
+        there = [p for p in phases or PHASES if (frame["phase"] == p).any()]
+        style.header_legend(fig, [[style.handle(p, **axs.look(k) | axs.PHASE_LINES[p]) for k in some] for p in there])
 
     return extra
 
@@ -312,26 +315,27 @@ def three_by_three(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def legs_of_rates(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
-    """Strain energy rate, nine traces named in the ramp; each jumps at its top."""
-    ends = {}
-    for label, rows in frame[is_simulated(frame)].groupby("surface", sort=False):
+    """Strain energy rate in the ramp, nine traces named at its top, where each jumps; of the hold what is above zero."""
+    own, ends = frame[is_simulated(frame)], {}
+    seen = 0.01 * own[RATE].max()
+    for label, rows in own.groupby("surface", sort=False):
         time, rate = rows[TIME].to_numpy(), rows[RATE].to_numpy()
         jump = int(np.flatnonzero(np.diff(time) == 0)[0]) + 1
         for leg in (slice(jump), slice(jump, None)):
-            ax.plot(time[leg], rate[leg], **axs.look(label))
+            if rate[leg].max() > seen:
+                ax.plot(time[leg], rate[leg], **axs.look(label))
         ax.plot(time[jump - 1 : jump + 1], rate[jump - 1 : jump + 1], color=style.GREY, lw=0.5, zorder=1)
         ends[label] = (time[jump - 1], rate[jump - 1])
     style.label_ends(ax, ends, ends["flat"][0] * 1.5, "curvature (1/m)")
-    lowest = frame.loc[is_simulated(frame), RATE].min()
-    text = f"hold: rates below zero\n(to {lowest:.0f} Pa/s), off the axis"
+    text = f"hold: rates below zero\n(to {own[RATE].min():.0f} Pa/s), off the axis".replace("-", "−")
     ax.text(0.97, 0.05, text, transform=ax.transAxes, ha="right", fontsize=6.5, color=style.GREY)
 
 
 FIGURES = (
     Figure("4-6", "Skin profile at the top of the ramp and in steady state, 20 gf", NINE, X, (Y,), {X: "T100", Y: "T101"},
-           nine(SURFACES, 5.6, header=0.16, fill=Phases(order=(STEADY, TOP)), limit="x", ylabel=Y,
+           nine(SURFACES, 5.6, header=0.16, fill=Phases(order=(axs.AT_REST, STEADY, TOP)), limit="x", ylabel=Y,
                 set={"ylim": (3, 6), "xticks": [-10, 0, 10], "yticks": [3, 4, 5, 6]}),
-           rows=skin, extra=phase_legend(TOP, STEADY)),
+           rows=skin, extra=phase_legend(axs.AT_REST, TOP, STEADY)),
     Figure("4-7", "Indentation depth, 40 gf/s ramp to 20 gf, 2 s hold", NINE, TIME, (DEPTH,), {TIME: "T103", DEPTH: "T102"},
            one_panel(2.62), width=style.COLUMN_WIDTH),
     Figure("4-8", "Contact width, 40 gf/s ramp to 20 gf, 2 s hold", NINE, TIME, (WIDTH,), {TIME: "T105", WIDTH: "T104"},

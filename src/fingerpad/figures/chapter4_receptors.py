@@ -442,10 +442,10 @@ def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, line: pd.DataFrame
     for _, group in rows.groupby(groups):
         at = group[[x, y]].mean()
         across, up = ax.transLimits.transform(at)
-        left = up < 0.06 or at[y] > np.interp(at[x], line[x], line[y])  # at the floor above the point
-        left &= across > 0.08
-        how = {"va": "bottom" if left else "top", "ha": "right" if left else "left"}
-        away = (-5, 4) if left else (5, -4)
+        above = up < 0.12 or at[y] > np.interp(at[x], line[x], line[y])  # at the floor above the point
+        left = above and across > 0.08
+        how = {"va": "bottom" if above else "top", "ha": "right" if left else "left"}
+        away = (-5 if left else 5, 4 if above else -4)
         ax.annotate(", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=6.5, **how)
 
 
@@ -575,7 +575,8 @@ def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str) -> None:
     fitted, curves = not curves, curves or {"linear in the pressure, fitted": rows[own]}
     for marker, (name, theirs) in zip(style.MARKERS, rows[~own].groupby("series", sort=False), strict=False):
         same = [ours for ours in curves if ours.split()[-2:] == name.split()[-2:]] or list(curves)[:1]
-        look = style.look_of("force (gf)", _force(name), "color") | {"marker": marker, "ls": "none", "ms": 3.5}
+        look = style.look_of("force (gf)", _force(name), "color")
+        look |= {"marker": marker, "ls": "none", "ms": 3.5, "clip_on": False, "zorder": 3}
         ax.plot(theirs[CURVATURE], theirs[GIVEN_RATE], **look, label=name)
         ours = curves[same[0]].sort_values(CURVATURE)
         at = np.interp(theirs[CURVATURE], ours[CURVATURE], ours[GIVEN_RATE])

@@ -313,7 +313,7 @@ def say_plateaus(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     """Between bursts the frequency is that of one long interval."""
     room_for_brackets(panels, frame)
     first = next(iter(panels.values()))
-    text = "level stretches: one interval from burst to burst"
+    text = "level stretches: one interval from burst to burst; brackets: thesis's axis (?: reading uncertain)"
     first.text(0.99, 0.97, text, transform=first.transAxes, ha="right", va="top", fontsize=6.5, color=style.GREY)
 
 
@@ -344,13 +344,17 @@ def draw_rate(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
 
 
 def legend_of_the_first(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    next(iter(panels.values())).legend(loc="upper right")
+    """With the brackets that stand at some panels."""
+    first = next(iter(panels.values()))
+    bracket = style.handle("thesis's axis (?: reading uncertain)", color=style.GREY, lw=0.7, ls=style.DASHED, marker="|", ms=4)
+    first.legend(handles=[*first.get_legend_handles_labels()[0], bracket], loc="upper right")
 
 
 SCALED = "Energies are scaled as in Figs 4-27 and 4-29: to their mean at 915 µm over the nine surfaces."
 RECORDED = {"color": style.HIGHLIGHT}
 BURST_RATES = {BURST_RATE: "burst_rate"}
 BURSTS = {BURST_WIDTH: "burst_width"} | BURST_RATES
+PRESSED = {"marker": "o", "ms": 4, "color": style.INK, "clip_on": False, "zorder": 3}
 OWN_BURSTS = {"color": style.INK, "marker": "o", "ms": 3.5, "lw": 0.8, "ls": "-"}
 FIGURES = (
     Figure("5-1", "Predicted impulses of ten strokes at 10 mm/s", TEN_RUN, DISTANCE, (IMPULSE_RATE,), {DISTANCE: "T217"},
@@ -388,16 +392,15 @@ FIGURES = (
            Panels(height=3.2, legend={"loc": "upper left", "handlelength": 3},
                   fill=Lines(by="series", recorded=RECORDED | {"label": "recorded, stroked"}, bars=True,
                              looks={STROKED: {"ls": "-", "marker": "s", "ms": 3.5, "color": style.HIGHLIGHT},
-                                    RESPONSES["peak"]: {"ls": style.DASHED, "marker": "o", "ms": 4, "color": style.INK},
-                                    RESPONSES["end"]: {"ls": style.DOTTED, "marker": "o", "ms": 4, "mfc": "white",
-                                                       "color": style.INK}},
+                                    RESPONSES["peak"]: PRESSED | {"ls": style.DASHED},
+                                    RESPONSES["end"]: PRESSED | {"ls": style.DOTTED, "mfc": "white"}},
                              names={series: f"predicted, {series}" for series in (STROKED, *RESPONSES.values())})),
            rows=stroked_and_pressed, width=style.COLUMN_WIDTH,
            measured="impulse_rates", remarks=(equation(), "Stroked: " + BURST[0].lower() + BURST[1:])),
     Figure("5-19", "Strain energy, its rate, and predicted impulses of 12 strokes at 10 mm/s", TEN_RUN, STROKE_TIME,
            (SED, RATE, IMPULSE_RATE), {TIME: "T281", SED: "T278", RATE: "T279", IMPULSE_RATE: "T280"},
            Panels(height=4.8, pairs=tuple((TIME, y) for y in (SED, RATE, IMPULSE_RATE)), shape=(3, 1), fill=energy_rate_or_bars,
-                  marked="none", share={"sharex": True}),
+                  marked=RATE, share={"sharex": True}),
            rows=energy_and_histogram, how=HOW, remarks=(equation(),), extra=aligned),
     Figure("5-20", "Predicted impulse rate of a stroke at 10 mm/s", TEN_RUN, STROKE_TIME, (IMPULSE_RATE,),
            {TIME: "T288", IMPULSE_RATE: "T287"}, Panels(height=3.0, fill=draw_rate, legend={"loc": "upper left"}),

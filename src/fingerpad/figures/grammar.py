@@ -483,7 +483,7 @@ class Panels:
     def _draw_pairs(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> dict[object, Axes]:
         grid = fig.subplots(*self.shape, **self.share).ravel()
         for ax, (x, y) in zip(grid, self.pairs, strict=False):
-            axs.limit_axes(ax, frame, x, y, self.marked is None)
+            axs.limit_axes(ax, frame, x, y, self.marked in (None, y))
             ax.set(xlabel=x.label, ylabel=y.label, **self.set)
             self.fill(ax, frame, replace(spec, x=x, y=(y,)))
             if y in IN_KILO:

@@ -109,7 +109,22 @@ def name_receptors(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     style.header_legend(panels["right"].figure, [style.handle(each, **LOOKS[each]) for each in series])
 
 
-def plate_stroked(number: str, pad: str, runs: Runs, axis: str, remark: str) -> Figure:
+def magnify_the_difference(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
+    """In an inset, how much more than the centre the receptors beside it have."""
+    name_receptors(panels, frame)
+    own = frame[is_simulated(frame)]
+    for way, ax in panels.items():
+        curves = {series: rows for series, rows in own[own["panel"] == way].groupby("series", sort=False)}
+        inset, centre = ax.inset_axes((0.16, 0.14, 0.8, 0.44)), curves.pop("centre")
+        for series, rows in curves.items():
+            inset.plot(rows[TIME], rows[SED].to_numpy() - centre[SED].to_numpy(), **LOOKS[series])
+        inset.axhline(0, color=style.GREY, lw=0.5, zorder=1)
+        inset.set(xlim=ax.get_xlim(), facecolor="none")
+        inset.set_title("difference from the centre (Pa)", fontsize=6.5)
+        inset.tick_params(labelbottom=False)
+
+
+def plate_stroked(number: str, pad: str, runs: Runs, axis: str, remark: str, extra=name_receptors) -> Figure:
     """Figs 5-28 and 5-29."""
 
     def note(frame: pd.DataFrame) -> list[str]:
@@ -122,7 +137,7 @@ def plate_stroked(number: str, pad: str, runs: Runs, axis: str, remark: str) -> 
     return Figure(number, title, runs, STROKE_TIME, (SED,), {TIME: "T318", SED: axis},
                   Panels(height=3.0, header=0.16, by="panel", names=tuple(WAYS), shape=(1, 2), alike=True, marked="left",
                          fill=Lines(by="series", looks=LOOKS), titles=WAYS.get, each=True, share={"sharey": True}),
-                  rows=partial(at_receptors, runs=runs), note=note, extra=name_receptors,
+                  rows=partial(at_receptors, runs=runs), note=note, extra=extra,
                   remarks=(remark,))  # fmt: skip
 
 
@@ -138,6 +153,6 @@ FIGURES = (
                   fill=Lines(by="surface"), titles=str, set={"xlim": (0, 3.05)}),
            rows=at_two_places, remarks=(LAYERED,), extra=named_at_both),
     plate_stroked("5-28", "no ridges", PLAIN, "T317",
-                  "Times count from the start of the stroke; the pad was pressed to 20 gf before."),
+                  "Times count from the start of the stroke; the pad was pressed to 20 gf before.", magnify_the_difference),
     plate_stroked("5-29", "inner ridges", RIDGED, "T319", LAYERED),
 )  # fmt: skip

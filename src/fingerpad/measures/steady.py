@@ -38,7 +38,12 @@ def pressed_depths(history: xr.Dataset) -> list[float]:
 
 def force_N(history: xr.Dataset) -> np.ndarray:
     """Normal force (time) in N: line load times the scene's contact length."""
-    return history["force"].values * scene_of(history).specimen.contact_length
+    return history["force"].values * contact_length(history)
+
+
+def contact_length(history: xr.Dataset) -> float:
+    """Length (m) of the contact along the finger, that of the history's specimen."""
+    return scene_of(history).specimen.contact_length
 
 
 def steady_force(plate: xr.Dataset, depth: float) -> float:

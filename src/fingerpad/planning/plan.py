@@ -48,7 +48,7 @@ from fingerpad.planning.rules import RULES, Rules
 from fingerpad.planning.schedule import schedule
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.planning.surface import Surface, surface_of
-from fingerpad.scenes.scene import Scene
+from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import counted, quality_of
 from fingerpad.specimen.measures import apex_edge
 from fingerpad.specimen.pad import MeshSize, PadMesh
@@ -189,18 +189,24 @@ class Plan:
         write_text(path, json.dumps(self.to_dict(), indent=2) + "\n")
 
 
-def plan(scene: Scene, rules: Rules | None = None, found: float | None = None, tolerance: float | None = None) -> Plan:
+def plan(
+    scene: Scene | str | Path | Mapping[str, Any],
+    rules: Rules | None = None,
+    found: float | None = None,
+    tolerance: float | None = None,
+) -> Plan:
     """Decide effects and discretisation of ``scene``.
 
     Args:
-        scene: a checked scene. rules: thresholds (default: :data:`RULES`). found: half-width m of the narrowest contact that a
-        run has shown, in place of the estimated one. tolerance: what the mesh is made for where that is less than the scene asks.
+        scene: a checked scene, or a file or dictionary of one. rules: thresholds (default: :data:`RULES`). found: half-width m of
+        the narrowest contact that a run has shown, in place of the estimated one. tolerance: what the mesh is made for where that
+        is less than the scene asks.
 
     Raises:
         PlanError: an override asks for what the scene cannot have, or the mesh for more than the machine has. MeshError: an
         external mesh cannot be read, or the pad has no room for its ridges.
     """
-    rules = rules or RULES
+    scene, rules = load_scene(scene), rules or RULES
     external = external_mesh(scene)
     measured = scene.stimulus
     check_over_pad(scene, external)

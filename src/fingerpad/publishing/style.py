@@ -37,7 +37,7 @@ RC = {
     "font.family": "DejaVu Sans", "font.size": 7, "axes.titlesize": 7, "axes.labelsize": 7, "xtick.labelsize": 6.5,
     "ytick.labelsize": 6.5, "legend.fontsize": 6.5, "legend.title_fontsize": 6.5, "axes.edgecolor": INK, "axes.labelcolor": INK,
     "text.color": INK, "xtick.color": INK, "ytick.color": INK, "axes.linewidth": 0.6, "axes.spines.top": False,
-    "axes.spines.right": False, "axes.titlelocation": "left", "axes.titlepad": 4, "axes.labelpad": 3, "xtick.major.width": 0.6,
+    "axes.spines.right": False, "axes.titlelocation": "left", "axes.titlepad": 5, "axes.labelpad": 3, "xtick.major.width": 0.6,
     "ytick.major.width": 0.6, "xtick.major.size": 2.5, "ytick.major.size": 2.5, "xtick.minor.size": 1.5, "ytick.minor.size": 1.5,
     "xtick.major.pad": 2.5, "ytick.major.pad": 2.5, "lines.linewidth": 1.1, "lines.markersize": 4,
     "lines.solid_capstyle": "round", "legend.frameon": False, "figure.facecolor": "white", "savefig.facecolor": "white",
@@ -79,6 +79,8 @@ MEANINGS: Mapping[str, Mapping[str, Look]] = {
                     (DOTTED, DASH_DOT, DASHED, SOLID)),
     "subject": _looks(("1", "2", "3", "4", "mean"), (*CATEGORIES[:4], INK)),
     "energy": _looks(("instantaneous elastic", "long-term moduli", "half stress × strain", "recoverable", "long-term network")),
+    "element": _looks(("Q2P1", "Q1P0", "P2B", "elastic half-plane", "water bed")),
+    "accuracy": _looks(("draft", "0.05", "0.02")),
     "boundary": _looks(("corneum", "dermis", "fat"), ("#402613", "#0072b2", "#7a6000"), (SOLID, DASH_DOT, DOTTED)),
     "verdict": _looks(("inside", "plausible", "holds", "outside", "fails", "not judged"),
                       ("#0072b2", "#0072b2", "#0072b2", "#d55e00", "#d55e00", "#737373"), (SOLID,)),
@@ -213,13 +215,13 @@ def letter(fig: Figure) -> None:
     if len(places) < 2:
         return
     for tag, ax in zip("abcdefghijklmnopqrstuvwxyz", places.values(), strict=False):
-        ax.annotate(tag, (0, 1), (-4, 4), "axes fraction", "offset points", ha="right", va="baseline", fontweight="bold",
+        ax.annotate(tag, (0, 1), (-4, 5), "axes fraction", "offset points", ha="right", va="baseline", fontweight="bold",
                     annotation_clip=False)  # fmt: skip
 
 
 def in_kilo(axis: Axis) -> None:
     """Ticks of an axis in thousands, and its label, if it has one, in the kilo of its unit."""
-    axis.set_major_formatter(lambda value, _: f"{value / 1000:g}")
+    axis.set_major_formatter(lambda value, _: f"{value / 1000:g}".replace("-", "−"))
     label = axis.get_label()
     label.set_text(label.get_text().replace("(Pa", "(kPa"))
 
@@ -270,6 +272,13 @@ def _axes_height(ax: Axes) -> float:
     return max(0.5, (ax.figure.get_figheight() - 0.75) * share - 0.2)
 
 
+def haloed() -> dict[str, object]:
+    """Of a text: a white rim, where it stands on symbols or lines."""
+    from matplotlib.patheffects import withStroke
+
+    return {"path_effects": [withStroke(linewidth=1.6, foreground="white")]}
+
+
 def handle(label: str, **look) -> Line2D:
     """An entry of a legend."""
     from matplotlib.lines import Line2D
@@ -277,8 +286,13 @@ def handle(label: str, **look) -> Line2D:
     return Line2D([], [], label=label, **look)
 
 
-def header_legend(fig: Figure, handles: Sequence[Line2D], **kwargs) -> None:
-    """Legend in one row under the title, in the room that `sheet` left by its `header`."""
+def header_legend(fig: Figure, handles: Sequence[Line2D | Sequence[Line2D]], **kwargs) -> None:
+    """Legend in one row under the title, in the room that `sheet` left by its `header`; several handles of one entry stand side
+    by side, those that look alike as one."""
+    from matplotlib.legend_handler import HandlerTuple
+
+    entries = [tuple({h.get_color(): h for h in each}.values()) if isinstance(each, list) else (each,) for each in handles]
+    kwargs |= {"labels": [entry[0].get_label() for entry in entries], "handler_map": {tuple: HandlerTuple(None, pad=0.0)}}
     kwargs = {"handlelength": 2.6, "handletextpad": 0.4, "borderaxespad": 0.0} | kwargs
     place = {"loc": "upper left", "bbox_to_anchor": (0.012, 1 - 0.22 / fig.get_figheight())}
-    fig.legend(handles=handles, ncols=len(handles), **place, **kwargs)
+    fig.legend(handles=[entry if len(entry) > 1 else entry[0] for entry in entries], ncols=len(entries), **place, **kwargs)

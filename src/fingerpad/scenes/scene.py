@@ -424,8 +424,8 @@ def _sha256(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def load_scene(source: str | Path | Mapping[str, Any], name: str = "scene") -> Scene:
-    """Read and check a scene.
+def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scene") -> Scene:
+    """Read and check a scene; one that is made already is given back.
 
     Args:
         source: YAML file, a member of a family as if it were a file (:mod:`fingerpad.scenes.families`), or a dictionary. Paths
@@ -437,8 +437,12 @@ def load_scene(source: str | Path | Mapping[str, Any], name: str = "scene") -> S
         The scene, every quantity an SI float.
 
     Raises:
-        SceneError: the file cannot be read or anything in it is wrong; its text is one line.
+        SceneError: the file cannot be read or anything in it is wrong; its text is one line. TypeError: it is none of these.
     """
+    if isinstance(source, Scene):
+        return source
+    if not isinstance(source, (str, Path, Mapping)):
+        raise TypeError(f"a scene is a Scene, a file or a dictionary, not {type(source).__name__}")
     given = isinstance(source, Mapping)
     path = Path(f"{name}.yaml") if given else Path(source)
     written = Written(source, {}, (path,)) if given else read_scene(path)

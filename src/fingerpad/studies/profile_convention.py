@@ -39,28 +39,28 @@ def fig_convention(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "How the points of a sampled profile are read",
         ["x = 0 comes down on the apex of the pad; of y only differences matter, for the profile moves down until it touches."],
-        height=4.2,
+        height=3.1,
+        header=0.16,
     )
-    ax = fig.add_axes((0.08, 0.2, 0.88, 0.6))
-    ax.fill_between(x, y, 2.3, color="0.85", lw=0)
-    ax.plot(x, y, "k.-", ms=4, lw=1, label="points of the file: lower surface of the solid")
-    ax.fill_between(skin, pad, -3.2, color="#e8b89a", lw=0)
-    ax.plot(skin, pad, color="#a0522d", lw=1)
-    for ends, line in (("level", "--"), ("slope", ":")):
+    ax = fig.subplots()
+    ax.fill_between(x, y, 2.3, color=style.PALE, lw=0)
+    ax.plot(x, y, ".-", color=style.INK, ms=4, lw=1, label="points of the file: lower surface of the solid")
+    ax.fill_between(skin, pad, -3.2, color=style.LAYER_COLOURS["epidermis"], lw=0)
+    ax.plot(skin, pad, color=style.INK, lw=1)
+    for ends, line in (("level", style.DASHED), ("slope", style.DOTTED)):
         profile = Sampled(x=1e-3 * x, y=1e-3 * y, ends=ends)
         height = y.min()
         for far in (np.array([x[0] - 1.3, x[0]]), np.array([x[-1], x[-1] + 1.3])):
-            ax.plot(
-                far, 1e3 * profile.outline(1e-3 * far) + height, "k" + line, lw=1, label=f"ends: {ends}" if far[0] < 0 else None
-            )
-    ax.axvline(0, color="0.4", lw=0.8, ls="-.")
+            look = {"color": style.INK, "ls": line, "lw": 1.0, "label": f"ends: {ends}" if far[0] < 0 else None}
+            ax.plot(far, 1e3 * profile.outline(1e-3 * far) + height, **look)
+    ax.axvline(0, color=style.GREY, lw=0.8, ls=style.DASH_DOT)
     ax.annotate("solid", (1.2, 1.7), ha="center")
     ax.annotate("pad", (0.3, -2.2))
-    ax.annotate("ends: open (the default):\nnothing beyond the points", (3.7, 0.65), va="top", fontsize=8)
+    ax.annotate("ends: open (the default):\nnothing beyond the points", (3.7, 0.65), va="top")
     ax.annotate("", (-5.2, 1.9), (-5.2, 0.6), arrowprops={"arrowstyle": "->"})
     ax.annotate("y", (-5.1, 1.8))
     ax.set(xlim=(-6.2, 7.2), ylim=(-2.6, 2.3), xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
-    ax.legend(loc="upper left", bbox_to_anchor=(0.0, 1.22), ncols=3, frameon=False, fontsize=8)
+    style.header_legend(fig, ax.get_legend_handles_labels()[0])
     return fig
 
 

@@ -287,10 +287,10 @@ def sweep(
 
     import xarray as xr
 
-    from fingerpad.scenes.scene import Scene, load_scene
+    from fingerpad.scenes.scene import load_scene
     from fingerpad.sweeps.language import load_sweep
 
-    base = scene if isinstance(scene, Scene) else load_scene(scene)
+    base = load_scene(scene)
     with contextlib.ExitStack() as stack:
         folder = Path(out) if out is not None else Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="fingerpad-")))
         stack.enter_context(held(folder))

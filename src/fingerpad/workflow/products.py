@@ -323,7 +323,7 @@ class Products:
         """figures/README.md, of the configuration that draws them all."""
         if self.config.name == "thesis":
             titles = json.dumps({figure.number: figure.title for figure in self.drawn}, ensure_ascii=False)
-            read = {"catalogue": [self.at("config/reference/figures.csv")]}
+            read = {"catalogue": [self.at("config/reference/figures.csv")], "judged": self.tables(TABLES[:1])}
             yield Job("catalogue", read, {"readme": ["figures/README.md"]}, {"titles": [titles]})
 
     def animations(self) -> Iterator[Job]:

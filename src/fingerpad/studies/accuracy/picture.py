@@ -10,14 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from fingerpad.publishing.style import GREY, INK, study_figure, styled
+from fingerpad.publishing.style import CATEGORIES, GREY, INK, MARKERS, MEANINGS, haloed, look_of, study_figure, styled
 
 COST, CHANGE, TIME = "cost (1 = default)", "error (%)", "process time (s)"
-LOOKS = {
-    "Q2P1": ("o", "#1f77a4"), "Q1P0": ("s", "#c8553d"), "P2B": ("^", "#3d8f57"),
-    "Q1": ("s", "0.62"), "Q2": ("o", "0.62"), "Q2R": ("D", "0.62"),
-}  # fmt: skip
-MODELS = {"elastic half-plane": ("P", "#8a4fbf"), "water bed": ("X", "#b8860b")}
+COLOURS = {name: look["color"] for name, look in MEANINGS["element"].items()}
+LOOKS = {"Q2P1": "o", "Q1P0": "s", "P2B": "^", "Q1": "s", "Q2": "o", "Q2R": "D"}
+"""Marker of an element: filled with its colour, or grey and open if it is for teaching."""
+MODELS = {"elastic half-plane": "P", "water bed": "X"}
 EDGE = 0.012
 """Where models are drawn that cost less than the axis shows, in costs of the default."""
 KINDS = {
@@ -25,6 +24,13 @@ KINDS = {
     "Q1": "four-node quads, full", "Q2": "nine-node quads, full", "Q2R": "nine-node quads, reduced",
 }  # fmt: skip
 """Words for the elements; the last three, displacements only with full or reduced integration, are for teaching."""
+
+
+def _look(name: str, size: float = 3.6) -> dict[str, object]:
+    """Of an element or a model."""
+    colour = COLOURS.get(name, "0.55")
+    marker = {**LOOKS, **MODELS}[name]
+    return {"marker": marker, "color": colour, "mfc": colour if name in COLOURS else "white", "ms": size, "mew": 0.7}
 
 
 def _error(frame: pd.DataFrame, title: str, note: list[str]) -> Figure:
@@ -35,21 +41,20 @@ def _error(frame: pd.DataFrame, title: str, note: list[str]) -> Figure:
         here = elements[rows.index]
         others = rows[here & ((rows["strain"] == "small") | (rows["tolerance"] != "0.0001"))]
         ax.loglog(others[COST], others[CHANGE], "+", color=GREY, ms=4.5, mew=0.9)
-        for element, (marker, colour) in LOOKS.items():
+        for element in LOOKS:
             part = rows[here & (rows["element"] == element)].drop(others.index, errors="ignore")
-            filled = colour if colour[0] == "#" else "white"
-            ax.loglog(part[COST], part[CHANGE], marker, color=colour, mfc=filled, ms=3.6, mew=0.7)
+            ax.loglog(part[COST], part[CHANGE], ls="none", **_look(element))
         for preset in ("draft", "thesis", "fine"):
             part = rows[rows["preset"] == preset]
             ax.loglog(part[COST], part[CHANGE], "o", mfc="none", mec=INK, ms=8, mew=0.9)
             for x, y in zip(part[COST], part[CHANGE], strict=True):
-                ax.annotate(preset, (x, y), xytext=(5, 4), textcoords="offset points", fontsize=6.5)
+                ax.annotate(preset, (x, y), xytext=(5, 4), textcoords="offset points", fontsize=6.5, zorder=6, **haloed())
         front = rows[rows["pareto"] & here].sort_values(COST)
         ax.loglog(front[COST], front[CHANGE], color=INK, lw=0.9, drawstyle="steps-post", zorder=0)
-        for model, (marker, colour) in MODELS.items():
+        for model in MODELS:
             part = rows[rows["model"] == model].dropna(subset=[CHANGE])
             if len(part):
-                ax.loglog(np.full(len(part), EDGE), part[CHANGE], marker, color=colour, ms=6, clip_on=False, zorder=5)
+                ax.loglog(np.full(len(part), EDGE), part[CHANGE], ls="none", clip_on=False, zorder=5, **_look(model, 6))
         ax.axhspan(1e-6, rows["uncertainty (%)"].iloc[0], color="0.93", lw=0, zorder=-1)
         ax.set_title(
             quantity.replace("energy 6", "strain energy, 6").replace("energy 9", "strain energy, 9").replace(" um", " µm")
@@ -59,21 +64,17 @@ def _error(frame: pd.DataFrame, title: str, note: list[str]) -> Figure:
     axes[0].set_xlim(EDGE, frame[COST].max() * 2.5)
     for ax in axes[::4]:
         ax.set_ylabel("error (%)")
-    axes[3].tick_params(labelbottom=True)
+    for ax in axes[:4]:
+        ax.tick_params(labelbottom=True)
     axes[5].set_xlabel("process time (default preset: 1)")
     axes[7].axis("off")
-    looks = [
-        Line2D([], [], ls="", marker=marker, color=colour, mfc=colour if colour[0] == "#" else "white", label=KINDS[element])
-        for element, (marker, colour) in LOOKS.items()
-        if (frame["element"] == element).any()
-    ]
+    looks = [Line2D([], [], ls="", label=KINDS[each], **_look(each)) for each in LOOKS if (frame["element"] == each).any()]
     looks += [Line2D([], [], ls="", marker="+", color=GREY, label="small strain or other tolerance")]
     looks += [Line2D([], [], color=INK, lw=0.9, label="Pareto front")]
     if not frame[~elements].empty:
         costs = frame[~elements].groupby("model")[COST].mean()
         for model, cost in costs.items():
-            marker, colour = MODELS[model]
-            looks.append(Line2D([], [], ls="", marker=marker, color=colour, label=f"{model} (cost {cost:.1g})"))
+            looks.append(Line2D([], [], ls="", label=f"{model} (cost {cost:.1g})", **_look(model, 5)))
     axes[7].legend(handles=looks, loc="upper left", fontsize=6.5, handletextpad=0.3)
     return fig
 
@@ -85,10 +86,9 @@ def error(frame: pd.DataFrame) -> Figure:
         frame,
         "What accuracy costs: ramp and hold",
         [
-            "Simulated. Error: the largest of flat plate, 210 and 1260 1/m, at the top of the ramp and the end of the hold, to a "
-            "limit extrapolated in mesh and time steps (grey: its own uncertainty). Cost: process time, mean of the three, one "
-            "thread. The two historical models (Phillips and Johnson's half-plane, Srinivasan's water bed) stand on the left "
-            "edge, end of the hold only, fitted to the width of the contact with the plate. Front: of finite elements."
+            "Simulated. Largest error of plate, 210 and 1260 1/m, top of the ramp and end of the hold, against a limit "
+            "extrapolated in mesh and steps (grey: its uncertainty). Process time of one thread. Left edge: two models of "
+            "before, end of the hold."
         ],
     )
 
@@ -113,21 +113,18 @@ def growth(frame: pd.DataFrame) -> Figure:
     fig = study_figure(
         "How cost grows with the mesh",
         [
-            "Simulated: mean of ramp and hold by flat plate, 210 and 1260 1/m, 40 steps. Nodes: of the whole pad, half of which "
-            "is solved. Time: process time with meshing. Exponents: of time, least squares over meshes of 3000 nodes and more. "
-            "Memory: of the process, the interpreter and its libraries included, and in the default's runs the kernels of small "
-            "strain."
+            "Simulated: mean of ramp and hold by plate, 210 and 1260 1/m, 40 steps; nodes of the whole pad, half of which is "
+            "solved. Time with meshing; exponents of it from 3000 nodes on. Memory with the interpreter and its libraries."
         ],
         3.3,
     )
     axes = fig.subplots(1, 3)
-    for element, (marker, colour) in LOOKS.items():
+    for element in LOOKS:
         part = frame[frame["element"] == element]
         exponent = part["exponent"].dropna()
         label = KINDS[element] + (f": {exponent.iloc[0]:.2f}" if len(exponent) else "")
-        style = {"marker": marker, "color": colour, "ms": 4, "lw": 1, "mfc": colour if colour[0] == "#" else "white"}
         for ax, column in zip(axes, (TIME, "memory (MB)", "iterations"), strict=True):
-            ax.plot(part["nodes"], part[column], label=label, **style)
+            ax.plot(part["nodes"], part[column], label=label, lw=1, **_look(element, 4))
     for ax, label in zip(axes, ("process time (s)", "peak memory (MB)", "Newton iterations of 40 steps"), strict=True):
         ax.set(xscale="log", xlabel="nodes", ylabel=label)
     axes[0].set_yscale("log")
@@ -145,17 +142,18 @@ def belief(frame: pd.DataFrame) -> Figure:
     fig = study_figure(
         "Does a run know its error?",
         [
-            f"Simulated: {asked['scene'].nunique()} scenes outside the study, each at three accuracies. Truth: the largest "
-            "difference of depth, width, centre and peak pressure and strain energies at the legs' ends to a run on the preset "
-            f"fine, refined in the contact, which believes in an error of {own.min():.1f} to {own.max():.1f} % itself. Below the "
-            f"line the belief covers the truth: {covered} of {len(asked)} runs."
+            f"Simulated: {asked['scene'].nunique()} scenes outside the study. Truth: largest difference of depth, width, "
+            "pressures and strain energies at the legs' ends to a finer run, which believes in "
+            f"{own.min():.1f} to {own.max():.1f} % itself. Below the line the belief covers the truth: {covered} of "
+            f"{len(asked)} runs."
         ],
         3.9,
     )
     left, right = _truth_and_belief(fig)
     scenes = list(asked["scene"].unique())
     groups = asked.groupby("accuracy", sort=False)
-    for (accuracy, part), marker, colour in zip(groups, "osD", ("#c8553d", "#1f77a4", "#3d8f57"), strict=True):
+    for accuracy, part in groups:
+        colour, marker = look_of("accuracy", str(accuracy), "color", "marker").values()
         believed, true = part["believed error (%)"], part["true error (%)"]
         name = accuracy if accuracy == "draft" else f"accuracy: {accuracy}"
         left.loglog(believed, true, marker, color=colour, ms=4.5, label=name)
@@ -194,19 +192,18 @@ def drawn(frame: pd.DataFrame) -> Figure:
     fig = study_figure(
         "Does a run know its error under any stimulus?",
         [
-            f"Simulated: {asked['scene'].nunique()} scenes drawn at random from eight classes, each asked for 10 or 5 %. Truth: "
-            "the largest difference of depth, width, centre and peak pressure (not under true edges) and strain energies at the "
-            "legs' ends to the same scene on edges 1.7 to 2.5 times as short; of a true edge, to a rounding of a 200th of it."
-            f" Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs."
+            f"Simulated: {asked['scene'].nunique()} random scenes, each asked for 10 or 5 %. Truth: largest difference of depth, "
+            "width, pressures and strain energies at the legs' ends to edges 1.7 to 2.5 times as short. "
+            f"Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs."
         ],
         3.9,
     )
     left, right = _truth_and_belief(fig)
     classes = list(asked["class"].unique())
-    for place, (name, marker) in enumerate(zip(classes, "os^DvPX*", strict=False)):
+    for place, (name, marker) in enumerate(zip(classes, MARKERS, strict=False)):
         part = asked[asked["class"] == name]
         believed, true = part["believed error (%)"], part["true error (%)"]
-        colour = f"C{place}"
+        colour = CATEGORIES[place % len(CATEGORIES)]
         left.loglog(believed, true, marker, color=colour, ms=4.5, mfc="white", label=name)
         right.semilogx(true / believed, np.full(len(part), place), marker, color=colour, ms=4, mfc="white")
     left.legend(loc="upper left", fontsize=6.5)

@@ -11,13 +11,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fingerpad.planning.effects import EFFECTS
-from fingerpad.publishing.style import GREY, INK, NOTE_WIDTH, sheet, spread, styled, wrapped
+from fingerpad.publishing.style import GREY, INK, NOTE_WIDTH, look_of, sheet, spread, styled, wrapped
 
 LEAST = 1e-6
 """Smaller changes are drawn here."""
 DRAFT = 0.06
 """What a draft, as in the left panel, lets effects that are left out change."""
-WRONG, RED = ("wrongly left out", "carried for nothing"), "#c8303d"
+WRONG = ("wrongly left out", "carried for nothing")
+WARNING = look_of("verdict", "fails", "color")["color"]
 
 
 class Look(NamedTuple):
@@ -25,15 +26,13 @@ class Look(NamedTuple):
 
     title: str
     marker: str
-    colour: tuple[float, ...]
 
 
 def looks() -> dict[str, Look]:
     """Every effect of the planner, registered when this is asked, and what else is switched in the study."""
     titles = {name: (effect.title or name.replace("_", " "), effect.marker) for name, effect in EFFECTS.items()}
     titles |= {"local refinement": ("local refinement", "P"), "full-field output": ("full-field output", "X")}
-    colours = mpl.colormaps["viridis"](np.linspace(0, 0.85, len(titles)))
-    return {name: Look(*said, tuple(colour)) for (name, said), colour in zip(titles.items(), colours, strict=True)}
+    return {name: Look(*said) for name, said in titles.items()}
 
 
 def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
@@ -44,18 +43,16 @@ def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
 @styled
 def effects(frame: pd.DataFrame) -> Figure:
     """Left, change over cost ratio of each effect; right, what each choice of the planner is worth over the accuracy."""
-    height = 5.6
+    height = 5.0
     scenes = len(frame.loc[frame["panel"] == "planner", ["seed", "scene"]].drop_duplicates())
     note = (
-        "Simulated. Change: largest of depth, force, width, centre pressure, strain energy and, in strokes, tangential force and "
-        "lateral displacement, each over its largest value; with and without the effect on the same draft mesh (symmetry: half "
-        f"the pad). Cost: process time with over without. Right: {scenes} scenes drawn at random, planned at the accuracy each "
-        "asks for (0.5 % to 10 %), one effect flipped at a time. What is left out may be worth up to that accuracy (line); what "
-        "is carried should be worth a tenth of it or more (dashed). Symmetry leaves half the pad out."
+        "Simulated. Change of any headline quantity over its largest value, and process time, with and without the effect on one "
+        f"draft mesh. b: {scenes} random scenes; what is left out may be worth the accuracy asked for (line), what is carried at "
+        "least a tenth of it (dashed)."
     )
-    fig = sheet("What effects change and cost", wrapped([note], NOTE_WIDTH - 12), height, laid_out=False)
+    fig = sheet("What effects change and cost", wrapped([note], NOTE_WIDTH), height, laid_out=False)
     grid = fig.add_gridspec(
-        1, 2, left=0.1, right=0.985, top=1 - 0.72 / height, bottom=1.45 / height, wspace=0.42, width_ratios=(1.35, 1)
+        1, 2, left=0.1, right=0.985, top=1 - 0.72 / height, bottom=0.85 / height, wspace=0.42, width_ratios=(1.35, 1)
     )
     _changes(fig.add_subplot(grid[0, 0]), frame[frame["panel"] == "changes"])
     _planner(fig.add_subplot(grid[0, 1]), frame[frame["panel"] == "planner"], scenes)
@@ -77,10 +74,8 @@ def _changes(ax, rows: pd.DataFrame) -> None:
     known = looks()
     change = rows["change"].clip(lower=LEAST)
     for row, y in zip(rows.to_dict("records"), change, strict=True):
-        look = known[row["effect"]]
-        colour = look.colour
-        face = colour if str(row["planned"]) == "True" else "white"
-        ax.plot(row["cost ratio"], y, look.marker, color=colour, mfc=face, ms=6, mew=1.2)
+        face = INK if str(row["planned"]) == "True" else "white"
+        ax.plot(row["cost ratio"], y, known[row["effect"]].marker, color=INK, mfc=face, ms=5, mew=0.9)
     ax.axvline(1, color=GREY, lw=0.7)
     ax.axhline(DRAFT, color=GREY, lw=0.7, ls=(0, (4, 1.8)))
     ax.text(0.11, DRAFT * 1.15, "a draft's accuracy", fontsize=6, color=GREY)
@@ -98,7 +93,7 @@ def _changes(ax, rows: pd.DataFrame) -> None:
     logs = np.log10(change.to_numpy())
     places = 10 ** spread(logs, 0.33, np.log10(LEAST / 2) + 0.1, 0.62)
     for row, y, place in zip(rows.to_dict("records"), change, places, strict=True):
-        ax.plot([row["cost ratio"], 12], [y, place], color=known[row["effect"]].colour, lw=0.4, alpha=0.6, zorder=0)
+        ax.plot([row["cost ratio"], 12], [y, place], color=GREY, lw=0.4, zorder=0)
         name = known[row["effect"]].title.split(" (")[0]
         ax.text(12.8, place, f"{name}: {row['scene']}", fontsize=5.6, va="center", color=INK, clip_on=False)
 
@@ -118,7 +113,7 @@ def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
             carried = "carried" in row["verdict"]
             ax.plot(
                 max(row["share"], LEAST), k + (0.2 if carried else -0.2) + shift.uniform(-0.13, 0.13), look.marker, ms=4,
-                mew=0.9, color=RED if wrong else look.colour, mfc=look.colour if carried and not wrong else "white",
+                mew=0.7, color=WARNING if wrong else INK, mfc=INK if carried and not wrong else "white", alpha=0.8,
             )  # fmt: skip
     ax.axvline(1, color=INK, lw=0.9)
     ax.axvline(0.1, color=GREY, lw=0.9, ls=(0, (4, 1.8)))
@@ -127,4 +122,4 @@ def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
     ax.set_yticks(range(len(known)), [look.title.replace(" (", "\n(") for look in known.values()], fontsize=7)
     ax.set_title(f"the planner's choices in {scenes} scenes", pad=18)
     wrong = int(rows["verdict"].isin(WRONG).sum())
-    _legend(ax, [_dot("carried"), _dot("left out", mfc="white"), _dot(f"wrong ({wrong})", color=RED, mfc="white")])
+    _legend(ax, [_dot("carried"), _dot("left out", mfc="white"), _dot(f"wrong ({wrong})", color=WARNING, mfc="white")])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fingerpad.publishing.style import COLOURS, GREY, INK, study_figure, styled
+from fingerpad.publishing.style import GREY, HIGHLIGHT, INK, study_figure, styled
 from fingerpad.studies.five_hundred_fingers.sensitivity import CURVATURE, MEASURES, UNKNOWNS, bands, indices
 
 RATE = "predicted_rate_915_um_highest (impulses/s)"
@@ -33,19 +33,16 @@ def fingers(frame: pd.DataFrame) -> Figure:
     worst = found["total_95 (1)"].max()
     q2 = found.groupby("measure", sort=False)["q2 (1)"].first()
     note = [
-        f"{len(frame)} fingers drawn from published and some assumed ranges: config/sweeps/five_hundred_fingers.yaml.",
-        f"Each pressed with another surface to 20 gf at 40 gf/s and held for 1 s; {len(frame) - len(done)} not converged. Plane "
-        f"strain, draft mesh (error {100 * done['estimated_error (1)'].median():.0f} % in the middle), not measured. Receptor at "
-        "915 µm, Eq 5-1 with the thesis's constants.",
-        "Dots: fingers. Bands: 5, 25, 75 and 95 % of fingers by an emulator (polynomial in all unknowns) that explains "
-        f"{100 * q2.min():.1f} to {100 * q2.max():.1f} % of the variance of scenes left out. Matrix: total Sobol index at "
-        f"{SHOWN:.0f} 1/m, SALib on the emulator, 95 % interval at most ±{worst:.2f}; rows by their sum.",
+        f"Simulated: {len(frame)} random fingers (dots), 20 gf at 40 gf/s, {len(frame) - len(done)} not converged; error "
+        f"{100 * done['estimated_error (1)'].median():.0f} % in the middle; Eq 5-1 at 915 µm. Bands: 50 and 90 % of fingers by "
+        f"an emulator that explains {100 * q2.min():.1f} to {100 * q2.max():.1f} % of what it has not seen. b: at {SHOWN:.0f} "
+        f"1/m, 95 % interval at most ±{worst:.2f}.",
     ]
     fig = study_figure("Five hundred fingers: what a study should measure first", note, 4.3)
     left, right = fig.subplots(1, 2, width_ratios=[1.0, 1.15])
     band = bands(done, RATE)
     for low, high, alpha in ((0.05, 0.95, 0.22), (0.25, 0.75, 0.4)):
-        left.fill_between(band[CURVATURE], band[low], band[high], color=COLOURS["315"], alpha=alpha, lw=0)
+        left.fill_between(band[CURVATURE], band[low], band[high], color=HIGHLIGHT, alpha=alpha, lw=0)
     left.plot(done[CURVATURE], done[RATE], ".", color=GREY, ms=2.2, alpha=0.7)
     left.plot(band[CURVATURE], band[0.5], color=INK)
     left.set(xscale="log", xlabel="curvature (1/m)", ylabel="highest predicted SA-I rate (impulses/s)")
@@ -56,14 +53,14 @@ def fingers(frame: pd.DataFrame) -> Figure:
     left.set_ylim(0, None)
     grid = found[found[CURVATURE] == SHOWN].pivot(index="unknown", columns="measure", values="total (1)")[list(MEASURES.values())]
     grid = grid.loc[grid.sum(axis=1).sort_values(ascending=False).index]
-    right.imshow(grid, cmap="Purples", vmin=0, vmax=1, aspect="auto")
+    right.imshow(grid, cmap="Greys", vmin=0, vmax=1, aspect="auto")
     for i, row in enumerate(grid.to_numpy()):
         for j, value in enumerate(row):
-            right.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=7, color="white" if value > 0.55 else INK)
-    right.set_xticks(range(grid.shape[1]), grid.columns, rotation=40, ha="right", fontsize=7.5)
-    right.set_yticks(range(grid.shape[0]), grid.index, fontsize=7.5)
+            right.text(j, i, f"{value:.2f}", ha="center", va="center", color="white" if value > 0.55 else INK)
+    right.set_xticks(range(grid.shape[1]), grid.columns, rotation=40, ha="right")
+    right.set_yticks(range(grid.shape[0]), grid.index)
     right.tick_params(length=0)
-    right.set_title("share of each measure's variance (total Sobol index)", fontsize=7.5)
+    right.set_title("share of each measure's variance (total Sobol index)")
     for side in right.spines.values():
         side.set_visible(False)
     return fig

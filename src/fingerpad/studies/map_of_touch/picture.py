@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fingerpad.publishing.style import INK, study_figure, styled
+from fingerpad.publishing.style import FIELD, INK, study_figure, styled
 
 K, FORCE, RATE, STRAIN = "curvature (1/m)", "force (gf)", "rate (gf/s)", "strain"
 DEPTH, WIDTH = "indentation_depth_end (mm)", "contact_width_end (mm)"
@@ -49,17 +49,17 @@ def _levels(grids: list[pd.DataFrame], steps: tuple[float, ...]) -> np.ndarray:
     return levels[(levels > values.min()) & (levels < values.max())]
 
 
-def _contours(ax: Axes, grid: pd.DataFrame, levels: np.ndarray, title: str, cmap: str) -> None:
+def _contours(ax: Axes, grid: pd.DataFrame, levels: np.ndarray, title: str) -> None:
     from matplotlib.colors import LogNorm
 
-    norm = LogNorm(levels[0] / 2, levels[-1] * 2)
+    norm = LogNorm(levels[0] / 2, levels[-1] * 4)  # no yellow under white lines
     low = max(levels[0] * 1e-3, 1e-9)
     values = np.ma.masked_invalid(np.maximum(grid.values, low))
     edges = [low, *levels, levels[-1] * 1e3]
-    ax.contourf(grid.columns, grid.index, values, edges, cmap=cmap, norm=norm)
+    ax.contourf(grid.columns, grid.index, values, edges, cmap=FIELD, norm=norm)
     lines = ax.contour(grid.columns, grid.index, values, levels, colors="white", linewidths=0.7)
     ax.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=6.5, colors="white")
-    ax.set_title(title, fontsize=7.5)
+    ax.set_title(title)
 
 
 @styled
@@ -68,45 +68,41 @@ def contours(frame: pd.DataFrame) -> Figure:
     failed = int(frame["failed"].sum())
     error = frame.loc[frame[STRAIN] == "finite", "estimated_error (1)"]
     note = [
-        f"{len(frame)} simulated presses and holds of 1 s on the thesis's pad, draft mesh, {failed} not converged (white); plane "
-        f"strain, not measured. Error the runs estimate of themselves: {100 * error.median():.0f} % in the middle, "
-        f"{100 * error.max():.0f} % at most (few gf, sharp). Dots: the thesis's nine surfaces at its 20 gf.",
-        "Depth, width, peak pressure, strain energy: end of the hold, ramp of 40 gf/s. Rates: largest during the press, by "
-        "Eq 5-1 with the thesis's constants, which has no ceiling. Small strain: largest change of these four by leaving finite "
-        "strain out.",
+        f"{len(frame)} simulated presses and holds of 1 s, {failed} not converged (white); estimated error "
+        f"{100 * error.median():.0f} % in the middle, {100 * error.max():.0f} % at most. Dots: the thesis's surfaces. a to d: "
+        "end of the hold, ramp of 40 gf/s; e to g: largest rate by Eq 5-1, which has no ceiling; h: of a to d.",
     ]
     fig = study_figure("A map of touch: curvature, force and ramp rate", note, 4.9)
     axes = fig.subplots(2, 4, sharex=True, sharey=True)
     pa = 1e-3
-    for ax, column, title, factor, cmap in zip(
+    for ax, column, title, factor in zip(
         axes[0],
         COMPARED,
         ("indentation depth (mm)", "contact width (mm)", "peak pressure (kPa)", "energy at 915 µm (kPa)"),
         (1, 1, pa, pa),
-        ("viridis", "viridis", "plasma", "plasma"),
         strict=True,
     ):
         grid = factor * _over(frame, column)
-        _contours(ax, grid, _levels([grid], (1, 2, 5)), title, cmap)
+        _contours(ax, grid, _levels([grid], (1, 2, 5)), title)
     rates = sorted(frame[RATE].unique())
     grids = [_over(frame, IMPULSES, rate) for rate in rates]
     levels = _levels([grid.clip(lower=1) for grid in grids], (1, 2, 5))
     for ax, grid, rate in zip(axes[1], grids, rates, strict=False):
-        _contours(ax, grid, levels, f"SA-I, {rate:g} gf/s (impulses/s)", "cividis")
+        _contours(ax, grid, levels, f"SA-I, {rate:g} gf/s (impulses/s)")
     last = axes[1, 3]
     changes = 100 * small_strain_changes(frame)
-    _contours(last, changes, np.array([5.0, 10, 20, 50, 100]), "small strain changes (%)", "RdPu")
+    _contours(last, changes, np.array([5.0, 10, 20, 50, 100]), "small strain changes (%)")
     surfaces = sorted(frame[K].unique())
     for ax in axes.flat:
         ax.plot(surfaces, [20.0] * len(surfaces), "o", ms=2.6, mfc="white", mec=INK, mew=0.5, ls="none", clip_on=False)
         ax.set_xscale("function", functions=(lambda k: np.arcsinh(k / _BEND), lambda s: _BEND * np.sinh(s)))
-        ax.set_xticks(list(TICKS), list(TICKS.values()), fontsize=6.5, rotation=60)
+        ax.set_xticks(list(TICKS), list(TICKS.values()), rotation=60)
         ax.set_xticks([], minor=True)
         ax.set_yscale("log")
-        ax.set_yticks([2, 5, 10, 20, 50, 100, 200], ["2", "5", "10", "20", "50", "100", "200"], fontsize=7)
+        ax.set_yticks([2, 5, 10, 20, 50, 100, 200], ["2", "5", "10", "20", "50", "100", "200"])
         ax.set_yticks([], minor=True)
     for ax in axes[1]:
-        ax.set_xlabel("curvature (1/m)", fontsize=7.5)
+        ax.set_xlabel("curvature (1/m)")
     for ax in axes[:, 0]:
-        ax.set_ylabel("force (gf)", fontsize=7.5)
+        ax.set_ylabel("force (gf)")
     return fig

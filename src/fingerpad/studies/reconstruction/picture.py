@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from fingerpad.publishing.style import COLOURS, GREY, INK, handle, header_legend, study_figure, styled
+from fingerpad.publishing.style import CATEGORIES, GREY, INK, TALLEST, handle, header_legend, study_figure, styled
 from fingerpad.studies.reconstruction import pads
 from fingerpad.studies.reconstruction.evidence import FAMILIES, Evidence
 from fingerpad.studies.reconstruction.inference import EPIDERMIS, SOFT
@@ -20,6 +20,9 @@ LABELS = {
 }  # fmt: skip
 BINS = 14
 BEST = "most probable pad"
+CLIP = (-2.0, 3.0)
+"""Of the evidence: farthest places shown."""
+ROLES = {"fitted": "fitted", "apart": "inside the epidermis (not fitted)", "held_out": "held out"}
 
 
 def posterior_frame(samples: pd.DataFrame, known: Unknowns) -> pd.DataFrame:
@@ -36,12 +39,10 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
     shares = frame["reading"].value_counts(normalize=True)
     told = ", ".join(f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01)
     note = [
-        f"{len(frame)} samples, readings of the moduli by their evidence: {told}. Numbers: rank correlations. Orange: the pad "
-        "chosen before, one size at a time.",
-        "Factors are on the moduli taken for long-term ones; of instantaneous ones the Prony series leaves 0.576. Fitted to "
-        "chapter 3 and half of chapter 4.",
+        f"{len(frame)} samples; readings of the moduli: {told}. Factors: on the moduli as long-term ones, of instantaneous ones "
+        "the series leaves 0.576. Numbers: rank correlations. Orange: the pad chosen before, one size at a time.",
     ]
-    fig = study_figure("What the thesis's figures say of its pad", note, 7.4)
+    fig = study_figure("What the thesis's figures say of its pad", note, TALLEST)
     n = len(columns)
     axes = fig.subplots(n, n)
     values = frame[columns]
@@ -52,21 +53,20 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
             ax.tick_params(labelsize=6, length=2)
             if j > i:
                 ax.axis("off")
-                ax.text(
-                    0.5, 0.5, f"{rank[i, j]:+.2f}", ha="center", va="center", fontsize=8, color=str(0.75 - 0.7 * abs(rank[i, j]))
-                )
+                words = f"{rank[i, j]:+.2f}".replace("-", "−")
+                ax.text(0.5, 0.5, words, ha="center", va="center", color=INK if abs(rank[i, j]) >= 0.3 else GREY)
                 continue
             if i == j:
-                ax.hist(values[row], bins=2 * BINS, color=COLOURS["210"], alpha=0.8)
+                ax.hist(values[row], bins=2 * BINS, color="0.6")
                 ax.set_yticks([])
             else:
-                ax.hist2d(values[column], values[row], bins=BINS, cmap="Purples", rasterized=True)
-                ax.axhline(before[SHOWN[i]], color=COLOURS["1260"], lw=0.7)
+                ax.hist2d(values[column], values[row], bins=BINS, cmap="Greys", rasterized=True)
+                ax.axhline(before[SHOWN[i]], color=CATEGORIES[1], lw=0.8)
             low, high = values[column].min(), values[column].max()
             pad = 0.04 * max(high - low, 1e-9)
             ax.set_xlim(low - pad, high + pad)
             if low - pad <= before[SHOWN[j]] <= high + pad:
-                ax.axvline(before[SHOWN[j]], color=COLOURS["1260"], lw=0.7)
+                ax.axvline(before[SHOWN[j]], color=CATEGORIES[1], lw=0.8)
             if i > j:
                 low, high = values[row].min(), values[row].max()
                 ax.set_ylim(low - 0.04 * max(high - low, 1e-9), high + 0.04 * max(high - low, 1e-9))
@@ -96,48 +96,31 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     drawn = frame[frame["pad"].str.startswith("drawn")]
     order = {family: k for k, family in enumerate(FAMILIES)}
     ids = frame.drop_duplicates("id")
-    ids = ids.assign(k=ids["family"].map(order)).sort_values(
-        ["role", "k"], key=lambda c: c.map({"fitted": 0, "held_out": 1, "apart": 2}) if c.name == "role" else c, kind="stable"
-    )
-    height = np.arange(len(ids))[::-1]
-    at = dict(zip(ids["id"], height, strict=True))
+    ids = ids.assign(k=ids["family"].map(order)).sort_values("k", kind="stable")
     note = [
         "Bars: the interval that a figure leaves, all drawn as long; what is between its ends counts as met. White: not fitted. "
         f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. Numbers beyond three lengths of the bar "
         "stand at the margin.",
     ]
-    fig = study_figure("The evidence, row by row", note, 9.6, header=0.2)
-    ax = fig.subplots()
-    for row in ids.itertuples():
-        ax.barh(at[row.id], 1, height=0.72, color="0.86" if row.role == "fitted" else "white", edgecolor="0.7", lw=0.6)
-    clip = (-2.0, 3.0)
-    for part, style in (
-        (drawn, dict(marker="o", ms=3, color=GREY, alpha=0.6)),
-        (frame[frame["pad"] == CHOSEN], dict(marker="D", ms=4, color=COLOURS["1260"])),
-        (frame[frame["pad"] == BEST], dict(marker="o", ms=4.5, color=COLOURS["79"])),
-    ):
-        part = part[np.isfinite(part["place"])]
-        ax.plot(part["place"].clip(*clip), part["id"].map(at), ls="none", mec="none", **style)
-    names = [f"{r.figure}  {r.surface}: {r.measure.replace('_', ' ')}" for r in ids.itertuples()]
-    ax.set_yticks(height, names, fontsize=5.6)
-    ax.set(
-        xlim=(clip[0] - 0.1, clip[1] + 0.1), ylim=(-0.8, len(ids) - 0.2), xlabel="place in the interval: 0 lower end, 1 upper end"
-    )
-    for role in ("held_out", "apart"):
-        first = ids[ids["role"] == role]["id"].map(at).max()
-        ax.axhline(first + 0.5, color=INK, lw=0.8)
-        ax.text(
-            clip[1] + 0.08,
-            first + 0.1,
-            {"held_out": "held out", "apart": "inside the epidermis"}[role],
-            ha="right",
-            va="top",
-            fontsize=7,
-        )
-    marks = [
-        handle(BEST, marker="o", ls="none", color=COLOURS["79"]),
-        handle("drawn", marker="o", ls="none", color=GREY),
-        handle("chosen one at a time", marker="D", ls="none", color=COLOURS["1260"]),
-    ]  # fmt: skip
-    header_legend(fig, marks)
+    fig = study_figure("The evidence, row by row", note, TALLEST, header=0.2)
+    looks = {
+        "drawn": (drawn, {"marker": "o", "ms": 2.4, "color": GREY, "alpha": 0.6}),
+        "chosen one at a time": (frame[frame["pad"] == CHOSEN], {"marker": "D", "ms": 3.2, "color": CATEGORIES[1]}),
+        BEST: (frame[frame["pad"] == BEST], {"marker": "o", "ms": 3.4, "color": CATEGORIES[0]}),
+    }
+    for ax, roles in zip(fig.subplots(1, 2), (("fitted", "apart"), ("held_out",)), strict=True):
+        rows = pd.concat([ids[ids["role"] == role] for role in roles])
+        at = dict(zip(rows["id"], range(len(rows)), strict=True))
+        shades = np.where(rows["role"] == "fitted", "0.86", "white")
+        ax.barh(range(len(rows)), 1, height=0.72, color=shades, edgecolor="0.7", lw=0.5)
+        for part, look in looks.values():
+            part = part[np.isfinite(part["place"]) & part["id"].isin(rows["id"])]
+            ax.plot(part["place"].clip(*CLIP), part["id"].map(at), ls="none", mec="none", **look)
+        names = [f"{r.figure}  {r.surface}: {r.measure.replace('_', ' ')}" for r in rows.itertuples()]
+        ax.set_yticks(range(len(rows)), names, fontsize=5.6)
+        ax.set(xlim=(CLIP[0] - 0.1, CLIP[1] + 0.1), ylim=(len(rows) - 0.3, -0.7))
+        ax.set_title(" and ".join(ROLES[role] for role in roles))
+        ax.set_xlabel("place in the interval: 0 lower end, 1 upper end")
+        ax.axhline((rows["role"] == roles[0]).sum() - 0.5, color=INK, lw=0.6)
+    header_legend(fig, [handle(name, ls="none", **look) for name, (_, look) in reversed(looks.items())])
     return fig

@@ -28,9 +28,7 @@ DRAWN = {
 """Meshes with ridges drawn on the thesis's own elements, which the thesis does not describe."""
 RECEPTORS_SWEPT = ("thesis's place: 915 µm deep, x = −46 µm", "epidermis, 25 µm above the flank", "dermis, 25 µm below the flank")
 LOOKS = dict(zip(RECEPTORS_SWEPT, ((INK, "o", "-"), (CATEGORIES[1], "s", DASHED), (CATEGORIES[0], "^", DOTTED)), strict=True))
-DEFINITION = (
-    "Simulated. Directional index: (right − left) / (right + left) of the strain energy under a plate, over 2 to 4 mm of stroke."
-)
+DEFINITION = "Simulated. Index: (right − left) / (right + left) of the strain energy under a plate, over 2 to 4 mm of stroke. "
 
 
 # --- pictures --------------------------------------------------------------------------------------------------
@@ -50,9 +48,8 @@ def offset(frame: pd.DataFrame) -> Figure:
     """Map round a ridge above, profile at the thesis's depth below."""
     profile_rows = frame[frame["panel"] == "profile"]
     note = [
-        DEFINITION,
-        f"Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the thesis's receptors. Fine mesh, "
-        "not smoothed; band: difference to a mesh of twice the edge.",
+        f"{DEFINITION}Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the thesis's receptors. Fine mesh, "
+        "not smoothed; band: difference to twice the edge.",
     ]
     fig = study_figure("Ridges: directional index round a ridge", note, 5.4)
     top, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1.25, 1.0])
@@ -89,7 +86,7 @@ def offset(frame: pd.DataFrame) -> Figure:
 
 
 def _sweep(frame: pd.DataFrame, column: str, title: str, xlabel: str, extra: str) -> Figure:
-    note = [DEFINITION, extra + " Band: difference to a mesh of up to twice the edge."]
+    note = [DEFINITION + extra + " Band: difference to up to twice the edge."]
     fig = study_figure(title, note, 4.2)
     ax = fig.subplots()
     for series, (colour, marker, line) in LOOKS.items():
@@ -113,14 +110,14 @@ def _sweep(frame: pd.DataFrame, column: str, title: str, xlabel: str, extra: str
 @styled
 def height(frame: pd.DataFrame) -> Figure:
     """Index against the ridges' height."""
-    extra = f"Friction {KEY[1]:g}, ridges 0.48 mm apart. The flank is 120 µm from the tip; its receptors follow the boundary."
+    extra = f"Friction {KEY[1]:g}, ridges 0.48 mm apart. Flank: 120 µm from the tip; its receptors follow the boundary."
     return _sweep(frame, HEIGHT, "Ridges: directional index against their height", "ridge height (µm)", extra)
 
 
 @styled
 def friction(frame: pd.DataFrame) -> Figure:
     """Index against the coefficient of friction."""
-    extra = f"Ridges {KEY[0]:g} µm high, 0.48 mm apart. The flank is 120 µm from the tip, its receptors are at x = −120 µm."
+    extra = f"Ridges {KEY[0]:g} µm high, 0.48 mm apart. Flank: 120 µm from the tip, x = −120 µm."
     return _sweep(frame, FRICTION, "Ridges: directional index against friction", "coefficient of friction", extra)
 
 
@@ -130,8 +127,8 @@ def mesh(frame: pd.DataFrame) -> Figure:
     resolved = frame[frame["panel"] == "resolved"].sort_values(EDGE)
     drawn = frame[frame["panel"] == "drawn"]
     note = [
-        DEFINITION + f" Receptor {DEPTH * 1e6:.0f} µm deep, {BESIDE * 1e6:.0f} µm left of a ridge's tip.",
-        "Open: ridges drawn on elements of the thesis's size (four to a pitch, one to a height) in three ways; it states none.",
+        DEFINITION + f"Receptor {DEPTH * 1e6:.0f} µm deep, {BESIDE * 1e6:.0f} µm left of a tip. Open: ridges on elements of the "
+        "thesis's size (four to a pitch, one to a height), in three ways.",
     ]
     fig = study_figure("Ridges: how far to believe the directional index", note, 3.9)
     left, right = fig.subplots(1, 2)
@@ -186,7 +183,7 @@ def outer(frame: pd.DataFrame) -> Figure:
     for ax, way in ((axes[2], "right"), (axes[3], "left")):
         for series, (colour, line) in RECEPTORS.items():
             rows = part(way, series)
-            ax.plot(rows[DISTANCE], rows[SED], color=colour, ls=line, label=f"x = {series}")
+            ax.plot(rows[DISTANCE], rows[SED], color=colour, ls=line, label=f"x = {series}".replace("-", "−"))
         ax.set(xlabel="stroke distance (mm)", title=f"plate to the {way}", xlim=(0, 50), ylim=(0, top))
     axes[2].set_ylabel("strain energy density (Pa)")
     axes[3].legend(loc="center right", bbox_to_anchor=(1.0, 0.52))

@@ -277,9 +277,9 @@ def stick_slip(frame: pd.DataFrame) -> Figure:
     """Where the contact sticks and where it slips, at four instants, and the share that sticks over the stroke."""
     fig = style.study_figure(
         "Stick and slip along the contact of a stroke, 10 mm/s", [
-            "Simulated. Line: tangential traction; edge of the grey area: pressure times the coefficient of friction, which "
-            "bounds it. Where both meet the skin slips (orange), elsewhere it sticks (blue). e: share of the load carried "
-            "where it sticks, none later."
+            "Simulated. Line: tangential traction; edge of the grey area: its bound, pressure times friction. Where both meet "
+            "the skin slips, elsewhere it sticks; jumps from node to node are those of mesh and steps. e: share of the load "
+            "carried where it sticks."
         ], 3.6,
     )  # fmt: skip
     instants = [panel for panel in frame["panel"].drop_duplicates() if panel != "whole"]
@@ -366,7 +366,7 @@ def assumptions(frame: pd.DataFrame) -> Figure:
     under = skin[(skin[Y] < 0) & skin[X].between(held.min(), held.max())].sort_values(X)
     ax.plot(under[X], under[Y], color=style.INK, lw=2.6, solid_capstyle="butt")
     ax.fill_between([-4.0, 4.0], 6.05, 6.9, color=style.PALE, lw=0)
-    ax.text(0, 6.48, "flat plate", ha="center", va="center", fontsize=6.5)
+    ax.text(3.9, 6.48, "flat plate", ha="right", va="center", fontsize=6.5)
     for origin, look in style.MEANINGS["origin"].items():
         for row in frame[frame["series"] == origin].to_dict("records"):
             side = "right" if row[X] < 0 else "left"

@@ -1,11 +1,15 @@
-"""The thesis's figures and the titles of those drawn -> figures/README.md: which are here, and what stands in for others."""
+"""The thesis's figures, the titles of those drawn and their verdicts -> figures/README.md."""
 
 import json
 
+import pandas as pd
+
+from fingerpad.claims.comparison import holding
 from fingerpad.figures.catalogue import read_catalogue, readme
 from fingerpad.files import write_text
 
 
 def run(job):
-    """`catalogue` (CSV) and `titles` (JSON, number -> title) -> `readme`."""
-    write_text(job.readme[0], readme(read_catalogue(job.catalogue[0]), json.loads(job.titles[0])))
+    """`catalogue` and `judged` (CSV: the comparison with the thesis), `titles` (JSON, number -> title) -> `readme`."""
+    judged = holding(pd.read_csv(job.judged[0]))
+    write_text(job.readme[0], readme(read_catalogue(job.catalogue[0]), json.loads(job.titles[0]), judged))
