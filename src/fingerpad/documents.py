@@ -24,7 +24,11 @@ from pydantic import (
     model_validator,
 )
 
+from fingerpad.files import read_input
+
 LOOK_UP, HIDE = object(), object()
+MOST_VALUES = 200_000
+"""Of a document with its aliases written out."""
 
 
 class SceneError(ValueError):
@@ -235,14 +239,14 @@ def _unchanged(path: Path, *state: int) -> Any:
 
 def _parsed(path: Path) -> Any:
     try:
-        text = path.read_bytes()
+        text = read_input(path, "text")
     except FileNotFoundError:
         raise SceneError(one_line(f"{path}: there is no such file")) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SceneError(one_line(f"{path}: cannot be read: {reason}")) from None
     try:
-        return yaml.load(text, Loader=_Loader)
+        return _constructed(text)
     except yaml.MarkedYAMLError as error:
         mark = f" at line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise SceneError(one_line(f"{path}: is not valid YAML{mark}: {error.problem}")) from None
@@ -251,3 +255,26 @@ def _parsed(path: Path) -> Any:
         raise SceneError(one_line(f"{path}: is not valid YAML: {reason}")) from None
     except RecursionError:
         raise SceneError(one_line(f"{path}: is not valid YAML: nested too deeply")) from None
+
+
+def _constructed(text: bytes) -> Any:
+    loader = _Loader(text)
+    try:
+        node = loader.get_single_node()
+        if node is None:
+            return None
+        if _written_out(node, {}) > MOST_VALUES:
+            raise ValueError(f"its aliases make more than {MOST_VALUES} values")
+        return loader.construct_document(node)
+    finally:
+        loader.dispose()
+
+
+def _written_out(node: yaml.Node, known: dict[int, float]) -> float:
+    """How many values a node is with its aliases written out, whatever of them is shared; infinite if it is within itself."""
+    if id(node) not in known:
+        known[id(node)] = float("inf")
+        inner = node.value if isinstance(node, yaml.CollectionNode) else ()
+        parts = (part for each in inner for part in (each if isinstance(each, tuple) else (each,)))
+        known[id(node)] = 1 + sum(_written_out(part, known) for part in parts)
+    return known[id(node)]

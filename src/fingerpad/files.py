@@ -1,14 +1,18 @@
 """Files appear whole under their final name or not at all; a folder is written by one process at a time.
 
-And where the package's own files are.
+And what is read of files that somebody brings, and where the package's own files are.
 """
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import glob
 import os
+import platform
+import select
 import shutil
+import stat
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
@@ -19,13 +23,48 @@ BUILT_IN = _PACKAGE / "built_in" if (_PACKAGE / "built_in").is_dir() else _PACKA
 """Folder of the built-in `specimens`: config/ of the clone, of which an installed package carries a copy (setup.py)."""
 
 SCRATCH = ".fingerpad-"
+MOST_BYTES = {"text": 1 << 20, "table": 1 << 25, "mesh": 1 << 28}
+"""Of a file that somebody brings: a scene or a sweep, a profile or a table of measured data, a mesh."""
+PATIENCE = 4.0
+"""s that a pipe may be silent."""
+
+
+def read_input(path: str | Path, kind: str) -> bytes:
+    """What is in a file that somebody brings, of a kind of :data:`MOST_BYTES`; nothing is waited for, and no more is held.
+
+    Raises:
+        OSError: there is no such file, it cannot be read, is a device or too large, or is a pipe that nobody writes to; its
+        ``strerror`` says so. ValueError: this can be no path.
+    """
+    most = MOST_BYTES[kind]
+    handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
+    try:
+        state = os.fstat(handle)
+        if stat.S_ISDIR(state.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        piped = stat.S_ISFIFO(state.st_mode)
+        if not piped and not stat.S_ISREG(state.st_mode):
+            raise OSError(errno.ENODEV, "a device, not a file")
+        content, size = bytearray(), state.st_size
+        while size <= most:
+            if piped and not select.select([handle], [], [], PATIENCE)[0]:
+                raise TimeoutError(errno.ETIMEDOUT, "a pipe that nobody writes to")
+            part = os.read(handle, 1 << 20)
+            if not part:
+                return bytes(content)
+            content += part
+            size = len(content)
+        raise OSError(errno.EFBIG, f"more than {most / 1e6:.3g} MB")
+    finally:
+        os.close(handle)
 
 
 def write_atomically(path: str | Path, write: Callable[[Path], object]) -> None:
     """Let ``write`` fill a temporary file beside ``path`` and then rename it; parents are created."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=path.suffix)
+    _remove_leftovers(path)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.{_HOST}-{os.getpid()}.", suffix=path.suffix)
     os.close(handle)
     try:
         write(Path(name))
@@ -34,6 +73,27 @@ def write_atomically(path: str | Path, write: Callable[[Path], object]) -> None:
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
+
+
+_HOST = "".join(filter(str.isalnum, platform.node()))[:20]
+
+
+def _remove_leftovers(path: Path) -> None:
+    """Temporary files for ``path`` of processes of this machine that were killed."""
+    for leftover in path.parent.glob(f".{glob.escape(path.name)}.{_HOST}-*.*{path.suffix}"):
+        process = leftover.name.removeprefix(f".{path.name}.{_HOST}-").partition(".")[0]
+        if process.isdigit() and not _lives(int(process)):
+            leftover.unlink(missing_ok=True)
+
+
+def _lives(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # it is another user's
+        return True
+    return True
 
 
 def write_text(path: str | Path, text: str) -> None:
@@ -55,8 +115,10 @@ def cache_folder(name: str) -> Path | None:
 
 
 @contextlib.contextmanager
-def locked(directory: Path) -> Iterator[None]:
+def locked(directory: Path) -> Iterator[tuple[int, ...]]:
     """Hold a directory for this process; the lock ends with the process, however that ends, and leaves no file.
+
+    Yields the descriptors by which it is held: processes to which they are passed hold it too.
 
     Raises:
         BlockingIOError: another process holds it.
@@ -64,7 +126,7 @@ def locked(directory: Path) -> Iterator[None]:
     try:
         import fcntl
     except ImportError:  # a system without it has no such lock
-        yield
+        yield ()
         return
     handle = os.open(directory, os.O_RDONLY)
     try:
@@ -74,7 +136,7 @@ def locked(directory: Path) -> Iterator[None]:
             raise
         except OSError:  # a file system without locks
             pass
-        yield
+        yield (handle,)
     finally:
         os.close(handle)
 
@@ -94,23 +156,66 @@ def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> It
         shutil.rmtree(leftover, ignore_errors=True)
     stage = Path(tempfile.mkdtemp(prefix=SCRATCH, dir=directory))
     try:
-        yield stage
-        written = [item.relative_to(stage).as_posix() for item in stage.rglob("*") if item.is_file()]
-        for name in written:
-            (directory / name).parent.mkdir(exist_ok=True)
-        for name in sorted(written, key=lambda name: (name != first, name)):
-            os.replace(stage / name, directory / name)
-        for name in set(removing) - set(written):
-            (directory / name).unlink(missing_ok=True)
-            with contextlib.suppress(OSError):
-                if "/" in name:
-                    (directory / name).parent.rmdir()
+        (stage / "new").mkdir()
+        yield stage / "new"
+        written = {item.relative_to(stage / "new").as_posix() for item in (stage / "new").rglob("*") if item.is_file()}
+        names = sorted(written, key=lambda name: (name != first, name)) + sorted(set(removing) - written)
+        for parent in {(directory / name).parent for name in names} - {directory}:
+            if parent.is_symlink():  # what it leads to is not ours
+                raise OSError(errno.ELOOP, f"'{parent.name}' is a link to another folder")
+        _exchange(names, stage / "new", directory, stage / "old")
     finally:
         shutil.rmtree(stage, ignore_errors=True)
 
 
-def disk_is_full(directory: Path, least: int = 1 << 16) -> OSError | None:
-    """The error of a full disk, for libraries that do not say why they failed; None when there is room."""
+def _exchange(names: list[str], new: Path, directory: Path, old: Path) -> None:
+    """The files ``names`` of a directory become those of ``new``, or go where that has none; on any error none of them does."""
+    folders = list(dict.fromkeys((directory / name).parent for name in names if "/" in name))
+    made = [folder for folder in folders if not folder.exists()]
+    done: list[str] = []
+    try:
+        for name in names:
+            target = directory / name
+            target.parent.mkdir(exist_ok=True)
+            _keep(target, old / name)
+            done.append(name)
+            if (new / name).exists():
+                os.replace(new / name, target)
+            else:
+                target.unlink(missing_ok=True)
+    except BaseException:
+        for name in done:
+            with contextlib.suppress(OSError):
+                if (old / name).exists():
+                    os.replace(old / name, directory / name)
+                else:
+                    (directory / name).unlink(missing_ok=True)
+        for folder in made:
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+        raise
+    for folder in folders:
+        with contextlib.suppress(OSError):  # something is in it
+            folder.rmdir()
+
+
+def _keep(file: Path, copy: Path) -> None:
+    """A second name for a file, if there is one; where a file system has no such thing, it moves there."""
+    if file.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
+    copy.parent.mkdir(parents=True, exist_ok=True)
+    with contextlib.suppress(FileNotFoundError):
+        try:
+            os.link(file, copy)
+        except FileNotFoundError:
+            raise
+        except OSError:
+            os.replace(file, copy)
+
+
+def disk_is_full(directory: Path, least: float = 1 << 16) -> OSError | None:
+    """The error of a disk with less than ``least`` bytes left, for who asks before, and for libraries that do not say why they
+    failed; None when there is room."""
     if shutil.disk_usage(directory).free < least:
         return OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     return None

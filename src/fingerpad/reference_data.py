@@ -7,6 +7,7 @@ further subject is a further file in ``config/reference/force_depth``.
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections import Counter
 from collections.abc import Iterable
@@ -15,6 +16,8 @@ from os import PathLike
 from pathlib import Path
 
 import pandas as pd
+
+from fingerpad.files import read_input
 
 INDENTERS = ("flat plate", "flat probe 6.35 mm", "flat probe", "point probe", "cylinder")
 """Indenters that the files may name."""
@@ -200,8 +203,8 @@ def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
     """
     path = Path(path)
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            rows = [[cell.strip() for cell in row] for row in csv.reader(stream)]
+        text = read_input(path, "table").decode("utf-8-sig")
+        rows = [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(text, newline=""))]
     except (OSError, ValueError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or type(error).__name__
         raise ReferenceDataError(f"{path}: cannot be read ({reason}); allowed: a CSV file in UTF-8") from None

@@ -26,6 +26,8 @@ from fingerpad.scenes.specimen import DEFAULT_SPECIMEN, Source
 
 MOST = 1000
 """Members of a family."""
+MOST_EXTENDED = 20
+"""Files one after the other that extend each other."""
 
 
 @dataclass(frozen=True)
@@ -125,9 +127,11 @@ def _extended(path: Path, seen: tuple[Path, ...]) -> tuple[Any, tuple[Path, ...]
     if not isinstance(named, str):
         raise _wrong(path, ("extends",), named, "is not a path", "the path of a scene or family, relative to this file")
     base = path.parent / named
-    if not base.is_file() or base in (path, *seen):
+    if not base.is_file() or base.resolve() in (each.resolve() for each in (path, *seen)):
         problem = "extends itself" if base.is_file() else "is not an existing file"
         raise _wrong(path, ("extends",), named, problem, "the path of a scene or family, relative to this file")
+    if len(seen) >= MOST_EXTENDED:
+        raise _wrong(path, ("extends",), named, "is one file too many", f"up to {MOST_EXTENDED} that extend each other")
     below, files = _extended(base, (*seen, path))
     own = {key: value for key, value in document.items() if key not in ("extends", "over")}
     whole = merged({key: value for key, value in below.items() if key != "over"}, own)
@@ -164,6 +168,8 @@ def _axes(path: Path, over: Any) -> dict[str, dict[str, Any]]:
             raise _wrong(path, ("over", str(axis)), words, "is not a mapping of words", allowed)
         axes[str(axis)] = {str(word): {} if change is None else change for word, change in words.items()}
         for word, change in axes[str(axis)].items():
+            if "/" in word or not word.isprintable():
+                raise _wrong(path, ("over", str(axis), word), HIDE, "cannot be part of the name of a file", "a word such as flat")
             if not isinstance(change, Mapping):
                 raise _wrong(path, ("over", str(axis), word), change, "is not a mapping", "keys of a scene")
         count *= len(words)

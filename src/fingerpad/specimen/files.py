@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import errno
 import os
+import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -17,13 +18,15 @@ from pathlib import Path
 
 import numpy as np
 
-from fingerpad.files import write_atomically
+from fingerpad.files import read_input, write_atomically
 from fingerpad.specimen.element_kinds import KINDS, LINES
 from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
 from fingerpad.specimen.quality import check_orientation
 
 _ELEMENTS = {KINDS[name].gmsh: name for name in ("tri3", "tri6", "quad4", "quad8", "quad9")}
 _SAME_PLACE = 1e-6  # of the pad's width: two nodes closer than this are mirror images of each other
+MOST = {"Nodes": 1_000_000, "Elements": 500_000}
+"""Of a file, lines and points included."""
 _WIDTHS = (0.1, 1000.0)  # mm, between which the width of a pad is believed
 
 
@@ -80,12 +83,10 @@ def _read_groups(path: Path) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
     Node tags (n,), their places (n, 3) in mm, surfaces as {name: [(gmsh's type, element tags, node tags)]},
     curves likewise, and the number of all surface elements, in a group or not. A group without a name has its number.
     """
-    with path.open("rb") as file:
-        if file.read(11) != b"$MeshFormat":
-            raise MeshError(f"{path}: is not a gmsh mesh; a .msh file of version 2.2 or 4.1 is allowed")
+    _require_mesh(path)
     with _quiet_gmsh() as gmsh:
         try:
-            gmsh.open(str(path))
+            _open_alone(gmsh, path)
             tags, places, _ = gmsh.model.mesh.getNodes()
             groups: tuple[dict, dict] = ({}, {})
             for dimension in (1, 2):
@@ -98,6 +99,40 @@ def _read_groups(path: Path) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
         except Exception as error:  # gmsh raises nothing more specific
             raise MeshError(f"{path}: gmsh cannot read it ({' '.join(str(error).split())})") from error
     return tags, places.reshape(-1, 3), groups[1], groups[0], count
+
+
+def _require_mesh(path: Path) -> None:
+    """`MeshError` for what is no mesh, or is too large, before gmsh sees it."""
+    try:
+        content = read_input(path, "mesh")
+    except (OSError, ValueError) as error:
+        raise MeshError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    if not content.startswith(b"$MeshFormat"):
+        raise MeshError(f"{path}: is not a gmsh mesh; a .msh file of version 2.2 or 4.1 is allowed")
+    for section, most in MOST.items():
+        count = _count(content, section)
+        if count > most:
+            raise MeshError(f"{path}: has {count} {section.lower()}; up to {most} are allowed")
+
+
+def _open_alone(gmsh, path: Path) -> None:
+    """Lets gmsh open a mesh where nothing else is: it runs what stands in a .opt file beside it, or in a .geo file."""
+    with tempfile.TemporaryDirectory(prefix="fingerpad-") as folder:
+        link = Path(folder) / "alone.msh"
+        link.symlink_to(path.absolute())
+        gmsh.open(str(link))
+
+
+def _count(content: bytes, section: str) -> int:
+    """How many nodes or elements a .msh file says that it has; 0 where it says nothing that can be read."""
+    mark = f"\n${section}".encode()
+    start = content.find(mark)
+    line = content[start + len(mark) : start + len(mark) + 200].lstrip(b"\r").removeprefix(b"\n") if start >= 0 else b""
+    try:
+        numbers = [int(word) for word in line.split(b"\n", 1)[0].split()]
+    except ValueError:
+        numbers = [int(word) for word in np.frombuffer(line[:32], "<u8")] if len(line) >= 32 else []  # binary, 4.1
+    return max(numbers[:2], default=0)
 
 
 def _listed(names) -> str:

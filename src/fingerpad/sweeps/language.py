@@ -164,12 +164,18 @@ class Words(Axis):
         return list(self.words)
 
 
+def _pattern(value: Any) -> Any:
+    if not isinstance(value, str) or value in ("", ".", "..") or {"/", "\0"} & set(value) or "**" in value:
+        raise Problem("is not the pattern of a file's name", "one such as *.csv, without folders")
+    return value
+
+
 class Folder(Axis):
     """Every file of a folder: profiles, for example."""
 
     folder: Path
     """The folder, relative to the sweep's file."""
-    pattern: str = "*.csv"
+    pattern: Annotated[str, BeforeValidator(_pattern)] = "*.csv"
     """Which of its files."""
 
     @cached_property

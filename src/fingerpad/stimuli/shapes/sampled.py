@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import io
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Literal
@@ -17,6 +18,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem
 from fingerpad.fields import quantity
+from fingerpad.files import read_input
 from fingerpad.stimuli.curve import Curve, share_of_height
 from fingerpad.stimuli.shapes.shape import CurvedShape
 from fingerpad.stimuli.smoothing import SKIN_EDGE, WAVE, cutoffs, is_rough, smoothed
@@ -73,6 +75,8 @@ class Sampled(CurvedShape):
 _COLUMN = re.compile(r"\s*([xy])\s*\((.*)\)\s*", re.IGNORECASE)
 NARROWEST, WIDEST = 10e-6, 10.0
 """Widths (m) between which a profile is believed to be in the unit that its columns name."""
+MOST_LINES = 500_000
+"""Of the file of a profile."""
 
 
 def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -82,36 +86,55 @@ def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
         return Problem(problem, allowed, ("csv",))
 
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            lines = [(number, text) for number, text in enumerate(file, start=1) if text.strip() and text.lstrip()[0] != "#"]
-        rows = list(csv.reader((text for _, text in lines), skipinitialspace=True))
-    except FileNotFoundError:
-        raise wrong("is not an existing file") from None
-    except (OSError, ValueError, csv.Error) as error:
-        raise wrong(f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})") from None
-    if rows:
-        columns, factors = _profile_columns(rows[0], wrong)
-    if len(rows) < 3:
-        raise wrong("has fewer than two points")
-    points = []
-    for (line, _), row in zip(lines[1:], rows[1:], strict=False):
-        try:
+        content = read_input(path, "table")
+        if max(map(content.count, (b"\n", b"\r"))) > MOST_LINES:
+            raise wrong(
+                f"has more than {MOST_LINES} lines", f"up to {MOST_LINES}; a profile needs no more than the skin can feel"
+            )
+        rows = _rows(content.decode("utf-8-sig"))
+        line, header = next(rows, (0, None))
+        columns, factors = _profile_columns(header, wrong) if header else ([], [])
+        points: list[tuple[float, ...]] = []
+        for line, row in rows:
             point = tuple(
                 factor * parse_number(row[k] if k < len(row) else "") for k, factor in zip(columns, factors, strict=True)
             )
-        except QuantityError:
-            raise wrong(f"has no finite number in row {line}") from None
-        if points and point[0] <= points[-1][0]:
-            raise wrong(f"is not single-valued: x does not increase in row {line}")
-        points.append(point)
+            if points and point[0] <= points[-1][0]:
+                raise wrong(f"is not single-valued: x does not increase in row {line}")
+            points.append(point)
+    except FileNotFoundError:
+        raise wrong("is not an existing file") from None
+    except QuantityError:
+        raise wrong(f"has no finite number in row {line}") from None
+    except Problem:
+        raise
+    except (OSError, ValueError, csv.Error) as error:
+        raise wrong(f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})") from None
+    if len(points) < 2:
+        raise wrong("has fewer than two points")
     x, y = zip(*points, strict=True)
     width = x[-1] - x[0]
     if not NARROWEST <= width <= WIDEST:
         size = f"{width:.3g} m" if width > WIDEST else f"{width * 1e6:.3g} um"
         raise wrong(
-            f"is {size} wide by its column '{rows[0][columns[0]]}'", "10 um to 10 m; is the unit another one, um, mm or m?"
+            f"is {size} wide by its column '{header[columns[0]]}'", "10 um to 10 m; is the unit another one, um, mm or m?"
         )
     return x, y
+
+
+def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
+    """The rows of a CSV file that say something, with the number of the line each ends in."""
+    at = 0
+
+    def lines() -> Iterator[str]:
+        nonlocal at
+        for line in io.StringIO(text, newline=""):
+            at += 1
+            if line.strip() and line.lstrip()[0] != "#":
+                yield line
+
+    for row in csv.reader(lines(), skipinitialspace=True):
+        yield at, row
 
 
 def _profile_columns(header: list[str], wrong: Callable[..., Problem]) -> tuple[list[int], list[float]]:
