@@ -427,7 +427,7 @@ def test_a_plan_of_a_sweep_says_how_many_which_effects_and_what_it_costs(file, c
 
 def test_the_command_says_what_was_run_and_what_was_known(file, tmp_path, monkeypatch, capsys):
     pretend(monkeypatch, {200: ValueError("wrong")})
-    monkeypatch.setattr(engine, "run_layout", lambda layout, cores, profile, watch: run_all(layout))
+    monkeypatch.setattr(engine, "run_layout", lambda layout, *_: run_all(layout))
     words = ["sweep", str(file), "--out", str(tmp_path / "out")]
     assert main(words) == 0
     said = "4 scenes (all run); 2 could not be simulated, see the column diagnosis; results in"

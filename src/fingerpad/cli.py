@@ -38,6 +38,14 @@ _ERRORS = {
 }
 
 
+_SURROUNDINGS = frozenset(
+    getattr(errno, name)
+    for name in "ENOSPC EDQUOT EIO EACCES EPERM EROFS EFBIG EMFILE ENFILE ENOMEM ENODEV ESTALE ETIMEDOUT ENAMETOOLONG EBUSY "
+    "EEXIST ENOTDIR EISDIR ELOOP".split()
+)
+"""Errors of the system that no program can do anything about."""
+
+
 class _Refusal(ValueError):
     """A request that cannot be met; its text is the one line shown."""
 
@@ -85,15 +93,26 @@ def _guarded(arguments: list[str] | None, heard: list[warnings.WarningMessage] |
     except MemoryError as error:
         return _say(f"not enough memory: {error or 'out of memory'}; try a coarser accuracy or fewer receptors", NOT_COMPLETED)
     except Exception as error:
-        if getattr(error, "errno", None) in (errno.ENOSPC, errno.EDQUOT):  # of standard output, or of a scratch folder
-            _deaf()
-            return _say(f"output cannot be written: {error.strerror}", NOT_COMPLETED)
+        if (why := _of_the_machine(error)) is not None:
+            if getattr(error, "filename", None) is None:
+                _deaf()
+            return _say(why, NOT_COMPLETED)
         return _unforeseen(error, heard)
+
+
+def _of_the_machine(error: Exception) -> str | None:
+    """What to say of an error that is not the program's but of its surroundings: disk, rights, memory; None of others."""
+    if isinstance(error, OSError) and error.errno in _SURROUNDINGS:
+        return f"'{error.filename}' fails: {error.strerror}" if error.filename else f"output cannot be written: {error.strerror}"
+    if isinstance(error, ImportError) and any(words in str(error) for words in ("failed to map", "cannot allocate")):
+        return f"not enough memory to load what a run needs: {error}; try a larger limit (ulimit -v)"
+    return None
 
 
 def _deaf() -> int:
     """The reader of standard output has gone: leave nothing for the interpreter to flush into it."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    with contextlib.suppress(OSError):  # it may be no file
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return DONE
 
 
@@ -209,6 +228,7 @@ def _run(options: argparse.Namespace) -> int:
     from fingerpad.simulation import solve
 
     with _folder(out, scene, plan, options) as folder:
+        _check_room(out, plan.result_bytes(scene, options.vtu))
         try:
             with _naming(options.scene, scene), _progress(scene.name, quiet=options.quiet) as progress:
                 dataset = solve(scene, plan=plan, progress=progress, fields=options.vtu)
@@ -216,15 +236,17 @@ def _run(options: argparse.Namespace) -> int:
             return _say(folder.rescue(error), NOT_COMPLETED)
         except KeyboardInterrupt as stop:
             return _say(folder.keep(stop), INTERRUPTED)
-        folder.plan = (
-            json.loads(dataset.attrs.get("plan", "{}")) or folder.plan
-        )  # of the last run, where the tolerance took more than one
-        with folder.writing() as stage:
+        # of the last run, where the tolerance took more than one
+        folder.plan = json.loads(dataset.attrs.get("plan", "{}")) or folder.plan
+        totals = summary(dataset)
+
+        def results(stage: Path) -> None:
             write_history(dataset, stage / "history.nc")
-            totals = summary(dataset)
             _write_json(totals, stage / "summary.json")
             if options.vtu:
                 write_vtu(dataset, stage / "vtu")
+
+        folder.write(results)
     if not options.quiet:
         print(_closing_line(totals, out, unit))
         for note in totals["run"].get("notes", ()):
@@ -318,6 +340,14 @@ def _check_writable(path: Path, directory: bool) -> None:
         raise _Refusal(f"--out: '{path}' cannot be written; allowed: a path in a directory that can")
 
 
+def _check_room(path: Path, needed: float) -> None:
+    """Refuses a run whose results will not find room, before it is run."""
+    from fingerpad.files import disk_is_full
+
+    if disk_is_full(path, needed):
+        raise _Refusal(f"--out: '{path}' has no room for about {needed / 1e6:.2g} MB of results; allowed: a folder that has")
+
+
 @contextlib.contextmanager
 def _directory(path: Path) -> Iterator[Path]:
     """The directory, made if need be; one that was made is removed again when nothing was put in it."""
@@ -341,7 +371,7 @@ def _unwritable(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         what = error.strerror or error
-        raise _NotWritten(f"'{path}' cannot be written: {what}; what was there is as it was; try another --out") from None
+        raise _NotWritten(f"'{path}' cannot be written: {what}; what was there is as it was") from None
 
 
 @contextlib.contextmanager
@@ -354,45 +384,82 @@ def _folder(path: Path, scene: Scene, plan: Plan, options: argparse.Namespace) -
             held.enter_context(locked(path))
         except BlockingIOError:
             raise _Refusal(f"--out: '{path}' is being written by another run; allowed: another folder, or later") from None
-        folder = _Folder(path, scene.name, plan.to_dict())
-        if not options.force:
-            folder.check(RESULTS + FIELDS if options.vtu else RESULTS)
+        patterns = () if options.force else RESULTS + FIELDS if options.vtu else RESULTS
+        folder = _Folder(path, scene.name, plan.to_dict(), patterns)
+        folder.check()
         yield folder
 
 
 class _Folder:
-    """The folder of a run: what the run before wrote there, and how this one writes into it."""
+    """The folder of a run: what the run before wrote there, and how this one writes into it.
 
-    def __init__(self, path: Path, scene: str, plan: dict[str, Any]) -> None:
-        self.path, self.scene, self.plan = path, scene, plan
+    Of files like ``patterns`` those that no run has written are left alone; none, where they may be replaced.
+    """
+
+    def __init__(self, path: Path, scene: str, plan: dict[str, Any], patterns: Iterable[str]) -> None:
+        from fingerpad.files import read_input
+
+        self.path, self.scene, self.plan, self.patterns = path, scene, plan, tuple(patterns)
         try:
-            self.before = json.loads((path / "plan.json").read_text(encoding="utf-8"))
+            self.before = json.loads(read_input(path / "plan.json", "table"))
             listed = [str(name) for name in self.before["files"]]
-        except (OSError, ValueError, LookupError, TypeError):
+        except (OSError, ValueError, LookupError, TypeError, RecursionError):
             self.before, listed = {}, []
         self.files = [name for name in listed if _is_result(name)]
 
-    def check(self, patterns: Iterable[str]) -> None:
+    def check(self) -> None:
         """Refuses to replace results of another scene, and files that no run has written."""
         cure = "allowed: another --out, or --force to replace"
-        if self.files and self.before.get("scene") != self.scene:
+        if self.patterns and self.files and self.before.get("scene") != self.scene:
             raise _Refusal(f"--out: '{self.path}' holds the results of the scene '{self.before.get('scene')}'; {cure} them")
-        for found in sorted(file for pattern in patterns for file in self.path.glob(pattern)):
-            if found.relative_to(self.path).as_posix() not in self.files:
-                raise _Refusal(f"--out: '{found}' was not written by a run that is known here; {cure} it")
+        for found in self._foreign():
+            raise _Refusal(f"--out: '{found}' was not written by a run that is known here; {cure} it")
 
-    @contextlib.contextmanager
-    def writing(self, keeping: bool = False) -> Iterator[Path]:
-        """A scratch folder for results; they replace those of the run before, or come beside them when ``keeping``."""
+    def _foreign(self) -> list[Path]:
+        found = sorted(file for pattern in self.patterns for file in self.path.glob(pattern))
+        return [file for file in found if file.relative_to(self.path).as_posix() not in self.files]
+
+    def write(self, fill: Callable[[Path], None], keeping: bool = False) -> None:
+        """Lets ``fill`` write results into a scratch folder; they replace those of the run before, or come beside them when
+        ``keeping``. Where they cannot be written here, they go to a temporary place, which the error names."""
+        try:
+            with _unwritable(self.path):
+                if foreign := self._foreign():  # since the run began
+                    raise FileExistsError(errno.EEXIST, f"'{foreign[0].name}' has come into it meanwhile")
+                self._replace(fill, keeping)
+        except _NotWritten as reason:
+            raise _NotWritten(f"{reason}; {self._elsewhere(fill)}") from None
+
+    def _replace(self, fill: Callable[[Path], None], keeping: bool) -> None:
         from fingerpad.files import staged
 
-        with _unwritable(self.path), staged(self.path, "plan.json", () if keeping else self.files) as stage:
-            yield stage
-            kept = self.files if keeping else []
-            written = {item.relative_to(stage).as_posix() for item in stage.rglob("*") if item.is_file()}
-            plan = self.before if kept else self.plan
-            files = sorted({*kept, *written, "plan.json"})
-            _write_json({**plan, "scene": self.scene, "files": files}, stage / "plan.json")
+        with staged(self.path, "plan.json", () if keeping else self.files) as stage:
+            fill(stage)
+            self._describe(stage, self.files if keeping else [])
+
+    def _describe(self, stage: Path, kept: Iterable[str] = ()) -> None:
+        """Writes plan.json, which names the files that there are."""
+        written = {item.relative_to(stage).as_posix() for item in stage.rglob("*") if item.is_file()}
+        files = sorted({*kept, *written, "plan.json"})
+        _write_json({**(self.before if kept else self.plan), "scene": self.scene, "files": files}, stage / "plan.json")
+
+    def _elsewhere(self, fill: Callable[[Path], None]) -> str:
+        """Writes the results to a temporary place instead, and says where; or that they are lost."""
+        import shutil
+        import tempfile
+
+        place = None
+        try:
+            place = Path(tempfile.mkdtemp(prefix=f"fingerpad-{self.path.absolute().name}-"))
+            fill(place)
+            self._describe(place)
+        except BaseException as error:
+            if place is not None:
+                shutil.rmtree(place, ignore_errors=True)
+            if not isinstance(error, OSError):
+                raise
+            return f"nor can a temporary place ({error.strerror or error}): these results are lost"
+        return f"these results are in '{place}'"
 
     def rescue(self, error: Any) -> str:
         """Saves what converged before ``error`` (its ``dataset``); returns the message that says where."""
@@ -400,7 +467,7 @@ class _Folder:
         try:
             self._last_converged(dataset)
         except _NotWritten as reason:
-            return f"{error}; the last converged state is lost: {reason}"
+            return f"{error}; {reason}"
         if dataset is None:
             return f"{error}; no step had converged, so there is no state to save"
         return f"{error}; the last converged state is saved in {self.path / 'last_converged.nc'}"
@@ -417,9 +484,11 @@ class _Folder:
     def _last_converged(self, dataset: Any, keeping: bool = False) -> None:
         from fingerpad.results import write_history
 
-        with self.writing(keeping) as stage:
+        def last(stage: Path) -> None:
             if dataset is not None:
                 write_history(dataset, stage / "last_converged.nc")
+
+        self.write(last, keeping)
 
 
 def _is_result(name: str) -> bool:

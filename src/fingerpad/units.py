@@ -100,7 +100,13 @@ def registry() -> pint.UnitRegistry:
     from fingerpad.files import cache_folder
 
     # pint keeps its parsed definitions in the user's cache folder, where there is one: a tenth of a second a process
-    ureg = pint.UnitRegistry(cache_folder=cache_folder("pint"))
+    folder = cache_folder("pint")
+    try:
+        ureg = pint.UnitRegistry(cache_folder=folder)
+    except Exception:  # noqa: BLE001 - whatever becomes of a file that another process has not written to its end
+        for file in folder.iterdir() if folder else ():
+            file.unlink(missing_ok=True)
+        ureg = pint.UnitRegistry()
     ureg.define("gram_weight = gram_force = gw")
     return ureg
 

@@ -65,6 +65,9 @@ def pardiso_available() -> bool:
     return os.environ.get("FINGERPAD_LINEAR_SOLVER", "pardiso") == "pardiso" and _mkl_path() is not None
 
 
+_NO_MEMORY = -2  # of PARDISO's errors, the only one that is not the matrix's fault
+
+
 class PardisoCondensation:
     """Intel MKL PARDISO (through the pypardiso wheel) as LDL^T.
 
@@ -105,6 +108,8 @@ class PardisoCondensation:
             self._ia.ctypes.data_as(i32), self._ja.ctypes.data_as(i32), handle.perm.ctypes.data_as(i32), one,
             handle.iparm.ctypes.data_as(i32), ctypes.c_int32(0), right.ctypes.data_as(f64), out.ctypes.data_as(f64), error,
         )  # fmt: skip
+        if error.value == _NO_MEMORY:
+            raise MemoryError(f"{self._pattern.size} equations are too many for PARDISO")
         return error.value
 
     def factor(self, data: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.pad import MeshSize
 
 _RECEPTOR_BYTES = 400  # of a receptor and step: what is sampled, kept twice
+_PROGRAM_BYTES = 0.9e9  # of addresses that the libraries take before anything is solved
 
 
 class PlanError(ValueError):
@@ -41,8 +42,7 @@ def check_size(scene: Scene, size: MeshSize, ridges: Any, rules: Rules) -> None:
 
 def check_memory(scene: Scene, nodes: int, steps: int, rules: Rules) -> None:
     """Refuses what would need more memory than the machine has, or more nodes than are allowed."""
-    machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    receptors = len(scene.outputs.receptors.depths) * len(scene.outputs.receptors.offsets)
+    (memory, limited), receptors = _memory(), receptors_of(scene)
     needed = {
         "accuracy": nodes * rules.bytes_node,
         "accuracy.steps" if getattr(scene.accuracy, "steps", None) else "motion": nodes * steps * rules.bytes_step,
@@ -50,12 +50,28 @@ def check_memory(scene: Scene, nodes: int, steps: int, rules: Rules) -> None:
     }
     if nodes > rules.most_nodes:
         raise PlanError(f"accuracy: {nodes} nodes; allowed: {rules.most_nodes:g}")
-    if sum(needed.values()) > rules.most_memory * machine:
+    if sum(needed.values()) > rules.most_memory * memory:
         worst = max(needed, key=needed.get)
         raise PlanError(
             f"{worst}: {nodes} nodes, {steps} steps and {receptors} receptors need about {sum(needed.values()) / 1e9:.2g} GB "
-            f"of memory; allowed: {rules.most_memory * machine / 1e9:.2g} GB on this machine"
+            f"of memory; allowed: {rules.most_memory * memory / 1e9:.2g} GB on this machine{limited}"
         )
+
+
+def _memory() -> tuple[float, str]:
+    """Bytes of memory that a run can have: the machine's, or what is left of a limit on addresses, and words for such a limit."""
+    import resource
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if limit == resource.RLIM_INFINITY or limit - _PROGRAM_BYTES >= machine:
+        return machine, ""
+    return max(limit - _PROGRAM_BYTES, 0.0), f", where a limit leaves {limit / 1e9:.2g} GB to all of the program (ulimit -v)"
+
+
+def receptors_of(scene: Scene) -> int:
+    """How many receptor points a scene asks for."""
+    return len(scene.outputs.receptors.depths) * len(scene.outputs.receptors.offsets)
 
 
 def micrometres(length: float) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fingerpad.planning.bounds import PlanError, check_memory, check_size, micrometres, percent
+from fingerpad.planning.bounds import PlanError, check_memory, check_size, micrometres, percent, receptors_of
 from fingerpad.planning.contact import (
     check_over_pad,
     check_width,
@@ -55,6 +55,8 @@ from fingerpad.specimen.pad import MeshSize, PadMesh
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+_SKIN_NODES = 6.0  # at most, over the square root of all nodes of the pad
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,13 @@ class Plan:
             return None
         had = "not to be had: expected" if planned else "got"
         return f"asked {percent(self.asked_error)}, {had} {percent(error)}: {self.error_from}"
+
+    def result_bytes(self, scene: Scene, fields: bool = False) -> float:
+        """Bytes that the files of a run of ``scene`` will take at most, roughly; ``fields``: with those for ParaView."""
+        nodes = self.nodes * (2 if self.effects["symmetry"].on else 1)
+        each_time = 8 * (20 + 7 * _SKIN_NODES * nodes**0.5 + 13 * receptors_of(scene))
+        snapshots = len(scene.outputs.snapshots) or int(fields)
+        return 3e5 + (self.steps + 1) * each_time + (snapshots + 1) * nodes * (200 if fields else 40)
 
     @property
     def stepping(self) -> tuple[int, bool, float]:

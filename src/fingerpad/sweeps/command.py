@@ -109,12 +109,12 @@ def sweep(options: Any) -> int:
 
     found = read(options.sweep, options.accuracy)
     folder = options.out or Path("results/sweeps") / found.name
-    with held(folder):
+    with held(folder) as lock:
         with _bar("planning", None, options.quiet) as show:
             layout = lay_out(found, folder, options.cores, options.force, options.again, show)
         try:
             with _watching(layout, options.quiet) as watch:
-                run_layout(layout, options.cores, options.profile, watch)
+                run_layout(layout, options.cores, options.profile, watch, lock)
         except NotFinished as error:
             print(f"fingerpad: {error}", file=sys.stderr)
             return 3

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.files import BUILT_IN, locked, write_text
+from fingerpad.files import BUILT_IN, disk_is_full, locked, write_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -135,6 +135,9 @@ def lay_out(read: Read, folder: Path, cores: int, force: bool = False, again: bo
         if key not in seen:
             seen.add(key)
             missing.append(number)
+    needed = sum(expected.result_bytes[n] for n in missing)
+    if folder.is_dir() and disk_is_full(folder, needed):
+        raise SweepError(f"--out: '{folder}' has no room for about {needed / 1e6:.2g} MB of results; allowed: a folder that has")
     batches = {}
     for numbers in divided(missing, expected.cost_s, cores):
         name = _digest([keys[n] for n in numbers] + [again])[:12]
@@ -191,22 +194,29 @@ def _described(design: Any, keys: list[str]) -> dict[str, Any]:
 
 
 @contextlib.contextmanager
-def held(folder: Path) -> Iterator[None]:
-    """The folder of a sweep, for this process alone. Raises SweepError."""
+def held(folder: Path) -> Iterator[tuple[int, ...]]:
+    """The folder of a sweep, for this process alone, by the descriptors yielded. Raises SweepError."""
     folder.mkdir(parents=True, exist_ok=True)
     with contextlib.ExitStack() as stack:
         try:
-            stack.enter_context(locked(folder))
+            lock = stack.enter_context(locked(folder))
         except BlockingIOError:
             raise SweepError(f"'{folder}' is being written by another sweep; allowed: another folder, or later") from None
-        yield
+        yield lock
 
 
-def run_layout(layout: Layout, cores: int, profile: str | None = None, watch: Callable[[int, int], object] | None = None) -> None:
+def run_layout(
+    layout: Layout,
+    cores: int,
+    profile: str | None = None,
+    watch: Callable[[int, int], object] | None = None,
+    lock: tuple[int, ...] = (),
+) -> None:
     """Let Snakemake run the batches of a sweep and collect them.
 
     Args:
-        profile: folder of a Snakemake profile, of a cluster for example. watch: called now and then with `Layout.done`.
+        profile: folder of a Snakemake profile, of a cluster for example. watch: called now and then with `Layout.done`. lock: by
+        which the folder is `held`; Snakemake holds it too, for it goes on where this process is killed.
 
     Raises:
         NotFinished: a batch or the collection failed for good. KeyboardInterrupt. What was done is kept in either case.
@@ -221,7 +231,9 @@ def run_layout(layout: Layout, cores: int, profile: str | None = None, watch: Ca
         lock.unlink()
     log = folder / "logs" / "snakemake.log"
     with log.open("w", encoding="utf-8") as said:
-        process = subprocess.Popen([*words, "sweep"], stdout=said, stderr=said, stdin=subprocess.DEVNULL, start_new_session=True)
+        process = subprocess.Popen(
+            [*words, "sweep"], stdout=said, stderr=said, stdin=subprocess.DEVNULL, start_new_session=True, pass_fds=lock
+        )
         try:
             while True:
                 if watch:
@@ -293,7 +305,7 @@ def sweep(
     base = load_scene(scene)
     with contextlib.ExitStack() as stack:
         folder = Path(out) if out is not None else Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="fingerpad-")))
-        stack.enter_context(held(folder))
+        lock = stack.enter_context(held(folder))
         layout = lay_out(load_sweep({"over": over, **more}, folder.name if out else "sweep", base), folder, cores)
-        run_layout(layout, cores, profile)
+        run_layout(layout, cores, profile, lock=lock)
         return xr.load_dataset(folder / "sweep.nc", engine="netcdf4")

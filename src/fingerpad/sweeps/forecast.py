@@ -17,6 +17,8 @@ SECONDS_SCENE = 0.22
 """Of each scene beside its solution: mesh, history, measures, record (see benchmarks)."""
 MEMORY_MB = 400.0
 """Of a process before its first scene."""
+RECORD_BYTES = 3000.0
+"""Of each scene on the disk: in todo, records, dataset and table."""
 BATCH_S = 60.0
 """What a batch should cost at least; a sweep that has fewer of these than cores is divided further, down to LEAST_S."""
 LEAST_S = 8.0
@@ -29,12 +31,13 @@ class Forecast:
     """What scenes will cost.
 
     Attributes:
-        cost_s: of each scene, s of one core. memory_MB: of each. effects: name -> in how many scenes it is on. worst_error: the
-        largest that is expected.
+        cost_s: of each scene, s of one core. memory_MB, result_bytes: of each. effects: name -> in how many scenes it is on.
+        worst_error: the largest that is expected.
     """
 
     cost_s: list[float] = field(default_factory=list)
     memory_MB: list[float] = field(default_factory=list)
+    result_bytes: list[float] = field(default_factory=list)
     effects: Counter[str] = field(default_factory=Counter)
     nodes: tuple[int, int] = (0, 0)
     worst_error: float = 0.0
@@ -65,6 +68,7 @@ def forecast(design: Design, progress: Callable[[int], object] | None = None) ->
             raise SceneError(f"{design.shown}: scene {number} ({design.said(number)}): {design.without_name(error)}") from None
         found.cost_s.append(SECONDS_SCENE + how.predicted_cost_s - RULES.seconds_start)
         found.memory_MB.append(MEMORY_MB + 1e-6 * how.nodes * (RULES.bytes_node + RULES.bytes_step * how.steps))
+        found.result_bytes.append(RECORD_BYTES + (how.result_bytes(scene) if design.read.sweep.histories else 0.0))
         found.effects.update(name for name, effect in how.effects.items() if effect.on)
         found.worst_error = max(found.worst_error, how.estimated_error)
         nodes.append(how.nodes)
