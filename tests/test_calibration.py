@@ -169,7 +169,7 @@ def test_force_tells_the_product_of_constant_and_length_and_nothing_of_either(cu
         fit_constant_and_length(curve, DEPTHS, force, {"s": s, "length": length}, sigma) for s, length in ((1, 0.01), (0.1, 0.2))
     ]
     products = [float(np.prod(found.values)) for found in fits]
-    assert products[0] == pytest.approx(products[1], rel=1e-6) == pytest.approx(0.004, rel=0.05)
+    assert products[0] == pytest.approx(products[1], rel=1e-6) == pytest.approx(0.4 * LENGTH, rel=0.05)
     assert abs(np.log(fits[0].values[0] / fits[1].values[0])) > 0.5, "the start decides where on the ridge a fit ends"
     for found in fits:
         assert ridge_correlation(found) < -0.999
@@ -179,7 +179,7 @@ def test_force_tells_the_product_of_constant_and_length_and_nothing_of_either(cu
         constant, patch = curve.force_at(DEPTHS), curve.force_at(DEPTHS) * curve.width_at(DEPTHS)
         return p[0] * constant + p[1] * patch, np.column_stack([constant, patch])
 
-    other = fit(with_width, force, {"a": 0.004, "b": 0.1}, sigma=sigma)
+    other = fit(with_width, force, {"a": 0.4 * LENGTH, "b": 0.1}, sigma=sigma)
     assert np.linalg.matrix_rank(other.jacobian, tol=1e-9 * abs(other.jacobian).max()) == 2
 
 
