@@ -62,7 +62,7 @@ def _judged(row: pd.Series, fine: Measures, rough: Measures) -> tuple[int, Said]
         if row["form"] == "trend":
             trend = TRENDS[row.name](fine)
             verdict, *details = "holds" if trend.holds else "fails", *trend.note.split("; ")
-            short = next((each for each in details if each.startswith("not for")), "") or _counted(trend.shown, row)
+            short = next((each for each in details if each.startswith(("not for", "not from"))), "") or _counted(trend.shown, row)
             long = "; ".join(dict.fromkeys(filter(None, (details[0], short if short in details else ""))))
             parts = row.name, _plain(row["quantity"]), _plain(row["condition"]), verdict, short, _plain(long) or short
             return (2 if trend.holds else 0), Said(*parts)

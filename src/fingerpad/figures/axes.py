@@ -78,6 +78,9 @@ def footnote(frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH) 
     line = ". ".join(filter(None, (first, error)))
     if error and how and len(line) + len(how) + 4 <= width:
         line += f" ({how})"
+    if frame["source"].str.startswith(OTHER_PADS).any():
+        words = ". Faint bars: other pads that the thesis's figures do not tell from this one"
+        line += words if len(line) + len(words) < width else ". Bars: other pads"
     return style.wrapped([line + "."], width)
 
 

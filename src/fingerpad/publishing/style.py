@@ -206,13 +206,14 @@ def study_figure(title: str, note: Sequence[str], height: float, header: float =
 
 
 def letter(fig: Figure) -> None:
-    """Bold lower-case letters above the left end of the panels, if there is more than one; twins and insets have none."""
+    """Bold lower-case letters above the left end of the panels, if there is more than one; twins and insets have none, nor has
+    a matrix of more panels than there are letters."""
     places: dict[tuple, Axes] = {}
     for ax in fig.axes:
         spec = ax.get_subplotspec()
         if spec is not None and ax.get_visible() and ax.axison and ax.get_label() not in ("<colorbar>", "twin"):
             places.setdefault((id(spec.get_gridspec()), spec.num1, spec.num2), ax)
-    if len(places) < 2:
+    if not 2 <= len(places) <= 26:
         return
     for tag, ax in zip("abcdefghijklmnopqrstuvwxyz", places.values(), strict=False):
         ax.annotate(tag, (0, 1), (-4, 5), "axes fraction", "offset points", ha="right", va="baseline", fontweight="bold",

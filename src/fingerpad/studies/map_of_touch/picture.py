@@ -52,10 +52,11 @@ def _levels(grids: list[pd.DataFrame], steps: tuple[float, ...]) -> np.ndarray:
 def _contours(ax: Axes, grid: pd.DataFrame, levels: np.ndarray, title: str) -> None:
     from matplotlib.colors import LogNorm
 
-    norm = LogNorm(levels[0] / 2, levels[-1] * 4)  # no yellow under white lines
+    norm = LogNorm(levels[0] / 2, levels[-1] * 8)  # no yellow under white lines
     low = max(levels[0] * 1e-3, 1e-9)
-    values = np.ma.masked_invalid(np.maximum(grid.values, low))
-    edges = [low, *levels, levels[-1] * 1e3]
+    high = levels[-1] * 4
+    values = np.ma.masked_invalid(np.clip(grid.values, low, 0.99 * high))
+    edges = [low, *levels, high]
     ax.contourf(grid.columns, grid.index, values, edges, cmap=FIELD, norm=norm)
     lines = ax.contour(grid.columns, grid.index, values, levels, colors="white", linewidths=0.7)
     ax.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=6.5, colors="white")
@@ -70,7 +71,7 @@ def contours(frame: pd.DataFrame) -> Figure:
     note = [
         f"{len(frame)} simulated presses and holds of 1 s, {failed} not converged (white); estimated error "
         f"{100 * error.median():.0f} % in the middle, {100 * error.max():.0f} % at most. Dots: the thesis's surfaces. a to d: "
-        "end of the hold, ramp of 40 gf/s; e to g: largest rate by Eq 5-1, which has no ceiling; h: of a to d.",
+        "end of the hold, ramp of 40 gf/s; e to g: largest rate by Eq 5-1, which has no ceiling; h: the most of a to d.",
     ]
     fig = study_figure("A map of touch: curvature, force and ramp rate", note, 4.9)
     axes = fig.subplots(2, 4, sharex=True, sharey=True)

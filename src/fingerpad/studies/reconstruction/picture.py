@@ -40,7 +40,7 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
     told = ", ".join(f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01)
     note = [
         f"{len(frame)} samples; readings of the moduli: {told}. Factors: on the moduli as long-term ones, of instantaneous ones "
-        "the series leaves 0.576. Numbers: rank correlations. Orange: the pad chosen before, one size at a time.",
+        "the series leaves 0.576. Numbers: rank correlations. Orange: the pad chosen before.",
     ]
     fig = study_figure("What the thesis's figures say of its pad", note, TALLEST)
     n = len(columns)
@@ -120,7 +120,7 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
         ax.set_yticks(range(len(rows)), names, fontsize=5.6)
         ax.set(xlim=(CLIP[0] - 0.1, CLIP[1] + 0.1), ylim=(len(rows) - 0.3, -0.7))
         ax.set_title(" and ".join(ROLES[role] for role in roles))
-        ax.set_xlabel("place in the interval: 0 lower end, 1 upper end")
+        ax.set_xlabel("place in the interval, its ends at 0 and 1")
         ax.axhline((rows["role"] == roles[0]).sum() - 0.5, color=INK, lw=0.6)
     header_legend(fig, [handle(name, ls="none", **look) for name, (_, look) in reversed(looks.items())])
     return fig
