@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from fingerpad.measures.errors import PARTS
 from fingerpad.measures.quantities import QUANTITIES
 from fingerpad.publishing.write import TEXT_COLUMNS
 
@@ -26,7 +27,7 @@ TOLERANCES = {name: q.tolerance for name, q in QUANTITIES.items() if q.tolerance
 """Largest difference allowed in a column, relative to the largest value of the curve."""
 
 ERROR_TOLERANCE = 0.2
-"""The same for the columns ``discretisation_error (...)``, small differences of large numbers."""
+"""The same for the columns of errors, small differences of large numbers."""
 
 SIMILARITY = 0.98
 """Least structural similarity of two pictures, averaged where either has ink (1: the same)."""
@@ -37,7 +38,7 @@ BASELINE_DPI = 60
 
 def tolerance(column: str) -> float:
     """Relative tolerance of a column. Raises KeyError for a column without one."""
-    return ERROR_TOLERANCE if column.startswith("discretisation_error") else TOLERANCES[column]
+    return ERROR_TOLERANCE if column in PARTS else TOLERANCES[column]
 
 
 def split_curves(frame: pd.DataFrame) -> Iterable[tuple[str, pd.DataFrame]]:

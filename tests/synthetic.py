@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
+from fingerpad.measures.errors import Companion
 from fingerpad.results import FRICTION_VARIABLES, VARIABLES, Arrays, add_snapshots, arrays, skin_arc
 from fingerpad.scenes.scene import Outline
 from fingerpad.specimen.build import build_pad_mesh
@@ -49,11 +50,17 @@ def all_scenes() -> list[str]:
 
 
 def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
-    """Every scene's made-up history; `scale` multiplies every result (a stand-in for a coarse companion)."""
+    """Every scene's made-up history; `scale` multiplies every result (a stand-in for a companion)."""
     made = {name: history(name, scale, edge) for name in all_scenes()}
     made |= {name: pressed(name, scale, edge) for name in PRESSED}
     made |= {name: ridged(name, scale, edge) for name in RIDGED} | {name: plate_stroke(name, scale, edge) for name in PLATES}
     return made | {name: stroke(name, scale, edge) for name in STROKES}
+
+
+def companions(mesh: float = 1.01, both: float = 1.0125) -> dict[str, Companion]:
+    """Companions of every scene that are so many times away."""
+    first, second = histories(mesh), histories(both)
+    return {name: Companion(first[name], second[name]) for name in first}
 
 
 def _of(variables: dict[str, np.ndarray]) -> dict:

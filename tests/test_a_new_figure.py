@@ -9,7 +9,7 @@ import pytest
 from drawn import REFERENCE
 from fingerpad import load_scene, simulate
 from fingerpad.figures.grammar import Figure, Lines, Panels
-from fingerpad.measures.features import ERROR
+from fingerpad.measures.errors import MESH, PARTS, SAMPLING, STEPS
 from fingerpad.measures.inputs import read_results
 from fingerpad.measures.quantities import FORCE, TIME, Q
 from fingerpad.measures.runs import Runs
@@ -31,9 +31,9 @@ NEW = Figure(
 )
 
 
-def _simulated(folder: Path, name: str, stimulus: dict, edge: str) -> Path:
+def _simulated(folder: Path, name: str, stimulus: dict, edge: str, steps: int) -> Path:
     scene = {"stimulus": stimulus, "motion": [{"press_to_force": "5 gf", "rate": "40 gf/s"}]}
-    history = simulate(load_scene(scene | {"accuracy": {"skin_edge": edge, "steps": 8}}, name))
+    history = simulate(load_scene(scene | {"accuracy": {"skin_edge": edge, "steps": steps}}, name))
     path = folder / name / "history.nc"
     path.parent.mkdir(parents=True)
     history.to_netcdf(path)
@@ -43,8 +43,8 @@ def _simulated(folder: Path, name: str, stimulus: dict, edge: str) -> Path:
 def test_a_figure_is_one_spec_from_runs_to_picture(tmp_path):
     stimuli = {"flat": {"shape": "flat"}, "round": {"shape": "cylinder", "curvature": "400 1/m"}}
     paths = [
-        _simulated(tmp_path / kind, name, stimulus, edge)
-        for kind, edge in (("simulations", "0.5 mm"), ("coarse", "1 mm"))
+        _simulated(tmp_path / kind, name, stimulus, edge, steps)
+        for kind, edge, steps in (("simulations", "0.5 mm", 8), ("coarse_mesh", "1 mm", 8), ("coarse", "1 mm", 4))
         for name, stimulus in stimuli.items()
     ]
     assert NEW.needs == NEW.read_companions == ("flat", "round")
@@ -53,11 +53,12 @@ def test_a_figure_is_one_spec_from_runs_to_picture(tmp_path):
     publish(NEW.draw(frame), frame, tmp_path / "fig_6-1.png")
 
     saved = read_frame(tmp_path / "fig_6-1.csv")
-    assert list(saved) == ["source", "series", "time (s)", "sunk (mm)", "force (gf)", ERROR]
+    assert list(saved) == ["source", "series", "time (s)", "sunk (mm)", "force (gf)", *PARTS]
     ends = saved.dropna(subset="sunk (mm)").groupby("series", sort=False).last()
     assert ends["force (gf)"].tolist() == pytest.approx([5, 5], rel=1e-3)
     assert 0 < ends.loc["flat plate", "sunk (mm)"] < ends.loc["2.5 mm cylinder", "sunk (mm)"] < 2
-    assert (ends[ERROR] > 0).all() and (ends[ERROR] < 30).all()  # of SUNK: FORCE is prescribed
+    assert (ends[list(PARTS)] > 0).all(axis=None) and (ends[MESH] < 30).all()  # of SUNK: FORCE is prescribed
+    assert (ends[[STEPS, SAMPLING]] < 3).all(axis=None)
     assert saved["source"].tolist()[-2:] == ["thesis axis range (T103)"] * 2
 
     (ax,) = NEW.draw(saved).axes

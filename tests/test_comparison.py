@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.claims.comparison import COLUMNS, GIVEN, TRENDS, scores, summary, thesis_comparison
+from fingerpad.claims.comparison import COLUMNS, GIVEN, PARTS, TRENDS, scores, summary, thesis_comparison
 from fingerpad.claims.reasons import REASONS, reason
 from fingerpad.claims.rows import SETS, Number, numbers
 from fingerpad.claims.sensitivity import NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
@@ -17,7 +17,7 @@ from fingerpad.claims.verdicts import judge
 from fingerpad.measures.features import centre_node, scene_name
 from fingerpad.measures.measure import Measure
 from fingerpad.measures.table import COLUMNS as MEASURE_COLUMNS
-from fingerpad.measures.table import MEASURES, Measures, measures_table, read_measures, write_measures
+from fingerpad.measures.table import MEASURES, Instead, Measures, measures_table, read_measures, write_measures
 from fingerpad.publishing.write import markdown, publish_table
 from fingerpad.reference_data import read_reference
 from fingerpad.scenes.scene import load_scene
@@ -31,15 +31,15 @@ REFERENCE, SCENES = CONFIG / "reference/thesis_numbers.csv", CONFIG / "scenes"
 @pytest.fixture(scope="module")
 def made():
     histories = synthetic.histories()
-    return histories, synthetic.histories(1.01), synthetic.meshes(histories)
+    return histories, synthetic.companions(1.0125, 1.01), synthetic.meshes(histories)
 
 
 def _compared(histories, coarse, meshes):
-    return thesis_comparison(Measures.of(histories, meshes), Measures.of(coarse), REFERENCE).set_index("id")
+    return thesis_comparison(Measures.of(histories, meshes), Instead.of(histories, coarse), REFERENCE).set_index("id")
 
 
 def _sensitivity(histories, coarse, meshes):
-    return TABLES["sensitivity"](Measures.of(histories, meshes), Measures.of(coarse), REFERENCE)
+    return TABLES["sensitivity"](Measures.of(histories, meshes), Instead.of(histories, coarse), REFERENCE)
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ class Asked(Measures):
 
 def test_every_measure_is_asked_for(with_variants):
     histories, coarse, meshes = with_variants
-    fine, rough = Asked(Measures.of(histories, meshes).find), Measures.of(coarse)
+    fine, rough = Asked(Measures.of(histories, meshes).find), Instead.of(histories, coarse)
     thesis_comparison(fine, rough, REFERENCE)
     reference = read_reference(REFERENCE)
     for id_, number in numbers(reference).items():
@@ -127,10 +127,14 @@ def test_the_table_says_what_the_histories_do(made, tmp_path):
     rows = read_measures(tmp_path / "measures.csv")
     assert list(rows.columns) == list(MEASURE_COLUMNS) and rows["unit"].eq(rows["quantity"].map(lambda q: MEASURES[q].unit)).all()
     assert not rows.duplicated(["scene", "quantity", "condition"]).any()
-    for column, live in (("value", Measures.of(few, meshes)), ("companion", Measures.of(rough))):
+    instead = Instead.of(few, rough)
+    columns = {"value": Measures.of(few, meshes), "mesh_companion": instead.mesh, "companion": instead.both}
+    columns |= {"sparse_mesh_companion": instead.sparse_mesh, "sparse": instead.sparse}
+    for column, live in columns.items():
         kept = Measures.in_table(rows, column)
         for quantity, scene in {(r.quantity, r.scene) for r in rows.itertuples() if np.isfinite(getattr(r, column))}:
             assert kept.find(quantity, scene) == pytest.approx(live.find(quantity, scene), rel=0, abs=0, nan_ok=True)
+    kept = Measures.in_table(rows, "companion")
     with pytest.raises(KeyError, match="ramp40_k79"):
         kept("width", "ramp40_k79", "end")
     with pytest.raises(KeyError, match="steady_line"):
@@ -245,18 +249,19 @@ def test_outside_rows_say_by_how_much(table):
 
 def test_the_error_is_the_difference_to_the_companion_in_the_rows_units(table):
     row = table.loc["T123"]
-    assert row["discretisation_error"] == pytest.approx(0.01 * row["simulated"], rel=0.05)
+    assert row["mesh_error"] == pytest.approx(0.0125 * row["simulated"], rel=0.05)
+    assert row["time_step_error"] == pytest.approx(0.0025 * row["simulated"], rel=0.05) and row["sampling_error"] >= 0
 
 
-def test_only_results_have_a_discretisation_error(table):
+def test_only_results_have_errors(table):
     numbers = table[table["verdict"].isin(["inside", "plausible", "outside"])]
-    assert numbers["discretisation_error"].isna().equals(numbers["role"].isin(GIVEN))
+    assert all(numbers[part].isna().equals(numbers["role"].isin(GIVEN)) for part in PARTS)
 
 
 def test_every_published_result_states_its_error():
     published = pd.read_csv(CONFIG.parent / "figures/tables/thesis_comparison.csv")
     results = published[published["role"].isin(("result", "calibrated")) & published["simulated"].notna()]
-    assert len(results) > 150 and results["discretisation_error"].notna().all()
+    assert len(results) > 150 and results[list(PARTS)].notna().all(axis=None)
 
 
 def test_results_are_given_in_four_digits_and_inputs_in_full(table):
@@ -314,7 +319,7 @@ def test_what_was_not_simulated_is_not_comparable(made):
 def with_variants(made):
     """The made-up results with variants: fat and radius change nothing, long-term moduli scale every result by 1.3."""
     histories, coarse, meshes = made
-    runs = {variant_scene(v, k): coarse[scene_name("ramp40", k)] for v in VARIANTS for k in SHAPES}
+    runs = {variant_scene(v, k): coarse[scene_name("ramp40", k)].both for v in VARIANTS for k in SHAPES}
     scaled = {variant_scene("long_term", k): synthetic.history(scene_name("ramp40", k), 1.3) for k in SHAPES}
     return histories | runs | scaled, coarse, meshes
 

@@ -47,18 +47,22 @@ def test_chapters(figure, chapter):
 @pytest.mark.parametrize(
     "changes, cells",
     [
-        ({}, "| axis 0 to 40,000 Pa | 39,580 ± 780 Pa | plausible | fills 99% of the axis |"),
-        ({"discretisation_error": 1.0}, "| axis 0 to 40,000 Pa | 39,580 Pa | plausible | fills 99% of the axis |"),
-        ({"verdict": "outside", "thesis_kind": "garbled"}, "| axis 0 to 40,000 Pa? | 39,580 ± 780 Pa | **outside** |"),
+        ({}, "| axis 0 to 40,000 Pa | 39,580 Pa (± mesh 700, steps 80) | plausible | fills 99% of the axis |"),
+        ({"mesh_error": 1.0, "time_step_error": None}, "| axis 0 to 40,000 Pa | 39,580 Pa | plausible | fills 99% of the axis |"),
+        (
+            {"verdict": "outside", "thesis_kind": "garbled"},
+            "| axis 0 to 40,000 Pa? | 39,580 Pa (± mesh 700, steps 80) | **outside** |",
+        ),
         ({"verdict": "not_comparable", "simulated": None}, "| axis 0 to 40,000 Pa |  | not comparable |"),
-        ({"thesis_low": None, "units": "1"}, "| axis 40,000 | 39,580 ± 780 | plausible |"),
+        ({"thesis_low": None, "units": "1"}, "| axis 40,000 | 39,580 (± mesh 700, steps 80) | plausible |"),
     ],
 )
 def test_a_row_says_what_the_thesis_has_what_is_here_and_why(changes, cells, reference, tmp_path):
     row = {
         "id": "T133", "figure": "4-11", "quantity": "highest pressure", "condition": "K = 1260 1/m", "role": "result",
         "thesis_low": 0.0, "thesis_high": 40000.0, "thesis_kind": "axis_range", "simulated": 39580.0,
-        "discretisation_error": 780.0, "units": "Pa", "verdict": "plausible", "note": "fills 99% of the axis",
+        "mesh_error": 700.0, "time_step_error": 80.0, "sampling_error": 0.0, "units": "Pa",
+        "verdict": "plausible", "note": "fills 99% of the axis",
     }  # fmt: skip
     pd.DataFrame([row | changes]).to_csv(tmp_path / "one.csv", index=False)
     page = pages(tmp_path / "one.csv", reference)["4"]

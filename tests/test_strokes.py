@@ -12,10 +12,6 @@ from fingerpad.measures.features import (
     centre_node,
     centre_pressure,
     energy,
-    error_percent,
-    over_time,
-    pressure_profiles,
-    ramp_end,
 )
 from fingerpad.measures.table import MEASURES, Measures
 
@@ -111,31 +107,6 @@ def test_lag_recovers_a_shift(shift):
 
 def test_lag_of_the_made_up_stroke_is_its_drag(made):
     assert Measures.of(made)("lag_of_stepped", "stroke_sub_10") == pytest.approx(0.9, abs=0.4)  # stepped by 1 mm
-
-
-def test_error_of_a_trace_is_relative_to_the_trace_whatever_the_outputs(made):
-    fine, coarse = made["stroke_10"], synthetic.stroke("stroke_10", 1.01)
-    assert st.rms_error(fine, coarse, centre_pressure) == pytest.approx(1.0, rel=1e-6)
-    assert np.isnan(st.rms_error(fine, None, centre_pressure))
-    back = [h.assign(stroke_distance=-h["stroke_distance"]) for h in (fine, coarse)]
-    assert st.rms_error(*back, centre_pressure) == pytest.approx(1.0, rel=1e-6)  # strokes the other way
-    thinned = coarse.isel(time=np.r_[:4, 4 : coarse.sizes["time"] : 2])
-    assert st.rms_error(fine, thinned, centre_pressure) == pytest.approx(1.0, rel=1e-6)  # not how few outputs there are
-
-
-def test_error_of_a_ramp_and_hold_is_that_of_its_curve():
-    """Whatever is wrong between the ends of the legs counts too, and outputs need not be the same."""
-    fine, coarse = synthetic.history("ramp40_k210"), synthetic.history("ramp40_k210", 1.01)
-    read = over_time(centre_pressure)
-    assert error_percent(fine, coarse, read) == pytest.approx(1.0, rel=0.05)
-    thinned = fine.isel(time=np.unique(np.r_[0 : fine.sizes["time"] : 2, ramp_end(fine), fine.sizes["time"] - 1]))
-    assert error_percent(fine, thinned, read) < 0.5 and error_percent(fine, fine, pressure_profiles) == 0
-    assert error_percent(fine, coarse, pressure_profiles) > 0.5
-    middle = ramp_end(fine) // 2
-    wrong = fine["centre_pressure"].copy()
-    wrong[middle] *= 1.5
-    assert error_percent(fine, fine.assign(centre_pressure=wrong), read) > 1
-    assert np.isnan(error_percent(fine, None, read))
 
 
 # --- trends: each holds in what is made for it, and fails in a mutant --------------------------------------

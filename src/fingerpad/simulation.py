@@ -293,7 +293,7 @@ class Simulation:
         plan = self.plan
         half_width = min(width / 2, plan.contact.narrowest or np.inf)
         around = plan.mesh_size and plan.mesh_size.skin_edge
-        steps = plan.steps_per_leg if plan.timed else None
+        steps = plan.steps_per_leg / plan.stride if plan.timed else None
         found = estimated_error(
             plan.contact_edge,
             half_width or _NO_CONTACT,

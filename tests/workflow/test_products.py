@@ -100,6 +100,15 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
     compared = {scene for figure in thesis.products.drawn for scene in figure.companions}
     assert coarse == {*thesis.config.scenes, *compared, "calibration_plate", "calibration_ramp_hold", "stroke_sub_10"}
     assert {"ramp150_flat", "press10_flat"} <= coarse < every
+    assert {Path(p).parent.name for p in outputs if p.startswith("results/thesis/coarse_mesh/")} == coarse
+
+
+def test_companions_are_solved_beside_their_scenes_on_one_mesh_with_all_steps_and_with_every_two_made_one(thesis):
+    (job,) = [job for job in thesis.jobs.values() if job.called == "simulate_stroke_10"]
+    folder = "results/thesis/{}/stroke_10/history.nc"
+    assert job.outputs["histories"] == [folder.format(kind) for kind in ("simulations", "coarse_mesh", "coarse")]
+    assert (job.values["meshes"], job.values["strides"]) == (["own", "draft", "draft"], ["1", "1", "2"])
+    assert set(job.values["accuracies"]) == {"as_stated"}
 
 
 def test_the_table_of_measures_has_every_companion_there_is(thesis):

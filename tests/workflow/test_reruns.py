@@ -26,7 +26,7 @@ pytestmark = [pytest.mark.workflow, pytest.mark.slow]
 
 SMOKE = ("--configfile", "config/smoke.yaml")
 HISTORY = "results/smoke/simulations/homogeneous_flat/history.nc"
-COMPANION = "results/smoke/coarse/homogeneous_flat/history.nc"
+COMPANIONS = {f"results/smoke/{kind}/homogeneous_flat/history.nc" for kind in ("coarse_mesh", "coarse")}
 
 
 TOUCHED = (
@@ -46,7 +46,7 @@ def test_nothing_is_left_to_do_and_touched_files_and_remarks_rerun_nothing(finis
 def test_a_changed_scene_reruns_that_scene(finished):
     with finished.edited("config/scenes/homogeneous_flat.yaml", "friction: 0.1\n"):
         jobs = finished.planned(*SMOKE)
-    assert {HISTORY, COMPANION} <= jobs["simulate_homogeneous_flat"]
+    assert {HISTORY, *COMPANIONS} <= jobs["simulate_homogeneous_flat"]
     assert {name for name in jobs if name.startswith("simulate_")} == {"simulate_homogeneous_flat"}
     assert not {"calibrate", "calibration_pictures"} & set(jobs)
 

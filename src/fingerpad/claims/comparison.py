@@ -16,9 +16,9 @@ A row that is outside says by how much, the reason as far as runs tell it, and w
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import astuple
 from os import PathLike
 
-import numpy as np
 import pandas as pd
 
 from fingerpad.claims import trends_pressing, trends_stroking  # noqa: F401 (enter their trends)
@@ -27,36 +27,38 @@ from fingerpad.claims.rows import Number
 from fingerpad.claims.sensitivity import evidence
 from fingerpad.claims.trends import TRENDS
 from fingerpad.claims.verdicts import is_inside, judge, significant
-from fingerpad.measures.table import Measures
+from fingerpad.measures.table import Instead, Measures
 from fingerpad.reference_data import read_reference
 
 AGREES = ("inside", "plausible", "trend_holds")
 """Verdicts of what is as the thesis says."""
 GIVEN = ("input", "count")
-"""Roles of what goes into the simulations: printed in full, without a discretisation error."""
+"""Roles of what goes into the simulations: printed in full, without an error."""
+PARTS = ("mesh_error", "time_step_error", "sampling_error")
+"""Columns of what a number is wrong by, each in the row's units."""
 
 COLUMNS = (
     "id", "figure", "quantity", "condition", "role", "score", "thesis_low", "thesis_high", "thesis_kind", "simulated",
-    "discretisation_error", "units", "verdict", "note",
+    *PARTS, "units", "verdict", "note",
 )  # fmt: skip
 
 
-def thesis_comparison(fine: Measures, rough: Measures, reference_csv: str | PathLike) -> pd.DataFrame:
+def thesis_comparison(fine: Measures, instead: Instead, reference_csv: str | PathLike) -> pd.DataFrame:
     """Compare the thesis's numbers and trends of chapters 3 to 5 with the simulated ones.
 
     Parameters
     ----------
-    fine, rough : measures of the histories, and of their companions on coarser meshes (may know nothing).
+    fine, instead : measures of the histories, and of what tells their errors (may know nothing).
     reference_csv : the table of printed numbers (see `read_reference`).
 
     Returns
     -------
-    One row an id, columns `COLUMNS`; numbers in the row's `units`. The discretisation error is the difference
-    of the row's number between mesh and companion, in the same units, empty for what is `GIVEN`. Scenes that
+    One row an id, columns `COLUMNS`; numbers in the row's `units`. Its errors, by `PARTS`, are what the row's number
+    changes by, in the same units, empty for what is `GIVEN`; it is judged by their sum. Scenes that
     were not simulated give ``not_comparable``. `summary` of the rows is in ``attrs["summary"]``.
     """
     reference = read_reference(reference_csv)
-    rows = [_row(entry, fine, rough, reference) for _, entry in reference.iterrows() if entry["form"] != "layout"]
+    rows = [_row(entry, fine, instead, reference) for _, entry in reference.iterrows() if entry["form"] != "layout"]
     table = pd.DataFrame(rows, columns=COLUMNS)
     table.attrs["summary"] = summary(table, reference)
     return table
@@ -117,10 +119,10 @@ def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
     )
 
 
-def _row(entry: pd.Series, fine: Measures, rough: Measures, reference: pd.DataFrame) -> dict:
+def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataFrame) -> dict:
     row = {"id": entry.name} | {k: entry[k] for k in ("figure", "quantity", "condition", "role", "units")}
     row |= {f"thesis_{k}": entry[k] for k in ("low", "high", "kind")} | {"score": score_of(entry)}
-    row |= {"simulated": float("nan"), "discretisation_error": float("nan")}
+    row |= dict.fromkeys(("simulated", *PARTS), float("nan"))
     try:
         if entry["form"] == "trend":
             trend = TRENDS[entry.name](fine)
@@ -136,23 +138,15 @@ def _row(entry: pd.Series, fine: Measures, rough: Measures, reference: pd.DataFr
         verdict, *notes = judge(value, 0.0, entry)
         notes += [reason(entry["reason"], fine, number)] * (verdict == "outside" or entry["form"] == "unlike")
         return row | {"simulated": value, "verdict": verdict, "note": _note(*notes, _doubt(entry))}
-    error = _error(number, value, rough)
-    allowed = float(np.nan_to_num(error))
+    errors = instead.errors(number, value)
+    allowed = errors.total
     verdict, *notes = judge(value, allowed, entry)
     if verdict == "outside" or entry["form"] in ("estimate", "unlike") or entry["reason"] == "panels":
         notes.append(reason(entry["reason"], fine, number))
     if verdict == "outside":
-        notes.append(evidence(entry.name, number, value, allowed, fine, rough, reference))
-    row |= {"simulated": significant(value, 4), "discretisation_error": significant(error, 2)}
+        notes.append(evidence(entry.name, number, value, allowed, fine, instead.both, reference))
+    row |= {"simulated": significant(value, 4)} | {p: significant(e, 2) for p, e in zip(PARTS, astuple(errors), strict=True)}
     return row | {"verdict": verdict, "note": _note(*notes, _at_start(number, entry, fine), _doubt(entry))}
-
-
-def _error(number: Number, value: float, rough: Measures) -> float:
-    """The discretisation error: what the number changes by when it is made of the companions."""
-    try:
-        return abs(value - number(rough))
-    except KeyError:
-        return float("nan")
 
 
 def _at_start(number: Number, entry: Mapping, fine: Measures) -> str:

@@ -7,7 +7,7 @@ from os import PathLike
 
 import pandas as pd
 
-from fingerpad.claims.comparison import summary
+from fingerpad.claims.comparison import PARTS, summary
 from fingerpad.claims.verdicts import significant
 from fingerpad.publishing.write import markdown
 
@@ -85,10 +85,12 @@ def _thesis(row: pd.Series, on_axis: bool) -> str:
 def _here(row: pd.Series) -> str:
     if not _there(row["simulated"]):
         return ""
-    error = row["discretisation_error"]
-    shows = _there(error) and error >= 5e-5 * abs(row["simulated"])  # in one of four digits
-    spread = f" ± {_number(significant(error, 2))}" if shows and error > 0 else ""
-    return _with_unit(_number(row["simulated"]) + spread, row["units"])
+    said = [
+        f"{word} {_number(significant(error, 2))}"
+        for part, word in zip(PARTS, ("mesh", "steps", "sampling"), strict=True)
+        if _there(error := row[part]) and error > 0 and error >= 5e-5 * abs(row["simulated"])  # in one of four digits
+    ]
+    return _with_unit(_number(row["simulated"]), row["units"]) + f" (± {', '.join(said)})" * bool(said)
 
 
 def _with_unit(text: str, unit: str) -> str:

@@ -9,14 +9,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-import numpy as np
 import pandas as pd
 
 from fingerpad.claims import trends_pressing, trends_stroking  # noqa: F401 (enter their trends)
 from fingerpad.claims.rows import Number
 from fingerpad.claims.trends import TRENDS
 from fingerpad.claims.verdicts import digits, judge
-from fingerpad.measures.table import Measures
+from fingerpad.measures.table import Instead, Measures
 
 
 @dataclass(frozen=True)
@@ -31,16 +30,16 @@ class Said:
     detail: str
 
 
-def said(number: str, fine: Measures, rough: Measures, reference: pd.DataFrame) -> Said | None:
+def said(number: str, fine: Measures, instead: Instead, reference: pd.DataFrame) -> Said | None:
     """What speaks for a figure of a number (``4-10``), as far as the measures know its scenes; None if nothing does.
 
-    fine, rough: measures of the histories and of their companions. reference: of `read_reference`.
+    fine, instead: measures of the histories, and of what tells their errors. reference: of `read_reference`.
     """
     rows = reference[(reference["figure"] == number) & (reference["form"] != "layout")]
     drawn = rows["condition"].astype(str).str.contains(DRAWN, regex=False)  # of several definitions only that which is drawn
     rows = rows[drawn | ~rows["quantity"].isin(rows.loc[drawn, "quantity"])]
     for roles in SPEAKING:
-        judged = (_judged(row, fine, rough) for _, row in rows[rows["role"].isin(roles)].iterrows())
+        judged = (_judged(row, fine, instead) for _, row in rows[rows["role"].isin(roles)].iterrows())
         if found := [one for one in judged if one is not None]:
             break
     else:
@@ -57,7 +56,7 @@ DRAWN = "(headline)"
 _PARTS = ("words", "condition", "verdict", "number", "detail")
 
 
-def _judged(row: pd.Series, fine: Measures, rough: Measures) -> tuple[int, Said] | None:
+def _judged(row: pd.Series, fine: Measures, instead: Instead) -> tuple[int, Said] | None:
     try:
         if row["form"] == "trend":
             trend = TRENDS[row.name](fine)
@@ -70,11 +69,7 @@ def _judged(row: pd.Series, fine: Measures, rough: Measures) -> tuple[int, Said]
         value = measured(fine)
     except KeyError:
         return None
-    try:
-        error = abs(value - measured(rough))
-    except KeyError:
-        error = 0.0
-    verdict, remark = judge(value, float(np.nan_to_num(error)), row)
+    verdict, remark = judge(value, instead.errors(measured, value).total, row)
     if verdict == "not_comparable":
         return None
     units, scale = ("kPa", 1e-3) if row["units"] == "Pa" and "pressure" in row["quantity"] else (row["units"], 1.0)

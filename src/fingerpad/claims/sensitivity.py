@@ -22,7 +22,7 @@ from fingerpad.claims.rows import Number
 from fingerpad.claims.verdicts import is_inside, significant
 from fingerpad.measures.features import SURFACES, scene_name
 from fingerpad.measures.runs import FAST, NINE, PADS, RIDGED_NINE
-from fingerpad.measures.table import Measures
+from fingerpad.measures.table import Instead, Measures
 from fingerpad.reference_data import read_reference
 
 VARIANTS = ("fat", "long_term", "radius")
@@ -64,12 +64,12 @@ def thesis_range(id_: str, units: str, reference: pd.DataFrame) -> dict:
     return entry
 
 
-def sensitivity(fine: Measures, rough: Measures, reference_csv: str | PathLike) -> pd.DataFrame:
+def sensitivity(fine: Measures, instead: Instead, reference_csv: str | PathLike) -> pd.DataFrame:
     """What the variants make of widths, depths, pressures and strain energies.
 
     Parameters
     ----------
-    fine, rough : measures of the histories, and of their companions on coarser meshes.
+    fine, instead : measures of the histories, and of their companions on coarser meshes with coarser steps among others.
     reference_csv : the table of printed numbers.
 
     Returns
@@ -84,7 +84,7 @@ def sensitivity(fine: Measures, rough: Measures, reference_csv: str | PathLike) 
         for label in SHAPES:
             values = {
                 "base": _read(fine, measure, NINE[label], at),
-                "base_draft": _read(rough, measure, NINE[label], at),
+                "base_draft": _read(instead.both, measure, NINE[label], at),
                 **{v: _read(fine, measure, variant_scene(v, label), at) for v in VARIANTS},
             }
             row = {"quantity": quantity, "surface": label, "thesis_ids": ids.get(label, ""), "units": units}

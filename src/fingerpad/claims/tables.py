@@ -10,4 +10,4 @@ from fingerpad.claims.comparison import thesis_comparison
 from fingerpad.claims.sensitivity import sensitivity
 
 TABLES: dict[str, Callable[..., pd.DataFrame]] = {"thesis_comparison": thesis_comparison, "sensitivity": sensitivity}
-"""Table name -> function(measures, measures of the companions, reference_csv)."""
+"""Table name -> function(measures, what tells their errors, reference_csv)."""

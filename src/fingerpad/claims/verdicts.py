@@ -3,9 +3,9 @@
 The rule follows from the row's `form`:
 
 value
-    inside if within the row's relative tolerance (0: equal to six digits) or the discretisation error.
+    inside if within the row's relative tolerance (0: equal to six digits) or the error.
 range
-    inside if between low and high, give or take the discretisation error.
+    inside if between low and high, give or take the error.
 value without low
     the thesis does not state it: not judged.
 estimate
@@ -17,7 +17,8 @@ axis
     last tick but one (`tick`), where an axis that the curves alone set would have ended; where that is not known it has to
     fill at least `FILL` of it.
 
-The discretisation error helps by no more than `HELP` of the bound: a number that is inside only by a large error is outside.
+The error, of mesh, time steps and sampling together, helps by no more than `HELP` of the bound: a number that is inside only by
+a large error is outside.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ import numpy as np
 FILL = 0.5
 """Least share of a thesis axis that its largest curve should fill, where no tick is known."""
 HELP = 0.02
-"""Largest share of a bound by which the discretisation error may bring a number inside: the accuracy that is asked for."""
+"""Largest share of a bound by which the error may bring a number inside: the accuracy that is asked for."""
 
 
 def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
@@ -37,7 +38,7 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
 
     Parameters
     ----------
-    value, error : the number and its discretisation error, both in the row's units.
+    value, error : the number and its error, both in the row's units.
     entry : low, high, form and tolerance of the reference row, and its tick if it has one.
 
     Returns

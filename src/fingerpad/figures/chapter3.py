@@ -27,13 +27,14 @@ from fingerpad.figures.geometry import (
     mesh_rows,
     quality_of,
     section,
-    section_error,
+    section_errors,
     section_rows,
     stratum_corneum,
     surface_deflection,
 )
 from fingerpad.figures.grammar import Data, Figure, Own, Panels, below
-from fingerpad.measures.features import ERROR, SIMULATED, error_percent, is_simulated, ramp_end
+from fingerpad.measures.errors import PARTS, Curve, curve_errors, number_errors, over_time
+from fingerpad.measures.features import SIMULATED, is_simulated
 from fingerpad.measures.quantities import DEFLECTION, DEPTH, NEWTON, TIME, X, Y
 from fingerpad.measures.runs import NINE, Runs
 from fingerpad.measures.steady import (
@@ -74,9 +75,7 @@ def note_of(words: Callable[[str], list[str]]) -> Callable[[pd.DataFrame], list[
     """A note in words about the error of a frame."""
 
     def note(frame: pd.DataFrame) -> list[str]:
-        worst = frame[ERROR].max()
-        error = f"Discretisation error {worst:.2g} %" if np.isfinite(worst) else "Discretisation error not computed"
-        return words(error)
+        return words(axs.error_text(frame) or "Errors not computed")
 
     return note
 
@@ -89,8 +88,8 @@ def section_lines(data: Data) -> pd.DataFrame:
     lines = boundaries(data.meshes[FLAT["flat"]])
     lines["stratum corneum"] = lines["skin"]
     lines["epidermis"] = inward(lines["skin"], stratum_corneum(data.histories[FLAT["flat"]]))
-    parts = [pd.DataFrame({"layer": k, X: lines[k][:, 0] * 1e3, Y: lines[k][:, 1] * 1e3, ERROR: np.nan}) for k in LAYERS]
-    return pd.concat(parts, ignore_index=True)
+    parts = [pd.DataFrame({"layer": k, X: lines[k][:, 0] * 1e3, Y: lines[k][:, 1] * 1e3}) for k in LAYERS]
+    return pd.concat(parts, ignore_index=True).assign(**dict.fromkeys(PARTS, np.nan))
 
 
 def three_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
@@ -178,22 +177,24 @@ def measured_source(rows: pd.DataFrame) -> str:
     return "measured (" + "; ".join(rows["source"].drop_duplicates()) + "; digitised by a third party)"
 
 
-def deflection_at(place: float) -> Callable[[xr.Dataset], float]:
-    """Feature: deflection (m) at a lateral distance (m) at the end of the motion."""
-    return lambda history: float(np.interp(place, *surface_deflection(history, history.sizes["time"] - 1)))
+def shown_deflection(history: xr.Dataset, depth: float) -> tuple[np.ndarray, np.ndarray]:
+    """Lateral distance and deflection (m) of the surface that is shown, pressed to a depth (m)."""
+    x, deflection = surface_deflection(history, leg_end(history, depth))
+    near = abs(x) <= SHOWN * 1e-3
+    return x[near], deflection[near]
 
 
 def deflections(data: Data) -> pd.DataFrame:
     """Deflection of the skin in the steady state at several depths of three indenters, and measured ones."""
     parts, points = [], []
     for panel, history, coarse in data.runs(Runs("panel", PROFILES)):
-        error = error_percent(history, coarse, *(deflection_at(x * 1e-3) for x in (0.5, 1.0, 2.0)))
         depths = pressed_depths(history)
         for depth in depths:
             x, deflection = (1e3 * each for each in surface_deflection(history, leg_end(history, depth)))
             near = abs(x) <= SHOWN
-            part = {"panel": panel, "series": f"{depth * 1e3:g} mm", X: x[near], DEFLECTION: deflection[near], ERROR: error}
-            parts.append(pd.DataFrame(part))
+            errors = curve_errors(history, coarse, Curve(partial(shown_deflection, depth=depth), outputs=False))
+            part = {"panel": panel, "series": f"{depth * 1e3:g} mm", X: x[near], DEFLECTION: deflection[near]}
+            parts.append(pd.DataFrame(part | errors.columns))
         if data.measured is None or "cylinder" not in panel:
             continue
         rows = data.measured[np.isclose(data.measured["diameter_mm"], float(panel.split()[1]))]
@@ -209,7 +210,7 @@ def at_depths(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     looks = style.ordered("depth", simulated["series"])
     for name, curve in simulated.groupby("series", sort=False):
         look = looks[name]
-        ax.plot(curve[X], curve[DEFLECTION], color=look["color"], ls=look["ls"], lw=1.2)
+        axs.curve(ax, curve, X, DEFLECTION, color=look["color"], ls=look["ls"], lw=1.2)
         points = rows[~is_simulated(rows) & (rows["series"] == name)]
         ax.plot(points[X], points[DEFLECTION], look["marker"], color=look["color"], ms=3)
     axs.limit_axis(ax, rows, X, "x")
@@ -259,10 +260,10 @@ def length_in(frame: pd.DataFrame) -> float:
 def forces_over_depth(data: Data) -> pd.DataFrame:
     """Steady force against the depth of a flat plate, and the measured forces of each subject."""
     ((_, plate, coarse),) = data.runs(STEADY_PLATE)
-    ends = [partial(steady_force, depth=z) for z in pressed_depths(plate)]
     long = 1e3 * contact_length(plate)
     model = pd.DataFrame({"series": "model", DEPTH: DEPTH.read(plate), NEWTON: NEWTON.read(plate)})
-    model[ERROR] = error_percent(plate, coarse, *ends)
+    errors = curve_errors(plate, coarse, Curve(lambda history: (DEPTH.read(history), NEWTON.read(history)), outputs=False))
+    model = model.assign(**errors.columns)
     points, fitted = [], []
     if data.measured is not None:
         rows = data.measured[(data.measured["indenter"] == "flat plate") & (data.measured["speed_mm_per_s"] == 0)]
@@ -313,14 +314,14 @@ def ramp_and_hold(data: Data, runs: Runs, until: float) -> pd.DataFrame:
     parts = []
     for series, history, coarse in data.runs(runs):
         time = np.append(history["time"].values[history["time"].values < until * (1 - 1e-9)], until)
-        error = error_percent(history, coarse, lambda d: float(force_N(d)[ramp_end(d)]), lambda d: float(force_N(d)[-1]))
+        errors = curve_errors(history, coarse, over_time(force_N))
         values = np.interp(time, history["time"].values, force_N(history))
         source = f"{SIMULATED}: {LONG}{1e3 * contact_length(history):g} mm"
-        part = {"source": source, "series": series, "phase": "ramp and hold", TIME: time, NEWTON: values, ERROR: error}
+        part = {"source": source, "series": series, "phase": "ramp and hold", TIME: time, NEWTON: values} | errors.columns
         parts.append(pd.DataFrame(part))
         level = partial(steady_force, depth=max(pressed_depths(history)))
         part = {"source": source, "series": series, "phase": "steady state", TIME: [0.0, until], NEWTON: level(plate)}
-        parts.append(pd.DataFrame(part | {ERROR: error_percent(plate, companion, level)}))
+        parts.append(pd.DataFrame(part | number_errors(plate, companion, level).columns))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -333,7 +334,7 @@ def forces_over_time(ax: Axes, frame: pd.DataFrame, spec: Figure, at_curves: boo
         curve, steady = (rows[rows["phase"] == phase] for phase in ("ramp and hold", "steady state"))
         ax.plot(steady[TIME], steady[NEWTON], **dashes)
         label = f"{name}: peak / steady {curve[NEWTON].max() / steady[NEWTON].iloc[0]:.2f}"
-        ax.plot(curve[TIME], curve[NEWTON], **look, label="_" * at_curves + label)
+        axs.curve(ax, curve, TIME, NEWTON, **look, label="_" * at_curves + label)
         if at_curves:
             end, away = curve.iloc[-1], {"xytext": (-2, 5), "textcoords": "offset points", "ha": "right"}
             ax.annotate(label, (end[TIME], end[NEWTON]), fontsize=6.5, **away)
@@ -359,9 +360,9 @@ def held(number: str, title: str, scenes: Mapping[str, str], unit: str, until: f
 def under_the_bar(data: Data) -> pd.DataFrame:
     """The section, undeformed and under the 1/16 inch bar at 2 mm: closed layer boundaries, the bar's lower side."""
     history, layers = data.histories[BAR], ("skin", "corneum", "dermis", "fat", "bone")
-    error = section_error(history, data.coarse.get(BAR))
-    pressed = section_rows("1/16 inch bar, 2 mm", "deformed", section(history, 2e-3, corneum=True), (*layers, "indenter"), error)
-    before = section_rows("undeformed", "undeformed", section(history, 0.0, corneum=True), layers, error)
+    errors = section_errors(history, data.coarse.get(BAR))
+    pressed = section_rows("1/16 inch bar, 2 mm", "deformed", section(history, 2e-3, corneum=True), (*layers, "indenter"), errors)
+    before = section_rows("undeformed", "undeformed", section(history, 0.0, corneum=True), layers, errors)
     return pd.concat([before, pressed], ignore_index=True)
 
 
@@ -395,12 +396,12 @@ def six_indentations(data: Data) -> pd.DataFrame:
     parts, layers = [], ("corneum", "dermis", "fat")
     for panel, (scene, depth) in SECTIONS.items():
         history = data.histories[scene]
-        error = section_error(history, data.coarse.get(scene))
+        errors = section_errors(history, data.coarse.get(scene))
         before = section(history, 0.0, corneum=True)
-        parts.append(section_rows(panel, "undeformed", before, (*layers, "bone"), error))
+        parts.append(section_rows(panel, "undeformed", before, (*layers, "bone"), errors))
         if depth:
             after = section(history, depth, corneum=True)
-            parts.append(section_rows(panel, "deformed", after, (*layers, "indenter"), error))
+            parts.append(section_rows(panel, "deformed", after, (*layers, "indenter"), errors))
     return pd.concat(parts, ignore_index=True)
 
 

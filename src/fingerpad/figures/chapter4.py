@@ -7,27 +7,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from fingerpad.figures import axes as axs
 from fingerpad.figures.grammar import Data, Figure, Lines, Own, Panels, Phases, nine
+from fingerpad.measures.errors import Curve, Errors, at_output, curve_errors, over_time, shared_place
 from fingerpad.measures.features import (
-    ERROR,
     PHASES,
     PRESSURE,
     PRESSURE_SCALE,
     STEADY,
     SURFACES,
     TOP,
-    depth,
     energy_rate,
-    error_percent,
     is_simulated,
-    over_time,
     phase_indices,
+    pressure_at,
     ramp_end,
     receptors_at,
     skin_at,
@@ -94,13 +94,22 @@ def skin(data: Data) -> pd.DataFrame:
     """Skin at rest, at the top of the ramp and in steady state: the upper side, one row a node."""
     parts = []
     for label, history, coarse in data.runs(NINE):
-        error = error_percent(history, coarse, over_time(depth))
         keep = history["skin_y"].values > 0
-        outlines = [(axs.AT_REST, (history["skin_x"].values, history["skin_y"].values))]
-        outlines += [(phase, skin_at(history, index)) for index, phase in phase_indices(history)[-2:]]
-        for phase, (x, y) in outlines:
-            parts.append(pd.DataFrame({"surface": label, "phase": phase, X: x[keep] * 1e3, Y: y[keep] * 1e3, ERROR: error}))
+        at_rest = history["skin_x"].values, history["skin_y"].values
+        outlines = [(axs.AT_REST, at_rest, Errors(0.0, 0.0, 0.0))]
+        for index, phase in phase_indices(history)[-2:]:
+            errors = curve_errors(history, coarse, at_output(float(history["time"][index]), sunk))
+            outlines.append((phase, skin_at(history, index), errors))
+        for phase, (x, y), errors in outlines:
+            part = {"surface": label, "phase": phase, X: x[keep] * 1e3, Y: y[keep] * 1e3}
+            parts.append(pd.DataFrame(part | errors.columns))
     return pd.concat(parts, ignore_index=True)
+
+
+def sunk(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Lateral position at rest and displacement into the pad (m) of the upper skin at one output."""
+    upper = history["skin_y"].values > 0
+    return history["skin_x"].values[upper], -history["skin_displacement_y"].values[index, upper]
 
 
 def implied_widths(data: Data) -> pd.DataFrame:
@@ -128,13 +137,16 @@ def critical_distance(data: Data) -> pd.DataFrame:
 def nodes(data: Data) -> pd.DataFrame:
     """Pressure against time at each skin node of the right half that ever touches."""
     ((_, history, coarse),) = data.runs(K210)
-    shown = surface_nodes(history)
-    rows = {
-        NODE: np.repeat((history["skin_x"].values[shown] * 1e3).round(5), history.sizes["time"]),
-        TIME: np.tile(history["time"].values, len(shown)),
-        P: history[PRESSURE].values[:, shown].T.ravel(),
-    }
-    return pd.DataFrame(rows | {ERROR: error_percent(history, coarse, over_time(P_CENTRE.read))})
+    parts = []
+    for node in surface_nodes(history):
+        x = float(history["skin_x"].values[node])
+        part = {NODE: round(x * 1e3, 5), TIME: history["time"].values, P: history[PRESSURE].values[:, node]}
+        parts.append(
+            pd.DataFrame(
+                part | curve_errors(history, coarse, over_time(partial(pressure_at, place=shared_place(x, coarse)))).columns
+            )
+        )
+    return pd.concat(parts, ignore_index=True)
 
 
 def profiles_and_receptors(data: Data) -> pd.DataFrame:
@@ -143,14 +155,20 @@ def profiles_and_receptors(data: Data) -> pd.DataFrame:
     parts = [pressure.assign(panel="pressure")]
     for label, history, coarse in data.runs(THREE):
         for z in (800e-6, 915e-6):
-            error = error_percent(history, coarse, over_time(sed(z).read))
             row = receptors_at(history, z)
             for index, phase in ((ramp_end(history), TOP), (history.sizes["time"] - 1, STEADY)):
                 part = {"surface": label, "panel": f"{z * 1e6:.0f} um", "phase": phase, TIME: history["time"].values[index]}
                 part |= {X: history["receptor_offset"].values[row] * 1e3}
-                part |= {SED: history["strain_energy_density"].values[index, row], ERROR: error}
-                parts.append(pd.DataFrame(part))
+                part |= {SED: history["strain_energy_density"].values[index, row]}
+                along = at_output(float(history["time"][index]), partial(energy_along, depth=z))
+                parts.append(pd.DataFrame(part | curve_errors(history, coarse, along).columns))
     return pd.concat(parts, ignore_index=True)
+
+
+def energy_along(history: xr.Dataset, index: int, depth: float) -> tuple[np.ndarray, np.ndarray]:
+    """Offset (m) and strain energy density (Pa) of the receptors at a depth (m) at one output."""
+    row = receptors_at(history, depth)
+    return history["receptor_offset"].values[row], history["strain_energy_density"].values[index, row]
 
 
 def axes_of_three(data: Data) -> pd.DataFrame:
@@ -161,11 +179,11 @@ def axes_of_three(data: Data) -> pd.DataFrame:
 
 
 def energy_rates(data: Data) -> pd.DataFrame:
-    """Rate of the strain energy (see `energy_rate` for the differences taken)."""
+    """Rate of the strain energy (see `energy_rate` for the differences taken), with the errors in the ramp, which is shown."""
     parts = []
     for label, history, coarse in data.runs(NINE):
-        error = error_percent(history, coarse, lambda d: float(energy_rate(d, SHOWN_DEPTH)[RATE].max()))
-        parts.append(energy_rate(history, SHOWN_DEPTH).assign(surface=label, **{ERROR: error}))
+        errors = curve_errors(history, coarse, Curve(lambda d: energy_rate(d, SHOWN_DEPTH)[: ramp_end(d) + 1].to_numpy().T))
+        parts.append(energy_rate(history, SHOWN_DEPTH).assign(surface=label, **errors.columns))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -283,7 +301,7 @@ def every_node(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     rows = frame[is_simulated(frame)]
     thick, thin = axs.look("210") | {"lw": 1.8}, {"color": style.GREY, "lw": 0.7}
     for x, trace in rows.groupby(NODE):
-        ax.plot(trace[TIME], trace[P], **thick if abs(x) < 1e-6 else thin)
+        axs.curve(ax, trace, TIME, P, **thick if abs(x) < 1e-6 else thin)
     spacing = np.diff(np.sort(rows[NODE].unique())).mean()
     names = {"centre node": thick, f"other nodes, about {spacing * 1e3:.0f} µm apart": thin}
     ax.legend(handles=[style.handle(name, **look) for name, look in names.items()], loc="upper right")
@@ -323,7 +341,7 @@ def legs_of_rates(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
         jump = int(np.flatnonzero(np.diff(time) == 0)[0]) + 1
         for leg in (slice(jump), slice(jump, None)):
             if rate[leg].max() > seen:
-                ax.plot(time[leg], rate[leg], **axs.look(label))
+                axs.curve(ax, rows[leg], TIME, RATE, whole=rows[:jump], **axs.look(label))
         ax.plot(time[jump - 1 : jump + 1], rate[jump - 1 : jump + 1], color=style.GREY, lw=0.5, zorder=1)
         ends[label] = (time[jump - 1], rate[jump - 1])
     style.label_ends(ax, ends, ends["flat"][0] * 1.5, "curvature (1/m)")

@@ -15,21 +15,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from fingerpad.figures import axes as axs
 from fingerpad.figures.chapter4 import HOLD, K210, OTHER_PADS, WIDTH_IDS, by_surface
 from fingerpad.figures.grammar import Data, Figure, Own, Panels, below, nine
+from fingerpad.measures.errors import PARTS, Curve, curve_errors, over_time, shared_place
 from fingerpad.measures.features import (
-    ERROR,
     PRESSURE,
     SIMULATED,
     SURFACES,
-    centre_pressure,
     energy,
-    error_percent,
     force_gf,
     is_simulated,
-    over_time,
+    pressure_at,
     ramp_end,
     surface_nodes,
 )
@@ -109,6 +108,8 @@ OF = "panel"
 """Column that says which measure of other pads a bar shows."""
 PEAK, STEADY, HELD = (reading("rate", window) for window in ("peak", "steady", "hold"))
 
+RATE_OVER_TIME = Curve(lambda history: predicted_rate(history)[[TIME, IMPULSE_RATE]].to_numpy().T)
+
 # --- rows ------------------------------------------------------------------------------------------------
 
 
@@ -169,24 +170,23 @@ def trains_and_rates(data: Data) -> pd.DataFrame:
         numbers.assign(panel="mean rate of the hold"),
         pd.DataFrame({"panel": "force", TIME: plate["time"].values, FORCE: force_gf(plate)}),
     ]
-    errors = numbers.set_index("surface")[ERROR]
+    errors = numbers.set_index("surface")[list(PARTS)]
     for k, (label, history, _) in enumerate(data.runs(FAST)):
         impulses = raster(predicted_rate(history), TRIALS, SEED + k)
         part = {"panel": "impulses", "surface": label, "series": [f"trial {n}" for n in impulses["trial"]]}
-        parts.append(pd.DataFrame(part | {IMPULSE: impulses[TIME], ERROR: errors[label]}))
+        parts.append(pd.DataFrame(part | {IMPULSE: impulses[TIME], **errors.loc[label]}))
     return below(pd.concat(parts, ignore_index=True), given(data, "hold", 150))
 
 
 def frequencies(data: Data) -> pd.DataFrame:
     """Instantaneous frequency of predicted impulses at 40 gf/s, mean of many trials, and the rate they were made from."""
-    errors = data.numbers(NINE, {IMPULSE_RATE: PEAK}).set_index("surface")[ERROR]
     parts, at = [], np.arange(0, 2.0001, 0.02)
-    for k, (label, history, _) in enumerate(data.runs(NINE)):
-        rate = predicted_rate(history)
+    for k, (label, history, coarse) in enumerate(data.runs(NINE)):
+        rate, errors = predicted_rate(history), curve_errors(history, coarse, RATE_OVER_TIME).columns
         frequency = mean_frequency(raster(rate, AVERAGED, SEED + k), AVERAGED, at)
         parts += [
-            frequency.assign(surface=label, series="frequency of impulses", **{ERROR: errors[label]}),
-            rate[[TIME, IMPULSE_RATE]].assign(surface=label, series="rate", **{ERROR: errors[label]}),
+            frequency.assign(surface=label, series="frequency of impulses", **errors),
+            rate[[TIME, IMPULSE_RATE]].assign(surface=label, series="rate", **errors),
         ]
     return pd.concat(parts, ignore_index=True)
 
@@ -215,13 +215,19 @@ def widths_of_other_pads(data: Data) -> pd.DataFrame:
 
 def rate_and_width(data: Data) -> pd.DataFrame:
     """Predicted rate and inverse contact width in the hold, one row an output and surface."""
-    errors = data.numbers(NINE, {IMPULSE_RATE: HELD}).set_index("surface")[ERROR]
+
+    def held_rate(history: xr.Dataset) -> np.ndarray:
+        return THESIS_RATE.terms(energy(history, RECEPTOR_DEPTH), 0.0)[0][ramp_end(history) :]
+
+    def held_time(history: xr.Dataset) -> np.ndarray:
+        return history["time"].values[ramp_end(history) :]
+
     parts = []
-    for label, history, _ in data.runs(NINE):
+    for label, history, coarse in data.runs(NINE):
         held = history.isel(time=slice(ramp_end(history), None))
-        rate = THESIS_RATE.terms(energy(history, RECEPTOR_DEPTH), 0.0)[0][ramp_end(history) :]
-        part = {"surface": label, TIME: held["time"].values, INVERSE_WIDTH: INVERSE_WIDTH.read(held), IMPULSE_RATE: rate}
-        parts.append(pd.DataFrame(part | {ERROR: errors[label]}))
+        errors = curve_errors(history, coarse, Curve(lambda d: (held_time(d), held_rate(d))))
+        part = {"surface": label, TIME: held["time"].values, INVERSE_WIDTH: INVERSE_WIDTH.read(held)}
+        parts.append(pd.DataFrame(part | {IMPULSE_RATE: held_rate(history)} | errors.columns))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -232,16 +238,16 @@ def nodes_by_law(data: Data) -> pd.DataFrame:
     together, parts = fit_nodes("4-1", nodes), []
     for node in surface_nodes(history)[:NODE_COUNT]:
         x = history["skin_x"].values[node] * 1e3
+        errors = curve_errors(history, coarse, over_time(partial(pressure_at, place=shared_place(x * 1e-3, coarse)))).columns
         part = pd.DataFrame({TIME: history["time"].values, P: history[PRESSURE].values[:, node]})
-        parts.append(part.assign(series="simulated", **{NODE: round(x, 5)}))
+        parts.append(part.assign(series="simulated", **{NODE: round(x, 5)}, **errors))
         own = nodes[np.isclose(nodes[NODE], x)]
         if own["past_peak"].sum() < 4:
             continue
         for series, constants in (("one set", together), ("a set for each", fit_nodes("4-1", own))):
             law = pressure_by_law("4-1", own, constants)[[TIME, P_LAW]]
-            parts.append(law.assign(series=f"Eq 4-1, {series}", **{NODE: round(x, 5)}))
-    error = error_percent(history, coarse, over_time(centre_pressure))
-    return pd.concat(parts, ignore_index=True).assign(**{ERROR: error})
+            parts.append(law.assign(series=f"Eq 4-1, {series}", **{NODE: round(x, 5)}, **errors))
+    return pd.concat(parts, ignore_index=True)
 
 
 def energy_by_pressure(data: Data) -> pd.DataFrame:
@@ -252,7 +258,7 @@ def energy_by_pressure(data: Data) -> pd.DataFrame:
     shown = partial(energy, depth=RECEPTOR_DEPTH)
     parts = [
         energy_from_pressure(history, RECEPTOR_DEPTH, law).assign(
-            surface=label, source=source, **{ERROR: error_percent(history, coarse, over_time(shown))}
+            surface=label, source=source, **curve_errors(history, coarse, over_time(shown)).columns
         )
         for label, history, coarse in runs
     ]
@@ -285,7 +291,7 @@ def linear_in_pressure(data: Data) -> pd.DataFrame:
         law, source = fitted(np.interp(theirs[CURVATURE], rows[CURVATURE], early), theirs[GIVEN_RATE].to_numpy())
         inside = rows[CURVATURE] <= 1.01 * theirs[CURVATURE].max()
         part = {"source": source, "panel": "published", CURVATURE: rows[CURVATURE], MEAN_P: early, GIVEN_RATE: law(early)}
-        parts.append(pd.DataFrame(part)[inside].assign(surface=rows["surface"], **{ERROR: rows[ERROR]}))
+        parts.append(pd.DataFrame(part)[inside].assign(surface=rows["surface"], **rows[list(PARTS)]))
     return below(pd.concat(parts, ignore_index=True), theirs, given(data, "hold", 40))
 
 
@@ -325,7 +331,7 @@ def peak_rates(data: Data) -> pd.DataFrame:
         rows = data.numbers(NINE, columns).assign(panel=f"{depth * 1e6:.0f} um")
         slope, offset, share = straight_line(rows[RATE], rows[GIVEN_RATE])
         parts.append(rows.assign(source=f"{SIMULATED}: Eq 5-1, energies times {factor:.3f}"))
-        by = {GIVEN_RATE: rectified(slope * rows[RATE] + offset), ERROR: rows[ERROR]}
+        by = {GIVEN_RATE: rectified(slope * rows[RATE] + offset)}
         parts.append(rows.assign(source=f"{SIMULATED}: linear in the peak energy rate, R2 {share:.3f}", **by))
     early = data.numbers(FAST, {GIVEN_RATE: partial(rate_in, window="first 200 ms")})
     early = early[early[CURVATURE] < 700].assign(panel="TouchSim", series="predicted, cylinders", source=f"{SIMULATED}: Eq 5-1")
@@ -342,8 +348,9 @@ def stamp(ax: Axes, text: str = "predicted", x: float = 0.985, y: float = 0.03, 
 
 
 def points(ax: Axes, rows: pd.DataFrame, x: str, y: str, **look) -> None:
-    """One point a surface, in the surfaces' colours."""
+    """One point a surface, in the surfaces' colours; the errors of those over 2 % of the largest as bars."""
     look = {"marker": "o", "s": 30, "zorder": 3, "clip_on": False} | look
+    axs.bars(ax, rows, x, y, rows[y].abs().max())
     ax.scatter(rows[x], rows[y], color=[axs.look(label)["color"] for label in rows["surface"]], **look)
 
 
@@ -411,7 +418,7 @@ def nine_frequencies(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
         rate, frequency = rows[rows["series"] == "rate"], rows[rows["series"] != "rate"]
         jump = int(np.flatnonzero(np.diff(rate[TIME]) == 0)[0]) + 1
         for leg in (rate[:jump], rate[jump:]):
-            ax.plot(leg[TIME], leg[IMPULSE_RATE], lw=1.3, **look)
+            axs.curve(ax, leg, TIME, IMPULSE_RATE, whole=rate, lw=1.3, **look)
         often = np.interp(frequency[TIME], rate[TIME], rate[IMPULSE_RATE]) >= OFTEN
         ax.plot(frequency[TIME], frequency[FREQUENCY].where(often), ".", ms=2, **look | {"ls": "none"})
         ends[label] = (2.0, float(np.interp(2.0, rate[TIME], rate[IMPULSE_RATE])))
@@ -470,7 +477,8 @@ def rate_over_width(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     """Time runs from right to left, as the contact grows."""
     axs.wide_limits(ax, rows, INVERSE_WIDTH, IMPULSE_RATE)
     own = rows[is_simulated(rows)]
-    ax.plot(own[INVERSE_WIDTH], own[IMPULSE_RATE], "o-", ms=3, lw=0.8, **axs.look(own["surface"].iloc[0]))
+    look = {"marker": "o", "ls": "-", "ms": 3, "lw": 0.8} | axs.look(own["surface"].iloc[0])
+    axs.curve(ax, own, INVERSE_WIDTH, IMPULSE_RATE, **look)
     ends = {"width_top": own[IMPULSE_RATE].iloc[0], "width_end": own[IMPULSE_RATE].iloc[-1]}
     axs.draw_bands(ax, rows, INVERSE_WIDTH, None, lambda row: ends[row[OF]])
     ax.locator_params(axis="x", nbins=4)
@@ -494,7 +502,7 @@ def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), nodes, strict=False)):
         for series, (column, look) in looks.items():
             own = rows[rows["series"] == series]
-            ax.plot(own[TIME], own[column], **look)
+            axs.curve(ax, own if column == P else own.assign(**dict.fromkeys(PARTS, np.nan)), TIME, column, **look)
         axs.limit_axis(ax, wide, P, marked=k == 5)
         style.in_kilo(ax.yaxis)
         ax.set(title=f"x = {x:.3g} mm", **HOLD)
@@ -507,7 +515,7 @@ def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
 def energy_and_law(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     """Points simulated, line by Eq 4-4, and what is left between them."""
     own = rows[is_simulated(rows)]
-    ax.plot(own[TIME], own[SED], "o", ms=2.4, mfc="none", mew=0.7, **axs.look(own["surface"].iloc[0]))
+    axs.curve(ax, own, TIME, SED, marker="o", ls="none", ms=2.4, mfc="none", mew=0.7, **axs.look(own["surface"].iloc[0]))
     ax.plot(own[TIME], own[SED_LAW], color=style.INK, lw=1)
     left = np.sqrt(np.mean((own[SED] - own[SED_LAW]) ** 2) / np.mean(own[SED] ** 2))
     ax.text(0.97, 0.06, f"r.m.s. residual {left:.0%}", transform=ax.transAxes, ha="right", fontsize=6.5, color=style.GREY)
@@ -636,7 +644,6 @@ FIGURES = (
     Figure("4-3", "Predicted instantaneous frequency, 40 gf/s ramp to 20 gf", NINE, TIME, (FREQUENCY,),
            {TIME: "T091", FREQUENCY: "T090"},
            Panels(height=3.4, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}), rows=frequencies,
-           how="of the largest peak",
            remarks=(f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses (integrate-and-fire, "
                     f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",)),
     of_rates("4-4", "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf", steady_over_peak,
@@ -649,7 +656,7 @@ FIGURES = (
     Figure("4-9", "Predicted rate against the inverse of the contact width in the hold", NINE, INVERSE_WIDTH, (IMPULSE_RATE,),
            {INVERSE_WIDTH: WIDTH_IDS,
             IMPULSE_RATE: by_surface("T107 T109 T111 T113 T117 T119 T121", ("flat", "79", "105", "158", "420", "630", "1260"))},
-           nine(SURFACES, 5.8, fill=rate_over_width, limit=""), rows=rate_and_width, how=OF_THE_LARGEST,
+           nine(SURFACES, 5.8, fill=rate_over_width, limit=""), rows=rate_and_width,
            remarks=(f"{DEEP} Time runs leftwards: the contact grows.", OTHER_PADS), measured="pads", after=widths_of_other_pads),
     Figure("4-17", "Pressure at twelve nodes and its decay by Eq 4-1, K = 210 1/m", K210, TIME, (P, P_LAW),
            {TIME: "T155", P: "T154"}, Own(height=6.2, header=0.16, paint=twelve_nodes), rows=nodes_by_law,

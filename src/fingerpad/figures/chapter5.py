@@ -17,8 +17,9 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.figures import axes as axs
-from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, nine, stack
-from fingerpad.measures.features import ERROR, PRESSURE, SIMULATED, centre_pressure, error_percent, is_simulated, profile, skin_at
+from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, nine, stack, upper_profile
+from fingerpad.measures.errors import PARTS, Curve, curve_errors, over_stroke, shared_place
+from fingerpad.measures.features import PRESSURE, SIMULATED, is_simulated, pressure_at, profile, skin_at
 from fingerpad.measures.quantities import (
     CURVATURE,
     DISTANCE,
@@ -41,7 +42,7 @@ from fingerpad.measures.quantities import (
 )  # fmt: skip
 from fingerpad.measures.runs import NINE, SPEEDS, STEPPED_OVER, SUB_SPEEDS, WITHIN_400, Runs
 from fingerpad.measures.skin import skin_curvature
-from fingerpad.measures.strokes import LOCATIONS, NODES, distance, loaded, nodes_at, profile_and_height, rms_error, time_of
+from fingerpad.measures.strokes import LOCATIONS, NODES, distance, loaded, nodes_at, profile_and_height, time_of
 from fingerpad.measures.table import reading
 from fingerpad.publishing import style
 
@@ -96,28 +97,28 @@ def locations(data: Data, runs: Runs) -> pd.DataFrame:
         over = np.linspace(-5e-3, 5e-3, 201)
         skin = {"series": "skin", X: x[shown] * 1e3, Y: y[shown] * 1e3, P: p[shown]}
         surface = {"series": axs.SURFACE, X: over * 1e3, Y: (heights[index] + shape.outline(over + reached)) * 1e3}
-        error = {ERROR: error_percent(history, coarse, partial(highest_at, at=reached))}
-        for rows, checked in ((skin, error), (surface, {})):
+        errors = curve_errors(history, coarse, Curve(partial(profile_at, at=reached), outputs=False)).columns
+        for rows, checked in ((skin, errors), (surface, {})):
             part = {"source": SIMULATED, "panel": f"{location:g} mm"} | rows | {DISTANCE: reached * 1e3} | checked
             parts.append(pd.DataFrame(part))
     return pd.concat(parts, ignore_index=True)
 
 
-def highest_at(history: xr.Dataset, at: float) -> float:
-    """Largest pressure (Pa) of any node at the stroke distance nearest to one (m)."""
+def profile_at(history: xr.Dataset, at: float) -> tuple[np.ndarray, np.ndarray]:
+    """Position (m) and pressure (Pa) of the upper skin at the stroke distance nearest to one (m)."""
     stroke = loaded(history)
-    return float(stroke[PRESSURE].values[int(np.argmin(abs(distance(stroke) - at)))].max())
+    return upper_profile(stroke, int(np.argmin(abs(distance(stroke) - at))))
 
 
 def nodes_over_time(data: Data) -> pd.DataFrame:
     """Pressure and skin curvature over time at nine nodes, 10 mm/s."""
     ((_, history, coarse),) = data.runs(SUB_TEN)
-    stroke, error = loaded(history), rms_error(history, coarse, centre_pressure)
-    parts = []
+    stroke, parts = loaded(history), []
     for place, node in zip(NODES, nodes_at(stroke), strict=True):
         part = {"panel": f"X = {place:g} mm", NODE: round(1e3 * float(stroke["skin_x"].values[node]), 5), TIME: time_of(stroke)}
-        part |= {P: stroke[PRESSURE].values[:, node], SKIN_CURVATURE: 1e-3 * skin_curvature(stroke, node), ERROR: error}
-        parts.append(pd.DataFrame(part))
+        part |= {P: stroke[PRESSURE].values[:, node], SKIN_CURVATURE: 1e-3 * skin_curvature(stroke, node)}
+        pressed = over_stroke(partial(pressure_at, place=shared_place(float(stroke["skin_x"].values[node]), coarse)))
+        parts.append(pd.DataFrame(part | curve_errors(history, coarse, pressed).columns))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -125,7 +126,7 @@ def largest_energies(data: Data) -> pd.DataFrame:
     """Largest strain energy at 915 um for each curvature: pressed by cylinders, and stroked at 10 mm/s."""
     pressed = data.numbers(PRESSED, {SED: reading("highest_energy", "915 um")}, own=True).assign(series="ramp and hold")
     stroked = data.convexities(TEN_RUN, {SED: "convexity_energy"})
-    return pd.concat([pressed, stroked])[["series", CURVATURE, SED, ERROR]]
+    return pd.concat([pressed, stroked])[["series", CURVATURE, SED, *PARTS]]
 
 
 # --- what layouts do not say -----------------------------------------------------------------------------
@@ -139,7 +140,7 @@ def at_ten(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     words = f"1 to 40 mm/s: at most {apart:.0f} % apart"
     ax.fill_between(extent.index, *extent.to_numpy().T, color="#9fc3d6", lw=0, label=words)
     line = rows[rows["series"] == TEN].sort_values(spec.x)
-    ax.plot(line[spec.x], line[y], color=style.INK, marker="o", ms=3, lw=0.8, label=TEN)
+    axs.curve(ax, line, spec.x, y, points=True, color=style.INK, marker="o", ms=3, lw=0.8, label=TEN)
 
 
 def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
@@ -169,7 +170,7 @@ def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
         axes[1].plot(skin[X], skin[Y], color=style.INK)
         axes[1].set(xlim=(-5, 5), ylim=(4, 6), yticks=[4, 5, 6])
         axs.limit_axis(axes[2], frame, P, text=column == 2)
-        axes[2].plot(skin[X], skin[P], color=style.INK)
+        axs.curve(axes[2], skin, X, P, color=style.INK)
         axes[2].set(xlim=(-5, 5), xlabel=X.label)
         style.in_kilo(axes[2].yaxis)
         for ax, name in zip(axes, (HEIGHT.label, "surface and skin,\ny (mm)", "contact pressure\n(kPa)"), strict=True):
@@ -192,7 +193,7 @@ def two_axes(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
         rows, right = frame[frame["panel"] == panel], ax.twinx()
         right.set_label("twin")
         ax.set_title(panel.replace("-", "−"))
-        right.plot(rows[TIME], rows[P], **LOOKS[P])
+        axs.curve(right, rows, TIME, P, **LOOKS[P])
         right.spines["right"].set_visible(True)
         # zero pressure a third up, as the thesis sets the two apart
         right.set(ylim=(-0.75 * highest, highest), yticks=[0, 5000, 10000])
@@ -252,7 +253,7 @@ FIGURES = (
            {TIME: "T255", P: "T254", SKIN_CURVATURE: "T253"},
            nine(AT_NODES, 5.6, header=0.16, by="panel", titles=str, limit="x",
                 fill=Lines(by="panel", looks=LOOKS, hidden={SKIN_CURVATURE: P})),
-           rows=nodes_over_time, extra=two_axes, how=f"{HOW}, centre pressure"),
+           rows=nodes_over_time, extra=two_axes, how=HOW),
     Figure("5-11", "Centre pressure and scaled skin curvature, 10 mm/s", TEN_RUN, STROKE_TIME, (P_CENTRE, SCALED_CURVATURE),
            {TIME: "T257", P_CENTRE: "T256"}, below(3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
            keep=(DISTANCE,), surface=(0, 80)),

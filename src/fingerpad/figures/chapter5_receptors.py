@@ -18,7 +18,8 @@ import xarray as xr
 from fingerpad.figures import axes as axs
 from fingerpad.figures.chapter5 import DEEP, OTHER, SHALLOW, TEN, TEN_RUN
 from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, below, stack
-from fingerpad.measures.features import ERROR, SIMULATED, error_percent, is_simulated
+from fingerpad.measures.errors import PARTS, Companion, Curve, Errors, curve_errors, over_stroke
+from fingerpad.measures.features import SIMULATED, is_simulated
 from fingerpad.measures.quantities import (
     BURST_RATE,
     BURST_TIME,
@@ -53,7 +54,7 @@ from fingerpad.measures.responses import (
     stroke_law,
 )
 from fingerpad.measures.runs import CYLINDERS, NINE, RIDGED, SPEEDS, WITHIN_350, Runs
-from fingerpad.measures.strokes import distance, energy_at, loaded, rms_error
+from fingerpad.measures.strokes import distance, energy_at, loaded
 from fingerpad.measures.table import reading
 from fingerpad.publishing import style
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate
@@ -91,8 +92,8 @@ def of_rate(column: Q, depth: float = DEEP, law: ImpulseRate = THESIS_RATE) -> Q
     return column.reading(lambda stroke: predicted_rate(stroke, depth, law)[column].to_numpy())
 
 
-def rate_error(history: xr.Dataset, coarse: xr.Dataset | None, depth: float = DEEP, law: ImpulseRate = THESIS_RATE) -> float:
-    return rms_error(history, coarse, of_rate(IMPULSE_RATE, depth, law).read)
+def rate_errors(history: xr.Dataset, coarse: Companion | None, depth: float = DEEP, law: ImpulseRate = THESIS_RATE) -> Errors:
+    return curve_errors(history, coarse, over_stroke(of_rate(IMPULSE_RATE, depth, law).read))
 
 
 def law_of(data: Data, depth: float) -> ImpulseRate:
@@ -112,7 +113,7 @@ def rasters(data: Data, number: str, low: float, high: float, depth: float = DEE
     bars = stroke_histogram(rate, impulses, repetitions).assign(panel=HISTOGRAM)
     rows = pd.concat([ticks, bars], ignore_index=True)
     rows = rows[rows[DISTANCE].between(low, high)].assign(source=PREDICTED, series=TEN)
-    rows[RECEPTOR], rows[ERROR] = depth * 1e6, rate_error(history, coarse, depth, law)
+    rows = rows.assign(**{RECEPTOR: depth * 1e6} | rate_errors(history, coarse, depth, law).columns)
     return pd.concat([data.surface(TEN_RUN[TEN], low, high), rows], ignore_index=True)
 
 
@@ -124,7 +125,7 @@ def frequencies(data: Data) -> pd.DataFrame:
         rate, impulses = impulses_of(history, repetitions, SHALLOW, law)
         frequency = mean_frequency(impulses, repetitions, np.interp(at, rate[DISTANCE], rate[TIME]))[FREQUENCY]
         row = {"source": PREDICTED, "panel": series, "series": series, DISTANCE: at, FREQUENCY: frequency}
-        parts.append(pd.DataFrame(row | {RECEPTOR: SHALLOW * 1e6, ERROR: rate_error(history, coarse, SHALLOW, law)}))
+        parts.append(pd.DataFrame(row | {RECEPTOR: SHALLOW * 1e6} | rate_errors(history, coarse, SHALLOW, law).columns))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -135,9 +136,9 @@ def both_ways(data: Data) -> pd.DataFrame:
         rate = plate_rate(data.histories[scene])
         ticks = raster(rate, STROKES_SHOWN["5-27"], SEED).rename(columns={"trial": TRIAL})[[TRIAL, DISTANCE]]
         side = partial(plate_trace, offset=ASIDE if way == "right" else -ASIDE)
-        error = rms_error(data.histories[right], data.coarse.get(right), side)
+        errors = curve_errors(data.histories[right], data.coarse.get(right), over_stroke(side)).columns
         for panel, rows in ((RASTER, ticks), ("rate", rate[[DISTANCE, IMPULSE_RATE]])):
-            of = {"source": PREDICTED, "series": way, "panel": panel, RECEPTOR: round(DEEP * 1e6), ERROR: error}
+            of = {"source": PREDICTED, "series": way, "panel": panel, RECEPTOR: round(DEEP * 1e6), **errors}
             parts.append(rows.assign(**of))
     return pd.concat(parts, ignore_index=True)
 
@@ -175,7 +176,7 @@ def stroked_and_pressed(data: Data) -> pd.DataFrame:
     ]
     pressed = pd.concat(parts).sort_index(kind="stable")
     burst = burst_rows(data, TEN_RUN, BURST_RATES).rename(columns={BURST_RATE: IMPULSE_RATE}).assign(series=STROKED)
-    columns = ["source", "series", CURVATURE, IMPULSE_RATE, ERROR]
+    columns = ["source", "series", CURVATURE, IMPULSE_RATE, *PARTS]
     return pd.concat([pressed[columns], burst[columns]], ignore_index=True)
 
 
@@ -187,8 +188,8 @@ def by_pressure(data: Data) -> pd.DataFrame:
         stroke = loaded(history)
         sample = skin_sample(stroke, DEEP)
         shared = {"series": series, DISTANCE: distance(stroke) * 1e3, RECEPTOR: DEEP * 1e6}
-        error = rms_error(history, coarse, energy_at(DEEP))
-        parts.append(pd.DataFrame({"source": SIMULATED} | shared | {SED: sample.energy, ERROR: error}))
+        errors = curve_errors(history, coarse, over_stroke(energy_at(DEEP)))
+        parts.append(pd.DataFrame({"source": SIMULATED} | shared | {SED: sample.energy} | errors.columns))
         shifts = {"constant shift": shift, "shift of the skin": skin_shift(stroke)}
         for how, source in BY_PRESSURE.items():
             parts.append(pd.DataFrame({"source": source} | shared | {SED: sample.by(law, shifts[how])}))
@@ -208,7 +209,7 @@ def energy_and_histogram(data: Data) -> pd.DataFrame:
     bars = stroke_histogram(rate, impulses, repetitions)
     times = np.interp(bars[DISTANCE], rate[DISTANCE], rate[TIME] - rate[TIME].iloc[0])
     part = {"source": PREDICTED, "series": TEN, "panel": HISTOGRAM, TIME: times, IMPULSE_RATE: bars[IMPULSE_RATE]}
-    bars = pd.DataFrame(part | {ERROR: rate_error(history, coarse)})
+    bars = pd.DataFrame(part | rate_errors(history, coarse).columns)
     return pd.concat([over_time(data, (SED, RATE)), bars], ignore_index=True)
 
 
@@ -216,9 +217,9 @@ def pressed_rates(data: Data) -> pd.DataFrame:
     """Rate by Eq 5-1 over time for eight cylinders pressed at 40 gf/s and held."""
     parts = []
     for label, history, coarse in data.runs(EIGHT):
-        error = error_percent(history, coarse, reading("rate", "peak"))
+        errors = curve_errors(history, coarse, Curve(lambda d: predicted_rate(d)[[TIME, IMPULSE_RATE]].to_numpy().T))
         part = {"source": PREDICTED, "surface": label, **predicted_rate(history)[[TIME, IMPULSE_RATE, STATIC]]}
-        parts.append(pd.DataFrame(part | {ERROR: error}))
+        parts.append(pd.DataFrame(part | errors.columns))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -257,7 +258,7 @@ def plate_both_ways(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
         rows = frame[frame["series"] == way]
         draw_raster(top, rows, STROKES_SHOWN["5-27"])
         rate = rows[rows["panel"] == "rate"]
-        bottom.plot(rate[DISTANCE], rate[IMPULSE_RATE], color=style.INK, lw=1.2)
+        axs.curve(bottom, rate, DISTANCE, IMPULSE_RATE, color=style.INK, lw=1.2)
         if not (rows["panel"] == RASTER).any():
             top.text(0.5, 0.5, "no impulse predicted", transform=top.transAxes, ha="center", color=style.GREY)
         top.set_title(WAYS[way])
@@ -269,10 +270,8 @@ def plate_both_ways(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
 
 def plate_note(frame: pd.DataFrame) -> list[str]:
     """The errors of either way: relative to next to no response one tells little."""
-    errors = frame.groupby("series", sort=False)[ERROR].max()
-    words = ", ".join(f"{error:.0f} % to the {way}" for way, error in errors.items() if error == error)
-    error = f" Discretisation error {words}." if words else ""
-    return [f"Predicted by Eq 5-1, not measured.{error} Receptor 46 µm right of a ridge's tip, 915 µm deep."]
+    error = f"{axs.error_text(frame)}. " if axs.error_text(frame) else ""
+    return [f"Predicted by Eq 5-1, not measured. {error}Receptor 46 µm right of a ridge's tip, 915 µm deep."]
 
 
 def against_velocity(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
@@ -280,9 +279,7 @@ def against_velocity(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     own, ends = frame[frame["source"] == PREDICTED], {}
     shades = {label: style.curvature_colour(float(label)) for label in own["convexity"].unique()}
     for label, rows in own.groupby("convexity", sort=False):
-        ax.plot(rows[SPEED], rows[spec.y[0]], marker="o", ms=3, color=shades[label], lw=1.0)
-        error = (rows[ERROR] * rows[spec.y[0]] / 100).where(rows[ERROR] > 2, 0.0).fillna(0.0)
-        ax.errorbar(rows[SPEED], rows[spec.y[0]], error, fmt="none", ecolor=shades[label], elinewidth=0.6)
+        axs.curve(ax, rows, SPEED, spec.y[0], points=True, marker="o", ms=3, color=shades[label], lw=1.0)
         ends[label] = rows[spec.y[0]].iloc[-1]
     points = frame[frame["source"].str.startswith("measured")]
     ax.plot(points[SPEED], points[spec.y[0]], "x", color=style.INK, ms=4)
@@ -332,14 +329,14 @@ def energy_rate_or_bars(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
         draw_bars(ax, frame, TIME, 0.05)
     else:
         least, words = CUT[y]
-        ax.plot(rows[TIME], rows[y].clip(lower=least), color=style.INK)
+        axs.curve(ax, rows.assign(**{y: rows[y].clip(lower=least)}), TIME, y, whole=rows, color=style.INK)
     ax.set_ylabel(words)
 
 
 def draw_rate(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     """Predicted rate (line) and the part of it that comes from strain energy (area)."""
     rows = rows[rows["source"] == PREDICTED]
-    ax.plot(rows[TIME], rows[IMPULSE_RATE], color=style.INK, lw=1.2, label="predicted by Eq 5-1")
+    axs.curve(ax, rows, TIME, IMPULSE_RATE, color=style.INK, lw=1.2, label="predicted by Eq 5-1")
     ax.fill_between(rows[TIME], rows[STATIC], color="#9fc3d6", lw=0, label="of this from strain energy alone")
 
 

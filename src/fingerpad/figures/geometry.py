@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from fingerpad.measures.features import ERROR, error_percent, skin_at
+from fingerpad.measures.errors import PARTS, Companion, Errors, number_errors
+from fingerpad.measures.features import skin_at
 from fingerpad.measures.quantities import X, Y
 from fingerpad.measures.steady import leg_of, pressed_depths
 from fingerpad.publishing import style
@@ -142,7 +143,7 @@ def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
     }
     judged = {"series": "quality", "quantity": list(values), "value": list(values.values())}
     parts = [pd.DataFrame(each) for each in (elements, bone, *edges, judged)]
-    return pd.concat(parts, ignore_index=True).assign(**{ERROR: np.nan})
+    return pd.concat(parts, ignore_index=True).assign(**dict.fromkeys(PARTS, np.nan))
 
 
 def _outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.ndarray:
@@ -225,17 +226,19 @@ def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[st
     return lines
 
 
-def section_rows(panel: str, state: str, lines: dict[str, np.ndarray], layers: tuple[str, ...], error: float) -> pd.DataFrame:
+def section_rows(panel: str, state: str, lines: dict[str, np.ndarray], layers: tuple[str, ...], errors: Errors) -> pd.DataFrame:
     """Some lines of a `section` as rows."""
     parts = [
-        pd.DataFrame({"panel": panel, "phase": state, "layer": k, X: lines[k][:, 0] * 1e3, Y: lines[k][:, 1] * 1e3, ERROR: error})
+        pd.DataFrame(
+            {"panel": panel, "phase": state, "layer": k, X: lines[k][:, 0] * 1e3, Y: lines[k][:, 1] * 1e3} | errors.columns
+        )
         for k in layers
     ]
     return pd.concat(parts, ignore_index=True)
 
 
-def section_error(history: xr.Dataset, coarse: xr.Dataset | None) -> float:
-    """Difference (%) of the vertical displacement of the layers' boundaries under the apex, at the deepest press."""
+def section_errors(history: xr.Dataset, coarse: Companion | None) -> Errors:
+    """Errors of the vertical displacement of the layers' boundaries under the apex, at the deepest press."""
 
     def under_apex(layer: str):
         def feature(d: xr.Dataset) -> float:
@@ -245,7 +248,7 @@ def section_error(history: xr.Dataset, coarse: xr.Dataset | None) -> float:
 
         return feature
 
-    return error_percent(history, coarse, under_apex("dermis"), under_apex("fat"))
+    return number_errors(history, coarse, under_apex("dermis"), under_apex("fat"))
 
 
 def draw_indenter(ax: Axes, rows: pd.DataFrame) -> None:

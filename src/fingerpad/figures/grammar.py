@@ -23,25 +23,31 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.figures import axes as axs
+from fingerpad.measures.errors import (
+    PARTS,
+    Companion,
+    Companions,
+    at_output,
+    curve_errors,
+    over_stroke,
+    over_time,
+    thinned,
+)
 from fingerpad.measures.features import (
-    ERROR,
     PHASES,
     SIMULATED,
     Feature,
     Histories,
     centre_node,
-    error_percent,
     in_contact,
     is_simulated,
-    over_time,
     phase_indices,
-    pressure_profiles,
     profile,
 )
 from fingerpad.measures.quantities import CURVATURE, DISTANCE, DOWN, HEIGHT, P_CENTRE, P_PEAK, TIME, P, Q, X
 from fingerpad.measures.responses import curvature_of
 from fingerpad.measures.runs import Runs
-from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height, rms_error
+from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height
 from fingerpad.measures.table import MEASURES
 from fingerpad.publishing import style
 from fingerpad.publishing.write import without_round_off
@@ -80,67 +86,70 @@ class Data:
 
     histories: Histories
     meshes: Mapping[str, PadMesh]
-    coarse: Histories
+    coarse: Companions
     reference: pd.DataFrame
     measured: pd.DataFrame | None = None
 
-    def runs(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset, xr.Dataset | None]]:
-        """Name, history, and coarse companion if there is one, of every run."""
+    def runs(self, runs: Runs) -> Iterator[tuple[str, xr.Dataset, Companion | None]]:
+        """Name, history, and companions if there are any, of every run."""
         for name, scene in runs.scenes.items():
             yield name, self.histories[scene], self.coarse.get(scene)
 
     def traces(self, runs: Runs, columns: Sequence[Q], checked: Sequence[Q] = ()) -> pd.DataFrame:
-        """One row an output: the run's name, the columns, and the error of what is `checked` (all columns whose error counts)."""
+        """One row an output: the run's name, the columns, and the errors of what is `checked` (of all that count)."""
         reads = [q.read for q in checked or columns if q.checked]
         parts = []
         for name, history, coarse in self.runs(runs):
-            shown = loaded(history) if runs.stroke else history
-            if runs.stroke:
-                error = rms_error(history, coarse, *reads)
-            else:
-                error = error_percent(history, coarse, *(over_time(read) for read in reads))
+            shown, over = (loaded(history), over_stroke) if runs.stroke else (history, over_time)
+            errors = curve_errors(history, coarse, *map(over, reads))
             part = {"source": SIMULATED, runs.column: name} | {q: q.read(shown) for q in columns}
-            parts.append(pd.DataFrame(part | {ERROR: error}))
+            parts.append(pd.DataFrame(part | errors.columns))
         return pd.concat(parts, ignore_index=True)
 
     def profiles(self, runs: Runs, half: bool = False) -> pd.DataFrame:
         """Pressure over the contact at the shown outputs: one row a node, at its deformed position."""
         parts = []
         for name, history, coarse in self.runs(runs):
-            error = error_percent(history, coarse, pressure_profiles)
             for index, phase in phase_indices(history):
+                errors = curve_errors(history, coarse, at_output(float(history["time"][index]), upper_profile))
                 x, p = profile(history, index)
                 keep = in_contact(history, index)
                 if half:
                     keep &= np.arange(len(x)) >= centre_node(history)
                 down = -history["skin_displacement_y"].values[index]
                 part = {"phase": phase, TIME: history["time"].values[index], X: x[keep] * 1e3, DOWN: down[keep] * 1e3}
-                parts.append(pd.DataFrame(part | {P: p[keep], ERROR: error, runs.column: name}))
+                parts.append(pd.DataFrame(part | {P: p[keep], **errors.columns, runs.column: name}))
         return pd.concat(parts, ignore_index=True)
 
     def numbers(self, runs: Runs, columns: Mapping[Q, Feature], own: bool = False) -> pd.DataFrame:
         """One row a surface: curvature, numbers, the largest of their errors, relative to the largest of all or to its `own`."""
-        histories = [(history, coarse) for _, history, coarse in self.runs(runs)]
-        rows = pd.DataFrame({q: [read(fine) for fine, _ in histories] for q, read in columns.items()})
-        rough = pd.DataFrame({q: [np.nan if c is None else read(c) for _, c in histories] for q, read in columns.items()})
+        histories = [history for _, history, _ in self.runs(runs)]
+        companions = [companion for *_, companion in self.runs(runs)]
+
+        def read_all(found: Sequence[xr.Dataset | None]) -> pd.DataFrame:
+            return pd.DataFrame({q: [np.nan if h is None else read(h) for h in found] for q, read in columns.items()})
+
+        rows, sparse = read_all(histories), read_all([thinned(history) for history in histories])
+        mesh, left, both = (read_all([c and getattr(c, kind) for c in companions]) for kind in ("mesh", "sparse", "both"))
         sizes = rows.abs() if own else rows.abs().max()
-        errors = (100 * (rough - rows).abs() / sizes.replace(0, 1)).max(axis=1)
-        rows.insert(0, CURVATURE, [curvature_of(fine) for fine, _ in histories])
+        errors = largest_of([(rows, mesh), (left, both), (rows, sparse)], sizes)
+        rows.insert(0, CURVATURE, [curvature_of(history) for history in histories])
         rows.insert(0, runs.column, list(runs))
-        return rows.assign(**{ERROR: errors})
+        return pd.concat([rows, errors], axis=1)
 
     def convexities(self, runs: Runs, columns: Mapping[Q, str]) -> pd.DataFrame:
         """One row a run and convexity: its name and curvature, measures by their names, and the largest of their errors."""
         parts = []
         for name, history, coarse in self.runs(runs):
-            fine, rough = (
-                pd.DataFrame({q: MEASURES[m](h) for q, m in columns.items()})
-                for h in (history, history if coarse is None else coarse)
+            others = (coarse.mesh, coarse.sparse, coarse.both) if coarse else (None, None, None)
+            fine, sparse, mesh, left, both = (
+                pd.DataFrame({q: MEASURES[m](h) if h is not None else {} for q, m in columns.items()}, dtype=float)
+                for h in (history, thinned(history), *others)
             )
-            with np.errstate(all="ignore"):
-                errors = 100 * (rough.reindex(fine.index) / fine - 1).abs().where(fine != 0).max(axis=1)
+            sparse, mesh, left, both = (each.reindex(fine.index) for each in (sparse, mesh, left, both))
+            errors = largest_of([(fine, mesh), (left, both), (fine, sparse)], fine.abs())
             exact = [convexities(history)[label].curvature for label in fine.index]
-            rows = fine.rename_axis("convexity").reset_index().assign(**{ERROR: np.nan if coarse is None else errors.to_numpy()})
+            rows = pd.concat([fine, errors], axis=1).rename_axis("convexity").reset_index()
             rows.insert(1, CURVATURE, exact)
             rows.insert(0, runs.column, name)
             parts.append(rows)
@@ -189,6 +198,23 @@ class Data:
             of = {} if panel is None else {key: panel}
             rows += [{**of, "source": source, column: entry[end]} for end in ("low", "high")]
         return pd.DataFrame(rows)
+
+
+def upper_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Deformed lateral position (m) and pressure (Pa) of the skin nodes of the upper side at one output."""
+    upper = history["skin_y"].values > 0
+    return tuple(part[upper] for part in profile(history, index))
+
+
+def largest_of(pairs: Sequence[tuple[pd.DataFrame, pd.DataFrame]], sizes: pd.DataFrame | pd.Series) -> pd.DataFrame:
+    """The errors (columns `PARTS`, %) of each row's number that is furthest off, relative to sizes; none of what is zero.
+
+    pairs: numbers that differ by the mesh, by the steps, and by how many outputs are read.
+    """
+    parts = [100 * (a - b).abs() / sizes.replace(0, np.nan) for a, b in pairs]
+    worst = sum(part.fillna(0) for part in parts).to_numpy().argmax(axis=1)
+    rows = np.arange(len(worst))
+    return pd.DataFrame({name: part.to_numpy()[rows, worst] for name, part in zip(PARTS, parts, strict=True)}, parts[0].index)
 
 
 def below(rows: pd.DataFrame, *others: pd.DataFrame) -> pd.DataFrame:
@@ -303,14 +329,14 @@ class Figure:
         self,
         histories: Histories,
         meshes: Mapping[str, PadMesh],
-        coarse: Histories,
+        coarse: Companions,
         reference: pd.DataFrame,
         measured: pd.DataFrame | None = None,
     ) -> pd.DataFrame:
         """The tidy data frame, units in the column names; simulated rows first, a `source` in every row.
 
-        `coarse` holds the companions on a coarser mesh (may be empty: the error column is then NaN), `reference` is the table of
-        `read_reference` (may be empty: thesis ranges are then left out), `measured` a table of `measurements`.
+        `coarse` holds the companions on coarser meshes (may be empty: errors of mesh and steps are then NaN), `reference` is the
+        table of `read_reference` (may be empty: thesis ranges are then left out), `measured` a table of `measurements`.
         """
         data = Data(histories, meshes, coarse, reference, measured)
         rows = self.rows(data) if self.rows else self._traces(data)
@@ -354,8 +380,8 @@ class Lines:
     """Curves of a panel: one a name in the column `by` (left out, that of the runs) and quantity.
 
     `looks` of names (in their order) and quantities go over those of `axes.look`; `names` are what a legend says; `ends`: where
-    (x) surfaces are named directly, under `heading`; `recorded`: what points look like that were measured; `bars`: draw the
-    discretisation error at every point where it is over 2 %; `hidden`: quantity -> that which must be above 0 where it is shown.
+    (x) surfaces are named directly, under `heading`; `recorded`: what points look like that were measured; `bars`: they are
+    points, whose errors are drawn as bars, not as bands; `hidden`: quantity -> that which must be above 0 where it is shown.
     """
 
     by: str = ""
@@ -375,11 +401,8 @@ class Lines:
                 label = self.names.get(q) or self.names.get(name, str(name) if len(spec.y) == 1 else q)
                 look = axs.look(name) | self.looks.get(name, {}) | self.looks.get(q, {})
                 y = curve[q].where(curve[self.hidden[q]] > 0) if q in self.hidden else curve[q]
-                ax.plot(curve[spec.x], y, label=label, **look)
-                if self.bars:
-                    error = (curve[ERROR] * y / 100).where(curve[ERROR] > 2, 0.0).fillna(0.0)
-                    bar = {"ecolor": look.get("color", style.INK), "elinewidth": 0.7}
-                    ax.errorbar(curve[spec.x], y, error, fmt="none", **bar)
+                shown = curve.assign(**{q: y} | ({} if q.checked else dict.fromkeys(PARTS, np.nan)))
+                axs.curve(ax, shown, spec.x, q, label=label, points=self.bars, **look)
             ends[name] = (curve[spec.x].iloc[-1], curve[spec.y[-1]].iloc[-1])
         if self.recorded and len(points := rows[rows["source"].str.startswith("measured")]):
             ax.plot(points[spec.x], points[spec.y[0]], **{"ls": "none", "marker": "x", "label": "recorded"} | self.recorded)
@@ -399,7 +422,7 @@ class Phases:
         times = [TIME] if TIME in own else []
         for (phase, *_), curve in sorted(own.groupby(["phase", *times]), key=lambda item: self.order.index(item[0][0])):
             colour = axs.look(self.colour or curve["surface"].iloc[0])
-            ax.plot(curve[spec.x], curve[spec.y[0]], **colour | axs.PHASE_LINES[phase])
+            axs.curve(ax, curve, spec.x, spec.y[0], **colour | axs.PHASE_LINES[phase])
 
 
 @dataclass(frozen=True, kw_only=True)

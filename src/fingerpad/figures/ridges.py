@@ -16,10 +16,11 @@ from fingerpad.figures import axes as axs
 from fingerpad.figures.geometry import LAYERS, NOTE, draw_mesh, layer_patches, mesh_rows, quality_of, stratum_corneum
 from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, stacked
 from fingerpad.measures.direction import BESIDE, DEPTH, OFFSETS, UNDER_TIP
-from fingerpad.measures.features import ERROR, SIMULATED, is_simulated
+from fingerpad.measures.errors import curve_errors, over_stroke, total
+from fingerpad.measures.features import SIMULATED, is_simulated
 from fingerpad.measures.quantities import SED, STROKE_TIME, TIME, X, Y, sed
 from fingerpad.measures.runs import PLAIN, RIDGED, RIDGED_NINE, Runs
-from fingerpad.measures.strokes import loaded, rms_error
+from fingerpad.measures.strokes import loaded
 from fingerpad.publishing import style
 
 if TYPE_CHECKING:
@@ -98,9 +99,9 @@ def at_receptors(data: Data, runs: Runs) -> pd.DataFrame:
         for series, (depth, x) in places.items():
             # the two ways are mirror images: the companion of the stroke to the right serves both, read on either side
             side = sed(depth, x if way == "right" else -x).read
-            error = rms_error(data.histories[right], data.coarse.get(right), side)
+            errors = curve_errors(data.histories[right], data.coarse.get(right), over_stroke(side)).columns
             part = {"source": SIMULATED, "panel": way, "series": series, TIME: STROKE_TIME.read(stroke)}
-            parts.append(pd.DataFrame(part | {SED: sed(depth, x).read(stroke), ERROR: error}))
+            parts.append(pd.DataFrame(part | {SED: sed(depth, x).read(stroke)} | errors))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -129,7 +130,7 @@ def plate_stroked(number: str, pad: str, runs: Runs, axis: str, remark: str, ext
 
     def note(frame: pd.DataFrame) -> list[str]:
         beside = frame["series"].isin(["x = −46 µm", "x = 46 µm"]) | ~is_simulated(frame)
-        others = frame[~beside].groupby("series")[ERROR].max().dropna()
+        others = total(frame[~beside]).groupby(frame["series"]).max().dropna()
         how = f"at x = ±46 µm, {HOW}" + "".join(f"; {each} {value:.1f} %" for each, value in others.items())
         return axs.footnote(frame[beside], how)
 

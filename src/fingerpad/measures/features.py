@@ -1,7 +1,6 @@
-"""What figures and tables read from a history: phases, profiles, receptor traces, discretisation errors.
+"""What figures and tables read from a history: phases, profiles, receptor traces.
 
-A history is the dataset of one simulation (SI units, time[0] unloaded); a coarse companion is the same scene
-on a mesh of up to twice the edge and half the time steps. Nothing here computes mechanics.
+A history is the dataset of one simulation (SI units, time[0] unloaded). Nothing here computes mechanics.
 """
 
 from __future__ import annotations
@@ -25,7 +24,6 @@ SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
 
 TOP, STEADY = "top of ramp", "steady state"
 PHASES = ("during ramp", TOP, STEADY)
-ERROR = "discretisation_error (%)"
 SIMULATED = "simulated"
 RAMP_FRACTIONS = (0.2, 0.4, 0.6, 0.8)
 
@@ -118,6 +116,13 @@ def profile(history: xr.Dataset, index: int, name: str = PRESSURE) -> tuple[np.n
     return skin_at(history, index)[0], history[name].values[index]
 
 
+def pressure_at(history: xr.Dataset, place: float) -> np.ndarray:
+    """Pressure (time) in Pa at a place (m) along the upper side of the skin at rest, straight between nodes."""
+    upper = history["skin_y"].values > 0
+    x = history["skin_x"].values[upper]
+    return np.array([np.interp(place, x, row) for row in history[PRESSURE].values[:, upper]])
+
+
 def in_contact(history: xr.Dataset, index: int, margin: int = 1) -> np.ndarray:
     """Mask of the skin nodes in contact at one output, with `margin` free nodes on either side."""
     touching = np.flatnonzero(history["contact_pressure"].values[index] > 0)
@@ -138,49 +143,6 @@ def surface_nodes(history: xr.Dataset) -> np.ndarray:
     centre = centre_node(history)
     ever = np.flatnonzero((history["contact_pressure"].values > 0).any(axis=0))
     return np.arange(centre, max(ever.max(initial=centre), centre) + 1)
-
-
-def error_percent(fine: xr.Dataset, coarse: xr.Dataset | None, *features: Feature) -> float:
-    """Largest relative difference (%) of features between a history and its coarse companion.
-
-    Features are values at matching moments, so the two may differ in output times; of those that are whole curves the root mean
-    square counts, relative to the curve's. NaN without a companion.
-    """
-    if coarse is None:
-        return float("nan")
-    pairs = [(np.atleast_1d(f(fine)), np.atleast_1d(f(coarse))) for f in features]
-    return max(100 * float(np.linalg.norm(a - b) / np.linalg.norm(a)) if a.any() else 0.0 for a, b in pairs)
-
-
-def over_time(trace: Trace) -> Feature:
-    """Feature of a trace of a ramp and hold: the curve, at moments that histories with other outputs have in common.
-
-    Ten in the ramp, ten in the hold and closer together at first; the trace is interpolated to them leg by leg.
-    """
-    share = np.linspace(0.1, 1.0, 10)
-
-    def curve(history: xr.Dataset) -> np.ndarray:
-        from scipy.interpolate import PchipInterpolator  # here, for it is slow to import
-
-        time, values, top = history["time"].values, trace(history), ramp_end(history)
-        parts = []
-        for part, moments in ((slice(0, top + 1), share), (slice(top, None), share**2)):
-            t, known = time[part], values[part]
-            if len(t) > 1 and (np.diff(t) > 0).all():
-                parts.append(PchipInterpolator(t, known)(t[0] + moments * (t[-1] - t[0])))
-            else:
-                parts.append(known[-1:])
-        return np.concatenate(parts)
-
-    return curve
-
-
-def pressure_profiles(history: xr.Dataset) -> np.ndarray:
-    """Feature: pressure over the skin at the top of the ramp and at the end, at places that all meshes have in common."""
-    at = np.linspace(-5e-3, 5e-3, 401)
-    upper = history["skin_y"].values > 0
-    shown = [profile(history, index) for index in (ramp_end(history), -1)]
-    return np.concatenate([np.interp(at, x[upper], pressure[upper], 0.0, 0.0) for x, pressure in shown])
 
 
 def depth(history: xr.Dataset) -> np.ndarray:

@@ -8,42 +8,61 @@ from typing import Any
 
 import xarray as xr
 
+from fingerpad.measures.errors import Companion
 
-class _Opened(Mapping):
+
+class Each(Mapping):
+    """Name -> what `make` makes of it, when first asked for, under the names of another mapping."""
+
+    def __init__(self, make: Callable[[str], Any], names: Iterable[str]) -> None:
+        self._make, self._names = make, tuple(names)
+        self._made: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._made:
+            self._made[name] = self._make(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+class _Opened(Each):
     """Scene name -> what `opener` makes of its file; each file is opened once, and only if asked for."""
 
     def __init__(self, opener: Callable[[Path], Any], paths: Iterable[Path]) -> None:
-        self._opener = opener
-        self._paths = {path.parent.name: path for path in paths}
-        self._opened: dict[str, Any] = {}
-
-    def __getitem__(self, scene: str) -> Any:
-        if scene not in self._opened:
-            self._opened[scene] = self._opener(self._paths[scene])
-        return self._opened[scene]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._paths)
-
-    def __len__(self) -> int:
-        return len(self._paths)
+        files = {path.parent.name: path for path in paths}
+        super().__init__(lambda scene: opener(files[scene]), files)
 
 
 def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping]:
-    """Sort result files of the workflow, ``.../<simulations or coarse>/<scene>/<history.nc or mesh.msh>``.
+    """Sort result files of the workflow, ``.../<simulations, coarse or coarse_mesh>/<scene>/<history.nc or mesh.msh>``.
 
     Returns:
-        Mappings scene name -> result: the histories (`xarray.Dataset`), the meshes (`PadMesh`), and the
-        histories of the coarser companions.
+        Mappings scene name -> result: the histories (`xarray.Dataset`), the meshes (`PadMesh`), and the companions on coarser
+        meshes (:class:`fingerpad.measures.errors.Companion`), whose files are both needed when one is looked at.
     """
     files = [Path(path) for path in paths]
-    histories = [path for path in files if path.suffix == ".nc"]
-    coarse = [path for path in histories if path.parent.parent.name == "coarse"]
+    kinds: dict[str, list[Path]] = {"coarse": [], "coarse_mesh": [], "simulations": []}
+    for path in files:
+        if path.suffix == ".nc":
+            kinds.get(path.parent.parent.name, kinds["simulations"]).append(path)
+    mesh, both = (_Opened(xr.load_dataset, kinds[kind]) for kind in ("coarse_mesh", "coarse"))
     return (
-        _Opened(xr.load_dataset, (path for path in histories if path not in coarse)),
+        _Opened(xr.load_dataset, kinds["simulations"]),
         _Opened(_read_mesh, (path for path in files if path.suffix == ".msh")),
-        _Opened(xr.load_dataset, coarse),
+        Each(lambda scene: Companion(mesh[scene], both[scene]), both),
     )
+
+
+def read_coarse(paths: Iterable[str | Path]) -> Mapping[str, xr.Dataset]:
+    """Histories of the companions with coarser meshes and steps, by scene, of those among some files of the workflow."""
+    return _Opened(xr.load_dataset, (path for path in map(Path, paths) if path.parent.parent.name == "coarse"))
 
 
 def _read_mesh(path: Path) -> Any:

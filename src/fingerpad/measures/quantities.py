@@ -28,7 +28,7 @@ class Q(str):
     read
         ``read(history)``: values (time) in `unit`. None where a figure says how.
     checked
-        Whether the discretisation error of a figure counts it.
+        Whether the errors of a figure count it.
     tolerance
         Largest difference of a column from its baseline, relative to the largest value of a curve; None: it has no baseline.
         Pressure and width carry the jumps of single nodes entering contact; everything else is smooth.

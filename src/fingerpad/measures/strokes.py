@@ -183,25 +183,6 @@ def lag(x: np.ndarray, later: np.ndarray, at: np.ndarray, earlier: np.ndarray, m
     return float(shifts[best]), float(likeness[best])
 
 
-def rms_error(fine: xr.Dataset, coarse: xr.Dataset | None, *traces: Trace) -> float:
-    """Largest difference (%) of traces of a history and its companion: root mean square over the stroke, relative to the trace's.
-
-    They are compared at the outputs of the one that has fewer, to which the other is interpolated: what is found comes from the
-    mesh and the steps, not from how densely a trace is drawn. NaN without a companion.
-    """
-    if coarse is None:
-        return float("nan")
-    fine, coarse = loaded(fine), loaded(coarse)
-    way = np.sign(distance(fine)[-1])  # distances grow downwards in strokes the other way
-    worst = 0.0
-    for trace in traces:
-        at = min(distance(fine), distance(coarse), key=len)
-        own, other = (np.interp(way * at, way * distance(h), trace(h)) for h in (fine, coarse))
-        size = float(np.sqrt(np.mean(own**2)))
-        worst = max(worst, 100 * float(np.sqrt(np.mean((own - other) ** 2))) / size if size else 0.0)
-    return worst
-
-
 def energy_at(depth: float) -> Trace:
     """Trace of the strain energy density (Pa) under the centre at a depth (m)."""
     return lambda stroke: energy(stroke, depth)

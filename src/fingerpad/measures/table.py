@@ -1,14 +1,15 @@
 """The measures of all scenes as one long table: what claims, sensitivities and figures of numbers rest on.
 
 The workflow writes it (``<results>/measures.csv``) from every history, its companion on a coarser mesh, and the meshes. A row is
-a number: scene, quantity, condition, unit, value, companion. The discretisation error of anything made of these numbers is what
-it changes by when the column ``companion`` is read instead of ``value``.
+a number: scene, quantity, condition, unit, value, and what takes its place in `Instead`. The error of anything made of these
+numbers is what it changes by when another column is read.
 """
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
@@ -17,11 +18,16 @@ import pandas as pd
 
 from fingerpad.files import write_atomically
 from fingerpad.measures import of_any, of_presses, of_scenes, of_strokes
+from fingerpad.measures.errors import Companions, Errors, thinned
 from fingerpad.measures.features import Feature, Histories, Meshes
+from fingerpad.measures.inputs import Each
 from fingerpad.measures.measure import Measure, Together, measures_of
 from fingerpad.results import scene_of
 
-COLUMNS = ("scene", "quantity", "condition", "unit", "value", "companion")
+INSTEAD = ("mesh_companion", "sparse_mesh_companion", "companion", "sparse")
+"""Columns of numbers on a coarser mesh, there of the outputs that are left with coarser steps, with these, and of every second
+output of the histories themselves."""
+COLUMNS = ("scene", "quantity", "condition", "unit", "value", *INSTEAD)
 
 MEASURES: dict[str, Measure] = {**measures_of(of_scenes), **measures_of(of_presses), **measures_of(of_strokes)}
 """Every measure of the table, by its name."""
@@ -70,7 +76,7 @@ class Measures:
 
     @classmethod
     def in_table(cls, table: pd.DataFrame, column: str = "value") -> Measures:
-        """Of a column of the measures table, ``value`` or ``companion``; what has a value but no companion is missing there."""
+        """Of a column of the measures table, ``value`` or one of `INSTEAD`; what has a value but nothing there is missing."""
         rows = table[table[column].notna() | table["value"].isna()] if column != "value" else table
         seen: dict[tuple[str, str], dict[str, float]] = {}
         for row in rows.itertuples(index=False):
@@ -96,25 +102,70 @@ def read(measure: Measure, scene: str, runs: Together, meshes: Meshes) -> dict[s
     return measure(meshes[scene]) if measure.of == "mesh" else measure(history, runs)
 
 
-def measures_table(histories: Histories, coarse: Histories, meshes: Meshes) -> pd.DataFrame:
-    """Every measure of every scene, columns `COLUMNS`; `companion` is empty where nothing was simulated on a coarser mesh."""
-    fine, rough, rows = Together(histories), Together(coarse), []
+@dataclass(frozen=True)
+class Instead:
+    """Measures of what is simulated or read more coarsely, by the columns `INSTEAD`."""
+
+    mesh: Measures
+    sparse_mesh: Measures
+    both: Measures
+    sparse: Measures
+
+    @classmethod
+    def of(cls, histories: Histories, coarse: Companions) -> Instead:
+        """Read of histories and their companions when first asked for."""
+        return cls(*map(Measures.of, _instead(histories, coarse)))
+
+    @classmethod
+    def in_table(cls, table: pd.DataFrame) -> Instead:
+        """Of the measures table."""
+        return cls(*(Measures.in_table(table, column) for column in INSTEAD))
+
+    def errors(self, number: Callable[[Measures], float], value: float) -> Errors:
+        """The errors of a number that is made of measures, in its unit."""
+        each = (self.mesh, self.sparse_mesh, self.both, self.sparse)
+        mesh, sparse_mesh, both, sparse = (_number(number, measures) for measures in each)
+        return Errors(abs(value - mesh), abs(sparse_mesh - both), abs(value - sparse))
+
+
+def _number(number: Callable[[Measures], float], measures: Measures) -> float:
+    try:
+        return number(measures)
+    except KeyError:
+        return float("nan")
+
+
+def _instead(histories: Histories, coarse: Companions) -> tuple[Histories, ...]:
+    return (
+        Each(lambda scene: coarse[scene].mesh, coarse),
+        Each(lambda scene: coarse[scene].sparse, coarse),
+        Each(lambda scene: coarse[scene].both, coarse),
+        Each(lambda scene: thinned(histories[scene]), histories),
+    )
+
+
+def measures_table(histories: Histories, coarse: Companions, meshes: Meshes) -> pd.DataFrame:
+    """Every measure of every scene, columns `COLUMNS`; empty where nothing was simulated on a coarser mesh, or that shows it."""
+    fine, others, rows = Together(histories), [Together(each) for each in _instead(histories, coarse)], []
     for scene in histories:
         for measure in MEASURES.values():
             values = _read(measure, scene, fine, meshes)
-            others = _read(measure, scene, rough, {}) if measure.of in ("history", "stroke") and values else {}
+            solved = measure.of in ("history", "stroke") and values
+            found = [_read(measure, scene, runs, {}, said=False) if solved else {} for runs in others]
             for condition, value in values.items():
-                rows.append((scene, measure.name, condition, measure.unit, value, others.get(condition, np.nan)))
+                instead = (each.get(condition, np.nan) for each in found)
+                rows.append((scene, measure.name, condition, measure.unit, value, *instead))
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _read(measure: Measure, scene: str, runs: Together, meshes: Meshes) -> dict[str, float]:
+def _read(measure: Measure, scene: str, runs: Together, meshes: Meshes, said: bool = True) -> dict[str, float]:
     try:
         return read(measure, scene, runs, meshes)
     except KeyError:
         return {}
     except (ValueError, IndexError, ZeroDivisionError) as error:  # a scene unlike the thesis's must not cost all tables
-        warnings.warn(f"measure {measure.name} is left out of {scene}: {error}", stacklevel=2)
+        if said:
+            warnings.warn(f"measure {measure.name} is left out of {scene}: {error}", stacklevel=2)
         return {}
 
 
@@ -126,5 +177,5 @@ def write_measures(table: pd.DataFrame, path: str | PathLike) -> None:
 def read_measures(path: str | PathLike) -> pd.DataFrame:
     """The table that `write_measures` wrote."""
     table = pd.read_csv(path, dtype=str, keep_default_na=False)
-    numbers = {column: [float(v) if v else np.nan for v in table[column]] for column in ("value", "companion")}
+    numbers = {column: [float(v) if v else np.nan for v in table[column]] for column in ("value", *INSTEAD)}
     return table.assign(**numbers)

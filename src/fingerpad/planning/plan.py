@@ -74,6 +74,7 @@ class Plan:
         most of it comes from. asked_error: the tolerance, None where none is asked for; once: whether it is tried for once only.
         unbounded_peak: whether the profile has a true edge, where pressure has no bound and a peak is the mesh's. specimen:
         sentences on what is touched, and what of it the scene left out. surface: what the mesh makes of a measured profile.
+        stride: so many steps are made one.
     """
 
     effects: dict[str, Effect]
@@ -99,6 +100,7 @@ class Plan:
     unbounded_peak: bool = False
     specimen: tuple[str, ...] = ()
     surface: Surface = Surface()
+    stride: int = 1
 
     @property
     def covers(self) -> str:
@@ -124,9 +126,9 @@ class Plan:
         return 3e5 + (self.steps + 1) * each_time + (snapshots + 1) * nodes * (200 if fields else 40)
 
     @property
-    def stepping(self) -> tuple[int, bool, float]:
-        """What :func:`schedule` needs to know: steps of each leg, does time matter, longest step of a slide (m)."""
-        return self.steps_per_leg, self.timed, self.slide_step
+    def stepping(self) -> tuple[int, bool, float | None, int]:
+        """What :func:`schedule` needs to know: steps of each leg, does time matter, longest step of a slide (m), stride."""
+        return self.steps_per_leg, self.timed, self.slide_step, self.stride
 
     @property
     def discretisation(self) -> dict[str, Any]:
@@ -163,6 +165,7 @@ class Plan:
             "contact_edge_SI": self.contact_edge,
             "steps_per_leg": self.steps_per_leg,
             "slide_step_SI": self.slide_step,
+            "stride": self.stride,
             "timed": self.timed,
             "small_strain_error": self.small_strain_error,
             "specimen": list(self.specimen),
@@ -189,6 +192,7 @@ class Plan:
             data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
             data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["edge_error"], data["error_from"],
             data["asked_error"], data["once"], data["unbounded_peak"], tuple(data["specimen"]), Surface(**data["surface_SI"]),
+            data["stride"],
         )  # fmt: skip
 
     def write(self, path: str | Path) -> None:
@@ -318,6 +322,16 @@ def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: in
     if finer.nodes > rules.most_nodes_again:
         return f"{percent(finer.estimated_error)} would need {finer.nodes} nodes"
     return finer
+
+
+def companion(scene: Scene, own: Plan, coarser: Plan, stride: int = 1) -> Plan:
+    """The plan of a run's companion: effects and steps of its `own` plan, so many made one, on the mesh of a `coarser` one."""
+    stepping = own.steps_per_leg, own.timed, own.slide_step, stride
+    steps = sum(1 for _ in schedule(scene, *stepping))
+    kept = {"effects": own.effects, "state": own.state, "small_strain_error": own.small_strain_error}
+    cost = coarser.predicted_cost_s * steps / coarser.steps
+    names = ("steps_per_leg", "timed", "slide_step", "stride")
+    return replace(coarser, steps=steps, predicted_cost_s=cost, **kept, **dict(zip(names, stepping, strict=True)))
 
 
 def read_plan(path: str | Path) -> Plan:

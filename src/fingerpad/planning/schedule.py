@@ -22,7 +22,7 @@ _AROUND = 1.5e-3
 """How far (m) after a slide begins, and behind an arc, half of it before one: the skin is dragged along."""
 
 
-def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | None = None, present=None):
+def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | None = None, stride: int = 1, present=None):
     """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`).
 
     A steady press is one step, which is cut where Newton's method does not converge. Friction remembers how it was loaded, and
@@ -39,6 +39,7 @@ def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | 
         slide_step=slide_step,
         increments=min(steps_per_leg, _MOST_INCREMENTS if on_the_way else _ROUND_EDGES if scene.stimulus.singular else 1),
         parts=partial(_parts, scene, slide_step) if slide_step else None,
+        stride=stride,
     )
 
 

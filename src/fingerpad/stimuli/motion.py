@@ -435,6 +435,7 @@ def programme(
     slide_step: float | None = None,
     increments: int = 1,
     parts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
+    stride: int = 1,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
@@ -449,12 +450,15 @@ def programme(
         increments: of a steady press. Without friction its end does not depend on them.
         parts: into how many (k,) the longest steps of a slide are cut, by their distance (k,) m from where it begins (negative in
             strokes the other way) and their place (k,) m along the surface.
+        stride: so many steps of a leg are made one, but for those that press anew.
     """
     how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
     time, at, last = 0.0, Goal(None, None, 0.0), None
     for number, leg in enumerate(legs):
         reached = Reached(*present()) if present else Reached(at.force or 0.0, at.depth or 0.0)
         sizes, goals, last = leg.path(at, last, reached, how)
+        if stride > 1 and not leg.fresh:
+            sizes, goals = _joined(sizes, goals, stride)
         for dt, goal in zip(sizes, goals, strict=True):
             begin, time = time, time + (float(dt) if dt < STEADY else 0.0)
             for cut in sorted(t for t in snapshots if begin + 1e-9 * time < t < time - 1e-9 * time):
@@ -463,6 +467,13 @@ def programme(
                 begin = cut
             yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh)
             at = goal
+
+
+def _joined(sizes: np.ndarray, goals: list[Goal], stride: int) -> tuple[np.ndarray, list[Goal]]:
+    """Durations (s) and goals of a leg's steps when so many are made one; the last may be of fewer."""
+    starts = range(0, len(goals), stride)
+    sizes = np.add.reduceat(sizes, starts)
+    return np.minimum(sizes, STEADY), [goals[min(k + stride, len(goals)) - 1] for k in starts]
 
 
 def _between(before: Goal, after: Goal, share: float) -> Goal:

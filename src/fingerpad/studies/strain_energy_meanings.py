@@ -24,17 +24,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from fingerpad.figures import axes as axs
-from fingerpad.measures.features import (
-    ERROR,
-    SIMULATED,
-    SURFACES,
-    Histories,
-    energy,
-    error_percent,
-    over_time,
-    ramp_end,
-    scene_name,
-)
+from fingerpad.measures.errors import Companions, curve_errors, over_time
+from fingerpad.measures.features import SIMULATED, SURFACES, Histories, energy, ramp_end, scene_name
 from fingerpad.measures.quantities import SED, TIME
 from fingerpad.measures.runs import NINE
 from fingerpad.publishing import style
@@ -59,7 +50,7 @@ LINES = {"600 um": "--", "915 um": "-"}
 FALLS = {"fc": "white", "ec": "0.88", "hatch": "\\\\\\", "lw": 0, "zorder": 0}
 
 
-def frame_meanings(histories: Histories, coarse: Histories) -> pd.DataFrame:
+def frame_meanings(histories: Histories, coarse: Companions) -> pd.DataFrame:
     """Strain energy density over time by definition, depth and surface (40 gf/s), with its change from the top of the ramp on."""
     parts = []
     for label, history in NINE.histories(histories).items():
@@ -69,8 +60,8 @@ def frame_meanings(histories: Histories, coarse: Histories) -> pd.DataFrame:
                 values, top = read(history), ramp_end(history)
                 rows = {"source": SIMULATED, "panel": panel, "series": series, "surface": label, TIME: history["time"].values}
                 rows |= {SED: values, CHANGE: 100 * (values / values[top] - 1)}
-                error = error_percent(history, coarse.get(scene_name("ramp40", label)), over_time(read))
-                parts.append(pd.DataFrame(rows | {ERROR: error}))
+                errors = curve_errors(history, coarse.get(scene_name("ramp40", label)), over_time(read))
+                parts.append(pd.DataFrame(rows | errors.columns))
     return pd.concat(parts, ignore_index=True)
 
 

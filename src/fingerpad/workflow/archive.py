@@ -22,7 +22,7 @@ from fingerpad.config import read_config
 from fingerpad.documents import SceneError, read_yaml
 from fingerpad.files import write_text
 from fingerpad.publishing.write import write_frame
-from fingerpad.workflow.products import PARTS, Job, Products
+from fingerpad.workflow.products import COMPANIONS, PARTS, Job, Products
 
 CODE = ("Snakefile", "workflow", "profiles", "src", "setup.py", "pyproject.toml", "requirements.lock", "Makefile")
 ABOUT = ("README.md", "LICENSE", "CITATION.cff")
@@ -143,7 +143,7 @@ def _place(path: str, folder: Path, results: str) -> str:
     """Take a result; its entity in the crate: itself, or the folder of the scene it belongs to."""
     _take(Path(path), folder)
     own = Path(path).parent
-    if own.is_relative_to(results) and own.parent.name in ("simulations", "coarse"):
+    if own.is_relative_to(results) and own.parent.name in ("simulations", *COMPANIONS):
         return f"{own.as_posix()}/"
     return f"{path}/" if Path(path).is_dir() else path
 

@@ -25,6 +25,8 @@ HEIGHT, FRICTION = 150, 0.35
 """Height (um) of ridges and coefficient of friction of RIDGED; the study of ridges varies one at a time."""
 RIDGE_MESHES = (("fine",), ("curved", "straight", "shifted"))
 """Further meshes for that case, by process."""
+COMPANIONS = {"coarse_mesh": 1, "coarse": 2}
+"""Companions of a scene, on a coarser mesh: the folder of their results, and how many of its steps are one."""
 RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rapidly_adapting")
 TABLES = ("thesis_comparison", "sensitivity")
 PARTS = ("animations", "views", "all_tables", "calibration", "ridges", "meanings")
@@ -213,8 +215,13 @@ class Products:
         return [self.result(f"{fidelity}/{scene}/history.nc") for scene in scenes]
 
     def companions(self, scenes: Iterable[str]) -> list[str]:
-        """Results of the scenes' coarser companions, if the configuration has any."""
+        """Results of the scenes' companions on coarser meshes with coarser steps, if the configuration has any."""
         return self.histories(scenes, "coarse") if self.config.companion_accuracy is not None else []
+
+    def both_companions(self, scenes: Iterable[str]) -> list[str]:
+        """The same, and those of the companions on coarser meshes with the scenes' own steps."""
+        names = list(scenes)
+        return [path for fidelity in COMPANIONS for path in self.histories(names, fidelity)] if self.companions(names) else []
 
     def meshes(self, scenes: Iterable[str]) -> list[str]:
         """Meshes the scenes are simulated on."""
@@ -253,13 +260,17 @@ class Products:
     def simulations(self) -> Iterator[Job]:
         """Scenes -> plans, meshes, histories, summaries."""
         for batch, names in self.batches().items():
-            cases = [(name, "simulations", self.config.accuracy) for name in names]
-            if self.config.companion_accuracy is not None:
-                cases += [(name, "coarse", self.config.companion_accuracy) for name in names if name in self.coarse]
-            places = [self.result(f"{fidelity}/{name}") for name, fidelity, _ in cases]
+            own, coarser = self.config.accuracy, self.config.companion_accuracy
+            cases = [(name, "simulations", "own", 1) for name in names]
+            if coarser is not None:
+                compared = [name for name in names if name in self.coarse]
+                cases += [(name, fidelity, str(coarser), n) for name in compared for fidelity, n in COMPANIONS.items()]
+            places = [self.result(f"{fidelity}/{name}") for name, fidelity, *_ in cases]
             values = {
                 "scenes": [self.scene(name) for name, *_ in cases],
-                "accuracies": ["as_stated" if accuracy is None else str(accuracy) for *_, accuracy in cases],
+                "accuracies": ["as_stated" if own is None else str(own)] * len(cases),
+                "meshes": [mesh for _, _, mesh, _ in cases],
+                "strides": [str(stride) for *_, stride in cases],
                 "written": self._written(*names),
             }
             also = [f"{place}/{name}" for place in places for name in ("mesh.msh", "plan.json", "summary.json")]
@@ -312,7 +323,7 @@ class Products:
                 "reference": [reference],
                 "histories": self.histories(needs),
                 "meshes": self.meshes(needs),
-                "coarse": self.companions(dict.fromkeys(scene for figure in group for scene in figure.companions)),
+                "coarse": self.both_companions(dict.fromkeys(scene for figure in group for scene in figure.companions)),
                 "measured": sorted(str(path) for pattern in patterns for path in Path(reference).parent.glob(pattern)),
             }
             called = f"figures_{group[0].number.replace('-', '_')}"
@@ -371,7 +382,7 @@ class Products:
             every = {
                 "histories": self.histories(scenes),
                 "meshes": self.meshes(c.scenes),
-                "coarse": self.companions(scene for scene in scenes if scene in self.coarse),
+                "coarse": self.both_companions(scene for scene in scenes if scene in self.coarse),
             }
             measures = {"measures": [self.result("measures.csv")]}
             yield Job("measures", every, measures, mem_mb=2000)
@@ -402,8 +413,8 @@ class Products:
         """The study of the definitions of strain energy, if the configuration has the nine surfaces."""
         name, nine = "strain_energy_meanings", self._of(self.config.scenes, "ramp40")
         if len(nine) >= 9:
-            read, made = {"histories": self.histories(nine), "coarse": self.companions(nine)}, {"picture": self.pictures([name])}
-            yield Job(name, read, made)
+            read = {"histories": self.histories(nine), "coarse": self.both_companions(nine)}
+            yield Job(name, read, {"picture": self.pictures([name])})
 
     # -- studies -----------------------------------------------------------------------------------------------------------
 

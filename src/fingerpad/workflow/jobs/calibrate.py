@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from fingerpad.measures.inputs import read_results
+from fingerpad.measures.inputs import read_coarse, read_results
 from fingerpad.publishing.write import write_frame
 from fingerpad.reference_data import read_force_depth
 from fingerpad.studies.calibration.force import calibrate, write_specimens
@@ -11,7 +11,7 @@ from fingerpad.studies.calibration.force import calibrate, write_specimens
 
 def run(job):
     """`forces`, `histories`, `coarse` -> `data` (CSV, named as the calibration's frames), the folder `specimens`."""
-    histories, _, coarse = read_results([*job.histories, *job.coarse])
+    histories, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
     forces = read_force_depth(job.forces)
     result = calibrate(histories, coarse, forces)
     for path in map(Path, job.data):

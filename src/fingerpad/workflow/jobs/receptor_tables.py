@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from fingerpad.measures.inputs import read_results
+from fingerpad.measures.inputs import read_coarse, read_results
 from fingerpad.publishing.write import publish_table
 from fingerpad.receptors.recordings import read_rates
 from fingerpad.studies.receptors.candidate_stimuli import candidate_stimuli
@@ -13,7 +13,7 @@ from fingerpad.studies.receptors.sensing import rapidly_adapting, sensor_accurac
 def run(job):
     """`rates`, `histories`, `coarse` -> `tables`."""
     rates = read_rates(*job.rates)
-    histories, _, coarse = read_results([*job.histories, *job.coarse])
+    histories, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
     made = {
         "receptor_fits": lambda: receptor_fits(histories, coarse, rates),
         "candidate_stimuli": lambda: candidate_stimuli(histories, rates),

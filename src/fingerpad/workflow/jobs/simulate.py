@@ -1,26 +1,39 @@
-"""Scenes -> plans, meshes and histories of their whole motions, one after the other in one process."""
+"""Scenes and their companions -> plans, meshes and histories of their whole motions, one after the other in one process."""
 
 import json
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_text
+from fingerpad.planning.plan import companion
 from fingerpad.results import summary, write_history
 from fingerpad.specimen import mesh_for, read_pad_mesh, write_pad
 
 
 def run(job):
-    """`scenes`, `accuracies` (as_stated or what replaces it) -> plan.json, mesh.msh, summary.json beside each of `histories`."""
-    for path, accuracy, history in zip(job.scenes, job.accuracies, job.histories, strict=True):
+    """`scenes` -> plan.json, mesh.msh, summary.json beside each of `histories`.
+
+    `accuracies`: as_stated or what replaces it. `meshes`: own or the accuracy whose coarser mesh it is. `strides`: how many steps
+    are one; where that leaves as many as before, as of steady presses, nothing is solved anew.
+    """
+    cases = zip(job.scenes, job.accuracies, job.meshes, job.strides, job.histories, strict=True)
+    for (path, accuracy, mesh), group in groupby(cases, itemgetter(0, 1, 2)):
         scene = load_scene(path)
         if accuracy != "as_stated":
             scene = scene.with_accuracy(accuracy)
-        folder, how = Path(history).parent, plan(scene)
-        how.write(folder / "plan.json")
-        built, file = mesh_for(scene, how), folder / "mesh.msh"
-        write_pad(built, file)
-        # what is published is what is solved
-        dataset = simulate(scene, how, mesh=read_pad_mesh(file, built.regions, built.fixed))
-        write_text(folder / "summary.json", json.dumps(summary(dataset), indent=2) + "\n")
-        write_history(dataset, history)
-        print(history, flush=True)
+        own = plan(scene)
+        coarser, built, solved = own if mesh == "own" else plan(scene.with_accuracy(mesh)), None, {}
+        for *_, stride, history in group:
+            folder = Path(history).parent
+            how = own if mesh == "own" else companion(scene, own, coarser, int(stride))
+            how.write(folder / "plan.json")
+            built, file = built or mesh_for(scene, how), folder / "mesh.msh"
+            write_pad(built, file)
+            if how.steps not in solved:  # what is published is what is solved
+                solved[how.steps] = simulate(scene, how, mesh=read_pad_mesh(file, built.regions, built.fixed))
+            dataset = solved[how.steps]
+            write_text(folder / "summary.json", json.dumps(summary(dataset), indent=2) + "\n")
+            write_history(dataset, history)
+            print(history, flush=True)

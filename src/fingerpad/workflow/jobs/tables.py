@@ -5,7 +5,7 @@ from pathlib import Path
 from fingerpad.claims.pages import pages
 from fingerpad.claims.tables import TABLES
 from fingerpad.files import write_text
-from fingerpad.measures.table import Measures, read_measures
+from fingerpad.measures.table import Instead, Measures, read_measures
 from fingerpad.publishing.write import publish_table
 from fingerpad.reference_data import read_reference
 
@@ -14,7 +14,7 @@ def run(job):
     """`measures`, the table `reference` -> `tables`, named as in TABLES."""
     measures = read_measures(job.measures[0])
     for table in job.tables:
-        both = Measures.in_table(measures), Measures.in_table(measures, "companion")
+        both = Measures.in_table(measures), Instead.in_table(measures)
         path = Path(table)
         publish_table(TABLES[path.stem](*both, job.reference[0]), path)
         if path.stem == "thesis_comparison":

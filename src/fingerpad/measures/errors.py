@@ -1,0 +1,209 @@
+"""What a curve or a number that is shown is wrong by, in three parts found apart from each other.
+
+mesh
+    what it changes by on its companions' coarser mesh, with the run's own steps and outputs.
+time steps
+    what it changes by on that mesh when every two steps are made one, read at the outputs that are left.
+sampling
+    what straight lines between outputs leave out: what it changes by when every second output is left out, over 2^p. The order p
+    is seen when every fourth is left: 2 of a smooth curve, 3/2 of one with a kink, 1/2 of one with a jump.
+
+Each is a norm over the very curve shown, in per cent of the curve's own. They are estimates, not bounds: the first two are what a
+result changes by from twice the edge or step to its own, which is more than what is left wherever it converges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import astuple, dataclass
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from fingerpad.measures.features import Feature, Trace
+from fingerpad.measures.strokes import distance, loaded
+from fingerpad.results import scene_of
+
+MESH, STEPS, SAMPLING = PARTS = ("mesh_error (%)", "time_step_error (%)", "sampling_error (%)")
+"""Columns of the three parts of an error."""
+SHOWN_ABOVE = 2.0
+"""Per cent from which on an error is drawn as a band or a bar."""
+
+_SMOOTH, _ROUGH = 2.0, 0.0  # orders at which straight lines come closer to a curve
+_FEW = 5  # outputs, of which fewer do not show an order
+_ROUND_OFF = 1e-9
+
+
+@dataclass(frozen=True)
+class Companion:
+    """A scene on a coarser mesh: with the run's own steps, and with `both` coarser, every two steps made one."""
+
+    mesh: xr.Dataset
+    both: xr.Dataset
+
+    @property
+    def sparse(self) -> xr.Dataset:
+        """The one with the run's own steps at the outputs of the other: what these two differ by is the steps'."""
+        return self.mesh if self.mesh.sizes["time"] == self.both.sizes["time"] else thinned(self.mesh)
+
+
+Companions = Mapping[str, Companion]
+
+
+@dataclass(frozen=True)
+class Errors:
+    """The three parts of an error; NaN where nothing was simulated that tells."""
+
+    mesh: float
+    steps: float
+    sampling: float
+
+    @property
+    def total(self) -> float:
+        """Their sum."""
+        return float(np.nansum(astuple(self)))
+
+    @property
+    def columns(self) -> dict[str, float]:
+        """The parts by the columns `PARTS` of a data frame."""
+        return dict(zip(PARTS, astuple(self), strict=True))
+
+
+def total(frame: pd.DataFrame) -> pd.Series:
+    """The sum of the parts in each row of a frame; NaN in those without any."""
+    return frame[list(PARTS)].sum(axis=1, min_count=1)
+
+
+# --- curves ----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve that is shown.
+
+    Attributes
+    ----------
+    read
+        ``read(history)``: places (n,), in one direction, twice where the curve jumps, and values (n,).
+    outputs
+        Whether its points are outputs; else they are places on the skin at one output.
+    """
+
+    read: Callable[[xr.Dataset], tuple[np.ndarray, np.ndarray]]
+    outputs: bool = True
+
+    def __call__(self, history: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+        """Places that grow, and values."""
+        x, y = (np.asarray(part, float) for part in self.read(history))
+        way = 1.0 if x[-1] >= x[0] else -1.0
+        x = way * x
+        # of a jump the later side lies a little later, so that it can be interpolated
+        apart = np.concatenate([[0.0], np.where(np.diff(x) > 0, 0.0, 1e-12 * (np.ptp(x) or 1.0))])
+        return x + apart, y
+
+    def sparse(self, history: xr.Dataset, every: int) -> tuple[np.ndarray, np.ndarray]:
+        """The curve of every so many-th output, or point, of the ends of legs in any case."""
+        if self.outputs:
+            return self(thinned(history, every))
+        x, y = self(history)
+        kept = np.unique(np.append(np.arange(0, len(x), every), len(x) - 1))
+        return x[kept], y[kept]
+
+
+def over_time(trace: Trace) -> Curve:
+    """A trace over time."""
+    return Curve(lambda history: (history["time"].values, trace(history)))
+
+
+def over_stroke(trace: Trace) -> Curve:
+    """A trace of the loaded outputs of a stroke, over its distance."""
+    return Curve(lambda history: (distance(stroke := loaded(history)), trace(stroke)))
+
+
+def at_output(time: float, read: Callable[[xr.Dataset, int], tuple[np.ndarray, np.ndarray]]) -> Curve:
+    """A curve over the skin, ``read(history, index)``, at the output nearest to a time (s)."""
+    return Curve(lambda history: read(history, int(np.argmin(abs(history["time"].values - time)))), outputs=False)
+
+
+def thinned(history: xr.Dataset, every: int = 2) -> xr.Dataset:
+    """Every so many-th output of each leg, and the last of each; of a stroke, of its loaded outputs."""
+    if "stroke_distance" in history and np.ptp(history["stroke_distance"].values):
+        history = loaded(history)
+    leg = history["leg"].values
+    first = np.searchsorted(leg, leg)  # the unloaded pad is where the first leg begins, and the end of each where the next does
+    count = np.arange(len(leg)) - first + (first > 0)
+    return history.isel(time=np.flatnonzero((count % every == 0) | np.append(np.diff(leg) != 0, True)))
+
+
+def norm(x: np.ndarray, y: np.ndarray) -> float:
+    """Root mean square (in y's unit) of a curve over its places."""
+    span = x[-1] - x[0]
+    return float(np.sqrt(np.trapezoid(y**2, x) / span if span > 0 else np.mean(y**2)))
+
+
+def curve_errors(history: xr.Dataset, companion: Companion | None, *curves: Curve) -> Errors:
+    """Errors of the curve that is furthest off, in per cent of its norm. Mesh and steps are NaN without a companion."""
+    return furthest(_of_curve(history, companion, curve) for curve in curves)
+
+
+def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) -> Errors:
+    x, y = curve(history)
+    share = 100 / (norm(x, y) or np.inf)
+    if companion is None:
+        return Errors(np.nan, np.nan, share * sampling(history, curve))
+    # over the skin at the nodes of the coarser mesh: what is between them is no error of these
+    (xm, ym), (xb, yb), sparse = curve(companion.mesh), curve(companion.both), curve(companion.sparse)
+    mesh = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
+    steps = norm(xb, yb - np.interp(xb, *sparse))
+    return Errors(share * mesh, share * steps, share * sampling(history, curve))
+
+
+def shared_place(place: float, companion: Companion | None) -> float:
+    """Place (m) along the skin at rest of the companions' node nearest to a place."""
+    if companion is None:
+        return place
+    x = companion.mesh["skin_x"].values[companion.mesh["skin_y"].values > 0]
+    return float(x[np.argmin(abs(x - place))])
+
+
+def sampling(history: xr.Dataset, curve: Curve) -> float:
+    """What straight lines between its points leave out of a curve, as a norm in the unit of its values.
+
+    Left out every second point, the lines miss by 2^p times as much. Where the values themselves follow from differences of
+    outputs, as rates do, those that stay change too, by 2^p - 1 times what they are wrong by. Of a surface stepped over the pad
+    nothing is left out: it is pressed at these points.
+    """
+    if curve.outputs and "scene" in history.attrs and any(leg.fresh for leg in scene_of(history).motion):
+        return 0.0
+    x, y = curve(history)
+    rough = [curve.sparse(history, every) for every in (2, 4)]
+    second, fourth = (norm(x, y - np.interp(x, *each)) for each in rough)
+    if second <= _ROUND_OFF * norm(x, y):
+        return 0.0
+    order = np.clip(np.log2(fourth / second), _ROUGH, _SMOOTH) if len(x) >= _FEW else _ROUGH
+    at, kept = rough[0]
+    derived = not np.allclose(kept, np.interp(at, x, y), rtol=1e-6, atol=1e-6 * abs(y).max())
+    return float(second / max(2**order - derived, 1.0))
+
+
+# --- numbers ---------------------------------------------------------------------------------------------
+
+
+def number_errors(history: xr.Dataset, companion: Companion | None, *features: Feature) -> Errors:
+    """Errors of the number, or numbers together, that are furthest off, in per cent of their size."""
+    return furthest(_of_number(history, companion, feature) for feature in features)
+
+
+def _of_number(history: xr.Dataset, companion: Companion | None, feature: Feature) -> Errors:
+    own = np.atleast_1d(feature(history))
+    kinds = "mesh", "sparse", "both"
+    mesh, sparse, both = (np.nan if companion is None else feature(getattr(companion, kind)) for kind in kinds)
+    share = 100 / (np.linalg.norm(own) or np.inf)
+    pairs = (own, mesh), (sparse, both), (own, feature(thinned(history)))
+    return Errors(*(share * float(np.linalg.norm(np.atleast_1d(a) - np.atleast_1d(b))) for a, b in pairs))
+
+
+def furthest(found: Iterable[Errors]) -> Errors:
+    """The errors whose sum is largest."""
+    return max(found, key=lambda errors: errors.total)

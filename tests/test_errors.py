@@ -1,0 +1,255 @@
+"""Errors of curves in three parts: each is found alone where it is known, and companions have the steps they say."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import synthetic
+from fingerpad import plan, simulate
+from fingerpad.figures import axes as axs
+from fingerpad.measures.errors import (
+    PARTS,
+    Companion,
+    Curve,
+    Errors,
+    curve_errors,
+    norm,
+    number_errors,
+    over_stroke,
+    over_time,
+    sampling,
+    thinned,
+    total,
+)
+from fingerpad.measures.features import centre_pressure, energy_rate, width
+from fingerpad.planning.plan import companion
+from fingerpad.planning.schedule import schedule
+from fingerpad.receptors.laws import rate_by_leg
+from fingerpad.scenes.scene import load_scene
+
+pytestmark = pytest.mark.unit
+SCENES = Path(__file__).parents[1] / "config/scenes"
+SHAPES = {
+    "smooth": lambda t, at: np.sin(7 * (t - at)),
+    "kink": lambda t, at: np.maximum(t - at, 0.0),
+    "jump": lambda t, at: np.where(t > at, 1.0, 0.0),
+}
+
+
+def outputs(values, time, leg=None) -> xr.Dataset:
+    """A history with one variable."""
+    leg = np.zeros(len(time), int) if leg is None else leg
+    return xr.Dataset({"value": ("time", values), "leg": ("time", leg)}, {"time": time})
+
+
+VALUE = over_time(lambda history: history["value"].values)
+
+
+# --- sampling ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("even", [True, False])
+def test_sampling_error_is_what_straight_lines_leave_out(shape, even):
+    """On average over places where a curve bends or jumps about as large; of a smooth curve always."""
+    time = np.linspace(0, 1, 41) ** (1 if even else 1.5)
+    fine, found, true = np.linspace(0, 1, 40001), [], []
+    for at in np.random.default_rng(4).uniform(0.3, 0.7, 60):
+        values = SHAPES[shape](time, at)
+        found.append(sampling(outputs(values, time), VALUE))
+        true.append(norm(fine, SHAPES[shape](fine, at) - np.interp(fine, time, values)))
+    found, true = np.array(found), np.array(true)
+    assert 0.8 < np.sqrt(np.mean(found**2) / np.mean(true**2)) < 1.6
+    if shape == "smooth":
+        assert found == pytest.approx(true, rel=0.15)
+
+
+def test_sampling_error_falls_by_the_order_of_the_curve():
+    def errors(shape):
+        return [sampling(outputs(SHAPES[shape](t, 0.43), t), VALUE) for t in (np.linspace(0, 1, n) for n in (41, 81, 161))]
+
+    smooth = np.array(errors("smooth"))
+    assert smooth[:-1] / smooth[1:] == pytest.approx(4, rel=0.05)
+    assert sampling(outputs(np.linspace(0, 3, 21), np.linspace(0, 1, 21)), VALUE) == 0  # a straight line
+    assert sampling(outputs(np.ones(9), np.linspace(0, 1, 9)), VALUE) == 0
+
+
+def test_a_stepped_surface_is_pressed_at_its_points():
+    assert sampling(synthetic.stroke("step_sub"), over_stroke(centre_pressure)) == 0
+    assert sampling(synthetic.stroke("stroke_sub_10"), over_stroke(centre_pressure)) > 0
+
+
+def test_a_kink_between_legs_is_no_sampling_error():
+    """An output is there: a ramp and hold of straight lines is drawn as it is."""
+    time = np.append(np.linspace(0, 0.5, 12), np.linspace(0.5, 2.5, 13)[1:])
+    leg = np.repeat([0, 1], 12)
+    ramp = np.minimum(time, 0.5)
+    assert sampling(outputs(ramp, time, leg), VALUE) < 1e-12
+    assert sampling(outputs(ramp, time), VALUE) > 1e-3  # mutant: legs are not known
+
+
+def test_rates_made_of_differences_of_outputs_are_wrong_at_the_outputs_too():
+    """A curve of central differences: the truth is within what is found, which lines alone (mutant) would leave out."""
+
+    def rates(history):
+        t, _, rate = rate_by_leg(history["time"].values, history["value"].values, history["leg"].values)
+        return t, rate
+
+    time, fine = np.linspace(0, 1, 41), np.linspace(0, 1, 4001)
+    history = outputs(np.sin(7 * time), time)
+    found = sampling(history, Curve(rates))
+    true = norm(fine, 7 * np.cos(7 * fine) - np.interp(fine, *rates(history)))
+    lines = sampling(outputs(rates(history)[1], time), VALUE)
+    assert 0.8 * true < found < 1.5 * true and lines < 0.7 * true
+
+
+# --- mesh and steps ------------------------------------------------------------------------------------------
+
+
+def solved(h, dt, mesh=0.3, steps=0.2, curved=1.0):
+    """A curve that errs by `mesh` h^2 and by `steps` dt, each in a shape of its own, at outputs every dt."""
+    time = np.arange(0, 1 + dt / 2, dt)
+    return outputs(np.sin(7 * curved * time) + mesh * h**2 * np.cos(time) + steps * dt * time, time)
+
+
+@pytest.mark.parametrize("alone", ["mesh", "steps", "neither"])
+def test_each_part_is_found_alone(alone):
+    size = {"mesh": 0.3 * (alone == "mesh"), "steps": 0.2 * (alone == "steps")}
+    run, coarse, both = solved(0.1, 0.02, **size), solved(0.2, 0.02, **size), solved(0.2, 0.04, **size)
+    found = curve_errors(run, Companion(coarse, both), VALUE)
+    x = run["time"].values
+    share = 100 / norm(x, run["value"].values)
+    true = norm(x, 0.3 * 0.1**2 * np.cos(x)) * share, norm(x, 0.2 * 0.02 * x) * share
+    # order 2: three times what is left; order 1: as much
+    assert found.mesh == pytest.approx(3 * true[0] if alone == "mesh" else 0, abs=1e-9)
+    assert found.steps == pytest.approx(true[1] if alone == "steps" else 0, rel=0.02, abs=1e-9)
+    assert 0 < found.sampling < 1 and found.total == pytest.approx(found.mesh + found.steps + found.sampling)
+    rate = Curve(lambda h: (h["time"].values, np.gradient(h["value"].values, h["time"].values)))
+    assert curve_errors(run, Companion(coarse, thinned(coarse)), rate).steps < 1e-9  # fewer outputs are not fewer steps
+    if alone != "neither":  # mutant: one companion for both parts tells them apart no longer
+        mixed = curve_errors(run, Companion(both, both), VALUE)
+        assert (mixed.mesh > 0.1) and mixed.steps == 0
+
+
+def test_parts_without_companions_are_not_known_and_sampling_is():
+    found = curve_errors(solved(0.1, 0.02), None, VALUE)
+    assert np.isnan([found.mesh, found.steps]).all() and 0 < found.sampling == found.total
+
+
+def test_norm_is_over_the_curve_not_over_its_outputs():
+    """Many outputs in a place do not make it count more."""
+    time = np.linspace(0, 1, 21)
+    crowded = np.union1d(time, np.linspace(0.9, 0.95, 200))
+    bump = lambda t: np.clip(1 - abs(t - 0.9) / 0.1, 0, None)  # noqa: E731
+    assert norm(crowded, bump(crowded)) == pytest.approx(norm(time, bump(time)), rel=0.03)
+    assert np.sqrt(np.mean(bump(crowded) ** 2)) > 2 * norm(time, bump(time))  # mutant
+
+
+def test_of_several_curves_the_one_furthest_off_counts_and_numbers_are_compared_as_they_are():
+    run, coarse, both = solved(0.1, 0.02), solved(0.2, 0.02), solved(0.2, 0.04)
+    last = lambda history: float(history["value"][-1])  # noqa: E731
+    found = number_errors(run, Companion(coarse, both), last, lambda history: 1.0)
+    own = abs(last(run))
+    assert found.mesh == pytest.approx(100 * abs(last(run) - last(coarse)) / own)
+    assert found.steps == pytest.approx(100 * abs(last(both) - last(coarse)) / own) and found.sampling == 0
+    peak = lambda history: float(history["value"].max())  # noqa: E731
+    assert number_errors(run, None, peak).sampling >= 0
+    assert curve_errors(run, Companion(run, run), VALUE, VALUE).mesh == 0
+
+
+@pytest.mark.parametrize("name, over, trace", [("ramp40_k210", over_time, width), ("stroke_10", over_stroke, centre_pressure)])
+def test_a_companion_one_per_cent_away_is_that_far(name, over, trace):
+    make = synthetic.stroke if name.startswith("stroke") else synthetic.history
+    found = curve_errors(make(name), Companion(make(name, 1.01), thinned(make(name, 1.02))), over(trace))
+    assert found.mesh == pytest.approx(1.0, rel=1e-6) and found.steps == pytest.approx(1.0, rel=0.01)
+    if over is over_stroke:  # the other way too
+        run, other = (h.assign(stroke_distance=-h["stroke_distance"]) for h in (make(name), make(name, 1.01)))
+        assert curve_errors(run, Companion(other, other), over(trace)).mesh == pytest.approx(1.0, rel=1e-6)
+
+
+def test_rate_curve_with_a_jump_is_compared_on_either_side_of_it():
+    history, other = synthetic.history("ramp40_k210"), synthetic.history("ramp40_k210", 1.01)
+    rate = Curve(lambda h: energy_rate(h, 915e-6).to_numpy().T)
+    assert curve_errors(history, Companion(other, other), rate).mesh == pytest.approx(1.0, rel=1e-4)
+
+
+# --- companions ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["ramp40_k210", "stroke_sub_10", "step_sub", "steady_line", "ramp_hold_1_5_mm"])
+def test_companions_have_the_steps_of_the_run_all_or_every_second(name):
+    """And outputs of the one are every second of the other's, as `thinned` takes them."""
+    scene = load_scene(SCENES / f"{name}.yaml")
+    own, coarser = plan(scene), plan(scene.with_accuracy("draft"))
+    mesh, both = companion(scene, own, coarser), companion(scene, own, coarser, 2)
+    assert mesh.mesh_size == both.mesh_size == coarser.mesh_size and mesh.effects == both.effects == own.effects
+    every, second = (list(schedule(scene, *each.stepping)) for each in (mesh, both))
+    assert every == list(schedule(scene, *own.stepping)) and (mesh.steps, both.steps) == (len(every), len(second))
+    pressed_anew = any(leg.fresh for leg in scene.motion)
+    told = xr.Dataset({"leg": ("time", [0, *(step.leg for step in every)])}, {"time": np.arange(len(every) + 1)})
+    kept = thinned(told)["time"].values[1:] - 1
+    expected = [every[k] for k in kept] if not pressed_anew else [step for step in every if step.fresh or step.leg == 0]
+    assert [(s.leg, s.distance, s.force, s.depth) for s in second] == [(s.leg, s.distance, s.force, s.depth) for s in expected]
+    assert [s.time for s in second] == pytest.approx([s.time for s in expected])
+    steady = 1e8
+    assert sum(s.dt for s in second if s.dt < steady) == pytest.approx(sum(s.dt for s in every if s.dt < steady))
+
+
+def test_companions_of_a_press_find_its_errors():
+    """Simulated: a press on an intermediate mesh, with its companions and with the truth on a finer one."""
+    scene = load_scene(
+        {"stimulus": {"shape": "cylinder", "curvature": "400 1/m"},
+         "motion": [{"press_to_force": "10 gf", "rate": "40 gf/s"}, {"hold": "1 s"}],
+         "accuracy": {"skin_edge": "0.25 mm", "steps": 16}}, "press")  # fmt: skip
+    own, coarser, finer = (plan(scene.with_accuracy({"skin_edge": edge, "steps": 16})) for edge in (0.25e-3, 0.5e-3, 0.1e-3))
+    run, mesh, both = (simulate(scene, how) for how in (own, companion(scene, own, coarser), companion(scene, own, coarser, 2)))
+    found = curve_errors(run, Companion(mesh, both), over_time(width))
+    truth = simulate(scene, companion(scene, own, finer))
+    true = norm(run["time"].values, width(run) - width(truth)) / norm(run["time"].values, width(run)) * 100
+    assert 0.5 * true < found.mesh and found.mesh > found.steps
+    assert both.sizes["time"] == 1 + 8 and set(both["time"].values) <= set(run["time"].values)
+
+
+# --- pictures ------------------------------------------------------------------------------------------------
+
+
+def _rows(mesh=1.0, steps=0.5, sampled=0.1):
+    rows = pd.DataFrame({"source": "simulated", "x (mm)": np.linspace(0, 1, 11), "y (Pa)": np.full(11, 200.0)})
+    return rows.assign(**Errors(mesh, steps, sampled).columns)
+
+
+def test_errors_above_two_per_cent_are_drawn_as_a_band_as_high_as_they_are():
+    from matplotlib.figure import Figure
+
+    ax = Figure().add_subplot()
+    line = axs.curve(ax, _rows(), "x (mm)", "y (Pa)", color="C3")
+    assert not ax.collections  # 1.6 %
+    axs.curve(ax, _rows(mesh=3.4), "x (mm)", "y (Pa)", color="C3")
+    (band,) = ax.collections
+    high = band.get_paths()[0].vertices[:, 1]
+    assert (high.min(), high.max()) == pytest.approx((192, 208)) and band.get_facecolor()[0, 3] < 0.3
+    assert line.get_color() == "C3" and (band.get_facecolor()[0, :3] == pytest.approx((0.839, 0.153, 0.157), abs=0.01))
+    part = axs.curve(ax, _rows(mesh=3.4)[:4], "x (mm)", "y (Pa)", whole=_rows(mesh=3.4).assign(**{"y (Pa)": 400.0}))
+    assert part and ax.collections[-1].get_paths()[0].vertices[:, 1].max() == pytest.approx(216)
+
+
+def test_points_have_bars_where_their_own_errors_are_above_two_per_cent():
+    from matplotlib.figure import Figure
+
+    ax, rows = Figure().add_subplot(), _rows()
+    rows.loc[3, PARTS[0]] = 9.4
+    axs.curve(ax, rows, "x (mm)", "y (Pa)", points=True)
+    ((bar,),) = [container[2] for container in ax.containers]
+    assert bar.get_segments()[0][:, 1] == pytest.approx([180, 220]) and len(bar.get_segments()) == 1
+
+
+def test_note_says_the_parts_of_the_curve_that_is_furthest_off():
+    assert axs.error_text(_rows()) == "Largest error: mesh 1.0 %, steps 0.5 %, sampling 0.1 %"
+    frame = pd.concat([_rows().assign(surface="79"), _rows(5.0, 0.01, 0.0).assign(surface="1260")], ignore_index=True)
+    assert axs.error_text(frame) == "Largest error of K = 1260 1/m: mesh 5.0 %, steps <0.1 %, sampling 0.0 %"
+    assert axs.error_text(frame.assign(**dict.fromkeys(PARTS[:2], np.nan))) == "Largest error: sampling 0.1 %"
+    assert axs.error_text(frame.assign(**dict.fromkeys(PARTS, np.nan))) == ""
+    assert total(frame).tolist() == pytest.approx([1.6] * 11 + [5.01] * 11)
