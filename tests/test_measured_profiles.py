@@ -162,14 +162,14 @@ WEDGE = "-2,1\n-1,.25\n0,0\n1,.25\n2,1\n"
 
 @pytest.mark.unit
 def test_one_more_point_is_no_endless_wedge(tmp_path):
-    """A falling last segment changes nothing where contact does not come; extended for ever it goes 0.37 mm deeper."""
+    """A falling last segment changes nothing where contact does not come; extended for ever it goes 0.3 mm deeper."""
     plain, more, extended = (
         simulate(load_scene(scene(tmp_path, rows, ends)))
         for rows, ends in ((WEDGE, ""), (WEDGE + "2.1,0.9\n", ""), (WEDGE + "2.1,0.9\n", ", ends: slope"))
     )
     depth = [float(history.indentation_depth[-1]) * 1e3 for history in (plain, more, extended)]
     assert depth[0] == pytest.approx(1.261, abs=2e-3) and depth[1] == pytest.approx(depth[0], rel=1e-4)
-    assert depth[2] == pytest.approx(1.24, abs=0.01)
+    assert depth[2] == pytest.approx(1.559, abs=0.01)
     assert "contact_reached_profile_end" not in summary(plain)["run"]
     assert summary(extended)["run"]["contact_reached_profile_end"]
 

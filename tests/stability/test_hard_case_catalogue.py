@@ -61,7 +61,7 @@ def test_depth_hardly_depends_on_poissons_ratio(shape, nu):
 
 @pytest.mark.parametrize("curvature", [2.5e3, 5e3, 1e4])
 def test_needles_end_where_their_radius_no_longer_matters(curvature):
-    assert 1e3 * float(end(f"needle {curvature:g} 1/m").indentation_depth) == pytest.approx(0.93, abs=0.1)
+    assert 1e3 * float(end(f"needle {curvature:g} 1/m").indentation_depth) == pytest.approx(1.38, abs=0.06)
 
 
 @pytest.mark.parametrize("name", ["sharp bar", "bar, fillet 0.03 mm", "line load"])
@@ -74,14 +74,14 @@ def test_holds_stay_between_the_two_elastic_limits(share):
     """In steps of 1e-4 to 1e3 times the longest time constant."""
     depths = done(f"steps of {share:g} tau").history.indentation_depth.values[10:]
     # forces balance within a ten-thousandth, and so the depth stands still
-    assert np.all(np.diff(depths) > -1e-4 * depths.max()) and 0.5e-3 < depths.min() < depths.max() < 0.76e-3
+    assert np.all(np.diff(depths) > -1e-4 * depths.max()) and 0.8e-3 < depths.min() < depths.max() < 1.13e-3
 
 
 @pytest.mark.parametrize("shape", ["flat", "210 1/m"])
 def test_almost_separated_pads_are_loaded_again(shape):
     name = f"almost to separation, {shape}"
     assert float(end(name, 1).contact_width) < 0.2 * float(end(name, 0).contact_width)
-    assert float(end(name).force) == pytest.approx(19.6133)
+    assert float(end(name).force) == pytest.approx(LOAD)
 
 
 @pytest.mark.parametrize("speed", [40, 400])
@@ -117,7 +117,7 @@ def test_strokes_keep_the_law_of_friction(name):
 def test_featherweight():
     """A ten-thousandth of a gram-weight is carried by a node or a few."""
     last = end("one node in contact")
-    assert np.count_nonzero(last.contact_pressure) <= 3 and float(last.force) == pytest.approx(1e-4 * 9.80665e-3 / 10e-3)
+    assert np.count_nonzero(last.contact_pressure) <= 3 and float(last.force) == pytest.approx(1e-4 * 9.80665e-3 / 11.4e-3)
 
 
 # -- failures -----------------------------------------------------------------------------------------------------------------

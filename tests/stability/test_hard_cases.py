@@ -80,7 +80,7 @@ def test_whole_load_in_one_step(base):
 def test_change_of_control(base):
     """From force to depth control and on from the depth that was reached."""
     legs = sound(simulate(scene(base, motion=(force(20, 40), depth(1.0, 1.0), Hold(hold=0.5)))))["legs"]
-    assert legs[1]["depth_mm"] == pytest.approx(1.0) and legs[1]["force_N_per_m"] > 19.6
+    assert legs[1]["depth_mm"] == pytest.approx(1.0) and legs[1]["force_N_per_m"] > legs[0]["force_N_per_m"]
 
 
 # -- what cannot be done fails cleanly ----------------------------------------------------------------------------------------

@@ -32,16 +32,16 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_plate_over_ridges(base, case):
-    """No step is cut, no point is compressed by more than a fifth, and full slip is reached; there and 1 mm back."""
+    """No step is cut, no point is compressed by more than a third, and full slip is reached; there and 1 mm back."""
     ridges, friction = CASES[case]
     specimen = Specimen(ridges=ridges)
     layers = specimen.layers
     assert layers.epidermis.youngs_modulus == pytest.approx(10 * layers.dermis.youngs_modulus)
-    asked = scene(base, Flat(), (PRESS, slide(2), slide(-1))).model_copy(update={"specimen": specimen, "friction": friction})
+    asked = scene(base, Flat(), (PRESS, slide(3.5), slide(-1))).model_copy(update={"specimen": specimen, "friction": friction})
     history = simulate(asked)
     sound_stroke(history, friction)
     assert history.cutbacks.sum() == 0
-    assert history.min_detF.min() > 0.8, f"det F {float(history.min_detF.min()):.3f}"
+    assert history.min_detF.min() > 0.67, f"det F {float(history.min_detF.min()):.3f}"
     there = history.isel(time=np.flatnonzero(history.leg == 1))
     assert float(there.tangential_force[-1]) == pytest.approx(friction * LOAD, rel=1e-3)
     if "outer" in ridges:
@@ -53,4 +53,4 @@ def test_sharpest_surface_pressed_into_ridges(base):
         update={"specimen": Specimen(ridges={"inner": {"height": 0.3 * MM, "shape": "sharp"}})}
     )
     history = simulate(asked)
-    assert history.cutbacks.sum() == 0 and history.min_detF.min() > 0.7
+    assert history.cutbacks.sum() == 0 and history.min_detF.min() > 0.5

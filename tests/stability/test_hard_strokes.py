@@ -156,7 +156,7 @@ def lost_and_found(history):
 
 def test_contact_is_lost_and_found_without_friction(base):
     history = stroke(base, SHALLOW, 0.0, depth(0.03, 1.0), slide(14, 10, "depth"), slide(-14, 10, "depth"))
-    sound_stroke(history, 0.0, energy=0.05)
+    sound_stroke(history, 0.0, energy=0.05, cuts=1)
     lost_and_found(history)
 
 
@@ -166,14 +166,14 @@ def test_a_hole_wider_than_the_contact(base):
     history = stroke(base, hole, 0.7, depth(0.4, 1.0), slide(20, 10, "depth"))
     sound_stroke(history, 0.7)
     over = (np.abs(history.stroke_distance - 10 * MM) < 1e-6).values
-    assert float(history.force[over].max()) == 0 and float(history.force[-1]) > 10
+    assert float(history.force[over].max()) == 0 and float(history.force[-1]) > 5
 
 
 def test_pulled_sideways_without_friction(base):
     """A cylinder drawn off a slippery pad at a kept depth is pushed on by its slope, and leaves it altogether."""
     history = stroke(base, ROUND, 0.0, depth(0.5, 1.0), slide(8, 10, "depth"))
     sound_stroke(history, 0.0, energy=0.03)
-    assert float(history.tangential_force.min()) < -0.04 * LOAD and float(history.force[-1]) == 0
+    assert float(history.tangential_force.min()) < -0.03 * LOAD and float(history.force[-1]) == 0
 
 
 def test_step_and_repeat_forgets(base):

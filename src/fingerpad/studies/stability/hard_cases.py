@@ -206,7 +206,7 @@ def _catalogue():
 
     group = "friction"
     for name, stimulus, legs in (
-        ("1.5 on a plate, there and back", FLAT, [slide(4), slide(-4)]),
+        ("1.5 on a plate, there and back", FLAT, [slide(4), slide(-8)]),
         ("1.5 over two waves", TWO_WAVES, [slide(14)]),
         ("1.5 over two waves, reversals", TWO_WAVES, [slide(6.5), slide(-4), slide(4)]),
     ):
