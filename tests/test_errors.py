@@ -67,6 +67,21 @@ def test_sampling_error_is_what_straight_lines_leave_out(shape, even):
         assert found == pytest.approx(true, rel=0.15)
 
 
+@pytest.mark.parametrize("nodes", [9, 10, 14, 31])
+def test_profile_of_a_contact_of_a_few_nodes_is_drawn_with_the_error_it_has(nodes):
+    """A half ellipse, wherever its nodes lie: about as large on average, and never a multiple."""
+    fine, found, true = np.linspace(-2, 2, 40001), [], []
+    pressure = lambda x: np.sqrt(np.clip(1 - x**2, 0, None))  # noqa: E731
+    for shift in np.linspace(0, 1, 12, endpoint=False):
+        x = (np.arange(-2 * nodes, 2 * nodes) + shift) / (nodes / 2)
+        x = x[abs(x) <= 2]
+        profile = Curve(lambda history: (history["time"].values, history["value"].values), outputs=False)
+        found.append(sampling(outputs(pressure(x), x), profile))
+        true.append(norm(fine, pressure(fine) - np.interp(fine, x, pressure(x))))
+    ratio = np.array(found) / np.array(true)
+    assert 0.7 < np.sqrt(np.mean(np.square(found)) / np.mean(np.square(true))) < 1.6 and ratio.max() < 3, ratio
+
+
 def test_sampling_error_falls_by_the_order_of_the_curve():
     def errors(shape):
         return [sampling(outputs(SHAPES[shape](t, 0.43), t), VALUE) for t in (np.linspace(0, 1, n) for n in (41, 81, 161))]

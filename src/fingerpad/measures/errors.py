@@ -102,13 +102,14 @@ class Curve:
         apart = np.concatenate([[0.0], np.where(np.diff(x) > 0, 0.0, 1e-12 * (np.ptp(x) or 1.0))])
         return x + apart, y
 
-    def sparse(self, history: xr.Dataset, every: int) -> tuple[np.ndarray, np.ndarray]:
-        """The curve of every so many-th output, or point, of the ends of legs in any case."""
+    def sparse(self, history: xr.Dataset, every: int) -> list[tuple[np.ndarray, np.ndarray]]:
+        """The curve of every so many-th output and of the ends of legs; or of so many points, from each of the first ones on."""
         if self.outputs:
-            return self(thinned(history, every))
+            return [self(thinned(history, every))]
         x, y = self(history)
-        kept = np.unique(np.append(np.arange(0, len(x), every), len(x) - 1))
-        return x[kept], y[kept]
+        ends = [0, len(x) - 1]
+        kept = [np.union1d(ends, np.arange(start, len(x), every)) for start in range(every)]
+        return [(x[k], y[k]) for k in kept]
 
 
 def over_time(trace: Trace) -> Curve:
@@ -178,11 +179,11 @@ def sampling(history: xr.Dataset, curve: Curve) -> float:
         return 0.0
     x, y = curve(history)
     rough = [curve.sparse(history, every) for every in (2, 4)]
-    second, fourth = (norm(x, y - np.interp(x, *each)) for each in rough)
+    second, fourth = (np.sqrt(np.mean([norm(x, y - np.interp(x, *each)) ** 2 for each in found])) for found in rough)
     if second <= _ROUND_OFF * norm(x, y):
         return 0.0
     order = np.clip(np.log2(fourth / second), _ROUGH, _SMOOTH) if len(x) >= _FEW else _ROUGH
-    at, kept = rough[0]
+    at, kept = rough[0][0]
     derived = not np.allclose(kept, np.interp(at, x, y), rtol=1e-6, atol=1e-6 * abs(y).max())
     return float(second / max(2**order - derived, 1.0))
 
