@@ -256,6 +256,12 @@ def friction_on_fitted_pad():
 
 
 @number
+def modulus_constant():
+    row = _calibrated("constant", "modulus constant", "mean")
+    return f"{row['estimate']:.2f} ({row['low_95']:.2f} to {row['high_95']:.2f})"
+
+
+@number
 def modulus_times_length():
     row = _calibrated("identifiability", "modulus constant x contact length")
     return f"{row['estimate']:.1f} mm ({row['low_95']:.1f} to {row['high_95']:.1f})"
