@@ -283,6 +283,9 @@ def test_results_are_given_in_four_digits_and_inputs_in_full(table):
         ("range", 1.0, 1.5, np.nan, 0.99, 0.02, "inside"),
         ("range", 1.0, 1.5, np.nan, 1.6, 0.0, "outside"),
         ("range", 1.0, 1.5, np.nan, 1.6, 0.2, "outside"),
+        ("range", 1.0, 1.5, 0.1, 0.91, 0.0, "inside"),  # read over nodes: up to a tenth less
+        ("range", 1.0, 1.5, 0.1, 0.89, 0.0, "outside"),
+        ("range", 1.0, 1.5, 0.1, 1.6, 0.0, "outside"),
         ("axis", 0, 10000, np.nan, 9900, 0.0, "plausible"),
         ("axis", 0, 10000, np.nan, 10050, 100.0, "plausible"),
         ("axis", 0, 10000, np.nan, 10500, 100.0, "outside"),

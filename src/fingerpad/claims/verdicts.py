@@ -5,7 +5,8 @@ The rule follows from the row's `form`:
 value
     inside if within the row's relative tolerance (0: equal to six digits) or the error.
 range
-    inside if between low and high, give or take the error.
+    inside if between low and high, give or take the error. The row's relative tolerance, where there is one, lets a number be
+    lower by what the thesis's own reading adds: it counts nodes 0.0672 mm apart, and a width is up to two spacings more.
 value without low
     the thesis does not state it: not judged.
 estimate
@@ -72,7 +73,8 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
         if np.isnan(tick) and value < FILL * high - helped(FILL * high):
             return "outside", f"fills only {value / high:.0%} of the axis"
         return "plausible", f"fills {value / high:.0%} of the axis"
-    if low - helped(low) <= value <= high + helped(high):
+    read = float(entry.get("tolerance", np.nan)) * abs(low)
+    if low - max(helped(low), np.nan_to_num(read)) <= value <= high + helped(high):
         return "inside", ""
     near = low if value < low else high
     return "outside", f"by {value - near:+.3g} ({value / near - 1:+.0%})"
