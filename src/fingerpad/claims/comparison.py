@@ -27,7 +27,8 @@ from fingerpad.claims.rows import Number
 from fingerpad.claims.sensitivity import evidence
 from fingerpad.claims.trends import TRENDS
 from fingerpad.claims.verdicts import is_inside, judge, significant
-from fingerpad.measures.table import Instead, Measures
+from fingerpad.measures.errors import Errors
+from fingerpad.measures.table import MEASURES, Instead, Measures
 from fingerpad.reference_data import read_reference
 
 AGREES = ("inside", "plausible", "trend_holds")
@@ -138,7 +139,8 @@ def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataF
         verdict, *notes = judge(value, 0.0, entry)
         notes += [reason(entry["reason"], fine, number)] * (verdict == "outside" or entry["form"] == "unlike")
         return row | {"simulated": value, "verdict": verdict, "note": _note(*notes, _doubt(entry))}
-    errors = instead.errors(number, value)
+    # what a scene alone tells is no result
+    errors = Errors(0.0, 0.0, 0.0) if MEASURES[number.measure].of == "scene" else instead.errors(number, value)
     allowed = errors.total
     verdict, *notes = judge(value, allowed, entry)
     if verdict == "outside" or entry["form"] in ("estimate", "unlike") or entry["reason"] == "panels":
