@@ -82,6 +82,7 @@ def footnote(frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH) 
         line += f" ({how})"
     if frame["source"].str.startswith(OTHER_PADS).any():
         words = ". Faint bars: other pads that the thesis's figures do not tell from this one"
+        line = line if len(line) + 19 <= width else line.replace(f"{of}{meant}", "")
         line += words if len(line) + len(words) < width else ". Bars: other pads"
     return style.wrapped([line + "."], width)
 

@@ -302,7 +302,7 @@ def model_and_subjects(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def force_words(error: str) -> list[str]:
-    return [f"{MODEL} {error}. Points: measured (Dandekar et al. 2003; digitised by a third party)."]
+    return [f"{MODEL} {error}. Points: measured (Dandekar et al. 2003, digitised by others)."]
 
 
 # --- 3-8, 3-9: ramp and hold -----------------------------------------------------------------------------

@@ -449,10 +449,11 @@ def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, line: pd.DataFrame
     for _, group in rows.groupby(groups):
         at = group[[x, y]].mean()
         across, up = ax.transLimits.transform(at)
-        above = up < 0.12 or at[y] > np.interp(at[x], line[x], line[y])  # at the floor above the point
+        floor = up < 0.1  # there the name is above the point
+        above = floor or at[y] > np.interp(at[x], line[x], line[y])
         left = above and across > 0.08
-        how = {"va": "bottom" if above else "top", "ha": "right" if left else "left"}
-        away = (-5 if left else 5, 4 if above else -4)
+        how = {"va": "bottom" if above else "top", "ha": "center" if floor else "right" if left else "left"}
+        away = (0 if floor else -5 if left else 5, 4 if above else -4)
         ax.annotate(", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=6.5, **how)
 
 

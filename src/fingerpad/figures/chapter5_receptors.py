@@ -352,7 +352,7 @@ RECORDED = {"color": style.HIGHLIGHT}
 BURST_RATES = {BURST_RATE: "burst_rate"}
 BURSTS = {BURST_WIDTH: "burst_width"} | BURST_RATES
 PRESSED = {"marker": "o", "ms": 4, "color": style.INK, "clip_on": False, "zorder": 3}
-OWN_BURSTS = {"color": style.INK, "marker": "o", "ms": 3.5, "lw": 0.8, "ls": "-"}
+OWN_BURSTS = {"color": style.INK, "marker": "o", "ms": 3.5, "lw": 0.8, "ls": "-", "clip_on": False, "zorder": 3}
 FIGURES = (
     Figure("5-1", "Predicted impulses of ten strokes at 10 mm/s", TEN_RUN, DISTANCE, (IMPULSE_RATE,), {DISTANCE: "T217"},
            Own(height=4.2, paint=ticks_below_surface), rows=partial(rasters, number="5-1", low=0.0, high=70.0), how=HOW,

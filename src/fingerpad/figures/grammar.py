@@ -474,7 +474,7 @@ class Panels:
         """Draw the panels; returned by name, the surface above under ``surface``."""
         if self.pairs:
             return self._draw_pairs(fig, frame, spec)
-        panels, grid = self._place(fig, frame, spec)
+        (panels, grid), tops = self._place(fig, frame, spec), []
         for name, ax in panels.items():
             rows = axs.rows_of(frame, self.by, name) if self.by else frame
             within = axs.together(frame if self.alike else rows, spec.y)
@@ -487,6 +487,7 @@ class Panels:
                 axs.limit_axis(ax, within, spec.x if self.limit == "x" else spec.y[0], self.limit, text)
             self.fill(ax, rows, spec)
             ax.set(**self.set)
+            tops.append(ax.get_ylim()[1])
             if self.titles:
                 ax.set_title(self.titles(name))
             if self.corner:
@@ -494,6 +495,8 @@ class Panels:
             for axis, q in ((ax.xaxis, spec.x), (ax.yaxis, spec.y[0])):
                 if q in IN_KILO:
                     style.in_kilo(axis)
+        if self.share.get("sharey"):  # the last limits that were set are those of all
+            grid[0, 0].set_ylim(top=max(tops))
         high, wide = grid.shape
         for ax in grid[-1] if self.each else grid[-1, wide // 2 : wide // 2 + 1]:
             ax.set_xlabel(_in_kilo(self.xlabel or spec.x.label, spec.x))

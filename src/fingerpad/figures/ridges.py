@@ -116,7 +116,8 @@ def magnify_the_difference(panels: Mapping[object, Axes], frame: pd.DataFrame) -
     own = frame[is_simulated(frame)]
     for way, ax in panels.items():
         curves = {series: rows for series, rows in own[own["panel"] == way].groupby("series", sort=False)}
-        inset, centre = ax.inset_axes((0.16, 0.14, 0.8, 0.44)), curves.pop("centre")
+        high = own[SED].min() / ax.get_ylim()[1] - 0.26  # below the curves
+        inset, centre = ax.inset_axes((0.16, 0.12, 0.8, max(high, 0.15))), curves.pop("centre")
         for series, rows in curves.items():
             inset.plot(rows[TIME], rows[SED].to_numpy() - centre[SED].to_numpy(), **LOOKS[series])
         inset.axhline(0, color=style.GREY, lw=0.5, zorder=1)

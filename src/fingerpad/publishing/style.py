@@ -162,7 +162,7 @@ def wrapped(lines: Iterable[str], width: int = NOTE_WIDTH) -> list[str]:
 
 def note_width(width: float = PAGE_WIDTH) -> int:
     """Characters of a note's line in a picture so wide (inch)."""
-    return int(NOTE_WIDTH * width / PAGE_WIDTH)
+    return round(NOTE_WIDTH * width / PAGE_WIDTH)
 
 
 def sheet(
