@@ -271,7 +271,9 @@ def mark_critical_distance(panels: Mapping[object, Axes], frame: pd.DataFrame) -
         ends = {"arrowstyle": "|-|,widthA=.3,widthB=.3", "color": style.GREY, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (critical.min(), y), (critical.max(), y), arrowprops=ends)
         text = f"{np.ptp(critical):.1f} mm from the edge:\ncritical distance\nstated in the thesis"
-        ax.text(critical.max() + 0.02, y, text, ha="left", va="center", fontsize=6.5, color=style.GREY)
+        ax.annotate(
+            text, (critical.max(), y), (0, -5), "data", "offset points", ha="right", va="top", fontsize=6.5, color=style.GREY
+        )
     phase_legend()(panels, frame)
 
 

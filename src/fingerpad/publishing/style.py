@@ -156,8 +156,9 @@ def colours(name: str, start: float, end: float, labels: Iterable[str]) -> dict[
 
 
 def wrapped(lines: Iterable[str], width: int = NOTE_WIDTH) -> list[str]:
-    """Paragraphs as lines of at most `width` characters."""
-    return [part for line in lines for part in textwrap.wrap(line, width)]
+    """Paragraphs as lines of at most `width` characters, none of which begins with a percent sign."""
+    together = (line.replace(" %", "\xa0%") for line in lines)
+    return [part.replace("\xa0", " ") for line in together for part in textwrap.wrap(line, width)]
 
 
 def note_width(width: float = PAGE_WIDTH) -> int:
