@@ -209,7 +209,7 @@ def ridges_both_ways(frame: pd.DataFrame) -> Figure:
         ], 2.9,
     )  # fmt: skip
     axes, norm = fig.subplots(1, 3, sharey=True), LogNorm(20, float(np.nanpercentile(frame[SED].dropna(), 99.5)))
-    stroked = "stroked to the right"
+    stroked, low = "stroked to the right", frame.loc[frame["series"] == "receptor", Y].min() - 0.35
     shown = (("pressed", 1.0, "pressed"), (stroked, 1.0, "plate to the right"), (stroked, -1.0, "plate to the left"))
     for ax, (panel, way, title) in zip(axes, shown, strict=True):
         rows = _of(frame, panel).copy()
@@ -219,15 +219,15 @@ def ridges_both_ways(frame: pd.DataFrame) -> Figure:
         drawn = _field(ax, rows[rows["series"] == "element"], norm, mesh=0.08)
         _layers(ax, rows)
         _receptors(ax, rows, 2.6)
-        ax.set(xlim=(middle - 0.5, middle + 0.5), ylim=(4.35, 5.35), aspect="equal", xlabel=X.label, title=title)
+        ax.set(xlim=(middle - 0.5, middle + 0.5), ylim=(low, low + 1.0), aspect="equal", xlabel=X.label, title=title)
         dots = rows[rows["series"] == "receptor"].sort_values(X)
         felt = "   ".join(f"{value:.0f}" for value in dots["felt (Pa)"])
         ax.text(middle, dots[Y].min() - 0.05, f"{felt} Pa", ha="center", va="top", fontsize=6.5, color="white", fontweight="bold")
         if panel != "pressed":
             arrow = {"arrowstyle": "-|>", "lw": 1.2, "color": "white"}
-            ax.annotate("", (middle + 0.3 * way, 5.28), (middle - 0.3 * way, 5.28), arrowprops=arrow)
+            ax.annotate("", (middle + 0.3 * way, low + 0.93), (middle - 0.3 * way, low + 0.93), arrowprops=arrow)
             moved = rows["carried (mm)"].iloc[0]
-            ax.text(middle, 5.24, f"skin carried {abs(moved):.2f} mm", ha="center", va="top", fontsize=6.5, color="white")
+            ax.text(middle, low + 0.89, f"skin carried {abs(moved):.2f} mm", ha="center", va="top", fontsize=6.5, color="white")
     axes[0].set_ylabel(Y.label)
     _bar(fig, drawn, axes, shrink=0.9)
     fig.axes[-1].set_ylabel("strain energy density (Pa)")
