@@ -14,12 +14,13 @@ WORKERS ?= $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 8 ? n : 8)))
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help setup figures studies smoke test bench lint report archive docs specimens pad regression-update schemas adopt unlock clean
+.PHONY: help setup figures studies smoke test soak bench lint report archive docs specimens pad regression-update schemas adopt unlock clean
 
 help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
 	@echo "make test               set up, then run the tests"
 	@echo "make smoke              set up, then the same workflow with config/smoke.yaml (coarse, under results/smoke)"
+	@echo "make soak               set up, then try random scenes: N=1000 at most, SEED=0, MINUTES=10 of process time at most"
 	@echo "make studies            set up, then run the studies of accuracy, stability, effects, peers and reconstruction anew"
 	@echo "make bench              set up, then measure and print the benchmark table"
 	@echo "make report             make figures, then pack figures, tables and the run's statistics into results/report.zip"
@@ -61,6 +62,13 @@ smoke: $(INSTALLED)
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+
+N ?= 1000
+SEED ?= 0
+MINUTES ?= 10
+
+soak: $(INSTALLED)
+	$(BIN)/python tests/soak.py --scenes $(N) --seed $(SEED) --minutes $(MINUTES) $(if $(TABLE),--table $(TABLE))
 
 bench: $(INSTALLED)
 	$(BIN)/python -m fingerpad.studies.bench

@@ -1,0 +1,290 @@
+"""Scenes, sweeps and the files they name, drawn at random from the JSON schemas of the typed models, and broken at random.
+
+What a quantity is likely to be is read from the scene with every key and from the thesis's specimen: it is drawn around that.
+"""
+
+import copy
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import yaml
+from hypothesis import strategies as st
+
+from fingerpad.planning.plan import plan
+from fingerpad.scenes.scene import load_scene, scene_json_schema
+from fingerpad.specimen import build_pad_mesh, read_pad_mesh, write_pad
+from fingerpad.studies.accuracy.run import split
+from fingerpad.sweeps.language import sweep_json_schema
+from fingerpad.units import QuantityError, unit_of
+
+CONFIG = Path(__file__).parents[1] / "config"
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A document, what it is (the shape of its stimulus, `sweep`, or `broken`)."""
+
+    kind: str
+    document: object
+
+    @property
+    def text(self) -> str:
+        """As it stands in a file."""
+        return yaml.safe_dump(self.document, sort_keys=False, allow_unicode=True)
+
+
+# -- files that scenes name --------------------------------------------------------------------------------------------------
+
+PROFILES = {
+    "round.csv": lambda x: 200 * x**2,
+    "waves.csv": lambda x: 40 * x**2 + 5e-5 * np.cos(4000 * x),
+    "noise.csv": lambda x: 100 * x**2 + np.random.default_rng(1).normal(0, 2e-6, x.size),
+    "steps.csv": lambda x: np.round(150 * x**2, 5),
+    "ramp.csv": lambda x: np.abs(x) * 0.4,
+    "beside.csv": lambda x: 200 * (x - 3e-3) ** 2,
+}
+"""Heights (m) over places (m)."""
+WRONG_PROFILES = {
+    "nan.csv": "x (mm),y (mm)\n0,0\n1,nan\n",
+    "short.csv": "x (mm),y (mm)\n0,0\n",
+    "back.csv": "x (mm),y (mm)\n1,0\n0,0\n",
+}
+MESHES = ("quad9.msh", "quad4.msh", "tri6.msh", "aside.msh")
+WRONG_MESHES = ("cut.msh", "text.msh", "nan.msh", "missing.msh")
+
+
+def write_files(folder: Path) -> None:
+    """Profiles and meshes, good ones and bad ones, into a folder."""
+    x = np.linspace(-5e-3, 5e-3, 801)
+    for name, height in PROFILES.items():
+        rows = "\n".join(f"{a:.6g},{b:.6g}" for a, b in 1e3 * np.column_stack([x, height(x)]))
+        (folder / name).write_text(f"x (mm),y (mm)\n{rows}\n")
+    for name, text in WRONG_PROFILES.items():
+        (folder / name).write_text(text)
+    scene = load_scene({"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "5 gf"}], "accuracy": "draft"})
+    mesh = build_pad_mesh(scene.specimen.outline, replace(plan(scene).mesh_size, skin_edge=4e-4, layer_edge=4e-4))
+    write_pad(mesh, folder / "quad9.msh")
+    for kind in ("quad4", "tri6"):
+        write_pad(split(mesh, kind), folder / f"{kind}.msh")
+    write_pad(replace(mesh, points=mesh.points + [3e-4, 0.0], symmetric=False), folder / "aside.msh")
+    whole = (folder / "quad9.msh").read_text()
+    (folder / "cut.msh").write_text(whole[: len(whole) // 2])
+    (folder / "text.msh").write_text("not a mesh\n")
+    head, nodes = whole.split("$Nodes", 1)
+    (folder / "nan.msh").write_text(head + "$Nodes" + nodes.replace("0 0\n", "nan 0\n", 40))
+    assert read_pad_mesh(folder / "aside.msh").symmetric is False
+
+
+# -- values of the types of a schema -----------------------------------------------------------------------------------------
+
+
+def _leaves(document):
+    for key, value in document.items() if isinstance(document, dict) else enumerate(document):
+        if isinstance(value, (dict, list)):
+            yield from _leaves(value)
+        yield key, value
+
+
+@cache
+def usual():
+    """Key -> a value it is likely to have."""
+    found = {}
+    for file in ("scenes/examples/every_key.yaml", "specimens/thesis.yaml"):
+        found |= {key: value for key, value in _leaves(yaml.safe_load((CONFIG / file).read_text())) if isinstance(value, str)}
+    return found | {
+        "thickness": "1.5 mm",
+        "width": "2 mm",
+        "radius": "8 mm",
+        "diameter": "8 mm",
+        "skin_edge": "0.3 mm",
+        "every": "0.2 s",
+    }
+
+
+FACTORS = st.one_of(*4 * [st.floats(-0.4, 0.4)], st.floats(-3, 3))
+
+
+@st.composite
+def quantities(draw, like):
+    """A quantity of the unit of another, mostly of its size."""
+    unit = unit_of(like)
+    size = float(like.removesuffix(unit).strip().split("/")[0])
+    return f"{size * 10 ** draw(FACTORS):.3g} {unit}"
+
+
+def _quantity(key, example):
+    like = usual().get(key, example)
+    try:
+        if unit_of(like) and unit_of(like)[-1:] == unit_of(example)[-1:]:
+            return quantities(like)
+    except QuantityError:
+        pass
+    return quantities(example)
+
+
+def values(schema, defs, key=""):
+    """What a schema allows, roughly; `key` is where."""
+    if "$ref" in schema:
+        return values(defs[schema["$ref"].rpartition("/")[2]], defs, key)
+    for choice in ("anyOf", "oneOf"):
+        if choice in schema and "properties" not in schema:
+            return st.one_of(*(values(one, defs, key) for one in schema[choice]))
+    if "const" in schema:
+        return st.just(schema["const"])
+    if "enum" in schema:
+        return st.sampled_from(schema["enum"])
+    if key in ("mesh", "csv"):
+        good, bad = (MESHES, WRONG_MESHES) if key == "mesh" else (tuple(PROFILES), tuple(WRONG_PROFILES))
+        return st.sampled_from(3 * good + bad)
+    kind = schema.get("type")
+    if kind == "object":
+        return _objects(schema, defs)
+    if kind == "array":
+        return st.lists(values(schema.get("items", {}), defs, key), min_size=1, max_size=3)
+    if kind == "boolean":
+        return st.booleans()
+    if kind == "integer":
+        return st.integers(schema.get("minimum", 0), min(schema.get("maximum", 40), 40))
+    if kind == "number":
+        low, high = (
+            schema.get("exclusiveMinimum", schema.get("minimum", -10)),
+            schema.get("exclusiveMaximum", schema.get("maximum", 10)),
+        )
+        return st.floats(low, high).map(lambda value: float(f"{value:.3g}"))
+    if "examples" in schema and isinstance(schema["examples"][0], str):
+        return _quantity(key, schema["examples"][0])
+    if kind == "string" and "name in config/specimens" in schema.get("description", ""):
+        return st.sampled_from(["thesis", "homogeneous", "calibrated_subject_1"])
+    if kind == "string" and "%" in schema.get("pattern", ""):
+        return st.floats(0, 1).map(lambda value: f"{value:.3g}")
+    if kind == "string":
+        return st.sampled_from(["cover", "foam", "base", "skin", "epidermis", "none"])
+    return st.none() | st.integers() | st.text(max_size=5)
+
+
+@st.composite
+def _objects(draw, schema, defs):
+    found = {}
+    one_of = [key for each in schema.get("oneOf", ()) for key in each.get("required", ())]
+    taken = draw(st.sampled_from(one_of)) if one_of else None
+    for key, inner in schema.get("properties", {}).items():
+        if key == taken or key in schema.get("required", ()) or (key not in one_of and draw(st.integers(0, 3)) == 3):
+            found[key] = draw(values(inner, defs, key))
+    more = schema.get("additionalProperties")
+    if isinstance(more, dict) and not found:
+        found[draw(st.sampled_from(["cover", "epidermis", "name"]))] = draw(values(more, defs))
+    return found
+
+
+# -- documents ---------------------------------------------------------------------------------------------------------------
+
+STEADY = {"press_to_force": "10 gf"}
+PARTS = ("specimen", "friction", "outputs", "accuracy", "effects")
+
+
+@cache
+def _scene_schema():
+    return scene_json_schema()
+
+
+@st.composite
+def scenes(draw):
+    """A scene that is likely to be right: a shape, a press and legs after it, and now and then any other part."""
+    schema = _scene_schema()
+    defs, parts = schema["$defs"], schema["properties"]
+    shapes = [name for name, model in defs.items() if "shape" in model.get("required", ())]
+    scene = {"stimulus": draw(values(defs[draw(st.sampled_from(sorted(shapes)))], defs))}
+    first = draw(values(defs[draw(st.sampled_from(["PressToForce", "PressToDepth"]))], defs))
+    later = values(parts["motion"]["items"] if "items" in parts["motion"] else parts["motion"], defs, "motion")
+    scene["motion"] = [first, *draw(st.lists(later, max_size=3))]
+    for part in PARTS:
+        if draw(st.integers(0, 3)) == 3:
+            scene[part] = draw(values(parts[part], defs, part))
+    return Drawn(scene["stimulus"]["shape"], scene)
+
+
+JUNK = st.one_of(
+    st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8), st.just([]), st.just({}), st.just(10**400),
+    st.sampled_from(["1 mm", "-20 gf", "0 s", "1e400 mm", "nan mm", "../../x", "/dev/zero", "a\nb", "\0", "5 parsecs", "thesis"]),
+)  # fmt: skip
+
+
+def places(document, path=()):
+    """The paths to everything in a document."""
+    for key, value in (
+        document.items() if isinstance(document, dict) else enumerate(document) if isinstance(document, list) else ()
+    ):
+        yield (*path, key)
+        yield from places(value, (*path, key))
+
+
+def at(document, path):
+    for key in path:
+        document = document[key]
+    return document
+
+
+@st.composite
+def broken(draw):
+    """A scene or a sweep of which one or two places are something else, gone, called otherwise, or once more."""
+    document = copy.deepcopy(draw(scenes() | sweeps()).document)
+    for _ in range(draw(st.integers(1, 2))):
+        known = list(places(document))
+        if not known:
+            break
+        path = draw(st.sampled_from(known))
+        above, key = at(document, path[:-1]), path[-1]
+        how = draw(st.sampled_from(["junk", "gone", "renamed", "elsewhere"]))
+        if how == "junk":
+            above[key] = draw(JUNK)
+        elif how == "elsewhere":
+            above[key] = copy.deepcopy(at(document, draw(st.sampled_from(known))))
+        else:
+            value = above.pop(key)
+            if how == "renamed" and isinstance(above, dict):
+                above[draw(st.text(max_size=5) | st.just(f"{key}s"))] = value
+    return Drawn("broken", document)
+
+
+@st.composite
+def sweeps(draw):
+    """A sweep over one or two quantities of a scene, in few values."""
+    scene = draw(scenes()).document
+    known = [path for path in places(scene) if isinstance(at(scene, path), str) and _unit(at(scene, path))]
+    defs = sweep_json_schema()["$defs"]
+    over = {}
+    for path in draw(st.lists(st.sampled_from(known), min_size=1, max_size=2, unique=True)) if known else ():
+        like = at(scene, path)
+        key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)[1:]
+        kind = draw(st.sampled_from(["values", "range", "Distribution"]))
+        if kind == "values":
+            over[key] = draw(st.lists(quantities(like), min_size=1, max_size=3))
+        elif kind == "range":
+            over[key] = {"range": draw(st.lists(quantities(like), min_size=2, max_size=2)), "count": draw(st.integers(2, 3))}
+        else:
+            over[key] = _in_units(draw(values(defs["Distribution"], defs)), like)
+    document = {"scene": scene, "over": over}
+    if any("values" not in axis and "range" not in axis for axis in over.values() if isinstance(axis, dict)):
+        document |= {"design": "sobol", "samples": 2}
+    return Drawn("sweep", document)
+
+
+def _in_units(part, like):
+    """A drawn distribution with means and medians of another quantity's size."""
+    if not isinstance(part, dict):
+        return part
+    return {key: like if key in ("mean", "median", "sd") else _in_units(inner, like) for key, inner in part.items()}
+
+
+def _unit(text):
+    try:
+        return unit_of(text)
+    except QuantityError:
+        return ""
+
+
+def anything():
+    """A scene in four of six, a sweep, or something broken."""
+    return st.integers(0, 5).flatmap(lambda n: scenes() if n < 4 else sweeps() if n == 4 else broken())

@@ -1,0 +1,244 @@
+"""Random scenes, sweeps and meshes through the command line: planned always, run coarsely where that is cheap, and judged.
+
+``make soak N=2000 SEED=1 MINUTES=10``. Whatever is drawn, the exit code is 0, 2 or 3, an error is one line, and a result
+balances: forces, energy, gaps and pressures. What does not is shrunk to its smallest and printed as YAML, ready for the
+catalogue of hard cases.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import io
+import json
+import os
+import signal
+import sys
+import tempfile
+import time
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis.errors import Flaky
+
+from fingerpad.cli import main
+from fingerpad.publishing.write import publish_table
+from random_scenes import Drawn, anything, write_files
+
+CHEAP = 2.0
+"""s, of a run as its plan predicts it: what costs more is planned only."""
+SLOWEST = 60.0
+"""s of process time that planning and running a drawn scene may take."""
+SHRINKING = 60.0
+"""s of process time spent on making a failure smaller."""
+COLUMNS = ("drawn", "refused in one line", "planned", "run", "completed", "stopped with its diagnosis", "failed")
+
+
+class Failed(AssertionError):
+    """What is wrong, of which document."""
+
+
+def require(so: bool, what: str) -> None:
+    if not so:
+        raise Failed(what)
+
+
+# -- commands ------------------------------------------------------------------------------------------------------------------
+
+
+def command(*words: str | Path) -> tuple[int, str, str]:
+    """Exit code and what is said by `fingerpad`, in this process."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = main([str(word) for word in words])
+    return code, out.getvalue(), err.getvalue()
+
+
+def said(words: tuple, code: int, err: str) -> None:
+    """Is what a command said of a failure one line, with an exit code of the interface?"""
+    require(code in (0, 2, 3), f"{words[0]}: exit code {code}: {err.strip()}")
+    lines = 0 if code == 0 else 1
+    require(len(err.splitlines()) == lines, f"{words[0]}: exit code {code} with {len(err.splitlines())} lines: {err[:300]}")
+
+
+def tried(drawn: Drawn, folder: Path) -> str:
+    """What became of a document, a name of COLUMNS; raises `Failed`."""
+    file, out = folder / "drawn.yaml", folder / "out"
+    file.write_text(drawn.text, encoding="utf-8")
+    before = sorted(path.name for path in folder.iterdir())
+    words = ("plan", file, "--json", "--accuracy", "draft")
+    code, text, err = command(*words)
+    said(words, code, err)
+    require(sorted(path.name for path in folder.iterdir()) == before, "a plan writes something")
+    if code:
+        return "refused in one line"
+    plan = json.loads(text)
+    require(np.isfinite(plan["predicted_cost_s"]) and plan["predicted_cost_s"] > 0, f"predicted cost {plan['predicted_cost_s']}")
+    if "sweep" in plan or plan["predicted_cost_s"] > CHEAP:
+        return "planned"
+    words = ("run", file, "--out", out, "--quiet", "--force", "--accuracy", "draft")
+    code, _, err = command(*words)
+    said(words, code, err)
+    require(not list(out.glob(".fingerpad-*")), "a scratch folder is left")
+    if code == 3:
+        require("allowed" in err or "try" in err, f"no advice: {err}")
+        return "stopped with its diagnosis"
+    if code == 2:  # of what turns out to be wrong only when it is meshed or set up
+        return "refused in one line"
+    judged(out)
+    return "completed"
+
+
+def judged(out: Path) -> None:
+    """Does a result balance?"""
+    from fingerpad.results import read_history
+
+    summary = json.loads((out / "summary.json").read_text())
+    with read_history(out / "history.nc") as history:
+        for name, each in history.variables.items():
+            if each.dtype.kind == "f" and not name.startswith("snapshot_indenter"):
+                require(bool(np.isfinite(each.values).all()), f"{name} is not finite")
+        scene, run = json.loads(history.attrs["scene"]), summary["run"]
+        error = run["estimated_error"]
+        require(error >= 0, f"estimated error {error}")
+        require(run["min_detF"] > 0, f"det F {run['min_detF']:.3g}")
+        require(run["complementarity_error"] < 1e-3, f"complementarity {run['complementarity_error']:.3g}")
+        work = np.abs(history.external_work.values).max()
+        kept = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
+        lost = float(np.abs(history.external_work - kept).max()) / max(work, 1e-300)
+        fewest = min(np.count_nonzero(history.leg.values[1:] == k) for k, leg in enumerate(scene["motion"]) if _presses(leg))
+        # work is summed by trapezoids, which are wrong by less than 1/n^2 of it in n increments of a stiffening pad
+        allowed = max(0.03, error) + 1 / fewest**2
+        require(work == 0 or lost < allowed, f"energy out of balance by {lost:.2g} of {allowed:.2g}, in {fewest} steps")
+        pressure, force = history.contact_pressure.values, history.force.values
+        require(pressure.min() >= -1e-9 * max(pressure.max(), 1), f"the contact pulls: {pressure.min():.3g} Pa")
+        if scene["stimulus"]["shape"] == "flat":
+            rubbed = np.abs(history.tangential_force.values) - scene["friction"] * force
+            require((rubbed <= 1e-6 * max(force.max(), 1e-9)).all(), "more friction than there is")
+    length = scene["specimen"]["contact_length"]
+    for leg, end in zip(scene["motion"], summary["legs"], strict=True):
+        if leg.get("press_to_force"):
+            asked = leg["press_to_force"] / length
+            require(abs(end["force_N_per_m"] / asked - 1) < 1e-4, f"force {end['force_N_per_m']:.6g} N/m for {asked:.6g}")
+        if leg.get("press_to_depth"):
+            asked = leg["press_to_depth"] * 1e3
+            require(abs(end["depth_mm"] / asked - 1) < 1e-4, f"depth {end['depth_mm']:.6g} mm for {asked:.6g}")
+
+
+def _presses(leg: dict) -> bool:
+    return "press_to_force" in leg or "press_to_depth" in leg
+
+
+# -- many of them --------------------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Soak:
+    """What became of all that was drawn: counts by kind and outcome; the smallest document that failed, and why."""
+
+    counts: dict[str, Counter] = field(default_factory=dict)
+    failure: tuple[Drawn, str] | None = None
+    seconds: float = 0.0
+
+    def count(self, kind: str, outcome: str) -> None:
+        counter, run = self.counts.setdefault(kind, Counter()), outcome in COLUMNS[4:6]
+        counter.update({"drawn": 1, outcome: 1, "run": int(run)})
+        counter["planned"] += int(run)
+
+    @property
+    def drawn(self) -> int:
+        return sum(counter["drawn"] for counter in self.counts.values())
+
+    def table(self) -> pd.DataFrame:
+        """A row a kind, and their sum."""
+        rows = [{"what": kind} | {name: self.counts[kind][name] for name in COLUMNS} for kind in sorted(self.counts)]
+        whole = {"what": "all"} | {name: sum(row[name] for row in rows) for name in COLUMNS}
+        return pd.DataFrame([*rows, whole])
+
+
+def soak(count: int, start: int, seconds: float) -> Soak:
+    """Draw and try up to `count` documents for up to some process time; stops at the first failure, made smaller."""
+    found, begun = Soak(), time.process_time()
+    ends = begun + seconds
+
+    @seed(start)
+    @settings(
+        max_examples=count,
+        database=None,
+        deadline=None,
+        phases=(Phase.generate, Phase.shrink),
+        suppress_health_check=list(HealthCheck),
+        report_multiple_bugs=False,
+        print_blob=False,
+    )
+    @given(drawn=anything())
+    def each(drawn: Drawn) -> None:
+        nonlocal ends
+        if time.process_time() > ends:
+            return
+        try:
+            with _in_time():
+                outcome = tried(drawn, folder)
+        except Exception as error:
+            if found.failure is None:
+                ends = time.process_time() + SHRINKING
+                found.count(drawn.kind, "failed")
+            if found.failure is None or len(drawn.text) < len(found.failure[0].text):
+                found.failure = drawn, f"{type(error).__name__}: {error}"
+            raise
+        if found.failure is None:
+            found.count(drawn.kind, outcome)
+
+    with tempfile.TemporaryDirectory(prefix="soak-") as name:
+        folder = Path(name)
+        write_files(folder)
+        with contextlib.suppress(Exception, Flaky), contextlib.redirect_stdout(io.StringIO()):
+            each()
+    found.seconds = time.process_time() - begun
+    return found
+
+
+@contextlib.contextmanager
+def _in_time():
+    def late(*_):
+        raise Failed(f"takes longer than {SLOWEST:g} s")
+
+    before = signal.signal(signal.SIGPROF, late)
+    signal.setitimer(signal.ITIMER_PROF, SLOWEST)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def soaked(words: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scenes", type=int, default=1000, help="at most so many")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--minutes", type=float, default=10.0, help="of process time, at most")
+    parser.add_argument("--table", type=Path, help="where the counts are published, as CSV and Markdown")
+    options = parser.parse_args(words)
+    found = soak(options.scenes, options.seed, 60 * options.minutes)
+    table = found.table()
+    table.attrs["summary"] = (
+        f"{found.drawn} scenes, sweeps and broken documents drawn at random (seed {options.seed}) in {found.seconds / 60:.1f} "
+        "minutes of process time: all planned, and run coarsely where a run is predicted to take two seconds at most."
+    )
+    print(table.attrs["summary"], table.to_string(index=False), sep="\n")
+    if found.failure:
+        drawn, why = found.failure
+        print(f"\nfailed: {why}\n\n{drawn.text}")
+        return 1
+    if options.table:
+        publish_table(table, options.table)
+    return 0
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    sys.exit(soaked())
