@@ -81,7 +81,7 @@ def test_what_is_huge_is_refused_in_little_memory(tmp_path, name):
     make(tmp_path)
     before = sorted(path.name for path in tmp_path.iterdir())
     process = subprocess.Popen(
-        [sys.executable, "-m", "fingerpad.cli", "plan", "my_scene.yaml"],
+        [sys.executable, "-m", "fingerpad", "plan", "my_scene.yaml"],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

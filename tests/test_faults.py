@@ -305,7 +305,7 @@ def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
 def limited(limit, most, *words, cwd):
     """Run the command as a process with a limit of the system set."""
     return subprocess.run(
-        [sys.executable, "-m", "fingerpad.cli", *map(str, words)],
+        [sys.executable, "-m", "fingerpad", *map(str, words)],
         capture_output=True, text=True, cwd=cwd, env=os.environ | {"TMPDIR": str(cwd), "OMP_NUM_THREADS": "1"},
         preexec_fn=lambda: resource.setrlimit(limit, (most, most)),
     )  # fmt: skip
