@@ -13,7 +13,7 @@ import pytest
 
 from fingerpad import plan, simulate
 from fingerpad.planning.plan import Rules
-from fingerpad.studies.effects.picture import LEAST, assemble, effects, looks
+from fingerpad.studies.effects.picture import LEAST, WARNING, assemble, effects, looks
 from fingerpad.studies.effects.run import (
     DECIDES,
     alternatives,
@@ -201,5 +201,5 @@ def test_a_small_study_is_drawn_and_tabulated():
     assert "left out in 1 scenes, worth up to 5" in rules.loc["small_strain_error", "evidence"]
     fig = effects(assemble(one, found))
     left, right = fig.axes
-    assert sum(matplotlib.colors.same_color(line.get_color(), "#c8303d") for line in right.lines) == 1
+    assert sum(matplotlib.colors.same_color(line.get_color(), WARNING) for line in right.lines) == 1
     assert left.get_ylim()[0] < LEAST

@@ -427,7 +427,7 @@ def name_boundaries(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
 
 
 def section_words(extra: str) -> Callable[[str], list[str]]:
-    return lambda error: [f"Simulated, not measured. {error} (of the layers under the indenters). {extra}"]
+    return lambda error: [f"Simulated, not measured. {error} (of the layers). {extra}"]
 
 
 FIGURES = (
