@@ -371,7 +371,8 @@ def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histo
     scene, folder = write(tmp_path, changed(accuracy=COARSE)), tmp_path / "results"
     monkeypatch.setattr(simulate, "simulate", lambda *_, **__: histories[0].labelled())
     monkeypatch.setattr(simulate, "read_pad_mesh", lambda *_: None)
-    job = types.SimpleNamespace(scenes=[scene], accuracies=["as_stated"], histories=[str(folder / "history.nc")])
+    given = {"scenes": [scene], "accuracies": ["as_stated"], "meshes": ["own"], "strides": ["1"]}
+    job = types.SimpleNamespace(**given, histories=[str(folder / "history.nc")])
     with Faults(folder) as counted:
         simulate.run(job)
     whole = files(folder)
