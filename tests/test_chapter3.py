@@ -12,7 +12,7 @@ from fingerpad.claims.rows import numbers
 from fingerpad.figures.geometry import section, surface_deflection
 from fingerpad.figures.registry import FIGURES
 from fingerpad.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
-from fingerpad.measures.table import Measures
+from fingerpad.measures.table import Instead, Measures
 from fingerpad.reference_data import empty_reference, read_reference
 from fingerpad.results import VARIABLES, summary
 from fingerpad.scenes.families import read_family
@@ -161,7 +161,7 @@ def test_peak_over_steady_force_is_compared_with_its_estimate_and_never_judged(m
     m = Measures.of(*made)
     assert NUMBERS["E048c"](m) == pytest.approx(1.5)
     assert steady_force(made[0]["calibration_plate"], 1 * MM) == pytest.approx(0.2)
-    rows = thesis_comparison(m, Measures.of({}), REFERENCE / "thesis_numbers.csv").set_index("id")
+    rows = thesis_comparison(m, Instead.of({}, {}), REFERENCE / "thesis_numbers.csv").set_index("id")
     estimates = rows[rows.index.str.startswith("E04")]
     assert len(estimates) == 7 and set(estimates["verdict"]) == {"not_comparable"}
     assert estimates["note"].str.contains("an estimate to compare with, not a truth").all()

@@ -297,7 +297,7 @@ def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clon
     clone.run("--touch")
     assert clone.planned() == {}
     for paths, kinds in (
-        (("figures/chapter4.py", "claims/comparison.py"), {"figures_4", "table_pictures", "tables"}),
+        (("figures/chapter4.py", "claims/comparison.py"), {"figures_4", "table_pictures", "tables", "catalogue"}),
         (("figures/grammar.py",), {"figures_3", "figures_4", "figures_5"}),
     ):
         with ExitStack() as edits:
