@@ -85,6 +85,16 @@ def test_no_contact_below_first_touch():
     assert not step.active.any() and step.force.sum() == 0
 
 
+def test_a_node_that_yields_to_nothing_carries_the_force():
+    """Alone in contact it stops the plate: the force is found, and there is no stiffness to tell (a single node that is held)."""
+    zone, schur, right, gap, gradient = problem(5)
+    equation = np.vstack([[-1, -1], np.arange(2 * len(gap) - 2).reshape(-1, 2)])
+    zone = Zone(np.arange(len(gap)), equation)
+    gap[1:] += 1.0
+    step = solve((zone, schur[2:, 2:], right[2:], gap, gradient), force=3.0)
+    assert step.force[0] == pytest.approx(3.0) and not step.force[1:].any() and step.stiffness is None
+
+
 def test_nothing_can_carry_a_force_sideways():
     """A profile that only meets nodes edge-on cannot take a vertical force, and says so."""
     zone, schur, right, gap, gradient = problem(7)

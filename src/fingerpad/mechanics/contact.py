@@ -194,8 +194,12 @@ def solve_contact(
 
 
 def _stiffness(answer, on):
+    """That of a contact step; None where a node that touches yields to no force, at a depth that is given."""
     lever = answer.lever[on]
-    return answer.corner + float(lever @ np.linalg.solve(answer.compliance[np.ix_(on, on)], lever)) if on.any() else 0.0
+    try:
+        return answer.corner + float(lever @ np.linalg.solve(answer.compliance[np.ix_(on, on)], lever)) if on.any() else 0.0
+    except np.linalg.LinAlgError:
+        return None
 
 
 def stable(matrix, compliance, active):
