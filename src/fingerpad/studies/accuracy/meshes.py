@@ -1,5 +1,7 @@
 """Meshes made of the built one, of its nodes: other elements, and worse shapes, as meshes from elsewhere have."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from fingerpad.specimen.element_kinds import KINDS
@@ -22,7 +24,7 @@ def distorted(mesh: PadMesh, share: float = 0.3) -> PadMesh:
     moved[mesh.cells[:, 8]] = moved[corners].mean(1)
     moved[held] = 0
     points = mesh.points + moved
-    return PadMesh(points, mesh.cells, mesh.element, mesh.region, mesh.curves, False, mesh.half, mesh.regions)
+    return replace(mesh, points=points, symmetric=False)
 
 
 def triangles(mesh: PadMesh) -> PadMesh:
@@ -30,7 +32,7 @@ def triangles(mesh: PadMesh) -> PadMesh:
     right = mesh.points[mesh.cells[:, 8], 0] > 0
     halves = [([0, 1, 2, 4, 5, 8], [0, 1, 3, 4, 8, 7]), ([0, 2, 3, 8, 6, 7], [1, 2, 3, 5, 6, 8])]
     cells = np.concatenate([np.where(right[:, None], mesh.cells[:, a], mesh.cells[:, b]) for a, b in halves])
-    return PadMesh(mesh.points, cells, "tri6", np.tile(mesh.region, 2), mesh.curves, mesh.symmetric, mesh.half, mesh.regions)
+    return replace(mesh, cells=cells, element="tri6", region=np.tile(mesh.region, 2))
 
 
 def quarters(mesh: PadMesh) -> PadMesh:
@@ -38,14 +40,15 @@ def quarters(mesh: PadMesh) -> PadMesh:
     parts = [[0, 4, 8, 7], [4, 1, 5, 8], [8, 5, 2, 6], [7, 8, 6, 3]]
     cells = np.concatenate([mesh.cells[:, part] for part in parts])
     curves = {name: facets[:, [0, 2, 2, 1]].reshape(-1, 2) for name, facets in mesh.curves.items()}
-    return PadMesh(mesh.points, cells, "quad4", np.tile(mesh.region, 4), curves, mesh.symmetric, mesh.half, mesh.regions)
+    return replace(mesh, cells=cells, element="quad4", region=np.tile(mesh.region, 4), curves=curves)
 
 
 def corners_only(mesh: PadMesh) -> PadMesh:
-    """6-node triangles without their mid-side nodes: what most mesh generators write."""
+    """Triangles and quads without their mid-side and centre nodes: what most mesh generators write."""
     count = KINDS[mesh.element].corners
     used = np.unique(mesh.cells[:, :count])
     number = np.full(len(mesh.points), -1, np.int32)
     number[used] = np.arange(len(used))
     curves = {name: number[facets[:, :2]] for name, facets in mesh.curves.items()}
-    return PadMesh(mesh.points[used], number[mesh.cells[:, :count]], "tri3", mesh.region, curves, mesh.symmetric)
+    element = {3: "tri3", 4: "quad4"}[count]
+    return replace(mesh, points=mesh.points[used], cells=number[mesh.cells[:, :count]], element=element, curves=curves)
