@@ -5,6 +5,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from fingerpad.publishing.style import PAGE_WIDTH, TALLEST
+from fingerpad.publishing.write import publish_table
 from fingerpad.studies.stability.picture import METHODS, assemble, heat_map, long, table, tally
 
 pytestmark = pytest.mark.unit
@@ -12,13 +14,22 @@ pytestmark = pytest.mark.unit
 
 def rows(method, depth, **changed):
     row = {
+        "number": 1,
         "case": "a", "group": "g", "method": method, "hard": "it is", "stable": "as all", "outcome": "stable", "completed": 1.0,
         "message": "", "saved": "", "cuts": 0.0, "factorisations": 2.0, "energy": 0.003, "complementarity": 1e-9, "det_f": 0.5,
         "checkerboard": 0.02, "halving": 0.01, "limit cuts": 0, "limit factorisations": 4, "limit energy": 0.03,
         "limit complementarity": 1e-3, "limit det_f": 0.1, "limit checkerboard": np.inf, "limit halving": 0.05, "depth_mm": depth,
         "force_N_per_m": 19.6,
     }  # fmt: skip
-    other = {"case": "b", "completed": 0.0, "outcome": "fails cleanly", "message": "why", "depth_mm": np.nan, "saved": "3 steps"}
+    other = {
+        "number": 2,
+        "case": "b",
+        "completed": 0.0,
+        "outcome": "fails cleanly",
+        "message": "why",
+        "depth_mm": np.nan,
+        "saved": "3 steps",
+    }
     return pd.DataFrame([row | changed, row | other])
 
 
@@ -37,6 +48,11 @@ def test_shares_of_the_limits(frame):
     assert share["a", "full Q1", "off"] == pytest.approx(10) and share["a", "plain P2", "off"] == pytest.approx(0.2)
 
 
+def test_parts_made_side_by_side_are_put_in_order(frame):
+    parts = [rows(method, 1.0).iloc[[k]] for method in METHODS for k in (1, 0)]
+    assert list(assemble(parts)["number"]) == [1] * 4 + [2] * 4
+
+
 def test_table_tells_how_each_method_ended(frame):
     out = table(frame).set_index("case")
     assert out.loc["a", "full Q1"].startswith("wrong: off by 50%") and out.loc["a", "plain P2"] == "stable"
@@ -52,10 +68,36 @@ def test_runs_are_counted_by_how_they_ended(frame):
     assert tally(long(frame[frame["method"] == "default"])) == ["1 outside limits", "1 stop and say why"]
 
 
+def test_table_in_markdown_has_five_columns_to_read(frame, tmp_path):
+    frame.loc[(frame["method"] == "default") & (frame["case"] == "b"), "relaxed"] = "load: 0.5 of it"
+    publish_table(table(frame), tmp_path / "t.csv")
+    head, _, first, second = (tmp_path / "t.md").read_text().splitlines()
+    assert head == "| no. | case | what makes it hard | how it ended | nearest to its limit |"
+    assert first == "| 1 | a | it is | stable | factors a step: 50% |"
+    assert "fails cleanly: why; stable with load: 0.5 of it" in second
+    assert len(pd.read_csv(tmp_path / "t.csv").columns) > 20
+
+
 def test_picture_has_a_panel_a_method_and_marks_what_did_not_complete(frame):
     fig = heat_map(long(frame))
-    panels = [ax for ax in fig.axes if ax.get_title(loc="center")]
+    panels = [ax for ax in fig.axes if ax.get_yticklabels() and ax.get_yticklabels()[0].get_text() == "completed"]
     assert len(panels) == len(METHODS)
     black = [p for p in panels[0].patches if matplotlib.colors.same_color(p.get_facecolor(), "black")]
-    assert [p.get_y() for p in black] == [0.5]
-    assert [label.get_text() for label in panels[0].get_yticklabels()] == ["a", "b"]
+    assert [p.get_x() for p in black] == [0.5]
+    assert [text.get_text() for text in panels[0].texts] == [
+        "this package",
+        "1 stable, 1 stop and say why, none fails silently",
+        "g",
+    ]
+    assert fig.get_figheight() == pytest.approx(TALLEST) and fig.get_figwidth() == pytest.approx(PAGE_WIDTH)
+
+
+def test_a_group_and_a_case_have_a_place_of_their_own_among_two_hundred():
+    """Names of groups do not run into each other, and a case is wide enough to be seen: half a millimetre."""
+    frames = [rows(method, 1.0).iloc[[0]] for method in METHODS]
+    many = [f.assign(number=k, case=f"{k}: x", group=f"group {k // 13}") for f in frames for k in range(1, 209)]
+    fig = heat_map(long(assemble(many)))
+    names = [text for text in fig.axes[0].texts if text.get_text().startswith("group")]
+    apart = np.diff([text.xy[0] for text in names]) * fig.axes[0].get_position().width / 208 * PAGE_WIDTH * 25.4
+    assert len(names) == 17 and apart[1:-1].min() > 3
+    assert fig.axes[0].get_position().width * PAGE_WIDTH * 25.4 / 208 > 0.5

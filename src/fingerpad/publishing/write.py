@@ -91,10 +91,12 @@ def markdown(frame: pd.DataFrame) -> str:
 
 
 def publish_table(frame: pd.DataFrame, csv_path: str | os.PathLike) -> None:
-    """Write ``name.csv`` (format %s) and, beside it, ``name.md``, headed by ``frame.attrs["summary"]`` if there is one."""
+    """Write ``name.csv`` (format %s) and, beside it, ``name.md``, headed by ``frame.attrs["summary"]`` if there is one, with the
+    columns that ``frame.attrs["columns"]`` names if it does."""
     path = Path(csv_path)
     write_frame(frame, path)
-    text = "".join(f"{line}\n\n" for line in [frame.attrs.get("summary")] if line) + markdown(frame)
+    shown = frame[frame.attrs.get("columns", list(frame.columns))]
+    text = "".join(f"{line}\n\n" for line in [frame.attrs.get("summary")] if line) + markdown(shown)
     write_atomically(path.with_suffix(".md"), lambda p: p.write_text(text, encoding="utf-8"))
 
 

@@ -61,7 +61,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.studies.accuracy.belief import OUTSIDE
     from fingerpad.studies.accuracy.drawn import CLASSES
     from fingerpad.studies.accuracy.run import FAMILY, sweeps
-    from fingerpad.studies.stability.picture import METHODS
+    from fingerpad.studies.stability.picture import PARTS
     from fingerpad.studies.views.frames import FRAMES
 
     found = [(spec, module) for module, specs in CHAPTERS.items() for spec in specs]
@@ -75,6 +75,6 @@ def _read() -> dict[str, Any]:
         }
         for spec, module in sorted(found, key=lambda pair: [int(n) for n in pair[0].number.split("-")])
     }
-    offers = {"OUTSIDE": list(OUTSIDE), "CLASSES": list(CLASSES), "METHODS": list(METHODS)}
+    offers = {"OUTSIDE": list(OUTSIDE), "CLASSES": list(CLASSES), "METHODS": dict(PARTS)}
     offers["VIEWS"] = {name: list(scenes) for name, (_, scenes) in FRAMES.items()}
     return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps())} | offers

@@ -521,11 +521,12 @@ class Products:
 
     def stability(self) -> Iterator[Job]:
         """Hard cases -> how stable the default method is in them, beside simpler methods."""
-        methods = [method.replace(" ", "_") for method in offered()["METHODS"]]
-        data = [self.result(f"stability/{method}.csv") for method in methods]
-        read = {"files": [self.thesis_specimen()]}
-        for m, d in zip(methods, data, strict=True):
-            yield Job("stability_method", read, {"data": [d]}, {"method": [m]}, f"stability_{m}", runtime=30)
+        read, data = {"files": [self.thesis_specimen()]}, []
+        for method, parts in offered()["METHODS"].items():
+            for part in range(1, parts + 1):
+                told = {"method": [m := method.replace(" ", "_")], "part": [f"{part}/{parts}"]}
+                data.append(d := self.result(f"stability/{m}_{part}.csv"))
+                yield Job("stability_method", read, {"data": [d]}, told, f"stability_{m}_{part}", runtime=30)
         made = {"picture": self.pictures(["stability"]), "table": self.tables(["stability"])}
         yield Job("stability_picture", {"methods": data}, made)
 

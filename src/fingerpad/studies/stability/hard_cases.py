@@ -1,4 +1,4 @@
-"""The catalogue of hard cases: what makes each hard, and what counts as stable.
+"""Hard cases picked by hand: what makes each hard, and what counts as stable.
 
 A case is a scene in the words of a scene document, solved on a draft mesh. The same limits hold for all (:class:`Limits`); a case
 that needs another one says so where it stands.
@@ -6,10 +6,10 @@ that needs another one says so where it stands.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,11 @@ from fingerpad.scenes.specimen import Source
 from fingerpad.specimen.pad import PadMesh
 from fingerpad.studies.accuracy.meshes import corners_only, distorted, triangles
 
+if TYPE_CHECKING:
+    from fingerpad.planning.plan import Plan
+
+Points = tuple[Sequence[float], Sequence[float]]
+"""x and y of a sampled stimulus, mm."""
 SCENES = Path(__file__).resolve().parents[4] / "config" / "scenes"
 
 
@@ -27,7 +32,7 @@ def limit(value: float, text: str) -> Any:
 
 @dataclass(frozen=True)
 class Limits:
-    """The worst that a stable run may measure (see :mod:`fingerpad.studies.stability.run` for the measures)."""
+    """The worst that a stable run may measure (see :mod:`fingerpad.studies.stability.invariants`)."""
 
     cuts: float = limit(0, "at most {:g} cuts")
     factorisations: float = limit(4, "at most {:g} factorisations a step")
@@ -36,6 +41,11 @@ class Limits:
     det_f: float = limit(0.1, "det F above {:g}")
     checkerboard: float = limit(0.05, "checkerboard index up to {:g}")
     halving: float = limit(0.05, "half the step changes it by up to {:.0%}")
+    balance: float = limit(1e-3, "forces balanced within {:g}")
+    symmetry: float = limit(1e-3, "its own mirror image within {:g}")
+    effort: float = limit(4, "up to {:g} times its easy neighbour's iterations")
+    solver: float = limit(1e-6, "the other solver within {:g}")
+    reference: float = limit(1, "off a converged reference by up to {:g} times what it believes, or a draft may be")
 
     def described(self) -> str:
         """Where these limits differ from those of all cases; "as all" where they do not."""
@@ -50,8 +60,9 @@ class Case:
     Attributes:
         name, group: of the case, and of cases alike. hard: what makes it hard. scene: keys of a scene document. limits: what
             counts as stable. steps: a leg, at first (10, or four if all is steady); half the step is tried too. mesh: makes an
-            external mesh, whose file the scene then names, of the built one. may_fail: it is beyond the method; a clean failure
-            or an estimated error of at least a half is all that is asked for.
+            external mesh, whose file the scene then names, of the scene without one and its plan. may_fail: it is beyond the
+            method; a clean failure or an estimated error of at least a half is all that is asked for. points: of a sampled
+            stimulus, mm, whose file the scene then names.
     """
 
     name: str
@@ -60,8 +71,9 @@ class Case:
     scene: dict[str, Any]
     limits: Limits = Limits()
     steps: int | None = None
-    mesh: Callable[[PadMesh], PadMesh] | None = None
+    mesh: Callable[[Scene, Plan], PadMesh] | None = None
     may_fail: bool = False
+    points: Points | None = None
 
     @property
     def stable(self) -> str:
@@ -75,22 +87,46 @@ class Case:
         return self.steps or (10 if timed else 4)
 
     @property
+    def strokes(self) -> bool:
+        """Whether the skin is stroked."""
+        return any("slide" in leg for leg in self.scene["motion"])
+
+    @property
     def document(self) -> dict[str, Any]:
         """The scene document: on a draft mesh and with finite strain unless it says otherwise."""
         return {"accuracy": "draft", "effects": {"finite_strain": "on"}} | self.scene
 
-    def read(self, folder: Path) -> Scene:
-        """The scene; its external mesh, if it has one, is written into ``folder``."""
-        document = self.document
+    @property
+    def neighbour(self) -> Case:
+        """Its easy neighbour: the same motion of a plate (a cylinder, if nothing slides) without friction, on the usual pad."""
+        easy = {"specimen": {}, "stimulus": FLAT if self.strokes else cylinder(209.97), "friction": 0.0}
+        return replace(self, scene=self.scene | easy, mesh=None, points=None)
+
+    def written(self, folder: Path) -> dict[str, Any]:
+        """The scene document, with the files that it names written into ``folder``: external mesh, points of the stimulus."""
+        document, folder = self.document, Path(folder).absolute()
+        if self.points is not None:
+            np.savetxt(folder / "points.csv", np.transpose(self.points), "%.9g", ",", header="x (mm),y (mm)", comments="")
+            document["stimulus"] = document["stimulus"] | {"csv": str(folder / "points.csv")}
         if self.mesh is not None:
             from fingerpad.planning.plan import plan
-            from fingerpad.specimen import mesh_for, write_pad
+            from fingerpad.specimen import write_pad
 
             built = scene_of(document, self.name)
-            path = Path(folder).absolute() / "external.msh"
-            write_pad(self.mesh(mesh_for(built, plan(built))), path)
-            document["specimen"] = {"mesh": str(path)}
-        return scene_of(document, self.name)
+            write_pad(self.mesh(built, plan(built)), folder / "external.msh")
+            document["specimen"] = document.get("specimen", {}) | {"mesh": str(folder / "external.msh")}
+        return document
+
+    def read(self, folder: Path) -> Scene:
+        """The scene; the files that it names are written into ``folder``."""
+        return scene_of(self.written(folder), self.name)
+
+
+def of_built(change: Callable[[PadMesh], PadMesh]) -> Callable[[Scene, Plan], PadMesh]:
+    """What makes an external mesh of the one that the plan would have built."""
+    from fingerpad.specimen import mesh_for
+
+    return lambda scene, plan: change(mesh_for(scene, plan))
 
 
 def scene_of(document: dict[str, Any], name: str) -> Scene:
@@ -131,8 +167,9 @@ def depth(millimetres: float, speed: float | None = None) -> dict[str, str]:
     return leg if speed is None else leg | {"speed": f"{speed:g} mm/s"}
 
 
-def slide(millimetres: float, speed: float = 10, keep: str = "force") -> dict[str, str]:
-    return {"slide": f"{millimetres:g} mm", "speed": f"{speed:g} mm/s", "keep": keep}
+def slide(millimetres: float, speed: float | None = 10, keep: str = "force") -> dict[str, str]:
+    leg = {"slide": f"{millimetres:g} mm", "keep": keep}
+    return leg if speed is None else leg | {"speed": f"{speed:g} mm/s"}
 
 
 def hold(seconds: float) -> dict[str, str]:
@@ -149,10 +186,10 @@ STEADY = {"energy": 0.05}
 NARROW = {"checkerboard": 0.15}
 
 
-# -- the catalogue ------------------------------------------------------------------------------------------------------------
+# -- the cases ----------------------------------------------------------------------------------------------------------------
 
 
-def _catalogue():
+def _picked():
     group = "incompressible"
     for ratio in (0.48, 0.499, 0.4999, 0.49999):
         for name, stimulus in (("flat", FLAT), ("1260 1/m", cylinder(1259.84))):
@@ -274,14 +311,19 @@ def _catalogue():
     hand = {"stimulus": cylinder(209.97), "motion": RAMP}
     coarse = hand | {"accuracy": {"skin_edge": "1 mm", "steps": 20}}
     yield Case(
-        "coarse", group, "nodes 0.5 mm apart: three in contact", coarse, Limits(checkerboard=np.inf), mesh=lambda mesh: mesh
+        "coarse",
+        group,
+        "nodes 0.5 mm apart: three in contact",
+        coarse,
+        Limits(checkerboard=np.inf),
+        mesh=of_built(lambda mesh: mesh),
     )
-    yield Case("distorted", group, "inner nodes moved by up to 0.3 of an edge", hand, Limits(**NARROW), mesh=distorted)
-    yield Case("triangles", group, "6-node triangles with a bubble", hand, Limits(**NARROW), mesh=triangles)
+    yield Case("distorted", group, "inner nodes moved by up to 0.3 of an edge", hand, Limits(**NARROW), mesh=of_built(distorted))
+    yield Case("triangles", group, "6-node triangles with a bubble", hand, Limits(**NARROW), mesh=of_built(triangles))
     yield Case(
         "distorted linear triangles", group, "3-node triangles, moved, raised to 6 nodes", hand, Limits(**NARROW),
-        mesh=lambda mesh: corners_only(triangles(distorted(mesh))),
+        mesh=of_built(lambda mesh: corners_only(triangles(distorted(mesh)))),
     )  # fmt: skip
 
 
-CATALOGUE: dict[str, Case] = {case.name: case for case in _catalogue()}
+PICKED: dict[str, Case] = {case.name: case for case in _picked()}

@@ -8,8 +8,10 @@ case's.
 from __future__ import annotations
 
 import json
+import os
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -21,21 +23,26 @@ from threadpoolctl import threadpool_limits
 
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.plan import plan
-from fingerpad.results import leg_ends
+from fingerpad.planning.rules import RULES
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.pad import PadMesh
+from fingerpad.studies.accuracy.drawn import finer as finely
 from fingerpad.studies.accuracy.meshes import quarters, triangles
-from fingerpad.studies.stability.hard_cases import CATALOGUE, Case, Limits
+from fingerpad.studies.stability.catalogue import CATALOGUE, HALVED, REFERENCE, SECOND_SOLVER
+from fingerpad.studies.stability.hard_cases import Case
+from fingerpad.studies.stability.invariants import ENDS, Held, difference, excess, iterations, measures, mirrored
+from fingerpad.studies.stability.relaxing import relaxed
 
 METHODS = ("default", "full Q1", "plain P2", "plain Newton")
 STABLE, ADMITS, CLEAN, SILENT, UNCLEAN = "stable", "admits its error", "fails cleanly", "unsound", "breaks off"
 """Outcomes of a run. Admits its error: the error that it estimates is a half or more; unsound: it completed outside its limits;
 breaks off: an error that is not a diagnosis."""
-MOST_ITERATIONS = 400
+MOST_ITERATIONS = 200
 """A teaching method is given up after so many Newton iterations; the default method is not."""
-ENDS = ("force", "indentation_depth", "stored_energy", "contact_width", "tangential_force")
-"""What half the step is compared by, at the ends of the legs."""
+SOLVER = "FINGERPAD_LINEAR_SOLVER"
+FINER = 2.0
+"""By how much shorter the edges of a reference are; its steps are half as long."""
 
 
 # -- methods ------------------------------------------------------------------------------------------------------------------
@@ -79,10 +86,13 @@ def _split(mesh: PadMesh, element: str, change) -> PadMesh | None:
     return mesh if mesh.element == kind else change(mesh) if mesh.element == "quad9" else None
 
 
-def simulation(case: Case, method: str, folder: Path, refined: int = 1) -> Simulation | None:
-    """A case ready to run by a method with its steps divided by ``refined``; None where the method has no such mesh."""
+def simulation(case: Case, method: str, folder: Path, refined: int = 1, finer: float = 1.0) -> Simulation | None:
+    """A case ready to run by a method with its steps divided by ``refined`` and its edges by ``finer``; None where the method has
+    no such mesh."""
     scene = case.read(folder)
     chosen = plan(scene)
+    if finer > 1:
+        chosen = finely(chosen, finer)
     # without a slide, its step stands for steps that are given by hand: what is pressed is pressed in as many
     slides = chosen.slide_step and any(leg.strokes for leg in scene.motion)
     slide_step = chosen.slide_step / refined if slides else None
@@ -99,45 +109,6 @@ def simulation(case: Case, method: str, folder: Path, refined: int = 1) -> Simul
     return mesh and Teaching(scene, replace(chosen, element=element), mesh, lagged)
 
 
-# -- measures -----------------------------------------------------------------------------------------------------------------
-
-
-def checkerboard(pressure: np.ndarray, smoothed: np.ndarray) -> float:
-    """R.m.s. of nodal pressure less its 5-point average over the peak pressure, inside the contact.
-
-    Inside: from the third to the third last touching node (ns,), nodes that have been lifted off between them included. nan where
-    there are fewer than three.
-    """
-    on = np.flatnonzero(pressure > 0)
-    if len(on) < 7:
-        return np.nan
-    inside = slice(on[2], on[-3] + 1)
-    return float(np.sqrt(np.mean((pressure - smoothed)[inside] ** 2)) / pressure.max())
-
-
-def measures(history: xr.Dataset) -> dict[str, float]:
-    """What a history tells of the run that made it (their meaning: :data:`fingerpad.studies.stability.picture.MEASURES`)."""
-    ends = leg_ends(history)
-    work = np.abs(history.external_work.values)
-    kept = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
-    pressures = zip(ends.contact_pressure.values, ends.contact_pressure_smoothed.values, strict=True)
-    boards = [checkerboard(pressure, smoothed) for pressure, smoothed in pressures]
-    return {
-        "cuts": float(history.cutbacks.sum()),
-        "factorisations": json.loads(history.attrs["cost"])["factorisations"] / max(history.sizes["time"] - 1, 1),
-        "energy": float(np.abs(history.external_work - kept).max() / max(work.max(), 1e-300)),
-        "complementarity": float(history.complementarity_error.max()),
-        "det_f": float(history.min_detF.min()),
-        "checkerboard": max((b for b in boards if np.isfinite(b)), default=np.nan),
-    }
-
-
-def difference(one: xr.Dataset, other: xr.Dataset, names: Iterable[str] = ENDS) -> float:
-    """Largest difference at the ends of the legs, each quantity over its largest value there."""
-    pairs = [(leg_ends(one)[name].values, leg_ends(other)[name].values) for name in names]
-    return max(float(np.abs(a - b).max() / max(np.abs(a).max(), 1e-12)) for a, b in pairs)
-
-
 # -- runs ---------------------------------------------------------------------------------------------------------------------
 
 
@@ -152,50 +123,111 @@ class Run:
     measured: Mapping[str, float]
 
 
-def _simulate(case, method, refined):
+@contextmanager
+def second_solver() -> Iterator[None]:
+    """The other linear solver, SuperLU, for as long as this lasts."""
+    before = os.environ.get(SOLVER)
+    os.environ[SOLVER] = "superlu"
+    try:
+        yield
+    finally:
+        os.environ.pop(SOLVER)
+        if before is not None:
+            os.environ[SOLVER] = before
+
+
+def _simulate(case: Case, method: str = METHODS[0], refined: int = 1, finer: float = 1.0) -> tuple[xr.Dataset, float] | None:
+    """History of a case and how well forces balanced in it; None where the method has no such mesh."""
     with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
-        made = simulation(case, method, Path(folder), refined)
-        return made and made.run(None)
+        made = simulation(case, method, Path(folder), refined, finer)
+        if made is None:
+            return None
+        held = Held(made)
+        history = made.run(held)
+    return history, held.balance(history)
 
 
-def run(case: Case, method: str = METHODS[0], halve: bool = True) -> Run | None:
-    """Simulate a case by a method, and once more with half the step; None where the method has no mesh for it."""
+def run(case: Case, method: str = METHODS[0], compare: bool = True) -> Run | None:
+    """Simulate a case by a method, and again to :func:`compared`; None where the method has no mesh for it."""
     found = _run(case, method)
-    return halved(case, found, method) if halve and found is not None else found
+    return compared(case, found) if compare and found is not None else found
 
 
 def _run(case, method):
     try:
-        history = _simulate(case, method, 1)
+        made = _simulate(case, method)
     except NonConvergence as failure:
         kept = failure.dataset if failure.records else None
         diagnosed = bool(failure.reason and failure.advice) and (kept is None or _sound_so_far(kept))
         return Run(kept, False, CLEAN if diagnosed else UNCLEAN, str(failure), measures(kept) if kept is not None else {})
     except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:  # what a user would see as a traceback
         return Run(None, False, UNCLEAN, f"{type(error).__name__}: {error}", {})
-    if history is None:
+    if made is None:
         return None
-    measured = measures(history)
+    history, balance = made
+    measured = measures(history) | {"balance": balance}
+    if method == METHODS[0] and _is_mirrored(case):
+        measured["symmetry"] = mirrored(history)
     if case.may_fail:
         error = history.attrs["estimated_error"]
         return Run(history, True, ADMITS if error >= 0.5 else SILENT, f"estimated error {error:.2g}", measured)
     return _judged(case, history, measured)
 
 
-def halved(case: Case, found: Run, method: str = METHODS[0]) -> Run:
-    """A run, judged also by how much half its step changes; one that broke off, or may, is left as it is."""
+def _is_mirrored(case: Case) -> bool:
+    """Whether a case that is solved with the whole pad is its own mirror image."""
+    effects = case.document["effects"]
+    if effects.get("symmetry") != "off":
+        return False
+    halved = replace(case, scene=case.scene | {"effects": {k: v for k, v in effects.items() if k != "symmetry"}})
+    with tempfile.TemporaryDirectory() as folder:
+        return plan(halved.read(Path(folder))).effects["symmetry"].on
+
+
+def compared(case: Case, found: Run) -> Run:
+    """A run by the default method, judged also by runs beside it; one that broke off, or may, is left as it is.
+
+    The effort of its easy neighbour always; half the step, the second solver and the reference in some, for they cost as much as
+    all the rest (:data:`HALVED`, :data:`SECOND_SOLVER`, :data:`REFERENCE`).
+    """
     if not found.completed or case.may_fail:
         return found
+    measured = dict(found.measured)
+    if case.name in HALVED:
+        measured["halving"] = _apart(case, found.history, refined=2)
+    measured["effort"] = iterations(found.history) / _effort(json.dumps(case.neighbour.document), case.neighbour)
+    if case.name in SECOND_SOLVER:
+        with second_solver():
+            measured["solver"] = _apart(case, found.history)
+    if case.name in REFERENCE:
+        believed = max(found.history.attrs["estimated_error"], RULES.presets["draft"].tolerance)
+        measured["reference"] = _apart(case, found.history, ENDS[:4], 2, FINER) / believed
+    return _judged(case, found.history, measured)
+
+
+def _apart(case: Case, history: xr.Dataset, names: Iterable[str] = ENDS, refined: int = 1, finer: float = 1.0) -> float:
+    """Difference to another run of a case; infinite where that is not completed."""
     try:
-        change = difference(_simulate(case, method, 2), found.history)
+        return difference(_simulate(case, METHODS[0], refined, finer)[0], history, names)
     except NonConvergence:
-        change = np.inf
-    return _judged(case, found.history, {**found.measured, "halving": change})
+        return np.inf
+
+
+_EFFORTS: dict[tuple[str, int], float] = {}
+
+
+def _effort(said: str, neighbour: Case) -> float:
+    """Iterations of a case a step, which many cases may have as their neighbour."""
+    key = said, neighbour.steps_per_leg
+    if key not in _EFFORTS:
+        _EFFORTS[key] = iterations(_simulate(neighbour)[0])
+    return _EFFORTS[key]
 
 
 def _judged(case, history, measured):
     beyond = excess(measured, case.limits)
-    return Run(history, True, SILENT if beyond else STABLE, "; ".join(beyond), measured)
+    admits = beyond and history.attrs["estimated_error"] >= 0.5
+    return Run(history, True, ADMITS if admits else SILENT if beyond else STABLE, "; ".join(beyond), measured)
 
 
 def _sound_so_far(kept: xr.Dataset) -> bool:
@@ -203,26 +235,25 @@ def _sound_so_far(kept: xr.Dataset) -> bool:
     return not kept.attrs["complete"] and bool(np.isfinite(kept.force).all()) and float(kept.complementarity_error.max()) < 1e-3
 
 
-def excess(measured: Mapping[str, float], limits: Limits) -> list[str]:
-    """What lies outside the limits, as text."""
-    out = []
-    for name, value in measured.items():
-        most = getattr(limits, name)
-        if value < most if name == "det_f" else value > most:
-            out.append(f"{name} {value:.3g}")
-    return out
+def cured(case: Case, found: Run) -> str:
+    """What of a case that is not stable, relaxed as its message says, makes it so; in words, empty where nothing does."""
+    return next((said for said, easier in relaxed(case, found.message) if run(easier, compare=False).outcome == STABLE), "")
 
 
-def study(method: str, cases: Iterable[str] = CATALOGUE) -> pd.DataFrame:
+def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
     """One row a case: what makes it hard, what counts as stable, the outcome and every measure with its limit.
+
+    Of the whole catalogue, or of one of so many parts of it, which may be made side by side.
 
     The columns depth_mm and force_N_per_m are the state at the end, by which methods are compared.
     """
     rows = []
-    for name in cases:
-        case = CATALOGUE[name]
-        row: dict[str, Any] = {"case": name, "group": case.group, "method": method, "hard": case.hard, "stable": case.stable}
-        done = run(case, method, halve=method == METHODS[0])
+    for number, case in list(enumerate(CATALOGUE.values(), start=1))[part - 1 :: parts]:
+        row: dict[str, Any] = {"number": number, "case": case.name, "group": case.group, "method": method}
+        row |= {"hard": case.hard, "stable": case.stable}
+        if method != METHODS[0] and case.name not in HALVED:
+            continue
+        done = run(case, method, compare=method == METHODS[0])
         if done is None:
             rows.append(row | {"outcome": "does not apply"})
             continue
@@ -230,9 +261,11 @@ def study(method: str, cases: Iterable[str] = CATALOGUE) -> pd.DataFrame:
         if not done.completed:
             saved = "none had converged" if done.history is None else f"{done.history.sizes['time'] - 1} steps"
         row |= {"outcome": done.outcome, "completed": float(done.completed), "message": done.message, "saved": saved}
+        if method == METHODS[0] and done.outcome != STABLE:
+            row["relaxed"] = cured(case, done)
         row |= dict(done.measured) | {f"limit {key}": getattr(case.limits, key) for key in done.measured}
         if done.completed:
             row |= {"depth_mm": 1e3 * done.history.indentation_depth.values[-1], "force_N_per_m": done.history.force.values[-1]}
         rows.append(row)
-        print(f"{method}, {name}: {done.outcome} {done.message}", flush=True)
+        print(f"{method}, {case.name}: {done.outcome} {done.message}", flush=True)
     return pd.DataFrame(rows)

@@ -1,4 +1,4 @@
-"""A method -> every hard case solved with it, and what was measured."""
+"""A method, and a part of the hard cases -> these solved with it, and what was measured."""
 
 from pathlib import Path
 
@@ -7,5 +7,6 @@ from fingerpad.studies.stability.run import study
 
 
 def run(job):
-    """`method` -> `data`."""
-    write_frame(study(job.method[0].replace("_", " ")), Path(job.data[0]))
+    """`method`, `part` (such as 1/4) -> `data`."""
+    part, parts = map(int, job.part[0].split("/"))
+    write_frame(study(job.method[0].replace("_", " "), part, parts), Path(job.data[0]))
