@@ -18,7 +18,7 @@ from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tributary_length
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
-from fingerpad.mechanics.stepping import NonConvergence, QuasiStatic, Record, Skin
+from fingerpad.mechanics.stepping import FOLDED, NonConvergence, QuasiStatic, Record, Skin
 from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.effects import EFFECTS
 from fingerpad.planning.errors import estimated_error
@@ -226,7 +226,7 @@ class Simulation:
         counts = {"iterations": 0, "cutbacks": 0}
 
         def after(record: Record):
-            states.append(self.receptors.sample(self.body))
+            states.append(self._sampled(done[-1].time if done else 0.0))
             done.append(record)
             if any(abs(record.time - t) <= 1e-9 * max(t, 1e-12) for t in wanted):
                 snapshots[record.leg, record.time] = self._full_field(record)
@@ -244,6 +244,16 @@ class Simulation:
         if self.fields is not None and not snapshots and not wanted:
             snapshots[records[-1].leg, records[-1].time] = self._full_field(records[-1])
         return self._history(records, states, snapshots, complete=True)
+
+    def _sampled(self, before: float) -> dict[str, np.ndarray]:
+        """What the receptors feel now; an element that folds where one lies, between its quadrature points, ends the run."""
+        with np.errstate(invalid="ignore"):
+            sampled = self.receptors.sample(self.body)
+        for name, values in sampled.items():
+            if not np.isfinite(values).all():
+                depth = 1e6 * self.depth[int(np.flatnonzero(~np.isfinite(values))[0])]
+                raise NonConvergence(before, f"an element turns inside out at the receptor {depth:.4g} um deep ({name})", FOLDED)
+        return sampled
 
     def _present(self):
         return self.stepper.force / self.share, self.stepper.depth, self.stepper.touching_depth()

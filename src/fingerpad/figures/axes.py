@@ -146,8 +146,9 @@ def curve(
     (line,) = ax.plot(rows[x], rows[y], **look)
     if points:
         bars(ax, rows, x, y, rows[y].abs(), line.get_color())
-    elif (known := total(rows)).max() > SHOWN_ABOVE:
-        all_of = (rows if whole is None else whole).dropna(subset=[x, y])
+        return line
+    known, all_of = total(rows), (rows if whole is None else whole).dropna(subset=[x, y])
+    if known.max() > SHOWN_ABOVE and len(all_of):
         half = known.max() / 100 * norm(*(all_of[q].to_numpy(float) for q in (x, y)))
         faint = {"color": line.get_color(), "alpha": 0.18, "lw": 0, "zorder": line.get_zorder() - 0.5}
         ax.fill_between(rows[x], rows[y] - half, rows[y] + half, **faint)

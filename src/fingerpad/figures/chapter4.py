@@ -96,7 +96,7 @@ def skin(data: Data) -> pd.DataFrame:
     for label, history, coarse in data.runs(NINE):
         keep = history["skin_y"].values > 0
         at_rest = history["skin_x"].values, history["skin_y"].values
-        outlines = [(axs.AT_REST, at_rest, Errors(0.0, 0.0, 0.0))]
+        outlines = [(axs.AT_REST, at_rest, Errors(np.nan, np.nan, np.nan))]  # the scene alone tells it
         for index, phase in phase_indices(history)[-2:]:
             errors = curve_errors(history, coarse, at_output(float(history["time"][index]), sunk))
             outlines.append((phase, skin_at(history, index), errors))

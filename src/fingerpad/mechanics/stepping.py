@@ -13,6 +13,9 @@ from fingerpad.mechanics.contact import ContactError, Zone, solve_contact
 from fingerpad.mechanics.linear_solver import FactorisationError, condensation
 from fingerpad.stimuli.motion import STEADY, Step
 
+FOLDED = "a finer skin mesh, a fillet on sharp edges, or a smaller depth or force"
+"""What to try where an element turns inside out."""
+
 
 class NonConvergence(RuntimeError):
     """A step could not be completed even after cutting.
@@ -563,7 +566,7 @@ class QuasiStatic:
         if about_profile:
             return about_profile
         if "inside out" in reason:
-            return "a finer skin mesh, a fillet on sharp edges, or a smaller depth or force"
+            return FOLDED
         if "carry the force" in reason:
             return "depth control, or a profile that stays above the pad"
         if "energy" in reason:

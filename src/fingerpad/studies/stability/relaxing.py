@@ -47,7 +47,7 @@ def _with(case: Case, **keys: Any) -> Case:
 
 
 ADVICE: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
-    "smaller depth or force": tuple((f"load: {share:g} of it", _loaded(share)) for share in (0.5, 0.2)),
+    "smaller depth or force": tuple((f"load: {share:g} of it", _loaded(share)) for share in (0.5, 0.04)),
     "fillet": (("stimulus: rounded", _rounded),),
     "smoothing": (("stimulus: smoothed", _rounded),),
     "smaller steps": (("time: 8 times the steps", _steps),),
