@@ -380,11 +380,34 @@ def _write_netcdf(history: Arrays, path: Path) -> None:
             made[...] = each.values.astype(object) if text else each.values
 
 
-def read_history(path: str | Path) -> xr.Dataset:
-    """Read a history written by :func:`write_history`, into memory."""
+class ResultError(ValueError):
+    """A file is no result of this package, or but a part of one; the message names it."""
+
+
+def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
+    """Read a result into memory, which must hold some variables.
+
+    Raises:
+        ResultError: the file is cut off, of another kind, or lacks them. FileNotFoundError: there is none.
+    """
     import xarray as xr
 
-    return _indexed(xr.load_dataset(path, engine="netcdf4"))
+    try:
+        found = xr.load_dataset(path, engine="netcdf4")
+    except (FileNotFoundError, PermissionError):
+        raise
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        why = " ".join(str(error).split())
+        raise ResultError(f"{path}: cut off, or no NetCDF file; remove it and run again ({why})") from None
+    for name in holds:
+        if name not in found.variables:
+            raise ResultError(f"{path}: holds no {name}, so is no result of this kind; remove it and run again")
+    return found
+
+
+def read_history(path: str | Path) -> xr.Dataset:
+    """Read a history written by :func:`write_history`, into memory; raises as :func:`read_dataset`."""
+    return _indexed(read_dataset(path, ("time", "leg", "force", "indentation_depth")))
 
 
 def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]:

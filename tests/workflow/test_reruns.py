@@ -5,6 +5,7 @@ Which jobs an edit reruns in the full configuration is asked of the package in t
 
 import json
 import os
+import random
 import re
 import shutil
 import signal
@@ -20,6 +21,7 @@ import pytest
 import yaml
 
 from fingerpad.config import read_config
+from fingerpad.results import read_history
 from fingerpad.workflow.products import Products
 
 pytestmark = [pytest.mark.workflow, pytest.mark.slow]
@@ -147,6 +149,58 @@ def test_an_interrupted_run_goes_on_by_the_same_command(clone, how):
     text = clone.run("--configfile", "mine.yaml")
     assert all(path.exists() for path in histories) and (clone.root / "results/mine/tables/summary.csv").exists()
     assert ("took over" in text) == how.startswith("SIGKILL")
+
+
+KILLS = int(os.environ.get("FINGERPAD_KILLS", "2"))
+"""Of the coarse workflow, all its processes at once; FINGERPAD_KILLS=50 for more."""
+LATEST = 25.0
+"""s after its start at which a run is killed, at most: Snakemake itself needs a few, a whole run twice that."""
+EXACT = {".csv", ".png", ".pdf", ".msh"}
+
+
+def products(root):
+    """What the coarse workflow makes under final names, but logs and what tells of costs and times."""
+    found = {path.relative_to(root).as_posix(): path for path in (root / "results" / "smoke").rglob("*") if path.is_file()}
+    return {name: path for name, path in found.items() if "/logs/" not in name}
+
+
+def same(path, other):
+    """Are two results equal: bytes of pictures, tables and meshes, numbers of histories?"""
+    if path.suffix in EXACT:
+        return path.read_bytes() == other.read_bytes()
+    if path.suffix == ".nc":
+        one, two = read_history(path), read_history(other)
+        names = {*one.variables, *two.variables}
+        return all(np.array_equal(one[name].values, two[name].values, equal_nan=True) for name in names)
+    return path.stat().st_size > 0
+
+
+def test_a_workflow_killed_at_random_instants_ends_with_the_same_results(clone, finished):
+    rng, expected, whole = random.Random(19), products(finished.root), 0
+    for _ in range(KILLS):
+        run = subprocess.Popen(
+            [sys.executable, "-m", "snakemake", *SMOKE],
+            cwd=clone.root,
+            env=os.environ | {"PYTHONPATH": str(clone.root / "src")},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        time.sleep(rng.uniform(0.2, LATEST))
+        os.killpg(run.pid, signal.SIGKILL)
+        run.wait()
+        left = products(clone.root)
+        half = [name for name, path in left.items() if name in expected and not same(path, expected[name])]
+        assert not half, f"under final names: {half}"
+        if set(expected) <= set(left):  # it was through before: from nothing again
+            whole += 1
+            shutil.rmtree(clone.root / "results")
+    clone.run(*SMOKE)
+    made = products(clone.root)
+    assert set(made) == set(expected), set(made) ^ set(expected)
+    assert all(same(path, expected[name]) for name, path in made.items())
+    assert clone.planned(*SMOKE) == {} and whole < KILLS
 
 
 def test_a_failed_job_says_why_where_it_failed(clone):

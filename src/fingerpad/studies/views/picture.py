@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable
 
 import numpy as np
@@ -394,6 +395,7 @@ def scorecard_rows(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame
     rows["relative (1)"] = rows["simulated"] / end
     rows["low (1)"] = (rows["thesis_low"] / end).where(rows["form"] == "range", np.where(rows["form"] == "axis", 0.5, 1.0))
     rows["uncertain"] = rows["thesis_kind"].eq("garbled")
+    rows = rows.sort_values("figure", key=lambda of: of.str.split("-").map(lambda part: [*map(int, part)]), kind="stable")
     return rows[["id", "figure", "quantity", "condition", "form", "relative (1)", "low (1)", "verdict", "uncertain"]]
 
 
@@ -409,7 +411,7 @@ def scorecard(frame: pd.DataFrame) -> Figure:
             "that was put in or fitted."
         ], style.TALLEST,
     )  # fmt: skip
-    columns, low, high = 3, 0.04, 8.0
+    columns, low, high = 3, 0.25, 4.0
     size = int(np.ceil(len(frame) / columns))
     axes = fig.subplots(1, columns)
     for ax, start in zip(axes, range(0, len(frame), size), strict=True):
@@ -427,7 +429,7 @@ def scorecard(frame: pd.DataFrame) -> Figure:
         for k, (begin, end) in enumerate(zip(starts, [*starts[1:], len(part)], strict=True)):
             rows = part.iloc[begin:end]
             ax.axhspan(begin - 0.5, end - 0.5, color="0.965" if k % 2 else "white", lw=0, zorder=0)
-            words = [f"{rows['figure'].iloc[0]}  {_short(rows['quantity'].mode()[0], 24)}"]
+            words = textwrap.wrap(f"{rows['figure'].iloc[0]} {_short(rows['quantity'].mode()[0])}", 29)
             if end - begin > 2:
                 words.append(f"{end - begin} numbers")
             ax.text(-0.03, (begin + end - 1) / 2, "\n".join(words), transform=ax.get_yaxis_transform(), ha="right", va="center",
@@ -435,19 +437,19 @@ def scorecard(frame: pd.DataFrame) -> Figure:
         ax.set_yticks([])
         ax.axvline(1, color=style.GREY, lw=0.5, zorder=0)
         ax.set(xscale="log", xlim=(low * 0.9, high * 1.1), ylim=(size - 0.4, -0.6), xlabel="simulated over thesis")
-        ax.set_xticks([0.05, 0.2, 0.5, 1, 2, 5], ["0.05", "0.2", "0.5", "1", "2", "5"], fontsize=5.5)
+        ax.set_xticks([0.25, 0.5, 1, 2, 4], ["0.25", "0.5", "1", "2", "4"], fontsize=5.5)
         ax.minorticks_off()
     return fig
 
 
-def _short(text: str, most: int) -> str:
+def _short(text: str) -> str:
     for long, brief in (
         ("strain energy density", "energy"), ("contact pressure", "pressure"), ("instantaneous frequency", "frequency"),
         ("vertical displacement of the skin", "sinking"), ("larger of 0.04 x centre pressure and", "0.04 pressure or"),
         ("mean rate of the hold", "mean rate"), (" um", " µm"),
     ):  # fmt: skip
         text = text.replace(long, brief)
-    return text if len(text) <= most else text[: most - 1].rstrip() + "…"
+    return text
 
 
 def candidate_rows(table: pd.DataFrame) -> pd.DataFrame:
