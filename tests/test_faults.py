@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 import types
+from pathlib import Path
 
 import pytest
 
@@ -23,6 +24,7 @@ from wrong_scenes import changed, write
 
 pytestmark = pytest.mark.unit
 
+ROOT = Path(__file__).parents[1]
 COARSE = {"skin_edge": "0.8 mm", "steps": 2}
 
 
@@ -297,6 +299,27 @@ def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
             if path.exists():
                 path.write_bytes(spoil(path.read_bytes()))
         assert told() == first
+
+
+def test_compiled_code_that_is_cut_off_is_named(tmp_path):
+    """Kernels kept from before, cut short: a line that says where; without them all is compiled anew."""
+    source = ROOT / "src" / "fingerpad"
+    package = tmp_path / "fingerpad"
+    shutil.copytree(source, package, ignore=shutil.ignore_patterns("*.tmp.*"))
+    scene = write(tmp_path, changed(accuracy=COARSE))
+    words = [sys.executable, "-m", "fingerpad", "run", str(scene), "--out", str(tmp_path / "out"), "--quiet"]
+
+    def run():
+        environment = os.environ | {"PYTHONPATH": str(tmp_path), "OMP_NUM_THREADS": "1"}
+        return subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, env=environment)
+
+    kept = sorted(package.rglob("*.nbi"))
+    assert kept, "nothing compiled is kept beside the kernels"
+    for path in kept:
+        path.write_bytes(path.read_bytes()[:40])
+    done = run()
+    assert done.returncode == 3 and done.stderr.count("\n") == 1, done.stderr
+    assert "cannot be read" in done.stderr and str(package) in done.stderr and not (tmp_path / "out").exists()
 
 
 def test_a_cut_or_foreign_result_is_named(tmp_path, histories):

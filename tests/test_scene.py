@@ -324,6 +324,24 @@ def test_the_surface_may_be_used_to_its_ends(folder):
     assert len(load_scene(write(folder, wavy([FORCE, there, back, there]))).motion) == 4
 
 
+def test_a_leg_that_takes_time_has_as_many_outputs_as_are_asked_for(folder):
+    """Fewer than the accuracy's steps change nothing, nor do any where nothing takes time or who gives the steps by hand."""
+
+    def steps(outputs, **changes):
+        chosen = fingerpad.plan(load_scene(write(folder, changed(outputs=outputs, accuracy="draft", **changes))))
+        return chosen.steps_per_leg, chosen.steps
+
+    usual = steps({})
+    assert steps({"per_leg": 2}) == usual and usual[0] < 64 and steps({"per_leg": 64}) == (64, 128)
+    steady = {"motion": [{"press_to_force": "20 gf"}]}
+    assert steps({"per_leg": 64}, **steady) == steps({}, **steady)
+    by_hand = {"accuracy": {"steps": 10}}
+    chosen = [
+        fingerpad.plan(load_scene(write(folder, changed(outputs=outputs, **by_hand)))).steps for outputs in ({}, {"per_leg": 64})
+    ]
+    assert chosen[0] == chosen[1]
+
+
 def test_snapshots_at_intervals_are_times(folder):
     """Multiples of the interval up to the end, the end itself too; the canonical form is that of the times."""
     every = load_scene(write(folder, changed(outputs={"snapshots": {"every": "0.5 s"}})))

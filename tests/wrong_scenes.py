@@ -72,6 +72,7 @@ BAD = {
     ),
     "lift without a unit": (motion(FORCE, {"lift": "slow"}), "motion[1].lift", "steady"),
     "unknown kind of receptor": (changed(outputs={"responses": ["rapid_adapting"]}), "outputs.responses[0]", "rapidly_adapting"),
+    "no outputs": (changed(outputs={"per_leg": 0}), "outputs.per_leg", "a whole number from 1 to 1000"),
     "responses of a steady scene": (
         changed(motion=[{"press_to_force": "20 gf"}], outputs={"responses": True}),
         "outputs.responses",

@@ -247,6 +247,8 @@ def plan(
     steps_per_leg, slide_step = preset.steps, preset.slide_step
     if by_hand and by_hand.steps:
         steps_per_leg, slide_step = max(1, round(by_hand.steps / len(scene.motion))), None
+    elif timed:
+        steps_per_leg = max(steps_per_leg, scene.outputs.per_leg or 0)
     steps = sum(1 for _ in schedule(scene, steps_per_leg, timed, slide_step=slide_step))
     time, narrowest, raised = steps_per_leg if timed else None, earliest_half_width(scene, contact, timed), ""
     if external is not None:

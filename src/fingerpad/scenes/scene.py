@@ -118,6 +118,8 @@ class Outputs(Strict):
         Discriminator(lambda value: "<every>" if isinstance(value, (Mapping, Every)) else "<times>"),
     ] = ()
     """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
+    per_leg: whole(1, MAXIMUM_SNAPSHOTS) | None = None
+    """Least number of outputs in each press and hold that takes time; left out, as many as the accuracy takes steps."""
     responses: Annotated[tuple[Afferent, ...], BeforeValidator(_read_responses, json_schema_input_type=_ResponsesSurface)] = ()
     """Impulses predicted for the receptors: true (slowly adapting), or a list of slowly_adapting and rapidly_adapting."""
 

@@ -95,7 +95,7 @@ def record(history, error: float, worst: str, **more: Any) -> dict[str, Any]:
 def prepared(name: str, base: Scene) -> Scene:
     """One scene of :func:`outside` with the receptors that are looked at."""
     looked = {"outputs.receptors.depths": DEPTHS, "outputs.receptors.offsets": (0.0,), "outputs.snapshots": ()}
-    return outside(base)[name].varied(looked)
+    return outside(base)[name].varied(looked | {"outputs.per_leg": None})
 
 
 def finest(scene: Scene) -> Plan:

@@ -116,7 +116,8 @@ def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
 
     receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
     effects = scene.effects | {"finite_strain": point.finite}
-    scene = scene.varied({"outputs.receptors": receptors, "effects": effects, "accuracy": point.preset or "thesis"})
+    keys = {"outputs.receptors": receptors, "outputs.per_leg": None, "effects": effects, "accuracy": point.preset or "thesis"}
+    scene = scene.varied(keys)
     chosen = plan(scene)
     if point.preset:
         return scene, chosen
