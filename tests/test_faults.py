@@ -302,15 +302,15 @@ def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
 
 
 def test_compiled_code_that_is_cut_off_is_named(tmp_path):
-    """Kernels kept from before, cut short: a line that says where; without them all is compiled anew."""
-    source = ROOT / "src" / "fingerpad"
-    package = tmp_path / "fingerpad"
-    shutil.copytree(source, package, ignore=shutil.ignore_patterns("*.tmp.*"))
+    """Kernels kept from before, cut short: a line that says where."""
+    package = tmp_path / "src" / "fingerpad"
+    shutil.copytree(ROOT / "src" / "fingerpad", package, ignore=shutil.ignore_patterns("*.tmp.*"))
+    (tmp_path / "config").symlink_to(ROOT / "config")
     scene = write(tmp_path, changed(accuracy=COARSE))
     words = [sys.executable, "-m", "fingerpad", "run", str(scene), "--out", str(tmp_path / "out"), "--quiet"]
 
     def run():
-        environment = os.environ | {"PYTHONPATH": str(tmp_path), "OMP_NUM_THREADS": "1"}
+        environment = os.environ | {"PYTHONPATH": str(package.parent), "OMP_NUM_THREADS": "1"}
         return subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, env=environment)
 
     kept = sorted(package.rglob("*.nbi"))
