@@ -614,6 +614,30 @@ def largest_memory():
     return digits(rows[rows["quantity"].str.startswith("largest memory") & rows["unit"].eq("MB")]["value"].max())
 
 
+def _soaked(what: str) -> str:
+    return f"{table('figures/tables/soak').set_index('what').loc['all', what]:,}"
+
+
+@number
+def soak_drawn():
+    return _soaked("drawn")
+
+
+@number
+def soak_refused():
+    return _soaked("refused in one line")
+
+
+@number
+def soak_completed():
+    return _soaked("completed")
+
+
+@number
+def soak_stopped():
+    return _soaked("stopped with its diagnosis")
+
+
 # -- the pad --------------------------------------------------------------------------------------------------------------------
 
 

@@ -157,7 +157,7 @@ def _run(case, method):
     try:
         made = _simulate(case, method)
     except NonConvergence as failure:
-        kept = failure.dataset if failure.records else None
+        kept = getattr(failure, "dataset", None)
         diagnosed = bool(failure.reason and failure.advice) and (kept is None or _sound_so_far(kept))
         return Run(kept, False, CLEAN if diagnosed else UNCLEAN, str(failure), measures(kept) if kept is not None else {})
     except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:  # what a user would see as a traceback
