@@ -39,6 +39,8 @@ ROWS = (1, 2, 4, 7, 10, 14, 22)
 DEFAULT_ROWS, DEFAULT_STEPS, DEFAULT_TOLERANCE = 7, 20, 1e-4
 STEPS, TOLERANCES = (5, 10, 20, 40, 80), (1e-2, 1e-3, 1e-4, 1e-6)
 DEPTHS = (600e-6, 915e-6)
+LONG = 5.0
+"""s of process time: what takes longer is measured once, for its spread is small beside it."""
 WAY = np.array([0.25, 0.5, 0.75, 1.0])
 """Parts of the way of a stroke at which it is looked at."""
 
@@ -215,7 +217,7 @@ def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
     """Run a point and say what it answers and costs.
 
     Args:
-        repeats: of the whole run, of which costs are medians.
+        repeats: of the whole run, of which costs are medians; one that takes longer than :data:`LONG` is run once.
 
     Returns:
         JSON-able: the point; values or the reason of failure; cost: process time of each repeat, meshing included, with that of
@@ -241,6 +243,8 @@ def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
             after = _timed(lambda: _run(RULER, *ruler))
             yardstick.append((before + after) / 2)
             before = after
+            if seconds[0] > LONG:
+                break
     found: dict[str, Any] = {"point": asdict(point), "name": point.name, "failure": failure}
     cost = {"cpu_s": seconds, "yardstick_s": yardstick, "memory_MB": peak_memory_MB()}
     if history is not None:
