@@ -13,6 +13,11 @@ LONGEST = (
 """Each process is given whole files; what is started last must not be long."""
 
 
+def pytest_configure(config):
+    """What the package itself warns of is an error."""
+    config.addinivalue_line("filterwarnings", r"error:::fingerpad(\..*)?$")
+
+
 def pytest_collection_modifyitems(items):
     rank = {name: place for place, name in enumerate(LONGEST)}
     items.sort(key=lambda item: rank.get(item.path.name, len(rank)))
