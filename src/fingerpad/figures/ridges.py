@@ -45,7 +45,7 @@ LOOKS = {
 def elements(data: Data) -> pd.DataFrame:
     """Elements of the ridged pad within the thesis's window."""
     rows = mesh_rows(data.meshes[FLAT["flat"]], stratum_corneum(data.histories[FLAT["flat"]]))
-    rows = rows[(rows["series"] != "element") | (rows[X].abs().le(WINDOW[0] + 0.4) & rows[Y].ge(-1.5))]
+    rows = rows[(rows["series"] != "element") | (rows[X].abs().le(WINDOW[0] + 2.5) & rows[Y].ge(-2.5))]
     whole = rows.groupby("element")[Y].transform("size") >= 4  # those cut by the window's edge are left out
     return rows[(rows["series"] != "element") | whole].reset_index(drop=True)
 
