@@ -32,14 +32,19 @@ from random_scenes import Drawn, anything, write_files
 CHEAP = 2.0
 """s, of a run as its plan predicts it: what costs more is planned only."""
 SLOWEST = 60.0
-"""s of process time that planning and running a drawn scene may take."""
+"""s of process time after which a drawn scene is let go: counted, not judged."""
 SHRINKING = 60.0
 """s of process time spent on making a failure smaller."""
-COLUMNS = ("drawn", "refused in one line", "planned", "run", "completed", "stopped with its diagnosis", "failed")
+LATE = "not done in a minute"
+COLUMNS = ("drawn", "refused in one line", "planned", "run", "completed", "stopped with its diagnosis", LATE, "failed")
 
 
 class Failed(AssertionError):
     """What is wrong, of which document."""
+
+
+class Late(BaseException):
+    """Its time is over; the command takes it for no error of its own."""
 
 
 def require(so: bool, what: str) -> None:
@@ -145,7 +150,7 @@ class Soak:
     seconds: float = 0.0
 
     def count(self, kind: str, outcome: str) -> None:
-        counter, run = self.counts.setdefault(kind, Counter()), outcome in COLUMNS[4:6]
+        counter, run = self.counts.setdefault(kind, Counter()), outcome in COLUMNS[4:7]
         counter.update({"drawn": 1, outcome: 1, "run": int(run)})
         counter["planned"] += int(run)
 
@@ -183,6 +188,8 @@ def soak(count: int, start: int, seconds: float) -> Soak:
         try:
             with _in_time():
                 outcome = tried(drawn, folder)
+        except Late:
+            outcome = LATE
         except Exception as error:
             if found.failure is None:
                 ends = time.process_time() + SHRINKING
@@ -205,7 +212,7 @@ def soak(count: int, start: int, seconds: float) -> Soak:
 @contextlib.contextmanager
 def _in_time():
     def late(*_):
-        raise Failed(f"takes longer than {SLOWEST:g} s")
+        raise Late
 
     before = signal.signal(signal.SIGPROF, late)
     signal.setitimer(signal.ITIMER_PROF, SLOWEST)

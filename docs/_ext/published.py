@@ -638,6 +638,11 @@ def soak_stopped():
     return _soaked("stopped with its diagnosis")
 
 
+@number
+def soak_late():
+    return _soaked("not done in a minute")
+
+
 # -- the pad --------------------------------------------------------------------------------------------------------------------
 
 
