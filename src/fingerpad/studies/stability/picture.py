@@ -46,7 +46,7 @@ OF_TEACHING = ("completed", "cuts", "factorisations", "energy", "complementarity
 """What the teaching methods are shown by."""
 OUTCOMES = {
     "stable": "stable", "unsound": "outside limits", "wrong": "wrong", "admits its error": "wrong, but say so",
-    "fails cleanly": "stop and say why", "breaks off": "break off",
+    "fails cleanly": "stop and say why", "breaks off": "break off", "not done": "take too long",
 }  # fmt: skip
 """How runs end, and in words for many."""
 OFF = 0.05

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -36,8 +37,11 @@ from fingerpad.studies.stability.relaxing import relaxed
 
 METHODS = ("default", "full Q1", "plain P2", "plain Newton")
 STABLE, ADMITS, CLEAN, SILENT, UNCLEAN = "stable", "admits its error", "fails cleanly", "unsound", "breaks off"
+UNDONE = "not done"
 """Outcomes of a run. Admits its error: the error that it estimates is a half or more; unsound: it completed outside its limits;
-breaks off: an error that is not a diagnosis."""
+breaks off: an error that is not a diagnosis; not done: not in :data:`SLOWEST`."""
+SLOWEST = 120.0
+"""s of process time after which a simulation is let go."""
 MOST_ITERATIONS = 200
 """A teaching method is given up after so many Newton iterations; the default method is not."""
 SOLVER = "FINGERPAD_LINEAR_SOLVER"
@@ -136,6 +140,26 @@ def second_solver() -> Iterator[None]:
             os.environ[SOLVER] = before
 
 
+class _Late(BaseException):
+    """The time of a simulation is over."""
+
+
+@contextmanager
+def _in_time(seconds: float = SLOWEST) -> Iterator[None]:
+    """Raises what no part of a simulation takes for its own when it has taken so much process time."""
+
+    def late(*_):
+        raise _Late
+
+    before = signal.signal(signal.SIGPROF, late)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
 def _simulate(case: Case, method: str = METHODS[0], refined: int = 1, finer: float = 1.0) -> tuple[xr.Dataset, float] | None:
     """History of a case and how well forces balanced in it; None where the method has no such mesh."""
     with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
@@ -143,7 +167,8 @@ def _simulate(case: Case, method: str = METHODS[0], refined: int = 1, finer: flo
         if made is None:
             return None
         held = Held(made)
-        history = made.run(held)
+        with _in_time():
+            history = made.run(held)
     return history, held.balance(history)
 
 
@@ -160,6 +185,8 @@ def _run(case, method):
         kept = getattr(failure, "dataset", None)
         diagnosed = bool(failure.reason and failure.advice) and (kept is None or _sound_so_far(kept))
         return Run(kept, False, CLEAN if diagnosed else UNCLEAN, str(failure), measures(kept) if kept is not None else {})
+    except _Late:
+        return Run(None, False, UNDONE, f"not done in {SLOWEST:g} s", {})
     except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:  # what a user would see as a traceback
         return Run(None, False, UNCLEAN, f"{type(error).__name__}: {error}", {})
     if made is None:
@@ -209,7 +236,7 @@ def _apart(case: Case, history: xr.Dataset, names: Iterable[str] = ENDS, refined
     """Difference to another run of a case; infinite where that is not completed."""
     try:
         return difference(_simulate(case, METHODS[0], refined, finer)[0], history, names)
-    except NonConvergence:
+    except (NonConvergence, _Late):
         return np.inf
 
 
