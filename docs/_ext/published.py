@@ -396,45 +396,8 @@ def hard_cases():
 
 
 @number
-def hard_cases_picked():
-    return (~table("figures/tables/stability")["case"].str.match(r"\d+: ")).sum()
-
-
-@number
-def hard_cases_referred():
-    return table("figures/tables/stability")["true error"].notna().sum()
-
-
-@number
 def hard_cases_stable():
     return _outcomes("default").get("stable", 0)
-
-
-@number
-def hard_cases_uncut():
-    rows = table("figures/tables/stability")
-    return ((rows["outcome"] == "stable") & (rows["step cuts"] == 0)).sum()
-
-
-@number
-def hard_cases_rest():
-    """The others in words, by how they ended."""
-    said = {
-        "admits its error": "say that their error is a half or more",
-        "fails cleanly": "stop (exit code 3) with the last state saved and the cause named",
-        "unsound": "end outside their limits",
-        "breaks off": "break off",
-    }
-    counts = _outcomes("default")
-    ends = [f"{counts[outcome]} {words}" for outcome, words in said.items() if outcome in counts]
-    return f"Of the others {' and '.join(ends)}" if ends else "There are no others"
-
-
-@number
-def hard_cases_cured():
-    rows = table("figures/tables/stability")
-    rest = rows[rows["outcome"] != "stable"]
-    return f"{rest['stable when relaxed'].notna().sum()} of the {len(rest)}"
 
 
 @number
