@@ -340,6 +340,8 @@ def test_a_leg_that_takes_time_has_as_many_outputs_as_are_asked_for(folder):
         fingerpad.plan(load_scene(write(folder, changed(outputs=outputs, **by_hand)))).steps for outputs in ({}, {"per_leg": 64})
     ]
     assert chosen[0] == chosen[1]
+    asked = load_scene(write(folder, changed(outputs={"per_leg": 64})))
+    assert asked.with_accuracy("draft").outputs.per_leg is None and asked.outputs.per_leg == 64
 
 
 def test_snapshots_at_intervals_are_times(folder):

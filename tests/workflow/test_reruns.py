@@ -161,7 +161,7 @@ EXACT = {".csv", ".png", ".pdf", ".msh"}
 def products(root):
     """What the coarse workflow makes under final names, but logs and what tells of costs and times."""
     found = {path.relative_to(root).as_posix(): path for path in (root / "results" / "smoke").rglob("*") if path.is_file()}
-    return {name: path for name, path in found.items() if "/logs/" not in name}
+    return {name: path for name, path in found.items() if "/logs/" not in name and not path.name.startswith(".snakemake")}
 
 
 def same(path, other):

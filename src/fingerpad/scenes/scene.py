@@ -355,10 +355,12 @@ class Scene(Strict):
     def with_accuracy(self, accuracy: Any) -> Scene:
         """Copy of the scene at another accuracy: draft, thesis, fine, a tolerance as number or text, or a `Discretisation`.
 
+        It has the outputs of that accuracy, not those asked for in each leg (``outputs.per_leg``).
+
         Raises:
             SceneError: it is none of these.
         """
-        return self.varied({"accuracy": accuracy})
+        return self.varied({"accuracy": accuracy, "outputs.per_leg": None})
 
     def canonical(self) -> dict[str, Any]:
         """The scene as plain data for provenance: SI numbers, names and content hashes in place of paths.
