@@ -12,7 +12,6 @@ import contextlib
 import io
 import json
 import os
-import signal
 import sys
 import tempfile
 import time
@@ -27,6 +26,7 @@ from hypothesis.errors import Flaky
 
 from fingerpad.cli import main
 from fingerpad.publishing.write import publish_table
+from fingerpad.studies.stability.run import Late, in_time
 from random_scenes import Drawn, anything, write_files
 
 CHEAP = 2.0
@@ -41,10 +41,6 @@ COLUMNS = ("drawn", "refused in one line", "planned", "run", "completed", "stopp
 
 class Failed(AssertionError):
     """What is wrong, of which document."""
-
-
-class Late(BaseException):
-    """Its time is over; the command takes it for no error of its own."""
 
 
 def require(so: bool, what: str) -> None:
@@ -186,7 +182,7 @@ def soak(count: int, start: int, seconds: float) -> Soak:
         if time.process_time() > ends:
             return
         try:
-            with _in_time():
+            with in_time(SLOWEST):
                 outcome = tried(drawn, folder)
         except Late:
             outcome = LATE
@@ -207,20 +203,6 @@ def soak(count: int, start: int, seconds: float) -> Soak:
             each()
     found.seconds = time.process_time() - begun
     return found
-
-
-@contextlib.contextmanager
-def _in_time():
-    def late(*_):
-        raise Late
-
-    before = signal.signal(signal.SIGPROF, late)
-    signal.setitimer(signal.ITIMER_PROF, SLOWEST)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
 
 
 def soaked(words: list[str] | None = None) -> int:

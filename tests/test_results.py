@@ -21,9 +21,11 @@ from scipy.spatial import cKDTree
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_atomically
+from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.receptors.respond import respond
 from fingerpad.results import COORDINATES, FRICTION_VARIABLES, VARIABLES, read_history, summary, write_history, write_vtu
+from fingerpad.scenes.scene import Discretisation
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
 
@@ -286,3 +288,20 @@ def test_without_viscosity_there_is_one_strain_energy():
     for name in (f"strain_energy_{other}" for other in others):
         np.testing.assert_allclose(end[name], end.strain_energy_network, rtol=1e-12, err_msg=name)
         assert float(abs(viscous[name] / viscous.strain_energy_network - 1).min()) > 0.005, name
+
+
+def test_an_element_that_folds_at_a_receptor_ends_the_run(monkeypatch):
+    """Between quadrature points det F may fall below zero first: no NaN leaves a run as its result."""
+    sample, calls = MaterialPoints.sample, iter(range(100))
+
+    def folded(points, body):
+        found = sample(points, body)
+        return found | {"strain_energy_density": found["strain_energy_density"] * (np.nan if next(calls) == 3 else 1.0)}
+
+    monkeypatch.setattr(MaterialPoints, "sample", folded)
+    scene = load_scene(SCENES / "ramp40_flat.yaml").with_accuracy(Discretisation(skin_edge=0.8e-3, steps=8))
+    with pytest.raises(NonConvergence, match="turns inside out at the receptor 560 um deep.*try a finer skin mesh") as stop:
+        simulate(scene)
+    kept = stop.value.dataset
+    assert kept.sizes["time"] == 3 and not kept.attrs["complete"] and np.isfinite(kept.strain_energy_density).all()
+    assert stop.value.time == float(kept.time[-1])

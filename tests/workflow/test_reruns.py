@@ -115,22 +115,27 @@ def test_copied_results_are_adopted_by_one_command(finished, tmp_path):
 SCENE = "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf, rate: 5 gf/s}]\naccuracy: {skin_edge: 0.3 mm, steps: 60}\n"
 
 
-@pytest.mark.parametrize("how", ["SIGINT to all", "SIGKILL of snakemake"])
-def test_an_interrupted_run_goes_on_by_the_same_command(clone, how):
-    (clone.root / "scenes").mkdir()
-    for name in ("one", "two"):
-        (clone.root / "scenes" / f"{name}.yaml").write_text(SCENE)
-    (clone.root / "mine.yaml").write_text("{name: mine, scenes: [one, two], scenes_folder: scenes}")
-    started = subprocess.Popen(
-        [sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "1"],
-        cwd=clone.root,
-        env=os.environ | {"PYTHONPATH": str(clone.root / "src")},
+def start(project, *arguments):
+    """Snakemake in a project, all its processes in a group of their own."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "snakemake", *arguments],
+        cwd=project.root,
+        env=os.environ | {"PYTHONPATH": str(project.root / "src")},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # also where the tests run in the background
     )
+
+
+@pytest.mark.parametrize("how", ["SIGINT to all", "SIGKILL of snakemake"])
+def test_an_interrupted_run_goes_on_by_the_same_command(clone, how):
+    (clone.root / "scenes").mkdir()
+    for name in ("one", "two"):
+        (clone.root / "scenes" / f"{name}.yaml").write_text(SCENE)
+    (clone.root / "mine.yaml").write_text("{name: mine, scenes: [one, two], scenes_folder: scenes}")
+    started = start(clone, "--configfile", "mine.yaml", "--cores", "1")
     try:
         for _ in range(3000):
             if list(clone.root.glob("results/mine/simulations/*/mesh.msh")):
@@ -179,15 +184,7 @@ def same(path, other):
 def test_a_workflow_killed_at_random_instants_ends_with_the_same_results(clone, finished):
     rng, expected, whole = random.Random(19), products(finished.root), 0
     for _ in range(KILLS):
-        run = subprocess.Popen(
-            [sys.executable, "-m", "snakemake", *SMOKE],
-            cwd=clone.root,
-            env=os.environ | {"PYTHONPATH": str(clone.root / "src")},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,
-        )
+        run = start(clone, *SMOKE)
         time.sleep(rng.uniform(0.2, LATEST))
         os.killpg(run.pid, signal.SIGKILL)
         run.wait()

@@ -67,7 +67,7 @@ the last was added to check what the planner has made of that."""
 
 def outside(base: Scene) -> dict[str, Scene]:
     """The scenes of :data:`OUTSIDE`, to be run finely."""
-    return {name: base.varied(changes | {"accuracy": "fine"}) for name, changes in OUTSIDE.items()}
+    return {name: base.varied(changes).with_accuracy("fine") for name, changes in OUTSIDE.items()}
 
 
 def ends(history) -> dict[str, np.ndarray]:
@@ -95,7 +95,7 @@ def record(history, error: float, worst: str, **more: Any) -> dict[str, Any]:
 def prepared(name: str, base: Scene) -> Scene:
     """One scene of :func:`outside` with the receptors that are looked at."""
     looked = {"outputs.receptors.depths": DEPTHS, "outputs.receptors.offsets": (0.0,), "outputs.snapshots": ()}
-    return outside(base)[name].varied(looked | {"outputs.per_leg": None})
+    return outside(base)[name].varied(looked)
 
 
 def finest(scene: Scene) -> Plan:

@@ -118,8 +118,7 @@ def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
 
     receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
     effects = scene.effects | {"finite_strain": point.finite}
-    keys = {"outputs.receptors": receptors, "outputs.per_leg": None, "effects": effects, "accuracy": point.preset or "thesis"}
-    scene = scene.varied(keys)
+    scene = scene.varied({"outputs.receptors": receptors, "effects": effects}).with_accuracy(point.preset or "thesis")
     chosen = plan(scene)
     if point.preset:
         return scene, chosen

@@ -140,16 +140,16 @@ def second_solver() -> Iterator[None]:
             os.environ[SOLVER] = before
 
 
-class _Late(BaseException):
+class Late(BaseException):
     """The time of a simulation is over."""
 
 
 @contextmanager
-def _in_time(seconds: float = SLOWEST) -> Iterator[None]:
-    """Raises what no part of a simulation takes for its own when it has taken so much process time."""
+def in_time(seconds: float = SLOWEST) -> Iterator[None]:
+    """Raises :class:`Late`, which no part of a simulation takes for its own, after so much process time (s)."""
 
     def late(*_):
-        raise _Late
+        raise Late
 
     before = signal.signal(signal.SIGPROF, late)
     signal.setitimer(signal.ITIMER_PROF, seconds)
@@ -167,7 +167,7 @@ def _simulate(case: Case, method: str = METHODS[0], refined: int = 1, finer: flo
         if made is None:
             return None
         held = Held(made)
-        with _in_time():
+        with in_time():
             history = made.run(held)
     return history, held.balance(history)
 
@@ -185,7 +185,7 @@ def _run(case, method):
         kept = getattr(failure, "dataset", None)
         diagnosed = bool(failure.reason and failure.advice) and (kept is None or _sound_so_far(kept))
         return Run(kept, False, CLEAN if diagnosed else UNCLEAN, str(failure), measures(kept) if kept is not None else {})
-    except _Late:
+    except Late:
         return Run(None, False, UNDONE, f"not done in {SLOWEST:g} s", {})
     except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:  # what a user would see as a traceback
         return Run(None, False, UNCLEAN, f"{type(error).__name__}: {error}", {})
@@ -236,7 +236,7 @@ def _apart(case: Case, history: xr.Dataset, names: Iterable[str] = ENDS, refined
     """Difference to another run of a case; infinite where that is not completed."""
     try:
         return difference(_simulate(case, METHODS[0], refined, finer)[0], history, names)
-    except (NonConvergence, _Late):
+    except (NonConvergence, Late):
         return np.inf
 
 
