@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -42,6 +42,8 @@ _plan = plan
 EDGE_STIFFNESS = 5.0
 _UNLOADED = 0.5  # of a force that was reached before
 _NO_CONTACT = 1e-5  # m, half-width that stands for none
+_UNBALANCED = {True: 0.03, False: 0.35}  # of the work, noted as missing energy beyond it: with time, of presses at once
+_SQUEEZED = 0.1  # det F, noted below it
 
 
 def simulate(
@@ -324,9 +326,19 @@ class Simulation:
         ]
         return sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
 
+    def _doubts(self, records) -> Iterator[str]:
+        """What should make a person doubt the states that were found."""
+        missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
+        missing = np.abs(missing).max() / max(max(abs(record.work) for record in records), 1e-300)
+        least = min(record.smallest_jacobian for record in records)
+        if missing > _UNBALANCED[self.plan.timed] and self.stepper.external is None:
+            yield f"the energy found is off the work that was done by up to {missing:.1%}: more steps or a finer mesh will tell"
+        if least < _SQUEEZED and not self.body.geometrically_linear:
+            yield f"an element keeps {least:.1%} of its volume at one point: a finer mesh, or a fillet, will tell"
+
     def _notes(self, records):
-        """What a person should know of the contact with a measured profile."""
-        notes = [note for note in self.plan.surface.notes if "expected" not in note]
+        """What a person should know of the states that were found, and of the contact with a measured profile."""
+        notes = [*self._doubts(records), *(note for note in self.plan.surface.notes if "expected" not in note)]
         for record in records:
             on = self.skin.nodes[record.nodal_force > 0]
             x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance

@@ -1,12 +1,15 @@
 """Every case of the catalogue is stable by the default method, or fails cleanly; and the measures tell when it is not."""
 
+import json
 from functools import cache
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 from test_hard_strokes import LOAD, kept_force, lost_and_found, sound_stroke, turned_round
 
+from fingerpad import simulation
 from fingerpad.cli import main
 from fingerpad.mechanics import stepping
 from fingerpad.results import leg_ends, read_history
@@ -14,7 +17,7 @@ from fingerpad.studies.stability import picture as figure
 from fingerpad.studies.stability.catalogue import CATALOGUE, FAST
 from fingerpad.studies.stability.hard_cases import PICKED, Limits
 from fingerpad.studies.stability.invariants import checkerboard, excess
-from fingerpad.studies.stability.run import CLEAN, METHODS, SILENT, STABLE, compared, cured, run
+from fingerpad.studies.stability.run import ADMITS, CLEAN, LABOURS, METHODS, SILENT, STABLE, compared, cured, judged, run
 
 pytestmark = pytest.mark.stability
 
@@ -173,7 +176,7 @@ def test_full_quads_lock():
 def test_a_run_outside_its_limits_is_told():
     """No failure is silent: each measure on the wrong side of its limit is named."""
     fine = {"cuts": 0, "factorisations": 3, "energy": 0.01, "complementarity": 1e-9, "det_f": 0.9, "checkerboard": np.nan}
-    assert excess(fine, Limits()) == []
+    assert not excess(fine, Limits())
     for name, value in {
         "cuts": 1,
         "factorisations": 5,
@@ -182,7 +185,43 @@ def test_a_run_outside_its_limits_is_told():
         "det_f": 0.01,
         "halving": np.inf,
     }.items():
-        assert [text.split()[0] for text in excess(fine | {name: value}, Limits())] == [name]
+        assert list(excess(fine | {name: value}, Limits())) == [name]
+
+
+@pytest.mark.parametrize(
+    ("beyond", "notes", "error", "outcome"),
+    [
+        ({}, "[]", 0.1, STABLE),
+        ({"cuts": 3, "effort": 9}, "[]", 0.1, LABOURS),
+        ({"halving": np.inf}, "[]", 0.1, LABOURS),
+        ({"halving": 0.2}, "[]", 0.1, SILENT),
+        ({"energy": 0.2}, "[]", 0.1, SILENT),
+        ({"energy": 0.2, "cuts": 1}, '["the energy found is off"]', 0.1, ADMITS),
+        ({"energy": 0.2, "halving": 0.2}, '["the energy found is off"]', 0.1, SILENT),
+        ({"halving": 0.2}, "[]", 0.6, ADMITS),
+    ],
+)
+def test_what_was_found_is_told_from_what_it_took(beyond, notes, error, outcome):
+    history = xr.Dataset(attrs={"notes": notes, "estimated_error": error})
+    assert judged(next(iter(CATALOGUE.values())), history, beyond).outcome == outcome
+
+
+def test_a_run_notes_energy_that_is_missing_and_an_element_that_is_squeezed():
+    found = run(CATALOGUE["sharp bar, 1 mm"], compare=False).history
+    assert "energy" not in found.attrs["notes"] and "volume" not in found.attrs["notes"]
+    with pytest.MonkeyPatch.context() as mutant:
+        mutant.setattr(simulation, "_UNBALANCED", {True: 1e-6, False: 1e-6})
+        mutant.setattr(simulation, "_SQUEEZED", 1.0)
+        found = json.loads(run(CATALOGUE["sharp bar, 1 mm"], compare=False).history.attrs["notes"])
+    assert any("the energy found is off" in note for note in found) and any("of its volume" in note for note in found)
+
+
+def test_a_step_is_not_tried_for_ever(monkeypatch):
+    case = CATALOGUE["needle through the pad"]
+    settings = stepping.NewtonSettings(most_iterations=30)
+    monkeypatch.setattr(stepping, "NewtonSettings", lambda: settings)
+    found = run(case, compare=False)
+    assert found.outcome == CLEAN and "Newton iterations did not suffice for a step cut" in found.message
 
 
 def test_a_run_that_stops_keeps_its_last_state_and_says_why(monkeypatch):

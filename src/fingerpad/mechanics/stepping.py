@@ -38,12 +38,12 @@ class _StepFailure(RuntimeError):
 class NewtonSettings:
     """Tolerances relative to the current contact force and to the node spacing, and limits.
 
-    A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was.
-    ``snap_iterations`` are allowed on top when a node is popping round an edge: through an unstable state Newton's method
-    only descends. Factors are kept, from step to step too, while what they leave is within ``chord`` tolerances and they would
-    end, as they go on, ``outlook`` iterations later, no step needs more than ``patience`` of them, and what answers at once in a
-    step has changed by no more than ``stiffening``. A zone ``spare`` times as wide as it need be is drawn together. A push that
-    points farther than ``aside`` (rad) from the vertical is one at the pad's side.
+    A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was. ``snap_iterations``
+    are allowed on top when a node is popping round an edge: through an unstable state Newton's method only descends. All attempts
+    at a scheduled step may take ``most_iterations``. Factors are kept, from step to step too, while what they leave is within
+    ``chord`` tolerances and they would end, as they go on, ``outlook`` iterations later, no step needs more than ``patience`` of
+    them, and what answers at once in a step has changed by no more than ``stiffening``. A zone ``spare`` times as wide as it need
+    be is drawn together. A push that points farther than ``aside`` (rad) from the vertical is one at the pad's side.
     """
 
     force_tolerance: float = 1e-4
@@ -51,6 +51,7 @@ class NewtonSettings:
     gap_tolerance: float = 1e-3
     max_iterations: int = 14
     snap_iterations: int = 60
+    most_iterations: int = 400
     max_halvings: int = 10
     energy_share: float = 0.35
     chord: float = 100.0
@@ -174,7 +175,7 @@ class QuasiStatic:
         self._factors = self._stiffness = self._gaps = None
         self._past: list[_Past] = []
         self._quadratic = False
-        self.total_iterations = self.total_halvings = self.factorisations = 0
+        self.total_iterations = self.total_halvings = self.factorisations = self._spent = 0
 
     # -- geometry ---------------------------------------------------------------------------------------------------
 
@@ -270,6 +271,7 @@ class QuasiStatic:
         keep, reused = self._factors_fit(), 0
         while iteration < limit:
             iteration += 1
+            self._spent += 1
             if self._softened:
                 limit = settings.max_iterations + settings.snap_iterations
             if self._zone_is_tight():
@@ -494,7 +496,8 @@ class QuasiStatic:
         """Walk the schedule; returns one record per scheduled step.
 
         Raises:
-            NonConvergence: a step fails even after ``max_halvings`` halvings; its ``records`` hold what converged.
+            NonConvergence: a step fails even after ``max_halvings`` halvings or ``most_iterations``; its ``records`` hold what
+                converged.
         """
         records: list[Record] = []
         last = None
@@ -514,6 +517,7 @@ class QuasiStatic:
             strides = step.dt >= STEADY and step.distance == self.distance
             smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh and not strides
             done, size, iterations, halvings = 0.0, 1.0, 0, 0
+            self._spent = 0
             if not smooth:
                 self._past.clear()
             predict = smooth
@@ -532,9 +536,12 @@ class QuasiStatic:
                     size /= 2
                     halvings += 1
                     aside = bool(records) and self._slips_off(records[-1])
-                    if size < 0.5**self.settings.max_halvings or (aside and halvings > 1):
+                    spent = self._spent > self.settings.most_iterations
+                    if size < 0.5**self.settings.max_halvings or spent or (aside and halvings > 1):
                         where = f" (depth {self.depth * 1e3:.4g} mm, force {self.force:.4g} N/m of the meshed part)"
                         reason, advice = str(failure), self._advice(str(failure))
+                        if spent:
+                            reason = f"{self._spent} Newton iterations did not suffice for a step cut {halvings} times; {reason}"
                         if aside:
                             way = f"{self.distance * 1e3:.3g} mm"
                             reason, advice = f"the stimulus left the pad at {way}", f"a way of less than {way}"

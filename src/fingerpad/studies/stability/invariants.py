@@ -82,11 +82,11 @@ def difference(one: xr.Dataset, other: xr.Dataset, names: Iterable[str] = ENDS) 
     return max(float(np.abs(a - b).max() / max(np.abs(a).max(), 1e-12)) for a, b in pairs)
 
 
-def excess(measured: Mapping[str, float], limits: Limits) -> list[str]:
-    """What lies outside the limits, as text."""
-    out = []
+def excess(measured: Mapping[str, float], limits: Limits) -> dict[str, str]:
+    """Measures that lie outside the limits, and each as text."""
+    out = {}
     for name, value in measured.items():
         most = getattr(limits, name)
         if value < most if name == "det_f" else value > most:
-            out.append(f"{name} {value:.3g}")
+            out[name] = f"{name} {value:.3g}"
     return out

@@ -45,8 +45,9 @@ the legs."""
 OF_TEACHING = ("completed", "cuts", "factorisations", "energy", "complementarity", "det_f", "checkerboard", "off")
 """What the teaching methods are shown by."""
 OUTCOMES = {
-    "stable": "stable", "unsound": "outside limits", "wrong": "wrong", "admits its error": "wrong, but say so",
-    "fails cleanly": "stop and say why", "breaks off": "break off", "not done": "take too long",
+    "stable": "stable", "labours": "right, with more effort", "unsound": "outside limits", "wrong": "wrong",
+    "admits its error": "wrong, but say so", "fails cleanly": "stop and say why", "breaks off": "break off",
+    "not done": "take too long",
 }  # fmt: skip
 """How runs end, and in words for many."""
 OFF = 0.05

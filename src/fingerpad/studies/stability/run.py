@@ -36,10 +36,16 @@ from fingerpad.studies.stability.invariants import ENDS, Held, difference, exces
 from fingerpad.studies.stability.relaxing import relaxed
 
 METHODS = ("default", "full Q1", "plain P2", "plain Newton")
-STABLE, ADMITS, CLEAN, SILENT, UNCLEAN = "stable", "admits its error", "fails cleanly", "unsound", "breaks off"
-UNDONE = "not done"
-"""Outcomes of a run. Admits its error: the error that it estimates is a half or more; unsound: it completed outside its limits;
-breaks off: an error that is not a diagnosis; not done: not in :data:`SLOWEST`."""
+STABLE, LABOURS, ADMITS, CLEAN, SILENT = "stable", "labours", "admits its error", "fails cleanly", "unsound"
+UNCLEAN, UNDONE = "breaks off", "not done"
+"""Outcomes of a run. Labours: it completed and what it found is within all limits, but not what it took, or another run to
+compare it with did not complete; admits its error: the error that it estimates is a half or more, or it notes what is wrong;
+unsound: it completed outside its limits and says nothing; breaks off: an error that is not a diagnosis; not done: not in
+:data:`SLOWEST`."""
+EFFORT = ("cuts", "factorisations", "effort")
+"""Measures of what a run took."""
+NOTED = {"energy": "the energy found", "det_f": "of its volume"}
+"""Measure -> the words by which a run notes that it is wrong."""
 SLOWEST = 120.0
 """s of process time after which a simulation is let go."""
 MOST_ITERATIONS = 200
@@ -198,7 +204,7 @@ def _run(case, method):
     if case.may_fail:
         error = history.attrs["estimated_error"]
         return Run(history, True, ADMITS if error >= 0.5 else SILENT, f"estimated error {error:.2g}", measured)
-    return _judged(case, history, measured)
+    return judged(case, history, measured)
 
 
 def _is_mirrored(case: Case) -> bool:
@@ -229,7 +235,7 @@ def compared(case: Case, found: Run) -> Run:
     if case.name in REFERENCE:
         believed = max(found.history.attrs["estimated_error"], RULES.presets["draft"].tolerance)
         measured["reference"] = _apart(case, found.history, ENDS[:4], 2, FINER) / believed
-    return _judged(case, found.history, measured)
+    return judged(case, found.history, measured)
 
 
 def _apart(case: Case, history: xr.Dataset, names: Iterable[str] = ENDS, refined: int = 1, finer: float = 1.0) -> float:
@@ -251,10 +257,13 @@ def _effort(said: str, neighbour: Case) -> float:
     return _EFFORTS[key]
 
 
-def _judged(case, history, measured):
-    beyond = excess(measured, case.limits)
-    admits = beyond and history.attrs["estimated_error"] >= 0.5
-    return Run(history, True, ADMITS if admits else SILENT if beyond else STABLE, "; ".join(beyond), measured)
+def judged(case: Case, history: xr.Dataset, measured: Mapping[str, float]) -> Run:
+    """A completed run with its outcome."""
+    beyond, notes = excess(measured, case.limits), history.attrs["notes"]
+    wrong = [name for name in beyond if name not in EFFORT and np.isfinite(measured[name])]
+    admitted = history.attrs["estimated_error"] >= 0.5 or all(name in NOTED and NOTED[name] in notes for name in wrong)
+    outcome = STABLE if not beyond else LABOURS if not wrong else ADMITS if admitted else SILENT
+    return Run(history, True, outcome, "; ".join(beyond.values()), measured)
 
 
 def _sound_so_far(kept: xr.Dataset) -> bool:
