@@ -61,7 +61,7 @@ smoke: $(INSTALLED)
 	$(SNAKEMAKE) --configfile config/smoke.yaml
 
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
+	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --durations 25
 
 N ?= 1000
 SEED ?= 0

@@ -395,9 +395,64 @@ def hard_cases():
     return table("figures/tables/stability")["case"].nunique()
 
 
+def _cases() -> pd.DataFrame:
+    rows = table("figures/tables/stability")
+    return rows.assign(drawn=rows["case"].str.match(r"\d+: "), stable=rows["outcome"] == "stable")
+
+
+@number
+def hard_cases_picked():
+    return (~_cases()["drawn"]).sum()
+
+
+@number
+def hard_cases_referred():
+    return _cases()["true error"].notna().sum()
+
+
 @number
 def hard_cases_stable():
-    return _outcomes("default").get("stable", 0)
+    return _cases()["stable"].sum()
+
+
+@number
+def hard_cases_picked_stable():
+    rows = _cases()
+    return rows.loc[~rows["drawn"], "stable"].sum()
+
+
+@number
+def hard_cases_drawn_stable():
+    rows = _cases()
+    return rows.loc[rows["drawn"], "stable"].sum()
+
+
+@number
+def hard_cases_silent():
+    return (_cases()["outcome"] == "unsound").sum()
+
+
+@number
+def hard_cases_rest():
+    """The others in words, by how they ended."""
+    said = {
+        "labours": "are right but took more cuts, factorisations or iterations than stable ones may",
+        "admits its error": "say that they are wrong",
+        "fails cleanly": "stop (exit code 3) with the last state saved, the cause named and what to relax",
+        "not done": "were let go after two minutes",
+        "unsound": "end outside their limits and do not say so",
+        "breaks off": "break off",
+    }
+    counts = _cases()["outcome"].value_counts()
+    ends = [f"{counts[outcome]} {words}" for outcome, words in said.items() if outcome in counts]
+    return f"Of the others {'; '.join(ends)}" if ends else "There are no others"
+
+
+@number
+def hard_cases_cured():
+    rows = _cases()
+    rest = rows[~rows["stable"]]
+    return f"{rest['stable when relaxed'].notna().sum()} of the {len(rest)}"
 
 
 @number
