@@ -31,7 +31,7 @@ MEASURES = {
     "balance": ("force balance", "what holds the pad less what pushes it"),
     "energy": ("energy balance", "work less stored and dissipated energy"),
     "complementarity": ("complementarity", "force times gap over force times node spacing"),
-    "det_f": ("least det F", "least volume left of any point; elements fold at 0"),
+    "det_f": ("least det F", "least volume left; elements fold at 0"),
     "checkerboard": ("checkerboard", "pressure alternating from node to node"),
     "symmetry": ("mirror image", "a whole pad's skin less its mirror image"),
     "halving": ("half the step", "what half the step changes at ends of legs"),
@@ -45,9 +45,9 @@ the legs."""
 OF_TEACHING = ("completed", "cuts", "factorisations", "energy", "complementarity", "det_f", "checkerboard", "off")
 """What the teaching methods are shown by."""
 OUTCOMES = {
-    "stable": "stable", "labours": "right, with more effort", "unsound": "outside limits", "wrong": "wrong",
-    "admits its error": "wrong, but say so", "fails cleanly": "stop and say why", "breaks off": "break off",
-    "not done": "take too long",
+    "stable": "stable", "labours": "right but laboured", "unsound": "outside limits", "wrong": "wrong",
+    "admits its error": "wrong and said so", "fails cleanly": "stopped and said why", "breaks off": "broke off",
+    "not done": "took too long",
 }  # fmt: skip
 """How runs end, and in words for many."""
 OFF = 0.05
