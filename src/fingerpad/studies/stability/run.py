@@ -239,11 +239,13 @@ def compared(case: Case, found: Run) -> Run:
 
 
 def _apart(case: Case, history: xr.Dataset, names: Iterable[str] = ENDS, refined: int = 1, finer: float = 1.0) -> float:
-    """Difference to another run of a case; infinite where that is not completed."""
+    """Difference to another run of a case; infinite where that is not completed, nan where it is not done in time."""
     try:
         return difference(_simulate(case, METHODS[0], refined, finer)[0], history, names)
-    except (NonConvergence, Late):
+    except NonConvergence:
         return np.inf
+    except Late:
+        return np.nan
 
 
 _EFFORTS: dict[tuple[str, int], float] = {}
