@@ -42,7 +42,7 @@ _plan = plan
 EDGE_STIFFNESS = 5.0
 _UNLOADED = 0.5  # of a force that was reached before
 _NO_CONTACT = 1e-5  # m, half-width that stands for none
-_UNBALANCED = {True: 0.03, False: 0.35}  # of the work, noted as missing energy beyond it: with time, of presses at once
+_UNBALANCED = 0.03  # of the work, noted as missing energy beyond it; of a press at once the work is not known as well
 _SQUEEZED = 0.1  # det F, noted below it
 
 
@@ -331,7 +331,7 @@ class Simulation:
         missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
         missing = np.abs(missing).max() / max(max(abs(record.work) for record in records), 1e-300)
         least = min(record.smallest_jacobian for record in records)
-        if missing > _UNBALANCED[self.plan.timed] and self.stepper.external is None:
+        if self.plan.timed and missing > _UNBALANCED and self.stepper.external is None:
             yield f"the energy found is off the work that was done by up to {missing:.1%}: more steps or a finer mesh will tell"
         if least < _SQUEEZED and not self.body.geometrically_linear:
             yield f"an element keeps {least:.1%} of its volume at one point: a finer mesh, or a fillet, will tell"
