@@ -439,7 +439,7 @@ def hard_cases_rest():
         "labours": "are right but took more cuts, factorisations or iterations than stable ones may",
         "admits its error": "say that they are wrong",
         "fails cleanly": "stop (exit code 3) with the last state saved, the cause named and what to relax",
-        "not done": "were let go after two minutes",
+        "not done": "not done in two minutes",
         "unsound": "end outside their limits and do not say so",
         "breaks off": "break off",
     }
@@ -471,8 +471,8 @@ def triangles_unsound():
 
 
 @number
-def newton_unsound():
-    return _outcomes("plain Newton").get("unsound", 0)
+def newton_labours():
+    return _outcomes("plain Newton").get("labours", 0)
 
 
 @number

@@ -119,7 +119,7 @@ def _of_true_edge(scene, rounded):
     from fingerpad.simulation import simulate
 
     width = scene.stimulus.width
-    sharp = scene.varied({"stimulus": Bar(width=width, fillet=width / rounded), "accuracy": 0.1})
+    sharp = scene.varied({"stimulus": Bar(width=width, fillet=width / rounded), "accuracy": 0.05})
     try:
         return simulate(sharp, finer(plan(sharp), 1.5))
     except NonConvergence:

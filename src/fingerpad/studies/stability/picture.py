@@ -47,7 +47,7 @@ OF_TEACHING = ("completed", "cuts", "factorisations", "energy", "complementarity
 OUTCOMES = {
     "stable": "stable", "labours": "right but laboured", "unsound": "outside limits", "wrong": "wrong",
     "admits its error": "wrong and said so", "fails cleanly": "stopped and said why", "breaks off": "broke off",
-    "not done": "took too long",
+    "not done": "not done",
 }  # fmt: skip
 """How runs end, and in words for many."""
 OFF = 0.05
