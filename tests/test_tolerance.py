@@ -185,7 +185,7 @@ def test_refining_stops_where_it_is_too_dear_or_no_use():
 
 def test_accuracy_that_cannot_be_had_is_said():
     chosen = plan(scene(accuracy=1e-6))
-    assert chosen.missed().startswith("asked 0.0001 %, not to be had: expected 0.2")
+    assert chosen.missed().startswith("asked 0.0001 %, not to be had: expected 0.3")
     assert chosen.to_dict()["tolerance_met"] is False and chosen.to_dict()["asked_error"] == 1e-6
 
 
