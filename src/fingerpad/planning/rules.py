@@ -77,7 +77,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     edge_error: float = 0.8
     edge_floor: float = 0.15
     edge_finest: float = 0.11
-    passing: float = 2.0
+    passing: float = 2.5
     profile_share: float = 0.25
     linear_triangle: float = 1.6
     linear_quad: float = 2.0
