@@ -91,10 +91,10 @@ def test_ridges_do_not_hide_the_edge_of_a_bar():
 
 
 def test_ridged_pads_are_refined_under_the_contact():
-    """One per cent is met with fewer than 20,000 nodes; on seven tenths of them the press is within two per cent of that."""
+    """One per cent is met with fewer than 20,000 nodes; on half of them the press is within two per cent of that."""
     ramp = [{"press_to_force": "20 gf", "rate": "40 gf/s"}]
     fine, rough = (plan(scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"})) for a in (0.01, 0.02))
-    assert fine.effects["ridges"].on and fine.estimated_error <= 0.01 and fine.nodes < 20_000 and rough.nodes < 0.8 * fine.nodes
+    assert fine.effects["ridges"].on and fine.estimated_error <= 0.01 and fine.nodes < 20_000 and rough.nodes < 0.6 * fine.nodes
     last = [simulate(chosen_scene, chosen).isel(time=-1) for chosen_scene, chosen in (
         (scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"}), p) for a, p in ((0.01, fine), (0.02, rough))
     )]  # fmt: skip
