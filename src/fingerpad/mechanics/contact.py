@@ -51,6 +51,56 @@ class Zone:
 
 
 @dataclass
+class Rows:
+    """The constraints of a contact problem.
+
+    Attributes:
+        zone: whose nodes are those of the rows. place: (nr,) or slice, where the stepper keeps what belongs to them: by the
+            number of the skin node, and for a second side that many nodes further on. partner: (nr,) the row of the same node's
+            other side or -1; None where no node has two. gap: (nr,) m. gradient: (nr, 2). curvature: (nr,) 1/m.
+    """
+
+    zone: Zone
+    place: slice | np.ndarray
+    partner: np.ndarray | None
+    gap: np.ndarray
+    gradient: np.ndarray
+    curvature: np.ndarray
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes of the zone they are of."""
+        return len(self.gap) if self.partner is None else len(self.gap) - int(np.sum(self.partner >= 0)) // 2
+
+    def of_nodes(self, values: np.ndarray) -> np.ndarray:
+        """Sum (nz, ...) over the rows (nr, ...) of each node."""
+        if self.partner is None:
+            return values
+        out, second = values[: self.nodes].copy(), slice(self.nodes, None)
+        out[self.partner[second]] += values[second]
+        return out
+
+    def normal(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gap's gradient (nz, 2) and force along it (nz,) of each node, from its rows' forces (nr,): in a valley their sum."""
+        gradient, along = self.gradient[: self.nodes].copy(), force[: self.nodes].copy()
+        if self.partner is not None:
+            push = self.of_nodes(force[:, None] * self.gradient)
+            twice = self.partner[self.nodes :]
+            along[twice] = np.hypot(*push[twice].T)
+            led = twice[along[twice] > 0]
+            gradient[led] = push[led] / along[led, None]
+        return gradient, along
+
+    def least_gap(self) -> np.ndarray:
+        """(nz,) m, of each node the smaller gap."""
+        out = self.gap[: self.nodes].copy()
+        if self.partner is not None:
+            second = slice(self.nodes, None)
+            out[self.partner[second]] = np.minimum(out[self.partner[second]], self.gap[second])
+        return out
+
+
+@dataclass
 class ContactStep:
     """Solution of one linearised contact problem."""
 

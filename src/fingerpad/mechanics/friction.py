@@ -33,10 +33,12 @@ class Coulomb:
     """Coulomb's law with one coefficient, and the state of every skin node.
 
     Args:
-        coefficient: of friction. count: number of skin nodes.
+        coefficient: of friction. count: number of places where contact may be: skin nodes, twice as many where the profile has
+            valleys, on both sides of which a node may lean.
 
     Attributes:
-        tangential: (ns,) N/m force on the skin along the tangent. state: (ns,) -1, 0, 1. slip: (ns,) m since the step began.
+        tangential: (count,) N/m force on the skin along the tangent. state: (count,) -1, 0, 1. slip: (count,) m since the step
+            began.
         dissipated: J/m so far.
     """
 
@@ -46,7 +48,7 @@ class Coulomb:
         self.state = np.zeros(count, np.int8)
         self.slip = np.zeros(count)
         self.dissipated = 0.0
-        self._pull = np.zeros((count, 2))
+        self._pull = 0.0
 
     def save(self):
         """The state to come back to."""
@@ -58,16 +60,17 @@ class Coulomb:
 
     def release(self) -> None:
         """Contact is lost altogether."""
-        self.tangential[:], self.state[:], self._pull = 0, 0, 0 * self._pull
+        self.tangential[:], self.state[:], self._pull = 0, 0, 0.0
 
     def solve(
         self, zone: Zone, part: slice, schur, right, gap, gradient, curvature, previous_force, active, motion, *,
-        force: float | None = None, depth_change: float | None = None,
+        partner=None, force: float | None = None, depth_change: float | None = None,
     ) -> FrictionStep:  # fmt: skip
         """Solve the linearised unilateral and frictional problem exactly; arguments as of :func:`contact.solve_contact`.
 
         Args:
-            part: the zone among the skin nodes. motion: (nz, 2) m, of the skin nodes over the profile since the step began.
+            part: where the zone's rows are kept. motion: (nz, 2) m, of their nodes over the profile since the step began.
+            partner: (nz,) the row of the same node's other side in a valley, or -1; None where no node has two.
 
         Raises:
             ContactError: no consistent set of states is found.
@@ -84,7 +87,7 @@ class Coulomb:
             else:
                 load = force - answer.load_shift
             try:
-                f, tau, dd, on, state, pivots = _solve(self.coefficient, answer, offset, load, active, self.state[part])
+                f, tau, dd, on, state, pivots = _solve(self.coefficient, answer, offset, load, active, self.state[part], partner)
                 if answer.bent and not stable(answer.matrix, answer.compliance[: len(gap), : len(gap)], on):
                     raise ContactError("the curved contact is not stable")
             except ContactError as error:
@@ -111,18 +114,21 @@ class Coulomb:
         return float(np.abs(self.slip[part][self.state[part] == STICK]).max(initial=0.0))
 
     def commit(self, part: slice, pull: np.ndarray, motion: np.ndarray) -> float:
-        """The step has converged; returns what friction dissipated in it, J/m (trapezoidal in time)."""
-        full = np.zeros((len(self.tangential), 2))
-        full[part] = pull
-        lost = -0.5 * float(np.sum((self._pull[part] + pull) * motion))
-        self._pull = full
+        """The step has converged, (nz, 2) N/m pull at the nodes; returns what friction dissipated, J/m (trapezoidal in time)."""
+        before = self._pull[part] if np.ndim(self._pull) else 0.0
+        lost = -0.5 * float(np.sum((before + pull) * motion))
+        self._pull = np.zeros((len(self.tangential), 2))
+        self._pull[part] = pull
         self.dissipated += lost
         return lost
 
-    def record(self, active: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Tangential force, slip and state (0 open, 1 sticks, 2 slips) of every skin node, for the record."""
+    def record(self, active: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Tangential force, slip and state (0 open, 1 sticks, 2 slips) of every skin node (count,), for the record."""
         shown = np.where(active, 1 + np.abs(self.state), 0).astype(np.int8)
-        return self.tangential.copy(), self.slip.copy(), shown
+        if len(active) == count:
+            return self.tangential.copy(), self.slip.copy(), shown
+        slip = np.where(active[:count], self.slip[:count], self.slip[count:])
+        return self.tangential[:count] + self.tangential[count:], slip, np.maximum(shown[:count], shown[count:])
 
 
 def tangents(gradient: np.ndarray) -> np.ndarray:
@@ -134,7 +140,7 @@ class _Cycling(ContactError):
     """No consistent set of states was found."""
 
 
-def _solve(mu, answer, offset, load, active, state):
+def _solve(mu, answer, offset, load, active, state, partner=None):
     """States, forces and depth change of the linearised problem; returns (f, tau, depth change, active, state, pivots).
 
     A node that comes into contact slips at first, against its motion: entering as sticking makes the states cycle. Where friction
@@ -143,20 +149,23 @@ def _solve(mu, answer, offset, load, active, state):
     """
     for entering_sticks in (False, True):
         try:
-            return _exchange(mu, answer, offset, load, active, state, entering_sticks)
+            return _exchange(mu, answer, offset, load, active, state, entering_sticks, partner=partner)
         except _Cycling:
             pass
-    f, bound = _exchange(0.0, answer, offset, load, active, 0 * state)[0], None
+    f, bound = _exchange(0.0, answer, offset, load, active, 0 * state, partner=partner)[0], None
     for _ in range(60):
         bound = mu * f if bound is None else 0.5 * (bound + mu * f)
-        f, tau, dd, active, state, pivots = _exchange(mu, answer, offset, load, active, state, bound=bound)
+        f, tau, dd, active, state, pivots = _exchange(mu, answer, offset, load, active, state, bound=bound, partner=partner)
         if np.abs(mu * f - bound).max() <= 1e-6 * mu * f.max():
             return f, tau, dd, active, state, pivots
     raise _Cycling("stick and slip keep cycling")
 
 
-def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bound=None):
-    """Exchange states until all are consistent; ``bound``: (nz,) N/m of the friction, instead of mu times the normal force."""
+def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bound=None, partner=None):
+    """Exchange states until all are consistent; ``bound``: (nz,) N/m of the friction, instead of mu times the normal force.
+
+    A node that leans on both sides of a valley is held by them: it cannot slip, so no friction is asked of it.
+    """
     n = len(active)
     a, lever = answer.compliance, answer.lever
     nn, nt, tn, tt = a[:n, :n], a[:n, n:], a[n:, :n], a[n:, n:]
@@ -173,9 +182,10 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
     for pivots in range(1, 60 + 2 * n):
         if load is not None and not active.any():
             raise ContactError("no node can carry the force")
-        on, stick = np.flatnonzero(active), np.flatnonzero(active & (state == STICK) & ~held)
-        share = mu * state if bound is None else np.zeros(n)
-        given = np.zeros(n) if bound is None else bound * state * active
+        free = np.ones(n, bool) if partner is None else ~((partner >= 0) & active & active[partner])
+        on, stick = np.flatnonzero(active), np.flatnonzero(active & (state == STICK) & ~held & free)
+        share = mu * state * free if bound is None else np.zeros(n)
+        given = np.zeros(n) if bound is None else bound * state * (active & free)
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
         system, right = np.empty((size, size)), np.empty(size)
@@ -202,13 +212,14 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
         slip = offset[n:] + tn @ f + tt @ tau + lever[n:] * dd
         tiny = 1e-12 * np.abs(f).max(initial=0.0)
         wrong = np.where(active, f < -tiny, gap < -1e-11 * scale)
-        sliding = active & (state != STICK) & ~wrong & ~held
+        sliding = active & (state != STICK) & ~wrong & ~held & free
         most = mu * np.maximum(f, 0) if bound is None else bound
-        slides = active & (state == STICK) & ~wrong & (np.abs(tau) > most * (1 + 1e-10) + tiny)
+        slides = active & (state == STICK) & ~wrong & free & (np.abs(tau) > most * (1 + 1e-10) + tiny)
         sticks = sliding & (state * slip > 1e-11 * scale)
         count = int(wrong.sum() + slides.sum() + sticks.sum())
         if not count:
             f[~active] = tau[~active] = 0
+            state = np.where(free | (state != STICK), state, 1)  # held fast, though it may have come a long way in this step
             return np.maximum(f, 0), tau, dd, active, np.where(active, state, 0).astype(np.int8), pivots
         key = (active.tobytes(), state.tobytes())
         if count < best:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fingerpad.mechanics.contact import ContactError, Zone, solve_contact
+from fingerpad.mechanics.contact import ContactError, Rows, Zone, solve_contact
 from fingerpad.mechanics.linear_solver import FactorisationError, condensation
 from fingerpad.stimuli.motion import STEADY, Step
 
@@ -157,8 +157,13 @@ class QuasiStatic:
         self.observers = observers
         self.external = external
         self.points = body.space.points
-        self.nodal_force = np.zeros(len(skin.nodes))
-        self.active = np.zeros(len(skin.nodes), bool)
+        self._valleys, places = None, len(skin.nodes)
+        if profile.valleys:
+            from fingerpad.mechanics.valleys import Valleys
+
+            self._valleys, places = Valleys(profile, places, skin.spacing), 2 * places
+        self.nodal_force = np.zeros(places)
+        self.active = np.zeros(places, bool)
         self.depth = self.distance = 0.0
         self.time = 0.0
         self.work = self._gross = self._missing = self.force = self._tangential = 0.0
@@ -168,11 +173,11 @@ class QuasiStatic:
         if friction is not None:
             from fingerpad.mechanics.friction import Coulomb
 
-            self.friction = Coulomb(friction, len(skin.nodes))
+            self.friction = Coulomb(friction, places)
         self._set_zone(*skin.start)
         self.height = self._first_touch()
         self._unloaded = body.save()
-        self._factors = self._stiffness = self._gaps = None
+        self._factors = self._stiffness = self._found = None
         self._past: list[_Past] = []
         self._quadratic = False
         self.total_iterations = self.total_halvings = self.factorisations = self._spent = 0
@@ -191,7 +196,7 @@ class QuasiStatic:
 
     def _follow(self):
         """Draw the zone together round a contact that has moved on: it is condensed, so every iteration pays for its size."""
-        on = np.flatnonzero(self.active)
+        on = np.flatnonzero(self._touching())
         if len(on):
             more = max(12, np.ptp(on) // 4)
             first, last = max(on[0] - more, 0), min(on[-1] + 1 + more, len(self.skin.nodes))
@@ -200,22 +205,33 @@ class QuasiStatic:
 
     def _zone_is_tight(self):
         """Does contact reach an end of the zone that is not an end of the skin?"""
-        on = np.flatnonzero(self.active[self._range])
+        on = np.flatnonzero(self._touching()[self._range])
         if not len(on):
             return False
         low = self._range.start > 0 and on[0] < 3
         return low or (self._range.stop < len(self.skin.nodes) and on[-1] >= len(self.zone.nodes) - 3)
 
-    def _evaluate(self, nodes):
-        position = self.points[nodes] + self.body.u[nodes]
-        return self.profile.evaluate(position - np.array([-self.distance, self.height - self.depth]))
+    def _touching(self):
+        """(ns,) bool: the nodes that touch, on one side of a valley or both."""
+        return self.active.reshape(-1, len(self.skin.nodes)).any(axis=0)
 
-    def _zone_gaps(self):
-        """Gaps of the zone, their gradients and curvatures, worked out once where the body and the profile are."""
+    def _position(self, nodes):
+        return self.points[nodes] + self.body.u[nodes] - np.array([-self.distance, self.height - self.depth])
+
+    def _rows(self) -> Rows:
+        """The constraints of the zone, worked out once where the body and the profile are."""
         where = self.zone, self.body.u, self.height, self.depth, self.distance
-        if self._gaps is None or not all(a is b for a, b in zip(where, self._gaps[0], strict=True)):
-            self._gaps = where, self._evaluate(self.zone.nodes)
-        return self._gaps[1]
+        if self._found is None or not all(a is b for a, b in zip(where, self._found[0], strict=True)):
+            zone, points = self.zone, self._position(self.zone.nodes)
+            single = self.profile.evaluate(points)
+            if self._valleys is None:
+                rows = Rows(zone, self._range, None, *single)
+            else:
+                kept = [self.nodal_force, self.active]
+                kept += [] if self.friction is None else [self.friction.tangential, self.friction.state]
+                rows = self._valleys.rows(zone, self._range, points, single, kept)
+            self._found = where, rows
+        return self._found[1]
 
     def _first_touch(self) -> float:
         """Height of the profile's origin at which it just touches the undeformed skin."""
@@ -261,7 +277,7 @@ class QuasiStatic:
         self._past.clear()
 
     def _attempt(self, control, target, guessed=False):
-        """Solve one step to convergence; returns (iterations, residual, gap, gradient) or raises _StepFailure.
+        """Solve one step to convergence; returns (iterations, residual) or raises _StepFailure.
 
         From a state that was ``guessed`` Newton's method converges at once or not well.
         """
@@ -278,7 +294,7 @@ class QuasiStatic:
                 self._grow_zone()
                 keep = False
             try:
-                residual, gap, gradient = self.iterate(control, target, reuse=keep)
+                residual = self.iterate(control, target, reuse=keep)
             except (FactorisationError, ContactError) as error:
                 raise _StepFailure(str(error)) from error
             if not np.isfinite(residual):
@@ -287,7 +303,7 @@ class QuasiStatic:
             if residual <= 1.0 and not self._zone_is_tight() and not self._touches_elsewhere():
                 if self._softened or reused > settings.patience:
                     self._factors = None
-                return iteration, residual, gap, gradient
+                return iteration, residual
             if guessed and residual > before:
                 raise _StepFailure("the state that was guessed is a bad one")
             ahead = residual * (residual / before) ** settings.outlook
@@ -308,13 +324,12 @@ class QuasiStatic:
         )
 
     def iterate(self, control, target, reuse=False):
-        """One Newton iteration; returns the residual over its tolerance and the new gap and gradient of the zone.
+        """One Newton iteration; returns the residual over its tolerance.
 
         ``reuse``: with the factors of the one before, in the same zone.
         """
-        body, zone, part, settings = self.body, self.zone, self._range, self.settings
-        space = body.space
-        gap, gradient, curvature = self._zone_gaps()
+        body, settings = self.body, self.settings
+        space, rows = body.space, self._rows()
         if reuse:
             schur, internal = self._schur, self._internal
         else:
@@ -326,11 +341,11 @@ class QuasiStatic:
         load = -internal if self.external is None else self.external - internal
         reduced = self.solver.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
-        known = (schur, reduced, gap, gradient, curvature, self.nodal_force[part], self.active[part])
+        known = schur, reduced, rows.gap, rows.gradient, rows.curvature, self.nodal_force[rows.place], self.active[rows.place]
         if self.friction is None:
-            step = solve_contact(zone, *known, **goal)
+            step = solve_contact(rows.zone, *known, **goal)
         else:
-            step = self.friction.solve(zone, part, *known, self._motion(zone.nodes), **goal)
+            step = self.friction.solve(rows.zone, rows.place, *known, self._motion(rows.zone.nodes), partner=rows.partner, **goal)
         self._softened |= step.softened
         self._stiff = step.stiffness
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
@@ -349,22 +364,23 @@ class QuasiStatic:
         self.depth = depth + share * step.depth_change
         self.nodal_force[:] = 0
         self.active[:] = False
-        self.nodal_force[part], self.active[part] = step.force, step.active
-        gap, gradient, _ = self._zone_gaps()
-        push, stuck = step.force[:, None] * gradient, 0.0
+        self.nodal_force[rows.place], self.active[rows.place] = step.force, step.active
         if self.friction is not None:
-            self.friction.accept(part, step)
-            push += self.friction.pull(part, gradient)
-            stuck = self.friction.creep(part, step.active, gradient, self._motion(zone.nodes))
+            self.friction.accept(rows.place, step)
+        rows, stuck = self._rows(), 0.0
+        active = self.active[rows.place]
+        if self.friction is not None:
+            stuck = self.friction.creep(rows.place, active, rows.gradient, self._motion(rows.zone.nodes))
+        push, _ = self._forces()
         unbalanced = -internal if self.external is None else self.external - internal
-        unbalanced[zone.nodes] += push
+        unbalanced[self.zone.nodes] += push
         scale = max(step.force.sum(), np.abs(self.external).sum() if self.external is not None else 0.0)
         scale = max(scale, settings.least_scale * self._most_force)
         if scale == 0:  # nothing touches: the body must come back to rest
             scale = body.space.measure.out_of_plane_stretch * np.abs(internal).sum() + 1e-30
         equilibrium = np.linalg.norm(space.to_equations(unbalanced)) / scale
-        opening = np.abs(gap[step.active]).max(initial=0.0)
-        penetration = max(0.0, -gap.min(initial=0.0))
+        opening = np.abs(rows.gap[active]).max(initial=0.0)
+        penetration = max(0.0, -rows.gap.min(initial=0.0))
         balance = 0.0
         if control == "force" and target > 0:
             balance = abs(target + push[:, 1].sum()) / target
@@ -373,7 +389,7 @@ class QuasiStatic:
             balance / settings.force_tolerance,
             max(opening, penetration, stuck) / (settings.gap_tolerance * self.skin.spacing),
         )
-        return residual if share == 1.0 else max(residual, 2.0), gap, gradient
+        return residual if share == 1.0 else max(residual, 2.0)
 
     def _motion(self, nodes):
         """(nz, 2) m: how far these nodes have moved over the profile since the step began."""
@@ -387,18 +403,20 @@ class QuasiStatic:
         outside = np.flatnonzero(outside)
         if not len(outside):
             return False
-        deep = outside[self._evaluate(self.skin.nodes[outside])[0] < -self.settings.gap_tolerance * self.skin.spacing]
+        gap = self.profile.evaluate(self._position(self.skin.nodes[outside]))[0]
+        deep = outside[gap < -self.settings.gap_tolerance * self.skin.spacing]
         if not len(deep):
             return False
         self._set_zone(min(self._range.start, deep[0] - 8), max(self._range.stop, deep[-1] + 9))
         return True
 
-    def _forces(self, gradient):
+    def _forces(self):
         """Force of the profile on the zone's nodes (nz, 2) N/m, and the frictional part of it (None without friction)."""
-        push = self.nodal_force[self._range, None] * gradient
+        rows = self._rows()
+        push = rows.of_nodes(self.nodal_force[rows.place, None] * rows.gradient)
         if self.friction is None:
             return push, None
-        pull = self.friction.pull(self._range, gradient)
+        pull = rows.of_nodes(self.friction.pull(rows.place, rows.gradient))
         return push + pull, pull
 
     def _check_energy(self, work, energies, lost, moved):
@@ -446,11 +464,10 @@ class QuasiStatic:
             elif guesses:
                 guess = guesses[-1 if self._quadratic else 0]
                 self.nodal_force, self.depth = np.maximum(guess.force, 0), guess.depth
-            iterations, residual, gap, gradient = self._attempt(control, target, bool(guesses))
+            iterations, residual = self._attempt(control, target, bool(guesses))
             if guesses:
                 self._quadratic = np.argmin([np.linalg.norm((body.u - guess.u)[self.zone.nodes]) for guess in guesses]) > 0
-            self._gradient, self._gap = gradient, gap
-            push, pull = self._forces(gradient)
+            push, pull = self._forces()
             tangential, force = 0.0 - push.sum(0)
             if force < -1e-9 * self.nodal_force.sum():
                 raise _StepFailure("the indenter is pulled instead of pushed")
@@ -581,21 +598,22 @@ class QuasiStatic:
         return "more steps, a finer mesh, or depth instead of force control"
 
     def _record(self, step, iterations, halvings, residual):
-        gap = np.full(len(self.skin.nodes), np.nan)
-        gap[self._range] = self._gap
-        gradient = np.zeros((len(self.skin.nodes), 2))
-        gradient[self._range] = self._gradient
-        total = max(self.nodal_force.sum(), 1e-300)
-        slack = np.abs(self._gap) * self.nodal_force[self._range]
+        rows, count = self._rows(), len(self.skin.nodes)
+        kept = self.nodal_force[rows.place]
+        gap, gradient, force = np.full(count, np.nan), np.zeros((count, 2)), np.zeros(count)
+        gap[self._range] = rows.least_gap()
+        gradient[self._range], force[self._range] = rows.normal(kept)
+        total = max(kept.sum(), 1e-300)
+        slack = np.abs(rows.gap) * kept
         network, spring, branch_work = self._energies
         friction = self.friction
         frictional = friction.dissipated if friction else 0.0
         # a body that is let go gives the work back: there is nothing left to relate an error to
         balance = abs(self.work - network - branch_work - frictional) / max(abs(self.work), 0.1 * self._most_work, 1e-300)
         return Record(
-            step.leg, step.time, self.depth, self.force, self._tangential, self.nodal_force.copy(), gradient, gap,
+            step.leg, step.time, self.depth, self.force, self._tangential, force, gradient, gap,
             self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,
             float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
             float(balance) if self.work else 0.0, self.work, self._energies, branch_work - spring, self.distance, frictional,
-            *(friction.record(self.active) if friction else ()),
+            *(friction.record(self.active, count) if friction else ()),
         )  # fmt: skip

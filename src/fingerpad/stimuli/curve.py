@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fingerpad.stimuli.profile import Profile
+from fingerpad.stimuli.profile import Profile, Walls
 
 
 class Segment(NamedTuple):
@@ -35,6 +35,9 @@ class Curve(Profile):
     overlap = 1e-12
     #: m, closer than which a point is on a corner
     touch = 1e-9
+    #: rad, less than which a corner turns away from the skin without making a valley: a node on it is pushed to and fro by
+    #: less than the tolerance of the forces
+    flat = 2e-3
     #: pieces that are the surface itself and not its continuation
     own = slice(None)
 
@@ -62,6 +65,8 @@ class Curve(Profile):
         before, after = (slope + turn)[:-1], (slope - turn)[1:]
         self._kink = np.concatenate([[0.0], after - before])  # at the start of each piece
         self._bisector = np.concatenate([[0.0], (before + after) / 2])
+        self._valleys = np.flatnonzero(self._kink < -self.flat)
+        self.valleys = len(self._valleys) > 0
         near = {"rtol": 0, "atol": 1e-9 * np.ptp(self.x)}
         self.symmetric = bool(
             np.allclose(self.x, -self.x[::-1], **near)
@@ -106,6 +111,30 @@ class Curve(Profile):
         past = np.where(piece < len(self.bend) - 1, past, -np.inf)
         return np.where(line, across, side * (length - radius)), arm, np.maximum(past, short)
 
+    def _from_piece(self, points, piece):
+        """Signed distance to a piece going on beyond its ends, with gradient and curvature."""
+        distance, arm, _ = self._to_piece(points, piece)
+        tangent, side, line = self._tangent[piece], self._side[piece], self._line[piece]
+        length = np.maximum(np.hypot(*arm.T), 1e-15)
+        gradient = np.where(line[:, None], _normal(tangent), (side / length)[:, None] * arm)
+        return distance, gradient, np.where(line, 0.0, side / length)
+
+    def walls(self, points, reach):
+        at, last = self._valleys, len(self.bend) - 1
+        if not len(at):
+            return super().walls(points, reach)
+        chord = np.where((np.arange(last + 1) == 0) | (np.arange(last + 1) == last), np.inf, np.diff(self.x))
+        room = np.minimum(reach, np.minimum(chord[at - 1], chord[at]))
+        behind = np.clip(np.searchsorted(self.x[at], points[:, 0]), 1, max(len(at) - 1, 1))
+        beside = np.minimum(np.stack([behind - 1, behind]), len(at) - 1)
+        away = np.hypot(points[:, 0] - self.x[at][beside], points[:, 1] - self.y[at][beside])
+        nearest = np.argmin(away, axis=0)
+        valley = np.take_along_axis(beside, nearest[None], 0)[0]
+        which = np.flatnonzero(away.min(axis=0) < room[valley])
+        corner = at[valley[which]]
+        sides = [self._from_piece(points[which], piece) for piece in (corner - 1, corner)]
+        return Walls(which, corner, *(np.stack(both, axis=1) for both in zip(*sides, strict=True)))
+
     def _farthest(self, x, y, height):
         """Farther along x than this (m) from a point the surface cannot be closest."""
         return np.abs(y - height) * share_of_height(self._steepest)
@@ -130,12 +159,7 @@ class Curve(Profile):
         corner = np.hypot(x[row] - self.x[piece], y[row] - self.y[piece])
         to_corner, at = closest(np.where(piece > 0, corner, np.inf))
 
-        distance, arm, _ = self._to_piece(points, on)
-        tangent, side, line = self._tangent[on], self._side[on], self._line[on]
-        length = np.maximum(np.hypot(*arm.T), 1e-15)
-        gradient = np.where(line[:, None], _normal(tangent), (side / length)[:, None] * arm)
-        curvature = np.where(line, 0.0, side / length)
-
+        distance, gradient, curvature = self._from_piece(points, on)
         is_corner = to_corner < to_piece - self.overlap
         sign, length = np.where(y > height, -1.0, 1.0), np.maximum(to_corner, self.touch)
         distance = np.where(is_corner, sign * to_corner, distance)

@@ -8,9 +8,23 @@ derivative). The contact problem needs no more.
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
+
+
+class Walls(NamedTuple):
+    """The two sides of valleys, each as if it went on beyond the corner between them.
+
+    ``which``: (k,) the points that are in a valley. corner: (k,) its number along the surface. distance: (k, 2) m from the side
+    before and the side after, gradient: (k, 2, 2) and curvature: (k, 2) 1/m of the distances.
+    """
+
+    which: np.ndarray
+    corner: np.ndarray
+    distance: np.ndarray
+    gradient: np.ndarray
+    curvature: np.ndarray
 
 
 class Profile:
@@ -26,6 +40,7 @@ class Profile:
         length: m, of the surface along x from x = 0; a motion must stay on it. reach: m, first and last x where there is one.
         known: m, first and last x of measured points; contact beyond them is with a guess. smoothing: m, cut-off wavelength at
         which a measured surface was smoothed; 0 if it was not. segments: pieces of lines and arcs that it is made of, if it is.
+        valleys: are there corners that point away from the skin, in which a node may lean on both sides (see :meth:`walls`)?
     """
 
     symmetric: ClassVar[bool] = True
@@ -44,10 +59,15 @@ class Profile:
     known: ClassVar[tuple[float, float]] = (-np.inf, np.inf)
     smoothing: ClassVar[float] = 0.0
     segments: ClassVar[tuple] = ()
+    valleys: ClassVar[bool] = False
 
     def evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Distance (n,) m, gradient (n, 2) and curvature (n,) 1/m at ``points`` (n, 2) m."""
         raise NotImplementedError
+
+    def walls(self, points: np.ndarray, reach: float) -> Walls:
+        """Both sides of the valleys that ``points`` (n, 2) m are in, those within ``reach`` m of the corner at the bottom."""
+        return Walls(np.zeros(0, int), np.zeros(0, int), np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2)))
 
     def outline(self, x: np.ndarray) -> np.ndarray:
         """Height of the lower surface (n,) m over ``x`` (n,) m; NaN where the profile does not reach."""

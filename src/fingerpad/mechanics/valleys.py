@@ -1,0 +1,63 @@
+"""Contact with a surface that has valleys: a skin node in one leans on both of its sides.
+
+The distance to such a surface is the smaller of two, and its gradient jumps where they are equal, which is just where a node
+comes to rest: with one constraint Newton's method pushes it from side to side for ever. Here each such node has two, one for each
+side as if it went on beyond the corner (the feasible set of a node under a valley is the intersection of both). The contact
+problem is the same; only its rows are more than its nodes. A profile without valleys never comes here.
+"""
+
+import numpy as np
+
+from fingerpad.mechanics.contact import Rows, Zone
+
+
+class Valleys:
+    """Which skin nodes are in which valley, remembered from one look to the next.
+
+    Args:
+        profile: the rigid shape. count: number of skin nodes. reach: m, from the corner of a valley within which a node has two
+            constraints.
+    """
+
+    def __init__(self, profile, count: int, reach: float):
+        self.profile, self.count, self.reach = profile, count, reach
+        self._corner = np.full(count, -1)
+
+    def rows(self, zone: Zone, part: slice, points: np.ndarray, single: tuple, kept: list[np.ndarray]) -> Rows:
+        """The constraints of a zone whose nodes are at ``points`` (nz, 2) m in the profile's frame.
+
+        Args:
+            part: the zone among the skin nodes. single: gap, gradient and curvature with one constraint a node. kept: arrays
+                (2 ns,) of what belongs to the rows (forces, states): where a node has come into a valley, or left one, they are
+                moved to the side that it is nearest to.
+        """
+        walls = self.profile.walls(points, self.reach)
+        free = (zone.column[walls.which] >= 0).all(axis=1)  # on the mirror both sides are one
+        which, corner, distance, normal, bend = (values[free] for values in walls)
+        self._move(part, which, corner, distance, kept)
+        if not len(which):
+            return Rows(zone, part, None, *single)
+        gap, gradient, curvature = (values.copy() for values in single)
+        gap[which], gradient[which], curvature[which] = distance[:, 0], normal[:, 0], bend[:, 0]
+        count, first = len(gap), np.arange(part.start, part.stop)
+        partner = np.full(count + len(which), -1)
+        partner[which], partner[count:] = count + np.arange(len(which)), which
+        return Rows(
+            Zone(np.concatenate([zone.nodes, zone.nodes[which]]), zone.equation),
+            np.concatenate([first, self.count + first[which]]),
+            partner,
+            np.concatenate([gap, distance[:, 1]]),
+            np.concatenate([gradient, normal[:, 1]]),
+            np.concatenate([curvature, bend[:, 1]]),
+        )
+
+    def _move(self, part, which, corner, distance, kept):
+        now, after = np.full(part.stop - part.start, -1), np.zeros(part.stop - part.start, bool)
+        now[which], after[which] = corner, distance[:, 1] < distance[:, 0]
+        changed = np.flatnonzero(now != self._corner[part])
+        node = part.start + changed
+        for values in kept:
+            both = values[node] + values[self.count + node]
+            values[node] = np.where(after[changed], 0, both)
+            values[self.count + node] = np.where(after[changed], both, 0)
+        self._corner[part] = now
