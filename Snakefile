@@ -71,6 +71,7 @@ localrules:
     effects,
     peers,
     report_pages,
+    explanations,
     reconstruction,
 
 
@@ -141,6 +142,12 @@ rule peers:
     """The same press through a public finite element package, if it is installed: a table."""
     input:
         peers_if_installed,
+
+
+rule explanations:
+    """Which reading of what the thesis leaves open brings about what does not hold here: a table; 25 minutes of one core."""
+    input:
+        PRODUCTS.targets("explanations"),
 
 
 rule reconstruction:

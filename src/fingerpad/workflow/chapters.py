@@ -15,6 +15,7 @@ _MODULES = (
     "fingerpad.figures.registry",
     "fingerpad.studies.accuracy.belief",
     "fingerpad.studies.accuracy.run",
+    "fingerpad.studies.explanations.run",
     "fingerpad.studies.stability.picture",
     "fingerpad.studies.views.frames",
 )
@@ -36,7 +37,7 @@ class Figure:
 @cache
 def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
     """What is on offer: `figures` by number, and the studies' `FAMILY`, `SWEEPS`, `OUTSIDE`, `CLASSES` (accuracy),
-    `METHODS` (stability), `VIEWS` with their scenes.
+    `METHODS` (stability), `READINGS` of the scenes `READ` (explanations), `VIEWS` with their scenes.
 
     Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
     """
@@ -61,6 +62,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.studies.accuracy.belief import OUTSIDE
     from fingerpad.studies.accuracy.drawn import CLASSES
     from fingerpad.studies.accuracy.run import FAMILY, sweeps
+    from fingerpad.studies.explanations.run import PRESSED, READINGS, STROKED
     from fingerpad.studies.stability.picture import PARTS
     from fingerpad.studies.views.frames import FRAMES
 
@@ -76,5 +78,6 @@ def _read() -> dict[str, Any]:
         for spec, module in sorted(found, key=lambda pair: [int(n) for n in pair[0].number.split("-")])
     }
     offers = {"OUTSIDE": list(OUTSIDE), "CLASSES": list(CLASSES), "METHODS": dict(PARTS)}
+    offers |= {"READINGS": list(READINGS), "READ": [*PRESSED, *STROKED]}
     offers["VIEWS"] = {name: list(scenes) for name, (_, scenes) in FRAMES.items()}
     return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps())} | offers

@@ -563,6 +563,19 @@ class Products:
         made = {"pictures": self.pictures(["posterior", "evidence"], "reconstruction_")}
         yield Job("reconstruction_pictures", unknowns | evidence | {"parts": parts[:2], "readings": tables[1:2]}, made)
 
+    def explanations(self) -> Iterator[Job]:
+        """Readings of what the thesis leaves open -> which of them bring about what does not hold."""
+        scenes, data = offered()["READ"], []
+        reference = {"reference": [self.at("config/reference/thesis_numbers.csv")]}
+        read = reference | self._read(*scenes)
+        for name in offered()["READINGS"]:
+            told = {"name": [name], "scenes": [os.path.dirname(self.scene(scenes[0]))], "written": self._written(*scenes)}
+            data.append(d := self.result(f"explanations/{name.replace(' ', '_')}.csv"))
+            called = f"explanation_{name.replace(' ', '_').replace('-', '_')}"
+            yield Job("explanation", read, {"data": [d]}, told, called, mem_mb=2000, runtime=60)
+        read = reference | {"comparison": self.tables(TABLES[:1]), "readings": data}
+        yield Job("explanations_table", read, {"table": self.tables(["explanations"])}, {"names": list(offered()["READINGS"])})
+
     def map_of_touch(self) -> Iterator[Job]:
         """A sweep over curvature, force and rate."""
         yield from self._published_sweep("map_of_touch", {})
@@ -627,7 +640,7 @@ class Products:
         parts = (
             self.simulations, self.figures, self.catalogue, self.animations, self.fields, self.views, self.all_tables,
             self.meanings, self.calibration, self.ridges, self.accuracy, self.stability, self.effects, self.peers,
-            self.reconstruction, self.map_of_touch, self.five_hundred_fingers,
+            self.reconstruction, self.explanations, self.map_of_touch, self.five_hundred_fingers,
             self.report,
         )  # fmt: skip
         jobs = [job for part in parts for job in part()]

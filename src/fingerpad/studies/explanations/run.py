@@ -1,0 +1,151 @@
+"""The thesis's presses and strokes, read otherwise in one thing at a time, and the verdicts on its statements of each reading.
+
+The pad was inferred from what the thesis shows of presses (study reconstruction). Of the statements that it was held out from,
+some do not hold. Here everything else that the thesis does not say is read otherwise, one thing at a time, and the comparison is
+made again with those runs. A statement that holds with one of them, and not without at the same accuracy, is explained by it: it
+tells what the model of 1999 may have been, not that it was. What the same reading spoils is counted beside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from fingerpad.claims.comparison import AGREES, score_of, thesis_comparison
+from fingerpad.measures.runs import FAST, NINE
+from fingerpad.measures.strokes import FULL, STEPPED, SUB
+from fingerpad.measures.table import Instead, Measures
+from fingerpad.reference_data import read_reference
+from fingerpad.scenes.scene import Scene, Slide, load_scene
+from fingerpad.simulation import simulate
+
+PRESSED = (*NINE.scenes.values(), *FAST.scenes.values())
+STROKED = (*FULL.values(), *SUB.values(), STEPPED)
+ACCURACY = "draft"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What is read otherwise: in words, as changes of every scene, and as changes of those with the wavy surface.
+
+    ``share``: of the force that presses the wavy surface, in the same time. keeps: what is kept while it slides, force or depth.
+    """
+
+    words: str
+    everywhere: Mapping[str, Any]
+    stroked: Mapping[str, Any]
+    share: float = 1.0
+    keeps: str = "force"
+
+    def of(self, scene: Scene, stroked: bool) -> Scene:
+        """A scene read so."""
+        changes = {"accuracy": ACCURACY} | dict(self.everywhere) | (dict(self.stroked) if stroked else {})
+        if stroked and self.share != 1:
+            press = scene.motion[0]
+            changes |= {"motion[0].press_to_force": self.share * press.force}
+            changes |= {"motion[0].rate": self.share * press.rate} if press.rate else {}
+        if stroked and isinstance(scene.motion[1], Slide):
+            changes["motion[1].keep"] = self.keeps
+        return scene.varied(changes)
+
+
+def _everywhere(words: str, **changes: Any) -> Reading:
+    return Reading(words, {key.replace("__", "."): value for key, value in changes.items()}, {})
+
+
+CONTROL = "as it is"
+READINGS: dict[str, Reading] = {
+    CONTROL: Reading("the comparison's own scenes", {}, {}),
+    "long-term moduli": _everywhere("the printed moduli are long-term ones", specimen__moduli="long_term"),
+    "larger radius": _everywhere("apex radius 10.5 mm, of a published section", specimen__outline__apex_radius="10.5 mm"),
+    "softer epidermis": _everywhere(
+        "half the printed modulus of the epidermis", specimen__layers__epidermis__youngs_modulus="75 kPa"
+    ),
+    "stiffer epidermis": _everywhere(
+        "twice the printed modulus of the epidermis", specimen__layers__epidermis__youngs_modulus="300 kPa"
+    ),
+    "longer contact": _everywhere("force spread over 20 mm, not 11.4 mm, of pad", specimen__contact_length="20 mm"),
+    "no friction": Reading("the wavy surface slides without friction", {}, {"friction": 0.0}),
+    "half the force": Reading("the wavy surface is pressed with 10 gram-weight", {}, {}, 0.5),
+    "twice the force": Reading("the wavy surface is pressed with 40 gram-weight", {}, {}, 2.0),
+    "depth kept": Reading("the depth that 20 gram-weight press to is kept while the wavy surface slides", {}, {}, keeps="depth"),
+}
+"""What the thesis leaves open, by name; and the control."""
+
+
+def simulated(scenes: Path, reading: Reading) -> dict[str, xr.Dataset]:
+    """Histories of the presses and strokes, by scene, of a folder of scenes. Raises NonConvergence."""
+    return {name: simulate(reading.of(load_scene(scenes / f"{name}.yaml"), name in STROKED)) for name in (*PRESSED, *STROKED)}
+
+
+def verdicts(histories: Mapping[str, xr.Dataset], reference_csv: str | PathLike) -> pd.DataFrame:
+    """The comparison of some histories: columns id, simulated, verdict; without what they do not tell."""
+    nothing = Measures.of({})
+    table = thesis_comparison(Measures.of(histories), Instead(nothing, nothing, nothing, nothing), reference_csv)
+    return table.loc[table["verdict"] != "not_comparable", ["id", "simulated", "verdict"]]
+
+
+COLUMNS = ("id", "figure", "quantity", "condition", "simulated", "explained_by", "with_it", "not_by")
+
+
+def explanations(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference_csv: str | PathLike) -> pd.DataFrame:
+    """What was held out and does not hold in the published comparison, and the readings with which it holds.
+
+    Args:
+        published: the comparison. found: :func:`verdicts` by reading, the control among them.
+
+    Returns:
+        A row each, columns `COLUMNS`: the readings that explain it, the number found with the first of them, and the readings
+        that do not. ``attrs["summary"]`` says how many of those held out are right, and how many more are explained, by kind,
+        and what each reading makes hold and fail.
+    """
+    reference = read_reference(reference_csv)
+    scored = published[published["id"].map(reference.apply(score_of, axis=1)).eq("held out")]
+    scored = scored[scored["verdict"].ne("not_comparable")]
+    right = {name: table.set_index("id")["verdict"].isin(AGREES) for name, table in found.items()}
+    values = {name: table.set_index("id")["simulated"] for name, table in found.items()}
+    control = right[CONTROL]
+    rows = []
+    for _, row in scored[~scored["verdict"].isin(AGREES)].iterrows():
+        id_ = row["id"]
+        tried = {name: bool(held[id_]) for name, held in right.items() if name != CONTROL and id_ in held}
+        by = [name for name, holds in tried.items() if holds and not control.get(id_, True)]
+        rows.append(
+            {k: row[k] for k in ("id", "figure", "quantity", "condition", "simulated")}
+            | {"explained_by": ", ".join(by), "with_it": values[by[0]][id_] if by else float("nan")}
+            | {"not_by": ", ".join(name for name in tried if name not in by)}
+        )
+    table = pd.DataFrame(rows, columns=COLUMNS)
+    table.attrs["summary"] = _summary(scored, table, right, reference)
+    return table
+
+
+def _summary(scored: pd.DataFrame, table: pd.DataFrame, right: Mapping[str, pd.Series], reference: pd.DataFrame) -> str:
+    form = reference["form"]
+    kinds = scored["id"].map(form).map(lambda each: {"axis": "axes", "trend": "trends"}.get(each, "values and ranges"))
+    explained = scored["id"].isin(table.loc[table["explained_by"] != "", "id"])
+    agrees = scored["verdict"].isin(AGREES)
+    told = []
+    for kind in ("values and ranges", "trends", "axes"):
+        of = kinds == kind
+        told.append(f"{kind}: {(agrees & of).sum()} of {of.sum()} right, {(explained & of).sum()} more explained by a run")
+    counted = ~kinds.eq("axes")
+    share = ((agrees | explained) & counted).sum() / counted.sum()
+    control = right[CONTROL]
+    turned = []
+    for name, held in right.items():
+        if name == CONTROL:
+            continue
+        both = held.index.intersection(control.index).intersection(scored["id"])
+        gained, lost = (held[both] & ~control[both]).sum(), (~held[both] & control[both]).sum()
+        turned.append(f"{name} {gained} and {lost}")
+    return (
+        f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: {share:.0%}. "
+        f"Statements that each reading makes hold and makes fail: {'; '.join(turned)}."
+    )

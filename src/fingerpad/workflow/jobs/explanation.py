@@ -1,0 +1,11 @@
+"""The thesis's scenes, read otherwise in one thing -> the verdicts on its statements of those runs."""
+
+from pathlib import Path
+
+from fingerpad.publishing.write import write_frame
+from fingerpad.studies.explanations.run import READINGS, simulated, verdicts
+
+
+def run(job):
+    """The reading `name` of the scenes in the folder `scenes`, the table `reference` -> `data`."""
+    write_frame(verdicts(simulated(Path(job.scenes[0]), READINGS[job.name[0]]), job.reference[0]), Path(job.data[0]))

@@ -1,0 +1,51 @@
+"""Readings of what the thesis leaves open: what they change in the scenes, and what counts as explained by one."""
+
+import pandas as pd
+import pytest
+
+from fingerpad import load_scene
+from fingerpad.studies.explanations.run import CONTROL, PRESSED, READINGS, STROKED, explanations
+
+pytestmark = pytest.mark.unit
+REFERENCE = "config/reference/thesis_numbers.csv"
+
+
+@pytest.mark.parametrize("name", READINGS)
+def test_a_reading_changes_what_it_says(name):
+    """The control nothing but the accuracy, a reading of the wavy surface no press, the others what they name, everywhere."""
+    reading = READINGS[name]
+    press, stroke, steps = (load_scene(f"config/scenes/{scene}.yaml") for scene in ("ramp40_k210", "stroke_10", "step_sub"))
+    read = [reading.of(press, False), reading.of(stroke, True), reading.of(steps, True)]
+    same = [now.varied({"accuracy": was.accuracy}) == was for now, was in zip(read, (press, stroke, steps), strict=True)]
+    wanted = {CONTROL: [True, True, True], "depth kept": [True, False, True], "no friction": [True, False, True]}
+    about_strokes = [True, False, False]
+    assert same == wanted.get(name, about_strokes if not reading.everywhere else [False] * 3)
+    assert read[1].motion[0].force == pytest.approx(reading.share * stroke.motion[0].force)
+    assert read[1].motion[1].keep == reading.keeps
+
+
+def test_every_scene_that_is_read_is_there():
+    for scene in (*PRESSED, *STROKED):
+        load_scene(f"config/scenes/{scene}.yaml")
+
+
+def test_explained_is_what_holds_with_a_reading_and_not_without():
+    """TR29 fails in the comparison and without the reading, TR28 holds without it already, TR30 fails with it as well."""
+    published = pd.DataFrame(
+        [(k, "5-12", k, "", 1.0, v) for k, v in (("TR28", "trend_fails"), ("TR29", "trend_fails"), ("TR30", "trend_fails"))]
+        + [("TR37", "5-9", "TR37", "", 1.0, "trend_holds")],
+        columns=["id", "figure", "quantity", "condition", "simulated", "verdict"],
+    )  # fmt: skip
+
+    def told(**verdicts):
+        rows = [(k, 2.0, f"trend_{v}") for k, v in verdicts.items()]
+        return pd.DataFrame(rows, columns=["id", "simulated", "verdict"])
+
+    found = {
+        CONTROL: told(TR28="holds", TR29="fails", TR30="fails", TR37="holds"),
+        "no friction": told(TR28="holds", TR29="holds", TR30="fails", TR37="fails"),
+    }
+    table = explanations(published, found, REFERENCE).set_index("id")
+    assert dict(table["explained_by"]) == {"TR28": "", "TR29": "no friction", "TR30": ""}
+    said = explanations(published, found, REFERENCE).attrs["summary"]
+    assert "trends: 1 of 4 right, 1 more explained by a run" in said and "no friction 1 and 1" in said
