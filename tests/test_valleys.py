@@ -83,17 +83,19 @@ def test_forces_go_with_their_side():
     equation = np.arange(10).reshape(5, 2)
     equation[0, 0] = -1
     zone, part = Zone(np.arange(5), equation - (equation > 0)), slice(0, 5)
-    law, force = Valleys(profile, 5, 1e-4), np.r_[1.0, 2, 3, 4, 5, np.zeros(5)]
+    law, force, state = Valleys(profile, 5, 1e-4), np.r_[1.0, 2, 3, 4, 5, np.zeros(5)], np.zeros(10, np.int8)
 
     def at(*places):
         points = np.array([[x, rise - 1e-5] for x in places])
-        return law.rows(zone, part, points, profile.evaluate(points), [force])
+        return law.rows(zone, part, points, profile.evaluate(points), [force, state])
 
     rows = at(0.0, -1e-3, -5e-5, 5e-5, 1e-3)
     assert list(rows.place) == [0, 1, 2, 3, 4, 7, 8] and list(rows.partner) == [-1, -1, 5, 6, -1, 2, 3]
     assert list(rows.zone.nodes) == [0, 1, 2, 3, 4, 2, 3]
     np.testing.assert_array_equal(force, [1, 2, 3, 0, 5, 0, 0, 0, 4, 0])
+    state[[2, 7, 3, 8]] = 1, 1, 0, -1
     rows = at(0.0, -1e-3, -1e-3, 1e-3, 1e-3)
+    np.testing.assert_array_equal(state, [0, 0, 1, -1, 0, 0, 0, 0, 0, 0])
     assert rows.partner is None and rows.place == part
     np.testing.assert_array_equal(force, [1, 2, 3, 4, 5, 0, 0, 0, 0, 0])
 

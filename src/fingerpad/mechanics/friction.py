@@ -48,7 +48,7 @@ class Coulomb:
         self.state = np.zeros(count, np.int8)
         self.slip = np.zeros(count)
         self.dissipated = 0.0
-        self._pull = 0.0
+        self._pull = np.zeros((count, 2))
 
     def save(self):
         """The state to come back to."""
@@ -60,7 +60,7 @@ class Coulomb:
 
     def release(self) -> None:
         """Contact is lost altogether."""
-        self.tangential[:], self.state[:], self._pull = 0, 0, 0.0
+        self.tangential[:], self.state[:], self._pull = 0, 0, 0 * self._pull
 
     def solve(
         self, zone: Zone, part: slice, schur, right, gap, gradient, curvature, previous_force, active, motion, *,
@@ -115,10 +115,10 @@ class Coulomb:
 
     def commit(self, part: slice, pull: np.ndarray, motion: np.ndarray) -> float:
         """The step has converged, (nz, 2) N/m pull at the nodes; returns what friction dissipated, J/m (trapezoidal in time)."""
-        before = self._pull[part] if np.ndim(self._pull) else 0.0
-        lost = -0.5 * float(np.sum((before + pull) * motion))
-        self._pull = np.zeros((len(self.tangential), 2))
-        self._pull[part] = pull
+        full = np.zeros_like(self._pull)
+        full[part] = pull
+        lost = -0.5 * float(np.sum((self._pull[part] + pull) * motion))
+        self._pull = full
         self.dissipated += lost
         return lost
 

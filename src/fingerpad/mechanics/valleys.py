@@ -57,7 +57,8 @@ class Valleys:
         changed = np.flatnonzero(now != self._corner[part])
         node = part.start + changed
         for values in kept:
-            both = values[node] + values[self.count + node]
+            one, other = values[node], values[self.count + node]
+            both = one + other if values.dtype == float else np.where(one, one, other)  # forces add up, states do not
             values[node] = np.where(after[changed], 0, both)
             values[self.count + node] = np.where(after[changed], both, 0)
         self._corner[part] = now

@@ -147,5 +147,6 @@ def _summary(scored: pd.DataFrame, table: pd.DataFrame, right: Mapping[str, pd.S
         turned.append(f"{name} {gained} and {lost}")
     return (
         f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: {share:.0%}. "
-        f"Statements that each reading makes hold and makes fail: {'; '.join(turned)}."
+        f"Statements that each reading makes hold and makes fail: {'; '.join(turned)}. "
+        f"Readings: {'; '.join(f'{name}: {READINGS[name].words}' for name in right)}."
     )
