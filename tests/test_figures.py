@@ -333,3 +333,10 @@ def test_round_off_is_published_as_zero():
     found = without_round_off(frame.copy())
     assert list(found["x (mm)"]) == [2.0, 0.0, 3e-11] and list(found["of"]) == ["a", "b", "c"]
     assert found["y"].isna().tolist() == [True, False, False] and list(found["y"][1:]) == [1e-30, 0.0]
+
+
+def test_a_picture_does_not_depend_on_the_last_digits_of_its_layout(tmp_path):
+    fig = picture("4-8")
+    write_picture(fig, tmp_path / "a.png", BASELINE_DPI)
+    edges = np.concatenate([axes.get_position(original).bounds for axes in fig.axes for original in (True, False)])
+    assert len(edges) and (edges == edges.round(12)).all()

@@ -44,12 +44,28 @@ def read_frame(path: Path) -> pd.DataFrame:
     return pd.read_csv(path, dtype={c: str for c in TEXT_COLUMNS if c in header})
 
 
+def settle(fig: Figure, dpi: float = DPI) -> None:
+    """Lay a picture out, once for all its files: a solver of layouts differs in the last digit from one process to the next."""
+    engine = fig.get_layout_engine()
+    if engine is None:
+        return
+    with theme():  # ticks and the layout are made only now
+        fig.set_dpi(dpi)
+        engine.execute(fig)
+    fig.set_layout_engine("none")
+    for axes in fig.axes:
+        for which in ("original", "active"):
+            place = axes.get_position(original=which == "original")
+            axes.set_position([round(edge, 12) for edge in place.bounds], which=which)
+
+
 def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
     """Write a picture as PNG at a fixed resolution, in few colours and without metadata: same data, same bytes."""
     from PIL import Image
 
     stream = io.BytesIO()
-    with theme():  # ticks and the layout are made only now
+    settle(fig, dpi)
+    with theme():
         fig.savefig(stream, format="png", dpi=dpi, metadata={"Software": None})
     with Image.open(stream) as picture:
         plain = picture.convert("RGB")
@@ -60,6 +76,7 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
 
 def write_vectors(fig: Figure, path: Path) -> None:
     """Write a picture as PDF without dates: same data, same bytes."""
+    settle(fig)
     with theme():
         write_atomically(path, lambda p: fig.savefig(p, format="pdf", dpi=DPI, metadata={"CreationDate": None, "Producer": None}))
 
