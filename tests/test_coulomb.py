@@ -58,6 +58,20 @@ def check_laws(parts, step, coefficient, motion, total):
     return f, tau, slip
 
 
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6), st.floats(0.01, 1.0), st.floats(-1.0, 1.0), st.floats(0.01, 100))
+def test_stiffness_is_that_of_the_force_while_all_nodes_stay_as_they_are(seed, coefficient, shift, force):
+    """Against two solutions a little higher and lower, where no node changes its state."""
+    parts = tilted(problem(seed, COUNT), seed)
+    motion = np.tile([shift, 0.0], (COUNT, 1))
+    step, gradient = solve(parts, coefficient, motion, force=force), parts[4]
+    h = 1e-7 * max(abs(step.depth_change), 1e-6)
+    sides = [solve(parts, coefficient, motion, depth_change=step.depth_change + way) for way in (-h, h)]
+    if all((side.active == step.active).all() and (side.state == step.state).all() for side in sides):
+        low, high = (-np.sum(s.force * gradient[:, 1] + s.tangential * tangents(gradient)[:, 1]) for s in sides)
+        assert step.stiffness == pytest.approx((high - low) / (2 * h), rel=1e-4)
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), st.floats(0.01, 1.5), st.floats(-1.0, 1.0), st.floats(0.01, 100))
 def test_every_condition_holds(seed, coefficient, shift, force):

@@ -55,7 +55,7 @@ VARIABLES = {
     "cutbacks": (("time",), "1", "halvings of the step"),
     "residual": (("time",), "1", "out-of-balance force over contact force"),
     "complementarity_error": (("time",), "1", "sum of force times gap over total force times node spacing"),
-    "energy_balance_error": (("time",), "1", "work less stored and dissipated energy, over work (trapezoidal in time)"),
+    "energy_balance_error": (("time",), "1", "work less stored and dissipated energy, over work"),
     "min_detF": (("time",), "1", "smallest det F of the body"),
     "external_work": (("time",), "J/m", "work of the indenter per contact length"),
     "stored_energy": (("time",), "J/m", "network and Maxwell-spring energy per contact length"),

@@ -142,24 +142,24 @@ def energy_errors(strain, prony, count, dissipated_share=1.0):
 
 def check_energy(strain, prony=THESIS, **mutant):
     coarse, fine = (energy_errors(strain, prony, count, **mutant)[-1] for count in (8, 16))
-    assert fine < 2e-3, f"truth: {fine:.2e} of the work is lost"
-    assert fine < 0.4 * coarse, f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
+    assert fine < 2e-4, f"truth: {fine:.2e} of the work is lost"
+    assert fine < max(0.4 * coarse, 1.5e-4), f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
     frozen = ENERGY[strain, prony is None]
     two_numbers(fine, truth=frozen, within=0.1, frozen=frozen, tight=1e-3)
 
 
 ENERGY = {
-    ("small", True): 0.000843002,
-    ("small", False): 0.000455660,
-    ("finite", True): 0.00108594,
-    ("finite", False): 0.000525399,
+    ("small", True): 1.15194092e-4,
+    ("small", False): 6.70521497e-5,
+    ("finite", True): 1.00093615e-4,
+    ("finite", False): 1.90933866e-5,
 }
 
 
 @pytest.mark.parametrize("prony", [None, THESIS], ids=["elastic", "viscoelastic"])
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_energy_balance(strain, prony, must_fail):
-    """Work of the indenter = stored + dissipated energy, up to the trapezoidal rule's error in the step."""
+    """Work of the indenter = stored + dissipated energy, up to the error of the rule in the step, that knows the stiffness at its ends."""
     check_energy(strain, prony)
     if prony:
         must_fail(check_energy, strain, prony, dissipated_share=0.9)

@@ -87,7 +87,8 @@ class Coulomb:
             else:
                 load = force - answer.load_shift
             try:
-                f, tau, dd, on, state, pivots = _solve(self.coefficient, answer, offset, load, active, self.state[part], partner)
+                found = _solve(self.coefficient, answer, offset, load, active, self.state[part], partner)
+                f, tau, dd, on, state, pivots, stiffness = found
                 if answer.bent and not stable(answer.matrix, answer.compliance[: len(gap), : len(gap)], on):
                     raise ContactError("the curved contact is not stable")
             except ContactError as error:
@@ -96,7 +97,7 @@ class Coulomb:
                 continue
             dd = depth_change if depth_change is not None else dd
             du = answer.displacement(np.concatenate([f, tau]), dd)
-            return FrictionStep(du, dd, f, on, pivots, softened, tangential=tau, state=state)
+            return FrictionStep(du, dd, f, on, pivots, softened, stiffness, tau, state)
 
     def accept(self, part: slice, step: FrictionStep) -> None:
         """Take over forces and states of a solution."""
@@ -141,7 +142,8 @@ class _Cycling(ContactError):
 
 
 def _solve(mu, answer, offset, load, active, state, partner=None):
-    """States, forces and depth change of the linearised problem; returns (f, tau, depth change, active, state, pivots).
+    """States, forces and depth change of the linearised problem; returns (f, tau, depth change, active, state, pivots,
+    stiffness).
 
     A node that comes into contact slips at first, against its motion: entering as sticking makes the states cycle. Where friction
     is so large that slipping nodes wedge themselves in it is the other way round. If neither ends, Tresca's problem (given bounds
@@ -155,10 +157,28 @@ def _solve(mu, answer, offset, load, active, state, partner=None):
     f, bound = _exchange(0.0, answer, offset, load, active, 0 * state, partner=partner)[0], None
     for _ in range(60):
         bound = mu * f if bound is None else 0.5 * (bound + mu * f)
-        f, tau, dd, active, state, pivots = _exchange(mu, answer, offset, load, active, state, bound=bound, partner=partner)
+        *found, active, state, pivots, stiffness = _exchange(
+            mu, answer, offset, load, active, state, bound=bound, partner=partner
+        )
+        f, tau, dd = found
         if np.abs(mu * f - bound).max() <= 1e-6 * mu * f.max():
-            return f, tau, dd, active, state, pivots
+            return f, tau, dd, active, state, pivots, stiffness
     raise _Cycling("stick and slip keep cycling")
+
+
+def _stiffness(answer, system, rows, share, on):
+    """N/m^2, of the force against the depth while all nodes stay as they are; None where one yields to no force.
+
+    ``rows`` have multipliers of their own, by ``system``; those of nodes that slip are ``share`` of their normal ones.
+    """
+    n = len(share)
+    try:
+        own = np.zeros(2 * n)
+        own[rows] = -np.linalg.solve(system, answer.lever[rows])
+    except np.linalg.LinAlgError:
+        return None
+    own[n + on] += share[on] * own[on]
+    return float(answer.corner - answer.lever @ own)
 
 
 def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bound=None, partner=None):
@@ -220,7 +240,9 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
         if not count:
             f[~active] = tau[~active] = 0
             state = np.where(free | (state != STICK), state, 1)  # held fast, though it may have come a long way in this step
-            return np.maximum(f, 0), tau, dd, active, np.where(active, state, 0).astype(np.int8), pivots
+            rows = np.concatenate([on, n + stick])
+            stiffness = _stiffness(answer, system[: i + j, : i + j], rows, share, on)
+            return np.maximum(f, 0), tau, dd, active, np.where(active, state, 0).astype(np.int8), pivots, stiffness
         key = (active.tobytes(), state.tobytes())
         if count < best:
             best, patience = count, 10

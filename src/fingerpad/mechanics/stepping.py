@@ -43,7 +43,8 @@ class NewtonSettings:
     at a scheduled step may take ``most_iterations``. Factors are kept, from step to step too, while what they leave is within
     ``chord`` tolerances and they would end, as they go on, ``outlook`` iterations later, no step needs more than ``patience`` of
     them, and what answers at once in a step has changed by no more than ``stiffening``. A zone ``spare`` times as wide as it need
-    be is drawn together. A push that points farther than ``aside`` (rad) from the vertical is one at the pad's side.
+    be is drawn together. A push that points farther than ``aside`` (rad) from the vertical is one at the pad's side. An iteration
+    goes only as far as det F stays above ``squeeze`` of what it was, where that is at least a fifth of its way.
     """
 
     force_tolerance: float = 1e-4
@@ -60,6 +61,7 @@ class NewtonSettings:
     stiffening: float = 0.1
     aside: float = np.radians(50.0)
     spare: float = 1.4
+    squeeze: float = 0.25
 
 
 @dataclass(frozen=True)
@@ -176,6 +178,7 @@ class QuasiStatic:
             self.friction = Coulomb(friction, places)
         self._set_zone(*skin.start)
         self.height = self._first_touch()
+        self._reach_what_touches()
         self._unloaded = body.save()
         self._factors = self._stiffness = self._found = None
         self._past: list[_Past] = []
@@ -188,6 +191,13 @@ class QuasiStatic:
         self._range = slice(max(first, 0), min(last, len(self.skin.nodes)))
         self.zone = Zone(self.skin.nodes[self._range], self.body.space.equation)
         self.solver = condensation(self.body.space.pattern, self.zone.condensed)
+
+    def _reach_what_touches(self):
+        """Widen the zone to where the profile touches first: the edges of a hole are not where its middle is."""
+        gap = self.profile.evaluate(self._position(self.skin.nodes))[0]
+        first = np.flatnonzero(gap <= gap.min() + 0.1 * self.skin.spacing)
+        if first[0] < self._range.start or first[-1] >= self._range.stop:
+            self._set_zone(min(self._range.start, first[0] - 8), max(self._range.stop, first[-1] + 9))
 
     def _grow_zone(self):
         first, last = self._range.start, self._range.stop
@@ -350,13 +360,14 @@ class QuasiStatic:
         self._stiff = step.stiffness
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
         u, depth = body.u, self.depth
-        share = 1.0
+        share, least = 1.0, max(0.02, settings.squeeze * body.smallest_jacobian)
         while True:
             body.advance(du, share)
             internal = body.internal_force()
-            if body.smallest_jacobian > 0.02 or body.geometrically_linear:
+            if body.smallest_jacobian > least or body.geometrically_linear:
                 break
             share /= 2
+            least = 0.02 if share < 0.2 else least
             if share < 0.05:
                 raise _StepFailure("an element would turn inside out")
             body.displace(u)
@@ -437,7 +448,7 @@ class QuasiStatic:
     def _pressing_work(self, force, way, stiffness):
         """Work (J/m) of the force on a way (m) into the pad: by the trapezoidal rule, which is right for small steps.
 
-        A steady step is as large as it likes: where contact begins or ends the force grows by a power of the way, which the
+        A large step is not: where contact begins or ends the force grows by a power of the way, which the
         ``stiffness`` (N/m^2; None: not known) at the other end tells; else it is a cubic with the stiffness of either end.
         """
         trapezoidal = 0.5 * (self.force + force) * way
@@ -472,7 +483,7 @@ class QuasiStatic:
             if force < -1e-9 * self.nodal_force.sum():
                 raise _StepFailure("the indenter is pulled instead of pushed")
             self.body.commit()
-            stiffness = self._stiff if dt >= STEADY * 0.5**self.settings.max_halvings else None
+            stiffness = self._stiff if distance == state[4] else None
             work = self._pressing_work(force, self.depth - state[3], stiffness)
             work += 0.5 * (self._tangential + tangential) * (distance - state[4])
             lost = self.friction.commit(self._range, pull, self._motion(self.zone.nodes)) if self.friction else 0.0

@@ -289,6 +289,8 @@ SECOND_SOLVER = frozenset([*list(PICKED)[::6], *(case.name for case in COMBINED[
 REFERENCE = frozenset([name for name, case in CATALOGUE.items() if _has_reference(case)][-30:])
 """Cases that are held against a converged reference."""
 FAST = tuple(
-    case.name for case in COMBINED if case.name.startswith(("59:", "63:", "66:", "70:", "73:", "80:", "83:", "89:", "97:"))
+    case.name
+    for case in COMBINED
+    if case.name.startswith(("56:", "59:", "63:", "66:", "70:", "73:", "80:", "83:", "86:", "89:", "97:", "192:"))
 )
 """Of the combinations, some that take no time: those that the tests run."""
