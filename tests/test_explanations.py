@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from fingerpad import load_scene
-from fingerpad.studies.explanations.run import CONTROL, PRESSED, READINGS, STROKED, explanations
+from fingerpad.studies.explanations.run import CONTROL, PRESSED, READINGS, SHARED, STROKED, explanations
 
 pytestmark = pytest.mark.unit
 REFERENCE = "config/reference/thesis_numbers.csv"
@@ -18,6 +18,8 @@ def test_a_reading_changes_what_it_says(name):
     read = [reading.of(press, False), reading.of(stroke, True), reading.of(steps, True)]
     same = [now.varied({"accuracy": was.accuracy}) == was for now, was in zip(read, (press, stroke, steps), strict=True)]
     wanted = {CONTROL: [True, True, True], "depth kept": [True, False, True], "no friction": [True, False, True]}
+    wanted |= {name: [True, True, True] for name in SHARED[CONTROL]}
+    wanted |= {name: [False, False, False] for name in READINGS if READINGS[name].deeper}
     about_strokes = [True, False, False]
     assert same == wanted.get(name, about_strokes if not reading.everywhere else [False] * 3)
     assert read[1].motion[0].force == pytest.approx(reading.share * stroke.motion[0].force)

@@ -62,7 +62,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.studies.accuracy.belief import OUTSIDE
     from fingerpad.studies.accuracy.drawn import CLASSES
     from fingerpad.studies.accuracy.run import FAMILY, sweeps
-    from fingerpad.studies.explanations.run import PRESSED, READINGS, STROKED
+    from fingerpad.studies.explanations.run import PRESSED, SHARED, STROKED
     from fingerpad.studies.stability.picture import PARTS
     from fingerpad.studies.views.frames import FRAMES
 
@@ -78,6 +78,6 @@ def _read() -> dict[str, Any]:
         for spec, module in sorted(found, key=lambda pair: [int(n) for n in pair[0].number.split("-")])
     }
     offers = {"OUTSIDE": list(OUTSIDE), "CLASSES": list(CLASSES), "METHODS": dict(PARTS)}
-    offers |= {"READINGS": list(READINGS), "READ": [*PRESSED, *STROKED]}
+    offers |= {"READINGS": [list(names) for names in SHARED.values()], "READ": [*PRESSED, *STROKED]}
     offers["VIEWS"] = {name: list(scenes) for name, (_, scenes) in FRAMES.items()}
     return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps())} | offers

@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
@@ -568,13 +569,15 @@ class Products:
         scenes, data = offered()["READ"], []
         reference = {"reference": [self.at("config/reference/thesis_numbers.csv")]}
         read = reference | self._read(*scenes)
-        for name in offered()["READINGS"]:
-            told = {"name": [name], "scenes": [os.path.dirname(self.scene(scenes[0]))], "written": self._written(*scenes)}
-            data.append(d := self.result(f"explanations/{name.replace(' ', '_')}.csv"))
-            called = f"explanation_{name.replace(' ', '_').replace('-', '_')}"
-            yield Job("explanation", read, {"data": [d]}, told, called, mem_mb=2000, runtime=60)
+        for names in offered()["READINGS"]:
+            told = {"names": names, "scenes": [os.path.dirname(self.scene(scenes[0]))], "written": self._written(*scenes)}
+            made = [self.result(f"explanations/{re.sub('[^a-z]+', '_', name)}.csv") for name in names]
+            data += made
+            called = f"explanation_{re.sub('[^a-z]+', '_', names[0])}"
+            yield Job("explanation", read, {"data": made}, told, called, mem_mb=2000, runtime=60)
+        names = [name for names in offered()["READINGS"] for name in names]
         read = reference | {"comparison": self.tables(TABLES[:1]), "readings": data}
-        yield Job("explanations_table", read, {"table": self.tables(["explanations"])}, {"names": list(offered()["READINGS"])})
+        yield Job("explanations_table", read, {"table": self.tables(["explanations"])}, {"names": names})
 
     def map_of_touch(self) -> Iterator[Job]:
         """A sweep over curvature, force and rate."""

@@ -9,7 +9,7 @@ tells what the model of 1999 may have been, not that it was. What the same readi
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ from fingerpad.measures.runs import FAST, NINE
 from fingerpad.measures.strokes import FULL, STEPPED, SUB
 from fingerpad.measures.table import Instead, Measures
 from fingerpad.reference_data import read_reference
+from fingerpad.results import ENERGIES
 from fingerpad.scenes.scene import Scene, Slide, load_scene
 from fingerpad.simulation import simulate
 
@@ -35,6 +36,7 @@ class Reading:
     """What is read otherwise: in words, as changes of every scene, and as changes of those with the wavy surface.
 
     ``share``: of the force that presses the wavy surface, in the same time. keeps: what is kept while it slides, force or depth.
+    deeper: m, how much deeper than it is called a receptor lies. energy: which of a history's strain energies is read.
     """
 
     words: str
@@ -42,6 +44,8 @@ class Reading:
     stroked: Mapping[str, Any]
     share: float = 1.0
     keeps: str = "force"
+    deeper: float = 0.0
+    energy: str = ENERGIES[0]
 
     def of(self, scene: Scene, stroked: bool) -> Scene:
         """A scene read so."""
@@ -52,7 +56,19 @@ class Reading:
             changes |= {"motion[0].rate": self.share * press.rate} if press.rate else {}
         if stroked and isinstance(scene.motion[1], Slide):
             changes["motion[1].keep"] = self.keeps
+        if self.deeper:
+            depths = scene.outputs.receptors.depths
+            changes["outputs.receptors.depths"] = [f"{round(1e6 * (depth + self.deeper), 3):g} um" for depth in depths]
         return scene.varied(changes)
+
+    def runs(self) -> Reading:
+        """What of it is simulated: readings that have this in common are read of the same histories."""
+        return replace(self, words="", energy=ENERGIES[0])
+
+    def called(self, history: xr.Dataset) -> xr.Dataset:
+        """A history of it with receptors and energy by the names that the measures ask for."""
+        names = {"receptor_depth": history["receptor_depth"] - self.deeper, ENERGIES[0]: history[self.energy]}
+        return history.assign({name: values for name, values in names.items() if self.deeper or name != "receptor_depth"})
 
 
 def _everywhere(words: str, **changes: Any) -> Reading:
@@ -74,9 +90,25 @@ READINGS: dict[str, Reading] = {
     "no friction": Reading("the wavy surface slides without friction", {}, {"friction": 0.0}),
     "half the force": Reading("the wavy surface is pressed with 10 gram-weight", {}, {}, 0.5),
     "twice the force": Reading("the wavy surface is pressed with 40 gram-weight", {}, {}, 2.0),
+    **{
+        f"energy: {name}": Reading(f"strain energy is that of {words}", {}, {}, energy=f"strain_energy_{variable}")
+        for name, words, variable in (
+            ("long-term", "the total stress on long-term moduli", "long_term_moduli"),
+            ("stress x strain", "half of total stress times strain", "half_stress_strain"),
+            ("recoverable", "the springs of network and branches", "recoverable"),
+            ("network", "the long-term network", "network"),
+        )
+    },
+    "receptors higher": Reading("receptors lie 80 um nearer the skin than they are called", {}, {}, deeper=-80e-6),
+    "receptors deeper": Reading("receptors lie 80 um deeper than they are called", {}, {}, deeper=80e-6),
     "depth kept": Reading("the depth that 20 gram-weight press to is kept while the wavy surface slides", {}, {}, keeps="depth"),
 }
 """What the thesis leaves open, by name; and the control."""
+SHARED: dict[str, tuple[str, ...]] = {}
+"""Readings that are read of the same histories, by the first of them."""
+for _name, _reading in READINGS.items():
+    _first = next((first for first in SHARED if READINGS[first].runs() == _reading.runs()), _name)
+    SHARED[_first] = (*SHARED.get(_first, ()), _name)
 
 
 def simulated(scenes: Path, reading: Reading) -> dict[str, xr.Dataset]:
@@ -84,10 +116,11 @@ def simulated(scenes: Path, reading: Reading) -> dict[str, xr.Dataset]:
     return {name: simulate(reading.of(load_scene(scenes / f"{name}.yaml"), name in STROKED)) for name in (*PRESSED, *STROKED)}
 
 
-def verdicts(histories: Mapping[str, xr.Dataset], reference_csv: str | PathLike) -> pd.DataFrame:
-    """The comparison of some histories: columns id, simulated, verdict; without what they do not tell."""
+def verdicts(histories: Mapping[str, xr.Dataset], reading: Reading, reference_csv: str | PathLike) -> pd.DataFrame:
+    """The comparison of a reading's histories: columns id, simulated, verdict; without what they do not tell."""
     nothing = Measures.of({})
-    table = thesis_comparison(Measures.of(histories), Instead(nothing, nothing, nothing, nothing), reference_csv)
+    called = {name: reading.called(history) for name, history in histories.items()}
+    table = thesis_comparison(Measures.of(called), Instead(nothing, nothing, nothing, nothing), reference_csv)
     return table.loc[table["verdict"] != "not_comparable", ["id", "simulated", "verdict"]]
 
 
