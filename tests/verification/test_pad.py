@@ -159,7 +159,7 @@ ENERGY = {
 @pytest.mark.parametrize("prony", [None, THESIS], ids=["elastic", "viscoelastic"])
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_energy_balance(strain, prony, must_fail):
-    """Work of the indenter = stored + dissipated energy, up to the error of the rule in the step, that knows the stiffness at its ends."""
+    """Work of the indenter = stored + dissipated energy, up to the error in the step of a rule that knows the ends."""
     check_energy(strain, prony)
     if prony:
         must_fail(check_energy, strain, prony, dissipated_share=0.9)

@@ -36,7 +36,8 @@ class Reading:
     """What is read otherwise: in words, as changes of every scene, and as changes of those with the wavy surface.
 
     ``share``: of the force that presses the wavy surface, in the same time. keeps: what is kept while it slides, force or depth.
-    deeper: m, how much deeper than it is called a receptor lies. energy: which of a history's strain energies is read.
+    deeper: m, how much deeper than it is called a receptor lies. energy: which of a history's strain energies is read. given:
+    rows that it takes from the thesis, so that it explains nothing by them.
     """
 
     words: str
@@ -46,6 +47,7 @@ class Reading:
     keeps: str = "force"
     deeper: float = 0.0
     energy: str = ENERGIES[0]
+    given: tuple[str, ...] = ()
 
     def of(self, scene: Scene, stroked: bool) -> Scene:
         """A scene read so."""
@@ -80,6 +82,12 @@ READINGS: dict[str, Reading] = {
     CONTROL: Reading("the comparison's own scenes", {}, {}),
     "long-term moduli": _everywhere("the printed moduli are long-term ones", specimen__moduli="long_term"),
     "larger radius": _everywhere("apex radius 10.5 mm, of a published section", specimen__outline__apex_radius="10.5 mm"),
+    "smaller radius": replace(
+        _everywhere("apex radius 7.9 mm, of the printed fan of nodes", specimen__outline__apex_radius="7.9 mm"), given=("T323",)
+    ),
+    "more fat": _everywhere("5.65 mm of fat, the end of its interval", specimen__outline__bone_centre_height="-3.5 mm"),
+    "wider bone": _everywhere("bone half-width 4.87 mm, the end of its interval", specimen__outline__bone_half_width="4.87 mm"),
+    "narrow nail": _everywhere("nail half-width 0.9 mm, the end of its interval", specimen__outline__nail_half_width="0.9 mm"),
     "softer epidermis": _everywhere(
         "half the printed modulus of the epidermis", specimen__layers__epidermis__youngs_modulus="75 kPa"
     ),
@@ -87,6 +95,7 @@ READINGS: dict[str, Reading] = {
         "twice the printed modulus of the epidermis", specimen__layers__epidermis__youngs_modulus="300 kPa"
     ),
     "longer contact": _everywhere("force spread over 20 mm, not 11.4 mm, of pad", specimen__contact_length="20 mm"),
+    "more friction": Reading("the wavy surface slides with twice the coefficient, 0.7", {}, {"friction": 0.7}),
     "no friction": Reading("the wavy surface slides without friction", {}, {"friction": 0.0}),
     "half the force": Reading("the wavy surface is pressed with 10 gram-weight", {}, {}, 0.5),
     "twice the force": Reading("the wavy surface is pressed with 40 gram-weight", {}, {}, 2.0),
@@ -148,7 +157,7 @@ def explanations(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], ref
     for _, row in scored[~scored["verdict"].isin(AGREES)].iterrows():
         id_ = row["id"]
         tried = {name: bool(held[id_]) for name, held in right.items() if name != CONTROL and id_ in held}
-        by = [name for name, holds in tried.items() if holds and not control.get(id_, True)]
+        by = [name for name, holds in tried.items() if holds and not control.get(id_, True) and id_ not in READINGS[name].given]
         rows.append(
             {k: row[k] for k in ("id", "figure", "quantity", "condition", "simulated")}
             | {"explained_by": ", ".join(by), "with_it": values[by[0]][id_] if by else float("nan")}
