@@ -51,3 +51,23 @@ def test_explained_is_what_holds_with_a_reading_and_not_without():
     assert dict(table["explained_by"]) == {"TR28": "", "TR29": "no friction", "TR30": ""}
     said = explanations(published, found, REFERENCE).attrs["summary"]
     assert "trends: 1 of 4 right, 1 more explained by a run" in said and "no friction 1 and 1" in said
+
+
+def test_a_reading_explains_nothing_by_what_it_was_given():
+    published = pd.DataFrame(
+        [("T323", "4-17", "radius", "", 8.1, "outside"), ("T108", "4-9", "width", "", 0.26, "outside")],
+        columns=["id", "figure", "quantity", "condition", "simulated", "verdict"],
+    )
+    found = {
+        name: pd.DataFrame([("T323", 7.9, verdict), ("T108", 0.3, verdict)], columns=["id", "simulated", "verdict"])
+        for name, verdict in ((CONTROL, "outside"), ("smaller radius", "inside"))
+    }
+    assert dict(explanations(published, found, REFERENCE).set_index("id")["explained_by"]) == {
+        "T323": "",
+        "T108": "smaller radius",
+    }
+
+
+def test_readings_that_share_their_runs_differ_in_what_is_read_only():
+    assert sorted(name for names in SHARED.values() for name in names) == sorted(READINGS)
+    assert SHARED[CONTROL] == (CONTROL, *(name for name in READINGS if name.startswith("energy")))
