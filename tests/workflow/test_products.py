@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from fingerpad import load_scene, plan
 from fingerpad.config import read_config
 from fingerpad.documents import SceneError
 from fingerpad.workflow.chapters import offered
@@ -101,6 +102,16 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
     assert coarse == {*thesis.config.scenes, *compared, "calibration_plate", "calibration_ramp_hold", "stroke_sub_10"}
     assert {"ramp150_flat", "press10_flat"} <= coarse < every
     assert {Path(p).parent.name for p in outputs if p.startswith("results/thesis/coarse_mesh/")} == coarse
+
+
+@pytest.mark.parametrize("configuration", ["thesis", "smoke"])
+def test_companions_have_fewer_nodes_than_what_they_accompany(configuration, request):
+    """A tolerance may need a finer mesh than a level: then companions would cost more than their run, and tell nothing."""
+    products = request.getfixturevalue(configuration).products
+    for name in sorted(products.coarse & {*products.config.scenes, "calibration_plate"}):
+        scene, own = load_scene(products.scene(name)), products.config.accuracy
+        nodes = plan(scene if own is None else scene.with_accuracy(own)).nodes
+        assert plan(scene.with_accuracy(products.config.companion_accuracy)).nodes < 0.7 * nodes, name
 
 
 def test_companions_are_solved_beside_their_scenes_on_one_mesh_with_all_steps_and_with_every_two_made_one(thesis):
