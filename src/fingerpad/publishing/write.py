@@ -66,7 +66,7 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
     stream = io.BytesIO()
     settle(fig, dpi)
     with theme():
-        fig.savefig(stream, format="png", dpi=dpi, metadata={"Software": None})
+        fig.savefig(stream, format="png", dpi=dpi, metadata={"Software": None}, pil_kwargs={"compress_level": 0})
     with Image.open(stream) as picture:
         plain = picture.convert("RGB")
     counted = plain.getcolors(COLOURS)
