@@ -410,11 +410,17 @@ def test_series_is_given_back_from_a_wrong_start_by_one_simulation(hereditary, r
 
 
 def test_intervals_of_the_series_cover_what_they_promise(hereditary):
+    """Started at the truth, which is quicker; every tenth also far from it, and the same is found."""
     clean, hits = hereditary.force(THESIS), []
+    truth = dict(zip(WRONG_START, (1.0, *np.column_stack([THESIS.beta, THESIS.tau]).ravel()), strict=True))
     for seed in range(60):
         force, sigma = noisy(clean, seed, noise=0.002)
-        found = fit_series(hereditary, force, hereditary.force, start=WRONG_START, sigma=sigma)
+        found = fit_series(hereditary, force, hereditary.force, start=truth, sigma=sigma)
         hits.append(inside(found.corrected))
+        if seed % 10 == 0:
+            far = fit_series(hereditary, force, hereditary.force, start=WRONG_START, sigma=sigma)
+            assert series_estimates(far.corrected)["g_1"] == pytest.approx(series_estimates(found.corrected)["g_1"], rel=1e-4)
+            assert inside(far.corrected) == hits[-1]
     for name, share in pd.DataFrame(hits).mean().items():
         assert 0.86 <= share <= 1.0, name
 
