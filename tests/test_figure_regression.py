@@ -95,7 +95,7 @@ def stands_for(history, name):
 
 #: name -> steps of all its legs, and keys changed, of one stroke over each surface and one of each plate
 SHORT = {
-    "stroke_10": (90, {"outputs.snapshots": (2.0,)}), "stroke_sub_10": (60, {}), "step_sub": (1, {}),
+    "stroke_10": (140, {"outputs.snapshots": (2.0,)}), "stroke_sub_10": (60, {}), "step_sub": (1, {}),
     "plate_stroke_right": (12, {}), "ridged_stroke_right": (12, {}),
 }  # fmt: skip
 #: which of these stands for the other speeds and ways
