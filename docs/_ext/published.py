@@ -176,6 +176,21 @@ def eq_4_4_worst():
     return digits(table("figures/tables/receptor_fits").query("law == '4-4'")["r_squared"].min())
 
 
+# -- what is read otherwise --------------------------------------------------------------------------------------------------------
+
+
+@number
+def explained_share():
+    told = (ROOT / "figures/tables/explanations.md").read_text(encoding="utf-8")
+    return re.search(r"right or explained: (\d+) ?%", told)[1] + " %"
+
+
+@number
+def mending_readings():
+    rows = table("figures/tables/explanations_readings").query("makes_hold > makes_fail")
+    return "; ".join(f"{row.words} ({row.makes_hold} and {row.makes_fail})" for row in rows.itertuples())
+
+
 # -- the pad of 1999 ------------------------------------------------------------------------------------------------------------
 
 

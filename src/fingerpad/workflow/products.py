@@ -577,7 +577,8 @@ class Products:
             yield Job("explanation", read, {"data": made}, told, called, mem_mb=2000, runtime=60)
         names = [name for names in offered()["READINGS"] for name in names]
         read = reference | {"comparison": self.tables(TABLES[:1]), "readings": data}
-        yield Job("explanations_table", read, {"table": self.tables(["explanations"])}, {"names": names})
+        made = {"tables": self.tables(["explanations", "explanations_readings"])}
+        yield Job("explanations_table", read, made, {"names": names})
 
     def map_of_touch(self) -> Iterator[Job]:
         """A sweep over curvature, force and rate."""

@@ -85,9 +85,12 @@ READINGS: dict[str, Reading] = {
     "smaller radius": replace(
         _everywhere("apex radius 7.9 mm, of the printed fan of nodes", specimen__outline__apex_radius="7.9 mm"), given=("T323",)
     ),
-    "more fat": _everywhere("5.65 mm of fat, the end of its interval", specimen__outline__bone_centre_height="-3.5 mm"),
+    "more fat": _everywhere(
+        "5.65 mm of fat, the end of its interval",
+        specimen__outline__bone_centre_height="-2.675 mm",
+        specimen__outline__bone_half_height="1.325 mm",
+    ),
     "wider bone": _everywhere("bone half-width 4.87 mm, the end of its interval", specimen__outline__bone_half_width="4.87 mm"),
-    "narrow nail": _everywhere("nail half-width 0.9 mm, the end of its interval", specimen__outline__nail_half_width="0.9 mm"),
     "softer epidermis": _everywhere(
         "half the printed modulus of the epidermis", specimen__layers__epidermis__youngs_modulus="75 kPa"
     ),
@@ -144,12 +147,10 @@ def explanations(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], ref
 
     Returns:
         A row each, columns `COLUMNS`: the readings that explain it, the number found with the first of them, and the readings
-        that do not. ``attrs["summary"]`` says how many of those held out are right, and how many more are explained, by kind,
-        and what each reading makes hold and fail.
+        that do not. ``attrs["summary"]`` says how many of those held out are right, and how many more are explained, by kind.
     """
     reference = read_reference(reference_csv)
-    scored = published[published["id"].map(reference.apply(score_of, axis=1)).eq("held out")]
-    scored = scored[scored["verdict"].ne("not_comparable")]
+    scored = _held_out(published, reference)
     right = {name: table.set_index("id")["verdict"].isin(AGREES) for name, table in found.items()}
     values = {name: table.set_index("id")["simulated"] for name, table in found.items()}
     control = right[CONTROL]
@@ -164,11 +165,11 @@ def explanations(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], ref
             | {"not_by": ", ".join(name for name in tried if name not in by)}
         )
     table = pd.DataFrame(rows, columns=COLUMNS)
-    table.attrs["summary"] = _summary(scored, table, right, reference)
+    table.attrs["summary"] = _summary(scored, table, reference)
     return table
 
 
-def _summary(scored: pd.DataFrame, table: pd.DataFrame, right: Mapping[str, pd.Series], reference: pd.DataFrame) -> str:
+def _summary(scored: pd.DataFrame, table: pd.DataFrame, reference: pd.DataFrame) -> str:
     form = reference["form"]
     kinds = scored["id"].map(form).map(lambda each: {"axis": "axes", "trend": "trends"}.get(each, "values and ranges"))
     explained = scored["id"].isin(table.loc[table["explained_by"] != "", "id"])
@@ -179,16 +180,26 @@ def _summary(scored: pd.DataFrame, table: pd.DataFrame, right: Mapping[str, pd.S
         told.append(f"{kind}: {(agrees & of).sum()} of {of.sum()} right, {(explained & of).sum()} more explained by a run")
     counted = ~kinds.eq("axes")
     share = ((agrees | explained) & counted).sum() / counted.sum()
-    control = right[CONTROL]
-    turned = []
+    return f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: {share:.0%}."
+
+
+def _held_out(published: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
+    """The rows of a comparison that the pad was held out from, and that are judged."""
+    held_out = published["id"].map(reference.apply(score_of, axis=1)).eq("held out")
+    return published[held_out & published["verdict"].ne("not_comparable")]
+
+
+def turned(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference_csv: str | PathLike) -> pd.DataFrame:
+    """How many of the statements held out each reading makes hold that do not without it, and the other way round.
+
+    Arguments as of :func:`explanations`. A row a reading, those first that make most hold for what they make fail.
+    """
+    held_out = _held_out(published, read_reference(reference_csv))["id"]
+    right = {name: table.set_index("id")["verdict"].isin(AGREES) for name, table in found.items()}
+    control, rows = right.pop(CONTROL), []
     for name, held in right.items():
-        if name == CONTROL:
-            continue
-        both = held.index.intersection(control.index).intersection(scored["id"])
+        both = held.index.intersection(control.index).intersection(held_out).difference(READINGS[name].given)
         gained, lost = (held[both] & ~control[both]).sum(), (~held[both] & control[both]).sum()
-        turned.append(f"{name} {gained} and {lost}")
-    return (
-        f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: {share:.0%}. "
-        f"Statements that each reading makes hold and makes fail: {'; '.join(turned)}. "
-        f"Readings: {'; '.join(f'{name}: {READINGS[name].words}' for name in right)}."
-    )
+        rows.append({"reading": name, "words": READINGS[name].words, "makes_hold": gained, "makes_fail": lost})
+    table = pd.DataFrame(rows)
+    return table.iloc[(table["makes_fail"] - table["makes_hold"]).argsort(kind="stable")].reset_index(drop=True)
