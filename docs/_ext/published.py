@@ -176,7 +176,7 @@ def eq_4_4_worst():
     return digits(table("figures/tables/receptor_fits").query("law == '4-4'")["r_squared"].min())
 
 
-# -- what is read otherwise --------------------------------------------------------------------------------------------------------
+# -- what is read otherwise ---------------------------------------------------------------------------------------------------
 
 
 @number
