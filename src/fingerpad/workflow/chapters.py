@@ -37,7 +37,7 @@ class Figure:
 @cache
 def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
     """What is on offer: `figures` by number, and the studies' `FAMILY`, `SWEEPS`, `OUTSIDE`, `CLASSES` (accuracy),
-    `METHODS` (stability), `READINGS` of the scenes `READ` (explanations), `VIEWS` with their scenes.
+    `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations), `VIEWS` with scenes.
 
     Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
     """
@@ -62,7 +62,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.studies.accuracy.belief import OUTSIDE
     from fingerpad.studies.accuracy.drawn import CLASSES
     from fingerpad.studies.accuracy.run import FAMILY, sweeps
-    from fingerpad.studies.explanations.run import PRESSED, SHARED, STROKED
+    from fingerpad.studies.explanations.run import PRESSED, READ_ONLY, READINGS, STROKED
     from fingerpad.studies.stability.picture import PARTS
     from fingerpad.studies.views.frames import FRAMES
 
@@ -78,6 +78,7 @@ def _read() -> dict[str, Any]:
         for spec, module in sorted(found, key=lambda pair: [int(n) for n in pair[0].number.split("-")])
     }
     offers = {"OUTSIDE": list(OUTSIDE), "CLASSES": list(CLASSES), "METHODS": dict(PARTS)}
-    offers |= {"READINGS": [list(names) for names in SHARED.values()], "READ": [*PRESSED, *STROKED]}
+    simulated = [name for name in READINGS if name not in READ_ONLY]
+    offers |= {"READINGS": simulated, "READ_ONLY": list(READ_ONLY), "READ": [*PRESSED, *STROKED]}
     offers["VIEWS"] = {name: list(scenes) for name, (_, scenes) in FRAMES.items()}
     return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps())} | offers

@@ -375,10 +375,15 @@ class Products:
             }
             yield Job("table_pictures", read, {"pictures": self.pictures(names)})
 
+    @property
+    def measured(self) -> list[str]:
+        """Scenes that numbers are read of."""
+        c = self.config
+        return [*dict.fromkeys([*c.scenes, *c.variants, *c.calibration_scenes])]
+
     def all_tables(self) -> Iterator[Job]:
         """Tables of all the results, of the receptors, and of the scenes' summaries."""
-        c = self.config
-        scenes = dict.fromkeys([*c.scenes, *c.variants, *c.calibration_scenes])
+        c, scenes = self.config, self.measured
         if names := [name for name in TABLES if name in c.table_names]:
             every = {
                 "histories": self.histories(scenes),
@@ -566,17 +571,20 @@ class Products:
 
     def explanations(self) -> Iterator[Job]:
         """Readings of what the thesis leaves open -> which of them bring about what does not hold."""
-        scenes, data = offered()["READ"], []
+        scenes, offers = offered()["READ"], offered()
+        names = [*offers["READ_ONLY"], *offers["READINGS"]]
+        words = {name: re.sub("[^a-z]+", "_", name) for name in names}
+        data = {name: self.result(f"explanations/{word}.csv") for name, word in words.items()}
         reference = {"reference": [self.at("config/reference/thesis_numbers.csv")]}
+        read = reference | {"histories": self.histories(self.measured)}
+        made = {"data": [data[name] for name in offers["READ_ONLY"]]}
+        yield Job("explanations_read", read, made, {"names": offers["READ_ONLY"]}, mem_mb=2000)
         read = reference | self._read(*scenes)
-        for names in offered()["READINGS"]:
-            told = {"names": names, "scenes": [os.path.dirname(self.scene(scenes[0]))], "written": self._written(*scenes)}
-            made = [self.result(f"explanations/{re.sub('[^a-z]+', '_', name)}.csv") for name in names]
-            data += made
-            called = f"explanation_{re.sub('[^a-z]+', '_', names[0])}"
-            yield Job("explanation", read, {"data": made}, told, called, mem_mb=2000, runtime=60)
-        names = [name for names in offered()["READINGS"] for name in names]
-        read = reference | {"comparison": self.tables(TABLES[:1]), "readings": data}
+        for name in offers["READINGS"]:
+            told = {"name": name, "scenes": [os.path.dirname(self.scene(scenes[0]))], "written": self._written(*scenes)}
+            made = {"data": [data[name]]}
+            yield Job("explanation", read, made, told, f"explanation_{words[name]}", mem_mb=2000, runtime=60)
+        read = reference | {"comparison": self.tables(TABLES[:1]), "readings": [*data.values()]}
         made = {"tables": self.tables(["explanations", "explanations_readings"])}
         yield Job("explanations_table", read, made, {"names": names})
 

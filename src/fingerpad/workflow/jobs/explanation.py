@@ -7,7 +7,6 @@ from fingerpad.studies.explanations.run import READINGS, simulated, verdicts
 
 
 def run(job):
-    """The readings `names` of the scenes in the folder `scenes`, which share their runs, the table `reference` -> `data`."""
-    histories = simulated(Path(job.scenes[0]), READINGS[job.names[0]])
-    for name, data in zip(job.names, job.data, strict=True):
-        write_frame(verdicts(histories, READINGS[name], job.reference[0]), Path(data))
+    """The reading `name` of the scenes in the folder `scenes`, the table `reference` -> `data`."""
+    reading = READINGS[job.name[0]]
+    write_frame(verdicts(simulated(Path(job.scenes[0]), reading), reading, job.reference[0]), Path(job.data[0]))
