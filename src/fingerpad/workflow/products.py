@@ -581,7 +581,7 @@ class Products:
         yield Job("explanations_read", read, made, {"names": offers["READ_ONLY"]}, mem_mb=2000)
         read = reference | self._read(*scenes)
         for name in offers["READINGS"]:
-            told = {"name": name, "scenes": [os.path.dirname(self.scene(scenes[0]))], "written": self._written(*scenes)}
+            told = {"name": [name], "scenes": [os.path.dirname(self.scene(scenes[0]))], "written": self._written(*scenes)}
             made = {"data": [data[name]]}
             yield Job("explanation", read, made, told, f"explanation_{words[name]}", mem_mb=2000, runtime=60)
         read = reference | {"comparison": self.tables(TABLES[:1]), "readings": [*data.values()]}
