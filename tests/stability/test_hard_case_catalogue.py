@@ -198,6 +198,8 @@ def test_a_run_outside_its_limits_is_told():
         ({"energy": 0.2, "cuts": 1}, '["the energy found is off"]', 0.1, ADMITS),
         ({"energy": 0.2, "halving": 0.2}, '["the energy found is off"]', 0.1, SILENT),
         ({"halving": 0.2}, "[]", 0.6, ADMITS),
+        ({"solver": 0.01}, "[]", 0.1, SILENT),
+        ({"solver": 0.01}, '["states near to one another"]', 0.1, ADMITS),
     ],
 )
 def test_what_was_found_is_told_from_what_it_took(beyond, notes, error, outcome):
@@ -217,6 +219,15 @@ def test_a_run_notes_energy_that_is_missing_and_an_element_that_is_squeezed():
         mutant.setattr(simulation, "_SQUEEZED", 1.0)
         assert "the energy found is off" in notes("nu 0.48, flat") and "of its volume" in notes("nu 0.48, flat")
         assert "energy" not in notes("sharp bar, 1 mm")
+
+
+def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
+    """Starved of iterations where nodes pop round a fillet it does; round an edge, starved as much, steps are only cut."""
+    settings = stepping.NewtonSettings(max_iterations=3, snap_iterations=0)
+    monkeypatch.setattr(stepping, "NewtonSettings", lambda: settings)
+    names = "bar, fillet 0.03 mm, 2 mm", "sharp bar, 2 mm"
+    notes = [run(CATALOGUE[name], compare=False).history.attrs["notes"] for name in names]
+    assert ["states near to one another" in each for each in notes] == [True, False]
 
 
 def test_a_step_is_not_tried_for_ever(monkeypatch):

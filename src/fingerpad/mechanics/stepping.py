@@ -184,6 +184,7 @@ class QuasiStatic:
         self._past: list[_Past] = []
         self._quadratic = False
         self.total_iterations = self.total_halvings = self.factorisations = self._spent = 0
+        self.wavered = 0  # attempts that ended going to and fro between states that are nearly in equilibrium
 
     # -- geometry ---------------------------------------------------------------------------------------------------
 
@@ -319,6 +320,7 @@ class QuasiStatic:
             ahead = residual * (residual / before) ** settings.outlook
             keep = residual <= settings.chord and ahead <= 1.0 and not self._softened and self._factors_fit()
             before = residual
+        self.wavered += self._softened
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
 
     def _factors_fit(self):
