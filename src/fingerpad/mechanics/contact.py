@@ -240,16 +240,27 @@ def solve_contact(
             schur, curvature = soften(error, schur, curvature, previous_force, answer.bent)
             softened = True
             continue
-        return ContactStep(answer.displacement(f, dd), dd, f, on, pivots, softened, _stiffness(answer, on))
+        yields = pressing_stiffness(answer, answer.compliance[np.ix_(on, on)], np.flatnonzero(on))
+        return ContactStep(answer.displacement(f, dd), dd, f, on, pivots, softened, yields)
 
 
-def _stiffness(answer, on):
-    """That of a contact step; None where a node that touches yields to no force, at a depth that is given."""
-    lever = answer.lever[on]
+def pressing_stiffness(answer: Response, system: np.ndarray, rows: np.ndarray, share: np.ndarray | None = None) -> float | None:
+    """N/m^2, of the force against the depth while all nodes stay as they are; None where one yields to no force.
+
+    Args:
+        system: (k, k) m^2/N compliance of the ``rows`` (k,) that have multipliers of their own. share: (nz,) of the normal ones
+            that the tangential ones, in the second half of the rows, are; None where there are no tangential ones.
+    """
+    if not len(rows):
+        return 0.0
+    multipliers = np.zeros(len(answer.lever))
     try:
-        return answer.corner + float(lever @ np.linalg.solve(answer.compliance[np.ix_(on, on)], lever)) if on.any() else 0.0
+        multipliers[rows] = -np.linalg.solve(system, answer.lever[rows])
     except np.linalg.LinAlgError:
         return None
+    if share is not None:
+        multipliers[len(share) :] += share * multipliers[: len(share)]
+    return float(answer.corner - answer.lever @ multipliers)
 
 
 def stable(matrix, compliance, active):

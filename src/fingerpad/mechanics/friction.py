@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fingerpad.mechanics.contact import ContactError, ContactStep, Zone, respond, soften, stable
+from fingerpad.mechanics.contact import ContactError, ContactStep, Zone, pressing_stiffness, respond, soften, stable
 
 #: What :attr:`Coulomb.state` holds where there is contact: 0 sticks, +-1 slips with the friction on the skin along +-t.
 STICK = 0
@@ -88,7 +88,7 @@ class Coulomb:
                 load = force - answer.load_shift
             try:
                 found = _solve(self.coefficient, answer, offset, load, active, self.state[part], partner)
-                f, tau, dd, on, state, pivots, stiffness = found
+                f, tau, dd, on, state, pivots, yields = found
                 if answer.bent and not stable(answer.matrix, answer.compliance[: len(gap), : len(gap)], on):
                     raise ContactError("the curved contact is not stable")
             except ContactError as error:
@@ -97,7 +97,7 @@ class Coulomb:
                 continue
             dd = depth_change if depth_change is not None else dd
             du = answer.displacement(np.concatenate([f, tau]), dd)
-            return FrictionStep(du, dd, f, on, pivots, softened, stiffness, tau, state)
+            return FrictionStep(du, dd, f, on, pivots, softened, yields, tau, state)
 
     def accept(self, part: slice, step: FrictionStep) -> None:
         """Take over forces and states of a solution."""
@@ -157,28 +157,11 @@ def _solve(mu, answer, offset, load, active, state, partner=None):
     f, bound = _exchange(0.0, answer, offset, load, active, 0 * state, partner=partner)[0], None
     for _ in range(60):
         bound = mu * f if bound is None else 0.5 * (bound + mu * f)
-        *found, active, state, pivots, stiffness = _exchange(
-            mu, answer, offset, load, active, state, bound=bound, partner=partner
-        )
+        *found, active, state, pivots, yields = _exchange(mu, answer, offset, load, active, state, bound=bound, partner=partner)
         f, tau, dd = found
         if np.abs(mu * f - bound).max() <= 1e-6 * mu * f.max():
-            return f, tau, dd, active, state, pivots, stiffness
+            return f, tau, dd, active, state, pivots, yields
     raise _Cycling("stick and slip keep cycling")
-
-
-def _stiffness(answer, system, rows, share, on):
-    """N/m^2, of the force against the depth while all nodes stay as they are; None where one yields to no force.
-
-    ``rows`` have multipliers of their own, by ``system``; those of nodes that slip are ``share`` of their normal ones.
-    """
-    n = len(share)
-    try:
-        own = np.zeros(2 * n)
-        own[rows] = -np.linalg.solve(system, answer.lever[rows])
-    except np.linalg.LinAlgError:
-        return None
-    own[n + on] += share[on] * own[on]
-    return float(answer.corner - answer.lever @ own)
 
 
 def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bound=None, partner=None):
@@ -241,8 +224,8 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
             f[~active] = tau[~active] = 0
             state = np.where(free | (state != STICK), state, 1)  # held fast, though it may have come a long way in this step
             rows = np.concatenate([on, n + stick])
-            stiffness = _stiffness(answer, system[: i + j, : i + j], rows, share, on)
-            return np.maximum(f, 0), tau, dd, active, np.where(active, state, 0).astype(np.int8), pivots, stiffness
+            yields = pressing_stiffness(answer, system[: i + j, : i + j], rows, share)
+            return np.maximum(f, 0), tau, dd, active, np.where(active, state, 0).astype(np.int8), pivots, yields
         key = (active.tobytes(), state.tobytes())
         if count < best:
             best, patience = count, 10

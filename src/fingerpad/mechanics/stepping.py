@@ -13,6 +13,8 @@ from fingerpad.mechanics.contact import ContactError, Rows, Zone, solve_contact
 from fingerpad.mechanics.linear_solver import FactorisationError, condensation
 from fingerpad.stimuli.motion import STEADY, Step
 
+_FOLDS = 0.02
+"""det F below which an iteration does not go."""
 FOLDED = "a finer skin mesh, a fillet on sharp edges, or a smaller depth or force"
 """What to try where an element turns inside out."""
 
@@ -198,7 +200,11 @@ class QuasiStatic:
         gap = self.profile.evaluate(self._position(self.skin.nodes))[0]
         first = np.flatnonzero(gap <= gap.min() + 0.1 * self.skin.spacing)
         if first[0] < self._range.start or first[-1] >= self._range.stop:
-            self._set_zone(min(self._range.start, first[0] - 8), max(self._range.stop, first[-1] + 9))
+            self._widen_to(first)
+
+    def _widen_to(self, places):
+        """Let the zone reach some nodes of the skin (k,), ascending, and a few beyond."""
+        self._set_zone(min(self._range.start, places[0] - 8), max(self._range.stop, places[-1] + 9))
 
     def _grow_zone(self):
         first, last = self._range.start, self._range.stop
@@ -362,14 +368,14 @@ class QuasiStatic:
         self._stiff = step.stiffness
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
         u, depth = body.u, self.depth
-        share, least = 1.0, max(0.02, settings.squeeze * body.smallest_jacobian)
+        share, least = 1.0, max(_FOLDS, settings.squeeze * body.smallest_jacobian)
         while True:
             body.advance(du, share)
             internal = body.internal_force()
             if body.smallest_jacobian > least or body.geometrically_linear:
                 break
             share /= 2
-            least = 0.02 if share < 0.2 else least
+            least = _FOLDS if share < 0.2 else least
             if share < 0.05:
                 raise _StepFailure("an element would turn inside out")
             body.displace(u)
@@ -420,7 +426,7 @@ class QuasiStatic:
         deep = outside[gap < -self.settings.gap_tolerance * self.skin.spacing]
         if not len(deep):
             return False
-        self._set_zone(min(self._range.start, deep[0] - 8), max(self._range.stop, deep[-1] + 9))
+        self._widen_to(deep)
         return True
 
     def _forces(self):
@@ -450,8 +456,8 @@ class QuasiStatic:
     def _pressing_work(self, force, way, stiffness):
         """Work (J/m) of the force on a way (m) into the pad: by the trapezoidal rule, which is right for small steps.
 
-        A large step is not: where contact begins or ends the force grows by a power of the way, which the
-        ``stiffness`` (N/m^2; None: not known) at the other end tells; else it is a cubic with the stiffness of either end.
+        It need not be small: where contact begins or ends the force grows by a power of the way, which the ``stiffness`` (N/m^2;
+        None: not known) at the other end tells; else it is a cubic with the stiffness of either end.
         """
         trapezoidal = 0.5 * (self.force + force) * way
         if stiffness is None:

@@ -70,8 +70,7 @@ class Reading:
 
     def called(self, history: xr.Dataset) -> xr.Dataset:
         """A history of it with receptors and energy by the names that the measures ask for."""
-        names = {"receptor_depth": history["receptor_depth"] - self.deeper, ENERGIES[0]: history[self.energy]}
-        return history.assign({name: values for name, values in names.items() if self.deeper or name != "receptor_depth"})
+        return history.assign({"receptor_depth": history["receptor_depth"] - self.deeper, ENERGIES[0]: history[self.energy]})
 
 
 def _everywhere(words: str, **changes: Any) -> Reading:
@@ -100,7 +99,7 @@ READINGS: dict[str, Reading] = {
         "twice the printed modulus of the epidermis", specimen__layers__epidermis__youngs_modulus="300 kPa"
     ),
     "longer contact": _everywhere("force spread over 20 mm, not 11.4 mm, of pad", specimen__contact_length="20 mm"),
-    "more friction": Reading("the wavy surface slides with twice the coefficient, 0.7", {}, {"friction": 0.7}),
+    "more friction": Reading("the wavy surface has twice the friction, 0.7, where it is stepped too", {}, {"friction": 0.7}),
     "no friction": Reading("the wavy surface slides without friction", {}, {"friction": 0.0}),
     "half the force": Reading("the wavy surface is pressed with 10 gram-weight", {}, {}, 0.5),
     "twice the force": Reading("the wavy surface is pressed with 40 gram-weight", {}, {}, 2.0),
