@@ -336,7 +336,7 @@ class Simulation:
         if least < _SQUEEZED and not self.body.geometrically_linear:
             yield f"an element keeps {least:.1%} of its volume at one point: a finer mesh, or a fillet, will tell"
         if self.stepper.wavered:
-            yield "states near to one another may be in equilibrium, and which is found hang on last digits: smaller steps will tell"
+            yield "states near to one another may be in equilibrium, and round-off choose between them: smaller steps will tell"
 
     def _notes(self, records):
         """What a person should know of the states that were found, and of the contact with a measured profile."""
