@@ -313,7 +313,7 @@ class Simulation:
             stroked,
             around,
             rules=RULES,
-            uneven=(stroked and self.scene.stimulus.shape != "flat") or self.scene.stimulus.irregular,
+            bumpy=self.scene.stimulus.irregular,
         )
         return max(found, plan.edge_error) + plan.small_strain_error + plan.surface.error
 

@@ -28,12 +28,6 @@ def way_of(scene: Scene) -> tuple[float, float]:
     return float(way.min()), float(way.max())
 
 
-def is_uneven(scene: Scene) -> bool:
-    """Whether the contact is no smooth patch: the skin is stroked by a surface that is not flat, or touched by a measured one."""
-    strokes = scene.stimulus.shape != "flat" and any(leg.strokes for leg in scene.motion)
-    return strokes or scene.stimulus.irregular
-
-
 def external_mesh(scene: Scene) -> PadMesh | None:
     """The scene's own mesh, if it names one."""
     return None if scene.specimen.mesh is None else read_specimen_mesh(scene.specimen).elevated()

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from fingerpad.planning.bounds import PlanError, micrometres, percent
-from fingerpad.planning.contact import contact_reach, earliest_half_width, is_uneven, moves_along
+from fingerpad.planning.contact import contact_reach, earliest_half_width, moves_along
 from fingerpad.planning.errors import THESIS_ROWS, estimated_error
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.planning.rules import Preset, Rules
@@ -21,6 +21,7 @@ from fingerpad.specimen.pad import MeshSize, PadMesh
 from fingerpad.stimuli.profile import Profile
 
 _FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
+_NEAR = 0.15  # of the least error there is, by which a tolerance that cannot be met is missed further for less work
 _MOST_COLUMNS = 2000  # of refined elements to either side
 
 
@@ -44,7 +45,7 @@ def preset_for(
 
 
 def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules) -> Preset:
-    """Of the measured meshes and steps those of least nodes times steps that meet it; if none does, those of least error.
+    """Of the measured meshes and steps those of least nodes times steps that meet it or, if none does, come near the least error.
 
     A mesh that suffices for the widest contact measured is refined under a narrower one that stays where it is.
     """
@@ -53,7 +54,7 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     moves, half_width = moves_along(scene), earliest_half_width(scene, contact, timed)
     ridges = scene.specimen.ridges
     still = not moves and scene.specimen.mesh is None and (ridges is None or ridges.outer is None)
-    uneven = is_uneven(scene)
+    bumpy = scene.stimulus.irregular
     outer = 3 if ridges is not None and ridges.outer is not None else 1  # columns of outer ridges
     found = []
     for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):
@@ -65,10 +66,11 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
             wide = 1.2 * contact_reach(scene, contact) / edge * (finer - 1)
             if finer > 1 and (edge / finer < rules.least_edge or wide > _MOST_COLUMNS):
                 break
-            error = estimated_error(edge / finer / outer, half_width, time, moves, edge, rules=rules, uneven=uneven)
+            error = estimated_error(edge / finer / outer, half_width, time, moves, edge, rules=rules, bumpy=bumpy)
             work = (7 * rows + more + wide) * (4 * rows + more) * steps
-            found.append((max(error - tolerance, 0.0), work, edge / finer, edge, growth, steps))
-    _, _, focus, edge, growth, steps = min(found)
+            found.append((error, work, edge / finer, edge, growth, steps))
+    enough = max(tolerance, (1 + _NEAR) * min(found)[0])
+    _, focus, edge, growth, steps = min(rest for error, *rest in found if error <= enough)
     outline, slide_step = scene.specimen.outline, thesis.slide_step * thesis.steps / steps
     # so many elements across the epidermis, however thick it is
     layer_edge = thesis.layer_edge * edge / thesis.skin_edge

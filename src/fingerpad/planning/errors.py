@@ -23,7 +23,7 @@ class MeasuredErrors:
     Attributes:
         half_widths: m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the ramp. edge: m, along the skin,
         where 7 elements go across the epidermis. mesh: elements across the epidermis -> error (half_widths). time: steps of a leg
-        -> error (half_widths). stroke_mesh, stroke_time: those of the plate's stroke.
+        -> error (half_widths). stroke_mesh, stroke_time: those of the plate's stroke, of its moments.
     """
 
     half_widths: tuple[float, ...] = (0.37e-3, 1.09e-3, 2.3e-3)
@@ -49,7 +49,7 @@ class MeasuredErrors:
         }
     )
     stroke_mesh: Mapping[int, float] = field(
-        default_factory=lambda: {1: 0.1, 2: 0.055, 4: 0.052, 7: 0.022, 10: 0.016, 14: 0.016, 22: 0.016}
+        default_factory=lambda: {1: 0.1, 2: 0.055, 4: 0.052, 7: 0.022, 10: 0.013, 14: 0.011, 22: 0.0091}
     )
     stroke_time: Mapping[int, float] = field(default_factory=lambda: {5: 0.046, 10: 0.02, 20: 0.0099, 40: 0.003, 80: 0.003})
 
@@ -62,22 +62,23 @@ def estimated_error(
     body_edge: float | None = None,
     *,
     rules: Any,
-    uneven: bool = False,
+    bumpy: bool = False,
 ) -> float:
     """Expected relative error of depth, width, pressure and strain energy at the legs' ends, from :class:`MeasuredErrors`.
 
-    And at least what an edge of the contact between two nodes may be misplaced by.
+    Of a leg that strokes: the root mean square over its way, relative to the largest value on it. And at least what an edge of
+    the contact between two nodes may be misplaced by.
 
     Args:
         edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
         steps: of a leg; None when time does not matter. stroked: does the pad move along the surface?
         body_edge: m, skin edge around the contact where that is coarser: no finer than the widest contact measured needs it.
-        uneven: does a surface that is not flat pass, or is it measured, with bumps of its own?
+        bumpy: has the surface bumps of its own within the contact, as measured ones have?
     """
     found = [_measured_error(edge, half_width, steps, stroked, rules), rules.safety * rules.edge_share * edge / half_width]
     if body_edge is not None and body_edge > edge:
         found.append(_measured_error(body_edge, rules.errors.half_widths[-1], steps, stroked, rules))
-    return float(max(found)) * (rules.passing if uneven else 1.0)
+    return float(max(found)) * (rules.bumps if bumpy else 1.0)
 
 
 def _measured_error(edge: float, half_width: float, steps: int | None, stroked: bool, rules: Any) -> float:

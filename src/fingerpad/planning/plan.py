@@ -21,7 +21,6 @@ from fingerpad.planning.contact import (
     earliest_half_width,
     external_mesh,
     inertia_ratio_of,
-    is_uneven,
     least_half_width,
     moves_along,
     rounding_of,
@@ -74,7 +73,7 @@ class Plan:
         most of it comes from. asked_error: the tolerance, None where none is asked for; once: whether it is tried for once only.
         unbounded_peak: whether the profile has a true edge, where pressure has no bound and a peak is the mesh's. specimen:
         sentences on what is touched, and what of it the scene left out. surface: what the mesh makes of a measured profile.
-        stride: so many steps are made one.
+        stride: so many steps are made one. strokes: is there a leg that strokes, whose errors are of its whole way?
     """
 
     effects: dict[str, Effect]
@@ -101,13 +100,14 @@ class Plan:
     specimen: tuple[str, ...] = ()
     surface: Surface = Surface()
     stride: int = 1
+    strokes: bool = False
 
     @property
     def covers(self) -> str:
         """The quantities that the error is of."""
         if self.unbounded_peak:
             return "depth, width, centre pressure, strain energy; the peak at the edge is unbounded"
-        return "depth, width, pressure, strain energy"
+        return "depth, width, pressure, strain energy" + self.strokes * "; of a stroke as root mean square, over the largest"
 
     def missed(self, error: float | None = None) -> str | None:
         """What to say where ``error`` (default: the expected one) exceeds the tolerance; None where it does not."""
@@ -176,6 +176,7 @@ class Plan:
             "asked_error": self.asked_error,
             "tolerance_met": None if self.asked_error is None else self.missed() is None,
             "once": self.once,
+            "strokes": self.strokes,
             "unbounded_peak": self.unbounded_peak,
         }
 
@@ -192,7 +193,7 @@ class Plan:
             data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
             data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["edge_error"], data["error_from"],
             data["asked_error"], data["once"], data["unbounded_peak"], tuple(data["specimen"]), Surface(**data["surface_SI"]),
-            data["stride"],
+            data["stride"], data.get("strokes", False),
         )  # fmt: skip
 
     def write(self, path: str | Path) -> None:
@@ -255,7 +256,7 @@ def plan(
 
         def on_mesh(mesh: PadMesh) -> float:
             edge = coarseness(mesh, rules) * apex_edge(mesh)
-            found = estimated_error(edge, narrowest, time, moves, rules=rules, uneven=is_uneven(scene))
+            found = estimated_error(edge, narrowest, time, moves, rules=rules, bumpy=scene.stimulus.irregular)
             return max(found, edges_error(profile, edge, rounding, rules)[0])
 
         external, raised = raised_for(by_hand, external, tolerance, on_mesh)
@@ -285,7 +286,7 @@ def plan(
         # presets are fine beside the face, not where it ends and the pressure is largest
         at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
     at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
-    in_contact = estimated_error(edge, narrowest, time, moves, around, rules=rules, uneven=is_uneven(scene))
+    in_contact = estimated_error(edge, narrowest, time, moves, around, rules=rules, bumpy=scene.stimulus.irregular)
     mesh = surface.error + max(in_contact, at_edges)
     linear = 0.0 if effects["finite_strain"].on else finite_strain.small_strain_error(case)
     if linear and scene.tolerance is not None and "finite_strain" not in scene.effects and linear + mesh > scene.tolerance:
@@ -300,7 +301,7 @@ def plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
         linear + mesh, _cost(nodes, steps, effects, rules), linear, at_edges,
         max(sources, key=sources.get), scene.tolerance, scene.once, peak_is_unbounded(profile, at_edge, rounding, rules),
-        (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface,
+        (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface, strokes=moves,
     )  # fmt: skip
 
 

@@ -43,8 +43,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
             pressure and the strain energies, over element edge / half width of the face, under a true edge; edge_floor: what it
             does not fall below, for the skin's node at the edge is held by it or is not (at most 11.3 % in 24 bars drawn at
             random, with a third more); edge_finest: the error that a mesh is at most made for there.
-        passing: factor on the error of strokes over surfaces that are not flat, where the contact runs away from the centre, and
-            of measured profiles, whose bumps make contacts within the contact.
+        bumps: factor on the error of measured profiles, whose bumps make contacts within the contact.
         profile_share: of a tolerance, that the smoothing of a measured profile may use up before a longer one is tried.
         linear_triangle, linear_quad: by how much coarser P2B and Q1P0 elements of external meshes count than their edges.
         least_edge: m, of an element; shorter ones are not made. least_half_width: m, of a contact; narrower ones are refused.
@@ -77,7 +76,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     edge_error: float = 0.8
     edge_floor: float = 0.15
     edge_finest: float = 0.11
-    passing: float = 2.5
+    bumps: float = 2.5
     profile_share: float = 0.25
     linear_triangle: float = 1.6
     linear_quad: float = 2.0

@@ -13,7 +13,18 @@ from scipy.optimize import brentq
 
 from fingerpad.reference_solutions import hertz, phillips_johnson, waterbed
 from fingerpad.studies.accuracy.convergence import Limit, fitted_order, limit
-from fingerpad.studies.accuracy.run import DEFAULT_STEPS, DEPTHS, ELEMENTS, FAMILY, PRESSED, ROWS, STEPS, Point, seconds
+from fingerpad.studies.accuracy.run import (
+    DEFAULT_ROWS,
+    DEFAULT_STEPS,
+    DEPTHS,
+    ELEMENTS,
+    FAMILY,
+    PRESSED,
+    ROWS,
+    STEPS,
+    Point,
+    seconds,
+)
 
 Records = Mapping[str, dict[str, Any]]
 
@@ -251,8 +262,8 @@ def planner_table(records: Records) -> pd.DataFrame:
     """What the planner goes by: relative error of the headline quantities by mesh size, and by steps of a leg.
 
     Errors of a mesh are those to the limit in the mesh at the default's steps, errors of steps those to the limit in the steps
-    on the default's mesh; never below the limit's own uncertainty (and, of meshes, that of adding both) nor below those of
-    what is finer.
+    on the default's mesh; never below the limit's own uncertainty (and, of meshes, that of adding both, which is a product of
+    theirs and falls with the edge beyond the default's mesh) nor below those of what is finer.
     """
     rows = []
     for kind, counts, limits in (("mesh", ROWS, mesh_limits), ("steps", STEPS, step_limits)):
@@ -265,8 +276,9 @@ def planner_table(records: Records) -> pd.DataFrame:
                 known = limits(records, family, quantity)
                 value = np.array([each.value for each in known])
                 extra = interplay(records, family, quantity) if kind == "mesh" else 0.0
-                floor = np.max((np.array([each.uncertainty for each in known]) + extra) / np.abs(value))
+                unsure = np.array([each.uncertainty for each in known])
                 for k, n in enumerate(counts):
+                    floor = np.max((unsure + extra * min(1.0, DEFAULT_ROWS / n)) / np.abs(value))
                     record = records.get((Point(family, rows=n) if kind == "mesh" else Point(family, steps=n)).name)
                     if record is None or not record["values"]:
                         worst[k] = np.nan

@@ -143,7 +143,7 @@ def belief(frame: pd.DataFrame) -> Figure:
         "Does a run know its error?",
         [
             f"Simulated: {asked['scene'].nunique()} scenes outside the study. Truth: largest difference of depth, width, "
-            "pressures and strain energies at the legs' ends to a finer run, which believes in "
+            "pressures and strain energies at the legs' ends, of strokes root mean square, to a finer run, which believes in "
             f"{own.min():.1f} to {own.max():.1f} % itself. Below the line the belief covers the truth: {covered} of "
             f"{len(asked)} runs."
         ],
@@ -193,8 +193,8 @@ def drawn(frame: pd.DataFrame) -> Figure:
         "Does a run know its error under any stimulus?",
         [
             f"Simulated: {asked['scene'].nunique()} random scenes, each asked for 10 or 5 %. Truth: largest difference of depth, "
-            "width, pressures and strain energies at the legs' ends to edges 1.7 to 2.5 times as short. "
-            f"Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs."
+            "width, pressures and strain energies at the legs' ends, of strokes root mean square, to edges 1.7 to 2.5 times "
+            f"as short. Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs."
         ],
         3.9,
     )

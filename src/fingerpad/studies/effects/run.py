@@ -368,7 +368,7 @@ DECIDES = {
     "edge_error": "error under a true edge, over edge / half width of the face",
     "edge_floor": "error under a true edge, at least",
     "edge_finest": "error that a mesh is at most made for there",
-    "passing": "factor on the error of strokes over surfaces that are not flat, and of measured profiles",
+    "bumps": "factor on the error of measured profiles",
     "profile_share": "share of a tolerance that the smoothing of a measured profile may use up before a longer one is tried",
     "linear_triangle": "by how much coarser quadratic triangles of external meshes count than their edges",
     "linear_quad": "by how much coarser linear quads of external meshes count than their edges",
@@ -401,7 +401,7 @@ WHERE = {
     "edge_share": "figures/tables/accuracy_belief.csv",
     "safety": "figures/tables/accuracy_belief.csv",
     **dict.fromkeys(
-        ("fillet_error", "fillet_order", "edge_error", "edge_floor", "edge_finest", "passing"),
+        ("fillet_error", "fillet_order", "edge_error", "edge_floor", "edge_finest", "bumps"),
         "figures/tables/accuracy_drawn.csv",
     ),
     "profile_share": "tests/test_measured_profiles.py",
