@@ -105,6 +105,20 @@ def test_ridged_pads_are_refined_under_the_contact():
 # -- true edges ---------------------------------------------------------------------------------------------------------
 
 
+def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatch):
+    """Of 80 mm over the wavy surface: 10, 5 and 3.5 % are had for ever more work; 2 % is not, and the last bit not paid for."""
+    long = scene({"shape": "wavy"}, [*PRESS, {"slide": "80 mm", "speed": "10 mm/s", "keep": "force"}], friction=0.35)
+    had = [plan(long.with_accuracy(accuracy)) for accuracy in (0.1, 0.05, 0.035)]
+    work = [chosen.nodes * chosen.steps for chosen in had]
+    assert all(chosen.missed() is None for chosen in had) and work == sorted(work)
+    assert had[0].nodes < 20_000 and "of a stroke as root mean square" in had[0].covers
+    missing = plan(long.with_accuracy(0.02))
+    monkeypatch.setattr("fingerpad.planning.discretisation._NEAR", 0.0)
+    least = plan(long.with_accuracy(0.02))
+    assert "not to be had" in missing.missed() and missing.estimated_error < 0.035
+    assert missing.nodes < 0.5 * least.nodes and missing.estimated_error < 1.2 * least.estimated_error
+
+
 def test_peak_is_unbounded_under_a_true_edge_and_only_there():
     sharp, rounded = plan(scene(BAR)), plan(scene(ROUNDED))
     assert sharp.unbounded_peak and "the peak at the edge is unbounded" in sharp.covers

@@ -18,10 +18,11 @@ from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tributary_length
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
-from fingerpad.mechanics.stepping import FOLDED, NonConvergence, QuasiStatic, Record, Skin
+from fingerpad.mechanics.stepping import FOLDED, NonConvergence, QuasiStatic, Record, Skin, hard_here
 from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.effects import EFFECTS
 from fingerpad.planning.errors import estimated_error
+from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import Plan, plan, refined
 from fingerpad.planning.rules import RULES
 from fingerpad.planning.schedule import schedule
@@ -242,6 +243,7 @@ class Simulation:
             records = self.stepper.run(self.steps(), after)
         except (NonConvergence, KeyboardInterrupt) as stop:
             stop.dataset = self._history(done, states[: len(done) + 1], snapshots, complete=False) if done else None
+            stop.hard = hard_in(self.scene)
             raise
         if self.fields is not None and not snapshots and not wanted:
             snapshots[records[-1].leg, records[-1].time] = self._full_field(records[-1])
@@ -305,7 +307,7 @@ class Simulation:
         plan = self.plan
         half_width = min(width / 2, plan.contact.narrowest or np.inf)
         around = plan.mesh_size and plan.mesh_size.skin_edge
-        steps = plan.steps_per_leg / plan.stride if plan.timed else None
+        steps = plan.steps_per_leg / plan.stride if plan.timed or plan.strokes else None
         found = estimated_error(
             plan.contact_edge,
             half_width or _NO_CONTACT,
@@ -340,7 +342,9 @@ class Simulation:
 
     def _notes(self, records):
         """What a person should know of the states that were found, and of the contact with a measured profile."""
-        notes = [*self._doubts(records), *(note for note in self.plan.surface.notes if "expected" not in note)]
+        doubts, hard = list(self._doubts(records)), hard_in(self.scene)
+        doubts += [f"or try {hard_here(hard)}"] if doubts and hard else []
+        notes = [*doubts, *(note for note in self.plan.surface.notes if "expected" not in note)]
         for record in records:
             on = self.skin.nodes[record.nodal_force > 0]
             x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance

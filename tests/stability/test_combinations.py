@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fingerpad.mechanics.stepping import NonConvergence, hard_here
+from fingerpad.planning.hardness import hard_in
 from fingerpad.results import leg_ends
 from fingerpad.studies.stability.catalogue import APART, CATALOGUE, COMBINED, FACTORS, allowed
 from fingerpad.studies.stability.catalogue import combinations as rows_of_catalogue
@@ -127,9 +129,43 @@ def test_the_other_solver_is_another_and_agrees(tmp_path):
 def test_advice_is_tried_as_it_is_given():
     case = Case("c", "test", "hard", {"stimulus": {"shape": "line"}, "motion": [depth(2), slide(1)]})
     found = dict(relaxed(case, "no convergence; try a finer skin mesh, a fillet on sharp edges, or a smaller depth or force"))
-    assert [words.split(":")[0] for words in found] == ["load", "load", "stimulus", "mesh"]
+    assert [words.split(":")[0] for words in found] == ["load", "load", "load", "stimulus", "mesh"]
     half = found["load: 0.5 of it"]
     assert half.scene["motion"] == [depth(1), slide(1)] and half.scene["stimulus"] == {"shape": "line"}
     assert found["stimulus: rounded"].scene["stimulus"]["shape"] == "cylinder"
     assert not dict(relaxed(case, "no convergence; try another method"))
     assert list(dict(relaxed(case, "estimated error 7"))) == ["mesh: planned for accuracy: thesis"]
+
+
+HARD_LAYERS = {
+    "epidermis": {"youngs_modulus": "15 kPa", "law": "yeoh"},
+    "fat": {"youngs_modulus": "150 MPa", "poisson_ratio": 0.4999},
+}
+HARD_CASE = {
+    "specimen": {"layers": HARD_LAYERS},
+    "stimulus": {"shape": "bar", "width": "1 mm"},
+    "friction": 0.7,
+    "motion": [force(200), slide(1)],
+    "effects": {"finite_strain": "off"},
+}
+
+
+def test_what_is_hard_is_said_and_can_be_asked_less_of(tmp_path):
+    """Each thing that is hard in a scene is named, and the case with less of it names it no more."""
+    case = Case("c", "test", "hard", HARD_CASE)
+    hard = hard_in(case.read(tmp_path))
+    said = ["1e4 times as stiff", "0.4999", "200 gf", "true edge", "0.7", "yeoh", "a stroke", "small strain"]
+    assert sorted(word for word in said for text in hard if word in text) == sorted(said) and len(hard) == len(said)
+    easier = dict(relaxed(case, f"off by a lot; {hard_here(hard)}"))
+    assert len(easier) == 1 + len(hard)  # and a finer mesh
+    for said, case_with_less in easier.items():
+        left = set(hard_in(case_with_less.read(tmp_path)))
+        assert len(set(hard) - left) == (said.startswith("mesh") is False), said
+    assert not hard_in(Case("c", "test", "easy", {"stimulus": {"shape": "flat"}, "motion": [force(20)]}).read(tmp_path))
+
+
+def test_a_failure_and_a_doubt_name_what_is_hard():
+    failure = NonConvergence(0.0, "it failed", "a finer mesh")
+    assert str(failure) == "no convergence after t = 0 s: it failed; try a finer mesh"
+    failure.hard = ("a true edge", "a stroke")
+    assert str(failure).endswith("; try a finer mesh; or less of what is hard here: a true edge, a stroke")

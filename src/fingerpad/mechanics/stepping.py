@@ -23,13 +23,23 @@ class NonConvergence(RuntimeError):
     """A step could not be completed even after cutting.
 
     Attributes:
-        time: s, where the last converged state stands. reason: what failed. advice: what to try.
-        records: the records of every converged scheduled step.
+        time: s, where the last converged state stands. reason: what failed. advice: what to try. hard: what is hard in the scene,
+        for who knows it. records: the records of every converged scheduled step.
     """
+
+    hard: tuple[str, ...] = ()
 
     def __init__(self, time: float, reason: str, advice: str, where: str = ""):
         super().__init__(f"no convergence after t = {time:.6g} s{where}: {reason}; try {advice}")
         self.time, self.reason, self.advice, self.records = time, reason, advice, []
+
+    def __str__(self):
+        return super().__str__() + (f"; or {hard_here(self.hard)}" if self.hard else "")
+
+
+def hard_here(hard: tuple[str, ...]) -> str:
+    """What is hard in a scene, in one clause."""
+    return f"less of what is hard here: {', '.join(hard)}"
 
 
 class _StepFailure(RuntimeError):

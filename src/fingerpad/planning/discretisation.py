@@ -59,7 +59,7 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     found = []
     for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):
         edge, growth = known.edge * THESIS_ROWS / rows, min(thesis.growth ** (THESIS_ROWS / rows), 3.0)
-        time = steps if timed else None
+        time = steps if timed or moves else None
         for finer in 2 ** np.arange(0, _FINEST_FOCUS, 0.5) if still else (1,):
             # the right half has about 7 columns and 4 rows an element across the epidermis
             more = np.log(finer) / np.log(growth)

@@ -71,7 +71,7 @@ def estimated_error(
 
     Args:
         edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
-        steps: of a leg; None when time does not matter. stroked: does the pad move along the surface?
+        steps: of a leg; None when neither time nor a way matters. stroked: does the pad move along the surface?
         body_edge: m, skin edge around the contact where that is coarser: no finer than the widest contact measured needs it.
         bumpy: has the surface bumps of its own within the contact, as measured ones have?
     """

@@ -251,7 +251,7 @@ def plan(
     elif timed:
         steps_per_leg = max(steps_per_leg, scene.outputs.per_leg or 0)
     steps = sum(1 for _ in schedule(scene, steps_per_leg, timed, slide_step=slide_step))
-    time, narrowest, raised = steps_per_leg if timed else None, earliest_half_width(scene, contact, timed), ""
+    time, narrowest, raised = steps_per_leg if timed or moves else None, earliest_half_width(scene, contact, timed), ""
     if external is not None:
 
         def on_mesh(mesh: PadMesh) -> float:

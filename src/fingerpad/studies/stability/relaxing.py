@@ -6,9 +6,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
+from fingerpad.mechanics.stepping import hard_here
 from fingerpad.studies.stability.hard_cases import Case, cylinder
 
 _TARGETS = ("press_to_force", "press_to_depth")
+_SHARES = (0.5, 0.2, 0.04)
+HERE = hard_here(())
 
 
 def _loaded(share: float) -> Callable[[Case], Case]:
@@ -23,6 +26,34 @@ def _loaded(share: float) -> Callable[[Case], Case]:
         return _with(case, motion=legs)
 
     return change
+
+
+def _of_layers(**keys: Any) -> Callable[[Case], Case]:
+    """The case with these keys in all its layers; with none of their own moduli where nothing is said."""
+
+    def change(case: Case) -> Case:
+        specimen = dict(case.scene.get("specimen", {}))
+        part = next((part for part in ("layers", "slab", "half_round") if part in specimen), None)
+        if part is None:
+            return case
+        usual = keys or {"youngs_modulus": "15 kPa"}
+        layers = specimen[part] if part == "layers" else specimen[part]["layers"]
+        if isinstance(layers, dict):
+            skin = {} if keys else {"epidermis": {"youngs_modulus": "0.15 MPa"}}
+            changed: Any = {name: layer | usual | skin.get(name, {}) for name, layer in layers.items()}
+        else:
+            changed = [layer | usual for layer in layers]
+        return _with(case, specimen=specimen | {part: changed if part == "layers" else specimen[part] | {"layers": changed}})
+
+    return change
+
+
+def _without(key: str) -> Callable[[Case], Case]:
+    return lambda case: replace(case, scene={k: v for k, v in case.scene.items() if k != key}, may_fail=False)
+
+
+def _pressed_only(case: Case) -> Case:
+    return _with(case, motion=case.scene["motion"][:1])
 
 
 def _rounded(case: Case) -> Case:
@@ -47,7 +78,7 @@ def _with(case: Case, **keys: Any) -> Case:
 
 
 ADVICE: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
-    "smaller depth or force": tuple((f"load: {share:g} of it", _loaded(share)) for share in (0.5, 0.04)),
+    "smaller depth or force": tuple((f"load: {share:g} of it", _loaded(share)) for share in _SHARES),
     "fillet": (("stimulus: rounded", _rounded),),
     "smoothing": (("stimulus: smoothed", _rounded),),
     "smaller steps": (("time: 8 times the steps", _steps),),
@@ -57,9 +88,31 @@ ADVICE: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
 """Words of an advice -> what they say to relax, in the order in which it is tried."""
 
 
+HARD: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
+    "times as stiff": (("layers: usual", _of_layers()),),
+    "hardly stiffer": (("layers: usual", _of_layers()),),
+    "Poisson's ratio": (("Poisson's ratio: 0.48", _of_layers(poisson_ratio=0.48)),),
+    "a force of": (("load: 0.2 of it", _loaded(0.2)),),
+    "a depth of": (("load: 0.2 of it", _loaded(0.2)),),
+    "a true edge": (("stimulus: rounded", _rounded),),
+    "as sharp as": (("stimulus: rounded", _rounded),),
+    "corners or bumps": (("stimulus: rounded", _rounded),),
+    "friction": (("friction: none", _without("friction")),),
+    "the law": (("law: neo-Hooke", _of_layers(law="neo_hooke")),),
+    "small strain": (("strain: finite", lambda case: _with(case, effects=case.scene["effects"] | {"finite_strain": "on"})),),
+    "a stroke": (("motion: pressed only", _pressed_only),),
+    "not refined": (("mesh: planned for accuracy: thesis", _meshed("thesis")),),
+}
+"""Words of what is hard in a scene -> what they say to ask less of."""
+
+
 def relaxed(case: Case, message: str) -> Iterator[tuple[str, Case]]:
     """What the message of a failed run says to relax, in words, and the case with it relaxed; a wrong one wants a finer mesh."""
-    advice = message.partition("; try ")[2] or "a finer mesh"
-    for words, changes in ADVICE.items():
-        if words in advice:
-            yield from ((said, change(case)) for said, change in changes)
+    advice, _, hard = message.partition(HERE)
+    tried, known = set(), ((ADVICE, advice.partition("; try ")[2] or "a finer mesh"), (HARD, hard))
+    for meaning, text in known:
+        for words, changes in meaning.items():
+            for said, change in changes if words in text else ():
+                if said not in tried:
+                    tried.add(said)
+                    yield said, change(case)

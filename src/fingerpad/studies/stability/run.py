@@ -22,13 +22,14 @@ import pandas as pd
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
-from fingerpad.mechanics.stepping import NonConvergence
+from fingerpad.mechanics.stepping import NonConvergence, hard_here
+from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import plan
 from fingerpad.planning.rules import RULES
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.pad import PadMesh
-from fingerpad.studies.accuracy.drawn import finer as finely
+from fingerpad.studies.accuracy.belief import finer as finely
 from fingerpad.studies.accuracy.meshes import quarters, triangles
 from fingerpad.studies.stability.catalogue import CATALOGUE, HALVED, REFERENCE, SECOND_SOLVER
 from fingerpad.studies.stability.hard_cases import Case
@@ -275,7 +276,11 @@ def _sound_so_far(kept: xr.Dataset) -> bool:
 
 def cured(case: Case, found: Run) -> str:
     """What of a case that is not stable, relaxed as its message says, makes it so; in words, empty where nothing does."""
-    return next((said for said, easier in relaxed(case, found.message) if run(easier, compare=False).outcome == STABLE), "")
+    message = found.message
+    if found.completed:
+        with tempfile.TemporaryDirectory() as folder:
+            message += f"; {hard_here(hard_in(case.read(Path(folder))))}"  # which the run itself notes where it doubts
+    return next((said for said, easier in relaxed(case, message) if run(easier, compare=False).outcome == STABLE), "")
 
 
 def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
