@@ -34,7 +34,7 @@ from fingerpad.studies.accuracy.meshes import quarters, triangles
 from fingerpad.studies.stability.catalogue import CATALOGUE, HALVED, REFERENCE, SECOND_SOLVER
 from fingerpad.studies.stability.hard_cases import Case
 from fingerpad.studies.stability.invariants import ENDS, Held, difference, excess, iterations, measures, mirrored
-from fingerpad.studies.stability.relaxing import relaxed
+from fingerpad.studies.stability.relaxing import HERE, relaxed
 
 METHODS = ("default", "full Q1", "plain P2", "plain Newton")
 STABLE, LABOURS, ADMITS, CLEAN, SILENT = "stable", "labours", "admits its error", "fails cleanly", "unsound"
@@ -277,9 +277,9 @@ def _sound_so_far(kept: xr.Dataset) -> bool:
 def cured(case: Case, found: Run) -> str:
     """What of a case that is not stable, relaxed as its message says, makes it so; in words, empty where nothing does."""
     message = found.message
-    if found.completed:
+    if HERE not in message:  # of a run that was completed a note says it
         with tempfile.TemporaryDirectory() as folder:
-            message += f"; {hard_here(hard_in(case.read(Path(folder))))}"  # which the run itself notes where it doubts
+            message += f"; {hard_here(hard_in(case.read(Path(folder))))}"
     return next((said for said, easier in relaxed(case, message) if run(easier, compare=False).outcome == STABLE), "")
 
 
