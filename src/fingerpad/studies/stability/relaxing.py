@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import reduce
 from typing import Any
 
 from fingerpad.mechanics.stepping import hard_here
@@ -107,7 +108,10 @@ HARD: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
 
 
 def relaxed(case: Case, message: str) -> Iterator[tuple[str, Case]]:
-    """What the message of a failed run says to relax, in words, and the case with it relaxed; a wrong one wants a finer mesh."""
+    """What the message of a failed run says to relax, in words, and the case with it relaxed; a wrong one wants a finer mesh.
+
+    One thing after the other, and last all at once that is hard.
+    """
     advice, _, hard = message.partition(HERE)
     tried, known = set(), ((ADVICE, advice.partition("; try ")[2] or "a finer mesh"), (HARD, hard))
     for meaning, text in known:
@@ -116,3 +120,6 @@ def relaxed(case: Case, message: str) -> Iterator[tuple[str, Case]]:
                 if said not in tried:
                     tried.add(said)
                     yield said, change(case)
+    less = [change for words, ((_, change),) in HARD.items() if words in hard]
+    if len(less) > 1:
+        yield "all that is hard", reduce(lambda easier, change: change(easier), less, case)
