@@ -111,7 +111,7 @@ def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatc
     had = [plan(long.with_accuracy(accuracy)) for accuracy in (0.1, 0.05, 0.035)]
     work = [chosen.nodes * chosen.steps for chosen in had]
     assert all(chosen.missed() is None for chosen in had) and work == sorted(work)
-    assert had[0].nodes < 20_000 and "of a stroke as root mean square" in had[0].covers
+    assert had[0].nodes < 20_000 and "of strokes root mean square" in had[0].covers
     missing = plan(long.with_accuracy(0.02))
     monkeypatch.setattr("fingerpad.planning.discretisation._NEAR", 0.0)
     least = plan(long.with_accuracy(0.02))

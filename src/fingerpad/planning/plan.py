@@ -107,7 +107,7 @@ class Plan:
         """The quantities that the error is of."""
         if self.unbounded_peak:
             return "depth, width, centre pressure, strain energy; the peak at the edge is unbounded"
-        return "depth, width, pressure, strain energy" + self.strokes * "; of a stroke as root mean square, over the largest"
+        return "depth, width, pressure, strain energy" + self.strokes * "; of strokes root mean square, relative to the largest"
 
     def missed(self, error: float | None = None) -> str | None:
         """What to say where ``error`` (default: the expected one) exceeds the tolerance; None where it does not."""
