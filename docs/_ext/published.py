@@ -471,6 +471,11 @@ def hard_cases_cured():
 
 
 @number
+def hard_cases_cured_at_once():
+    return int((_cases()["stable when relaxed"] == "all that is hard").sum())
+
+
+@number
 def linear_quads_wrong():
     return _outcomes("full Q1").get("wrong", 0)
 
