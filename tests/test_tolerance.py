@@ -119,6 +119,14 @@ def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatc
     assert missing.nodes < 0.5 * least.nodes and missing.estimated_error < 1.2 * least.estimated_error
 
 
+def test_steps_of_a_steady_stroke_count_as_those_of_a_timed_one():
+    """Friction remembers the way, however long it took."""
+    slides = ({"slide": "80 mm"}, {"slide": "80 mm", "speed": "10 mm/s", "keep": "force"})
+    steady, timed = (plan(scene({"shape": "wavy"}, [*PRESS, slide], friction=0.35, accuracy=0.05)) for slide in slides)
+    assert not steady.timed and timed.timed and steady.steps_per_leg == timed.steps_per_leg > 10
+    assert steady.estimated_error == pytest.approx(timed.estimated_error, rel=0.1)
+
+
 def test_peak_is_unbounded_under_a_true_edge_and_only_there():
     sharp, rounded = plan(scene(BAR)), plan(scene(ROUNDED))
     assert sharp.unbounded_peak and "the peak at the edge is unbounded" in sharp.covers
