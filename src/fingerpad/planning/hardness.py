@@ -18,7 +18,7 @@ cases (figures/tables/stability.csv) begins to need more than its easy neighbour
 
 
 def hard_in(scene: Scene) -> tuple[str, ...]:
-    """What is hard in a scene, in words, in the order in which less of it helped most of the cases of the catalogue."""
+    """What is hard in a scene, in words, in the order in which the catalogue of hard cases tries less of it."""
     return tuple(_found(scene))
 
 

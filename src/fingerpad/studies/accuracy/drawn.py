@@ -29,7 +29,8 @@ SEED, SCENES = 22, 60
 covered and a bar's true edge believed 11.0 % where it was wrong by 11.3: its floor became 15 %, and nothing else changed.
 On the inferred pad the same rules covered 58 of them, which raised the rules' ``safety`` and the factor of measured profiles
 (``bumps``): 60 of 60 is fitted. Strokes over waves had a factor as well while their errors were those of their last moment; as
-root mean squares over the way they need none: the seven of seed 23, unseen, are wrong by at most 0.6 of what they believe."""
+root mean squares over the way they need none. Of the strokes of seed 23, unseen, one in seven was missed: steps of steady ones
+did not count; of eleven of seed 24, unseen after that, ten were covered, and one was wrong by 3.1 % and believed 2.8."""
 LEVELS = (0.1, 0.05)
 """Accuracies that are asked for, one drawn for each scene; an external mesh is what it is."""
 HEAVY = ("wavy", "ridges")
