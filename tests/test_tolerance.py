@@ -129,7 +129,9 @@ def test_steps_of_a_steady_stroke_count_as_those_of_a_timed_one():
 
 def test_peak_is_unbounded_under_a_true_edge_and_only_there():
     sharp, rounded = plan(scene(BAR)), plan(scene(ROUNDED))
-    assert sharp.unbounded_peak and "the peak at the edge is unbounded" in sharp.covers
+    assert sharp.unbounded_peak and "the peak at the edge is unbounded" in sharp.covers and "root mean" not in sharp.covers
+    stroked = plan(scene(BAR, [*PRESS, {"slide": "1 mm"}])).covers
+    assert "unbounded" in stroked and "root mean square" in stroked
     assert sharp.estimated_error >= RULES.edge_floor
     for chosen in (rounded, plan(scene({"shape": "line"})), plan(scene()), plan(scene(cylinder(1e4)))):
         assert not chosen.unbounded_peak and "unbounded" not in chosen.covers

@@ -73,7 +73,7 @@ class Plan:
         most of it comes from. asked_error: the tolerance, None where none is asked for; once: whether it is tried for once only.
         unbounded_peak: whether the profile has a true edge, where pressure has no bound and a peak is the mesh's. specimen:
         sentences on what is touched, and what of it the scene left out. surface: what the mesh makes of a measured profile.
-        stride: so many steps are made one. strokes: is there a leg that strokes, whose errors are of its whole way?
+        stride: so many steps are made one. strokes: does the pad move along the surface, so that errors are of a way?
     """
 
     effects: dict[str, Effect]
@@ -105,9 +105,10 @@ class Plan:
     @property
     def covers(self) -> str:
         """The quantities that the error is of."""
+        said = "depth, width, pressure, strain energy"
         if self.unbounded_peak:
-            return "depth, width, centre pressure, strain energy; the peak at the edge is unbounded"
-        return "depth, width, pressure, strain energy" + self.strokes * "; of strokes root mean square, relative to the largest"
+            said = "depth, width, centre pressure, strain energy; the peak at the edge is unbounded"
+        return said + self.strokes * "; of strokes root mean square, relative to the largest"
 
     def missed(self, error: float | None = None) -> str | None:
         """What to say where ``error`` (default: the expected one) exceeds the tolerance; None where it does not."""
