@@ -13,8 +13,8 @@ _INCOMPRESSIBLE = 0.499
 _FORCE = 0.5
 _DEPTH = 2e-3
 _CURVATURE = 1000.0
-"""Ratio of layers' moduli, that of the skin's to the next one's, Poisson's ratio, N, m and 1/m from which the catalogue of hard
-cases (figures/tables/stability.csv) begins to need more than its easy neighbours."""
+"""Ratio of layers' moduli, that of the skin's to the next one's, Poisson's ratio, N, m and 1/m beyond which it is said:
+chosen between the usual and the hard levels of the catalogue of hard cases (figures/tables/stability.csv)."""
 
 
 def hard_in(scene: Scene) -> tuple[str, ...]:

@@ -89,20 +89,20 @@ ADVICE: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
 """Words of an advice -> what they say to relax, in the order in which it is tried."""
 
 
-HARD: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
-    "times as stiff": (("layers: usual", _of_layers()),),
-    "hardly stiffer": (("layers: usual", _of_layers()),),
-    "Poisson's ratio": (("Poisson's ratio: 0.48", _of_layers(poisson_ratio=0.48)),),
-    "a force of": (("load: 0.2 of it", _loaded(0.2)),),
-    "a depth of": (("load: 0.2 of it", _loaded(0.2)),),
-    "a true edge": (("stimulus: rounded", _rounded),),
-    "as sharp as": (("stimulus: rounded", _rounded),),
-    "corners or bumps": (("stimulus: rounded", _rounded),),
-    "friction": (("friction: none", _without("friction")),),
-    "the law": (("law: neo-Hooke", _of_layers(law="neo_hooke")),),
-    "small strain": (("strain: finite", lambda case: _with(case, effects=case.scene["effects"] | {"finite_strain": "on"})),),
-    "a stroke": (("motion: pressed only", _pressed_only),),
-    "not refined": (("mesh: planned for accuracy: thesis", _meshed("thesis")),),
+HARD: dict[str, tuple[str, Callable[[Case], Case]]] = {
+    "times as stiff": ("layers: usual", _of_layers()),
+    "hardly stiffer": ("layers: usual", _of_layers()),
+    "Poisson's ratio": ("Poisson's ratio: 0.48", _of_layers(poisson_ratio=0.48)),
+    "a force of": ("load: 0.2 of it", _loaded(0.2)),
+    "a depth of": ("load: 0.2 of it", _loaded(0.2)),
+    "a true edge": ("stimulus: rounded", _rounded),
+    "as sharp as": ("stimulus: rounded", _rounded),
+    "corners or bumps": ("stimulus: rounded", _rounded),
+    "friction": ("friction: none", _without("friction")),
+    "the law": ("law: neo-Hooke", _of_layers(law="neo_hooke")),
+    "small strain": ("strain: finite", lambda case: _with(case, effects=case.scene["effects"] | {"finite_strain": "on"})),
+    "a stroke": ("motion: pressed only", _pressed_only),
+    "not refined": ("mesh: planned for accuracy: thesis", _meshed("thesis")),
 }
 """Words of what is hard in a scene -> what they say to ask less of."""
 
@@ -113,13 +113,9 @@ def relaxed(case: Case, message: str) -> Iterator[tuple[str, Case]]:
     One thing after the other, and last all at once that is hard.
     """
     advice, _, hard = message.partition(HERE)
-    tried, known = set(), ((ADVICE, advice.partition("; try ")[2] or "a finer mesh"), (HARD, hard))
-    for meaning, text in known:
-        for words, changes in meaning.items():
-            for said, change in changes if words in text else ():
-                if said not in tried:
-                    tried.add(said)
-                    yield said, change(case)
-    less = [change for words, ((_, change),) in HARD.items() if words in hard]
+    advice = advice.partition("; try ")[2] or "a finer mesh"
+    advised = [each for words, changes in ADVICE.items() if words in advice for each in changes]
+    less = dict(each for words, each in HARD.items() if words in hard)
+    yield from ((said, change(case)) for said, change in (dict(advised) | less).items())
     if len(less) > 1:
-        yield "all that is hard", reduce(lambda easier, change: change(easier), less, case)
+        yield "all that is hard", reduce(lambda easier, change: change(easier), less.values(), case)
