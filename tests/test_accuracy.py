@@ -275,10 +275,10 @@ def test_committed_beliefs_cover_the_truth():
     assert STUDIES["accuracy_belief"](rows).axes
 
 
-def a_history(press: float, way: list[float], pressures: list[float], leg: int = 1) -> xr.Dataset:
+def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Dataset:
     """Depth ``press`` and the same pressure at the end of a press, then pressures at places (mm) of a stroke."""
     count = len(way)
-    columns = {"leg": [0, 0, *[leg] * count], "stroke_distance": [0.0, 0.0, *(1e-3 * np.array(way))]}
+    columns = {"leg": [0, 0, *[1] * count], "stroke_distance": [0.0, 0.0, *(1e-3 * np.array(way))]}
     columns |= {"indentation_depth": [0.0, press, *[press] * count], "centre_pressure": [0.0, 1.0, *pressures]}
     return xr.Dataset({name: ("time", np.array(values)) for name, values in columns.items()})
 

@@ -165,7 +165,7 @@ def test_what_is_hard_is_said_and_can_be_asked_less_of(tmp_path):
     assert not hard_in(Case("c", "test", "easy", {"stimulus": {"shape": "flat"}, "motion": [force(20)]}).read(tmp_path))
 
 
-def test_a_failure_and_a_doubt_name_what_is_hard():
+def test_a_failure_names_what_is_hard():
     failure = NonConvergence(0.0, "it failed", "a finer mesh")
     assert str(failure) == "no convergence after t = 0 s: it failed; try a finer mesh"
     failure.hard = ("a true edge", "a stroke")

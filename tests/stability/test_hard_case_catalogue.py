@@ -219,6 +219,8 @@ def test_a_run_notes_energy_that_is_missing_and_an_element_that_is_squeezed():
         mutant.setattr(simulation, "_SQUEEZED", 1.0)
         assert "the energy found is off" in notes("nu 0.48, flat") and "of its volume" in notes("nu 0.48, flat")
         assert "energy" not in notes("sharp bar, 1 mm")
+        assert "what is hard here" not in notes("nu 0.48, flat") and "a Poisson's ratio of 0.4999" in notes("nu 0.4999, flat")
+    assert "what is hard here" not in notes("nu 0.4999, flat")  # where nothing is doubted
 
 
 def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):

@@ -8,11 +8,13 @@ way. The belief is what the run itself states as its error; it covers the truth 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Cylinder, Flat, Hold, PressToDepth, PressToForce, Scene, Slide
@@ -74,7 +76,7 @@ STILL_FINER = 1.4
 QUANTITIES = ("indentation_depth", "contact_width", "centre_pressure", "peak_pressure", "strain_energy_density")
 
 
-def difference(found, truth, quantities=QUANTITIES) -> tuple[float, str]:
+def difference(found: xr.Dataset, truth: xr.Dataset, quantities: Iterable[str] = QUANTITIES) -> tuple[float, str]:
     """Largest relative difference of two histories, and the quantity that has it.
 
     At the end of every leg; of one that strokes the root mean square over its way, relative to the largest value on it: what a
