@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from fingerpad.laws import assign
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
-from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure, tributary_length
+from fingerpad.mechanics.pressure import smoothed_pressure
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
 from fingerpad.mechanics.stepping import FOLDED, NonConvergence, QuasiStatic, Record, Skin, hard_here
@@ -380,16 +380,8 @@ class Simulation:
         mean = np.einsum("eq,eqb,eb->e", space.weight, space.psi, modes) / space.weight.sum(1)
         return self.body.bulk * mean
 
-    def _length_and_gradient(self, record):
-        position = self.stepper.points + record.displacement
-        # the linear theory knows no deformed lengths
-        lengths = self.stepper.points if self.body.geometrically_linear else position
-        return tributary_length(lengths, self.skin.edges, self.skin.nodes, record.gradient), position
-
     def _edges(self, record):
-        length, position = self._length_and_gradient(record)
-        edges = contact_edges(position[self.skin.nodes, 0], record.nodal_force / length, record.gap)
-        return (0.0, edges[1]) if self.mesh.half and record.nodal_force.any() else edges  # from outermost to outermost
+        return (0.0, record.edges[1]) if self.mesh.half and record.nodal_force.any() else record.edges
 
     def _history(self, records: list[Record], states, snapshots, complete: bool):
         unfold = _Unfolding(self.whole, self.mesh, self.skin.nodes)
@@ -409,7 +401,7 @@ class Simulation:
             out["contact_state"] = np.zeros((count, len(chain)), np.int8)
         apex = _apex(self.whole.points[chain])
         for k, record in enumerate(records, start=1):
-            length, position = self._length_and_gradient(record)
+            length = record.length
             smooth = smoothed_pressure(record.nodal_force, length, self.mesh.half)
             edges = self._edges(record)
             u = record.displacement[self.skin.nodes]

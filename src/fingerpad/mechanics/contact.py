@@ -1,6 +1,6 @@
-"""Exact unilateral contact of skin nodes with a rigid profile, in the condensed (Schur) system.
+"""Exact unilateral contact of points of the skin with a rigid profile, in the condensed (Schur) system.
 
-No penalty: nodal normal forces are multipliers of ``gap >= 0``. At each Newton iteration the gap is linearised where the skin
+No penalty: normal forces at the points are multipliers of ``gap >= 0``. At each Newton iteration the gap is linearised where the skin
 and the profile stood before, the profile's own movement is part of the linear solve, and the resulting mixed linear
 complementarity problem
 
@@ -12,6 +12,9 @@ multipliers times the second derivative of the gap. Under force control the prof
 Friction, when a plan calls for it, has a module of its own on the same condensed quantities; nothing of it is here.
 """
 
+from __future__ import annotations
+
+from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -24,29 +27,49 @@ class ContactError(RuntimeError):
 
 @dataclass
 class Zone:
-    """Skin nodes that may touch, and where their degrees of freedom sit in the condensed system.
+    """Points of the skin that may touch, and where the degrees of freedom of its nodes sit in the condensed system.
 
     Attributes:
-        nodes: (nz,) node numbers ordered along the skin. condensed: (nc,) ascending equation numbers.
-        column: (nz, 2) position in ``condensed`` of each degree of freedom, -1 where prescribed.
+        nodes: (nn,) node numbers. equation: (n, 2) equations of all nodes. shape: (nz, nn) values of the nodes' shape functions at
+            the points; None where the points are the nodes. softness: (nz, nz) m^2/N, what forces add to the gaps beside what the
+            body yields; None: nothing.
+        condensed: (nc,) ascending equation numbers.
     """
 
     nodes: np.ndarray
     equation: np.ndarray
+    shape: np.ndarray | None = None
+    softness: np.ndarray | None = None
     condensed: np.ndarray = field(init=False)
-    column: np.ndarray = field(init=False)
 
     def __post_init__(self):
         equation = self.equation[self.nodes]
+        if self.shape is None:
+            self.shape = np.eye(len(self.nodes))
         self.condensed = np.unique(equation[equation >= 0])
-        self.column = np.where(equation >= 0, np.searchsorted(self.condensed, np.maximum(equation, 0)), -1)
+        self._parts = np.zeros((2, len(self.shape), len(self.condensed)))
+        for axis in (0, 1):
+            free = equation[:, axis] >= 0
+            self._parts[axis][:, np.searchsorted(self.condensed, equation[free, axis])] = self.shape[:, free]
+
+    def __len__(self) -> int:
+        return len(self.shape)
 
     def gather(self, values: np.ndarray) -> np.ndarray:
-        """(nz, 2) nodal components as a condensed matrix: row k has ``values[k]`` in the columns of node k."""
-        out = np.zeros((len(self.nodes), len(self.condensed)))
-        for axis in (0, 1):
-            free = self.column[:, axis] >= 0
-            out[np.flatnonzero(free), self.column[free, axis]] = values[free, axis]
+        """Components (nz, 2) at the points as a condensed matrix (nz, nc): row k has ``values[k]`` times the shape functions."""
+        return values[:, :1] * self._parts[0] + values[:, 1:] * self._parts[1]
+
+    @property
+    def movable(self) -> np.ndarray:
+        """(nz,) bool: can the point move either way?"""
+        return (self._parts != 0).any(axis=2).all(axis=0)
+
+    def doubled(self, which: np.ndarray) -> Zone:
+        """The zone with a second row for some of its points (k,), after all others."""
+        rows = np.concatenate([np.arange(len(self)), which])
+        out = copy(self)
+        out.shape, out._parts = self.shape[rows], self._parts[:, rows]
+        out.softness = None if self.softness is None else self.softness[np.ix_(rows, rows)]
         return out
 
 
@@ -55,9 +78,9 @@ class Rows:
     """The constraints of a contact problem.
 
     Attributes:
-        zone: whose nodes are those of the rows. place: (nr,) or slice, where the stepper keeps what belongs to them: by the
-            number of the skin node, and for a second side that many nodes further on. partner: (nr,) the row of the same node's
-            other side or -1; None where no node has two. gap: (nr,) m. gradient: (nr, 2). curvature: (nr,) 1/m.
+        zone: whose points are those of the rows. place: (nr,) or slice, where the stepper keeps what belongs to them: by the
+            number of the skin's point, and for a second side that many points further on. partner: (nr,) the row of the same
+            point's other side or -1; None where no point has two. gap: (nr,) m. gradient: (nr, 2). curvature: (nr,) 1/m.
     """
 
     zone: Zone
@@ -68,36 +91,21 @@ class Rows:
     curvature: np.ndarray
 
     @property
-    def nodes(self) -> int:
-        """How many nodes of the zone they are of."""
+    def points(self) -> int:
+        """How many points of the zone they are of."""
         return len(self.gap) if self.partner is None else len(self.gap) - int(np.sum(self.partner >= 0)) // 2
 
-    def of_nodes(self, values: np.ndarray) -> np.ndarray:
-        """Sum (nz, ...) over the rows (nr, ...) of each node."""
+    def of_points(self, values: np.ndarray) -> np.ndarray:
+        """Sum (nz, ...) over the rows (nr, ...) of each point."""
         if self.partner is None:
             return values
-        out, second = values[: self.nodes].copy(), slice(self.nodes, None)
+        out, second = values[: self.points].copy(), slice(self.points, None)
         out[self.partner[second]] += values[second]
         return out
 
-    def normal(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Gap's gradient (nz, 2) and force along it (nz,) of each node, from its rows' forces (nr,): in a valley their sum."""
-        gradient, along = self.gradient[: self.nodes].copy(), force[: self.nodes].copy()
-        if self.partner is not None:
-            push = self.of_nodes(force[:, None] * self.gradient)
-            twice = self.partner[self.nodes :]
-            along[twice] = np.hypot(*push[twice].T)
-            led = twice[along[twice] > 0]
-            gradient[led] = push[led] / along[led, None]
-        return gradient, along
-
-    def least_gap(self) -> np.ndarray:
-        """(nz,) m, of each node the smaller gap."""
-        out = self.gap[: self.nodes].copy()
-        if self.partner is not None:
-            second = slice(self.nodes, None)
-            out[self.partner[second]] = np.minimum(out[self.partner[second]], self.gap[second])
-        return out
+    def closing(self, force: np.ndarray) -> np.ndarray:
+        """(nr,) m, the gaps that forces (nr,) N/m close: with what the zone's softness adds to them."""
+        return self.gap if self.zone.softness is None else self.gap + self.zone.softness @ force
 
 
 @dataclass
@@ -128,7 +136,7 @@ class Response:
     """How constraint rows answer to multipliers on them once the body has been condensed away.
 
     With multipliers ``m`` (nr,) and a change ``dd`` of the profile's depth the rows move by
-    ``free + compliance @ m + lever * dd`` and the condensed degrees of freedom by :meth:`displacement`.
+    ``free + compliance @ m + lever * dd``, what the zone's softness adds to the gaps included, and the condensed degrees of freedom by :meth:`displacement`.
 
     Attributes:
         matrix: (nc, nc) Schur complement with the geometric term of the gaps. compliance: (nr, nr). free, lever: (nr,).
@@ -174,6 +182,10 @@ def respond(zone, schur, right, gradient, curvature, previous_force, directions)
     solved = _solver(matrix)(np.concatenate(columns, axis=1))
     count = len(rows)
     compliance, free = rows @ solved[:, :count], solved[:, count]
+    if zone.softness is not None:
+        each = len(gradient)
+        for first in range(0, count, each):
+            compliance[first : first + each, first : first + each] += zone.softness
     load_shift, bend = 0.0, None
     if border is not None:
         bend = solved[:, count + 1]

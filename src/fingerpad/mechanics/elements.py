@@ -117,7 +117,11 @@ EDGE_POINTS, EDGE_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 def edge_shape(order: int) -> tuple[np.ndarray, np.ndarray]:
     """Shape functions and derivatives of an edge (start, end[, middle]) at :data:`EDGE_POINTS` on [-1, 1]."""
-    s = EDGE_POINTS
+    return edge_values(order, EDGE_POINTS)
+
+
+def edge_values(order: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Shape functions and derivatives (n, order + 1) of an edge (start, end[, middle]) at points ``s`` (n,) on [-1, 1]."""
     if order == 1:
         return np.stack([(1 - s) / 2, (1 + s) / 2], 1), np.stack([-0.5 + 0 * s, 0.5 + 0 * s], 1)
     values = np.stack([s * (s - 1) / 2, s * (s + 1) / 2, 1 - s * s], 1)

@@ -1,14 +1,14 @@
 """Coulomb friction, solved exactly together with unilateral contact in the condensed (Schur) system.
 
-Beside its normal multiplier ``f >= 0`` every touching node has a tangential one, ``tau`` along ``t = (-n_y, n_x)``, n the gap's
-gradient. With ``s`` the slip of the node over the profile since the step began,
+Beside its normal multiplier ``f >= 0`` every touching point has a tangential one, ``tau`` along ``t = (-n_y, n_x)``, n the gap's
+gradient. With ``s`` the slip of the point over the profile since the step began,
 
     |tau| <= mu f,    s = 0 where |tau| < mu f,    tau = -mu f sign(s) where s != 0,
 
 which is implicit (backward Euler) in time. Each linearised problem is solved to the end by exchanging states (open, sticking,
 slipping either way) until every node satisfies its own: the trial rule |tau - c s| <= mu f of the primal-dual active set method
 (Alart and Curnier 1991; Hueber, Stadler and Wohlmuth 2008). The global tangent stays symmetric, for friction only ever meets the
-small dense system.
+small dense system. What a zone's softness adds to the gaps it takes from the slip, of the friction that has changed in the step.
 """
 
 from dataclasses import dataclass
@@ -30,11 +30,11 @@ class FrictionStep(ContactStep):
 
 
 class Coulomb:
-    """Coulomb's law with one coefficient, and the state of every skin node.
+    """Coulomb's law with one coefficient, and the state of every point of the skin.
 
     Args:
-        coefficient: of friction. count: number of places where contact may be: skin nodes, twice as many where the profile has
-            valleys, on both sides of which a node may lean.
+        coefficient: of friction. count: number of places where contact may be: points of the skin, twice as many where the profile
+            has valleys, on both sides of which a point may lean.
 
     Attributes:
         tangential: (count,) N/m force on the skin along the tangent. state: (count,) -1, 0, 1. slip: (count,) m since the step
@@ -45,10 +45,16 @@ class Coulomb:
     def __init__(self, coefficient: float, count: int):
         self.coefficient = float(coefficient)
         self.tangential = np.zeros(count)
+        self._before = np.zeros(count)  # the tangential force when the step began
         self.state = np.zeros(count, np.int8)
         self.slip = np.zeros(count)
         self.dissipated = 0.0
         self._pull = np.zeros((count, 2))
+
+    @property
+    def kept(self) -> list[np.ndarray]:
+        """What belongs to the places and goes with a point from one side of a valley to the other."""
+        return [self.tangential, self._before, self.state]
 
     def save(self):
         """The state to come back to."""
@@ -57,10 +63,11 @@ class Coulomb:
     def restore(self, saved) -> None:
         """Come back to a saved state."""
         self.tangential, self.state, self._pull, self.dissipated = saved[0].copy(), saved[1].copy(), *saved[2:]
+        self._before = saved[0].copy()
 
     def release(self) -> None:
         """Contact is lost altogether."""
-        self.tangential[:], self.state[:], self._pull = 0, 0, 0 * self._pull
+        self.tangential[:], self._before[:], self.state[:], self._pull = 0, 0, 0, 0 * self._pull
 
     def solve(
         self, zone: Zone, part: slice, schur, right, gap, gradient, curvature, previous_force, active, motion, *,
@@ -69,14 +76,16 @@ class Coulomb:
         """Solve the linearised unilateral and frictional problem exactly; arguments as of :func:`contact.solve_contact`.
 
         Args:
-            part: where the zone's rows are kept. motion: (nz, 2) m, of their nodes over the profile since the step began.
-            partner: (nz,) the row of the same node's other side in a valley, or -1; None where no node has two.
+            part: where the zone's rows are kept. motion: (nz, 2) m, of their points over the profile since the step began.
+            partner: (nz,) the row of the same point's other side in a valley, or -1; None where no point has two.
 
         Raises:
             ContactError: no consistent set of states is found.
         """
         tangent = tangents(gradient)
         moved = np.einsum("ni,ni->n", motion, tangent)
+        if zone.softness is not None:
+            moved = moved - zone.softness @ self._before[part]
         softened = False
         while True:
             answer = respond(zone, schur, right, gradient, curvature, previous_force, [gradient, tangent])
@@ -105,31 +114,40 @@ class Coulomb:
         self.tangential[part], self.state[part] = step.tangential, step.state
 
     def pull(self, part: slice, gradient: np.ndarray) -> np.ndarray:
-        """(nz, 2) N/m tangential force on the skin nodes of the zone, whose gap gradients (nz, 2) are."""
+        """(nz, 2) N/m tangential force on the points of the zone, whose gap gradients (nz, 2) are."""
         return self.tangential[part, None] * tangents(gradient)
 
-    def creep(self, part: slice, active: np.ndarray, gradient: np.ndarray, motion: np.ndarray) -> float:
-        """Record the slip; returns the largest one (m) of a node that should stick."""
+    def creep(self, part: slice, active: np.ndarray, gradient: np.ndarray, motion: np.ndarray, softness=None) -> float:
+        """Record the slip; returns the largest one (m) of a point that should stick. softness: as of the zone."""
         self.slip[:] = 0
-        self.slip[part] = np.einsum("ni,ni->n", motion, tangents(gradient)) * active
+        slip = np.einsum("ni,ni->n", motion, tangents(gradient))
+        if softness is not None:
+            slip = slip + softness @ (self.tangential - self._before)[part]
+        self.slip[part] = slip * active
         return float(np.abs(self.slip[part][self.state[part] == STICK]).max(initial=0.0))
 
     def commit(self, part: slice, pull: np.ndarray, motion: np.ndarray) -> float:
-        """The step has converged, (nz, 2) N/m pull at the nodes; returns what friction dissipated, J/m (trapezoidal in time)."""
+        """The step has converged, (nz, 2) N/m pull at the points; returns what friction dissipated, J/m (trapezoidal in time)."""
         full = np.zeros_like(self._pull)
         full[part] = pull
         lost = -0.5 * float(np.sum((self._pull[part] + pull) * motion))
-        self._pull = full
+        self._pull, self._before = full, self.tangential.copy()
         self.dissipated += lost
         return lost
 
-    def record(self, active: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Tangential force, slip and state (0 open, 1 sticks, 2 slips) of every skin node (count,), for the record."""
-        shown = np.where(active, 1 + np.abs(self.state), 0).astype(np.int8)
-        if len(active) == count:
-            return self.tangential.copy(), self.slip.copy(), shown
-        slip = np.where(active[:count], self.slip[:count], self.slip[count:])
-        return self.tangential[:count] + self.tangential[count:], slip, np.maximum(shown[:count], shown[count:])
+    def record(self, active: np.ndarray, places) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Tangential force, slip and state (0 open, 1 sticks, 2 slips) of every skin node (ns,), for the record.
+
+        A node slips as far as the points round it that touch do, and sticks where most of these stick.
+        """
+        sides = (-1, len(places))
+        slips, active = active & (self.state != STICK), active.astype(float)
+        touching, sliding, tangential, slip = (
+            places.of_nodes(each.reshape(sides).sum(axis=0)) for each in (active, slips, self.tangential, self.slip * active)
+        )
+        on = touching > 0
+        slip = np.divide(slip, touching, out=np.zeros_like(slip), where=on)
+        return tangential, slip, np.where(on, np.where(sliding > touching / 2, 2, 1), 0).astype(np.int8)
 
 
 def tangents(gradient: np.ndarray) -> np.ndarray:

@@ -1,26 +1,9 @@
-"""From nodal contact forces to contact pressure, contact edges and contact width."""
+"""From forces on the skin to smoothed pressure and the edges of the contact."""
 
 import numpy as np
 
-from fingerpad.mechanics.space import edge_load_vectors
-
-
-def contact_pressure(position, edges, nodes, nodal_force, gradient) -> np.ndarray:
-    """Nodal pressure (ns,) Pa: force over the consistent nodal load of a unit pressure on the deformed skin.
-
-    Args:
-        position: (n, 2) deformed nodes, m. edges: skin edges (m, 2 or 3). nodes: (ns,) skin nodes in order.
-        nodal_force: (ns,) N/m along the gap's gradient. gradient: (ns, 2), pointing into the skin.
-    """
-    return nodal_force / tributary_length(position, edges, nodes, gradient)
-
-
-def tributary_length(position, edges, nodes, gradient) -> np.ndarray:
-    """(ns,) m: component along ``-gradient`` of the load of a unit pressure; its own length where there is no contact."""
-    load = edge_load_vectors(position, edges)[nodes]
-    along = -np.einsum("ni,ni->n", load, gradient)
-    own = np.hypot(load[:, 0], load[:, 1])
-    return np.where((along > 0.2 * own) & (gradient != 0).any(1), along, own)
+_REACH = 12
+"""Spacings of the contact's points from its edge in, over which pressure is looked at: three edges of the skin's elements."""
 
 
 def smoothed_pressure(nodal_force, length, mirrored: bool) -> np.ndarray:
@@ -40,37 +23,41 @@ def smoothed_pressure(nodal_force, length, mirrored: bool) -> np.ndarray:
     return np.where(nodal_force > 0, smooth, 0.0)
 
 
-def contact_edges(x, pressure, gap) -> tuple[float, float]:
-    """Left and right contact edge (m), located between nodes; (nan, nan) without contact.
+def contact_edges(x, pressure, spacing) -> tuple[float, float]:
+    """Left and right edge of the contact (m), from outermost to outermost; (nan, nan) without contact.
 
     Args:
-        x: (ns,) lateral position of the deformed skin nodes in order. pressure: (ns,) Pa. gap: (ns,) m, nan where unknown.
+        x: (n,) m, lateral position of points of the skin in order. pressure: (n,) Pa. spacing: (n,) m between them.
 
-    Inside the edge of a smooth contact the pressure grows like the square root of the distance, outside it the gap grows like
-    its power 3/2 (Johnson 1985, section 5.1). The edge is the mean of the two extrapolations, each from two nodes and each kept
-    between the last touching node and the next one.
+    Inside the edge of a smooth contact the pressure grows like the square root of the distance, its square evenly, and bends as
+    the contact is wide (Johnson 1985, section 5.1): the edge is where a parabola through the squares vanishes, least squares over
+    some elements, which weigh less and less to either side, so that it moves on evenly from point to point. Where pressure does
+    not fall to the edge, as under an edge of the profile, contact ends half a spacing beyond the last point.
     """
     on = np.flatnonzero(pressure > 0)
     if not len(on):
         return np.nan, np.nan
-    return _edge(x, pressure, gap, on[0], -1), _edge(x, pressure, gap, on[-1], +1)
+    run = np.split(on, np.flatnonzero(np.diff(on) > 1) + 1)
+    left, right = run[0][::-1], run[-1]
+    return -_edge(-x[left], pressure[left], spacing[left[-1]]), _edge(x[right], pressure[right], spacing[right[-1]])
 
 
-def _edge(x, pressure, gap, last, side):
-    outer = last + side
-    if not 0 <= outer < len(x) or side * (x[outer] - x[last]) <= 0:
-        return float(x[last])
-    found = [
-        _root(x[last - side], x[last], pressure[last - side] ** 2, pressure[last] ** 2) if 0 <= last - side < len(x) else None,
-        _root(x[outer + side], x[outer], *np.cbrt(gap[[outer + side, outer]]) ** 2) if 0 <= outer + side < len(x) else None,
-    ]
-    low, high = sorted((x[last], x[outer]))
-    found = [min(max(value, low), high) for value in found if value is not None]
-    return float(np.mean(found)) if found else float((x[last] + x[outer]) / 2)
-
-
-def _root(far, near, at_far, at_near):
-    """Where the line through (far, at_far) and (near, at_near) vanishes, if it falls from far to near; else None."""
-    if not at_far > at_near >= 0:
-        return None
-    return near + (near - far) * at_near / (at_far - at_near)
+def _edge(x, pressure, spacing):
+    """Where the pressure (n,) at ascending places falls to zero on the right."""
+    plain, reach = x[-1] + spacing / 2, _REACH * spacing
+    edge, square = plain, pressure**2
+    for _ in range(4):
+        weight = np.clip(1 - (edge - x) / reach, 0, 1) ** 2 * pressure
+        use = weight > 0
+        degree = min(2, np.count_nonzero(use) - 2)
+        if degree < 1:
+            return float(plain)
+        way = (x[use] - plain) / reach
+        terms = np.vander(way, degree + 1) * np.sqrt(weight[use])[:, None]
+        roots = np.roots(np.linalg.lstsq(terms, square[use] * np.sqrt(weight[use]), rcond=None)[0])
+        roots = roots[np.isreal(roots)].real * reach
+        roots = roots[(roots > -4 * spacing) & (roots < 2 * spacing)]
+        if not len(roots):
+            return float(plain)
+        edge = plain + roots[np.argmin(np.abs(roots))]
+    return float(edge)

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fingerpad.mechanics.contact import ContactError, Rows, Zone, solve_contact
+from fingerpad.mechanics.contact_points import PER_NODE, ContactPoints
 from fingerpad.mechanics.linear_solver import FactorisationError, condensation
+from fingerpad.mechanics.pressure import contact_edges
 from fingerpad.stimuli.motion import STEADY, Step
 
 _FOLDS = 0.02
@@ -93,7 +95,11 @@ class Skin:
 
 @dataclass
 class Record:
-    """What one converged step left behind (arrays over the skin are (ns,))."""
+    """What one converged step left behind (arrays over the skin's nodes are (ns,)).
+
+    Forces at the points where the skin touches are shared out between the nodes on either side, and so are the lengths of skin
+    that they act on: one over the other is the mean pressure round a node.
+    """
 
     leg: int
     time: float
@@ -101,8 +107,9 @@ class Record:
     force: float
     tangential_force: float
     nodal_force: np.ndarray
-    gradient: np.ndarray
-    gap: np.ndarray
+    gradient: np.ndarray  # (ns, 2) direction of the force; zero where nothing touches
+    length: np.ndarray  # m of the skin as it is now
+    edges: tuple[float, float]  # m, of the contact, from outermost to outermost; NaN without
     displacement: np.ndarray  # (n, 2)
     iterations: int
     halvings: int
@@ -122,7 +129,7 @@ class Record:
 
 @dataclass(frozen=True)
 class _Past:
-    """A state before a step of ``dt`` s: displacement (n, 2) m, nodal forces (ns,) N/m and depth m."""
+    """A state before a step of ``dt`` s: displacement (n, 2) m, contact forces (np,) N/m and depth m."""
 
     dt: float
     u: np.ndarray
@@ -171,12 +178,15 @@ class QuasiStatic:
         self.observers = observers
         self.external = external
         self.points = body.space.points
-        self._valleys, places = None, len(skin.nodes)
+        stiffest = np.zeros(len(self.points))
+        np.maximum.at(stiffest, body.space.cells, body.shear[:, None])
+        self.places = ContactPoints.on(self.points, skin.nodes, skin.edges, stiffest[skin.edges].min(axis=1))
+        self._valleys, places = None, len(self.places)
         if profile.valleys:
             from fingerpad.mechanics.valleys import Valleys
 
-            self._valleys, places = Valleys(profile, places, skin.spacing), 2 * places
-        self.nodal_force = np.zeros(places)
+            self._valleys, places = Valleys(profile, places, skin.spacing / PER_NODE), 2 * places
+        self.contact_force = np.zeros(places)
         self.active = np.zeros(places, bool)
         self.depth = self.distance = 0.0
         self.time = 0.0
@@ -188,7 +198,7 @@ class QuasiStatic:
             from fingerpad.mechanics.friction import Coulomb
 
             self.friction = Coulomb(friction, places)
-        self._set_zone(*skin.start)
+        self._set_zone(*(PER_NODE * end for end in skin.start))
         self.height = self._first_touch()
         self._reach_what_touches()
         self._unloaded = body.save()
@@ -201,33 +211,34 @@ class QuasiStatic:
     # -- geometry ---------------------------------------------------------------------------------------------------
 
     def _set_zone(self, first, last):
-        self._range = slice(max(first, 0), min(last, len(self.skin.nodes)))
-        self.zone = Zone(self.skin.nodes[self._range], self.body.space.equation)
+        self._range = self.places.whole(first, last)
+        nodes, shape = self.places.shape(self._range)
+        self.zone = Zone(nodes, self.body.space.equation, shape, self.places.soft(self._range))
         self.solver = condensation(self.body.space.pattern, self.zone.condensed)
 
     def _reach_what_touches(self):
         """Widen the zone to where the profile touches first: the edges of a hole are not where its middle is."""
-        gap = self.profile.evaluate(self._position(self.skin.nodes))[0]
+        gap = self.profile.evaluate(self._position(slice(None)))[0]
         first = np.flatnonzero(gap <= gap.min() + 0.1 * self.skin.spacing)
         if first[0] < self._range.start or first[-1] >= self._range.stop:
             self._widen_to(first)
 
     def _widen_to(self, places):
-        """Let the zone reach some nodes of the skin (k,), ascending, and a few beyond."""
-        self._set_zone(min(self._range.start, places[0] - 8), max(self._range.stop, places[-1] + 9))
+        """Let the zone reach some points of the skin (k,), ascending, and a few beyond."""
+        self._set_zone(min(self._range.start, places[0] - 16), max(self._range.stop, places[-1] + 17))
 
     def _grow_zone(self):
         first, last = self._range.start, self._range.stop
-        more = max(8, (last - first) // 3)
+        more = max(16, (last - first) // 3)
         self._set_zone(first - more if first else 0, last + more)
 
     def _follow(self):
         """Draw the zone together round a contact that has moved on: it is condensed, so every iteration pays for its size."""
         on = np.flatnonzero(self._touching())
         if len(on):
-            more = max(12, np.ptp(on) // 4)
-            first, last = max(on[0] - more, 0), min(on[-1] + 1 + more, len(self.skin.nodes))
-            if len(self.zone.nodes) > self.settings.spare * (last - first):
+            more = max(24, np.ptp(on) // 4)
+            first, last = max(on[0] - more, 0), min(on[-1] + 1 + more, len(self.places))
+            if len(self.zone) > self.settings.spare * (last - first):
                 self._set_zone(first, last)
 
     def _zone_is_tight(self):
@@ -235,27 +246,28 @@ class QuasiStatic:
         on = np.flatnonzero(self._touching()[self._range])
         if not len(on):
             return False
-        low = self._range.start > 0 and on[0] < 3
-        return low or (self._range.stop < len(self.skin.nodes) and on[-1] >= len(self.zone.nodes) - 3)
+        low = self._range.start > 0 and on[0] < 6
+        return low or (self._range.stop < len(self.places) and on[-1] >= len(self.zone) - 6)
 
     def _touching(self):
-        """(ns,) bool: the nodes that touch, on one side of a valley or both."""
-        return self.active.reshape(-1, len(self.skin.nodes)).any(axis=0)
+        """(np,) bool: the points that touch, on one side of a valley or both."""
+        return self.active.reshape(-1, len(self.places)).any(axis=0)
 
-    def _position(self, nodes):
-        return self.points[nodes] + self.body.u[nodes] - np.array([-self.distance, self.height - self.depth])
+    def _position(self, which):
+        """(k, 2) m, of some points of the skin in the profile's frame."""
+        return self.places.at(self.points + self.body.u, which) - np.array([-self.distance, self.height - self.depth])
 
     def _rows(self) -> Rows:
         """The constraints of the zone, worked out once where the body and the profile are."""
         where = self.zone, self.body.u, self.height, self.depth, self.distance
         if self._found is None or not all(a is b for a, b in zip(where, self._found[0], strict=True)):
-            zone, points = self.zone, self._position(self.zone.nodes)
+            zone, points = self.zone, self._position(self._range)
             single = self.profile.evaluate(points)
             if self._valleys is None:
                 rows = Rows(zone, self._range, None, *single)
             else:
-                kept = [self.nodal_force, self.active]
-                kept += [] if self.friction is None else [self.friction.tangential, self.friction.state]
+                kept = [self.contact_force, self.active]
+                kept += [] if self.friction is None else self.friction.kept
                 rows = self._valleys.rows(zone, self._range, points, single, kept)
             self._found = where, rows
         return self._found[1]
@@ -276,12 +288,12 @@ class QuasiStatic:
     def save(self):
         """The state to come back to: body, contact forces, active nodes, depth, distance, friction."""
         friction = self.friction and self.friction.save()
-        return self.body.save(), self.nodal_force.copy(), self.active.copy(), self.depth, self.distance, friction
+        return self.body.save(), self.contact_force.copy(), self.active.copy(), self.depth, self.distance, friction
 
     def restore(self, state):
         """Come back to a saved state."""
         self.body.restore(state[0])
-        self.nodal_force, self.active, self.depth, self.distance = state[1].copy(), state[2].copy(), *state[3:5]
+        self.contact_force, self.active, self.depth, self.distance = state[1].copy(), state[2].copy(), *state[3:5]
         if self.friction is not None:
             self.friction.restore(state[5])
         self._factors = None
@@ -289,7 +301,7 @@ class QuasiStatic:
     def _start_again(self, distance):
         """Lift the profile off, let the body recover, and come down to first touch at another stroke distance (m)."""
         self.body.restore(self._unloaded)
-        self.nodal_force[:], self.active[:] = 0, False
+        self.contact_force[:], self.active[:] = 0, False
         self.distance = distance
         self.depth = self.touching_depth()
         if self.friction is not None:
@@ -369,11 +381,11 @@ class QuasiStatic:
         load = -internal if self.external is None else self.external - internal
         reduced = self.solver.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
-        known = schur, reduced, rows.gap, rows.gradient, rows.curvature, self.nodal_force[rows.place], self.active[rows.place]
+        known = schur, reduced, rows.gap, rows.gradient, rows.curvature, self.contact_force[rows.place], self.active[rows.place]
         if self.friction is None:
             step = solve_contact(rows.zone, *known, **goal)
         else:
-            step = self.friction.solve(rows.zone, rows.place, *known, self._motion(rows.zone.nodes), partner=rows.partner, **goal)
+            step = self.friction.solve(rows.zone, rows.place, *known, self._motion(rows.zone), partner=rows.partner, **goal)
         self._softened |= step.softened
         self._stiff = step.stiffness
         du = space.to_nodes(self.solver.backward(step.condensed_displacement))
@@ -391,25 +403,26 @@ class QuasiStatic:
             body.displace(u)
         self._schur, self._internal = schur, internal
         self.depth = depth + share * step.depth_change
-        self.nodal_force[:] = 0
+        self.contact_force[:] = 0
         self.active[:] = False
-        self.nodal_force[rows.place], self.active[rows.place] = step.force, step.active
+        self.contact_force[rows.place], self.active[rows.place] = step.force, step.active
         if self.friction is not None:
             self.friction.accept(rows.place, step)
         rows, stuck = self._rows(), 0.0
         active = self.active[rows.place]
         if self.friction is not None:
-            stuck = self.friction.creep(rows.place, active, rows.gradient, self._motion(rows.zone.nodes))
+            stuck = self.friction.creep(rows.place, active, rows.gradient, self._motion(rows.zone), rows.zone.softness)
         push, _ = self._forces()
         unbalanced = -internal if self.external is None else self.external - internal
-        unbalanced[self.zone.nodes] += push
+        unbalanced[self.zone.nodes] += self.zone.shape.T @ push
         scale = max(step.force.sum(), np.abs(self.external).sum() if self.external is not None else 0.0)
         scale = max(scale, settings.least_scale * self._most_force)
         if scale == 0:  # nothing touches: the body must come back to rest
             scale = body.space.measure.out_of_plane_stretch * np.abs(internal).sum() + 1e-30
         equilibrium = np.linalg.norm(space.to_equations(unbalanced)) / scale
-        opening = np.abs(rows.gap[active]).max(initial=0.0)
-        penetration = max(0.0, -rows.gap.min(initial=0.0))
+        gap = rows.closing(self.contact_force[rows.place])
+        opening = np.abs(gap[active]).max(initial=0.0)
+        penetration = max(0.0, -gap.min(initial=0.0))
         balance = 0.0
         if control == "force" and target > 0:
             balance = abs(target + push[:, 1].sum()) / target
@@ -420,19 +433,19 @@ class QuasiStatic:
         )
         return residual if share == 1.0 else max(residual, 2.0)
 
-    def _motion(self, nodes):
-        """(nz, 2) m: how far these nodes have moved over the profile since the step began."""
+    def _motion(self, zone):
+        """(nz, 2) m: how far the points of a zone have moved over the profile since the step began."""
         u, depth, distance = self._begin
-        return self.body.u[nodes] - u[nodes] + np.array([self.distance - distance, self.depth - depth])
+        return zone.shape @ (self.body.u - u)[zone.nodes] + np.array([self.distance - distance, self.depth - depth])
 
     def _touches_elsewhere(self):
         """Does skin outside the zone penetrate the profile? Then the zone has grown to it."""
-        outside = np.ones(len(self.skin.nodes), bool)
+        outside = np.ones(len(self.places), bool)
         outside[self._range] = False
         outside = np.flatnonzero(outside)
         if not len(outside):
             return False
-        gap = self.profile.evaluate(self._position(self.skin.nodes[outside]))[0]
+        gap = self.profile.evaluate(self._position(outside))[0]
         deep = outside[gap < -self.settings.gap_tolerance * self.skin.spacing]
         if not len(deep):
             return False
@@ -440,12 +453,12 @@ class QuasiStatic:
         return True
 
     def _forces(self):
-        """Force of the profile on the zone's nodes (nz, 2) N/m, and the frictional part of it (None without friction)."""
+        """Force of the profile on the zone's points (nz, 2) N/m, and the frictional part of it (None without friction)."""
         rows = self._rows()
-        push = rows.of_nodes(self.nodal_force[rows.place, None] * rows.gradient)
+        push = rows.of_points(self.contact_force[rows.place, None] * rows.gradient)
         if self.friction is None:
             return push, None
-        pull = rows.of_nodes(self.friction.pull(rows.place, rows.gradient))
+        pull = rows.of_points(self.friction.pull(rows.place, rows.gradient))
         return push + pull, pull
 
     def _check_energy(self, work, energies, lost, moved):
@@ -482,7 +495,7 @@ class QuasiStatic:
         """One substep with predictor, check and commit."""
         state = self.save()
         self._begin = self.body.u, self.depth, self.distance
-        body, past = self.body, _Past(dt, self.body.u, self.nodal_force, self.depth)
+        body, past = self.body, _Past(dt, self.body.u, self.contact_force, self.depth)
         try:
             self.distance = distance
             body.begin_step(dt)
@@ -492,19 +505,19 @@ class QuasiStatic:
                 self._internal = body.displace(past.u)
             elif guesses:
                 guess = guesses[-1 if self._quadratic else 0]
-                self.nodal_force, self.depth = np.maximum(guess.force, 0), guess.depth
+                self.contact_force, self.depth = np.maximum(guess.force, 0), guess.depth
             iterations, residual = self._attempt(control, target, bool(guesses))
             if guesses:
                 self._quadratic = np.argmin([np.linalg.norm((body.u - guess.u)[self.zone.nodes]) for guess in guesses]) > 0
             push, pull = self._forces()
             tangential, force = 0.0 - push.sum(0)
-            if force < -1e-9 * self.nodal_force.sum():
+            if force < -1e-9 * self.contact_force.sum():
                 raise _StepFailure("the indenter is pulled instead of pushed")
             self.body.commit()
             stiffness = self._stiff if distance == state[4] else None
             work = self._pressing_work(force, self.depth - state[3], stiffness)
             work += 0.5 * (self._tangential + tangential) * (distance - state[4])
-            lost = self.friction.commit(self._range, pull, self._motion(self.zone.nodes)) if self.friction else 0.0
+            lost = self.friction.commit(self._range, pull, self._motion(self.zone)) if self.friction else 0.0
             energies = self.body.energies()
             self._check_energy(work, energies, lost, distance != state[4])
         except _StepFailure:
@@ -523,7 +536,7 @@ class QuasiStatic:
     def _predictions(self, dt):
         """Where the path goes on to in a step of ``dt``: along the straight line through the last two states, and along the
         parabola through the last three if there are as many."""
-        now, found = _Past(dt, self.body.u, self.nodal_force, self.depth), []
+        now, found = _Past(dt, self.body.u, self.contact_force, self.depth), []
         sizes = [past.dt for past in self._past]
         if sizes:
             ratio = dt / sizes[0]
@@ -614,7 +627,7 @@ class QuasiStatic:
         return bool(record.distance) and abs(push[0]) > np.tan(self.settings.aside) * push[1]
 
     def _advice(self, reason):
-        spacing = float(np.median(np.hypot(*np.diff(self.points[self.skin.nodes[self._range]], axis=0).T)))
+        spacing = float(np.median(PER_NODE * self.places.spacing[self._range]))
         about_profile = self.profile.advice(spacing)
         if about_profile:
             return about_profile
@@ -627,22 +640,28 @@ class QuasiStatic:
         return "more steps, a finer mesh, or depth instead of force control"
 
     def _record(self, step, iterations, halvings, residual):
-        rows, count = self._rows(), len(self.skin.nodes)
-        kept = self.nodal_force[rows.place]
-        gap, gradient, force = np.full(count, np.nan), np.zeros((count, 2)), np.zeros(count)
-        gap[self._range] = rows.least_gap()
-        gradient[self._range], force[self._range] = rows.normal(kept)
+        rows, places, part = self._rows(), self.places, self._range
+        kept = self.contact_force[rows.place]
+        push = np.zeros((len(places), 2))
+        push[part] = rows.of_points(kept[:, None] * rows.gradient)
+        nodal = places.of_nodes(push)
+        force = np.hypot(*nodal.T)
+        gradient = np.divide(nodal, force[:, None], out=np.zeros_like(nodal), where=force[:, None] > 0)
+        position = self.points + self.body.u
+        # the linear theory knows no deformed lengths
+        length = places.lengths(self.points if self.body.geometrically_linear else position)
+        edges = contact_edges(places.at(position, part)[:, 0], np.hypot(*push[part].T) / length[part], places.spacing[part])
         total = max(kept.sum(), 1e-300)
-        slack = np.abs(rows.gap) * kept
+        slack = np.abs(rows.closing(kept)) * kept
         network, spring, branch_work = self._energies
         friction = self.friction
         frictional = friction.dissipated if friction else 0.0
         # a body that is let go gives the work back: there is nothing left to relate an error to
         balance = abs(self.work - network - branch_work - frictional) / max(abs(self.work), 0.1 * self._most_work, 1e-300)
         return Record(
-            step.leg, step.time, self.depth, self.force, self._tangential, force, gradient, gap,
+            step.leg, step.time, self.depth, self.force, self._tangential, force, gradient, places.of_nodes(length), edges,
             self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,
             float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
             float(balance) if self.work else 0.0, self.work, self._energies, branch_work - spring, self.distance, frictional,
-            *(friction.record(self.active, count) if friction else ()),
+            *(friction.record(self.active, places) if friction else ()),
         )  # fmt: skip

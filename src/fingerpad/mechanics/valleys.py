@@ -1,9 +1,9 @@
-"""Contact with a surface that has valleys: a skin node in one leans on both of its sides.
+"""Contact with a surface that has valleys: a point of the skin in one leans on both of its sides.
 
-The distance to such a surface is the smaller of two, and its gradient jumps where they are equal, which is just where a node
-comes to rest: with one constraint Newton's method pushes it from side to side for ever. Here each such node has two, one for each
-side as if it went on beyond the corner (the feasible set of a node under a valley is the intersection of both). The contact
-problem is the same; only its rows are more than its nodes. A profile without valleys never comes here.
+The distance to such a surface is the smaller of two, and its gradient jumps where they are equal, which is just where a point
+comes to rest: with one constraint Newton's method pushes it from side to side for ever. Here each such point has two, one for each
+side as if it went on beyond the corner (the feasible set of a point under a valley is the intersection of both). The contact
+problem is the same; only its rows are more than its points. A profile without valleys never comes here.
 """
 
 import numpy as np
@@ -12,10 +12,10 @@ from fingerpad.mechanics.contact import Rows, Zone
 
 
 class Valleys:
-    """Which skin nodes are in which valley, remembered from one look to the next.
+    """Which points of the skin are in which valley, remembered from one look to the next.
 
     Args:
-        profile: the rigid shape. count: number of skin nodes. reach: m, from the corner of a valley within which a node has two
+        profile: the rigid shape. count: number of points of the skin. reach: m, from the corner of a valley within which a point has two
             constraints.
     """
 
@@ -24,15 +24,15 @@ class Valleys:
         self._corner = np.full(count, -1)
 
     def rows(self, zone: Zone, part: slice, points: np.ndarray, single: tuple, kept: list[np.ndarray]) -> Rows:
-        """The constraints of a zone whose nodes are at ``points`` (nz, 2) m in the profile's frame.
+        """The constraints of a zone whose points are at ``points`` (nz, 2) m in the profile's frame.
 
         Args:
-            part: the zone among the skin nodes. single: gap, gradient and curvature with one constraint a node. kept: arrays
-                (2 ns,) of what belongs to the rows (forces, states): where a node has come into a valley, or left one, they are
+            part: the zone among the skin's points. single: gap, gradient and curvature with one constraint a point. kept: arrays
+                (2 ns,) of what belongs to the rows (forces, states): where a point has come into a valley, or left one, they are
                 moved to the side that it is nearest to.
         """
         walls = self.profile.walls(points, self.reach)
-        free = (zone.column[walls.which] >= 0).all(axis=1)  # on the mirror both sides are one
+        free = zone.movable[walls.which]  # on the mirror both sides are one
         which, corner, distance, normal, bend = (values[free] for values in walls)
         self._move(part, which, corner, distance, kept)
         if not len(which):
@@ -43,7 +43,7 @@ class Valleys:
         partner = np.full(count + len(which), -1)
         partner[which], partner[count:] = count + np.arange(len(which)), which
         return Rows(
-            Zone(np.concatenate([zone.nodes, zone.nodes[which]]), zone.equation),
+            zone.doubled(which),
             np.concatenate([first, self.count + first[which]]),
             partner,
             np.concatenate([gap, distance[:, 1]]),
@@ -55,10 +55,10 @@ class Valleys:
         now, after = np.full(part.stop - part.start, -1), np.zeros(part.stop - part.start, bool)
         now[which], after[which] = corner, distance[:, 1] < distance[:, 0]
         changed = np.flatnonzero(now != self._corner[part])
-        node = part.start + changed
+        point = part.start + changed
         for values in kept:
-            one, other = values[node], values[self.count + node]
+            one, other = values[point], values[self.count + point]
             both = one + other if values.dtype == float else np.where(one, one, other)  # forces add up, states do not
-            values[node] = np.where(after[changed], 0, both)
-            values[self.count + node] = np.where(after[changed], both, 0)
+            values[point] = np.where(after[changed], 0, both)
+            values[self.count + point] = np.where(after[changed], both, 0)
         self._corner[part] = now

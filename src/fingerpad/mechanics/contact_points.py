@@ -1,0 +1,120 @@
+"""Where the skin may touch: points inside its edges, not its nodes, so that the contact's edge moves through an element.
+
+A skin edge has as many degrees of freedom as nodes. Contact at nodes makes them join one by one, and with each one the stiffness
+jumps. Here an edge has twice as many points, evenly spaced, with weights that integrate what its nodes carry under a uniform
+pressure. Their pressures would be more than the edge can tell apart, so they are kept from differing from point to point by the
+smallest of terms: the gap that closes is
+
+    gap - d/ds (softness dp/ds),        softness = SMOOTHING (4 spacing)^3 / (3 shear modulus),
+
+the method of Brezzi and Pitkaranta (1984) for the multipliers of a constraint. A uniform pressure is not changed by it, and with
+the mesh it vanishes as the third power of the spacing. The contact problem stays what it was: symmetric, with multipliers that
+are zero or close a gap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fingerpad.mechanics.elements import edge_values
+
+SMOOTHING = 0.03
+"""Ten times less leaves kinks of the half of nodal contact's; ten times more widens contacts by a quarter of an edge."""
+PER_NODE = 2
+_RULES = {1: ((-0.5, 0.5), (1.0, 1.0)), 2: ((-0.75, -0.25, 0.25, 0.75), (13 / 24, 11 / 24, 11 / 24, 13 / 24))}
+
+
+@dataclass(frozen=True)
+class ContactPoints:
+    """Points of the skin, from left to right.
+
+    Attributes:
+        nodes: (n, k) of the edge that each is on, among all nodes. along: (n, k) the same, among the skin's. values, slopes: (n, k)
+            shape functions and their derivatives. weight: (n,) of the edge's parameter from -1 to 1. share: (n, k) of what is at a
+            point, that of each node: the hat functions between neighbouring nodes. spacing: (n,) m, of the unloaded skin, which
+            the points share. per_edge: how many an edge has. softness: (n,) m^3/Pa.
+    """
+
+    nodes: np.ndarray
+    along: np.ndarray
+    values: np.ndarray
+    slopes: np.ndarray
+    weight: np.ndarray
+    share: np.ndarray
+    spacing: np.ndarray
+    per_edge: int
+    softness: np.ndarray
+
+    @classmethod
+    def on(cls, points: np.ndarray, chain: np.ndarray, edges: np.ndarray, shear: np.ndarray) -> ContactPoints:
+        """Those of the skin.
+
+        Args:
+            points: (n, 2) m, all nodes. chain: (ns,) the skin's in order. edges: (m, 2 or 3) its edges (start, end[, middle]).
+                shear: (m,) Pa, shear moduli of the skin at them.
+        """
+        order = edges.shape[1] - 1
+        place = np.full(len(points), -1)
+        place[chain] = np.arange(len(chain))
+        along = place[edges]
+        first = np.argsort(along[:, 0])
+        along, edges, shear = along[first], edges[first], shear[first]
+        s, weight = (np.array(each) for each in _RULES[order])
+        values, slopes = edge_values(order, s)
+        hats = values if order == 1 else np.stack([np.maximum(-s, 0), np.maximum(s, 0), 1 - np.abs(s)], 1)
+        count = len(edges)
+        length = np.hypot(*(points[edges[:, 1]] - points[edges[:, 0]]).T)
+        spacing = np.repeat(length / len(s), len(s))
+        return cls(
+            np.repeat(edges, len(s), axis=0),
+            np.repeat(along, len(s), axis=0),
+            np.tile(values, (count, 1)),
+            np.tile(slopes, (count, 1)),
+            np.tile(weight, count),
+            np.tile(hats, (count, 1)),
+            spacing,
+            len(s),
+            SMOOTHING * (4 * spacing) ** 3 / (3 * np.repeat(shear, len(s))),
+        )
+
+    def __len__(self) -> int:
+        return len(self.nodes)
+
+    def at(self, nodal: np.ndarray, which=slice(None)) -> np.ndarray:
+        """Values (k, 2) at some points of a field (n, 2) at all nodes."""
+        return np.einsum("qa,qai->qi", self.values[which], nodal[self.nodes[which]])
+
+    def whole(self, first: int, last: int) -> slice:
+        """The points of all edges that some of those from ``first`` to before ``last`` are on."""
+        each = self.per_edge
+        return slice(max(first // each * each, 0), min(-(-last // each) * each, len(self)))
+
+    def shape(self, part: slice) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes (k,) of the edges of some points, in order of their numbers, and shape functions (points, k) at the points."""
+        nodes, column = np.unique(self.nodes[part], return_inverse=True)
+        out = np.zeros((len(self.nodes[part]), len(nodes)))
+        np.put_along_axis(out, column.reshape(self.nodes[part].shape), self.values[part], axis=1)
+        return nodes, out
+
+    def soft(self, part: slice) -> np.ndarray:
+        """(k, k) m^2/N: what forces at some points add to their gaps; positive semidefinite."""
+        length = self.weight[part] * self.per_edge / 2 * self.spacing[part]  # of the unloaded skin
+        way = (self.spacing[part][1:] + self.spacing[part][:-1]) / 2
+        soft = (self.softness[part][1:] + self.softness[part][:-1]) / 2 / way
+        out = np.diag(np.append(soft, 0.0) + np.append(0.0, soft))
+        i = np.arange(len(soft))
+        out[i, i + 1] = out[i + 1, i] = -soft
+        return out / length / length[:, None]
+
+    def lengths(self, position: np.ndarray) -> np.ndarray:
+        """(n,) m of the skin that belong to each point, nodes being at ``position`` (all nodes, 2) m."""
+        return np.hypot(*np.einsum("qa,qai->iq", self.slopes, position[self.nodes])) * self.weight
+
+    def of_nodes(self, values: np.ndarray, part: slice = slice(None)) -> np.ndarray:
+        """Sums (ns, ...) over the skin's nodes of what is at some points (k, ...)."""
+        out = np.zeros((int(self.along.max()) + 1, *values.shape[1:]))
+        share = self.share[part].reshape(*self.share[part].shape, *[1] * (values.ndim - 1))
+        np.add.at(out, self.along[part], share * values[:, None])
+        return out
