@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fingerpad.mechanics.contact import ContactError, Zone, solve_contact, stable
+from fingerpad.mechanics.contact_points import ContactPoints
 from fingerpad.mechanics.linear_solver import (
     FactorisationError,
     PardisoCondensation,
@@ -13,7 +14,7 @@ from fingerpad.mechanics.linear_solver import (
     SymmetricPattern,
     pardiso_available,
 )
-from fingerpad.mechanics.pressure import contact_edges, contact_pressure, smoothed_pressure, tributary_length
+from fingerpad.mechanics.pressure import contact_edges, smoothed_pressure
 from fingerpad.mechanics.space import edge_load_vectors
 
 pytestmark = pytest.mark.unit
@@ -215,22 +216,87 @@ def test_unit_pressure_loads_balance_the_chord(order):
     assert load[len(points) // 2, 1] > 0
 
 
+# -- points of the skin ------------------------------------------------------------------------------------------
+
+
+def points_on_arc(order, shear=1.0):
+    points, edges = arc(order)
+    return points, ContactPoints.on(points, np.arange(len(points)), edges, np.full(len(edges), shear))
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_points_carry_what_nodes_do(order):
+    """The weights of an edge's points give its nodes what a uniform pressure does: 1/2 each, or 1/6, 1/6 and 2/3."""
+
+    def check(weight):
+        load = np.zeros(len(points))
+        np.add.at(load, places.nodes, (places.weight * weight)[:, None] * places.values)
+        straight = np.zeros(len(points))
+        edges = arc(order)[1]
+        np.add.at(straight, edges.ravel(), np.tile([1.0, 1.0] if order == 1 else [1 / 3, 1 / 3, 4 / 3], len(edges)))
+        np.testing.assert_allclose(load, straight, rtol=1e-12)
+
+    points, places = points_on_arc(order)
+    check(1.0)
+    if order == 2:
+        with pytest.raises(AssertionError):
+            check(0.5 / places.weight)
+
+
 @pytest.mark.parametrize("order", [1, 2])
 def test_uniform_pressure_is_recovered_on_curved_edges(order):
-    """Nodal forces of a uniform pressure give that pressure at every node, curved or not."""
-    points, edges = arc(order)
-    load = edge_load_vectors(points, edges)
-    gradient = -load / np.linalg.norm(load, axis=1)[:, None]
-    force = -7.0 * np.einsum("ni,ni->n", load, gradient)
-    pressure = contact_pressure(points, edges, np.arange(len(points)), force, gradient)
-    np.testing.assert_allclose(pressure, 7.0, rtol=1e-12)
+    """Forces at points under a uniform pressure give that pressure at every node, all of the load and all of the length."""
+    points, places = points_on_arc(order)
+    length = places.lengths(points)
+    force, share = places.of_nodes(7.0 * length), places.of_nodes(length)
+    np.testing.assert_allclose(force / share, 7.0, rtol=1e-12)
+    chords = np.hypot(*np.diff(points, axis=0).T).sum()
+    assert share.sum() == pytest.approx(chords, rel=0.03) and share.sum() >= chords * (1 - 1e-12)
+    assert np.abs(places.at(points)[:, 0]).max() < np.abs(points[:, 0]).max()
+
+
+def test_softness_minds_differences_of_pressure_only():
+    """An even pressure is not softened; energy is never negative; finer skin is softer by the third power and stiffer by shear."""
+    _, places = points_on_arc(2, shear=2.0)
+    soft, length = places.soft(slice(None)), places.weight * 2 * places.spacing
+
+    def check(law):
+        np.testing.assert_allclose(law @ (5.0 * length), 0, atol=1e-12 * np.abs(law).max())
+
+    check(soft)
+    with pytest.raises(AssertionError):
+        check(soft + np.diag(np.diag(soft)))
+    assert np.allclose(soft, soft.T) and np.linalg.eigvalsh(soft).min() > -1e-12 * np.abs(soft).max()
+    np.testing.assert_allclose(2 * places.softness, points_on_arc(2)[1].softness)
+    np.testing.assert_allclose(places.softness, 0.03 * (4 * places.spacing) ** 3 / 6)
+
+
+def test_pressure_of_a_wave_is_softened_as_said():
+    """gap - d/ds (softness dp/ds): for p = cos(k s) on even skin the softness makes k^2 softness p of it, in the middle."""
+    x = np.linspace(0, 1, 201)
+    edges = np.stack([np.arange(0, 200, 2), np.arange(2, 201, 2), np.arange(1, 200, 2)], 1)
+    places = ContactPoints.on(np.stack([x, 0 * x], 1), np.arange(201), edges, np.ones(100))
+    s, k = places.at(np.stack([x, 0 * x], 1))[:, 0], 4 * np.pi
+    length = places.weight * 2 * places.spacing
+    found = places.soft(slice(None)) @ (np.cos(k * s) * length)
+    mean = found.reshape(-1, 4)[1:-1] @ places.weight[:4] / 2
+    expected = k**2 * places.softness[0] * np.cos(k * s).reshape(-1, 4)[1:-1] @ places.weight[:4] / 2
+    np.testing.assert_allclose(mean, expected, atol=0.01 * np.abs(expected).max())
+
+
+def test_zones_are_whole_edges():
+    """Any range of points is that of whole edges, and their shape functions add up to one."""
+    points, places = points_on_arc(2)
+    assert places.whole(5, 9) == slice(4, 12) and places.whole(-3, 10**6) == slice(0, len(places))
+    nodes, shape = places.shape(slice(4, 12))
+    np.testing.assert_allclose(shape.sum(axis=1), 1.0)
+    np.testing.assert_allclose(shape @ points[nodes], places.at(points, slice(4, 12)))
 
 
 def test_smoothing_keeps_a_uniform_pressure_and_removes_alternation():
     """The 5-point average is exact for uniform pressure, also at a mirrored axis, and damps a corner/middle alternation."""
-    points, edges = arc(2)
-    load = edge_load_vectors(points, edges)
-    length = tributary_length(points, edges, np.arange(len(points)), -load / np.linalg.norm(load, axis=1)[:, None])
+    points, places = points_on_arc(2)
+    length = places.of_nodes(places.lengths(points))
     np.testing.assert_allclose(smoothed_pressure(3.0 * length, length, False), 3.0, rtol=1e-12)
     wiggle = np.where(np.arange(len(points)) % 2, 1.02, 0.96)
     inner = smoothed_pressure(3.0 * length * wiggle, length, False)[3:-3]
@@ -241,17 +307,51 @@ def test_smoothing_keeps_a_uniform_pressure_and_removes_alternation():
     np.testing.assert_allclose(smoothed_pressure(half_force, half_length, True)[:4], 3.0, rtol=1e-12)
 
 
+def hertz(half_width, spacing=0.025):
+    x = np.arange(-40, 41) * spacing
+    return x, np.sqrt(np.maximum(half_width**2 - x**2, 0)), np.full(len(x), spacing)
+
+
 @pytest.mark.parametrize("half_width", [0.31, 0.33, 0.349, 0.37])
-def test_contact_edge_lies_between_nodes(half_width):
-    """The edge of a Hertz contact is found within a tenth of the node spacing, where whole nodes miss it by up to one."""
-    x = np.arange(-10, 11) * 0.05
-    pressure = np.sqrt(np.maximum(half_width**2 - x**2, 0))
-    s = np.maximum(np.abs(x) / half_width, 1.0)
-    gap = s * np.sqrt(s**2 - 1) - np.log(s + np.sqrt(s**2 - 1))
-    left, right = contact_edges(x, pressure, gap)
-    assert right == pytest.approx(half_width, abs=0.005) and left == pytest.approx(-half_width, abs=0.005)
-    by_pressure = contact_edges(x, pressure, np.full_like(x, np.nan))[1]
-    assert by_pressure == pytest.approx(half_width, abs=0.005)
+def test_contact_edge_lies_between_points(half_width):
+    """The edge of a Hertz contact is found: the squares of its pressure are a parabola."""
+    left, right = contact_edges(*hertz(half_width))
+    assert right == pytest.approx(half_width, abs=1e-9) and left == pytest.approx(-half_width, abs=1e-9)
+
+
+def test_contact_edge_moves_evenly():
+    """Of a pressure that is no such parabola the edge moves on without stairs while points join one by one."""
+    widths = np.linspace(0.5, 0.6, 81)
+
+    def check(edge):
+        found = []
+        for half_width in widths:
+            x, pressure, spacing = hertz(half_width)
+            found.append(edge(x, pressure * (1 + 0.3 * (x / half_width) ** 2), spacing))
+        even = np.polyval(np.polyfit(widths, found, 1), widths)
+        assert np.abs(found - even).max() < 0.05 * 0.025
+
+    check(lambda *known: contact_edges(*known)[1])
+    with pytest.raises(AssertionError):
+        check(lambda x, pressure, _: x[pressure > 0][-1])
+
+
+def test_contact_under_an_edge_ends_beyond_the_last_point():
+    """Pressure that rises to the edge, and contacts of a point or two: half a spacing beyond the last of them."""
+    x = np.arange(-40, 41) * 0.025
+    inside = np.abs(x) < 0.51
+    pressure = np.where(inside, 1 / np.sqrt(np.where(inside, 0.52**2 - x**2, 1)), 0)
+    assert contact_edges(x, pressure, np.full(81, 0.025))[1] == pytest.approx(0.5125)
+    assert contact_edges(x, np.where(np.abs(x) < 0.03, 1.0, 0.0), np.full(81, 0.025)) == pytest.approx((-0.0375, 0.0375))
+
+
+def test_edges_of_two_contacts_are_the_outermost():
+    """A contact of two patches is as wide as from one's left to the other's right edge, each found from its own patch."""
+    x, one, spacing = hertz(0.2)
+    two = np.roll(one, -20) + np.roll(one, 20)
+    assert contact_edges(x, two, spacing) == pytest.approx((-0.7, 0.7), abs=1e-9)
+    right = x > -1e-9
+    assert contact_edges(x[right] + 0.0125, hertz(0.4)[1][right], spacing[right], mirrored=True)[0] < -0.35
 
 
 def test_no_contact_has_no_edges():

@@ -112,7 +112,7 @@ def test_linear_quads_are_raised_where_the_accuracy_needs_it(stimulus, motion, e
         assert ("linear quads raised" in chosen.specimen[-1]) is not bool(element)
         leg = summary(simulate(scene, chosen))["legs"][-1]
         found[element] = np.abs(np.array(leg["strain_energy_Pa"]) / truth["strain_energy_Pa"] - 1).max()
-        assert leg["centre_pressure_Pa"] == pytest.approx(truth["centre_pressure_Pa"], rel=0.04)
+        assert leg["centre_pressure_Pa"] == pytest.approx(truth["centre_pressure_Pa"], rel=0.05)
     assert found["Q1P0"] > 0.06 and found[None] < 0.03
 
 

@@ -198,7 +198,7 @@ def test_the_last_state_is_the_field_when_no_snapshot_is_named():
     history = simulate(scene, fields=True)
     assert history.snapshot_time.values == [float(history.time[-1])]
     apex = int(np.argmin(np.hypot(*(history.node_position.values - [0, 6e-3]).T)))
-    assert history.snapshot_displacement[0, apex, 1] == pytest.approx(-float(history.indentation_depth[-1]), rel=1e-6)
+    assert history.snapshot_displacement[0, apex, 1] == pytest.approx(-float(history.indentation_depth[-1]), rel=1e-4)
 
 
 def test_skin_is_indexed_by_the_way_along_it(run, tmp_path):

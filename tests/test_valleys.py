@@ -62,19 +62,15 @@ def test_a_valley_between_arcs():
     )
 
 
-def test_forces_of_both_sides_are_one_on_the_node():
-    """Two equal pushes from the sides of a groove hold a node against f / (2 sin) of its weight, and the smaller gap counts."""
+def test_forces_of_both_sides_are_one_on_the_point():
+    """Two equal pushes from the sides of a groove hold a point against f / (2 sin) of its weight."""
     slant = np.array([np.sin(0.5), -np.cos(0.5)])
     gradient = np.array([[0.0, -1.0], slant, [0.0, -1.0], slant * [-1, 1]])
     rows = Rows(zone_of(4), np.arange(4), np.array([-1, 3, -1, 1]), np.array([3.0, 2.0, 1.0, -1.0]), gradient, np.zeros(4))
-    direction, force = rows.normal(np.array([1.0, 5.0, 0.0, 5.0]))
-    np.testing.assert_allclose(force, [1, 10 * np.cos(0.5), 0])
-    np.testing.assert_allclose(direction, np.tile([0.0, -1.0], (3, 1)), atol=1e-15)
-    np.testing.assert_allclose(rows.least_gap(), [3, -1, 1])
-    assert rows.nodes == 3
-    direction, force = rows.normal(np.array([1.0, 0.0, 0.0, 5.0]))
-    np.testing.assert_allclose(direction[1], slant * [-1, 1])
-    assert force[1] == pytest.approx(5.0)
+    push = rows.of_points(np.array([1.0, 5.0, 0.0, 5.0])[:, None] * gradient)
+    np.testing.assert_allclose(push, [[0, -1], [0, -10 * np.cos(0.5)], [0, 0]], atol=1e-15)
+    assert rows.points == 3
+    assert Rows(zone_of(4), slice(0, 4), None, *[np.zeros(4)] * 3).of_points(gradient) is gradient
 
 
 def test_forces_go_with_their_side():
@@ -91,7 +87,7 @@ def test_forces_go_with_their_side():
 
     rows = at(0.0, -1e-3, -5e-5, 5e-5, 1e-3)
     assert list(rows.place) == [0, 1, 2, 3, 4, 7, 8] and list(rows.partner) == [-1, -1, 5, 6, -1, 2, 3]
-    assert list(rows.zone.nodes) == [0, 1, 2, 3, 4, 2, 3]
+    assert list(rows.zone.shape.argmax(axis=1)) == [0, 1, 2, 3, 4, 2, 3]
     np.testing.assert_array_equal(force, [1, 2, 3, 0, 5, 0, 0, 0, 4, 0])
     state[[2, 7, 3, 8]] = 1, 1, 0, -1
     rows = at(0.0, -1e-3, -1e-3, 1e-3, 1e-3)
@@ -108,7 +104,7 @@ def in_valleys(seed, count=12, twice=4):
     angle = rng.uniform(0.05, 1.2, twice)
     normal = np.column_stack([np.sin(angle), -np.cos(angle)])
     gradient[which] = normal
-    rows = Zone(np.concatenate([zone.nodes, which]), zone.equation)
+    rows = zone.doubled(which)
     partner = np.full(count + twice, -1)
     partner[which], partner[count:] = count + np.arange(twice), which
     gap, gradient = np.concatenate([gap, gap[which]]), np.concatenate([gradient, normal * [-1, 1]])

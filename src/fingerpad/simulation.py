@@ -381,7 +381,8 @@ class Simulation:
         return self.body.bulk * mean
 
     def _edges(self, record):
-        return (0.0, record.edges[1]) if self.mesh.half and record.nodal_force.any() else record.edges
+        left, right = record.edges
+        return (max(left, 0.0), right) if self.mesh.half else record.edges  # of the half that is solved
 
     def _history(self, records: list[Record], states, snapshots, complete: bool):
         unfold = _Unfolding(self.whole, self.mesh, self.skin.nodes)

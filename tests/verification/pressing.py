@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fingerpad.mechanics.pressure import contact_edges, contact_pressure
 from fingerpad.mechanics.stepping import NewtonSettings, QuasiStatic, Record, Skin, Step
 from fingerpad.stimuli.shapes import Flat
 
@@ -51,10 +50,8 @@ def over_skin(body, skin, records, record):
         position = body.space.points
     else:
         position = body.space.points + record.displacement
-    nodes = skin.nodes
-    pressure = contact_pressure(position, skin.edges, nodes, record.nodal_force, record.gradient)
-    x = position[nodes, 0]
-    return Pressed(x, pressure, record.force, record.depth, contact_edges(x, pressure, record.gap), records)
+    pressure = record.nodal_force / record.length
+    return Pressed(position[skin.nodes, 0], pressure, record.force, record.depth, record.edges, records)
 
 
 def press(body, mesh, profile=None, *, force=None, depth=None, steps=1):

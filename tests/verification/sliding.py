@@ -7,7 +7,6 @@ from meshes import graded, nodes_of, rectangle
 from pressing import TIGHT, Pressed, over_skin, skin_of
 from problems import lame_constants, make_body
 
-from fingerpad.mechanics.pressure import tributary_length
 from fingerpad.mechanics.stepping import QuasiStatic, Record, Step
 
 STICK, SLIP = 1, 2  # of Record.state
@@ -40,15 +39,13 @@ class Dragged:
 def dragged(body, skin, record, records=()):
     """:class:`Dragged` of one record."""
     pressed = over_skin(body, skin, records or [record], record)
-    position = body.space.points + (0 if body.geometrically_linear else record.displacement)
-    length = tributary_length(position, skin.edges, skin.nodes, record.gradient)
     touching = record.nodal_force > 0
     if record.tangential is None:
         drag, stick, slip = np.zeros(len(touching)), np.zeros_like(touching), touching
     else:
         drag, stick, slip = -record.tangential, touching & (record.state == STICK), touching & (record.state == SLIP)
     moved = record.displacement[skin.nodes, 0]
-    return Dragged(pressed.x, pressed.pressure, drag / length, stick, slip, record.nodal_force, drag, pressed, record, moved)
+    return Dragged(pressed.x, pressed.pressure, drag / record.length, stick, slip, record.nodal_force, drag, pressed, record, moved)
 
 
 def stroke(body, mesh, steps, profile, friction, settings=TIGHT, curve="top", external=None):

@@ -19,9 +19,9 @@ WITHIN = {"Q1P0": 0.03, "Q2P1": 0.005, "P2B": 0.015}
 
 #: half width, centre pressure over p0 and depth
 HERTZ = {
-    "Q1P0": (1.0087854, 0.99993992, 0.0073639972),
-    "Q2P1": (1.0017836, 1.0022758, 0.0073805012),
-    "P2B": (1.0014361, 0.99848929, 0.0073746539),
+    "Q1P0": (0.99187135, 1.0017552, 0.0073600311),
+    "Q2P1": (0.99827883, 1.0011161, 0.007381041),
+    "P2B": (0.99731977, 1.000857, 0.0073754316),
 }
 
 
@@ -42,8 +42,8 @@ def strip_depth(load):
 def check_hertz(element, **mutant):
     load, result = hertz_contact(element, **mutant)
     p0, within, frozen = hertz.peak_pressure(load, 1.0), WITHIN[element], HERTZ[element]
-    inside = result.x < 0.9
-    assert inside.sum() > 7
+    inside = result.x < 0.85  # the last element before the edge has its pressure smoothed
+    assert inside.sum() > 6
     error = np.abs(result.pressure - hertz.pressure(result.x, 1.0, p0))[inside].max() / p0
     assert error < within, f"truth: the pressure is off by {error:.4f} of its peak"
     two_numbers(result.half_width, truth=1.0, within=within, frozen=frozen[0])
@@ -54,7 +54,7 @@ def check_hertz(element, **mutant):
 
 @pytest.mark.parametrize("element", WITHIN)
 def test_hertz_line_contact(element, must_fail):
-    """A rigid cylinder makes Hertz's pressure inside 0.9 a, his width, and the depth of a strip."""
+    """A rigid cylinder makes Hertz's pressure inside 0.85 a, his width, and the depth of a strip."""
     check_hertz(element)
     must_fail(check_hertz, element, poisson=0.3)
     must_fail(check_hertz, element, radius=0.8 * RADIUS)
@@ -84,15 +84,15 @@ class Sinusoid(Profile):
 WAVE, WAVELENGTH = 1e-3, 2.0
 #: half width over the wavelength and peak pressure over the full-contact pressure
 WESTERGAARD = {
-    ("Q1P0", 0.1): (0.099801762, 0.61759833),
-    ("Q1P0", 0.25): (0.24920298, 1.4142606),
-    ("Q1P0", 0.4): (0.39852928, 1.9026646),
-    ("Q2P1", 0.1): (0.099836286, 0.61860491),
-    ("Q2P1", 0.25): (0.25114795, 1.4148366),
-    ("Q2P1", 0.4): (0.39912905, 1.9030917),
-    ("P2B", 0.1): (0.099073982, 0.6150366),
-    ("P2B", 0.25): (0.25073412, 1.4128638),
-    ("P2B", 0.4): (0.39950415, 1.9012329),
+    ("Q1P0", 0.1): (0.098605334, 0.61881313),
+    ("Q1P0", 0.25): (0.24811551, 1.4150722),
+    ("Q1P0", 0.4): (0.39943334, 1.9034861),
+    ("Q2P1", 0.1): (0.099775226, 0.61794152),
+    ("Q2P1", 0.25): (0.2495113, 1.414364),
+    ("Q2P1", 0.4): (0.3992822, 1.9027009),
+    ("P2B", 0.1): (0.099432987, 0.61826706),
+    ("P2B", 0.25): (0.24922731, 1.4146395),
+    ("P2B", 0.4): (0.39905011, 1.9029668),
 }
 
 

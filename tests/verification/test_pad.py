@@ -79,7 +79,7 @@ def check_separability(mesh, shape, **mutant):
     assert force < 0.005, f"truth: the force deviates by {force:.4f} from the hereditary integral"
     depth, width = depth_deviation(mesh, shape, **mutant)
     assert depth < 0.005, f"truth: the depth deviates by {depth:.4f} from the elastic one"
-    assert width < 0.03, f"truth: the width deviates by {width:.4f} from the elastic one"
+    assert width < 0.04, f"truth: the width deviates by {width:.4f} from the elastic one"
 
 
 @BOTH_SHAPES
@@ -89,7 +89,7 @@ def test_layered_pad_separates(half, shape, must_fail):
     must_fail(check_separability, half, shape, prony=None)
 
 
-SEPARATION_AT_048 = {"flat": (0.0404086, 0.0350085), "cylinder": (0.038065, 0.0341356)}
+SEPARATION_AT_048 = {"flat": (0.0402225, 0.0347359), "cylinder": (0.0399896, 0.0336550)}
 
 
 @BOTH_SHAPES
@@ -149,10 +149,10 @@ def check_energy(strain, prony=THESIS, **mutant):
 
 
 ENERGY = {
-    ("small", True): 1.15194092e-4,
-    ("small", False): 6.70521497e-5,
-    ("finite", True): 1.00093615e-4,
-    ("finite", False): 1.90933866e-5,
+    ("small", True): 4.7998186e-6,
+    ("small", False): 5.2834651e-5,
+    ("finite", True): 4.2940413e-5,
+    ("finite", False): 4.5465277e-5,
 }
 
 
@@ -205,7 +205,7 @@ def check_small_is_the_limit(mesh, shape, poisson=0.48):
     two_numbers(found[0], truth=LIMIT[shape], within=0.1, frozen=LIMIT[shape], tight=1e-4)
 
 
-LIMIT = {"flat": 0.00741542, "cylinder": 0.00667745}
+LIMIT = {"flat": 0.0073813327, "cylinder": 0.0063403447}
 
 
 @BOTH_SHAPES
@@ -220,9 +220,9 @@ def test_finite_strain_becomes_small_strain(half, shape, must_fail):
 #: Newton iterations and factorisations of a ramp and hold of 16 steps
 EFFORT = {
     ("flat", "small"): (16, 16),
-    ("flat", "finite"): (38, 11),
+    ("flat", "finite"): (34, 12),
     ("cylinder", "small"): (17, 17),
-    ("cylinder", "finite"): (42, 12),
+    ("cylinder", "finite"): (38, 13),
 }
 
 

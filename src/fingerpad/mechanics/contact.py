@@ -32,7 +32,7 @@ class Zone:
     Attributes:
         nodes: (nn,) node numbers. equation: (n, 2) equations of all nodes. shape: (nz, nn) values of the nodes' shape functions at
             the points; None where the points are the nodes. softness: (nz, nz) m^2/N, what forces add to the gaps beside what the
-            body yields; None: nothing.
+            body yields, and softness_along what tangential ones add to the slips; None: nothing.
         condensed: (nc,) ascending equation numbers.
     """
 
@@ -40,6 +40,7 @@ class Zone:
     equation: np.ndarray
     shape: np.ndarray | None = None
     softness: np.ndarray | None = None
+    softness_along: np.ndarray | None = None
     condensed: np.ndarray = field(init=False)
 
     def __post_init__(self):
@@ -69,7 +70,8 @@ class Zone:
         rows = np.concatenate([np.arange(len(self)), which])
         out = copy(self)
         out.shape, out._parts = self.shape[rows], self._parts[:, rows]
-        out.softness = None if self.softness is None else self.softness[np.ix_(rows, rows)]
+        if self.softness is not None:
+            out.softness, out.softness_along = (each[np.ix_(rows, rows)] for each in (self.softness, self.softness_along))
         return out
 
 
@@ -184,8 +186,8 @@ def respond(zone, schur, right, gradient, curvature, previous_force, directions)
     compliance, free = rows @ solved[:, :count], solved[:, count]
     if zone.softness is not None:
         each = len(gradient)
-        for first in range(0, count, each):
-            compliance[first : first + each, first : first + each] += zone.softness
+        for first, softness in zip(range(0, count, each), (zone.softness, zone.softness_along), strict=False):
+            compliance[first : first + each, first : first + each] += softness
     load_shift, bend = 0.0, None
     if border is not None:
         bend = solved[:, count + 1]

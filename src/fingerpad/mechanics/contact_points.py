@@ -32,9 +32,10 @@ class ContactPoints:
 
     Attributes:
         nodes: (n, k) of the edge that each is on, among all nodes. along: (n, k) the same, among the skin's. values, slopes: (n, k)
-            shape functions and their derivatives. weight: (n,) of the edge's parameter from -1 to 1. share: (n, k) of what is at a
-            point, that of each node: the hat functions between neighbouring nodes. spacing: (n,) m, of the unloaded skin, which
-            the points share. per_edge: how many an edge has. softness: (n,) m^3/Pa.
+            shape functions and their derivatives. weight: (n,) of the edge's parameter from -1 to 1. node: (n,) the
+            nearest of the skin's, to which what is at a point is put down. spacing: (n,) m, of the unloaded skin, which
+            the points share. per_edge: how many an edge has. softness: (n,) m^3/Pa. mirrored: does the skin begin at a symmetry
+            axis?
     """
 
     nodes: np.ndarray
@@ -42,18 +43,19 @@ class ContactPoints:
     values: np.ndarray
     slopes: np.ndarray
     weight: np.ndarray
-    share: np.ndarray
+    node: np.ndarray
     spacing: np.ndarray
     per_edge: int
     softness: np.ndarray
+    mirrored: bool
 
     @classmethod
-    def on(cls, points: np.ndarray, chain: np.ndarray, edges: np.ndarray, shear: np.ndarray) -> ContactPoints:
+    def on(cls, points: np.ndarray, chain: np.ndarray, edges: np.ndarray, shear: np.ndarray, mirrored=False) -> ContactPoints:
         """Those of the skin.
 
         Args:
             points: (n, 2) m, all nodes. chain: (ns,) the skin's in order. edges: (m, 2 or 3) its edges (start, end[, middle]).
-                shear: (m,) Pa, shear moduli of the skin at them.
+                shear: (m,) Pa, long-term shear moduli of the skin at them. mirrored: does the skin begin at a symmetry axis?
         """
         order = edges.shape[1] - 1
         place = np.full(len(points), -1)
@@ -63,7 +65,7 @@ class ContactPoints:
         along, edges, shear = along[first], edges[first], shear[first]
         s, weight = (np.array(each) for each in _RULES[order])
         values, slopes = edge_values(order, s)
-        hats = values if order == 1 else np.stack([np.maximum(-s, 0), np.maximum(s, 0), 1 - np.abs(s)], 1)
+        nearest = np.argmax(values, axis=1)
         count = len(edges)
         length = np.hypot(*(points[edges[:, 1]] - points[edges[:, 0]]).T)
         spacing = np.repeat(length / len(s), len(s))
@@ -73,10 +75,11 @@ class ContactPoints:
             np.tile(values, (count, 1)),
             np.tile(slopes, (count, 1)),
             np.tile(weight, count),
-            np.tile(hats, (count, 1)),
+            along[:, nearest].ravel(),
             spacing,
             len(s),
             SMOOTHING * (4 * spacing) ** 3 / (3 * np.repeat(shear, len(s))),
+            mirrored,
         )
 
     def __len__(self) -> int:
@@ -98,12 +101,15 @@ class ContactPoints:
         np.put_along_axis(out, column.reshape(self.nodes[part].shape), self.values[part], axis=1)
         return nodes, out
 
-    def soft(self, part: slice) -> np.ndarray:
-        """(k, k) m^2/N: what forces at some points add to their gaps; positive semidefinite."""
+    def soft(self, part: slice, odd: bool = False) -> np.ndarray:
+        """(k, k) m^2/N: what forces at some points add to their gaps; positive semidefinite. odd: of those along the skin, which
+        change their sign at a symmetry axis."""
         length = self.weight[part] * self.per_edge / 2 * self.spacing[part]  # of the unloaded skin
         way = (self.spacing[part][1:] + self.spacing[part][:-1]) / 2
         soft = (self.softness[part][1:] + self.softness[part][:-1]) / 2 / way
         out = np.diag(np.append(soft, 0.0) + np.append(0.0, soft))
+        if odd and self.mirrored and part.start == 0:
+            out[0, 0] += 2 * self.softness[0] / self.spacing[0]
         i = np.arange(len(soft))
         out[i, i + 1] = out[i + 1, i] = -soft
         return out / length / length[:, None]
@@ -113,8 +119,8 @@ class ContactPoints:
         return np.hypot(*np.einsum("qa,qai->iq", self.slopes, position[self.nodes])) * self.weight
 
     def of_nodes(self, values: np.ndarray, part: slice = slice(None)) -> np.ndarray:
-        """Sums (ns, ...) over the skin's nodes of what is at some points (k, ...)."""
-        out = np.zeros((int(self.along.max()) + 1, *values.shape[1:]))
-        share = self.share[part].reshape(*self.share[part].shape, *[1] * (values.ndim - 1))
-        np.add.at(out, self.along[part], share * values[:, None])
-        return out
+        """Sums (ns, ...) of what is at some points (k, ...), by the skin's nodes."""
+        count = int(self.along.max()) + 1
+        if values.ndim == 2:
+            return np.column_stack([np.bincount(self.node[part], each, count) for each in values.T])
+        return np.bincount(self.node[part], values, count)

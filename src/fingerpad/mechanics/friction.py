@@ -85,7 +85,7 @@ class Coulomb:
         tangent = tangents(gradient)
         moved = np.einsum("ni,ni->n", motion, tangent)
         if zone.softness is not None:
-            moved = moved - zone.softness @ self._before[part]
+            moved = moved - zone.softness_along @ self._before[part]
         softened = False
         while True:
             answer = respond(zone, schur, right, gradient, curvature, previous_force, [gradient, tangent])
@@ -118,7 +118,7 @@ class Coulomb:
         return self.tangential[part, None] * tangents(gradient)
 
     def creep(self, part: slice, active: np.ndarray, gradient: np.ndarray, motion: np.ndarray, softness=None) -> float:
-        """Record the slip; returns the largest one (m) of a point that should stick. softness: as of the zone."""
+        """Record the slip; returns the largest one (m) of a point that should stick. softness: along the skin, of the zone."""
         self.slip[:] = 0
         slip = np.einsum("ni,ni->n", motion, tangents(gradient))
         if softness is not None:
@@ -138,16 +138,18 @@ class Coulomb:
     def record(self, active: np.ndarray, places) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Tangential force, slip and state (0 open, 1 sticks, 2 slips) of every skin node (ns,), for the record.
 
-        A node slips as far as the points round it that touch do, and sticks where most of these stick.
+        A node slips where all points round it that touch slip one way, on the average as far as they.
         """
-        sides = (-1, len(places))
-        slips, active = active & (self.state != STICK), active.astype(float)
+        active = active.astype(float)
         touching, sliding, tangential, slip = (
-            places.of_nodes(each.reshape(sides).sum(axis=0)) for each in (active, slips, self.tangential, self.slip * active)
+            places.of_nodes(each.reshape(-1, len(places)).sum(axis=0))
+            for each in (active, active * self.state, self.tangential, active * self.slip)
         )
-        on = touching > 0
-        slip = np.divide(slip, touching, out=np.zeros_like(slip), where=on)
-        return tangential, slip, np.where(on, np.where(sliding > touching / 2, 2, 1), 0).astype(np.int8)
+        on, slides = touching > 0, np.abs(sliding) > touching * (1 - 1e-9)
+        if places.mirrored:  # what is odd has no value on the axis
+            tangential[0], slides[0] = 0.0, False
+        slip = np.divide(slip, touching, out=np.zeros_like(slip), where=on & slides)
+        return tangential, slip, np.where(on, np.where(slides, 2, 1), 0).astype(np.int8)
 
 
 def tangents(gradient: np.ndarray) -> np.ndarray:

@@ -23,17 +23,20 @@ def smoothed_pressure(nodal_force, length, mirrored: bool) -> np.ndarray:
     return np.where(nodal_force > 0, smooth, 0.0)
 
 
-def contact_edges(x, pressure, spacing) -> tuple[float, float]:
+def contact_edges(x, pressure, spacing, mirrored: bool = False) -> tuple[float, float]:
     """Left and right edge of the contact (m), from outermost to outermost; (nan, nan) without contact.
 
     Args:
-        x: (n,) m, lateral position of points of the skin in order. pressure: (n,) Pa. spacing: (n,) m between them.
+        x: (n,) m, lateral position of points of the skin in order. pressure: (n,) Pa. spacing: (n,) m between them. mirrored: the
+            first one lies beside a symmetry axis at x = 0, beyond which the pattern continues.
 
     Inside the edge of a smooth contact the pressure grows like the square root of the distance, its square evenly, and bends as
     the contact is wide (Johnson 1985, section 5.1): the edge is where a parabola through the squares vanishes, least squares over
     some elements, which weigh less and less to either side, so that it moves on evenly from point to point. Where pressure does
     not fall to the edge, as under an edge of the profile, contact ends half a spacing beyond the last point.
     """
+    if mirrored:
+        x, pressure, spacing = (np.concatenate([sign * each[::-1], each]) for sign, each in ((-1, x), (1, pressure), (1, spacing)))
     on = np.flatnonzero(pressure > 0)
     if not len(on):
         return np.nan, np.nan

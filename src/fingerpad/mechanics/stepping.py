@@ -97,8 +97,8 @@ class Skin:
 class Record:
     """What one converged step left behind (arrays over the skin's nodes are (ns,)).
 
-    Forces at the points where the skin touches are shared out between the nodes on either side, and so are the lengths of skin
-    that they act on: one over the other is the mean pressure round a node.
+    Forces at the points where the skin touches are put down to the nearest nodes, and so are the lengths of skin that they act
+    on: one over the other is the mean pressure of the points on either side of a node.
     """
 
     leg: int
@@ -179,8 +179,12 @@ class QuasiStatic:
         self.external = external
         self.points = body.space.points
         stiffest = np.zeros(len(self.points))
-        np.maximum.at(stiffest, body.space.cells, body.shear[:, None])
-        self.places = ContactPoints.on(self.points, skin.nodes, skin.edges, stiffest[skin.edges].min(axis=1))
+        np.maximum.at(stiffest, body.space.cells.ravel(), np.repeat(body.shear, body.space.cells.shape[1]))
+        along, across = body.space.equation[skin.nodes[0]]
+        mirrored = along < 0 <= across and abs(self.points[skin.nodes[0], 0]) < 1e-9 * np.ptp(self.points[:, 0])
+        self.places = ContactPoints.on(
+            self.points, skin.nodes, skin.edges, stiffest[skin.edges].min(axis=1), bool(mirrored)
+        )
         self._valleys, places = None, len(self.places)
         if profile.valleys:
             from fingerpad.mechanics.valleys import Valleys
@@ -213,7 +217,8 @@ class QuasiStatic:
     def _set_zone(self, first, last):
         self._range = self.places.whole(first, last)
         nodes, shape = self.places.shape(self._range)
-        self.zone = Zone(nodes, self.body.space.equation, shape, self.places.soft(self._range))
+        softness = self.places.soft(self._range), self.places.soft(self._range, odd=True)
+        self.zone = Zone(nodes, self.body.space.equation, shape, *softness)
         self.solver = condensation(self.body.space.pattern, self.zone.condensed)
 
     def _reach_what_touches(self):
@@ -274,7 +279,8 @@ class QuasiStatic:
 
     def _first_touch(self) -> float:
         """Height of the profile's origin at which it just touches the undeformed skin."""
-        height = first_touch(self.points[self.skin.nodes] + np.array([self.distance, 0.0]), self.profile)
+        skin = np.concatenate([self.points[self.skin.nodes], self.places.at(self.points)])
+        height = first_touch(skin + np.array([self.distance, 0.0]), self.profile)
         if np.isnan(height):
             raise NonConvergence(self.time, f"the stimulus left the pad at {self.distance * 1e3:.3g} mm", "a shorter way")
         return height
@@ -411,7 +417,7 @@ class QuasiStatic:
         rows, stuck = self._rows(), 0.0
         active = self.active[rows.place]
         if self.friction is not None:
-            stuck = self.friction.creep(rows.place, active, rows.gradient, self._motion(rows.zone), rows.zone.softness)
+            stuck = self.friction.creep(rows.place, active, rows.gradient, self._motion(rows.zone), rows.zone.softness_along)
         push, _ = self._forces()
         unbalanced = -internal if self.external is None else self.external - internal
         unbalanced[self.zone.nodes] += self.zone.shape.T @ push
@@ -476,17 +482,23 @@ class QuasiStatic:
             raise _StepFailure("the energy found is not the work that was done")
         self._missing = missing
 
-    def _pressing_work(self, force, way, stiffness):
+    def _clearance(self):
+        """m, between the profile and the points of the skin where nothing touches: nodes may be nearer to it."""
+        return max(float(self._rows().gap.min()), 0.0)
+
+    def _pressing_work(self, force, way, stiffness, clearance=0.0):
         """Work (J/m) of the force on a way (m) into the pad: by the trapezoidal rule, which is right for small steps.
 
         It need not be small: where contact begins or ends the force grows by a power of the way, which the ``stiffness`` (N/m^2;
-        None: not known) at the other end tells; else it is a cubic with the stiffness of either end.
+        None: not known) at the other end tells, beside a ``clearance`` (m) on the way; else it is a cubic with the stiffness of
+        either end.
         """
         trapezoidal = 0.5 * (self.force + force) * way
         if stiffness is None:
             return trapezoidal
         if not self.force or not force:
             most, slope = max(self.force, force), stiffness if force else self._stiffness
+            way = np.sign(way) * max(abs(way) - clearance, 0.0)
             power = slope * abs(way) / most if slope and most else 1.0
             return most * way / (1 + max(power, 0.0))
         return trapezoidal - (0.0 if self._stiffness is None else way**2 / 12 * (stiffness - self._stiffness))
@@ -497,6 +509,7 @@ class QuasiStatic:
         self._begin = self.body.u, self.depth, self.distance
         body, past = self.body, _Past(dt, self.body.u, self.contact_force, self.depth)
         try:
+            clearance = 0.0 if self.force else self._clearance()
             self.distance = distance
             body.begin_step(dt)
             guesses = self._predictions(dt) if predict else []
@@ -515,7 +528,8 @@ class QuasiStatic:
                 raise _StepFailure("the indenter is pulled instead of pushed")
             self.body.commit()
             stiffness = self._stiff if distance == state[4] else None
-            work = self._pressing_work(force, self.depth - state[3], stiffness)
+            clearance = clearance if force else self._clearance()
+            work = self._pressing_work(force, self.depth - state[3], stiffness, clearance)
             work += 0.5 * (self._tangential + tangential) * (distance - state[4])
             lost = self.friction.commit(self._range, pull, self._motion(self.zone)) if self.friction else 0.0
             energies = self.body.energies()
@@ -644,13 +658,15 @@ class QuasiStatic:
         kept = self.contact_force[rows.place]
         push = np.zeros((len(places), 2))
         push[part] = rows.of_points(kept[:, None] * rows.gradient)
-        nodal = places.of_nodes(push)
-        force = np.hypot(*nodal.T)
-        gradient = np.divide(nodal, force[:, None], out=np.zeros_like(nodal), where=force[:, None] > 0)
+        normal = np.hypot(*push.T)
+        nodal, force = places.of_nodes(push), places.of_nodes(normal)
+        gradient = np.divide(nodal, np.hypot(*nodal.T)[:, None], out=np.zeros_like(nodal), where=force[:, None] > 0)
         position = self.points + self.body.u
         # the linear theory knows no deformed lengths
         length = places.lengths(self.points if self.body.geometrically_linear else position)
-        edges = contact_edges(places.at(position, part)[:, 0], np.hypot(*push[part].T) / length[part], places.spacing[part])
+        pressure = normal[part] / length[part]
+        mirrored = part.start == 0 and places.mirrored
+        edges = contact_edges(places.at(position, part)[:, 0], pressure, places.spacing[part], mirrored)
         total = max(kept.sum(), 1e-300)
         slack = np.abs(rows.closing(kept)) * kept
         network, spring, branch_work = self._energies
