@@ -118,7 +118,7 @@ class Record:
     smallest_jacobian: float
     energy_error: float
     work: float
-    energies: tuple[float, float, float]
+    energies: tuple[float, float, float]  # J/m, of the network and what the points of contact give way; springs; work on branches
     dissipated: float
     distance: float = 0.0
     frictional: float = 0.0
@@ -532,7 +532,9 @@ class QuasiStatic:
             work = self._pressing_work(force, self.depth - state[3], stiffness, clearance)
             work += 0.5 * (self._tangential + tangential) * (distance - state[4])
             lost = self.friction.commit(self._range, pull, self._motion(self.zone)) if self.friction else 0.0
-            energies = self.body.energies()
+            network, *others = self.body.energies()
+            rows, pressing = self._rows(), self.contact_force[self._rows().place]
+            energies = (network + 0.5 * float(pressing @ (rows.closing(pressing) - rows.gap)), *others)
             self._check_energy(work, energies, lost, distance != state[4])
         except _StepFailure:
             self.restore(state)
