@@ -268,7 +268,7 @@ def test_softness_minds_differences_of_pressure_only():
         check(soft + np.diag(np.diag(soft)))
     assert np.allclose(soft, soft.T) and np.linalg.eigvalsh(soft).min() > -1e-12 * np.abs(soft).max()
     np.testing.assert_allclose(2 * places.softness, points_on_arc(2)[1].softness)
-    np.testing.assert_allclose(places.softness, 0.03 * (4 * places.spacing) ** 3 / 6)
+    np.testing.assert_allclose(places.softness, 0.01 * (4 * places.spacing) ** 3 / 6)
 
 
 def test_pressure_of_a_wave_is_softened_as_said():

@@ -47,7 +47,7 @@ def check_creep(count=6, series=ONE_TERM):
         two_numbers(width, truth=truth, within=0.01, frozen=frozen)
 
 
-CREEP = (0.99646378, 1.3135404, 1.5254194, 1.8846659)
+CREEP = (0.99761238, 1.3147675, 1.5242429, 1.8810857)
 
 
 def test_contact_creeps_under_a_constant_force(must_fail):
@@ -72,7 +72,7 @@ def check_relaxation(count=2, series=ONE_TERM):
     np.testing.assert_allclose(widths, widths[0], rtol=1.2e-2, err_msg="truth: the width is held")
 
 
-RELAXED = (0.019442523, 0.01213428, 0.0080821506)
+RELAXED = (0.019444347, 0.012135999, 0.008082996)
 
 
 def test_force_relaxes_under_a_held_contact(must_fail):
@@ -97,7 +97,7 @@ def check_ramp_and_hold(count=10, series=THESIS):
         two_numbers(ends[index].half_width, truth=truth[index], within=0.01, frozen=frozen)
 
 
-RAMP = (0.99914333, 1.1678258)
+RAMP = (0.99817657, 1.1659458)
 
 
 def test_ramp_and_hold(must_fail):

@@ -18,7 +18,8 @@ from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, lapack, lu_factor, lu_solve
+from scipy.linalg import lapack
+from scipy.sparse import csr_array, vstack
 
 
 class ContactError(RuntimeError):
@@ -48,28 +49,38 @@ class Zone:
         if self.shape is None:
             self.shape = np.eye(len(self.nodes))
         self.condensed = np.unique(equation[equation >= 0])
-        self._parts = np.zeros((2, len(self.shape), len(self.condensed)))
-        for axis in (0, 1):
-            free = equation[:, axis] >= 0
-            self._parts[axis][:, np.searchsorted(self.condensed, equation[free, axis])] = self.shape[:, free]
+        # of each point the columns of its nodes' degrees of freedom, x before y, and the shape functions; none where prescribed
+        used = max(int((self.shape != 0).sum(axis=1).max(initial=1)), 1)
+        of = np.argsort(self.shape == 0, axis=1, kind="stable")[:, :used]
+        free = equation[of] >= 0
+        values = np.take_along_axis(self.shape, of, axis=1)
+        self._columns = np.where(free, np.searchsorted(self.condensed, np.maximum(equation[of], 0)), 0)
+        self._values = np.where(free, values[:, :, None], 0.0)
 
     def __len__(self) -> int:
         return len(self.shape)
 
-    def gather(self, values: np.ndarray) -> np.ndarray:
+    def rows(self, values: np.ndarray) -> csr_array:
         """Components (nz, 2) at the points as a condensed matrix (nz, nc): row k has ``values[k]`` times the shape functions."""
-        return values[:, :1] * self._parts[0] + values[:, 1:] * self._parts[1]
+        count, each = len(self), self._columns[0].size
+        data = (self._values * values[:, None]).ravel()
+        ends = np.arange(0, (count + 1) * each, each)
+        return csr_array((data, self._columns.reshape(-1), ends), shape=(count, len(self.condensed)))
+
+    def gather(self, values: np.ndarray) -> np.ndarray:
+        """:meth:`rows` with all its zeros."""
+        return self.rows(values).toarray()
 
     @property
     def movable(self) -> np.ndarray:
         """(nz,) bool: can the point move either way?"""
-        return (self._parts != 0).any(axis=2).all(axis=0)
+        return (self._values != 0).any(axis=1).all(axis=1)
 
     def doubled(self, which: np.ndarray) -> Zone:
         """The zone with a second row for some of its points (k,), after all others."""
         rows = np.concatenate([np.arange(len(self)), which])
         out = copy(self)
-        out.shape, out._parts = self.shape[rows], self._parts[:, rows]
+        out.shape, out._columns, out._values = self.shape[rows], self._columns[rows], self._values[rows]
         if self.softness is not None:
             out.softness, out.softness_along = (each[np.ix_(rows, rows)] for each in (self.softness, self.softness_along))
         return out
@@ -123,14 +134,14 @@ class ContactStep:
     stiffness: float | None = None  # N/m^2, of the force against the depth while the same nodes touch
 
 
-def _solver(matrix):
-    """A function solving with ``matrix``: Cholesky where positive definite, LU otherwise."""
-    try:
-        factors = cho_factor(matrix, check_finite=False)
-        return lambda right: cho_solve(factors, right, check_finite=False)
-    except np.linalg.LinAlgError:
-        factors = lu_factor(matrix, check_finite=False)
-        return lambda right: lu_solve(factors, right, check_finite=False)
+def _inverse(matrix):
+    """The inverse of a symmetric matrix: by Cholesky where positive definite, LU otherwise."""
+    factors, failed = lapack.dpotrf(matrix, lower=1)
+    if failed:
+        return np.linalg.inv(matrix)
+    lower, failed = lapack.dpotri(factors, lower=1)
+    lower = np.tril(lower)
+    return lower + np.tril(lower, -1).T
 
 
 @dataclass
@@ -153,12 +164,12 @@ class Response:
     load_shift: float
     bent: bool
     _columns: np.ndarray
+    _unloaded: np.ndarray
     _bend: np.ndarray | None
 
     def displacement(self, multipliers: np.ndarray, depth_change: float) -> np.ndarray:
         """(nc,) condensed displacement."""
-        count = len(multipliers)
-        out = self._columns[:, count] + self._columns[:, :count] @ multipliers
+        out = self._unloaded + multipliers @ self._columns
         return out if self._bend is None else out - self._bend * depth_change
 
 
@@ -173,28 +184,27 @@ def respond(zone, schur, right, gradient, curvature, previous_force, directions)
     bent = previous_force * curvature
     if np.any(bent != 0):
         tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
-        rows = zone.gather(tangent)
         on = np.flatnonzero(bent)
-        matrix = schur - rows[on].T @ (bent[on, None] * rows[on])
-        border = -(bent[on] * tangent[on, 1]) @ rows[on]
+        rows = zone.rows(tangent)[on]
+        matrix = schur - (rows.T @ (rows * bent[on, None])).toarray()
+        border = -rows.T @ (bent[on] * tangent[on, 1])
         corner = -float(bent @ tangent[:, 1] ** 2)
-    rows = np.concatenate([zone.gather(direction) for direction in directions])
+    rows = vstack([zone.rows(direction) for direction in directions], format="csr")
     lever = np.concatenate([direction[:, 1] for direction in directions])
-    columns = [rows.T, right[:, None]] + ([border[:, None]] if border is not None else [])
-    solved = _solver(matrix)(np.concatenate(columns, axis=1))
-    count = len(rows)
-    compliance, free = rows @ solved[:, :count], solved[:, count]
+    inverse = _inverse(matrix)
+    columns = rows @ inverse
+    compliance, unloaded = rows @ columns.T, inverse @ right
     if zone.softness is not None:
         each = len(gradient)
-        for first, softness in zip(range(0, count, each), (zone.softness, zone.softness_along), strict=False):
-            compliance[first : first + each, first : first + each] += softness
+        for first in range(0, len(lever), each):
+            compliance[first : first + each, first : first + each] += zone.softness
     load_shift, bend = 0.0, None
     if border is not None:
-        bend = solved[:, count + 1]
+        bend = inverse @ border
         lever = lever - rows @ bend
         corner -= float(border @ bend)
-        load_shift = float(border @ free)
-    return Response(matrix, compliance, rows @ free, lever, corner, load_shift, border is not None, solved, bend)
+        load_shift = float(border @ unloaded)
+    return Response(matrix, compliance, rows @ unloaded, lever, corner, load_shift, border is not None, columns, unloaded, bend)
 
 
 def soften(error, schur, curvature, previous_force, bent) -> tuple[np.ndarray, np.ndarray]:
