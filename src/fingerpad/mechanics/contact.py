@@ -178,7 +178,7 @@ def respond(zone, schur, right, gradient, curvature, previous_force, directions)
 
     Args:
         schur, right, gradient, curvature, previous_force: as in :func:`solve_contact`. directions: list of (nz, 2) unit vectors,
-            each giving nz rows.
+            each giving nz rows: the normals, and the tangents where there is friction.
     """
     matrix, border, corner = schur, None, 0.0
     bent = previous_force * curvature
@@ -196,8 +196,9 @@ def respond(zone, schur, right, gradient, curvature, previous_force, directions)
     compliance, unloaded = rows @ columns.T, inverse @ right
     if zone.softness is not None:
         each = len(gradient)
-        for first in range(0, len(lever), each):
-            compliance[first : first + each, first : first + each] += zone.softness
+        compliance[:each, :each] += zone.softness
+        if len(directions) > 1:
+            compliance[each:, each:] += zone.softness_along
     load_shift, bend = 0.0, None
     if border is not None:
         bend = inverse @ border
