@@ -45,7 +45,9 @@ def dragged(body, skin, record, records=()):
     else:
         drag, stick, slip = -record.tangential, touching & (record.state == STICK), touching & (record.state == SLIP)
     moved = record.displacement[skin.nodes, 0]
-    return Dragged(pressed.x, pressed.pressure, drag / record.length, stick, slip, record.nodal_force, drag, pressed, record, moved)
+    return Dragged(
+        pressed.x, pressed.pressure, drag / record.length, stick, slip, record.nodal_force, drag, pressed, record, moved
+    )
 
 
 def stroke(body, mesh, steps, profile, friction, settings=TIGHT, curve="top", external=None):

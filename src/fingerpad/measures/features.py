@@ -36,7 +36,7 @@ PRESSURE_SCALE = 0.04
 """Factor of the pressure traces of Fig 4-21, of the thesis's choosing."""
 
 PRESSURE = "contact_pressure"
-"""The pressure of every figure and table: nodal force over tributary length, not averaged over neighbours.
+"""The pressure of every figure and table: of every node the mean at the points beside it, not averaged over neighbours.
 An average lowers the peak under sharp surfaces and blurs the contact edge."""
 
 

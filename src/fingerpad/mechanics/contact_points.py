@@ -52,7 +52,9 @@ class ContactPoints:
     mirrored: bool
 
     @classmethod
-    def on(cls, points: np.ndarray, chain: np.ndarray, edges: np.ndarray, shear: np.ndarray, mirrored=False, convexity=0.0) -> ContactPoints:
+    def on(
+        cls, points: np.ndarray, chain: np.ndarray, edges: np.ndarray, shear: np.ndarray, mirrored=False, convexity=0.0
+    ) -> ContactPoints:
         """Those of the skin.
 
         Args:

@@ -36,7 +36,9 @@ def contact_edges(x, pressure, spacing, mirrored: bool = False) -> tuple[float, 
     not fall to the edge, as under an edge of the profile, contact ends half a spacing beyond the last point.
     """
     if mirrored:
-        x, pressure, spacing = (np.concatenate([sign * each[::-1], each]) for sign, each in ((-1, x), (1, pressure), (1, spacing)))
+        x, pressure, spacing = (
+            np.concatenate([sign * each[::-1], each]) for sign, each in ((-1, x), (1, pressure), (1, spacing))
+        )
     on = np.flatnonzero(pressure > 0)
     if not len(on):
         return np.nan, np.nan
