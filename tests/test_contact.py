@@ -256,7 +256,7 @@ def test_uniform_pressure_is_recovered_on_curved_edges(order):
 
 
 def test_softness_minds_differences_of_pressure_only():
-    """An even pressure is not softened; energy is never negative; finer skin is softer by the third power and stiffer by shear."""
+    """An even pressure is not softened; energy is not negative; softness is edge cubed over the shear modulus."""
     _, places = points_on_arc(2, shear=2.0)
     soft, length = places.soft(slice(None)), places.weight * 2 * places.spacing
 

@@ -1,7 +1,7 @@
 """Exact unilateral contact of points of the skin with a rigid profile, in the condensed (Schur) system.
 
-No penalty: normal forces at the points are multipliers of ``gap >= 0``. At each Newton iteration the gap is linearised where the skin
-and the profile stood before, the profile's own movement is part of the linear solve, and the resulting mixed linear
+No penalty: normal forces at the points are multipliers of ``gap >= 0``. At each Newton iteration the gap is linearised where the
+skin and the profile stood before, the profile's own movement is part of the linear solve, and the resulting mixed linear
 complementarity problem
 
     S' du - N^T f + b dd = r,      0 <= f  perpendicular to  gap + N du + n_y dd >= 0,      sum(-n_y f) = F or dd given
@@ -31,9 +31,9 @@ class Zone:
     """Points of the skin that may touch, and where the degrees of freedom of its nodes sit in the condensed system.
 
     Attributes:
-        nodes: (nn,) node numbers. equation: (n, 2) equations of all nodes. shape: (nz, nn) values of the nodes' shape functions at
-            the points; None where the points are the nodes. softness: (nz, nz) m^2/N, what forces add to the gaps beside what the
-            body yields, and softness_along what tangential ones add to the slips; None: nothing.
+        nodes: (nn,) node numbers. equation: (n, 2) equations of all nodes. shape: (nz, nn) values of the nodes' shape functions
+            at the points; None where the points are the nodes. softness: (nz, nz) m^2/N, what forces add to the gaps beside what
+            the body yields, and softness_along what tangential ones add to the slips; None: nothing.
         condensed: (nc,) ascending equation numbers.
     """
 
@@ -149,7 +149,8 @@ class Response:
     """How constraint rows answer to multipliers on them once the body has been condensed away.
 
     With multipliers ``m`` (nr,) and a change ``dd`` of the profile's depth the rows move by
-    ``free + compliance @ m + lever * dd``, what the zone's softness adds to the gaps included, and the condensed degrees of freedom by :meth:`displacement`.
+    ``free + compliance @ m + lever * dd``, what the zone's softness adds included, and the condensed degrees of freedom by
+    :meth:`displacement`.
 
     Attributes:
         matrix: (nc, nc) Schur complement with the geometric term of the gaps. compliance: (nr, nr). free, lever: (nr,).

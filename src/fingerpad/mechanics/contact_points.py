@@ -33,8 +33,8 @@ class ContactPoints:
     """Points of the skin, from left to right.
 
     Attributes:
-        nodes: (n, k) of the edge that each is on, among all nodes. along: (n, k) the same, among the skin's. values, slopes: (n, k)
-            shape functions and their derivatives. weight: (n,) of the edge's parameter from -1 to 1. node: (n,) the
+        nodes: (n, k) of the edge that each is on, among all nodes. along: (n, k) the same, among the skin's. values, slopes:
+            (n, k) shape functions and their derivatives. weight: (n,) of the edge's parameter from -1 to 1. node: (n,) the
             nearest of the skin's, to which what is at a point is put down. spacing: (n,) m, of the unloaded skin, which
             the points share. per_edge: how many an edge has. softness: (n,) m^3/Pa. mirrored: does the skin begin at a symmetry
             axis?

@@ -33,8 +33,8 @@ class Coulomb:
     """Coulomb's law with one coefficient, and the state of every point of the skin.
 
     Args:
-        coefficient: of friction. count: number of places where contact may be: points of the skin, twice as many where the profile
-            has valleys, on both sides of which a point may lean.
+        coefficient: of friction. count: number of places where contact may be: points of the skin, twice as many where the
+            profile has valleys, on both sides of which a point may lean.
 
     Attributes:
         tangential: (count,) N/m force on the skin along the tangent. state: (count,) -1, 0, 1. slip: (count,) m since the step

@@ -1,8 +1,8 @@
 """Contact with a surface that has valleys: a point of the skin in one leans on both of its sides.
 
 The distance to such a surface is the smaller of two, and its gradient jumps where they are equal, which is just where a point
-comes to rest: with one constraint Newton's method pushes it from side to side for ever. Here each such point has two, one for each
-side as if it went on beyond the corner (the feasible set of a point under a valley is the intersection of both). The contact
+comes to rest: with one constraint Newton's method pushes it from side to side for ever. Here each such point has two, one for
+each side as if it went on beyond the corner (the feasible set of a point under a valley is the intersection of both). The contact
 problem is the same; only its rows are more than its points. A profile without valleys never comes here.
 """
 
@@ -15,8 +15,8 @@ class Valleys:
     """Which points of the skin are in which valley, remembered from one look to the next.
 
     Args:
-        profile: the rigid shape. count: number of points of the skin. reach: m, from the corner of a valley within which a point has two
-            constraints.
+        profile: the rigid shape. count: number of points of the skin. reach: m, from the corner of a valley within which a
+            point has two constraints.
     """
 
     def __init__(self, profile, count: int, reach: float):
