@@ -69,7 +69,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     errors: MeasuredErrors = field(default_factory=MeasuredErrors)
     mesh_order: float = 1.0
     time_order: float = 1.0
-    edge_share: float = 0.125
+    edge_share: float = 0.14
     safety: float = 1.56
     fillet_error: float = 0.4
     fillet_order: float = 1.5

@@ -9,6 +9,8 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import norm, t
 
+_FAR = np.log(1e4)  # how many times more or less than at the start a parameter may be: beyond, a search has lost its way
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -117,6 +119,7 @@ def fit(
         ftol=1e-12,
         gtol=1e-12,
         max_nfev=400,
+        bounds=(np.log(first) - _FAR, np.log(first) + _FAR),
     )
     if not found.success:
         raise ValueError(f"the fit of {', '.join(names)} did not converge: {found.message}")
