@@ -162,7 +162,18 @@ def test_studies_make_their_tables_and_figures(thesis):
     assert {Path(p).name for job in jobs for p in made(job) if p.startswith("figures/")} == {
         f"{name}.{kind}"
         for names, kinds in (
-            (("accuracy", "accuracy_orders", "accuracy_planner", "presets", "accuracy_belief", "accuracy_drawn"), ("csv", "md")),
+            (
+                (
+                    "accuracy",
+                    "accuracy_orders",
+                    "accuracy_planner",
+                    "presets",
+                    "accuracy_edges",
+                    "accuracy_belief",
+                    "accuracy_drawn",
+                ),
+                ("csv", "md"),
+            ),
             (("accuracy_error", "accuracy_error_stroke", "accuracy_growth", "accuracy_belief", "accuracy_drawn"), ("csv", "png")),
         )
         for name in names

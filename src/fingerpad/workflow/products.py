@@ -507,6 +507,9 @@ class Products:
         tables = self.tables(["accuracy", "accuracy_orders", "accuracy_planner", "presets"])
         told = {"scenes": [self.scene(scene) for scene in family.values()], "written": self._written(*family.values())}
         yield Job("accuracy_tables", read, {"tables": tables}, told)
+        pressed = [scene for kind, scene in family.items() if kind != "stroke"]
+        told = {"scenes": [self.scene(scene) for scene in pressed], "written": self._written(*pressed)}
+        yield Job("accuracy_edges", self._read(*pressed), {"table": self.tables(["accuracy_edges"])}, told, **long)
         rows = [self.result(f"accuracy/belief/{name}.csv") for name in outside]
         for k in range(0, len(outside), 7):
             told, made = {"names": list(outside[k : k + 7]), **self._told(base)}, {"rows": rows[k : k + 7]}
