@@ -43,6 +43,7 @@ from fingerpad.measures.features import (
     is_simulated,
     phase_indices,
     profile,
+    width,
 )
 from fingerpad.measures.quantities import CURVATURE, DISTANCE, DOWN, HEIGHT, P_CENTRE, P_PEAK, TIME, P, Q, X
 from fingerpad.measures.responses import curvature_of
@@ -107,16 +108,16 @@ class Data:
         return pd.concat(parts, ignore_index=True)
 
     def profiles(self, runs: Runs, half: bool = False) -> pd.DataFrame:
-        """Pressure over the contact at the shown outputs: one row a node, at its deformed position."""
+        """Pressure over the contact at the shown outputs: at nodes, where they are by then, and between the last and the edge."""
         parts = []
         for name, history, coarse in self.runs(runs):
+            sunk = -history["skin_displacement_y"].values
             for index, phase in phase_indices(history):
-                errors = curve_errors(history, coarse, at_output(float(history["time"][index]), upper_profile))
-                x, p = profile(history, index)
-                keep = in_contact(history, index)
-                if half:
-                    keep &= np.arange(len(x)) >= centre_node(history)
-                down = -history["skin_displacement_y"].values[index]
+                x, p = edged_profile(history, index)
+                errors = curve_errors(history, coarse, at_output(float(history["time"][index]), edged_profile))
+                near = in_contact(history, index)
+                down = np.interp(x, profile(history, index)[0][near], sunk[index][near]) if near.any() else 0 * x
+                keep = (x >= 0) & near.any() if half else np.full(len(x), near.any())
                 part = {"phase": phase, TIME: history["time"].values[index], X: x[keep] * 1e3, DOWN: down[keep] * 1e3}
                 parts.append(pd.DataFrame(part | {P: p[keep], **errors.columns, runs.column: name}))
         return pd.concat(parts, ignore_index=True)
@@ -198,6 +199,24 @@ class Data:
             of = {} if panel is None else {key: panel}
             rows += [{**of, "source": source, column: entry[end]} for end in ("low", "high")]
         return pd.DataFrame(rows)
+
+
+def edged_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Positions (m) of the nodes of a contact that is its own mirror image, and of its edges, and the pressures (Pa) there.
+
+    It ends beside the nodes, with the root of the distance, like any smooth contact. A node within half a spacing of its edge is
+    left out, for it may have skin on one side that does not touch.
+    """
+    (x, p), end = profile(history, index), width(history)[index] / 2
+    touch = np.flatnonzero((np.arange(len(x)) >= centre_node(history)) & (p > 0))
+    if not len(touch):
+        return np.zeros(1), np.zeros(1)
+    spacing = x[touch[0] + 1] - x[touch[0]]
+    inside = touch[(x[touch] < end - spacing / 2) | (touch == touch[0])]
+    to_edge = np.linspace(0, 1, 9)[1:]
+    right = np.append(x[inside], x[inside[-1]] + (1 - (1 - to_edge) ** 2) * max(end - x[inside[-1]], 0.0))
+    pressure = np.append(p[inside], p[inside[-1]] * (1 - to_edge))
+    return np.append(-right[:0:-1], right), np.append(pressure[:0:-1], pressure)
 
 
 def upper_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:

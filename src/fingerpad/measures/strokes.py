@@ -119,14 +119,16 @@ def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Place of the centre node and whether it touches, every `FINE` of stroke distance.
 
     Between outputs both its place and its distance from the edge of the contact, along the undeformed skin and below zero
-    outside, are interpolated: the edge passes over the node where that changes its sign.
+    outside, are interpolated: the edge passes over the node where that changes its sign. It is taken to be a quarter of a spacing
+    beyond the last node that touches, for a node touches from a quarter before it to a quarter after it.
     """
     x, node = stroke["skin_x"].values, centre_node(stroke)
     upper = stroke["skin_y"].values > 0
     touches = stroke[PRESSURE].values[:, upper] > 0
     apart = abs(x[upper] - x[node])
     inside = touching(stroke)
-    within = np.where(touches != inside[:, None], apart, apart.max()).min(axis=1) - np.sort(apart)[1] / 2
+    within = np.where(touches != inside[:, None], apart, apart.max()).min(axis=1)
+    within -= np.where(inside, 0.75, 0.25) * np.sort(apart)[1]
     d = distance(stroke)
     fine = np.arange(d[0], d[-1], FINE)
     return np.interp(fine, d, place(stroke)), np.interp(fine, d, np.where(inside, within, -within)) > 0
