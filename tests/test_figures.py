@@ -29,6 +29,8 @@ TABLE = Path(__file__).parent / "baselines" / "figures.csv"
 UPDATE = os.environ.get("FINGERPAD_UPDATE_BASELINES") == "1"
 MODULE_OF = {spec.number: name.rpartition(".")[2] for name, specs in CHAPTERS.items() for spec in specs}
 WITHOUT_ERROR = ("5-4", "5-25")  # the surface's own lengths; the specimen itself
+EDGED = dict.fromkeys(("4-11", "4-12", "4-13", "4-14", "4-20"), 3.0)
+"""Figures of profiles, and how often the per cent their error may be if the edge is a per cent further away as well."""
 CHECKED = [number for number in FIGURES if number[0] in "45" and number not in (*WITHOUT_ERROR, *RATES)]
 
 
@@ -86,9 +88,10 @@ def test_picture_works_without_the_reference(number):
 
 @pytest.mark.parametrize("number", CHECKED)
 def test_errors_are_the_differences_to_the_companions(number):
-    """Of which one is a per cent away, and the other a quarter of one further."""
-    errors = frame(number)[[MESH, STEPS]].dropna()
-    assert errors[MESH].between(0.98, 1.02).all() and errors[STEPS].between(0.24, 0.26).all() and len(errors)
+    """Of which one is a per cent away, and the other a quarter of one further; and so are their edges, if the curves have any."""
+    errors, most = frame(number)[[MESH, STEPS]].dropna(), EDGED.get(number, 1)
+    assert errors[MESH].between(0.98, 1.02 * most).all() and len(errors)
+    assert errors[STEPS].between(0.24, 0.26 * most).all()
 
 
 @pytest.mark.parametrize("number", FIGURES)
@@ -104,7 +107,7 @@ def test_picture_says_what_it_is_and_no_text_leaves_it(number):
     if number in RATES:
         assert "Predicted" in notes and "error" in notes.lower() and "not measured" in notes
     elif number in CHECKED:
-        assert "Simulated" in notes and "mesh 1.0 %" in notes and "sampling" in notes
+        assert "Simulated" in notes and ("mesh 1.0 %" in notes or number in EDGED) and "sampling" in notes
     else:
         assert "not measured" in notes
     width, height = fig.get_size_inches() * fig.dpi
