@@ -36,7 +36,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         presets: by name.
         errors: what a tolerance is met with, and what a run believes of itself.
         mesh_order, time_order: with which errors are taken to go on beyond the meshes and steps that were measured.
-        edge_share: of an element's edge, by which an edge of the contact may be misplaced: a quarter of the node spacing.
+        edge_share: of an element's edge, by which an edge of the contact may be misplaced: little more than a quarter of the
+            node spacing.
         safety: factor on both, for errors swing with where nodes happen to lie: the least that covers the scenes drawn at random.
         fillet_error, fillet_order: of the peak pressure, over that power of element edge / length of the contact on the rounded
             edge that presses. edge_error: of the centre
