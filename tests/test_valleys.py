@@ -5,9 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fingerpad.mechanics import valleys
 from fingerpad.mechanics.contact import ContactError, Rows, Zone, solve_contact
 from fingerpad.mechanics.friction import Coulomb
+from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.mechanics.valleys import Valleys
+from fingerpad.simulation import simulate
 from fingerpad.stimuli.curve import Curve
 from fingerpad.stimuli.shapes import Flat
 from test_contact import problem, zone_of
@@ -42,6 +45,8 @@ def test_where_there_is_no_valley():
     assert not len(profile.walls(np.array([[3e-4, rise], [2e-3, 0.0]]), 1e-4).which)
     assert not Curve([-1, 0, 1], [1e-3, 0, 1e-3], [0, 0]).valleys
     assert not Curve([-1, 0, 1], [0, 5e-4, 0], [0, 0]).valleys and Curve([-1, 0, 1], [0, 2e-3, 0], [0, 0]).valleys
+    bottom = np.array([[0.0, rise]])
+    assert len(profile.walls(bottom, 1e-4, flat=1.0).which) and not len(profile.walls(bottom, 1e-4, flat=1.1).which)
     assert not Flat().valleys and not len(Flat().walls(np.zeros((3, 2)), 1.0).which)
 
 
@@ -159,3 +164,24 @@ def test_a_node_held_by_both_sides_needs_no_friction(coefficient, least):
         assert np.all(step.tangential[alone] * slip[alone] <= 1e-9)
         assert np.all(np.abs(slip)[alone & (step.state == 0)] < 1e-9)
     assert solved >= least and lodged > 50
+
+
+@pytest.mark.parametrize(("share", "ends"), [(None, True), (0.0, False)])
+def test_a_stroke_over_a_finely_sampled_hollow_with_friction(share, ends, tmp_path, monkeypatch):
+    """Each sample of a hollow is a valley, shallow against friction's angle; mutant: two constraints in them cycle."""
+    if share is not None:
+        monkeypatch.setattr(valleys, "SHARE", share)
+    x = np.arange(-12, 20, 0.1)
+    y = np.where(abs(x - 6) < 3, 0.05 * (9 - (x - 6) ** 2), 0.0)
+    np.savetxt(tmp_path / "hollow.csv", np.column_stack([x, y]), delimiter=",", header="x (mm),y (mm)", comments="")
+    scene = {
+        "stimulus": {"shape": "sampled", "csv": str(tmp_path / "hollow.csv"), "smooth": "none"},
+        "friction": 0.35,
+        "accuracy": "draft",
+        "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"slide": "8 mm", "speed": "10 mm/s"}],
+    }
+    if ends:
+        assert not simulate(scene)["cutbacks"].values.any()
+    else:
+        with pytest.raises(NonConvergence, match="stick and slip keep cycling"):
+            simulate(scene)

@@ -189,7 +189,7 @@ class QuasiStatic:
         if profile.valleys:
             from fingerpad.mechanics.valleys import Valleys
 
-            self._valleys, places = Valleys(profile, places, skin.spacing / PER_NODE), 2 * places
+            self._valleys, places = Valleys(profile, places, skin.spacing / PER_NODE, friction or 0.0), 2 * places
         self.contact_force = np.zeros(places)
         self.active = np.zeros(places, bool)
         self.depth = self.distance = 0.0

@@ -4,11 +4,18 @@ The distance to such a surface is the smaller of two, and its gradient jumps whe
 comes to rest: with one constraint Newton's method pushes it from side to side for ever. Here each such point has two, one for
 each side as if it went on beyond the corner (the feasible set of a point under a valley is the intersection of both). The contact
 problem is the same; only its rows are more than its points. A profile without valleys never comes here.
+
+Friction holds a point in a shallow valley on one of its sides: whatever push both of them could give it lies within the cone of
+that side's friction, as long as the valley turns by less than friction's angle. There one constraint is enough, and two, of which
+either may stick or slip, would have the states cycle.
 """
 
 import numpy as np
 
 from fingerpad.mechanics.contact import Rows, Zone
+
+SHARE = 0.5
+"""Of friction's angle, by which a valley may turn and still hold a point on one side."""
 
 
 class Valleys:
@@ -16,11 +23,12 @@ class Valleys:
 
     Args:
         profile: the rigid shape. count: number of points of the skin. reach: m, from the corner of a valley within which a
-            point has two constraints.
+            point has two constraints. friction: Coulomb's coefficient, 0 without.
     """
 
-    def __init__(self, profile, count: int, reach: float):
+    def __init__(self, profile, count: int, reach: float, friction: float = 0.0):
         self.profile, self.count, self.reach = profile, count, reach
+        self.flat = SHARE * np.arctan(friction)
         self._corner = np.full(count, -1)
 
     def rows(self, zone: Zone, part: slice, points: np.ndarray, single: tuple, kept: list[np.ndarray]) -> Rows:
@@ -31,7 +39,7 @@ class Valleys:
                 (2 ns,) of what belongs to the rows (forces, states): where a point has come into a valley, or left one, they are
                 moved to the side that it is nearest to.
         """
-        walls = self.profile.walls(points, self.reach)
+        walls = self.profile.walls(points, self.reach, self.flat)
         free = zone.movable[walls.which]  # on the mirror both sides are one
         which, corner, distance, normal, bend = (values[free] for values in walls)
         self._move(part, which, corner, distance, kept)

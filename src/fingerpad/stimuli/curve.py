@@ -119,10 +119,10 @@ class Curve(Profile):
         gradient = np.where(line[:, None], _normal(tangent), (side / length)[:, None] * arm)
         return distance, gradient, np.where(line, 0.0, side / length)
 
-    def walls(self, points, reach):
-        at, last = self._valleys, len(self.bend) - 1
+    def walls(self, points, reach, flat=0.0):
+        at, last = self._valleys[self._kink[self._valleys] < -flat], len(self.bend) - 1
         if not len(at):
-            return super().walls(points, reach)
+            return super().walls(points, reach, flat)
         chord = np.where((np.arange(last + 1) == 0) | (np.arange(last + 1) == last), np.inf, np.diff(self.x))
         room = np.minimum(reach, np.minimum(chord[at - 1], chord[at]))
         behind = np.clip(np.searchsorted(self.x[at], points[:, 0]), 1, max(len(at) - 1, 1))

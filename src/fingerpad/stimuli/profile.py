@@ -65,8 +65,11 @@ class Profile:
         """Distance (n,) m, gradient (n, 2) and curvature (n,) 1/m at ``points`` (n, 2) m."""
         raise NotImplementedError
 
-    def walls(self, points: np.ndarray, reach: float) -> Walls:
-        """Both sides of the valleys that ``points`` (n, 2) m are in, those within ``reach`` m of the corner at the bottom."""
+    def walls(self, points: np.ndarray, reach: float, flat: float = 0.0) -> Walls:
+        """Both sides of the valleys that ``points`` (n, 2) m are in, those within ``reach`` m of the corner at the bottom.
+
+        What turns by less than ``flat`` (rad) is no valley.
+        """
         return Walls(np.zeros(0, int), np.zeros(0, int), np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2)))
 
     def outline(self, x: np.ndarray) -> np.ndarray:
