@@ -221,7 +221,10 @@ def test_presets_have_error_and_cost(table):
 
 
 def test_planner_believes_at_least_the_committed_errors():
-    """The constants of the planner are the study's, or those of the same study of another pad where they are larger."""
+    """The constants of the planner are the study's, or those of the same study of another pad where they are larger.
+
+    The other pad's are from before edges of contact moved through elements, and so they are larger nearly everywhere.
+    """
     kept = pd.read_csv(TABLES / "accuracy_planner.csv").set_index(["kind", "count"])
     known, own = RULES.errors, []
     for kind, pressed, stroked in (("mesh", known.mesh, known.stroke_mesh), ("steps", known.time, known.stroke_time)):
@@ -230,7 +233,7 @@ def test_planner_believes_at_least_the_committed_errors():
             own += [b / m for m, b in zip(measured, believed, strict=True)]
         own += [b / m for m, b in zip(rows["stroke"].dropna(), stroked.values(), strict=True)]
         assert list(pressed) == list(rows.index)
-    assert min(own) == 1 and max(own) < 6 and own.count(1) > len(own) / 4
+    assert min(own) == 1 and max(own) < 9 and np.median(own) < 2.5
 
 
 @pytest.mark.parametrize("curvature", [79.0, 420.0, 2500.0])

@@ -230,7 +230,7 @@ def test_unloading_ends_with_a_small_error_and_tells_the_largest():
     motion = [{"press_to_force": "20 gf"}, {"press_to_force": "0.001 gf"}]
     totals = summary(simulate(scene(motion=motion, accuracy="draft")))
     loaded, unloaded = (leg["estimated_error"] for leg in totals["legs"])
-    assert max(loaded, unloaded) == totals["run"]["estimated_error"] < 0.05
+    assert max(loaded, unloaded) == totals["run"]["estimated_error"] < 0.06
     assert totals["run"]["largest_error"] >= loaded
     pressed = summary(simulate(scene(motion=motion[:1], accuracy="draft")))
     assert pressed["run"]["estimated_error"] == pytest.approx(loaded)
