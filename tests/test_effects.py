@@ -167,14 +167,15 @@ def test_friction_may_be_asked_for_where_there_is_a_coefficient(ramp, stroke):
 
 @pytest.mark.parametrize(("accuracy", "slide_step"), [("draft", 0.5e-3), ("thesis", 0.25e-3), ("fine", 0.125e-3)])
 def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
-    """Steps of a slide follow the preset and the surface, not the speed; the cost follows the steps."""
+    """Outputs of a slide follow the preset and the surface, not the speed; the cost follows the states that are expected."""
     chosen = plan(
         changed(slid(stroke, speed=40e-3), accuracy=accuracy, outputs=stroke.outputs.model_copy(update={"snapshots": ()}))
     )
-    ramp, slide = {"draft": (10, 401), "thesis": (20, 540), "fine": (40, 802)}[accuracy]
-    assert chosen.slide_step == slide_step and chosen.steps == ramp + slide > ramp + 80e-3 / slide_step
+    ramp, outputs = {"draft": (10, 889), "thesis": (20, 1626), "fine": (40, 3200)}[accuracy]
+    assert chosen.slide_step == slide_step and chosen.outputs == ramp + outputs
+    assert 1 < (chosen.steps - ramp) / (80e-3 / slide_step) < 1.5
     ends = np.array([step.distance for step in schedule(stroke, *chosen.stepping) if step.leg == 1])
-    assert np.diff(ends).max() <= slide_step * (1 + 1e-9) and np.isin(np.arange(1, 161), np.round(ends / 0.5e-3, 9)).all()
+    assert np.diff(ends).max() <= slide_step / 5 * (1 + 1e-9) and np.isin(np.arange(1, 161), np.round(ends / 0.5e-3, 9)).all()
     for arc in stroke.stimulus.segments:
         if arc.curvature > 0:  # dragged along, the skin meets an arc later than its place says
             passing = np.count_nonzero((ends > arc.start + 0.5e-3) & (ends < arc.end + 0.5e-3))

@@ -202,7 +202,7 @@ def test_companions_have_the_steps_of_the_run_all_or_every_second(name):
     mesh, both = companion(scene, own, coarser), companion(scene, own, coarser, 2)
     assert mesh.mesh_size == both.mesh_size == coarser.mesh_size and mesh.effects == both.effects == own.effects
     every, second = (list(schedule(scene, *each.stepping)) for each in (mesh, both))
-    assert every == list(schedule(scene, *own.stepping)) and (mesh.steps, both.steps) == (len(every), len(second))
+    assert every == list(schedule(scene, *own.stepping)) and (mesh.outputs, both.outputs) == (len(every), len(second))
     pressed_anew = any(leg.fresh for leg in scene.motion)
     told = xr.Dataset({"leg": ("time", [0, *(step.leg for step in every)])}, {"time": np.arange(len(every) + 1)})
     kept = thinned(told)["time"].values[1:] - 1

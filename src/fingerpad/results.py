@@ -51,6 +51,7 @@ VARIABLES = {
     "hydrostatic_pressure": (("time", "receptor"), "Pa", "mean compressive stress, volumetric part"),
     "dilatation": (("time", "receptor"), "1", "relative change of volume, det F - 1"),
     "leg": (("time",), "1", "leg of the motion programme"),
+    "interpolated": (("time",), "1", "1 between two states that were found, 0 where one was"),
     "newton_iterations": (("time",), "1", "Newton iterations of the step"),
     "cutbacks": (("time",), "1", "halvings of the step"),
     "residual": (("time",), "1", "out-of-balance force over contact force"),
@@ -249,6 +250,11 @@ def leg_ends(history: xr.Dataset) -> xr.Dataset:
     return history.isel(time=1 + np.flatnonzero(np.append(leg[1:] != leg[:-1], True)))
 
 
+def states_found(history: xr.Dataset | Arrays) -> int:
+    """How many states of a history were found by steps; its other outputs lie between them."""
+    return int(np.sum(history["interpolated"].values == 0)) - 1
+
+
 def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
     """The summary of a history: the state at the end of each leg, and what the run took.
 
@@ -297,7 +303,7 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
             entry["receptors"] = [place | values for place, values in zip(places, each, strict=True)]
         legs.append(entry)
     run = {
-        "steps": int(history.sizes["time"] - 1),
+        "steps": states_found(history),
         "newton_iterations": int(history["newton_iterations"].values.sum()),
         "cutbacks": int(history["cutbacks"].values.sum()),
         "energy_balance_error": float(history["energy_balance_error"].values[-1]),

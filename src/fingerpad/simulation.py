@@ -13,12 +13,14 @@ import numpy as np
 from scipy.spatial import cKDTree
 from threadpoolctl import threadpool_limits
 
+from fingerpad.dense_output import at_outputs
 from fingerpad.laws import assign
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import smoothed_pressure
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
-from fingerpad.mechanics.stepping import FOLDED, NonConvergence, QuasiStatic, Record, Skin, hard_here
+from fingerpad.mechanics.stepping import FOLDED, NewtonSettings, NonConvergence, QuasiStatic, Record, Skin, hard_here
+from fingerpad.mechanics.strides import Between
 from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.effects import EFFECTS
 from fingerpad.planning.errors import estimated_error
@@ -148,7 +150,8 @@ class Simulation:
         self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None) if fields else None
         friction = scene.friction if plan.effects["friction"].on else None
         observers = (self.receptors, self.fields) if fields else (self.receptors,)
-        self.stepper = QuasiStatic(self.body, self.skin, self.profile, observers=observers, friction=friction)
+        settings = plan.newton_tolerance and NewtonSettings(force_tolerance=plan.newton_tolerance)
+        self.stepper = QuasiStatic(self.body, self.skin, self.profile, settings, observers, friction=friction)
         self._require_room()
         for name, effect in EFFECTS.items():
             if effect.compose and name in plan.effects and plan.effects[name].on:
@@ -240,7 +243,7 @@ class Simulation:
                 progress({"time_s": record.time, "end_time_s": total, "contact_width_mm": float(width)} | counts)
 
         try:
-            records = self.stepper.run(self.steps(), after)
+            records = self.stepper.run(self.steps(), after, self.plan.between and Between(*self.plan.between))
         except (NonConvergence, KeyboardInterrupt) as stop:
             stop.dataset = self._history(done, states[: len(done) + 1], snapshots, complete=False) if done else None
             stop.hard = hard_in(self.scene)
@@ -438,8 +441,11 @@ class Simulation:
             out["centre_lateral_displacement"][k] = out["skin_displacement_x"][k, apex]
         for name in states[0]:
             out[name] = np.array([state[name] for state in states])
+        widths = out["contact_width"]
+        time_found = np.array([0.0] + [record.time for record in records])
+        out, times = at_outputs(out, time_found, records, self.whole.points[chain, 0], apex)
         coordinates = {
-            "time": np.array([0.0] + [record.time for record in records]),
+            "time": times,
             "receptor_depth": self.depth,
             "receptor_offset": self.offset,
             "skin_x": self.whole.points[chain, 0],
@@ -464,7 +470,7 @@ class Simulation:
                 "scene": self.scene.canonical(),
                 "plan": self.plan.to_dict(),
                 "cost": cost,
-                **self._errors(records, out["contact_width"]),
+                **self._errors(records, widths),
                 "error_covers": self.plan.covers,
                 "singular": int(self.plan.unbounded_peak),
                 "notes": self._notes(records),

@@ -6,6 +6,7 @@ profile. It knows nothing of scenes, plans or files. Time enters only through th
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from fingerpad.mechanics.contact import ContactError, Rows, Zone, solve_contact
 from fingerpad.mechanics.contact_points import PER_NODE, ContactPoints
 from fingerpad.mechanics.linear_solver import FactorisationError, condensation
 from fingerpad.mechanics.pressure import contact_edges
+from fingerpad.mechanics.strides import Between, Strides, Touch
 from fingerpad.stimuli.motion import STEADY, Step
 
 _FOLDS = 0.02
@@ -46,6 +48,10 @@ def hard_here(hard: tuple[str, ...]) -> str:
 
 class _StepFailure(RuntimeError):
     """One attempt at a step failed; the message is the reason."""
+
+
+class _TooFar(_StepFailure):
+    """What lies between two states is not known well enough from them."""
 
 
 @dataclass(frozen=True)
@@ -125,11 +131,12 @@ class Record:
     tangential: np.ndarray | None = None  # (ns,) N/m along the tangent; the three only with friction
     slip: np.ndarray | None = None  # (ns,) m, of the skin over the profile in this step
     state: np.ndarray | None = None  # (ns,) 0 open, 1 sticks, 2 slips
+    passed: tuple[Step, ...] = ()  # outputs since the state before, at which none was found
 
 
 @dataclass(frozen=True)
 class _Past:
-    """A state before a step of ``dt`` s: displacement (n, 2) m, contact forces (np,) N/m and depth m."""
+    """A state before a step of ``dt``: displacement (n, 2) m, contact forces (np,) N/m and depth m."""
 
     dt: float
     u: np.ndarray
@@ -206,8 +213,9 @@ class QuasiStatic:
         self.height = self._first_touch()
         self._reach_what_touches()
         self._unloaded = body.save()
-        self._factors = self._stiffness = self._found = None
+        self._factors = self._stiffness = self._found = self._nodal = None
         self._past: list[_Past] = []
+        self._touches: list[Touch] = []  # the last two states'
         self._quadratic = False
         self.total_iterations = self.total_halvings = self.factorisations = self._spent = 0
         self.wavered = 0  # attempts that ended going to and fro between states that are nearly in equilibrium
@@ -503,16 +511,18 @@ class QuasiStatic:
             return most * way / (1 + max(power, 0.0))
         return trapezoidal - (0.0 if self._stiffness is None else way**2 / 12 * (stiffness - self._stiffness))
 
-    def _advance(self, dt, control, target, distance, predict):
-        """One substep with predictor, check and commit."""
+    def _advance(self, dt, control, target, distance, predict, good=None):
+        """One substep with predictor, check and commit. ``good``: asked of the contact that was found, before it is accepted."""
         state = self.save()
         self._begin = self.body.u, self.depth, self.distance
-        body, past = self.body, _Past(dt, self.body.u, self.contact_force, self.depth)
+        # a steady stroke takes no time: its steps are as long as their way
+        size = dt if dt < STEADY else abs(distance - self.distance) or dt
+        body, past = self.body, _Past(size, self.body.u, self.contact_force, self.depth)
         try:
             clearance = 0.0 if self.force else self._clearance()
             self.distance = distance
             body.begin_step(dt)
-            guesses = self._predictions(dt) if predict else []
+            guesses = self._predictions(size) if predict else []
             self._internal = body.displace(guesses[-1 if self._quadratic else 0].u if guesses else body.u)
             if guesses and not body.smallest_jacobian > 0.1:
                 self._internal = body.displace(past.u)
@@ -526,6 +536,8 @@ class QuasiStatic:
             tangential, force = 0.0 - push.sum(0)
             if force < -1e-9 * self.contact_force.sum():
                 raise _StepFailure("the indenter is pulled instead of pushed")
+            if good is not None and not good():
+                raise _TooFar
             self.body.commit()
             stiffness = self._stiff if distance == state[4] else None
             clearance = clearance if force else self._clearance()
@@ -567,76 +579,113 @@ class QuasiStatic:
             found.append(now.plus(weights, self._past))
         return found
 
-    def run(self, steps: Iterable[Step], on_step: Callable[[Record], None] | None = None) -> list[Record]:
-        """Walk the schedule; returns one record per scheduled step.
+    def run(
+        self, steps: Iterable[Step], on_step: Callable[[Record], None] | None = None, between: Between | None = None
+    ) -> list[Record]:
+        """Walk the schedule; returns one record per state that was found: of every step or, where it says that none needs to be
+        found and ``between`` how good what lies between must be, of as many as it takes.
 
         Raises:
             NonConvergence: a step fails even after ``max_halvings`` halvings or ``most_iterations``; its ``records`` hold what
                 converged.
         """
         records: list[Record] = []
-        last = None
-        for step in steps:
-            control = "force" if step.force is not None else "depth"
-            target = step.force if control == "force" else step.depth
-            begin = self.force if control == "force" else self.depth
-            if step.fresh:
-                try:
-                    self._start_again(step.distance)
-                except NonConvergence as problem:
-                    problem.records = records
-                    raise
-                begin = 0.0 if control == "force" else self.depth
-            start = self.distance
-            # a steady press goes in strides as long as its way: what the last one did is no guide to the next
-            strides = step.dt >= STEADY and step.distance == self.distance
-            smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh and not strides
-            done, size, iterations, halvings = 0.0, 1.0, 0, 0
-            self._spent = 0
-            if not smooth:
-                self._past.clear()
-                self._factors = None
-            predict = smooth
-            self._follow()
-            while done < 1.0:
-                size = min(size, 1.0 - done)
-                whole = done + size >= 1.0
-                goal = target if whole else begin + (done + size) * (target - begin)
-                place = step.distance if whole else start + (done + size) * (step.distance - start)
-                try:
-                    used, residual = self._advance(size * step.dt, control, goal, place, predict and size == 1.0)
-                except _StepFailure as failure:
-                    if predict and size == 1.0:
-                        predict = False  # first doubt the predictor, then the step
-                        continue
-                    size /= 2
-                    halvings += 1
-                    aside = bool(records) and self._slips_off(records[-1])
-                    spent = self._spent > self.settings.most_iterations
-                    if size < 0.5**self.settings.max_halvings or spent or (aside and halvings > 1):
-                        where = f" (depth {self.depth * 1e3:.4g} mm, force {self.force:.4g} N/m of the meshed part)"
-                        reason, advice = str(failure), self._advice(str(failure))
-                        if spent:
-                            reason = f"{self._spent} Newton iterations did not suffice for a step cut {halvings} times; {reason}"
-                        if aside:
-                            way = f"{self.distance * 1e3:.3g} mm"
-                            reason, advice = f"the stimulus left the pad at {way}", f"a way of less than {way}"
-                        problem = NonConvergence(self.time, reason, advice, where)
-                        problem.records = records
-                        raise problem from failure
-                    continue
-                done += size
-                iterations += used
-                self.time = step.time - (1.0 - done) * step.dt if step.dt < STEADY else step.time
-                size *= 2
+        strides, last = Strides(iter(steps), between), None
+        self._touches.clear()
+        while (following := strides.next()) is not None:
+            step, passed = following
+            try:
+                iterations, halvings, residual = self._complete(step, last, records, strides if between else None)
+            except _TooFar:
+                strides.shorten()
+                continue
+            except NonConvergence as problem:
+                problem.records = records
+                raise
+            strides.found(step)
             last = step if not halvings else None
             self.total_iterations += iterations
             self.total_halvings += halvings
-            record = self._record(step, iterations, halvings, residual)
+            record = self._record(step, iterations, halvings, residual, passed)
             records.append(record)
             if on_step:
                 on_step(record)
         return records
+
+    def _complete(self, step, last, records, strides):
+        """Go to the end of a step, in parts where it does not converge; returns iterations, halvings and the residual.
+
+        Raises:
+            _TooFar: what it passes would not be known well enough, or it is better tried with less.
+        """
+        control = "force" if step.force is not None else "depth"
+        target = step.force if control == "force" else step.depth
+        begin = self.force if control == "force" else self.depth
+        if step.fresh:
+            self._start_again(step.distance)
+            begin = 0.0 if control == "force" else self.depth
+        start = self.distance
+        # a steady press goes in strides as long as its way: what the last one did is no guide to the next
+        pressed = step.dt >= STEADY and step.distance == self.distance
+        smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh and not pressed
+        done, size, iterations, halvings = 0.0, 1.0, 0, 0
+        self._spent = 0
+        if not smooth:
+            self._past.clear()
+            self._factors = None
+        predict = smooth
+        self._follow()
+        while done < 1.0:
+            size = min(size, 1.0 - done)
+            whole = done + size >= 1.0
+            goal = target if whole else begin + (done + size) * (target - begin)
+            place = step.distance if whole else start + (done + size) * (step.distance - start)
+            judged = partial(self._good, strides) if strides and size == 1.0 else None
+            try:
+                used, residual = self._advance(size * step.dt, control, goal, place, predict and size == 1.0, judged)
+            except _TooFar:
+                raise
+            except _StepFailure as failure:
+                if strides and strides.shorten():  # first doubt the stride
+                    raise _TooFar from failure
+                if predict and size == 1.0:
+                    predict = False  # then the predictor, then the step
+                    continue
+                size /= 2
+                halvings += 1
+                self._give_up_if_vain(failure, size, halvings, records)
+                continue
+            done += size
+            iterations += used
+            self.time = step.time - (1.0 - done) * step.dt if step.dt < STEADY else step.time
+            size *= 2
+        return iterations, halvings, residual
+
+    def _good(self, strides):
+        """Is the contact, as it was found, near enough to those before?"""
+        return len(self._touches) < 2 or strides.judge(*self._touches, self._touch())
+
+    def _touch(self):
+        force, gradient, length, edges = self._on_nodes()
+        x = (self.points + self.body.u)[self.skin.nodes, 0]
+        push, pull = self._forces()
+        drag, press = push.sum(0)
+        return Touch(x, force / length, edges, self.distance, float(drag / press) if press else 0.0)
+
+    def _give_up_if_vain(self, failure, size, halvings, records):
+        """NonConvergence where smaller parts of a step are of no use."""
+        aside = bool(records) and self._slips_off(records[-1])
+        spent = self._spent > self.settings.most_iterations
+        if size >= 0.5**self.settings.max_halvings and not spent and not (aside and halvings > 1):
+            return
+        where = f" (depth {self.depth * 1e3:.4g} mm, force {self.force:.4g} N/m of the meshed part)"
+        reason, advice = str(failure), self._advice(str(failure))
+        if spent:
+            reason = f"{self._spent} Newton iterations did not suffice for a step cut {halvings} times; {reason}"
+        if aside:
+            way = f"{self.distance * 1e3:.3g} mm"
+            reason, advice = f"the stimulus left the pad at {way}", f"a way of less than {way}"
+        raise NonConvergence(self.time, reason, advice, where) from failure
 
     def _slips_off(self, record):
         """Was the pad touched, on its way along the profile, by its side only? Then nothing can hold it there."""
@@ -656,11 +705,13 @@ class QuasiStatic:
             return "smaller steps, a finer skin mesh, or a fillet on sharp edges that pass over the skin"
         return "more steps, a finer mesh, or depth instead of force control"
 
-    def _record(self, step, iterations, halvings, residual):
+    def _on_nodes(self):
+        """Force (ns,) N/m on the skin's nodes, its direction (ns, 2), their length (ns,) m, and the contact's edges."""
         rows, places, part = self._rows(), self.places, self._range
-        kept = self.contact_force[rows.place]
+        if self._nodal is not None and self._nodal[0] is rows:
+            return self._nodal[1]
         push = np.zeros((len(places), 2))
-        push[part] = rows.of_points(kept[:, None] * rows.gradient)
+        push[part] = rows.of_points(self.contact_force[rows.place][:, None] * rows.gradient)
         normal = np.hypot(*push.T)
         nodal, force = places.of_nodes(push), places.of_nodes(normal)
         gradient = np.divide(nodal, np.hypot(*nodal.T)[:, None], out=np.zeros_like(nodal), where=force[:, None] > 0)
@@ -670,6 +721,14 @@ class QuasiStatic:
         pressure = normal[part] / length[part]
         mirrored = part.start == 0 and places.mirrored
         edges = contact_edges(places.at(position, part)[:, 0], pressure, places.spacing[part], mirrored)
+        self._nodal = rows, (force, gradient, places.of_nodes(length), edges)
+        return self._nodal[1]
+
+    def _record(self, step, iterations, halvings, residual, passed):
+        force, gradient, length, edges = self._on_nodes()
+        self._touches = [*self._touches[-1:], self._touch()]
+        rows = self._rows()
+        kept = self.contact_force[rows.place]
         total = max(kept.sum(), 1e-300)
         slack = np.abs(rows.closing(kept)) * kept
         network, spring, branch_work = self._energies
@@ -678,9 +737,9 @@ class QuasiStatic:
         # a body that is let go gives the work back: there is nothing left to relate an error to
         balance = abs(self.work - network - branch_work - frictional) / max(abs(self.work), 0.1 * self._most_work, 1e-300)
         return Record(
-            step.leg, step.time, self.depth, self.force, self._tangential, force, gradient, places.of_nodes(length), edges,
+            step.leg, step.time, self.depth, self.force, self._tangential, force, gradient, length, edges,
             self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,
             float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
             float(balance) if self.work else 0.0, self.work, self._energies, branch_work - spring, self.distance, frictional,
-            *(friction.record(self.active, places) if friction else ()),
+            *(friction.record(self.active, self.places) if friction else ()), passed=passed,
         )  # fmt: skip

@@ -44,7 +44,7 @@ from fingerpad.planning.effects import ridges as ridge_effect
 from fingerpad.planning.errors import estimated_error
 from fingerpad.planning.estimates import ContactEstimate
 from fingerpad.planning.rules import RULES, Rules
-from fingerpad.planning.schedule import schedule
+from fingerpad.planning.schedule import BETWEEN, NEWTON, expected_states, schedule
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.planning.surface import Surface, surface_of
 from fingerpad.scenes.scene import Scene, load_scene
@@ -65,7 +65,8 @@ class Plan:
     Attributes:
         effects: friction, viscoelasticity, finite_strain, symmetry, ridges. state: moduli used when viscosity is off
         ("long_term" or "instantaneous"). element: key of the element. mesh_size: of a built mesh, None for an external one.
-        contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them.
+        contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them, of
+        strokes, whose error chooses them, as many as are expected; outputs: of the history.
         slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
         nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
         contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
@@ -101,6 +102,7 @@ class Plan:
     surface: Surface = Surface()
     stride: int = 1
     strokes: bool = False
+    outputs: int = 0
 
     @property
     def covers(self) -> str:
@@ -124,12 +126,24 @@ class Plan:
         nodes = self.nodes * (2 if self.effects["symmetry"].on else 1)
         each_time = 8 * (20 + 7 * _SKIN_NODES * nodes**0.5 + 13 * receptors_of(scene))
         snapshots = len(scene.outputs.snapshots) or int(fields)
-        return 3e5 + (self.steps + 1) * each_time + (snapshots + 1) * nodes * (200 if fields else 40)
+        return 3e5 + (self.outputs + 1) * each_time + (snapshots + 1) * nodes * (200 if fields else 40)
 
     @property
     def stepping(self) -> tuple[int, bool, float | None, int]:
         """What :func:`schedule` needs to know: steps of each leg, does time matter, longest step of a slide (m), stride."""
         return self.steps_per_leg, self.timed, self.slide_step, self.stride
+
+    @property
+    def between(self) -> tuple[float, float] | None:
+        """Of a stroke: the longest way (m) between two states, and by how much of the pressure what lies between may be off."""
+        if not (self.strokes and self.slide_step):
+            return None
+        return self.slide_step * self.stride, BETWEEN * self.slide_step * self.stride**2
+
+    @property
+    def newton_tolerance(self) -> float | None:
+        """Force out of balance, over that of the contact, that a stroke leaves: as good as its steps are; None: the usual one."""
+        return NEWTON * self.slide_step if self.strokes and self.slide_step else None
 
     @property
     def discretisation(self) -> dict[str, Any]:
@@ -139,6 +153,7 @@ class Plan:
             "nodes": self.nodes,
             "smallest_edge_um": round(self.smallest_edge * 1e6, 3),
             "steps": self.steps,
+            "outputs": self.outputs,
         }
         if self.mesh_size is not None:
             out |= {
@@ -194,7 +209,7 @@ class Plan:
             data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
             data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["edge_error"], data["error_from"],
             data["asked_error"], data["once"], data["unbounded_peak"], tuple(data["specimen"]), Surface(**data["surface_SI"]),
-            data["stride"], data.get("strokes", False),
+            data["stride"], data.get("strokes", False), known.get("outputs", known["steps"]),
         )  # fmt: skip
 
     def write(self, path: str | Path) -> None:
@@ -251,7 +266,8 @@ def plan(
         steps_per_leg, slide_step = max(1, round(by_hand.steps / len(scene.motion))), None
     elif timed:
         steps_per_leg = max(steps_per_leg, scene.outputs.per_leg or 0)
-    steps = sum(1 for _ in schedule(scene, steps_per_leg, timed, slide_step=slide_step))
+    scheduled = list(schedule(scene, steps_per_leg, timed, slide_step=slide_step))
+    outputs, steps = len(scheduled), expected_states(scheduled, slide_step)
     time, narrowest, raised = steps_per_leg if timed or moves else None, earliest_half_width(scene, contact, timed), ""
     if external is not None:
 
@@ -278,7 +294,7 @@ def plan(
         smallest, edge = quality_of(external)["smallest_edge_m"], coarseness(external, rules) * apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
-    check_memory(scene, nodes, steps, rules)
+    check_memory(scene, nodes, outputs, rules)
     may_change = rules.profile_share * tolerance
     surface = surface_of(measured, edge, way_of(scene), pad, partial(worst_contact, scene, pad, profile), may_change)
     around = None if size is None else size.skin_edge
@@ -302,7 +318,7 @@ def plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
         linear + mesh, _cost(nodes, steps, effects, rules), linear, at_edges,
         max(sources, key=sources.get), scene.tolerance, scene.once, peak_is_unbounded(profile, at_edge, rounding, rules),
-        (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface, strokes=moves,
+        (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface, strokes=moves, outputs=outputs,
     )  # fmt: skip
 
 
@@ -331,11 +347,12 @@ def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: in
 def companion(scene: Scene, own: Plan, coarser: Plan, stride: int = 1) -> Plan:
     """The plan of a run's companion: effects and steps of its `own` plan, so many made one, on the mesh of a `coarser` one."""
     stepping = own.steps_per_leg, own.timed, own.slide_step, stride
-    steps = sum(1 for _ in schedule(scene, *stepping))
+    scheduled = list(schedule(scene, *stepping))
+    steps, outputs = expected_states(scheduled, own.slide_step, stride), len(scheduled)
     kept = {"effects": own.effects, "state": own.state, "small_strain_error": own.small_strain_error}
     cost = coarser.predicted_cost_s * steps / coarser.steps
-    names = ("steps_per_leg", "timed", "slide_step", "stride")
-    return replace(coarser, steps=steps, predicted_cost_s=cost, **kept, **dict(zip(names, stepping, strict=True)))
+    kept |= dict(zip(("steps_per_leg", "timed", "slide_step", "stride"), stepping, strict=True))
+    return replace(coarser, steps=steps, outputs=outputs, predicted_cost_s=cost, **kept)
 
 
 def read_plan(path: str | Path) -> Plan:

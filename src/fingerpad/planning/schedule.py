@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
+from math import ceil
 
 import numpy as np
 
 from fingerpad.scenes.scene import Scene
-from fingerpad.stimuli.motion import STEADY, programme
+from fingerpad.stimuli.motion import STEADY, Step, programme
 
 _MOST_INCREMENTS = 8
 _ROUND_EDGES = 4
 """Increments of a steady press by a stimulus with edges, round which nodes pop."""
+_PARTS = 5
+"""Outputs of the longest step of a slide."""
 _OUTPUTS = 28
-"""Steps while an arc of the surface passes: the centre touches the sharpest convexities for three quarters of their length."""
-_MOST_PARTS = 8
+"""Outputs while an arc of the surface passes: the centre touches the sharpest convexities for three quarters of their length."""
+_MOST_PARTS = 16
 """Of the longest step of a slide."""
-_AT_START = 4
-"""Parts of it where a slide begins and the skin starts to slip."""
 _AROUND = 1.5e-3
-"""How far (m) after a slide begins, and behind an arc, half of it before one: the skin is dragged along."""
+"""How far (m) behind an arc, half of it before one: the skin is dragged along."""
+_MORE = 1.4
+"""States that are found of a slide, over its longest steps."""
+BETWEEN = 40.0
+"""1/m: by how much of its pressure a stroke may be off between two states, over its longest step."""
+NEWTON = 4.0
+"""1/m: the force that may be left out of balance in a stroke, relative, over its longest step."""
 
 
 def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | None = None, stride: int = 1, present=None):
@@ -43,9 +51,19 @@ def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | 
     )
 
 
-def _parts(scene: Scene, slide_step: float, done: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Into how many parts (k,) the longest steps of a slide are cut, ``done`` (k,) m after it began, at places (k,) m."""
-    parts = np.where(np.abs(done) < _AROUND, _AT_START, 1)
+def expected_states(steps: Iterable[Step], slide_step: float | None, stride: int = 1) -> int:
+    """How many states will be found, roughly, of the scheduled steps."""
+    solved, way, last = 0, 0.0, 0.0
+    for step in steps:
+        solved += step.solved
+        way += 0.0 if step.solved else abs(step.distance - last)
+        last = step.distance
+    return solved + (ceil(_MORE * way / (slide_step * stride)) if slide_step else 0)
+
+
+def _parts(scene: Scene, slide_step: float, place: np.ndarray) -> np.ndarray:
+    """Into how many parts (k,) the longest steps of a slide are cut by outputs at places (k,) m."""
+    parts = np.full(len(place), _PARTS)
     for arc in scene.stimulus.segments:
         if arc.curvature > 0:
             near = (place > arc.start - _AROUND / 2) & (place < arc.end + _AROUND)

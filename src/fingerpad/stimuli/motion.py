@@ -31,7 +31,8 @@ class Step:
     """One step: leg number, end time s, duration s (:data:`STEADY`: to the steady state), and what is reached at its end.
 
     Exactly one of ``force`` (N per m of contact length) and ``depth`` (m) is given. ``distance`` (m) is how far the pad has come
-    along the surface. A ``fresh`` step lifts the pad, lets it recover fully and presses it there again.
+    along the surface. A ``fresh`` step lifts the pad, lets it recover fully and presses it there again. One that is not
+    ``solved`` is an output on the way, where no state needs to be found.
     """
 
     leg: int
@@ -41,6 +42,7 @@ class Step:
     depth: float | None = None
     distance: float = 0.0
     fresh: bool = False
+    solved: bool = True
 
 
 class Goal(NamedTuple):
@@ -60,26 +62,26 @@ class Reached(NamedTuple):
 
 
 class Stepping(NamedTuple):
-    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of a slide (m), and
-    increments of a steady press."""
+    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of a slide (m), increments of
+    a steady press, and into how many parts the longest steps of a slide are cut by outputs."""
 
     steps: int
     contact_length: float
     timed: bool
     slide_step: float | None
     increments: int = 1
-    parts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
+    parts: Callable[[np.ndarray], np.ndarray] | None = None
 
     def way(self, start: float, way: float) -> np.ndarray:
-        """Places (m) along the surface at which the steps of a slide end: every ``slide_step``, and each of these in as
-        many ``parts`` as are wanted of one so far (k,) m from the start, in the middle of it, at a place (k,) m."""
+        """Places (m) along the surface of a slide's outputs: every ``slide_step``, and each of these in as many ``parts`` as are
+        wanted of one with its middle at a place (k,) m."""
         if not self.slide_step:
             return start + way * np.arange(1, self.steps + 1) / self.steps
         count = math.ceil(abs(way) / self.slide_step * (1 - 1e-9))
         ends = start + way * np.arange(count + 1) / count
         if self.parts is None:
             return ends[1:]
-        parts = self.parts((ends[1:] + ends[:-1]) / 2 - start, (ends[1:] + ends[:-1]) / 2)
+        parts = self.parts((ends[1:] + ends[:-1]) / 2)
         return np.concatenate([np.linspace(a, b, n + 1)[1:] for a, b, n in zip(ends, ends[1:], parts, strict=False)])
 
 
@@ -434,7 +436,7 @@ def programme(
     present: Callable[[], tuple[float, ...]] | None = None,
     slide_step: float | None = None,
     increments: int = 1,
-    parts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
+    parts: Callable[[np.ndarray], np.ndarray] | None = None,
     stride: int = 1,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
@@ -448,8 +450,8 @@ def programme(
             control needs, and a lift; without it such a leg is taken to start from zero, and a lift to end there.
         slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
         increments: of a steady press. Without friction its end does not depend on them.
-        parts: into how many (k,) the longest steps of a slide are cut, by their distance (k,) m from where it begins (negative in
-            strokes the other way) and their place (k,) m along the surface.
+        parts: into how many (k,) the longest steps of a slide are cut by outputs, by their place (k,) m along the surface. Where
+            it is given, states need to be found only at the end of a slide and at snapshots.
         stride: so many steps of a leg are made one, but for those that press anew.
     """
     how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
@@ -459,13 +461,15 @@ def programme(
         sizes, goals, last = leg.path(at, last, reached, how)
         if stride > 1 and not leg.fresh:
             sizes, goals = _joined(sizes, goals, stride)
-        for dt, goal in zip(sizes, goals, strict=True):
+        passes = leg.strokes and parts is not None
+        for count, (dt, goal) in enumerate(zip(sizes, goals, strict=True), start=1):
             begin, time = time, time + (float(dt) if dt < STEADY else 0.0)
             for cut in sorted(t for t in snapshots if begin + 1e-9 * time < t < time - 1e-9 * time):
                 at = _between(at, goal, (cut - begin) / (time - begin))
                 yield Step(number, cut, cut - begin, *at)
                 begin = cut
-            yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh)
+            solved = not passes or count == len(goals) or any(abs(time - t) <= 1e-9 * time for t in snapshots)
+            yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh, solved=solved)
             at = goal
 
 

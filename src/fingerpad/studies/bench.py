@@ -27,7 +27,7 @@ from fingerpad.mechanics.linear_solver import condensation  # noqa: E402
 from fingerpad.planning.plan import plan  # noqa: E402
 from fingerpad.receptors.laws import SpatialSum  # noqa: E402
 from fingerpad.receptors.sensor import TactileSensor  # noqa: E402
-from fingerpad.results import provenance  # noqa: E402
+from fingerpad.results import provenance, states_found  # noqa: E402
 from fingerpad.scenes.scene import Cylinder, Discretisation, Flat, Layer, Layers, PressToForce, Scene, load_scene  # noqa: E402
 from fingerpad.simulation import Simulation, simulate  # noqa: E402
 
@@ -95,7 +95,7 @@ def ramp_and_hold(repeats: int = 3) -> list[list]:
         chosen = plan(scene)
         history = simulate(scene, chosen)
         _, median, _ = seconds(lambda scene=scene, chosen=chosen: simulate(scene, chosen), repeats)
-        steps, iterations = history.sizes["time"] - 1, int(history.newton_iterations.sum())
+        steps, iterations = states_found(history), int(history.newton_iterations.sum())
         how = f"{chosen.nodes} nodes (half pad), {steps} steps, {iterations} Newton iterations, meshing included"
         rows.append([f"ramp and hold, {name}", median, "s", "<= 3", median <= 3, repeats, how])
     return rows
@@ -125,8 +125,7 @@ def strokes() -> list[list]:
     histories = [simulate(scene, chosen) for scene, chosen in zip(scenes, plans, strict=True)]
     total = time.process_time() - start
     steps, iterations, cuts = (
-        sum(int(f(h)) for h in histories)
-        for f in (lambda h: h.sizes["time"] - 1, lambda h: h.newton_iterations.sum(), lambda h: h.cutbacks.sum())
+        sum(int(f(h)) for h in histories) for f in (states_found, lambda h: h.newton_iterations.sum(), lambda h: h.cutbacks.sum())
     )
     how = f"{plans[0].nodes} nodes, {steps} steps, {cuts} cuts, 80 mm each at 1 to 40 mm/s"
     return [

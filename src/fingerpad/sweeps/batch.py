@@ -81,7 +81,7 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
     from fingerpad.measures.measure import Together
     from fingerpad.measures.table import KNOWN
     from fingerpad.planning.plan import plan
-    from fingerpad.results import write_history
+    from fingerpad.results import states_found, write_history
     from fingerpad.simulation import simulate
 
     chosen = plan(scene)
@@ -104,7 +104,7 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
         "measures": values,
         "estimated_error": float(history.attrs["estimated_error"]),
         "nodes": cost["nodes"],
-        "steps": int(history.sizes["time"] - 1),
+        "steps": states_found(history),
         "iterations": int(history.newton_iterations.sum()),
         "cpu_s": cost["cpu_s"],
         "wall_s": cost["wall_s"],

@@ -17,6 +17,7 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.planning.plan import Plan, plan
+from fingerpad.results import states_found
 from fingerpad.scenes.scene import Cylinder, Flat, Hold, PressToDepth, PressToForce, Scene, Slide
 from fingerpad.studies.accuracy.run import DEPTHS
 
@@ -103,7 +104,7 @@ def record(history, error: float, worst: str, **more: Any) -> dict[str, Any]:
     """What a run believes, how wrong it is and in what, and what it took."""
     cost = json.loads(history.attrs["cost"])
     believed = {"believed error (%)": 100 * float(history.attrs["estimated_error"]), "true error (%)": 100 * error}
-    took = {"nodes": cost["nodes"], "steps": int(history.sizes["time"] - 1), "process time (s)": cost["cpu_s"]}
+    took = {"nodes": cost["nodes"], "steps": states_found(history), "process time (s)": cost["cpu_s"]}
     return believed | {"worst quantity": worst} | more | took
 
 

@@ -225,7 +225,7 @@ def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
     from threadpoolctl import threadpool_limits
 
     from fingerpad.mechanics.stepping import NonConvergence
-    from fingerpad.results import peak_memory_MB, provenance
+    from fingerpad.results import peak_memory_MB, provenance, states_found
 
     ruler = discretised(RULER, _plate(scene))
     seconds, yardstick, history, failure = [], [], None, ""
@@ -251,7 +251,7 @@ def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
         cost |= {
             "nodes": count_nodes(chosen_scene.specimen.outline, chosen.mesh_size),
             "unknowns": known["unknowns"],
-            "steps": int(history.sizes["time"] - 1),
+            "steps": states_found(history),
             "iterations": int(history.newton_iterations.sum()),
             "cutbacks": int(history.cutbacks.sum()),
             "energy_balance_error": float(history.energy_balance_error[-1]),

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import xarray as xr
 
-from fingerpad.results import leg_ends
+from fingerpad.results import leg_ends, states_found
 from fingerpad.simulation import Simulation
 from fingerpad.studies.stability.hard_cases import Limits
 
@@ -56,7 +56,7 @@ def mirrored(history: xr.Dataset) -> float:
 
 def iterations(history: xr.Dataset) -> float:
     """Newton iterations, mean of the steps."""
-    return float(history.newton_iterations[1:].mean())
+    return float(history.newton_iterations.sum()) / max(states_found(history), 1)
 
 
 def measures(history: xr.Dataset) -> dict[str, float]:
@@ -68,7 +68,7 @@ def measures(history: xr.Dataset) -> dict[str, float]:
     boards = [checkerboard(pressure, smoothed) for pressure, smoothed in pressures]
     return {
         "cuts": float(history.cutbacks.sum()),
-        "factorisations": json.loads(history.attrs["cost"])["factorisations"] / max(history.sizes["time"] - 1, 1),
+        "factorisations": json.loads(history.attrs["cost"])["factorisations"] / max(states_found(history), 1),
         "energy": float(np.abs(history.external_work - kept).max() / max(work.max(), 1e-300)),
         "complementarity": float(history.complementarity_error.max()),
         "det_f": float(history.min_detF.min()),

@@ -26,6 +26,7 @@ from fingerpad.mechanics.stepping import NonConvergence, hard_here
 from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import plan
 from fingerpad.planning.rules import RULES
+from fingerpad.results import states_found
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.pad import PadMesh
@@ -302,7 +303,7 @@ def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
             continue
         saved = ""
         if not done.completed:
-            saved = "none had converged" if done.history is None else f"{done.history.sizes['time'] - 1} steps"
+            saved = "none had converged" if done.history is None else f"{states_found(done.history)} steps"
         row |= {"outcome": done.outcome, "completed": float(done.completed), "message": done.message, "saved": saved}
         if method == METHODS[0] and done.outcome != STABLE:
             row["relaxed"] = cured(case, done)

@@ -31,9 +31,9 @@ def run(job):
             how.write(folder / "plan.json")
             built, file = built or mesh_for(scene, how), folder / "mesh.msh"
             write_pad(built, file)
-            if how.steps not in solved:  # what is published is what is solved
-                solved[how.steps] = simulate(scene, how, mesh=read_pad_mesh(file, built.regions, built.fixed))
-            dataset = solved[how.steps]
+            if how.outputs not in solved:  # what is published is what is solved
+                solved[how.outputs] = simulate(scene, how, mesh=read_pad_mesh(file, built.regions, built.fixed))
+            dataset = solved[how.outputs]
             write_text(folder / "summary.json", json.dumps(summary(dataset), indent=2) + "\n")
             write_history(dataset, history)
             print(history, flush=True)

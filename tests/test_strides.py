@@ -1,0 +1,232 @@
+"""How far a stroke goes in one step, and what is said of the contact between the states that are found."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fingerpad.dense_output import at_outputs
+from fingerpad.mechanics.strides import Between, Passage, Strides, Touch, missed
+from fingerpad.stimuli.motion import STEADY, Step
+
+pytestmark = pytest.mark.unit
+
+X = np.arange(-60, 61) * 67e-6
+"""Nodes of the skin, m."""
+
+
+def hertz(middle=0.0, half_width=0.5e-3, peak=1e4):
+    """Pressure (Pa) at the nodes of a smooth contact, (121,)."""
+    return peak * np.sqrt(np.maximum(1 - ((X - middle) / half_width) ** 2, 0))
+
+
+def touch(pressure, distance=0.0, edges=(np.nan, np.nan), drag=0.0):
+    return Touch(X, pressure, edges, distance, drag)
+
+
+def off(found, truth):
+    return np.abs(found - truth).sum() / truth.sum()
+
+
+# --- between two states -------------------------------------------------------------------------------------
+
+
+def test_a_bump_passes_under_the_skin():
+    """It goes along with the surface; node by node it would be two halves of a bump."""
+    first, last = touch(hertz(0.2e-3), 0.0, (-0.3e-3, 0.7e-3)), touch(hertz(-0.2e-3), 0.4e-3, (-0.7e-3, 0.3e-3))
+    for share in (0.25, 0.5, 0.8):
+        truth = hertz(0.2e-3 - 0.4e-3 * share)
+        found = Passage.at(first, last, share, X).pressure(first.pressure, last.pressure)
+        straight = (1 - share) * first.pressure + share * last.pressure
+        assert off(found, truth) < 0.012 < 0.1 < off(straight, truth)
+
+
+def test_a_plate_passes_and_the_contact_stays():
+    """Its edges stay where the pad's shape has them, whatever goes by."""
+    plate = touch(hertz(half_width=2e-3), 0.0, (-2e-3, 2e-3))
+    gone = touch(hertz(half_width=2e-3), 0.25e-3, (-2e-3, 2e-3))
+    found = Passage.at(plate, gone, 0.5, X).pressure(plate.pressure, gone.pressure)
+    assert off(found, plate.pressure) < 0.006
+    assert np.array_equal(found > 0, plate.pressure > 0)
+
+
+def test_a_ripple_inside_goes_along_with_the_surface():
+    """Between the edges that stay, what stands out of the surface moves."""
+
+    def rippled(distance):
+        return hertz(half_width=3e-3) * (1 + 0.3 * np.sin(2 * np.pi * (X + distance) / 0.8e-3) * (np.abs(X) < 1.5e-3))
+
+    first, last = (touch(rippled(d), d, (-3e-3, 3e-3)) for d in (0.0, 0.25e-3))
+    found = Passage.at(first, last, 0.5, X).pressure(first.pressure, last.pressure)
+    inside = np.abs(X) < 1.2e-3
+    assert off(found[inside], rippled(0.125e-3)[inside]) < 0.03
+    assert off((0.5 * (first.pressure + last.pressure))[inside], rippled(0.125e-3)[inside]) > 0.08
+
+
+def test_a_piece_that_comes_fades_in():
+    """A second bump that has come has half its pressure half-way; the first one goes on as if there were none."""
+    alone, both = hertz(-1e-3), hertz(-1e-3) + hertz(2e-3, 0.3e-3, 4e3)
+    first, last = touch(alone, 0.0), touch(both, 1e-6)
+    found = Passage.at(first, last, 0.5, X).pressure(first.pressure, last.pressure)
+    assert off(found[X < 0], alone[X < 0]) < 0.01
+    assert found[X > 0].sum() == pytest.approx(0.5 * both[X > 0].sum(), rel=0.02)
+
+
+def test_ends_are_the_states():
+    first, last = touch(hertz(0.1e-3), 0.0), touch(hertz(-0.1e-3), 0.25e-3)
+    for share, state in ((0.0, first), (1.0, last)):
+        assert np.allclose(Passage.at(first, last, share, X).pressure(first.pressure, last.pressure), state.pressure, atol=1e-9)
+    nowhere = touch(np.zeros(len(X)))
+    assert not Passage.at(nowhere, nowhere, 0.5, X).pressure(nowhere.pressure, nowhere.pressure).any()
+
+
+# --- the estimate -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ways", [(1e-4, 1e-4), (1e-4, 2e-4), (2e-4, 0.5e-4)])
+def test_what_is_missed_is_what_a_parabola_leaves_over_a_line(ways):
+    """A pressure that grows as 1 + c s^2 lies c h^2 / 4 off the line through the ends of a way h, at most."""
+    bend = 4e6
+    places = np.cumsum([0.0, *ways])
+    states = [touch(hertz(half_width=2e-3) * (1 + bend * s**2), s * 1e-9, (-2e-3, 2e-3)) for s in places]
+    truth = bend * ways[1] ** 2 / 4 / (1 + bend * places[1] ** 2)
+    assert missed(*states) == pytest.approx(truth, rel=0.02)
+
+
+def test_friction_that_sets_in_is_missed_too():
+    """Under a plate the pressure tells nothing of the skin that begins to slip."""
+    states = [touch(hertz(), s * 1e-4, drag=drag) for s, drag in ((0, 0.0), (1, 0.3), (2, 0.35))]
+    still = [touch(hertz(), s * 1e-4, drag=0.35) for s in range(3)]
+    assert missed(*states) > 0.08 and missed(*still) < missed(*states) / 2
+
+
+# --- strides ------------------------------------------------------------------------------------------------
+
+
+def outputs(count, way=0.05e-3, leg=1, dt=0.01):
+    """Outputs of a slide, of which the last alone must be found."""
+    return [Step(leg, dt * k, dt, force=1.0, distance=way * k, solved=k == count) for k in range(1, count + 1)]
+
+
+def walk(strides, error):
+    """Numbers of outputs passed and found, of a walk where ``error(way)`` is what is missed over a way (m)."""
+    found, states = [], [touch(hertz()), touch(hertz())]
+    while (following := strides.next()) is not None:
+        step, passed = following
+        now = touch(hertz(), step.distance)
+        if not _judged(strides, error(now.distance - states[-1].distance), states, now):
+            assert strides.shorten()
+            continue
+        strides.found(step)
+        states = [states[-1], now]
+        found.append(len(passed) + 1)
+    return found
+
+
+def _judged(strides, off, states, now, monkey=pytest.MonkeyPatch):
+    with monkey.context() as patch:
+        patch.setattr("fingerpad.mechanics.strides.missed", lambda *_: off)
+        return strides.judge(*states, now)
+
+
+def test_strides_grow_to_the_longest_where_nothing_is_missed():
+    found = walk(Strides(iter(outputs(200)), Between(0.25e-3, 0.01)), lambda way: 0.0)
+    assert sum(found) == 200 and found[:4] == [1, 2, 4, 5] and set(found[4:-1]) == {5}
+
+
+def test_strides_are_as_long_as_the_tolerance_allows():
+    """What is missed grows with the square of the way: the way settles where it is the tolerance."""
+    found = walk(Strides(iter(outputs(300)), Between(1e-3, 0.01)), lambda way: 0.01 * (way / 0.31e-3) ** 2)
+    assert sum(found) == 300 and set(found[6:-1]) == {6}
+
+
+def test_a_stride_over_an_event_is_taken_back():
+    """Where a state is far from what was expected the stride is halved until it is not, or passes nothing."""
+    seen = []
+
+    def error(way):
+        seen.append(way)
+        return 1.0 if len(seen) > 8 and way > 0.06e-3 else 0.0
+
+    found = walk(Strides(iter(outputs(60)), Between(0.25e-3, 0.01)), error)
+    assert sum(found) == 60 and found[:4] == [1, 2, 4, 5] and set(found[8:-1]) == {1}
+
+
+def test_what_must_be_found_is_found():
+    """Ends of legs, snapshots, steps of presses; and every step where nothing is said of what lies between."""
+    pressed = [Step(0, 0.1 * k, 0.1, force=float(k)) for k in (1, 2, 3)]
+    slide = outputs(40)
+    slide[13] = Step(1, slide[13].time, 0.01, force=1.0, distance=slide[13].distance)
+    found = walk(Strides(iter(pressed + slide), Between(0.25e-3, 0.01)), lambda way: 0.0)
+    assert found[:3] == [1, 1, 1] and 17 in np.cumsum(found) and max(found) == 5 and sum(found) == 43
+    assert walk(Strides(iter(pressed + slide)), lambda way: 0.0) == [1] * 43
+
+
+def test_a_stride_takes_the_time_of_what_it_passes():
+    strides = Strides(iter(outputs(10)), Between(0.25e-3, 0.01))
+    strides._wanted = 0.25e-3
+    step, passed = strides.next()
+    assert (
+        step.dt == pytest.approx(0.05)
+        and step.distance == pytest.approx(0.25e-3)
+        and [s.time for s in passed] == pytest.approx([0.01, 0.02, 0.03, 0.04])
+    )
+    steady = Strides(iter(outputs(10, dt=STEADY)), Between(0.25e-3, 0.01))
+    steady._wanted = 0.25e-3
+    assert steady.next()[0].dt == STEADY
+
+
+# --- histories at all outputs ---------------------------------------------------------------------------------
+
+
+def made(places, passed):
+    """Arrays at states of a slide, and their records: a bump that goes along with the surface."""
+    found = {
+        "stroke_distance": np.array([0.0, *places]),
+        "leg": np.array([0, *[1] * len(places)]),
+        "newton_iterations": np.array([0, *range(3, 3 + len(places))]),
+        "cutbacks": np.zeros(len(places) + 1, int),
+        "residual": np.zeros(len(places) + 1),
+        "complementarity_error": np.zeros(len(places) + 1),
+        "energy_balance_error": np.zeros(len(places) + 1),
+        "min_detF": np.ones(len(places) + 1),
+        "peak_pressure": np.zeros(len(places) + 1),
+        "centre_pressure": np.zeros(len(places) + 1),
+    }
+    s = found["stroke_distance"]
+    found["indentation_depth"] = 1e-3 + np.sin(2 * np.pi * s / 4e-3) * 1e-4
+    found["skin_displacement_x"] = np.zeros((len(s), len(X)))
+    found["contact_pressure"] = np.array([hertz(0.5e-3 - d) for d in s])
+    found["contact_pressure_smoothed"] = found["contact_pressure"].copy()
+    found["tangential_traction"] = 0.35 * found["contact_pressure"]
+    found["contact_state"] = np.where(found["contact_pressure"] > 0, 2, 0).astype(np.int8)
+    found["slip"] = np.where(found["contact_state"] == 2, np.diff(s, prepend=0.0)[:, None], 0.0)
+    records = []
+    for k, place in enumerate(places):
+        steps = tuple(Step(1, 100 * d, 0.0, distance=d, solved=False) for d in passed if (0, *places)[k] < d < place)
+        records.append(SimpleNamespace(passed=steps, edges=(0.0 - place, 1e-3 - place)))
+    return found, np.append(0.0, 100 * np.array(places)), records
+
+
+def test_between_states_curves_are_smooth_and_the_contact_goes_along():
+    places, every = np.arange(1, 9) * 0.25e-3, np.arange(1, 41) * 0.05e-3
+    found, time, records = made(places, np.setdiff1d(np.round(every, 9), np.round(places, 9)))
+    out, times = at_outputs(found, time, records, X, len(X) // 2)
+    assert np.allclose(times, np.append(0, 100 * every)) and np.allclose(out["stroke_distance"], np.append(0, every))
+    assert (out["interpolated"] == 0).sum() == 9 and out["newton_iterations"].sum() == found["newton_iterations"].sum()
+    truth = 1e-3 + np.sin(2 * np.pi * out["stroke_distance"] / 4e-3) * 1e-4
+    assert np.abs(out["indentation_depth"] - truth).max() < 1e-6  # straight lines: 1.9e-6
+    bump = np.array([hertz(0.5e-3 - d) for d in out["stroke_distance"]])
+    assert np.abs(out["contact_pressure"] - bump).sum() < 0.015 * bump.sum()
+    assert out["peak_pressure"] == pytest.approx(out["contact_pressure"].max(axis=1))
+    assert np.allclose(out["tangential_traction"], 0.35 * out["contact_pressure"])
+    assert np.array_equal(out["contact_state"] > 0, out["contact_pressure"] > 0)
+    on = out["contact_pressure"] > 0
+    assert out["slip"][on].mean() == pytest.approx(0.05e-3) and not out["slip"][~on].any()
+
+
+def test_nothing_changes_where_every_output_was_found():
+    found, time, records = made(np.arange(1, 5) * 0.25e-3, [])
+    out, times = at_outputs(found, time, records, X, len(X) // 2)
+    assert np.array_equal(times, time) and not out["interpolated"].any()
+    assert all(np.array_equal(out[name], values) for name, values in found.items())
