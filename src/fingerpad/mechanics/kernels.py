@@ -1,4 +1,4 @@
-"""Compiled element loops of the finite-strain body.
+"""Compiled loops: over the elements of the finite-strain body, and in the dense system of contact.
 
 Local degrees of freedom are ordered (all x, all y). With ``c = cof F``, ``C0`` the constant operator ``d(cof F) = C0 : dF`` of
 two dimensions, and the law's ``m, t`` and ``f, g, h`` (:class:`fingerpad.laws.Law`), the first Piola-Kirchhoff stress and its
@@ -105,6 +105,75 @@ def _spring(f11, f12, f21, f22, s11, s22, s12, t33):
     t12 = a11 * f21 + a12 * f22
     mean = (t11 + t22 + t33) / 3.0
     return (t11 - mean) ** 2 + (t22 - mean) ** 2 + (t33 - mean) ** 2 + 2.0 * t12 * t12
+
+
+@njit(**_JIT)
+def bend(matrix, columns, values, direction, weight):
+    """Take ``weight`` (nz,) times the square of the points' displacement along ``direction`` (nz, 2) off a matrix (nc, nc).
+
+    ``columns``, ``values`` (nz, nodes, 2): of each point the degrees of freedom of its nodes and the shape functions.
+    """
+    for k in range(len(weight)):
+        if weight[k] == 0.0:
+            continue
+        for a in range(columns.shape[1]):
+            for i in range(2):
+                here = weight[k] * values[k, a, i] * direction[k, i]
+                for b in range(columns.shape[1]):
+                    for j in range(2):
+                        matrix[columns[k, a, i], columns[k, b, j]] -= here * values[k, b, j] * direction[k, j]
+
+
+@njit(**_JIT)
+def mirror(matrix):
+    """Fill the upper triangle with the lower one."""
+    for i in range(len(matrix)):
+        for j in range(i):
+            matrix[j, i] = matrix[i, j]
+
+
+@njit(**_JIT)
+def at_points(columns, values, directions, matrix, out):
+    """Components along ``directions`` (nd, nz, 2) at the points of each column of ``matrix`` (nc, n), into ``out`` (nd nz, n).
+
+    ``columns`` and ``values`` as of :func:`bend`.
+    """
+    points, wide = len(columns), matrix.shape[1]
+    along = np.empty((2, wide))
+    for k in range(points):
+        for i in range(2):
+            for c in range(wide):
+                along[i, c] = 0.0
+            for a in range(columns.shape[1]):
+                value, row = values[k, a, i], matrix[columns[k, a, i]]
+                for c in range(wide):
+                    along[i, c] += value * row[c]
+        for d in range(len(directions)):
+            x, y = directions[d, k, 0], directions[d, k, 1]
+            for c in range(wide):
+                out[d * points + k, c] = x * along[0, c] + y * along[1, c]
+
+
+@njit(**_JIT)
+def exchanged(compliance, share, on, stick, out):
+    """How points answer to multipliers of their own: (no + ns, no + ns), column by column into ``out``.
+
+    ``compliance`` (2 nz, 2 nz), symmetric, of normal and tangential multipliers; ``on`` (no,) points with normal ones, each of
+    which brings a ``share`` (nz,) of it along the tangent; ``stick`` (ns,) points with tangential ones.
+    """
+    points, touching = len(share), len(on)
+    for c in range(touching):
+        normal, tangential, part = compliance[on[c]], compliance[points + on[c]], share[on[c]]
+        for r in range(touching):
+            out[r, c] = normal[on[r]] + part * tangential[on[r]]
+        for r in range(len(stick)):
+            out[touching + r, c] = normal[points + stick[r]] + part * tangential[points + stick[r]]
+    for c in range(len(stick)):
+        tangential = compliance[points + stick[c]]
+        for r in range(touching):
+            out[r, touching + c] = tangential[on[r]]
+        for r in range(len(stick)):
+            out[touching + r, touching + c] = tangential[points + stick[r]]
 
 
 @cache
