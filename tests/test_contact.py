@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fingerpad.mechanics.contact import ContactError, Zone, solve_contact, stable
+from fingerpad.mechanics.contact import ContactError, Zone, respond, solve_contact, stable
 from fingerpad.mechanics.contact_points import ContactPoints
 from fingerpad.mechanics.linear_solver import (
     FactorisationError,
@@ -116,6 +116,36 @@ def test_stable_is_positive_definite_where_gaps_stay_closed(seed, size, share):
     free = np.linalg.svd(gradient[active])[2][active.sum() :].T
     lowest = np.linalg.eigvalsh(free.T @ matrix @ free)[0]
     assert stable(matrix, compliance, active) == (lowest > 0)
+
+
+@pytest.mark.parametrize("definite", [True, False])
+def test_response_is_that_of_the_bent_matrix(definite):
+    """Against dense algebra: points between nodes, one of which is held, along two directions and with softness."""
+    rng = np.random.default_rng(4)
+    equation = np.arange(12).reshape(6, 2)
+    equation[2] = -1
+    equation[3:] -= 2
+    soft = rng.normal(size=(9, 9))
+    zone = Zone(np.arange(6), equation, rng.normal(size=(9, 6)) * (rng.random((9, 6)) < 0.5), soft + soft.T, soft @ soft.T)
+    angle, bent, right = rng.uniform(-1, 1, 9), rng.uniform(0, 0.5, 9) * (rng.random(9) < 0.5), rng.normal(size=10)
+    normal, tangent = np.column_stack([np.sin(angle), -np.cos(angle)]), np.column_stack([np.cos(angle), np.sin(angle)])
+    free = np.delete(np.arange(12), [4, 5])
+    rows = [(zone.shape[:, :, None] * direction[:, None]).reshape(9, 12)[:, free] for direction in (normal, tangent)]
+    root = rng.normal(size=(10, 10))
+    schur = root @ root.T + (20.0 if definite else -2.0) * np.eye(10)
+    answer = respond(zone, schur, right, normal, bent, np.ones(9), [normal, tangent])
+    matrix = schur - rows[1].T @ (bent[:, None] * rows[1])
+    border, stacked, inverse = -rows[1].T @ (bent * tangent[:, 1]), np.concatenate(rows), np.linalg.inv(matrix)
+    compliance = stacked @ inverse @ stacked.T
+    compliance[:9, :9] += zone.softness
+    compliance[9:, 9:] += zone.softness_along
+    assert answer.definite == definite == (np.linalg.eigvalsh(matrix)[0] > 0)
+    np.testing.assert_allclose(answer.matrix, matrix, atol=1e-12)
+    np.testing.assert_allclose(answer.compliance, compliance, atol=1e-9)
+    np.testing.assert_allclose(answer.free, stacked @ inverse @ right, atol=1e-9)
+    forces = rng.normal(size=18)
+    expected = inverse @ (right + stacked.T @ forces - border * 0.7)
+    np.testing.assert_allclose(answer.displacement(forces, 0.7), expected, atol=1e-9)
 
 
 def test_curvature_enters_the_tangent():

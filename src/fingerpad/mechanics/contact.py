@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import lapack
-from scipy.sparse import csr_array, vstack
+
+from fingerpad.mechanics import kernels
 
 
 class ContactError(RuntimeError):
@@ -60,16 +61,25 @@ class Zone:
     def __len__(self) -> int:
         return len(self.shape)
 
-    def rows(self, values: np.ndarray) -> csr_array:
-        """Components (nz, 2) at the points as a condensed matrix (nz, nc): row k has ``values[k]`` times the shape functions."""
-        count, each = len(self), self._columns[0].size
-        data = (self._values * values[:, None]).ravel()
-        ends = np.arange(0, (count + 1) * each, each)
-        return csr_array((data, self._columns.reshape(-1), ends), shape=(count, len(self.condensed)))
+    def gather(self, directions: np.ndarray) -> np.ndarray:
+        """Components along ``directions`` (nz, 2) at the points as a condensed matrix (nz, nc)."""
+        return self.along([directions], np.eye(len(self.condensed)))
 
-    def gather(self, values: np.ndarray) -> np.ndarray:
-        """:meth:`rows` with all its zeros."""
-        return self.rows(values).toarray()
+    def along(self, directions: list[np.ndarray], matrix: np.ndarray) -> np.ndarray:
+        """Components along each of the directions (nz, 2) at the points, of the columns (nc, n) of a matrix: (nd nz, n)."""
+        out = np.empty((len(directions) * len(self), matrix.shape[1]))
+        kernels.at_points(self._columns, self._values, np.stack(directions), np.ascontiguousarray(matrix), out)
+        return out
+
+    def spread(self, forces: np.ndarray) -> np.ndarray:
+        """What forces (nz, 2) at the points are on the condensed degrees of freedom (nc,)."""
+        return np.bincount(self._columns.ravel(), (self._values * forces[:, None]).ravel(), minlength=len(self.condensed))
+
+    def bend(self, matrix: np.ndarray, direction: np.ndarray, weight: np.ndarray) -> np.ndarray:
+        """A matrix (nc, nc) less ``weight`` (nz,) times the square of the displacement along ``direction`` (nz, 2)."""
+        out = matrix.copy()
+        kernels.bend(out, self._columns, self._values, direction, weight)
+        return out
 
     @property
     def movable(self) -> np.ndarray:
@@ -135,13 +145,13 @@ class ContactStep:
 
 
 def _inverse(matrix):
-    """The inverse of a symmetric matrix: by Cholesky where positive definite, LU otherwise."""
-    factors, failed = lapack.dpotrf(matrix, lower=1)
+    """The inverse of a symmetric matrix, and whether it is positive definite: by Cholesky if it is, LU otherwise."""
+    factors, failed = lapack.dpotrf(matrix.T, lower=0)
     if failed:
-        return np.linalg.inv(matrix)
-    lower, failed = lapack.dpotri(factors, lower=1)
-    lower = np.tril(lower)
-    return lower + np.tril(lower, -1).T
+        return np.linalg.inv(matrix), False
+    inverse = lapack.dpotri(factors, lower=0, overwrite_c=1)[0].T
+    kernels.mirror(inverse)
+    return inverse, True
 
 
 @dataclass
@@ -155,6 +165,7 @@ class Response:
     Attributes:
         matrix: (nc, nc) Schur complement with the geometric term of the gaps. compliance: (nr, nr). free, lever: (nr,).
         corner, load_shift: the depth's own equation ``load = load_shift - lever @ m + corner * dd``. bent: is there such a term?
+        definite: is the matrix positive definite?
     """
 
     matrix: np.ndarray
@@ -164,13 +175,17 @@ class Response:
     corner: float
     load_shift: float
     bent: bool
-    _columns: np.ndarray
+    definite: bool
+    _zone: Zone
+    _directions: list[np.ndarray]
+    _inverse: np.ndarray
     _unloaded: np.ndarray
     _bend: np.ndarray | None
 
     def displacement(self, multipliers: np.ndarray, depth_change: float) -> np.ndarray:
         """(nc,) condensed displacement."""
-        out = self._unloaded + multipliers @ self._columns
+        each = multipliers.reshape(len(self._directions), -1, 1)
+        out = self._unloaded + self._inverse @ self._zone.spread(np.sum(each * self._directions, axis=0))
         return out if self._bend is None else out - self._bend * depth_change
 
 
@@ -185,16 +200,14 @@ def respond(zone, schur, right, gradient, curvature, previous_force, directions)
     bent = previous_force * curvature
     if np.any(bent != 0):
         tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
-        on = np.flatnonzero(bent)
-        rows = zone.rows(tangent)[on]
-        matrix = schur - (rows.T @ (rows * bent[on, None])).toarray()
-        border = -rows.T @ (bent[on] * tangent[on, 1])
+        matrix = zone.bend(schur, tangent, bent)
+        border = -zone.spread((bent * tangent[:, 1])[:, None] * tangent)
         corner = -float(bent @ tangent[:, 1] ** 2)
-    rows = vstack([zone.rows(direction) for direction in directions], format="csr")
     lever = np.concatenate([direction[:, 1] for direction in directions])
-    inverse = _inverse(matrix)
-    columns = rows @ inverse
-    compliance, unloaded = rows @ columns.T, inverse @ right
+    inverse, definite = _inverse(matrix)
+    unloaded = inverse @ right
+    compliance = zone.along(directions, zone.along(directions, inverse).T)
+    free = zone.along(directions, unloaded[:, None])[:, 0]
     if zone.softness is not None:
         each = len(gradient)
         compliance[:each, :each] += zone.softness
@@ -203,10 +216,13 @@ def respond(zone, schur, right, gradient, curvature, previous_force, directions)
     load_shift, bend = 0.0, None
     if border is not None:
         bend = inverse @ border
-        lever = lever - rows @ bend
+        lever = lever - zone.along(directions, bend[:, None])[:, 0]
         corner -= float(border @ bend)
         load_shift = float(border @ unloaded)
-    return Response(matrix, compliance, rows @ unloaded, lever, corner, load_shift, border is not None, columns, unloaded, bend)
+    bent = border is not None
+    return Response(
+        matrix, compliance, free, lever, corner, load_shift, bent, definite, zone, directions, inverse, unloaded, bend
+    )  # fmt: skip
 
 
 def soften(error, schur, curvature, previous_force, bent) -> tuple[np.ndarray, np.ndarray]:
@@ -260,7 +276,7 @@ def solve_contact(
             else:
                 load = force - answer.load_shift
                 f, dd, on, pivots = _pivot_with_depth(answer.compliance, offset, answer.lever, answer.corner, load, active)
-            if answer.bent and not stable(answer.matrix, answer.compliance, on):
+            if answer.bent and not (answer.definite or stable(answer.matrix, answer.compliance, on)):
                 raise ContactError("the curved contact is not stable")
         except ContactError as error:
             schur, curvature = soften(error, schur, curvature, previous_force, answer.bent)
@@ -294,8 +310,6 @@ def stable(matrix, compliance, active):
 
     By the inertia of the bordered matrix: the active compliance must have as many negative eigenvalues as ``matrix``.
     """
-    if lapack.dpotrf(matrix)[1] == 0:
-        return True
     inside = compliance[np.ix_(active, active)]
     return _negative_eigenvalues(matrix) == _negative_eigenvalues((inside + inside.T) / 2)
 

@@ -49,14 +49,13 @@ class FiniteStrainBody:
         self.u = np.zeros(space.points.shape)
         self.lagged = lagged
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
-        self._loops = [(kernels.loops(part.law), part.constants, part.elements) for part in self.laws]
+        self._loops = [(kernels.loops(part.law, *space.sizes), part.constants, part.elements) for part in self.laws]
         self._dilatation = np.zeros((len(space.cells), space.psi.shape[2]))
         self._lag, self._predicted = self._dilatation.copy(), None
-        self._mesh = (space.cells, space.grad, space.weight, space.psi)
         self.branches = Branches(prony, space.weight.shape) if prony else None
         self._factor, self._history = 1.0, None
         self.branch_work = 0.0
-        self._stretch = self._right_cauchy_green() if prony else None
+        self._stretch = np.tile([1.0, 1.0, 0.0], (*space.weight.shape, 1)) if prony else None
         self._pointwise = None if pointwise is None else pointwise * self.shear
         self.smallest_jacobian = 1.0
         self._data = None
@@ -82,7 +81,7 @@ class FiniteStrainBody:
         force = np.zeros_like(self.u)
         self.smallest_jacobian = min(
             loops.internal_force(
-                self.u, *self._mesh, self.shear, self.bulk, *part, self._history, self._factor, self._pointwise, force,
+                self.u, self.space.mesh, self.shear, self.bulk, *part, self._history, self._factor, self._pointwise, force,
                 self._dilatation,
             )
             for loops, *part in self._loops
@@ -96,12 +95,12 @@ class FiniteStrainBody:
         self._data[:] = 0
         force = np.zeros_like(self.u)
         if self._predicted is not None:
-            kernels.predict_dilatation(*self._predicted, *self._mesh, self._lag)
+            kernels.dilatation_loop(*self.space.sizes)(*self._predicted, self.space.mesh, self._lag)
             self._predicted = None
         lag = self._lag if self.lagged else self._dilatation
         self.smallest_jacobian = min(
             loops.assemble_tangent(
-                self.u, *self._mesh, self.shear, self.bulk, *part, lag, self._history, self._factor, self._pointwise,
+                self.u, self.space.mesh, self.shear, self.bulk, *part, lag, self._history, self._factor, self._pointwise,
                 self.space.pattern.scatter, self._data, force,
             )
             for loops, *part in self._loops
@@ -121,27 +120,15 @@ class FiniteStrainBody:
     def commit(self) -> None:
         """The step has converged: let the branches move on, and add up the work that was done on them."""
         if self.branches is not None:
-            branches, stress, stretch = self.branches, self.isochoric_stress(), np.empty_like(self._stretch)
-            q = np.empty_like(branches.q)
-            mesh = self.space.cells, self.space.grad, self.space.weight
-            self.branch_work += kernels.commit_branches(
-                self.u, *mesh, *branches.coefficients, stress, branches.q, branches.last, self._stretch, q, stretch
+            branches = self.branches
+            before = branches.q, branches.last, self._stretch
+            after = [np.empty_like(each) for each in before]
+            self.branch_work += sum(
+                loops.commit(self.u, self.space.mesh, self.shear, *part, *branches.coefficients, *before, *after)
+                for loops, *part in self._loops
             )
-            branches.restore((q, stress))
-            self._stretch = stretch
-
-    def _deformation_gradient(self):
-        out = np.empty((*self.space.weight.shape, 2, 2))
-        kernels.deformation_gradient(self.u, self.space.cells, self.space.grad, out)
-        return out
-
-    def _right_cauchy_green(self):
-        f11, f12, f21, f22 = np.moveaxis(self._deformation_gradient().reshape(*self.space.weight.shape, 4), -1, 0)
-        return np.stack([f11 * f11 + f21 * f21, f12 * f12 + f22 * f22, f11 * f12 + f21 * f22], axis=-1)
-
-    def isochoric_stress(self) -> np.ndarray:
-        """Long-term isochoric second Piola-Kirchhoff stress (ne, nq, 4): 11, 22, 12, 33, Pa."""
-        return isochoric_stress(self.laws, self.u, self.space.cells, self.space.grad, self.shear)
+            branches.restore(after[:2])
+            self._stretch = after[2]
 
     def dilatation(self) -> np.ndarray:
         """(ne, nm) modes of J - 1; the pressure is kappa times them."""
@@ -166,17 +153,15 @@ class FiniteStrainBody:
         Branch work less spring energy is what the dashpots have dissipated. The work is the integral of the branches' second
         Piola-Kirchhoff stress over the Green strain, by the trapezoidal rule, so a hold of any length adds none.
         """
-        f = self._deformation_gradient()
-        jac = f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
-        isochoric = isochoric_energy(self.laws, f, self.shear[:, None])
-        network = np.sum(self.space.weight * isochoric) + 0.5 * np.sum(self.bulk[:, None] * self._dilatation**2)
-        if self._pointwise is not None:
-            network += 0.5 * np.sum(self.space.weight * self._pointwise[:, None] * (jac - 1) ** 2)
-        spring = 0.0
-        if self.branches is not None:
-            mesh = self.space.cells, self.space.grad, self.space.weight
-            spring = kernels.spring_energy(self.u, *mesh, self.shear, self.branches.prony.beta, self.branches.q)
-        return float(network), spring, self.branch_work
+        springs = (None, None) if self.branches is None else (self.branches.prony.beta, self.branches.q)
+        network, spring = np.sum(
+            [
+                loops.energies(self.u, self.space.mesh, self.shear, self.bulk, *part, self._pointwise, self._dilatation, *springs)
+                for loops, *part in self._loops
+            ],
+            axis=0,
+        )
+        return float(network), float(spring), self.branch_work
 
 
 def everywhere_neo_hooke(count: int) -> tuple[Assigned, ...]:
@@ -185,14 +170,14 @@ def everywhere_neo_hooke(count: int) -> tuple[Assigned, ...]:
 
 
 def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.ndarray:
-    """Isochoric second Piola-Kirchhoff stress (ne, nq, 4): 11, 22, 12, 33, Pa.
+    """Isochoric second Piola-Kirchhoff stress (np, 4) at points: 11, 22, 12, 33, Pa.
 
     Args:
-        laws: of the elements. u: (n, 2) m. cells: (ne, nen). grad: (ne, nq, nen, 2) 1/m. shear: (ne,) long-term moduli, Pa.
+        laws: at the points. u: (n, 2) m. cells: (np, nen). grad: (np, nen, 2) 1/m. shear: (np,) long-term moduli, Pa.
     """
-    out = np.empty((*grad.shape[:2], 4))
+    out = np.empty((len(cells), 4))
     for part in laws:
-        kernels.loops(part.law).isochoric_stress(u, cells, grad, shear, part.constants, part.elements, out)
+        kernels.stress_loop(part.law)(u, cells, grad, shear, part.constants, part.elements, out)
     return out
 
 

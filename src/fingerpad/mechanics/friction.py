@@ -14,7 +14,9 @@ small dense system. What a zone's softness adds to the gaps it takes from the sl
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import lapack
 
+from fingerpad.mechanics import kernels
 from fingerpad.mechanics.contact import ContactError, ContactStep, Zone, pressing_stiffness, respond, soften, stable
 
 #: What :attr:`Coulomb.state` holds where there is contact: 0 sticks, +-1 slips with the friction on the skin along +-t.
@@ -98,7 +100,8 @@ class Coulomb:
             try:
                 found = _solve(self.coefficient, answer, offset, load, active, self.state[part], partner)
                 f, tau, dd, on, state, pivots, yields = found
-                if answer.bent and not stable(answer.matrix, answer.compliance[: len(gap), : len(gap)], on):
+                normal = answer.compliance[: len(gap), : len(gap)]
+                if answer.bent and not (answer.definite or stable(answer.matrix, normal, on)):
                     raise ContactError("the curved contact is not stable")
             except ContactError as error:
                 schur, curvature = soften(error, schur, curvature, previous_force, answer.bent)
@@ -191,12 +194,11 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
     """
     n = len(active)
     a, lever = answer.compliance, answer.lever
-    nn, nt, tn, tt = a[:n, :n], a[:n, n:], a[n:, :n], a[n:, n:]
     active, state = active.copy(), state.astype(int)
     if not active.any() and load is not None:
         nearest = np.argmin(offset[:n])
         active[nearest], state[nearest] = True, -np.sign(offset[n + nearest])
-    yielding = np.abs(np.diag(tt))  # below zero where a load on a sharp curve outweighs the body: it yields all the same
+    yielding = np.abs(np.diag(a)[n:])  # below zero where a load on a sharp curve outweighs the body: it yields all the same
     held = yielding <= 1e-12 * yielding.max(initial=0.0)  # cannot move along the tangent: a wall carries its friction
     state[held] = -np.sign(offset[n:][held])
     stiffness = 0.5 / np.where(held, np.inf, yielding)
@@ -211,28 +213,24 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
         given = np.zeros(n) if bound is None else bound * state * (active & free)
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
-        system, right = np.empty((size, size)), np.empty(size)
-        system[:i, :i] = nn[np.ix_(on, on)] + nt[np.ix_(on, on)] * share[on]
-        system[:i, i : i + j] = nt[np.ix_(on, stick)]
-        system[i : i + j, :i] = tn[np.ix_(stick, on)] + tt[np.ix_(stick, on)] * share[on]
-        system[i : i + j, i : i + j] = tt[np.ix_(stick, stick)]
-        right[:i], right[i : i + j] = -(offset[:n] + nt @ given)[on], -(offset[n:] + tt @ given)[stick]
+        system, right = np.empty((size, size), order="F"), np.zeros((size, 2), order="F")
+        kernels.exchanged(a, share, on, stick, system)
+        needed = offset if bound is None else offset + a[:, n:] @ given
+        right[:i, 0], right[i : i + j, 0] = -needed[:n][on], -needed[n:][stick]
         if load is not None:
             system[:i, -1], system[i : i + j, -1] = lever[:n][on], lever[n:][stick]
             system[-1, :i] = -lever[:n][on] - share[on] * lever[n:][on]
             system[-1, i : i + j] = -lever[n:][stick]
-            system[-1, -1], right[-1] = answer.corner, load + lever[n:] @ given
-        try:
-            solution = np.linalg.solve(system, right)
-        except np.linalg.LinAlgError as error:
-            raise ContactError("the frictional contact compliance is singular") from error
+            system[-1, -1], right[-1] = answer.corner, (load + lever[n:] @ given, 1.0)
+        solution, failed = lapack.dgesv(system, right)[2:] if size else (right, 0)
+        if failed:
+            raise ContactError("the frictional contact compliance is singular")
         f, tau = np.zeros(n), np.zeros(n)
-        f[on] = solution[:i]
+        f[on] = solution[:i, 0]
         tau[on] = share[on] * f[on] + given[on]
-        tau[stick] = solution[i : i + j]
-        dd = solution[-1] if load is not None else 0.0
-        gap = offset[:n] + nn @ f + nt @ tau + lever[:n] * dd
-        slip = offset[n:] + tn @ f + tt @ tau + lever[n:] * dd
+        tau[stick] = solution[i : i + j, 0]
+        dd = solution[-1, 0] if load is not None else 0.0
+        gap, slip = (offset + a @ np.concatenate([f, tau]) + lever * dd).reshape(2, n)
         tiny = 1e-12 * np.abs(f).max(initial=0.0)
         wrong = np.where(active, f < -tiny, gap < -1e-11 * scale)
         sliding = active & (state != STICK) & ~wrong & ~held & free
@@ -243,8 +241,10 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
         if not count:
             f[~active] = tau[~active] = 0
             state = np.where(free | (state != STICK), state, 1)  # held fast, though it may have come a long way in this step
-            rows = np.concatenate([on, n + stick])
-            yields = pressing_stiffness(answer, system[: i + j, : i + j], rows, share)
+            if load is None:
+                yields = pressing_stiffness(answer, system, np.concatenate([on, n + stick]), share)
+            else:  # what is left of the depth's own equation: the second solution is of a unit of it
+                yields = 1 / solution[-1, 1] if solution[-1, 1] else None
             return np.maximum(f, 0), tau, dd, active, np.where(active, state, 0).astype(np.int8), pivots, yields
         key = (active.tobytes(), state.tobytes())
         if count < best:

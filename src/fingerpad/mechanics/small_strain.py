@@ -54,8 +54,8 @@ class SmallStrainBody:
         zero = np.zeros_like(self.u)
         no_lag = np.zeros((len(space.cells), space.psi.shape[2]))
         for part in self.laws:
-            kernels.loops(part.law).assemble_tangent(
-                zero, space.cells, space.grad, space.weight, space.psi, deviatoric * self.shear, volumetric * self.bulk,
+            kernels.loops(part.law, *space.sizes).assemble_tangent(
+                zero, space.mesh, deviatoric * self.shear, volumetric * self.bulk,
                 part.constants, part.elements, no_lag, None, 1.0, None, pattern.scatter, data, zero.copy(),
             )  # fmt: skip
         return data
@@ -108,7 +108,7 @@ class SmallStrainBody:
     def dilatation(self) -> np.ndarray:
         """(ne, nm) modes of div u."""
         space, out = self.space, np.empty((len(self.space.cells), self.space.psi.shape[2]))
-        kernels.predict_dilatation(np.zeros_like(self.u), self.u, space.cells, space.grad, space.weight, space.psi, out)
+        kernels.dilatation_loop(*space.sizes)(np.zeros_like(self.u), self.u, space.mesh, out)
         return out
 
     def save(self):

@@ -39,6 +39,9 @@ class Space:
     Attributes:
         points, cells: as used (with bubble nodes). grad (ne, nq, nen, 2) 1/m; weight (ne, nq) m^2 (times the measure);
         psi (ne, nq, nm) pressure modes, orthonormal in the weight; equation (n, 2) equation number or -1; size.
+        mesh: what the element loops read, as tuple: cells; gradients on the reference cell (nen, 2 nq), all along its first
+        coordinate before all along the second; (ne, 4, nq) what makes gradients of them, 1/m, with 11, 12, 21, 22 of the
+        inverse Jacobian; weight; pressure modes (ne, nm, nq). sizes: nen, nq, nm.
 
     Raises:
         ValueError: an element is inverted or the element does not fit the mesh.
@@ -71,6 +74,10 @@ class Space:
         gram = np.einsum("eq,eqa,eqb->eab", self.weight, modes, modes)
         self._orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
         self.psi = np.ascontiguousarray(np.einsum("eqa,eba->eqb", modes, self._orthonormal))
+        reference = np.concatenate([self.element.gradients[..., 0], self.element.gradients[..., 1]]).T
+        inverse = inverse.reshape(*self.weight.shape, 4).swapaxes(1, 2)
+        self.mesh = (cells, *map(np.ascontiguousarray, (reference, inverse, self.weight, self.psi.swapaxes(1, 2))))
+        self.sizes = (cells.shape[1], *self.psi.shape[1:])
         self.equation = np.full(points.shape, -1, dtype=np.int64)
         self.equation[~fixed] = np.arange(np.count_nonzero(~fixed))
         self.size = int(self.equation.max()) + 1

@@ -172,7 +172,7 @@ class MaterialPoints:
                 * self.shear[:, None]
                 * np.stack([strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], -mean], axis=1)
             )
-        return isochoric_stress(self.laws, body.u, self.cells, self.grad[:, None], self.shear)[:, 0]
+        return isochoric_stress(self.laws, body.u, self.cells, self.grad, self.shear)
 
     def __call__(self, body, dt: float) -> None:
         """Follow one converged substep of ``dt`` seconds."""
