@@ -88,10 +88,14 @@ def _contact(out, found, state, passed, place, records, skin_x):
             if not frictional:
                 continue
             if here:
+                ratios = [_ratio(found, j) for j in (k - 1, k)]
+                ratio, most = here.value(*ratios), here.value(*np.abs(ratios))
+                both = here.value(*(_spread(found, j, found["contact_state"][j]) for j in (k - 1, k)))
+                # what slips in both states, and the same way, slips between them
+                slides = (both > 2 - 1e-9) & (np.abs(ratio) > most - 1e-9)
                 pressure = out["contact_pressure"][i]
-                out["tangential_traction"][i] = pressure * here.value(*(_ratio(found, j) for j in (k - 1, k)))
-                nearer = k if here.share > 0.5 else k - 1
-                out["contact_state"][i] = np.rint(_spread(found, nearer, found["contact_state"][nearer])) * (pressure > 0)
+                out["tangential_traction"][i] = pressure * ratio
+                out["contact_state"][i] = np.where(slides, 2, 1) * (pressure > 0)
             slip = _spread(found, k, found["slip"][k]) if passed[i] else found["slip"][k]
             out["slip"][i] = slip * (place[i] - before) / way * (out["contact_state"][i] == 2)
             before = place[i]
