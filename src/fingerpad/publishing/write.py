@@ -76,6 +76,11 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
 
 def write_vectors(fig: Figure, path: Path) -> None:
     """Write a picture as PDF without dates: same data, same bytes."""
+    from fontTools.subset import Options
+
+    # to place glyphs is over by then: these tables are half of what embedding takes, and no reader of a PDF looks at them
+    unread = [table for table in ("GDEF", "GPOS", "GSUB") if table not in Options._drop_tables_default]
+    Options._drop_tables_default.extend(unread)
     settle(fig)
     with theme():
         write_atomically(path, lambda p: fig.savefig(p, format="pdf", dpi=DPI, metadata={"CreationDate": None, "Producer": None}))
