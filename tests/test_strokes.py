@@ -6,13 +6,15 @@ from PIL import Image
 
 import synthetic
 from fingerpad.claims.comparison import TRENDS
-from fingerpad.figures.animation import animate
+from fingerpad.figures.animation import _frames, animate
 from fingerpad.measures import strokes as st
 from fingerpad.measures.features import (
     centre_node,
     centre_pressure,
     energy,
 )
+from fingerpad.measures.inputs import Each
+from fingerpad.measures.measure import Together
 from fingerpad.measures.table import MEASURES, Measures
 
 pytestmark = pytest.mark.unit
@@ -54,6 +56,18 @@ def test_loaded_outputs_are_the_last_of_each_stroke_distance(made):
     assert stepped["force"].values == pytest.approx(synthetic.LOAD)
     stroke = st.loaded(made["stroke_10"])
     assert stroke.sizes["time"] == 321 and st.distance(stroke)[0] == 0 and st.time_of(stroke)[[0, -1]].tolist() == [0, 8]
+
+
+def test_what_is_loaded_already_is_not_made_again(made, slow):
+    assert st.loaded(slow) is slow
+    runs = Together(made)
+    assert runs.strokes["stroke_10"] is runs.strokes["stroke_10"]
+    assert runs.strokes["stroke_10"].identical(st.loaded(made["stroke_10"]))
+
+
+def test_to_ask_whether_there_is_a_result_does_not_open_it():
+    opened = Each(lambda name: pytest.fail(f"{name} was opened"), ["stroke_10"])
+    assert "stroke_10" in opened and "stroke_20" not in opened
 
 
 def test_convexities_are_named_as_in_the_thesis_and_follow_one_another(made):
@@ -265,6 +279,11 @@ def test_animation_has_a_frame_a_snapshot_and_the_same_bytes_again(made, tmp_pat
     assert all(abs(a - b).max() > 100 for a, b in zip(frames, frames[1:], strict=False))  # the surface has moved on
     yellow = frames[1][..., 0] - frames[1][..., 2] > 60
     assert yellow.mean() > 0.005  # stress in colours of the map
+
+
+def test_a_frame_shows_nothing_of_the_frame_before(made):
+    (_, *two), (_, *turned) = (_frames(made["stroke_10"].isel(snapshot=list(order)))[0] for order in ((0, 3, 7), (0, 7, 3)))
+    assert all(np.array_equal(a, b) for a, b in zip(two, reversed(turned), strict=True))
 
 
 def test_animation_needs_snapshots(made, tmp_path):

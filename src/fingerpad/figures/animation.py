@@ -8,12 +8,15 @@ end of the nail's clamp, does not own the scale.
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LogNorm, Normalize
@@ -28,6 +31,9 @@ from fingerpad.measures.strokes import profile_and_height
 from fingerpad.publishing import style
 from fingerpad.results import scene_of
 from fingerpad.specimen.element_kinds import kind_of
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 SIZE, DPI = (5.4, 5.7), 100  # inch, dots an inch
 FRAME_TIME = 100  # ms
@@ -49,9 +55,8 @@ def animate(history: xr.Dataset, gif: str | PathLike, film: str | PathLike | Non
         raise ValueError("the history has no snapshots to make a moving picture of")
     with style.theme():
         frames, colours = _frames(history)
-    palette = _palette(colours)
     few = frames[:: -(-len(frames) // MOST_FRAMES)]
-    first, *others = (_indexed(frame, palette) for frame in few)
+    first, *others = _indexed(few, _palette(colours))
     longer = FRAME_TIME * len(frames) // len(few)
     options = {"save_all": True, "append_images": others, "duration": longer, "loop": 0, "optimize": False}
     stream = io.BytesIO()
@@ -84,16 +89,20 @@ def _palette(colours: mpl.colors.Colormap) -> np.ndarray:
     return np.concatenate([mapped, greys, mark]).round().astype(np.uint8)
 
 
-def _indexed(frame: np.ndarray, palette: np.ndarray):
-    """A frame (height, width, 3) as an image of the palette's closest colours."""
-    from PIL import Image
+def _indexed(frames: list[np.ndarray], palette: np.ndarray) -> Iterator[Image]:
+    """Frames (height, width, 3) as images of the palette's closest colours, each colour looked for once."""
+    from PIL.Image import fromarray
 
-    packed, inverse = np.unique(frame.reshape(-1, 3).astype(np.int32) @ (65536, 256, 1), return_inverse=True)
-    colours = np.stack([packed >> 16, (packed >> 8) & 255, packed & 255], axis=-1)
-    distance = ((colours[:, None] - palette[None].astype(np.int32)) ** 2).sum(axis=-1)
-    image = Image.fromarray(distance.argmin(axis=1).astype(np.uint8)[inverse.ravel()].reshape(frame.shape[:2]), "P")
-    image.putpalette(palette.tobytes())
-    return image
+    closest = np.full(1 << 24, 255, np.uint8)  # by colour; 255: not known yet, for no palette is that long
+    for frame in frames:
+        red, green, blue = np.moveaxis(frame.astype(np.int32), -1, 0)
+        packed = red << 16 | green << 8 | blue
+        new = np.unique(packed[closest[packed] == 255])
+        colours = np.stack([new >> 16, new >> 8 & 255, new & 255], axis=-1)
+        closest[new] = ((colours[:, None] - palette[None].astype(np.int32)) ** 2).sum(axis=-1).argmin(axis=1)
+        image = fromarray(closest[packed], "P")
+        image.putpalette(palette.tobytes())
+        yield image
 
 
 def _coloured(history: xr.Dataset, middle: np.ndarray) -> tuple[np.ndarray, Normalize, mpl.colors.Colormap, str]:
@@ -147,15 +156,14 @@ def _frames(history: xr.Dataset) -> tuple[list[np.ndarray], mpl.colors.Colormap]
     answer.set_xlabel("time (s)")
     dots = [ax.plot([], [], "o", color=style.HIGHLIGHT, ms=5)[0] for ax in (felt, answer)]
     title = section.set_title("", fontfamily="DejaVu Sans Mono")
+    block = section.fill_between([], [], HIGH + 1, color="0.72", ec=style.INK, lw=0.8)
     words, force = _heading(history), force_gf(history)
 
-    frames, block = [], None
-    for k, index in enumerate(at):
-        if block is not None:
-            block.remove()
+    def show(k: int) -> None:
+        index = at[k]
         surface = 1e3 * (heights[index] + shape.outline(x * 1e-3 + distance[index]))
         shown = np.isfinite(surface) & (surface < HIGH + 1)
-        block = section.fill_between(x[shown], surface[shown], HIGH + 1, color="0.72", ec=style.INK, lw=0.8)
+        block.set_data(x[shown], surface[shown], HIGH + 1)
         body.set_verts(1e3 * points[k][cells])
         body.set_array(values[k])
         lines.set_segments(1e3 * points[k][layer_lines])
@@ -164,10 +172,29 @@ def _frames(history: xr.Dataset) -> tuple[list[np.ndarray], mpl.colors.Colormap]
             dot.set_data([time[index]], [np.interp(time[index], rate[TIME], rate[column])])
         moved = f"{1e3 * distance[index]:5.1f} mm   " if stroke else ""
         title.set_text(f"{words}{time[index]:5.2f} s   {moved}{force[index]:4.1f} gf")
-        canvas.draw()
-        fig.set_layout_engine("none")  # laid out once: nothing moves between frames
+
+    show(0)
+    canvas.draw()
+    fig.set_layout_engine("none")  # laid out once: nothing moves between frames
+    changing = [artist for each in ((body, block), (curve,), dots[:1], dots[1:]) for artist in _above(*each)]
+    for artist in changing:
+        artist.set_animated(True)
+    canvas.draw()
+    still = canvas.copy_from_bbox(fig.bbox)
+    frames = []
+    for k in range(len(at)):
+        show(k)
+        canvas.restore_region(still)
+        for artist in changing:
+            artist.draw(canvas.renderer)
         frames.append(np.array(canvas.buffer_rgba())[..., :3])
     return frames, colours
+
+
+def _above(*moving: Artist) -> list[Artist]:
+    """Of axes the lowest of some artists and what is drawn over it, in that order."""
+    drawn = sorted((each for each in moving[0].axes.get_children() if each is not moving[0].axes.patch), key=Artist.get_zorder)
+    return drawn[min(map(drawn.index, moving)) :]
 
 
 def _profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:

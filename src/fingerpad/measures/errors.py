@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import astuple, dataclass
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -42,7 +43,7 @@ class Companion:
     mesh: xr.Dataset
     both: xr.Dataset
 
-    @property
+    @cached_property
     def sparse(self) -> xr.Dataset:
         """The one with the run's own steps at the outputs of the other: what these two differ by is the steps'."""
         return self.mesh if self.mesh.sizes["time"] == self.both.sizes["time"] else thinned(self.mesh)

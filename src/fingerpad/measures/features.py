@@ -1,6 +1,7 @@
 """What figures and tables read from a history: phases, profiles, receptor traces.
 
-A history is the dataset of one simulation (SI units, time[0] unloaded). Nothing here computes mechanics.
+A history is the dataset of one simulation (SI units, time[0] unloaded). Nothing here computes mechanics. Values are read of its
+variables: to label them first, a hundred thousand times for one table, takes longer than what is done with them.
 """
 
 from __future__ import annotations
@@ -57,13 +58,13 @@ def is_simulated(frame: pd.DataFrame) -> pd.Series:
 
 def ramp_end(history: xr.Dataset) -> int:
     """Index of the last output of the first leg: the top of the ramp."""
-    leg = history["leg"].values
+    leg = history.variables["leg"].values
     return int(np.flatnonzero(leg == leg[0])[-1])
 
 
 def phase_indices(history: xr.Dataset) -> list[tuple[int, str]]:
     """Outputs shown in profile figures: a few during the ramp, its top, and the last one."""
-    time = history["time"].values
+    time = history.variables["time"].values
     top = ramp_end(history)
     during = {int(np.argmin(abs(time[: top + 1] - f * time[top]))) for f in RAMP_FRACTIONS} - {0, top}
     return [(i, PHASES[0]) for i in sorted(during)] + [(top, TOP), (len(time) - 1, STEADY)]
@@ -72,12 +73,12 @@ def phase_indices(history: xr.Dataset) -> list[tuple[int, str]]:
 def force_gf(history: xr.Dataset) -> np.ndarray:
     """Normal force in gram-force (time): line load times the scene's contact length."""
     length = scene_of(history).specimen.contact_length
-    return history["force"].values * length / parse_quantity("1 gf", "force")
+    return history.variables["force"].values * length / parse_quantity("1 gf", "force")
 
 
 def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> int:
     """Index of the receptor at `depth` and `offset` (m). Raises KeyError if the scene has none there."""
-    miss = np.hypot(history["receptor_depth"].values - depth, history["receptor_offset"].values - offset)
+    miss = np.hypot(history.variables["receptor_depth"].values - depth, history.variables["receptor_offset"].values - offset)
     index = int(miss.argmin())
     if miss[index] > 1e-6:
         raise KeyError(f"no receptor at depth {depth * 1e6:g} um, offset {offset * 1e3:g} mm")
@@ -86,13 +87,13 @@ def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> in
 
 def receptors_at(history: xr.Dataset, depth: float) -> np.ndarray:
     """Indices of the receptors at `depth` (m), from left to right."""
-    row = np.flatnonzero(abs(history["receptor_depth"].values - depth) < 1e-6)
-    return row[np.argsort(history["receptor_offset"].values[row])]
+    row = np.flatnonzero(abs(history.variables["receptor_depth"].values - depth) < 1e-6)
+    return row[np.argsort(history.variables["receptor_offset"].values[row])]
 
 
 def energy(history: xr.Dataset, depth: float, offset: float = 0.0, name: str = "strain_energy_density") -> np.ndarray:
     """Strain energy density (time) in Pa at one receptor."""
-    return history[name].values[:, receptor_index(history, depth, offset)]
+    return history.variables[name].values[:, receptor_index(history, depth, offset)]
 
 
 def energy_rate(history: xr.Dataset, depth: float) -> pd.DataFrame:
@@ -101,31 +102,31 @@ def energy_rate(history: xr.Dataset, depth: float) -> pd.DataFrame:
     Taken leg by leg (see `rate_by_leg`), so that the jump at the top of the ramp stays a jump: that time appears twice, once
     with the rate of each leg.
     """
-    time, _, rate = rate_by_leg(history["time"].values, energy(history, depth), history["leg"].values)
+    time, _, rate = rate_by_leg(history.variables["time"].values, energy(history, depth), history.variables["leg"].values)
     return pd.DataFrame({"time (s)": time, "strain_energy_rate (Pa/s)": rate})
 
 
 def skin_at(history: xr.Dataset, index: int | slice = slice(None)) -> tuple[np.ndarray, np.ndarray]:
     """Deformed positions x, y (m) of the skin nodes at one output (skin_node), or at all of them (time, skin_node)."""
-    x, y = (history[f"skin_{k}"].values + history[f"skin_displacement_{k}"].values[index] for k in "xy")
+    x, y = (history.variables[f"skin_{k}"].values + history.variables[f"skin_displacement_{k}"].values[index] for k in "xy")
     return x, y
 
 
 def profile(history: xr.Dataset, index: int, name: str = PRESSURE) -> tuple[np.ndarray, np.ndarray]:
     """Deformed lateral position (m) and pressure (Pa) of the skin nodes at one output."""
-    return skin_at(history, index)[0], history[name].values[index]
+    return skin_at(history, index)[0], history.variables[name].values[index]
 
 
 def pressure_at(history: xr.Dataset, place: float) -> np.ndarray:
     """Pressure (time) in Pa at a place (m) along the upper side of the skin at rest, straight between nodes."""
-    upper = history["skin_y"].values > 0
-    x = history["skin_x"].values[upper]
-    return np.array([np.interp(place, x, row) for row in history[PRESSURE].values[:, upper]])
+    upper = history.variables["skin_y"].values > 0
+    x = history.variables["skin_x"].values[upper]
+    return np.array([np.interp(place, x, row) for row in history.variables[PRESSURE].values[:, upper]])
 
 
 def in_contact(history: xr.Dataset, index: int, margin: int = 1) -> np.ndarray:
     """Mask of the skin nodes in contact at one output, with `margin` free nodes on either side."""
-    touching = np.flatnonzero(history["contact_pressure"].values[index] > 0)
+    touching = np.flatnonzero(history.variables["contact_pressure"].values[index] > 0)
     mask = np.zeros(history.sizes["skin_node"], bool)
     if touching.size:
         mask[max(touching[0] - margin, 0) : touching[-1] + margin + 1] = True
@@ -134,32 +135,32 @@ def in_contact(history: xr.Dataset, index: int, margin: int = 1) -> np.ndarray:
 
 def centre_node(history: xr.Dataset) -> int:
     """Index of the skin node at the apex (x = 0, on the upper side)."""
-    x, y = history["skin_x"].values, history["skin_y"].values
+    x, y = history.variables["skin_x"].values, history.variables["skin_y"].values
     return int(np.argmin(np.where(y > 0, abs(x), np.inf)))
 
 
 def surface_nodes(history: xr.Dataset) -> np.ndarray:
     """Indices of skin nodes from the centre to the right as far as anything ever touches (half contact)."""
     centre = centre_node(history)
-    ever = np.flatnonzero((history["contact_pressure"].values > 0).any(axis=0))
+    ever = np.flatnonzero((history.variables["contact_pressure"].values > 0).any(axis=0))
     return np.arange(centre, max(ever.max(initial=centre), centre) + 1)
 
 
 def depth(history: xr.Dataset) -> np.ndarray:
     """Indentation depth (time) in m."""
-    return history["indentation_depth"].values
+    return history.variables["indentation_depth"].values
 
 
 def width(history: xr.Dataset) -> np.ndarray:
     """Contact width (time) in m."""
-    return history["contact_width"].values
+    return history.variables["contact_width"].values
 
 
 def centre_pressure(history: xr.Dataset) -> np.ndarray:
     """Pressure (time) in Pa at the skin node at the apex."""
-    return history["centre_pressure"].values
+    return history.variables["centre_pressure"].values
 
 
 def peak_pressure(history: xr.Dataset) -> np.ndarray:
     """Largest pressure (time) in Pa of any skin node."""
-    return history["peak_pressure"].values
+    return history.variables["peak_pressure"].values

@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 import xarray as xr
 
+from fingerpad.measures.inputs import Each
 from fingerpad.measures.strokes import loaded
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.pad import PadMesh
@@ -22,10 +23,11 @@ Values = Mapping[str, float]
 
 
 class Together(Mapping):
-    """Histories of many scenes by name, and what takes several of them, made once."""
+    """Histories of many scenes by name, those of strokes `loaded` as well, and what takes several of them, made once."""
 
     def __init__(self, histories: Mapping[str, xr.Dataset]) -> None:
         self._histories = histories
+        self.strokes = Each(lambda scene: loaded(histories[scene]), histories)
         self._made: dict[Callable, Any] = {}
 
     def __getitem__(self, scene: str) -> xr.Dataset:

@@ -55,9 +55,12 @@ def convexities(history: xr.Dataset) -> dict[str, Segment]:
 
 
 def loaded(history: xr.Dataset) -> xr.Dataset:
-    """The history at its last output of each stroke distance: at the end of the press, and of every step that follows."""
-    distance = history["stroke_distance"].values
-    return history.isel(time=np.flatnonzero(np.append(np.diff(distance) != 0, True)))
+    """The history at its last output of each stroke distance: at the end of the press, and of every step that follows.
+
+    What is loaded already is as it is.
+    """
+    last = np.append(np.diff(history["stroke_distance"].values) != 0, True)
+    return history if last.all() else history.isel(time=np.flatnonzero(last))
 
 
 def distance(stroke: xr.Dataset) -> np.ndarray:

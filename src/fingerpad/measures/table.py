@@ -99,7 +99,9 @@ def read(measure: Measure, scene: str, runs: Together, meshes: Meshes) -> dict[s
         raise KeyError(f"{measure.name} of {scene}")
     if measure.of == "scene":
         return measure(described)
-    return measure(meshes[scene]) if measure.of == "mesh" else measure(history, runs)
+    if measure.of == "mesh":
+        return measure(meshes[scene])
+    return measure(runs.strokes[scene] if measure.of == "stroke" else history, runs)
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pandas as pd
 
 from fingerpad.files import write_atomically
@@ -46,11 +46,11 @@ def read_frame(path: Path) -> pd.DataFrame:
 
 def settle(fig: Figure, dpi: float = DPI) -> None:
     """Lay a picture out, once for all its files: a solver of layouts differs in the last digit from one process to the next."""
+    fig.set_dpi(dpi)
     engine = fig.get_layout_engine()
     if engine is None:
         return
     with theme():  # ticks and the layout are made only now
-        fig.set_dpi(dpi)
         engine.execute(fig)
     fig.set_layout_engine("none")
     for axes in fig.axes:
@@ -61,14 +61,14 @@ def settle(fig: Figure, dpi: float = DPI) -> None:
 
 def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
     """Write a picture as PNG at a fixed resolution, in few colours and without metadata: same data, same bytes."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image
 
-    stream = io.BytesIO()
     settle(fig, dpi)
+    canvas = FigureCanvasAgg(fig)
     with theme():
-        fig.savefig(stream, format="png", dpi=dpi, metadata={"Software": None}, pil_kwargs={"compress_level": 0})
-    with Image.open(stream) as picture:
-        plain = picture.convert("RGB")
+        canvas.draw()  # savefig would draw all of it twice
+    plain = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
     counted = plain.getcolors(COLOURS)
     few = plain.quantize(COLOURS if counted is None else len(counted), Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     write_atomically(path, lambda p: few.save(p, format="PNG", optimize=True, dpi=(dpi, dpi)))
@@ -76,9 +76,16 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
 
 def write_vectors(fig: Figure, path: Path) -> None:
     """Write a picture as PDF without dates: same data, same bytes."""
+    from fontTools.subset import Options
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+    # to place glyphs is over by then: these tables are half of what embedding takes, and no reader of a PDF looks at them
+    unread = [table for table in ("GDEF", "GPOS", "GSUB") if table not in Options._drop_tables_default]
+    Options._drop_tables_default.extend(unread)
     settle(fig)
+    canvas, unsaid = FigureCanvasPdf(fig), {"CreationDate": None, "Producer": None}
     with theme():
-        write_atomically(path, lambda p: fig.savefig(p, format="pdf", dpi=DPI, metadata={"CreationDate": None, "Producer": None}))
+        write_atomically(path, lambda p: canvas.print_pdf(p, metadata=unsaid))
 
 
 def publish(fig: Figure, frame: pd.DataFrame, png_path: str | os.PathLike) -> None:

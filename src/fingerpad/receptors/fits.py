@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.special import stdtrit
 
 from fingerpad.receptors.laws import SpatialSum, rectified
 
@@ -100,6 +99,8 @@ def jackknife(fit: Callable[[Sequence[Any]], np.ndarray], groups: Sequence[Any],
     n = len(groups)
     if n < 3:
         return np.column_stack([whole, np.full((len(whole), 2), np.nan)])
+    from scipy.special import stdtrit  # here, for it is slow to import
+
     without = np.array([fit([*groups[:k], *groups[k + 1 :]]) for k in range(n)])
     spread = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
     half = stdtrit(n - 1, 0.5 + level / 2) * spread

@@ -74,7 +74,7 @@ def _common_depths(matched: Mapping[float, Sequence[xr.Dataset]]) -> list[float]
     def depths(history):
         return {
             round(float(z), 7)
-            for z, x in zip(history["receptor_depth"], history["receptor_offset"], strict=True)
+            for z, x in zip(history["receptor_depth"].values, history["receptor_offset"].values, strict=True)
             if abs(x) < 1e-7
         }
 

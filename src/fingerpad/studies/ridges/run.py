@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from fingerpad.planning.plan import plan
+from fingerpad.results import Arrays
 from fingerpad.scenes.scene import Discretisation, Receptors, Scene, Slide
-from fingerpad.simulation import simulate
+from fingerpad.simulation import solve
 from fingerpad.specimen import OutlineCurve, RidgedPad, mesh_for
 
 if TYPE_CHECKING:
@@ -97,14 +97,14 @@ def case_scene(base: Scene, case: Case) -> Scene:
     )
 
 
-def run_case(base: Scene, case: Case) -> xr.Dataset:
-    """Simulate a case. Raises what :func:`fingerpad.simulate` does."""
+def run_case(base: Scene, case: Case) -> Arrays:
+    """The history of a case, without labels. Raises what :func:`fingerpad.simulate` does."""
     scene = case_scene(base, case)
     chosen = plan(scene)
     mesh = mesh_for(scene, chosen)
     if case.mesh in AS_DRAWN:
         mesh = ridges_drawn(mesh, scene.specimen.outline, scene.specimen.ridges, AS_DRAWN[case.mesh][0])
-    return simulate(scene, chosen, mesh=mesh)
+    return solve(scene, chosen, mesh=mesh)
 
 
 def ridges_drawn(mesh: PadMesh, outline: Outline, ridges: Ridges, straight: bool) -> PadMesh:

@@ -8,7 +8,7 @@ import pandas as pd
 
 from fingerpad.claims.said import said
 from fingerpad.figures.axes import statement_row
-from fingerpad.measures.inputs import read_results
+from fingerpad.measures.inputs import Each, read_results
 from fingerpad.measures.table import Instead, Measures
 from fingerpad.publishing.write import publish
 from fingerpad.reference_data import read_reference
@@ -27,7 +27,7 @@ def run(job):
 
 def with_statement(spec, frame, results, reference):
     """The frame of a figure with a row that holds what the thesis says of it, judged by the figure's own scenes."""
-    histories, meshes, coarse = ({name: each[name] for name in spec.needs if name in each} for each in results)
+    histories, meshes, coarse = (Each(each.__getitem__, filter(each.__contains__, spec.needs)) for each in results)
     found = said(spec.number, Measures.of(histories, meshes), Instead.of(histories, coarse), reference)
     if found is None:
         return frame

@@ -5,10 +5,11 @@ from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 
-from fingerpad import load_scene, plan, simulate
+from fingerpad import load_scene, plan
 from fingerpad.files import write_text
 from fingerpad.planning.plan import companion
 from fingerpad.results import summary, write_history
+from fingerpad.simulation import solve
 from fingerpad.specimen import mesh_for, read_pad_mesh, write_pad
 
 
@@ -32,8 +33,8 @@ def run(job):
             built, file = built or mesh_for(scene, how), folder / "mesh.msh"
             write_pad(built, file)
             if how.outputs not in solved:  # what is published is what is solved
-                solved[how.outputs] = simulate(scene, how, mesh=read_pad_mesh(file, built.regions, built.fixed))
-            dataset = solved[how.outputs]
-            write_text(folder / "summary.json", json.dumps(summary(dataset), indent=2) + "\n")
-            write_history(dataset, history)
+                solved[how.outputs] = solve(scene, how, mesh=read_pad_mesh(file, built.regions, built.fixed))
+            made = solved[how.outputs]
+            write_text(folder / "summary.json", json.dumps(summary(made), indent=2) + "\n")
+            write_history(made, history)
             print(history, flush=True)
