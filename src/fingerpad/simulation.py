@@ -47,6 +47,7 @@ _UNLOADED = 0.5  # of a force that was reached before
 _NO_CONTACT = 1e-5  # m, half-width that stands for none
 _UNBALANCED = 0.03  # of the work, noted as missing energy beyond it; of a press at once the work is not known as well
 _SQUEEZED = 0.1  # det F, noted below it
+_STIFF_IN_BULK = 200.0  # bulk over shear modulus, beyond which single precision does not tell them apart
 
 
 def simulate(
@@ -150,7 +151,10 @@ class Simulation:
         self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None) if fields else None
         friction = scene.friction if plan.effects["friction"].on else None
         observers = (self.receptors, self.fields) if fields else (self.receptors,)
-        settings = plan.newton_tolerance and NewtonSettings(force_tolerance=plan.newton_tolerance)
+        settings = None
+        if plan.newton_tolerance:
+            soft = float((self.body.bulk / self.body.shear).max()) < _STIFF_IN_BULK
+            settings = NewtonSettings(force_tolerance=plan.newton_tolerance, single=soft)
         self.stepper = QuasiStatic(self.body, self.skin, self.profile, settings, observers, friction=friction)
         self._require_room()
         for name, effect in EFFECTS.items():

@@ -69,7 +69,7 @@ _NO_MEMORY = -2  # of PARDISO's errors, the only one that is not the matrix's fa
 
 
 class PardisoCondensation:
-    """Intel MKL PARDISO (through the pypardiso wheel) as LDL^T.
+    """Intel MKL PARDISO (through the pypardiso wheel) as LDL^T; ``single``: in single precision, half as much to read and write.
 
     Its Cholesky is a quarter faster, but with a Schur complement it crashes the process, instead of reporting, when the
     tangent is indefinite; LDL^T takes definite and indefinite tangents alike.
@@ -77,7 +77,7 @@ class PardisoCondensation:
 
     name = "pardiso"
 
-    def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray):
+    def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):
         os.environ.setdefault("PYPARDISO_MKL_RT", _mkl_path())
         from pypardiso import PyPardisoSolver
 
@@ -92,11 +92,12 @@ class PardisoCondensation:
         self._handle.iparm[:] = 0
         # numpy's thread limits do not reach a library that is loaded later, and two threads on one matrix take twice the time
         self._handle.libmkl.MKL_Set_Num_Threads(ctypes.c_int(threads()))
-        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia; Schur complement and its factors
-        for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 24: 1, 36: 2 if len(self.condensed) else 0}.items():
+        self._real = np.dtype(np.float32 if single else np.float64)
+        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia; precision; Schur complement, factors
+        for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 24: 1, 28: int(single), 36: 2 if len(self.condensed) else 0}.items():
             self._handle.iparm[i - 1] = value
-        self._data = self._dummy = np.zeros(max(pattern.size, pattern.nonzeros))
-        self._call(11, self._dummy, np.zeros(pattern.size))
+        self._data = self._dummy = np.zeros(max(pattern.size, pattern.nonzeros), self._real)
+        self._call(11, self._dummy, np.zeros(pattern.size, self._real))
 
     def _call(self, phase, right, out):
         handle = self._handle
@@ -118,12 +119,12 @@ class PardisoCondensation:
         Raises:
             FactorisationError: singular to working precision.
         """
-        self._data = data
+        self._data = data.astype(self._real, copy=False)
         nc = len(self.condensed)
-        schur = np.zeros((nc, nc)) if nc else self._dummy
+        schur = np.zeros((nc, nc), self._real) if nc else self._dummy
         if self._call(22, self._dummy, schur) != 0 or not np.isfinite(schur).all():
             raise FactorisationError("the tangent is singular")
-        return schur if nc else np.zeros((0, 0))
+        return schur.astype(float, copy=False) if nc else np.zeros((0, 0))
 
     @property
     def negative_pivots(self) -> int:
@@ -132,23 +133,23 @@ class PardisoCondensation:
 
     def forward(self, right: np.ndarray) -> np.ndarray:
         """Reduced right-hand side (nc,) for the condensed degrees of freedom; keeps the rest for :meth:`backward`."""
-        self._reduced = np.zeros(self._pattern.size)
-        self._call(331 if len(self.condensed) else 33, np.array(right, dtype=float), self._reduced)
-        return self._reduced[self.condensed]
+        self._reduced = np.zeros(self._pattern.size, self._real)
+        self._call(331 if len(self.condensed) else 33, np.array(right, dtype=self._real), self._reduced)
+        return self._reduced[self.condensed].astype(float)
 
     def backward(self, condensed_values: np.ndarray) -> np.ndarray:
         """Full solution (n,) from the condensed part (nc,)."""
         if not len(self.condensed):
-            return self._reduced
+            return self._reduced.astype(float)
         reduced = self._reduced.copy()
         reduced[self.condensed] = condensed_values
         out = np.zeros_like(reduced)
         self._call(333, reduced, out)
-        return out
+        return out.astype(float)
 
     def __del__(self):
         if hasattr(self, "_handle") and not sys.is_finalizing():
-            self._call(-1, self._dummy, np.zeros(1))
+            self._call(-1, self._dummy, np.zeros(1, self._real))
 
 
 class SuperLUCondensation:
@@ -183,7 +184,6 @@ class SuperLUCondensation:
         return out
 
 
-def condensation(pattern: SymmetricPattern, condensed: np.ndarray):
-    """The best available solver for this pattern, condensing onto the given equations (nc,)."""
-    solver = PardisoCondensation if pardiso_available() else SuperLUCondensation
-    return solver(pattern, condensed)
+def condensation(pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):
+    """The best available solver for this pattern, condensing onto the given equations (nc,); ``single``: precision will do."""
+    return PardisoCondensation(pattern, condensed, single) if pardiso_available() else SuperLUCondensation(pattern, condensed)

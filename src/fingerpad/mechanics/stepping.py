@@ -64,7 +64,8 @@ class NewtonSettings:
     ``chord`` tolerances and they would end, as they go on, ``outlook`` iterations later, no step needs more than ``patience`` of
     them, and what answers at once in a step has changed by no more than ``stiffening``. A zone ``spare`` times as wide as it need
     be is drawn together. A push that points farther than ``aside`` (rad) from the vertical is one at the pad's side. An iteration
-    goes only as far as det F stays above ``squeeze`` of what it was, where that is at least a fifth of its way.
+    goes only as far as det F stays above ``squeeze`` of what it was, where that is at least a fifth of its way. ``single``: the
+    tangent is factored in single precision, as the next iteration corrects what that is wrong by; until a step does not converge.
     """
 
     force_tolerance: float = 1e-4
@@ -80,8 +81,9 @@ class NewtonSettings:
     patience: int = 3
     stiffening: float = 0.1
     aside: float = np.radians(50.0)
-    spare: float = 1.4
+    spare: float = 2.0
     squeeze: float = 0.25
+    single: bool = False
 
 
 @dataclass(frozen=True)
@@ -182,6 +184,7 @@ class QuasiStatic:
     ):
         self.body, self.skin, self.profile = body, skin, profile
         self.settings = settings or NewtonSettings()
+        self._single = self.settings.single
         self.observers = observers
         self.external = external
         self.points = body.space.points
@@ -227,7 +230,7 @@ class QuasiStatic:
         nodes, shape = self.places.shape(self._range)
         softness = self.places.soft(self._range), self.places.soft(self._range, odd=True)
         self.zone = Zone(nodes, self.body.space.equation, shape, *softness)
-        self.solver = condensation(self.body.space.pattern, self.zone.condensed)
+        self.solver = condensation(self.body.space.pattern, self.zone.condensed, self._single)
 
     def _reach_what_touches(self):
         """Widen the zone to where the profile touches first: the edges of a hole are not where its middle is."""
@@ -649,7 +652,11 @@ class QuasiStatic:
                 if strides and strides.shorten():  # first doubt the stride
                     raise _TooFar from failure
                 if predict and size == 1.0:
-                    predict = False  # then the predictor, then the step
+                    predict = False  # then the predictor, then the precision, then the step
+                    continue
+                if self._single:
+                    self._single = False
+                    self._set_zone(self._range.start, self._range.stop)
                     continue
                 size /= 2
                 halvings += 1
