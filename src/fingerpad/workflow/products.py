@@ -277,7 +277,7 @@ class Products:
             also = [f"{place}/{name}" for place in places for name in ("mesh.msh", "plan.json", "summary.json")]
             called = f"simulate_{batch}".replace(".", "_").replace("-", "_")
             # the longest first, so that no core waits for them in the end
-            first = 2 if moves_along(self.scene(names[0])) else 0
+            first = 2 if moves_along(self.scene(names[0])) else 1
             made = {"histories": [f"{place}/history.nc" for place in places]}
             yield Job("simulate", self._read(*names), made, values, called, also=also, mem_mb=2000, runtime=60, priority=first)
 
@@ -344,7 +344,7 @@ class Products:
             names = [f"{self.config.studies}/animation_{scene}" for scene in scenes]
             films = [f"{self.config.studies}/film_{scene}.webm" for scene in scenes]
             made = {"gifs": [f"{name}.gif" for name in names], "films": films}
-            yield Job("animations", {"histories": [self._anywhere(scene) for scene in scenes]}, made)
+            yield Job("animations", {"histories": [self._anywhere(scene) for scene in scenes]}, made, priority=1)
 
     def fields(self) -> Iterator[Job]:
         """Scenes -> histories with whole fields: presses in one process, what moves along in another."""
@@ -391,7 +391,7 @@ class Products:
                 "coarse": self.both_companions(scene for scene in scenes if scene in self.coarse),
             }
             measures = {"measures": [self.result("measures.csv")]}
-            yield Job("measures", every, measures, mem_mb=2000)
+            yield Job("measures", every, measures, mem_mb=2000, priority=1)  # three jobs follow from it one after the other
             read = measures | {"reference": [self.at("config/reference/thesis_numbers.csv")]}
             yield Job("tables", read, {"tables": self.tables(names)}, also=self._comparison_pages())
         if "mesh_quality" in c.table_names:
@@ -453,7 +453,8 @@ class Products:
             told = self._told(STROKE) | {"accuracy": [str(c.companion_accuracy)]}
             for k in (0, 1):  # in two processes, for two cores
                 values, made = told | {"coefficients": [f"{mu:g}" for mu in c.friction_coefficients[k::2]]}, sweep[k::2]
-                yield Job(run := "strokes_with_friction", read, {"histories": made}, values, f"{run}_{k + 1}", mem_mb=2000)
+                long = {"mem_mb": 2000, "priority": 1}
+                yield Job(run := "strokes_with_friction", read, {"histories": made}, values, f"{run}_{k + 1}", **long)
             read = {
                 "thesis": [self.at("config/reference/thesis_numbers.csv")],
                 "published": [self.at("config/reference/friction.csv")],
