@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from fingerpad import load_scene, simulate
-from fingerpad.scenes.scene import Bar, Discretisation, PressToForce
+from fingerpad.scenes.scene import Bar, Discretisation, PressToForce, Slide
 
 scene = load_scene(Path("config/scenes/ramp40_flat.yaml"))
 scene = scene.model_copy(update={"accuracy": Discretisation(element=None, skin_edge=1e-3, steps=2)})
@@ -12,3 +12,5 @@ simulate(scene)
 simulate(scene.model_copy(update={"motion": light, "effects": {"finite_strain": True}}))
 simulate(scene.model_copy(update={"motion": light, "effects": {"finite_strain": False}}))
 simulate(scene.model_copy(update={"motion": light, "effects": {"finite_strain": True}, "stimulus": Bar(width=1e-3)}))
+stroke = (*light, Slide(slide=1e-4, speed=1e-3))
+simulate(scene.model_copy(update={"motion": stroke, "friction": 0.3}))
