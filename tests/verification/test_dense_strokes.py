@@ -75,7 +75,7 @@ def test_node_by_node_would_be_worse(scene, every, monkeypatch):
     monkeypatch.setattr(Passage, "at", classmethod(straight))
     monkeypatch.setattr("fingerpad.mechanics.strides.missed", lambda *_: 0.0)
     worse = simulate(scene)
-    assert off(worse.contact_pressure.values, every.contact_pressure.values) > 0.05
+    assert off(worse.contact_pressure.values, every.contact_pressure.values) > 0.035
 
 
 def test_factors_in_single_precision_will_do(scene):
