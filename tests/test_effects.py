@@ -173,7 +173,7 @@ def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
     )
     ramp, outputs = {"draft": (10, 889), "thesis": (20, 1626), "fine": (40, 3200)}[accuracy]
     assert chosen.slide_step == slide_step and chosen.outputs == ramp + outputs
-    assert 1 < (chosen.steps - ramp) / (80e-3 / slide_step) < 1.5
+    assert 2 < (chosen.steps - ramp) / (80e-3 / slide_step) < 2.5
     ends = np.array([step.distance for step in schedule(stroke, *chosen.stepping) if step.leg == 1])
     assert np.diff(ends).max() <= slide_step / 5 * (1 + 1e-9) and np.isin(np.arange(1, 161), np.round(ends / 0.5e-3, 9)).all()
     for arc in stroke.stimulus.segments:

@@ -138,7 +138,7 @@ class Plan:
         """Of a stroke: the longest way (m) between two states, and by how much of the pressure what lies between may be off."""
         if not (self.strokes and self.slide_step):
             return None
-        return self.slide_step * self.stride, BETWEEN * self.slide_step * self.stride**2
+        return self.slide_step * self.stride, BETWEEN * self.contact_edge * self.stride**2
 
     @property
     def newton_tolerance(self) -> float | None:

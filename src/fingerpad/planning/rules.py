@@ -95,7 +95,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     inertia_limit: float = 0.1
     edges_per_half_width: float = 2.0
     seconds_start: float = 1.2
-    seconds_finite: float = 3.0e-6
+    seconds_finite: float = 2.0e-6
     seconds_small: float = 1.0e-6
     iterations_finite: float = 2.6
     iterations_small: float = 2.0

@@ -22,10 +22,11 @@ _MOST_PARTS = 16
 """Of the longest step of a slide."""
 _AROUND = 1.5e-3
 """How far (m) behind an arc, half of it before one: the skin is dragged along."""
-_MORE = 1.4
+_MORE = 2.2
 """States that are found of a slide, over its longest steps."""
-BETWEEN = 40.0
-"""1/m: by how much of its pressure a stroke may be off between two states, over its longest step."""
+BETWEEN = 30.0
+"""1/m: by how much of its pressure a stroke may be off between two states, over the skin's edge: what nodes make of it as they
+come and go is that large. Three times as much takes as long, for long steps need more factorisations."""
 NEWTON = 4.0
 """1/m: the force that may be left out of balance in a stroke, relative, over its longest step."""
 
