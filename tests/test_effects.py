@@ -171,7 +171,7 @@ def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
     chosen = plan(
         changed(slid(stroke, speed=40e-3), accuracy=accuracy, outputs=stroke.outputs.model_copy(update={"snapshots": ()}))
     )
-    ramp, outputs = {"draft": (10, 889), "thesis": (20, 1626), "fine": (40, 3200)}[accuracy]
+    ramp, outputs = {"draft": (10, 888), "thesis": (20, 1626), "fine": (40, 3200)}[accuracy]
     assert chosen.slide_step == slide_step and chosen.outputs == ramp + outputs
     assert 2 < (chosen.steps - ramp) / (80e-3 / slide_step) < 2.5
     ends = np.array([step.distance for step in schedule(stroke, *chosen.stepping) if step.leg == 1])
