@@ -4,7 +4,7 @@ mesh
     what it changes by on its companions' coarser mesh, with the run's own steps and outputs.
 time steps
     what it changes by on that mesh when every two steps are made one, read at the outputs that are left; of a stroke, when steps
-    may be twice as long and what lies between its states off by four times as much.
+    may be twice as long and what lies between its states off by twice as much.
 sampling
     what straight lines between outputs leave out: what it changes by when every second output is left out, over 2^p. The order p
     is seen when every fourth is left: 2 of a smooth curve, 3/2 of one with a kink, 1/2 of one with a jump.

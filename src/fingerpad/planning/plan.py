@@ -55,6 +55,7 @@ from fingerpad.specimen.pad import MeshSize, PadMesh
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+_OUT_OF_BALANCE = 2e-3  # relative, at most, whatever the mesh
 _SKIN_NODES = 6.0  # at most, over the square root of all nodes of the pad
 
 
@@ -138,12 +139,12 @@ class Plan:
         """Of a stroke: the longest way (m) between two states, and by how much of the pressure what lies between may be off."""
         if not (self.strokes and self.slide_step):
             return None
-        return self.slide_step * self.stride, BETWEEN * self.contact_edge * self.stride**2
+        return self.slide_step * self.stride, BETWEEN * self.contact_edge * self.stride
 
     @property
     def newton_tolerance(self) -> float | None:
-        """Force out of balance, over that of the contact, that a stroke leaves: as good as its steps are; None: the usual one."""
-        return NEWTON * self.slide_step if self.strokes and self.slide_step else None
+        """Force out of balance, over that of the contact, that a stroke leaves: as good as its mesh is; None: the usual one."""
+        return min(NEWTON * self.contact_edge, _OUT_OF_BALANCE) if self.strokes else None
 
     @property
     def discretisation(self) -> dict[str, Any]:
