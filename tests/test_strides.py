@@ -162,9 +162,17 @@ def test_what_must_be_found_is_found():
     assert walk(Strides(iter(pressed + slide)), lambda way: 0.0) == [1] * 43
 
 
+def test_a_leg_begins_with_short_strides():
+    """Skin that is stroked back sticks first, however smoothly it has slipped before."""
+    back = [Step(2, s.time + 0.4, s.dt, force=1.0, distance=2e-3 - s.distance, solved=s.solved) for s in outputs(40)]
+    found = walk(Strides(iter(outputs(40) + back), Between(0.25e-3, 0.01)), lambda way: 0.0)
+    start = int(np.flatnonzero(np.cumsum(found) == 40)[0]) + 1
+    assert found[start - 2] == 5 and found[start : start + 4] == [1, 2, 4, 5]
+
+
 def test_a_stride_takes_the_time_of_what_it_passes():
     strides = Strides(iter(outputs(10)), Between(0.25e-3, 0.01))
-    strides._wanted = 0.25e-3
+    strides._leg, strides._wanted = 1, 0.25e-3
     step, passed = strides.next()
     assert (
         step.dt == pytest.approx(0.05)
@@ -172,7 +180,7 @@ def test_a_stride_takes_the_time_of_what_it_passes():
         and [s.time for s in passed] == pytest.approx([0.01, 0.02, 0.03, 0.04])
     )
     steady = Strides(iter(outputs(10, dt=STEADY)), Between(0.25e-3, 0.01))
-    steady._wanted = 0.25e-3
+    steady._leg, steady._wanted = 1, 0.25e-3
     assert steady.next()[0].dt == STEADY
 
 

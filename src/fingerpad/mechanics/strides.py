@@ -179,7 +179,7 @@ class Strides:
     def __init__(self, steps: Iterator[Step], between: Between | None = None):
         self._steps, self._between = iter(steps), between
         self._waiting: deque[Step] = deque()
-        self._taken, self._wanted, self._at = 0, 0.0, 0.0
+        self._taken, self._wanted, self._at, self._leg = 0, 0.0, 0.0, -1
 
     def next(self) -> tuple[Step, tuple[Step, ...]] | None:
         """The next step, and the scheduled ones that it passes; None after the last."""
@@ -191,6 +191,8 @@ class Strides:
                     return None  # a leg's last step is always found
                 self._waiting.append(following)
             step = self._waiting[len(taken)]
+            if step.leg != self._leg:  # which may begin otherwise than the one before has ended
+                self._leg, self._wanted = step.leg, 0.0
             if taken and abs(step.distance - self._at) > self._wanted * (1 + 1e-9):
                 break
             taken.append(step)
