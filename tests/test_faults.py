@@ -414,7 +414,7 @@ def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histo
     from fingerpad.workflow.jobs import simulate
 
     scene, folder = write(tmp_path, changed(accuracy=COARSE)), tmp_path / "results"
-    monkeypatch.setattr(simulate, "simulate", lambda *_, **__: histories[0].labelled())
+    monkeypatch.setattr(simulate, "solve", lambda *_, **__: histories[0])
     monkeypatch.setattr(simulate, "read_pad_mesh", lambda *_: None)
     given = {"scenes": [scene], "accuracies": ["as_stated"], "meshes": ["own"], "strides": ["1"]}
     job = types.SimpleNamespace(**given, histories=[str(folder / "history.nc")])

@@ -268,12 +268,11 @@ def test_a_failed_write_leaves_the_old_files(tmp_path, monkeypatch):
     def fails(*args, **kwargs):
         raise OSError("disk full")
 
-    broken = FIGURES["4-15"].draw(frame("4-15"))
-    monkeypatch.setattr(broken, "savefig", fails)
     publish(picture("4-15"), frame("4-15"), tmp_path / "f.png")
     before = (tmp_path / "f.png").read_bytes()
+    monkeypatch.setattr("PIL.Image.Image.save", fails)
     with pytest.raises(OSError):
-        publish(broken, frame("4-15"), tmp_path / "f.png")
+        publish(FIGURES["4-15"].draw(frame("4-15")), frame("4-15"), tmp_path / "f.png")
     assert (tmp_path / "f.png").read_bytes() == before
     assert sorted(p.name for p in tmp_path.iterdir()) == ["f.csv", "f.png"]
 

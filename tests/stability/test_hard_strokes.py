@@ -13,6 +13,7 @@ from test_hard_cases import MM, SCENES, depth, force, scene, sound
 
 from fingerpad import load_scene, simulate
 from fingerpad.mechanics.stepping import NonConvergence
+from fingerpad.results import states_found
 from fingerpad.scenes.scene import Cylinder, Discretisation, Flat, Sampled, Slide, StepAndRepeat, Wavy
 
 pytestmark = pytest.mark.stability
@@ -74,8 +75,8 @@ def turned_round(history, friction):
 
 def few_factors(history):
     """Three factorisations a step in the mean at most, and the iterations that kept factors allow."""
-    assert json.loads(history.attrs["cost"])["factorisations"] <= 3 * (history.sizes["time"] - 1)
-    assert float(history.newton_iterations[1:].mean()) <= 5
+    assert json.loads(history.attrs["cost"])["factorisations"] <= 3 * states_found(history)
+    assert int(history.newton_iterations.sum()) <= 5 * states_found(history)
 
 
 def kept_force(history, friction):
@@ -259,5 +260,5 @@ def test_full_stroke(base):
     history = stroke(base, Wavy(), 0.7, PRESS, slide(80, 40.0))
     sound_stroke(history, 0.7)
     few_factors(history)
-    effort = history.newton_iterations.values[history.leg.values == 1]
+    effort = history.newton_iterations.values[(history.leg.values == 1) & (history.interpolated.values == 0)]
     assert effort[80:].mean() < 1.5 * effort[:80].mean()

@@ -55,7 +55,7 @@ from fingerpad.specimen.pad import MeshSize, PadMesh
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_OUT_OF_BALANCE = 2e-3  # relative, at most, whatever the mesh
+_OUT_OF_BALANCE = 1e-3  # relative, at most, whatever the mesh
 _SKIN_NODES = 6.0  # at most, over the square root of all nodes of the pad
 
 
@@ -144,7 +144,7 @@ class Plan:
     @property
     def newton_tolerance(self) -> float | None:
         """Force out of balance, over that of the contact, that a stroke leaves: as good as its mesh is; None: the usual one."""
-        return min(NEWTON * self.contact_edge, _OUT_OF_BALANCE) if self.strokes else None
+        return min(NEWTON * self.contact_edge, _OUT_OF_BALANCE) if self.between else None
 
     @property
     def discretisation(self) -> dict[str, Any]:

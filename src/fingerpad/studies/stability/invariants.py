@@ -28,7 +28,7 @@ class Held:
 
     def balance(self, history: xr.Dataset) -> float:
         """Largest difference to what pushes it over the largest push; of half a pad, whose middle is held too, upwards only."""
-        pushed = np.column_stack([history.tangential_force, history.force])[1:]
+        pushed = np.column_stack([history.tangential_force, history.force])[history.interpolated.values == 0][1:]
         apart = np.abs(np.array(self._found)[: len(pushed)] - pushed)[:, 1 if self._made.mesh.half else 0 :]
         most = np.abs(pushed).max(initial=0.0)
         return float(apart.max() / most) if most else np.nan
