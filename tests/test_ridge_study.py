@@ -60,7 +60,7 @@ def test_strokes_to_either_side_are_mirror_images(base):
     )
     for depth in (600e-6, DEPTH, 935e-6):
         for x in offsets:
-            np.testing.assert_allclose(energy(right, depth, x), energy(left, depth, -x), rtol=2e-5)  # of 1e-4 out of balance
+            np.testing.assert_allclose(energy(right, depth, x), energy(left, depth, -x), rtol=1e-4)  # as much is out of balance
     found, mirrored = both_ways(right, DEPTH, -BESIDE)
     np.testing.assert_allclose(mirrored, energy(left, DEPTH, -BESIDE)[-len(mirrored) :], rtol=1e-6)
     assert directional_index(right, DEPTH, -BESIDE) > 0.3 and (found > 1.5 * mirrored).all()
