@@ -152,6 +152,25 @@ def test_a_stride_over_an_event_is_taken_back():
     assert sum(found) == 60 and found[:4] == [1, 2, 4, 5] and set(found[8:-1]) == {1}
 
 
+def test_every_output_is_found_while_stick_turns_to_slip():
+    """A touch that sticks in part follows its predecessor by one output; a long stride to it is taken back."""
+    plate = hertz(half_width=2e-3)
+    strides = Strides(iter(outputs(60)), Between(0.25e-3, 0.05))
+    states, found = [touch(plate, drag=0.3), touch(plate, drag=0.3)], []
+    while (following := strides.next()) is not None:
+        step, passed = following
+        sticks = float(np.clip((2e-3 - step.distance) / 1e-3, 0, 1))  # from 1 to 2 mm ever less of it
+        now = Touch(X, plate, (np.nan, np.nan), step.distance, 0.3, sticks)
+        if not strides.judge(*states, now):
+            assert strides.shorten()
+            continue
+        strides.found(step)
+        states = [states[-1], now]
+        found.append((step.distance, len(passed) + 1))
+    turning = [count for distance, count in found if 1.05e-3 < distance < 1.95e-3]
+    assert set(turning) == {1} and len(turning) >= 17 and max(count for _, count in found) == 5
+
+
 def test_what_must_be_found_is_found():
     """Ends of legs, snapshots, steps of presses; and every step where nothing is said of what lies between."""
     pressed = [Step(0, 0.1 * k, 0.1, force=float(k)) for k in (1, 2, 3)]

@@ -677,7 +677,9 @@ class QuasiStatic:
         x = (self.points + self.body.u)[self.skin.nodes, 0]
         push, pull = self._forces()
         drag, press = push.sum(0)
-        return Touch(x, force / length, edges, self.distance, float(drag / press) if press else 0.0)
+        stuck = self.contact_force[self.friction.state == 0].sum() if self.friction else 0.0
+        share = float(stuck / max(self.contact_force.sum(), 1e-300))
+        return Touch(x, force / length, edges, self.distance, float(drag / press) if press else 0.0, share)
 
     def _give_up_if_vain(self, failure, size, halvings, records):
         """NonConvergence where smaller parts of a step are of no use."""

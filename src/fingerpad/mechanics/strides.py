@@ -25,6 +25,8 @@ _NOT_FAR = 2.5
 """Ways of the surface, from the middle of one, within which an edge is the same edge."""
 _MARGIN = 12
 """Nodes beside a contact that are looked at."""
+_FEW = 0.02
+"""Share of the force, of which no less sticks, or slips, where it counts."""
 _TOO_FAR = 2.0
 """Tolerances beyond which a stride is taken back."""
 
@@ -40,13 +42,15 @@ class Between:
 @dataclass(frozen=True)
 class Touch:
     """The contact of one state: places ``x`` (ns,) m of the skin's nodes across, ``pressure`` (ns,) Pa, the contact's outermost
-    ``edges`` m, how far the pad has come along the surface (``distance`` m), and the drag over the force."""
+    ``edges`` m, how far the pad has come along the surface (``distance`` m), the drag over the force, and the share of the force
+    that is carried where the skin sticks."""
 
     x: np.ndarray
     pressure: np.ndarray
     edges: tuple[float, float]
     distance: float
     drag: float
+    sticks: float = 0.0
 
     def patches(self) -> np.ndarray:
         """(k, 2) m, edges of every piece of skin that touches: where the squares of its last two pressures fall to zero."""
@@ -207,8 +211,12 @@ class Strides:
         if self._between is None:
             return True
         off = missed(before, middle, found) / self._between.tolerance
-        if off > _TOO_FAR and self._taken > 1:
+        turning = any(_FEW < touch.sticks < 1 - _FEW for touch in (middle, found))  # from stick to slip, or back
+        if (off > _TOO_FAR or turning) and self._taken > 1:
             return False
+        if turning:
+            self._wanted = 0.0
+            return True
         way = abs(found.distance - middle.distance)
         self._wanted = min(way * float(np.clip(off**-0.5 if off else 2.0, 0.5, 2.0)), self._between.longest)
         return True
