@@ -250,6 +250,15 @@ def test_an_edited_kernel_reruns_simulations(thesis):
     assert all(name in names for name in thesis.default() if thesis.jobs[name].run == "simulate")
 
 
+def test_sources_are_found_from_wherever_they_are_asked_for(thesis, tmp_path, monkeypatch):
+    """Paths are those of the working directory, and stay so when it changes."""
+    job = thesis.jobs["calibrate"]
+    here, code = job.sources, job.code
+    monkeypatch.chdir(tmp_path)
+    assert all(Path(path).exists() for path in job.sources) and job.sources != here
+    assert [line.split()[0] for line in job.code.splitlines()] == [line.split()[0] for line in code.splitlines()]
+
+
 def test_an_edited_job_reruns_itself_only(thesis):
     assert thesis.rerun("src/fingerpad/workflow/jobs/calibrate.py") == {"calibrate"}
     assert not thesis.rerun("src/fingerpad/workflow/products.py") and not thesis.rerun("src/fingerpad/config.py")

@@ -78,12 +78,12 @@ class Job:
     @property
     def sources(self) -> list[str]:
         """The package's files that the job imports, directly or not."""
-        return _sources("fingerpad.workflow.__main__", f"fingerpad.workflow.jobs.{self.run}", *self.modules)
+        return _sources(os.getcwd(), "fingerpad.workflow.__main__", f"fingerpad.workflow.jobs.{self.run}", *self.modules)
 
     @property
     def code(self) -> str:
         """`sources` with their digests, a line a file."""
-        return "".join(f"{_digest(path)}  {path}\n" for path in self.sources)
+        return "".join(f"{_digest(os.path.abspath(path))}  {path}\n" for path in self.sources)
 
     @property
     def beside(self) -> list[str]:
@@ -111,8 +111,8 @@ def _digest(path: str) -> str:
 
 
 @cache
-def _sources(*modules: str) -> list[str]:
-    return [os.path.relpath(path) for path in imported_sources(*modules)]
+def _sources(where: str, *modules: str) -> list[str]:
+    return [os.path.relpath(path, where) for path in imported_sources(*modules)]
 
 
 class Products:
