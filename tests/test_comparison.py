@@ -11,7 +11,7 @@ import synthetic
 from fingerpad.claims.comparison import COLUMNS, GIVEN, PARTS, TRENDS, scores, summary, thesis_comparison
 from fingerpad.claims.reasons import REASONS, reason
 from fingerpad.claims.rows import SETS, Number, numbers
-from fingerpad.claims.sensitivity import NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
+from fingerpad.claims.sensitivity import BASE, NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
 from fingerpad.claims.tables import TABLES
 from fingerpad.claims.verdicts import judge
 from fingerpad.measures.features import centre_node, scene_name
@@ -322,7 +322,7 @@ def test_what_was_not_simulated_is_not_comparable(made):
 def with_variants(made):
     """The made-up results with variants: fat and radius change nothing, long-term moduli scale every result by 1.3."""
     histories, coarse, meshes = made
-    runs = {variant_scene(v, k): coarse[scene_name("ramp40", k)].both for v in VARIANTS for k in SHAPES}
+    runs = {variant_scene(v, k): coarse[scene_name("ramp40", k)].both for v in (BASE, *VARIANTS) for k in SHAPES}
     scaled = {variant_scene("long_term", k): synthetic.history(scene_name("ramp40", k), 1.3) for k in SHAPES}
     return histories | runs | scaled, coarse, meshes
 

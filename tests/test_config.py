@@ -63,7 +63,7 @@ def test_everything_of_smoke_is_under_its_results():
 def test_name_and_scenes_suffice():
     config = read_config({"name": "mine", "scenes": ["press"]}, "mine.yaml")
     assert (config.results, config.figures) == ("results/mine", "results/mine/figures")
-    assert (config.table_names, config.calibration_scenes, config.companion_accuracy) == (("summary",), (), None)
+    assert (config.table_names, config.calibration_scenes, config.companions) == (("summary",), (), False)
     moved = read_config({"name": "mine", "scenes": ["press"], "results": "elsewhere", "subjects": "forces"}, "mine.yaml")
     assert moved.studies == "elsewhere/studies" and "calibration_plate" in moved.calibration_scenes
 

@@ -53,9 +53,9 @@ def history(coefficient, law=lambda mu: 1.5e-3 * mu, ripple=0.1, way=50e-3, star
     )
 
 
-def study(law=lambda mu: 1.5e-3 * mu, histories=None, coarse=None, sweep=SWEEP, numbers=NUMBERS):
+def study(law=lambda mu: 1.5e-3 * mu, histories=None, sweep=SWEEP, numbers=NUMBERS):
     return calibrate_friction(
-        [history(mu, law) for mu in sweep], histories or {}, coarse or {}, numbers, read_friction(REFERENCE / "friction.csv")
+        [history(mu, law) for mu in sweep], histories or {}, numbers, read_friction(REFERENCE / "friction.csv")
     )
 
 
@@ -115,12 +115,12 @@ def test_target_is_the_thesis_s_number():
 
 def test_variations_scale_the_coefficient():
     soft = history(0.64, lambda mu: 2 * 1.5e-3 * mu)
-    found = study(histories={"calibration_stroke_softer": soft, STROKE: history(0.64, lambda mu: 1.5e-3 * mu * 1.01)})
+    found = study(histories={"calibration_stroke_softer": soft})
     title = f"friction: {VARIATIONS['calibration_stroke_softer']}"
     assert estimate(found, "mean stretch", title) == pytest.approx(2 * 1.5 * 0.64, rel=5e-3)
     assert estimate(found, "coefficient for 1 mm", title) == pytest.approx(1 / 3, rel=5e-3)
     assert "change of the stretch by mesh and steps of the thesis's size" not in set(found.estimates["quantity"])
-    both = study(histories={STROKE: history(0.64, lambda mu: 1.5e-3 * mu * 1.01)}, coarse={STROKE: history(0.64)})
+    both = study(histories={STROKE: history(0.64, lambda mu: 1.5e-3 * mu * 1.01)})
     assert estimate(both, "change of the stretch by mesh and steps of the thesis's size") == pytest.approx(1.0, rel=1e-6)
 
 

@@ -97,16 +97,16 @@ class WorkflowConfig(Strict):
     friction_scenes: _list(Name) = ()
     """Strokes of the calibration of friction, stroke_sub_10 among them, and variations of it."""
     friction_coefficients: _list(Coefficient) = ()
-    """Coefficients with which stroke_sub_10 is stroked, at the accuracy of companions; left out, friction is not calibrated."""
+    """Coefficients with which stroke_sub_10 is stroked, as a draft; left out, friction is not calibrated."""
     ridge_heights: _list(Height) = ()
     """Heights (um) of the ridges over which ridged_stroke_right is varied, 0 and 150 among them; left out, no study of ridges."""
     ridge_frictions: _list(Height) = ()
     """Coefficients of friction over which ridged_stroke_right is varied."""
     accuracy: Accuracy = None
     """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each states."""
-    companion_accuracy: Accuracy = None
-    """Accuracy whose mesh each scene's companions have, one with its own steps and one with half of them, from which errors
-    follow; left out, none."""
+    companions: bool = False
+    """Whether each scene has two companions on a mesh with edges half as long again, one with its own steps and one with half of
+    them, from which errors follow."""
     figure_numbers: _list(FigureNumber) | None = None
     """Figures to draw, by their number in the thesis; left out, all whose scenes the configuration has."""
     animations: _list(Name) = ()

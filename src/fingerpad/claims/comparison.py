@@ -146,7 +146,7 @@ def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataF
     if verdict == "outside" or entry["form"] in ("estimate", "unlike") or entry["reason"] == "panels":
         notes.append(reason(entry["reason"], fine, number))
     if verdict == "outside":
-        notes.append(evidence(entry.name, number, value, allowed, fine, instead.both, reference))
+        notes.append(evidence(entry.name, number, value, allowed, fine, reference))
     row |= {"simulated": significant(value, 4)} | {p: significant(e, 2) for p, e in zip(PARTS, astuple(errors), strict=True)}
     return row | {"verdict": verdict, "note": _note(*notes, _at_start(number, entry, fine), _doubt(entry))}
 

@@ -1,7 +1,7 @@
 """How the numbers that the thesis shows hang on what it does not state: ``figures/tables/sensitivity``.
 
-Three variants of the pad are pressed by three of the nine surfaces (scenes ``sensitivity_<variant>_<surface>``,
-at the accuracy of the companions, so that variant and companion differ by the variant alone):
+Three variants of the pad, and the pad itself as coarsely (``base``), are pressed by three of the nine surfaces, scenes
+``sensitivity_<variant>_<surface>``:
 
 fat
     a flatter bone, with more fat under the apex.
@@ -26,6 +26,8 @@ from fingerpad.measures.table import Instead, Measures
 from fingerpad.reference_data import read_reference
 
 VARIANTS = ("fat", "long_term", "radius")
+BASE = "base"
+"""The pad itself, on the mesh of the variants."""
 SHAPES = ("flat", "210", "1260")
 """Surfaces the variants are pressed by."""
 
@@ -69,14 +71,14 @@ def sensitivity(fine: Measures, instead: Instead, reference_csv: str | PathLike)
 
     Parameters
     ----------
-    fine, instead : measures of the histories, and of their companions on coarser meshes with coarser steps among others.
+    fine, instead : measures of the histories, and what tells their errors.
     reference_csv : the table of printed numbers.
 
     Returns
     -------
-    One row a quantity and surface, columns `COLUMNS`: the thesis's range, the base, the base's companion, the
+    One row a quantity and surface, columns `COLUMNS`: the thesis's range, the base, the base as a draft, the
     variants, and which of base and variants are inside the range, give or take the difference of base and
-    companion. Cells of scenes that were not simulated are empty.
+    draft. Cells of scenes that were not simulated are empty.
     """
     reference = read_reference(reference_csv)
     rows = []
@@ -84,7 +86,7 @@ def sensitivity(fine: Measures, instead: Instead, reference_csv: str | PathLike)
         for label in SHAPES:
             values = {
                 "base": _read(fine, measure, NINE[label], at),
-                "base_draft": _read(instead.both, measure, NINE[label], at),
+                "base_draft": _read(fine, measure, variant_scene(BASE, label), at),
                 **{v: _read(fine, measure, variant_scene(v, label), at) for v in VARIANTS},
             }
             row = {"quantity": quantity, "surface": label, "thesis_ids": ids.get(label, ""), "units": units}
@@ -127,22 +129,20 @@ NEAREST[PADS["homogeneous"]] = "flat"
 """Scene of one of the nine surfaces -> the surface of the variants that stands in for it."""
 
 
-def evidence(
-    id_: str, number: Number, value: float, error: float, fine: Measures, rough: Measures, reference: pd.DataFrame
-) -> str:
+def evidence(id_: str, number: Number, value: float, error: float, fine: Measures, reference: pd.DataFrame) -> str:
     """What the variants make of a number of the comparison that is outside, and which of them bring it inside.
 
     A number of surfaces that the variants were not pressed by is given as the change in per cent that the
     variant makes on the nearest ones. A variant that brings the number inside but moves a contact width at
-    the end of the hold outside is marked. Empty if the variants or the companions were not simulated.
+    the end of the hold outside is marked. Empty if the variants were not simulated.
     """
     entry = reference.loc[id_]
     try:
-        before = number(rough.standing_in({scene: NINE[k] for scene, k in NEAREST.items()}))
-        whole = number(rough)
-        if not before and whole:
+        before = number(fine.standing_in({scene: variant_scene(BASE, k) for scene, k in NEAREST.items()}))
+        if not before and value:
             return "variants: 0 under the nearest surface of theirs"
-        shown, fits, exact = [], [], before == whole
+        shown, fits = [], []
+        exact = all(NINE[NEAREST[scene]] == scene for scene in number.scenes)
         for variant in VARIANTS:
             after = number(fine.standing_in({scene: variant_scene(variant, k) for scene, k in NEAREST.items()}))
             fits.append(is_inside(after if exact else value * after / before, error, entry))

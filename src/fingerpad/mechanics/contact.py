@@ -86,6 +86,20 @@ class Zone:
         """(nz,) bool: can the point move either way?"""
         return (self._values != 0).any(axis=1).all(axis=1)
 
+    def part(self, rows: slice) -> Zone:
+        """Some of its points, with the degrees of freedom of their nodes."""
+        if rows == slice(0, len(self)):
+            return self
+        out, columns, values = copy(self), self._columns[rows], self._values[rows]
+        used = np.unique(columns[values != 0])
+        out.condensed = self.condensed[used]
+        out._columns, out._values = np.where(values != 0, np.searchsorted(used, columns), 0), values
+        nodes = (self.shape[rows] != 0).any(axis=0)
+        out.nodes, out.shape = self.nodes[nodes], self.shape[rows][:, nodes]
+        if self.softness is not None:
+            out.softness, out.softness_along = (each[rows, rows] for each in (self.softness, self.softness_along))
+        return out
+
     def doubled(self, which: np.ndarray) -> Zone:
         """The zone with a second row for some of its points (k,), after all others."""
         rows = np.concatenate([np.arange(len(self)), which])

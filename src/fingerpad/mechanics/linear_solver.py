@@ -14,6 +14,7 @@ import sys
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+from scipy.linalg import lapack
 
 from fingerpad.threads import threads
 
@@ -182,6 +183,52 @@ class SuperLUCondensation:
         out[self.condensed] = condensed_values
         out[self._interior] = self._interior_solution - self._lu.solve(self._coupling.T @ condensed_values)
         return out
+
+
+class Narrowed:
+    """A condensation taken further, onto some of the degrees of freedom (k,) that it condenses onto.
+
+    What is done again in every iteration grows with the third power of their number; which ones they are may change as often as
+    the contact does, for nothing is factored for it but a dense block.
+    """
+
+    def __init__(self, solver, condensed: np.ndarray):
+        self._solver, self._kept = solver, np.isin(solver.condensed, condensed, assume_unique=True)
+        self.schur = np.zeros((0, 0))
+
+    def take(self, schur: np.ndarray) -> bool:
+        """Eliminate what is not wanted of the solver's Schur complement (nc, nc), of which ``schur`` (k, k) is left.
+
+        False, with nothing done, where that block is not positive definite: then who solves for contact must see all of it.
+        """
+        kept, rest = self._kept, ~self._kept
+        if kept.all():
+            self.schur = schur
+            return True
+        self._factors, failed = lapack.dpotrf(schur[np.ix_(rest, rest)], lower=1, overwrite_a=1)
+        if failed:
+            return False
+        self._coupling = np.asfortranarray(schur[np.ix_(rest, kept)])
+        self._answer = lapack.dpotrs(self._factors, self._coupling, lower=1)[0]
+        self.schur = schur[np.ix_(kept, kept)] - self._coupling.T @ self._answer
+        return True
+
+    def forward(self, right: np.ndarray) -> np.ndarray:
+        """Reduced right-hand side (k,)."""
+        reduced = self._solver.forward(right)
+        if self._kept.all():
+            return reduced
+        rest = reduced[~self._kept]
+        self._alone = lapack.dpotrs(self._factors, rest, lower=1)[0]
+        return reduced[self._kept] - self._answer.T @ rest
+
+    def backward(self, values: np.ndarray) -> np.ndarray:
+        """Full solution (n,) from that of the degrees of freedom kept (k,)."""
+        if self._kept.all():
+            return self._solver.backward(values)
+        condensed = np.empty(len(self._kept))
+        condensed[self._kept], condensed[~self._kept] = values, self._alone - self._answer @ values
+        return self._solver.backward(condensed)
 
 
 def condensation(pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):

@@ -12,7 +12,7 @@ import numpy as np
 
 from fingerpad.mechanics.contact import ContactError, Rows, Zone, solve_contact
 from fingerpad.mechanics.contact_points import PER_NODE, ContactPoints
-from fingerpad.mechanics.linear_solver import FactorisationError, condensation
+from fingerpad.mechanics.linear_solver import FactorisationError, Narrowed, condensation
 from fingerpad.mechanics.pressure import contact_edges
 from fingerpad.mechanics.strides import Between, Strides, Touch
 from fingerpad.stimuli.motion import STEADY, Step
@@ -62,10 +62,11 @@ class NewtonSettings:
     are allowed on top when a node is popping round an edge: through an unstable state Newton's method only descends. All attempts
     at a scheduled step may take ``most_iterations``. Factors are kept, from step to step too, while what they leave is within
     ``chord`` tolerances and they would end, as they go on, ``outlook`` iterations later, no step needs more than ``patience`` of
-    them, and what answers at once in a step has changed by no more than ``stiffening``. A zone ``spare`` times as wide as it need
-    be is drawn together. A push that points farther than ``aside`` (rad) from the vertical is one at the pad's side. An iteration
-    goes only as far as det F stays above ``squeeze`` of what it was, where that is at least a fifth of its way. ``single``: the
-    tangent is factored in single precision, as the next iteration corrects what that is wrong by; until a step does not converge.
+    them, and what answers at once in a step has changed by no more than ``stiffening``. A zone ``loose`` times as wide as it need
+    be is drawn together, and ``spare`` times as wide condensed anew. A push that points farther than ``aside`` (rad) from the
+    vertical is one at the side. An iteration goes only as far as det F stays above ``squeeze`` of what it was, where that is
+    at least a fifth of its way. ``single``: the tangent is factored in single precision, as the next iteration corrects what that
+    is wrong by; until a step does not converge.
     """
 
     force_tolerance: float = 1e-4
@@ -82,6 +83,7 @@ class NewtonSettings:
     stiffening: float = 0.1
     aside: float = np.radians(50.0)
     spare: float = 2.0
+    loose: float = 1.25
     squeeze: float = 0.25
     single: bool = False
 
@@ -212,11 +214,11 @@ class QuasiStatic:
             from fingerpad.mechanics.friction import Coulomb
 
             self.friction = Coulomb(friction, places)
+        self._factors = self._stiffness = self._found = self._nodal = None
         self._set_zone(*(PER_NODE * end for end in skin.start))
         self.height = self._first_touch()
         self._reach_what_touches()
         self._unloaded = body.save()
-        self._factors = self._stiffness = self._found = self._nodal = None
         self._past: list[_Past] = []
         self._touches: list[Touch] = []  # the last two states'
         self._quadratic = False
@@ -226,11 +228,28 @@ class QuasiStatic:
     # -- geometry ---------------------------------------------------------------------------------------------------
 
     def _set_zone(self, first, last):
+        """Condense onto the points of the skin from ``first`` to before ``last``."""
+        self._outer = self.places.whole(first, last)
+        nodes, shape = self.places.shape(self._outer)
+        softness = self.places.soft(self._outer), self.places.soft(self._outer, odd=True)
+        self._wide = Zone(nodes, self.body.space.equation, shape, *softness)
+        self.solver, self._schur = condensation(self.body.space.pattern, self._wide.condensed, self._single), None
+        self._narrow(first, last)
+
+    def _narrow(self, first, last):
+        """Let contact be solved for on some points of those that are condensed onto."""
+        first, last = max(first, self._outer.start), min(last, self._outer.stop)
         self._range = self.places.whole(first, last)
-        nodes, shape = self.places.shape(self._range)
-        softness = self.places.soft(self._range), self.places.soft(self._range, odd=True)
-        self.zone = Zone(nodes, self.body.space.equation, shape, *softness)
-        self.solver = condensation(self.body.space.pattern, self.zone.condensed, self._single)
+        self.zone = self._wide.part(slice(self._range.start - self._outer.start, self._range.stop - self._outer.start))
+        self._narrowed = Narrowed(self.solver, self.zone.condensed)
+        if self._schur is not None:
+            self._take(self._schur)
+
+    def _take(self, schur):
+        """Take over the Schur complement of all that is condensed onto, with which contact is solved for where it may be."""
+        self._schur = schur
+        if not self._narrowed.take(schur):
+            self._narrow(self._outer.start, self._outer.stop)
 
     def _reach_what_touches(self):
         """Widen the zone to where the profile touches first: the edges of a hole are not where its middle is."""
@@ -241,21 +260,34 @@ class QuasiStatic:
 
     def _widen_to(self, places):
         """Let the zone reach some points of the skin (k,), ascending, and a few beyond."""
-        self._set_zone(min(self._range.start, places[0] - 16), max(self._range.stop, places[-1] + 17))
+        first, last = min(self._range.start, places[0] - 16), max(self._range.stop, places[-1] + 17)
+        inside = self._outer.start <= places[0] and places[-1] < self._outer.stop
+        (self._narrow if inside else self._set_zone)(first, last)
 
     def _grow_zone(self):
-        first, last = self._range.start, self._range.stop
-        more = max(16, (last - first) // 3)
-        self._set_zone(first - more if first else 0, last + more)
+        """Make room round a contact that fills its zone: among the points that are condensed onto, or of these more."""
+        first, last = self._round(np.flatnonzero(self._touching()), 16, 8)
+        self._narrow(min(first, self._range.start), max(last, self._range.stop))
+        if self._zone_is_tight():
+            first, last = self._outer.start, self._outer.stop
+            more = max(16, (last - first) // 3)
+            self._set_zone(first - more if first else 0, last + more)
+
+    def _round(self, on, least, share):
+        """First and last point + 1 of a zone with ``least`` points or a ``share``-th of a contact ``on`` (k,) to either side."""
+        more = max(least, np.ptp(on) // share)
+        return max(on[0] - more, 0), min(on[-1] + 1 + more, len(self.places))
 
     def _follow(self):
-        """Draw the zone together round a contact that has moved on: it is condensed, so every iteration pays for its size."""
+        """Draw the zone together round a contact that has moved on: every iteration pays for its size."""
         on = np.flatnonzero(self._touching())
         if len(on):
-            more = max(24, np.ptp(on) // 4)
-            first, last = max(on[0] - more, 0), min(on[-1] + 1 + more, len(self.places))
-            if len(self.zone) > self.settings.spare * (last - first):
+            first, last = self._round(on, 24, 4)
+            if len(self._wide) > self.settings.spare * (last - first):
                 self._set_zone(first, last)
+            first, last = self._round(on, 16, 8)
+            if len(self.zone) > self.settings.loose * (last - first):
+                self._narrow(first, last)
 
     def _zone_is_tight(self):
         """Does contact reach an end of the zone that is not an end of the skin?"""
@@ -348,7 +380,7 @@ class QuasiStatic:
                 limit = settings.max_iterations + settings.snap_iterations
             if self._zone_is_tight():
                 self._grow_zone()
-                keep = False
+                keep = keep and self._factors_fit()
             try:
                 residual = self.iterate(control, target, reuse=keep)
             except (FactorisationError, ContactError) as error:
@@ -386,17 +418,18 @@ class QuasiStatic:
         ``reuse``: with the factors of the one before, in the same zone.
         """
         body, settings = self.body, self.settings
-        space, rows = body.space, self._rows()
+        space = body.space
         if reuse:
-            schur, internal = self._schur, self._internal
+            internal = self._internal
         else:
             schur, internal = body.linearise(self.solver)
+            self._take(schur)
             if not body.smallest_jacobian > 0:
                 raise _StepFailure("an element has turned inside out")
             self.factorisations += 1
             self._factors = self.solver, body.factor
         load = -internal if self.external is None else self.external - internal
-        reduced = self.solver.forward(space.to_equations(load))
+        rows, schur, reduced = self._rows(), self._narrowed.schur, self._narrowed.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
         known = schur, reduced, rows.gap, rows.gradient, rows.curvature, self.contact_force[rows.place], self.active[rows.place]
         if self.friction is None:
@@ -405,7 +438,7 @@ class QuasiStatic:
             step = self.friction.solve(rows.zone, rows.place, *known, self._motion(rows.zone), partner=rows.partner, **goal)
         self._softened |= step.softened
         self._stiff = step.stiffness
-        du = space.to_nodes(self.solver.backward(step.condensed_displacement))
+        du = space.to_nodes(self._narrowed.backward(step.condensed_displacement))
         u, depth = body.u, self.depth
         share, least = 1.0, max(_FOLDS, settings.squeeze * body.smallest_jacobian)
         while True:
@@ -418,7 +451,7 @@ class QuasiStatic:
             if share < 0.05:
                 raise _StepFailure("an element would turn inside out")
             body.displace(u)
-        self._schur, self._internal = schur, internal
+        self._internal = internal
         self.depth = depth + share * step.depth_change
         self.contact_force[:] = 0
         self.active[:] = False
@@ -656,7 +689,7 @@ class QuasiStatic:
                     continue
                 if self._single:
                     self._single = False
-                    self._set_zone(self._range.start, self._range.stop)
+                    self._set_zone(self._outer.start, self._outer.stop)
                     continue
                 size /= 2
                 halvings += 1

@@ -10,6 +10,12 @@ import numpy as np
 
 THESIS_ROWS = 7
 """Elements across the epidermis of the thesis's preset."""
+COARSER = 1.5
+"""Edges of a companion's mesh over those of the run's own."""
+ORDER = 1.5
+"""With which curves are taken to converge with the mesh: measured ones, at 1 to 2, do so on either side of it."""
+REMAINS = 1 / (COARSER**ORDER - 1)
+"""What a result is wrong by over what it changes by on its companion's mesh (Richardson 1911)."""
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ from fingerpad.planning.discretisation import (
 from fingerpad.planning.effect import Case, Effect
 from fingerpad.planning.effects import EFFECTS, finite_strain, in_order, viscoelasticity
 from fingerpad.planning.effects import ridges as ridge_effect
-from fingerpad.planning.errors import estimated_error
+from fingerpad.planning.errors import COARSER, estimated_error
 from fingerpad.planning.estimates import ContactEstimate
 from fingerpad.planning.rules import RULES, Rules
 from fingerpad.planning.schedule import BETWEEN, NEWTON, expected_states, schedule
@@ -55,7 +55,7 @@ from fingerpad.specimen.pad import MeshSize, PadMesh
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_OUT_OF_BALANCE = 1e-3  # relative, at most, whatever the mesh
+_OUT_OF_BALANCE = 2e-3  # relative, at most, whatever the mesh
 _SKIN_NODES = 6.0  # at most, over the square root of all nodes of the pad
 
 
@@ -345,15 +345,20 @@ def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: in
     return finer
 
 
-def companion(scene: Scene, own: Plan, coarser: Plan, stride: int = 1) -> Plan:
-    """The plan of a run's companion: effects and steps of its `own` plan, so many made one, on the mesh of a `coarser` one."""
-    stepping = own.steps_per_leg, own.timed, own.slide_step, stride
-    scheduled = list(schedule(scene, *stepping))
-    steps, outputs = expected_states(scheduled, own.slide_step, stride), len(scheduled)
-    kept = {"effects": own.effects, "state": own.state, "small_strain_error": own.small_strain_error}
-    cost = coarser.predicted_cost_s * steps / coarser.steps
-    kept |= dict(zip(("steps_per_leg", "timed", "slide_step", "stride"), stepping, strict=True))
-    return replace(coarser, steps=steps, outputs=outputs, predicted_cost_s=cost, **kept)
+def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER) -> Plan:
+    """The plan of a run's companion: its `own` in all but edges so many times as long, unless the mesh is external, and so many
+    steps made one."""
+    scheduled = list(schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride))
+    steps = expected_states(scheduled, own.slide_step, stride)
+    out = replace(own, stride=stride, steps=steps, outputs=len(scheduled))
+    if own.mesh_size is not None:
+        size = own.mesh_size.coarser(coarser)
+        ridges = scene.specimen.ridges if own.effects["ridges"].on else None
+        nodes, smallest = counted(scene.specimen, size, ridges)
+        nodes = nodes // 2 + 1 if own.effects["symmetry"].on else nodes
+        edge, error = coarser * own.contact_edge, coarser * own.estimated_error
+        out = replace(out, mesh_size=size, nodes=nodes, smallest_edge=smallest, contact_edge=edge, estimated_error=error)
+    return replace(out, predicted_cost_s=_cost(out.nodes, steps, out.effects, RULES))
 
 
 def read_plan(path: str | Path) -> Plan:

@@ -27,7 +27,7 @@ _MORE = 2.2
 BETWEEN = 30.0
 """1/m: by how much of its pressure a stroke may be off between two states, over the skin's edge: what nodes make of it as they
 come and go is that large. Three times as much takes as long, for long steps need more factorisations."""
-NEWTON = 7.5
+NEWTON = 15.0
 """1/m: the force that may be left out of balance in a stroke, relative, over the skin's edge."""
 
 

@@ -60,6 +60,18 @@ class MeshSize:
         if not 1.0 < self.growth <= 3.0:
             raise MeshError(f"mesh size: growth is {self.growth!r}; it must be above 1 and at most 3")
 
+    def coarser(self, ratio: float) -> MeshSize:
+        """The size of a mesh whose edges are so many times as long everywhere, as nearly as growth up to 3 has it."""
+        return MeshSize(
+            ratio * self.skin_edge,
+            self.fine_half_width,
+            ratio * self.layer_edge,
+            min(self.growth**ratio, 3.0),
+            tuple((x, ratio * edge) for x, edge in self.focus),
+            self.skin_radial_edge and ratio * self.skin_radial_edge,
+            self.coarse_edge and ratio * self.coarse_edge,
+        )
+
 
 @dataclass(frozen=True)
 class PadMesh:

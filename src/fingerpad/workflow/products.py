@@ -150,8 +150,8 @@ class Products:
         for key, needed in (("calibration_scenes", PLATE), ("friction_scenes", STROKE)):
             if getattr(c, key) and needed not in getattr(c, key):
                 self._wrong((key,), getattr(c, key), f"lacks {needed}", "")
-        if c.friction_coefficients and (c.companion_accuracy is None or not c.friction_scenes):
-            self._wrong(("friction_coefficients",), HIDE, "lacks companion_accuracy or friction_scenes", "all three or none")
+        if c.friction_coefficients and not c.friction_scenes:
+            self._wrong(("friction_coefficients",), HIDE, "lacks friction_scenes", "both or neither")
         if not self.forces and c.calibration_scenes:
             self._wrong(("subjects",), c.subjects, "holds no CSV file", "a folder of at least one")
 
@@ -217,7 +217,7 @@ class Products:
 
     def companions(self, scenes: Iterable[str]) -> list[str]:
         """Results of the scenes' companions on coarser meshes with coarser steps, if the configuration has any."""
-        return self.histories(scenes, "coarse") if self.config.companion_accuracy is not None else []
+        return self.histories(scenes, "coarse") if self.config.companions else []
 
     def both_companions(self, scenes: Iterable[str]) -> list[str]:
         """The same, and those of the companions on coarser meshes with the scenes' own steps."""
@@ -261,16 +261,15 @@ class Products:
     def simulations(self) -> Iterator[Job]:
         """Scenes -> plans, meshes, histories, summaries."""
         for batch, names in self.batches().items():
-            own, coarser = self.config.accuracy, self.config.companion_accuracy
-            cases = [(name, "simulations", "own", 1) for name in names]
-            if coarser is not None:
+            own = self.config.accuracy
+            cases = [(name, "simulations", 0) for name in names]
+            if self.config.companions:
                 compared = [name for name in names if name in self.coarse]
-                cases += [(name, fidelity, str(coarser), n) for name in compared for fidelity, n in COMPANIONS.items()]
-            places = [self.result(f"{fidelity}/{name}") for name, fidelity, *_ in cases]
+                cases += [(name, fidelity, n) for name in compared for fidelity, n in COMPANIONS.items()]
+            places = [self.result(f"{fidelity}/{name}") for name, fidelity, _ in cases]
             values = {
                 "scenes": [self.scene(name) for name, *_ in cases],
                 "accuracies": ["as_stated" if own is None else str(own)] * len(cases),
-                "meshes": [mesh for _, _, mesh, _ in cases],
                 "strides": [str(stride) for *_, stride in cases],
                 "written": self._written(*names),
             }
@@ -449,8 +448,7 @@ class Products:
             names, estimates = [*names, "prony"], [*estimates, "prony_estimates"]
         if c.friction_coefficients:
             sweep = [self.result(f"friction/{mu:g}/history.nc") for mu in c.friction_coefficients]
-            read = {"mesh": [self.result(f"coarse/{STROKE}/mesh.msh")], **self._read(STROKE)}
-            told = self._told(STROKE) | {"accuracy": [str(c.companion_accuracy)]}
+            read, told = self._read(STROKE), self._told(STROKE)
             for k in (0, 1):  # in two processes, for two cores
                 values, made = told | {"coefficients": [f"{mu:g}" for mu in c.friction_coefficients[k::2]]}, sweep[k::2]
                 long = {"mem_mb": 2000, "priority": 1}
@@ -460,7 +458,6 @@ class Products:
                 "published": [self.at("config/reference/friction.csv")],
                 "sweep": sweep,
                 "histories": self.histories(c.friction_scenes),
-                "coarse": self.companions([STROKE]),
             }
             yield Job("calibrate_friction", read, {"data": data("friction", "friction_estimates")})
             names, estimates = [*names, "friction"], [*estimates, "friction_estimates"]

@@ -120,16 +120,14 @@ class FrictionCalibration:
 def calibrate_friction(
     sweep: Iterable[xr.Dataset],
     histories: Mapping[str, xr.Dataset],
-    coarse: Mapping[str, xr.Dataset],
     numbers: pd.DataFrame,
     published: pd.DataFrame,
 ) -> FrictionCalibration:
     """Calibrate the coefficient of friction.
 
     Args:
-        sweep: :data:`STROKE` with several coefficients. histories: scenes of :data:`VARIATIONS`. coarse: companion of
-        :data:`STROKE`, as accurate as the sweep. numbers: the thesis's, columns id, low and high. published: of
-        :func:`fingerpad.reference_data.read_friction`.
+        sweep: :data:`STROKE` with several coefficients, as drafts. histories: scenes of :data:`VARIATIONS`. numbers: the
+        thesis's, columns id, low and high. published: of :func:`fingerpad.reference_data.read_friction`.
     """
     stated = numbers.set_index("id")
     target = -1e-3 * stated.loc[STRETCH, "low"]
@@ -138,7 +136,7 @@ def calibrate_friction(
     curve = StretchCurve(map(stretch, sweep))
     varied = {VARIATIONS[name]: stretch(histories[name]) for name in VARIATIONS if name in histories}
     return FrictionCalibration(
-        _frame(sweep, curve, varied, target, axis, published), _estimates(curve, varied, coarse, target, axis, published)
+        _frame(sweep, curve, varied, target, axis, published), _estimates(curve, varied, target, axis, published)
     )
 
 
@@ -197,7 +195,7 @@ def _estimate(curve: StretchCurve, target: float) -> Stretch:
     return Stretch(best, target, *ranges)
 
 
-def _estimates(curve, varied, coarse, target, axis, published) -> pd.DataFrame:
+def _estimates(curve, varied, target, axis, published) -> pd.DataFrame:
     rows, best = [], _estimate(curve, target)
     slope = 1e3 * float(curve.mean(best.coefficient, 1))
     mean, about = f"{-1e3 * target:g} mm", 1e3 * ABOUT
@@ -231,9 +229,8 @@ def _estimates(curve, varied, coarse, target, axis, published) -> pd.DataFrame:
         except ValueError:
             needed = np.nan
         add(study, f"coefficient for {mean}", needed, note="were the whole curve scaled by the ratio of the two stretches")
-    fine = VARIATIONS[STROKE]
-    if STROKE in coarse and fine in varied:
-        change = 100 * (varied[fine].mean / stretch(coarse[STROKE]).mean - 1)
+    if fine := varied.get(VARIATIONS[STROKE]):
+        change = 100 * (fine.mean / float(curve.mean(fine.coefficient)) - 1)
         add("friction", "change of the stretch by mesh and steps of the thesis's size", change, "%",
             "the curve rests on coarser ones")  # fmt: skip
     for row in published.itertuples():

@@ -2,7 +2,6 @@
 
 import json
 from itertools import groupby
-from operator import itemgetter
 from pathlib import Path
 
 from fingerpad import load_scene, plan
@@ -16,19 +15,18 @@ from fingerpad.specimen import mesh_for, read_pad_mesh, write_pad
 def run(job):
     """`scenes` -> plan.json, mesh.msh, summary.json beside each of `histories`.
 
-    `accuracies`: as_stated or what replaces it. `meshes`: own or the accuracy whose coarser mesh it is. `strides`: how many steps
+    `accuracies`: as_stated or what replaces it. `strides`: 0 of the scene itself, of a companion on a coarser mesh how many steps
     are one; where that leaves as many as before, as of steady presses, nothing is solved anew.
     """
-    cases = zip(job.scenes, job.accuracies, job.meshes, job.strides, job.histories, strict=True)
-    for (path, accuracy, mesh), group in groupby(cases, itemgetter(0, 1, 2)):
+    cases = zip(job.scenes, job.accuracies, map(int, job.strides), job.histories, strict=True)
+    for (path, accuracy, coarser), group in groupby(cases, lambda case: (*case[:2], case[2] > 0)):
         scene = load_scene(path)
         if accuracy != "as_stated":
             scene = scene.with_accuracy(accuracy)
-        own = plan(scene)
-        coarser, built, solved = own if mesh == "own" else plan(scene.with_accuracy(mesh)), None, {}
+        own, built, solved = plan(scene), None, {}
         for *_, stride, history in group:
             folder = Path(history).parent
-            how = own if mesh == "own" else companion(scene, own, coarser, int(stride))
+            how = companion(scene, own, stride) if coarser else own
             how.write(folder / "plan.json")
             built, file = built or mesh_for(scene, how), folder / "mesh.msh"
             write_pad(built, file)
