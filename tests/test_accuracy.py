@@ -197,7 +197,7 @@ def test_growth_is_the_exponent():
     assert found.growth(nodes, np.r_[9.0, 2e-4 * nodes[1:] ** 1.2]) == pytest.approx((2e-4, 1.2))
 
 
-@pytest.mark.parametrize("name", sorted(set(STUDIES) - {"accuracy_belief", "accuracy_drawn"}))
+@pytest.mark.parametrize("name", sorted(set(STUDIES) - {"accuracy_belief", "accuracy_drawn", "accuracy_shown"}))
 def test_figures_are_drawn_from_the_table_read_back(table, name, tmp_path):
     table.to_csv(tmp_path / "t.csv", index=False)
     frame = found.FRAMES[name](pd.read_csv(tmp_path / "t.csv", dtype={"scene": str}))
@@ -348,3 +348,26 @@ def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
     covered = (table["true error (%)"] <= table["believed error (%)"]).groupby(table["class"]).mean()
     assert len(table) == SCENES and set(covered.index) == set(CLASSES)
     assert (covered >= 0.9).all(), covered
+
+
+# -- errors that figures state ------------------------------------------------------------------------------------------------
+
+
+def test_stated_errors_stand_beside_those_of_the_curves():
+    """Made-up companions 1 % away and finer runs 2 %: every curve states what is left of the one and errs by all of the other."""
+    import synthetic
+    from drawn import REFERENCE, results
+    from fingerpad.figures.registry import FIGURES
+    from fingerpad.planning.errors import REMAINS
+    from fingerpad.studies.accuracy.shown import LEFT, MADE_FINER, STATED, STATED_MESH, TRUE, shown
+
+    histories, meshes, coarse, reference = results()
+    finer = {name: history for name, history in synthetic.histories(1.02).items() if name.startswith(MADE_FINER)}
+    figures = [(FIGURES[number], FIGURES[number].measurements(REFERENCE.parent)) for number in ("4-14", "5-6", "5-26")]
+    table = shown(figures, (histories, meshes, coarse), finer, reference)
+    assert set(table["figure"]) == {"4-14", "5-6"}  # no finer runs on ridges
+    mesh = table[table["curve"].str.contains("10 mm/s|simulated|79") | (table["figure"] == "4-14")]
+    assert (mesh[TRUE] / mesh[STATED_MESH]).to_numpy() == pytest.approx(2 * LEFT / REMAINS, rel=0.3)
+    assert (table[STATED] >= table[STATED_MESH]).all()
+    frame = found.FRAMES["accuracy_shown"](table)
+    assert len(STUDIES["accuracy_shown"](frame).axes) == 2 and len(frame) <= len(table)

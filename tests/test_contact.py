@@ -9,6 +9,7 @@ from fingerpad.mechanics.contact import ContactError, Zone, respond, solve_conta
 from fingerpad.mechanics.contact_points import ContactPoints
 from fingerpad.mechanics.linear_solver import (
     FactorisationError,
+    Narrowed,
     PardisoCondensation,
     SuperLUCondensation,
     SymmetricPattern,
@@ -208,6 +209,51 @@ def test_condensation_equals_dense_algebra(kind, definite, condensed):
     reduced = solver.forward(right)
     values = np.linalg.solve(schur, reduced) if condensed else np.zeros(0)
     np.testing.assert_allclose(solver.backward(values), np.linalg.solve(dense, right), rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize("kept", [1, 7, 20])
+def test_a_condensation_taken_further_equals_dense_algebra(kept):
+    """Some of what is condensed onto is eliminated again, chosen after the factorisation."""
+    pattern, data, dense, rng = system(11, True)
+    c = np.sort(rng.choice(pattern.size, 20, replace=False))
+    some = np.sort(rng.choice(c, kept, replace=False))
+    rest = np.setdiff1d(np.arange(pattern.size), some)
+    right = rng.normal(size=pattern.size)
+    solver = SuperLUCondensation(pattern, c)
+    narrowed = Narrowed(solver, some)
+    assert narrowed.take(solver.factor(data))
+    inner = np.linalg.solve(dense[np.ix_(rest, rest)], dense[np.ix_(rest, some)])
+    np.testing.assert_allclose(narrowed.schur, dense[np.ix_(some, some)] - dense[np.ix_(some, rest)] @ inner, rtol=1e-8)
+    values = np.linalg.solve(narrowed.schur, narrowed.forward(right))
+    np.testing.assert_allclose(narrowed.backward(values), np.linalg.solve(dense, right), rtol=1e-6, atol=1e-9)
+
+
+def test_what_is_not_stable_by_itself_is_not_eliminated():
+    """Whoever solves for contact would take a body for stable that is not."""
+    pattern, *_ = system(1, True)
+    narrowed = Narrowed(SuperLUCondensation(pattern, np.arange(4)), np.array([0, 1]))
+    schur = np.diag([1.0, 1.0, 1.0, -1.0])
+    assert not narrowed.take(schur) and narrowed.take(abs(schur))
+    assert np.array_equal(narrowed.schur, np.eye(2))
+
+
+def test_part_of_a_zone_is_the_zone_of_its_points():
+    """Points of three edges of which the middle one is kept: its nodes, their equations, what they are worth at its points."""
+    values = np.array([[0.75, 0.25], [0.25, 0.75]])
+    shape = np.zeros((6, 4))
+    for edge in range(3):
+        shape[2 * edge : 2 * edge + 2, edge : edge + 2] = values
+    equation = np.array([[0, 1], [-1, 2], [3, 4], [5, 6]])
+    soft = np.arange(36.0).reshape(6, 6)
+    whole = Zone(np.array([0, 1, 2, 3]), equation, shape, soft, 2 * soft)
+    part, alone = whole.part(slice(2, 4)), Zone(np.array([1, 2]), equation, values, soft[2:4, 2:4], 2 * soft[2:4, 2:4])
+    assert len(part) == 2 and part.nodes.tolist() == [1, 2] and part.condensed.tolist() == alone.condensed.tolist() == [2, 3, 4]
+    np.testing.assert_array_equal(part.shape, alone.shape)
+    np.testing.assert_array_equal(part.softness_along, alone.softness_along)
+    directions = np.array([[0.6, -0.8], [0.0, -1.0]])
+    np.testing.assert_allclose(part.gather(directions), alone.gather(directions))
+    np.testing.assert_allclose(part.spread(directions), alone.spread(directions))
+    assert whole.part(slice(0, 6)) is whole
 
 
 def test_node_without_element_is_named():

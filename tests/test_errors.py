@@ -25,7 +25,7 @@ from fingerpad.measures.errors import (
     total,
 )
 from fingerpad.measures.features import centre_pressure, energy_rate, width
-from fingerpad.planning.errors import COARSER, REMAINS
+from fingerpad.planning.errors import COARSER, REMAINS, STEPS_REMAIN
 from fingerpad.planning.plan import companion
 from fingerpad.planning.schedule import schedule
 from fingerpad.receptors.laws import rate_by_leg
@@ -140,9 +140,9 @@ def test_each_part_is_found_alone(alone):
     x = run["time"].values
     share = 100 / norm(x, run["value"].values)
     true = norm(x, 0.3 * 0.1**2 * np.cos(x)) * share, norm(x, 0.2 * 0.02 * x) * share
-    # of order 2, where 3/2 is taken: half as much again as is left; order 1: as much
+    # of order 2, where 3/2 is taken: half as much again as is left; order 1: half
     assert found.mesh == pytest.approx(REMAINS * (COARSER**2 - 1) * true[0] if alone == "mesh" else 0, abs=1e-9)
-    assert found.steps == pytest.approx(true[1] if alone == "steps" else 0, rel=0.02, abs=1e-9)
+    assert found.steps == pytest.approx(STEPS_REMAIN * true[1] if alone == "steps" else 0, rel=0.02, abs=1e-9)
     assert 0 < found.sampling < 1 and found.total == pytest.approx(found.mesh + found.steps + found.sampling)
     rate = Curve(lambda h: (h["time"].values, np.gradient(h["value"].values, h["time"].values)))
     assert curve_errors(run, Companion(coarse, thinned(coarse)), rate).steps < 1e-9  # fewer outputs are not fewer steps
@@ -170,8 +170,8 @@ def test_of_several_curves_the_one_furthest_off_counts_and_numbers_are_compared_
     last = lambda history: float(history["value"][-1])  # noqa: E731
     found = number_errors(run, Companion(coarse, both), last, lambda history: 1.0)
     own = abs(last(run))
-    assert found.mesh == pytest.approx(100 * abs(last(run) - last(coarse)) / own)
-    assert found.steps == pytest.approx(100 * abs(last(both) - last(coarse)) / own) and found.sampling == 0
+    assert found.mesh == pytest.approx(REMAINS * 100 * abs(last(run) - last(coarse)) / own)
+    assert found.steps == pytest.approx(STEPS_REMAIN * 100 * abs(last(both) - last(coarse)) / own) and found.sampling == 0
     peak = lambda history: float(history["value"].max())  # noqa: E731
     assert number_errors(run, None, peak).sampling >= 0
     assert curve_errors(run, Companion(run, run), VALUE, VALUE).mesh == 0
@@ -181,16 +181,16 @@ def test_of_several_curves_the_one_furthest_off_counts_and_numbers_are_compared_
 def test_a_companion_one_per_cent_away_is_that_far(name, over, trace):
     make = synthetic.stroke if name.startswith("stroke") else synthetic.history
     found = curve_errors(make(name), Companion(make(name, 1.01), thinned(make(name, 1.02))), over(trace))
-    assert found.mesh == pytest.approx(1.0, rel=1e-6) and found.steps == pytest.approx(1.0, rel=0.01)
+    assert found.mesh == pytest.approx(REMAINS, rel=1e-6) and found.steps == pytest.approx(STEPS_REMAIN, rel=0.01)
     if over is over_stroke:  # the other way too
         run, other = (h.assign(stroke_distance=-h["stroke_distance"]) for h in (make(name), make(name, 1.01)))
-        assert curve_errors(run, Companion(other, other), over(trace)).mesh == pytest.approx(1.0, rel=1e-6)
+        assert curve_errors(run, Companion(other, other), over(trace)).mesh == pytest.approx(REMAINS, rel=1e-6)
 
 
 def test_rate_curve_with_a_jump_is_compared_on_either_side_of_it():
     history, other = synthetic.history("ramp40_k210"), synthetic.history("ramp40_k210", 1.01)
     rate = Curve(lambda h: energy_rate(h, 915e-6).to_numpy().T)
-    assert curve_errors(history, Companion(other, other), rate).mesh == pytest.approx(1.0, rel=1e-4)
+    assert curve_errors(history, Companion(other, other), rate).mesh == pytest.approx(REMAINS, rel=1e-4)
 
 
 # --- companions ----------------------------------------------------------------------------------------------

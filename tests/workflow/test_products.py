@@ -172,10 +172,21 @@ def test_studies_make_their_tables_and_figures(thesis):
                     "accuracy_edges",
                     "accuracy_belief",
                     "accuracy_drawn",
+                    "accuracy_shown",
                 ),
                 ("csv", "md"),
             ),
-            (("accuracy_error", "accuracy_error_stroke", "accuracy_growth", "accuracy_belief", "accuracy_drawn"), ("csv", "png")),
+            (
+                (
+                    "accuracy_error",
+                    "accuracy_error_stroke",
+                    "accuracy_growth",
+                    "accuracy_belief",
+                    "accuracy_drawn",
+                    "accuracy_shown",
+                ),
+                ("csv", "png"),
+            ),
         )
         for name in names
         for kind in kinds

@@ -50,7 +50,7 @@ from fingerpad.measures.responses import curvature_of
 from fingerpad.measures.runs import Runs
 from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height
 from fingerpad.measures.table import MEASURES
-from fingerpad.planning.errors import REMAINS
+from fingerpad.planning.errors import REMAINS, STEPS_REMAIN
 from fingerpad.publishing import style
 from fingerpad.publishing.write import without_round_off
 from fingerpad.receptors.recordings import read_rates
@@ -233,6 +233,7 @@ def largest_of(pairs: Sequence[tuple[pd.DataFrame, pd.DataFrame]], sizes: pd.Dat
     """
     parts = [100 * (a - b).abs() / sizes.replace(0, np.nan) for a, b in pairs]
     parts[0] *= REMAINS
+    parts[1] *= STEPS_REMAIN
     worst = sum(part.fillna(0) for part in parts).to_numpy().argmax(axis=1)
     rows = np.arange(len(worst))
     return pd.DataFrame({name: part.to_numpy()[rows, worst] for name, part in zip(PARTS, parts, strict=True)}, parts[0].index)

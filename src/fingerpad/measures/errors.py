@@ -4,14 +4,14 @@ mesh
     what is left by what it changes by on its companions' coarser mesh, with the run's own steps and outputs, if it converges with
     the order that was measured (`REMAINS`).
 time steps
-    what it changes by on that mesh when every two steps are made one, read at the outputs that are left; of a stroke, when steps
-    may be twice as long and what lies between its states off by twice as much.
+    the same of what it changes by on that mesh when every two steps are made one, read at the outputs that are left; of a stroke,
+    when steps may be twice as long and what lies between its states off by twice as much.
 sampling
     what straight lines between outputs leave out: what it changes by when every second output is left out, over 2^p. The order p
     is seen when every fourth is left: 2 of a smooth curve, 3/2 of one with a kink, 1/2 of one with a jump.
 
-Each is a norm over the very curve shown, in per cent of the curve's own. They are estimates, not bounds: the second is what a
-result changes by from twice the step to its own, which is more than what is left wherever it converges.
+Each is a norm over the very curve shown, in per cent of the curve's own. They are estimates, not bounds:
+figures/tables/accuracy_shown has them beside what curves change by on finer meshes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ import xarray as xr
 
 from fingerpad.measures.features import Feature, Trace
 from fingerpad.measures.strokes import distance, loaded
-from fingerpad.planning.errors import REMAINS
+from fingerpad.planning.errors import REMAINS, STEPS_REMAIN
 from fingerpad.results import scene_of
 
 MESH, STEPS, SAMPLING = PARTS = ("mesh_error (%)", "time_step_error (%)", "sampling_error (%)")
@@ -161,7 +161,7 @@ def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) ->
     (xm, ym), (xb, yb), sparse = curve(companion.mesh), curve(companion.both), curve(companion.sparse)
     mesh = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
     steps = norm(xb, yb - np.interp(xb, *sparse))
-    return Errors(share * REMAINS * mesh, share * steps, share * sampling(history, curve))
+    return Errors(share * REMAINS * mesh, share * STEPS_REMAIN * steps, share * sampling(history, curve))
 
 
 def shared_place(place: float, companion: Companion | None) -> float:
@@ -207,7 +207,7 @@ def _of_number(history: xr.Dataset, companion: Companion | None, feature: Featur
     share = 100 / (np.linalg.norm(own) or np.inf)
     pairs = (own, mesh), (sparse, both), (own, feature(thinned(history)))
     mesh, steps, sampled = (share * float(np.linalg.norm(np.atleast_1d(a) - np.atleast_1d(b))) for a, b in pairs)
-    return Errors(REMAINS * mesh, steps, sampled)
+    return Errors(REMAINS * mesh, STEPS_REMAIN * steps, sampled)
 
 
 def furthest(found: Iterable[Errors]) -> Errors:

@@ -16,6 +16,8 @@ ORDER = 1.5
 """With which curves are taken to converge with the mesh: measured ones, at 1 to 2, do so on either side of it."""
 REMAINS = 1 / (COARSER**ORDER - 1)
 """What a result is wrong by over what it changes by on its companion's mesh (Richardson 1911)."""
+STEPS_REMAIN = 1 / (2.0**ORDER - 1)
+"""The same over what it changes by with steps twice as long, of which measured orders are as large."""
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
     plain = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
     counted = plain.getcolors(COLOURS)
     few = plain.quantize(COLOURS if counted is None else len(counted), Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    write_atomically(path, lambda p: few.save(p, format="PNG", optimize=True, dpi=(dpi, dpi)))
+    write_atomically(path, lambda p: few.save(p, format="PNG", compress_level=6, dpi=(dpi, dpi)))
 
 
 def write_vectors(fig: Figure, path: Path) -> None:

@@ -15,6 +15,7 @@ _MODULES = (
     "fingerpad.figures.registry",
     "fingerpad.studies.accuracy.belief",
     "fingerpad.studies.accuracy.run",
+    "fingerpad.studies.accuracy.shown",
     "fingerpad.studies.explanations.run",
     "fingerpad.studies.stability.picture",
     "fingerpad.studies.views.frames",
@@ -36,7 +37,7 @@ class Figure:
 
 @cache
 def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
-    """What is on offer: `figures` by number, and the studies' `FAMILY`, `SWEEPS`, `OUTSIDE`, `CLASSES` (accuracy),
+    """What is on offer: `figures` by number, and the studies' `FAMILY`, `SWEEPS`, `MADE_FINER`, `OUTSIDE`, `CLASSES` (accuracy),
     `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations), `VIEWS` with scenes.
 
     Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
@@ -62,6 +63,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.studies.accuracy.belief import OUTSIDE
     from fingerpad.studies.accuracy.drawn import CLASSES
     from fingerpad.studies.accuracy.run import FAMILY, sweeps
+    from fingerpad.studies.accuracy.shown import MADE_FINER
     from fingerpad.studies.explanations.run import PRESSED, READ_ONLY, READINGS, STROKED
     from fingerpad.studies.stability.picture import PARTS
     from fingerpad.studies.views.frames import FRAMES
@@ -81,4 +83,4 @@ def _read() -> dict[str, Any]:
     simulated = [name for name in READINGS if name not in READ_ONLY]
     offers |= {"READINGS": simulated, "READ_ONLY": list(READ_ONLY), "READ": [*PRESSED, *STROKED]}
     offers["VIEWS"] = {name: list(scenes) for name, (_, scenes) in FRAMES.items()}
-    return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps())} | offers
+    return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps()), "MADE_FINER": list(MADE_FINER)} | offers

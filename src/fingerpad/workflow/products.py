@@ -328,7 +328,8 @@ class Products:
             }
             called = f"figures_{group[0].number.replace('-', '_')}"
             made, told = {"pictures": [self.picture_of(f.number) for f in group]}, {"chapter": [module]}
-            yield Job("figures", read, made, told, called, (module,))
+            # the longest first
+            yield Job("figures", read, made, told, called, (module,), priority=int(len(group) > 4))
 
     def catalogue(self) -> Iterator[Job]:
         """figures/README.md, of the configuration that draws them all."""
@@ -518,13 +519,37 @@ class Products:
             told = {"kind": [kind], **self._told(base)}
             yield Job(run := "accuracy_drawn", self._read(base), {"rows": [part]}, told, f"{run}_{kind}", **long)
         yield self._joined("accuracy_drawn", parts, "accuracy_drawn")
+        yield from self._accuracy_shown()
         for called, table, pictures in (
             ("accuracy_pictures", "accuracy", ("error", "error_stroke", "growth")),
             ("accuracy_belief_picture", "accuracy_belief", ("belief",)),
             ("accuracy_drawn_picture", "accuracy_drawn", ("drawn",)),
+            ("accuracy_shown_picture", "accuracy_shown", ("shown",)),
         ):
             read, made = {"table": self.tables([table])}, {"pictures": self.pictures(pictures, "accuracy_")}
             yield Job("accuracy_pictures", read, made, {}, called)
+
+    def _accuracy_shown(self) -> Iterator[Job]:
+        """Whether the errors that figures state are those of their curves."""
+        finer = {name for name in self.coarse if name.startswith(tuple(offered()["MADE_FINER"]))}
+        figures = [f for f in self.drawn if f.companions and finer.issuperset(f.companions)]
+        needs = list(dict.fromkeys(scene for figure in figures for scene in figure.needs))
+        for batch, names in self.batches().items():
+            if made := [name for name in names if name in finer]:
+                told = {"scenes": [self.scene(name) for name in made], "written": self._written(*made)}
+                histories = [self.result(f"accuracy/finer/{name}/history.nc") for name in made]
+                yield Job(
+                    run := "accuracy_finer", self._read(*made), {"histories": histories}, told, f"{run}_{batch}", mem_mb=3000
+                )
+        read = {
+            "reference": [self.at("config/reference/thesis_numbers.csv")],
+            "histories": self.histories(needs),
+            "meshes": self.meshes(needs),
+            "coarse": self.both_companions(scene for scene in needs if scene in self.coarse),
+            "finer": [self.result(f"accuracy/finer/{name}/history.nc") for name in sorted(finer)],
+        }
+        told = {"numbers": [figure.number for figure in figures]}
+        yield Job("accuracy_shown", read, {"table": self.tables(["accuracy_shown"])}, told, mem_mb=4000)
 
     def stability(self) -> Iterator[Job]:
         """Hard cases -> how stable the default method is in them, beside simpler methods."""

@@ -212,11 +212,49 @@ def drawn(frame: pd.DataFrame) -> Figure:
     return fig
 
 
+@styled
+def shown(frame: pd.DataFrame) -> Figure:
+    """Errors that figures state against those of their curves."""
+    stated, true = frame["stated error (%)"], frame["true error (%)"]
+    covered, above = stated >= true, true > 3
+    fig = study_figure(
+        "Are the errors in the figures those of their curves?",
+        [
+            f"Simulated: {len(frame)} curves and numbers of {frame['figure'].nunique()} figures. Truth: what they change by on a "
+            "mesh with half the edges, and what by their order of convergence is left then, root mean square. Stated: mesh, time "
+            f"steps and sampling. Below the line the error stated covers the truth: {int(covered.sum())} of {len(frame)}; up to "
+            f"twice it does in {int((true <= 2 * stated).sum())}. True errors above 3 %: {int(above.sum())}."
+        ],
+        3.9,
+    )
+    left, right = _truth_and_belief(fig)
+    left.set(xlabel="stated error (%)")
+    figures = list(frame["figure"].unique())
+    for place, chapter in enumerate(("3", "4", "5")):
+        part = frame[frame["figure"].str.startswith(chapter)]
+        look = {"color": CATEGORIES[place], "marker": MARKERS[place], "ls": "", "ms": 3.2, "mfc": "white", "mew": 0.7}
+        if len(part):
+            left.plot(
+                part["stated error (%)"].clip(lower=0.1),
+                part["true error (%)"].clip(lower=0.1),
+                label=f"chapter {chapter}",
+                **look,
+            )
+            ratio = (part["true error (%)"] / part["stated error (%)"]).clip(lower=0.03)
+            right.semilogx(ratio, [figures.index(number) for number in part["figure"]], **look)
+    left.legend(loc="upper left")
+    _named(right, [f"Fig {number}" for number in figures])
+    right.tick_params(axis="y", labelsize=4.5)
+    right.set_xlabel("truth / stated")
+    return fig
+
+
 STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
     "accuracy_error": error,
     "accuracy_error_stroke": error_stroke,
     "accuracy_growth": growth,
     "accuracy_belief": belief,
     "accuracy_drawn": drawn,
+    "accuracy_shown": shown,
 }
 """Figure name -> drawing function of its data frame."""

@@ -78,7 +78,12 @@ class Case:
     @property
     def stable(self) -> str:
         """What counts as stable, in words."""
-        return "a clean failure, or an estimated error of a half" if self.may_fail else self.limits.described()
+        return "a clean failure, or an estimated error of a half" if self.may_fail else self.allowed.described()
+
+    @property
+    def allowed(self) -> Limits:
+        """Its limits. Strokes, factored in single precision, end where less than their tolerance is left out of balance."""
+        return replace(self.limits, solver=max(self.limits.solver, 1e-3)) if self.strokes else self.limits
 
     @property
     def steps_per_leg(self) -> int:

@@ -1,0 +1,58 @@
+"""Are the errors that figures state those of their curves? Stated errors beside changes on meshes with half the edges.
+
+A figure is made twice: with the companions of its scenes, whose errors it states, and with finer runs in their place. What a
+curve changes by then is nearly all that it is wrong by; the rest follows by the order with which curves converge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from fingerpad.figures.grammar import Figure
+from fingerpad.measures.errors import MESH, PARTS, Companion, Companions
+from fingerpad.measures.features import Histories, Meshes
+from fingerpad.planning.errors import ORDER, REMAINS
+
+FINER = 0.5
+"""Edges of the finer runs over those of the scenes."""
+LEFT = 1 / (1 - FINER**ORDER)
+"""What a curve is wrong by over what it changes by on the finer mesh."""
+MADE_FINER = ("stroke_", "ramp40_", "ramp150_", "press10_", "press15_", "step_sub", "plate_", "ridged_stroke_")
+"""How names of scenes begin that are made finer: all that figures read but presses on ridges, and outer ridges."""
+STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"
+
+
+def shown(
+    figures: Iterable[tuple[Figure, tuple[pd.DataFrame, ...]]],
+    results: tuple[Histories, Meshes, Companions],
+    finer: Mapping[str, xr.Dataset],
+    reference: pd.DataFrame,
+) -> pd.DataFrame:
+    """One row a curve or number with an error of its own, of figures all of whose companions there are finer runs of.
+
+    Args:
+        figures: with their measured data. results: of :func:`fingerpad.measures.inputs.read_results`. finer: scene -> history on
+        a mesh with edges `FINER` times as long. reference: the thesis's numbers.
+    """
+    histories, meshes, coarse = results
+    truth = {scene: Companion(history, history) for scene, history in finer.items()}
+    rows = []
+    for spec, measured in figures:
+        if not spec.read_companions or not truth.keys() >= set(spec.read_companions):
+            continue
+        stated, true = (spec.frame(histories, meshes, each, reference, *measured) for each in (coarse, truth))
+        named = [column for column in _SERIES if column in stated]
+        both = stated[named].fillna("").astype(str).agg(" ".join, axis=1).str.strip().to_frame("curve")
+        both[STATED_MESH], both[STATED] = stated[MESH], stated[list(PARTS)].sum(axis=1, min_count=1)
+        both[TRUE] = LEFT / REMAINS * true[MESH]
+        found = both[(both[STATED_MESH] > 0) & np.isfinite(both[TRUE])].drop_duplicates()
+        rows.append(found.assign(figure=spec.number))
+    table = pd.concat(rows, ignore_index=True)
+    return table[["figure", "curve", STATED_MESH, STATED, TRUE]]
+
+
+_SERIES = ("panel", "surface", "series", "pad", "phase", "place", "convexity")
