@@ -170,7 +170,7 @@ def test_files_of_scenes_fit_the_schema():
 
 
 def test_scenes_of_one_family_are_in_one_file():
-    assert len(SCENES) == 101 and len(FILES) <= 28
+    assert len(SCENES) == 104 and len(FILES) <= 28
 
 
 def test_the_ramp_and_hold_scenes_are_the_eighteen():

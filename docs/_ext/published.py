@@ -397,6 +397,42 @@ def drawn_covered():
     return "{} of {}".format(*_covered("accuracy_drawn"))
 
 
+def _shown() -> pd.DataFrame:
+    return table("figures/studies/accuracy_shown")
+
+
+@number
+def shown_figures():
+    return table("figures/tables/accuracy_shown")["figure"].nunique()
+
+
+@number
+def shown_curves():
+    return len(_shown())
+
+
+@number
+def shown_median():
+    return f"{_shown()['true error (%)'].median():.2g}"
+
+
+@number
+def stated_median():
+    return f"{_shown()['stated error (%)'].median():.2g}"
+
+
+@number
+def shown_covered():
+    rows = _shown()
+    return f"{(rows['true error (%)'] <= rows['stated error (%)']).sum()} of {len(rows)}"
+
+
+@number
+def shown_within_twice():
+    rows = _shown()
+    return (rows["true error (%)"] <= 2 * rows["stated error (%)"]).sum()
+
+
 # -- stability, effects, peers ---------------------------------------------------------------------------------------------------
 
 

@@ -289,13 +289,13 @@ class QuasiStatic:
             if len(self.zone) > self.settings.loose * (last - first):
                 self._narrow(first, last)
 
-    def _zone_is_tight(self):
-        """Does contact reach an end of the zone that is not an end of the skin?"""
+    def _zone_is_tight(self, margin=6):
+        """Does contact come so near, in points, to an end of the zone that is not an end of the skin?"""
         on = np.flatnonzero(self._touching()[self._range])
         if not len(on):
             return False
-        low = self._range.start > 0 and on[0] < 6
-        return low or (self._range.stop < len(self.places) and on[-1] >= len(self.zone) - 6)
+        low = self._range.start > 0 and on[0] < margin
+        return low or (self._range.stop < len(self.places) and on[-1] >= len(self.zone) - margin)
 
     def _touching(self):
         """(np,) bool: the points that touch, on one side of a valley or both."""
@@ -388,7 +388,7 @@ class QuasiStatic:
             if not np.isfinite(residual):
                 raise _StepFailure("the residual is not finite")
             reused = reused + 1 if keep else 0
-            if residual <= 1.0 and not self._zone_is_tight() and not self._touches_elsewhere():
+            if residual <= 1.0 and not self._zone_is_tight(1) and not self._touches_elsewhere():
                 if self._softened or reused > settings.patience:
                     self._factors = None
                 return iteration, residual
