@@ -57,12 +57,27 @@ def _edge(x, pressure, spacing):
         degree = min(2, np.count_nonzero(use) - 2)
         if degree < 1:
             return float(plain)
-        way = (x[use] - plain) / reach
-        terms = np.vander(way, degree + 1) * np.sqrt(weight[use])[:, None]
-        roots = np.roots(np.linalg.lstsq(terms, square[use] * np.sqrt(weight[use]), rcond=None)[0])
-        roots = roots[np.isreal(roots)].real * reach
-        roots = roots[(roots > -4 * spacing) & (roots < 2 * spacing)]
-        if not len(roots):
+        terms = np.vander((x[use] - plain) / reach, degree + 1)
+        weighed = terms.T * weight[use]
+        try:
+            roots = _roots(*np.linalg.solve(weighed @ terms, weighed @ square[use]))
+        except np.linalg.LinAlgError:
             return float(plain)
-        edge = plain + roots[np.argmin(np.abs(roots))]
+        near = [reach * root for root in roots if -4 * spacing < reach * root < 2 * spacing]
+        if not near:
+            return float(plain)
+        edge = plain + min(near, key=abs)
     return float(edge)
+
+
+def _roots(*coefficients):
+    """Real roots of a line or a parabola, highest power first."""
+    if len(coefficients) == 2 or not coefficients[0]:
+        slope, height = coefficients[-2:]
+        return [-height / slope] if slope else []
+    a, b, c = coefficients
+    inside = b * b - 4 * a * c
+    if inside < 0:
+        return []
+    q = -(b + np.copysign(np.sqrt(inside), b)) / 2
+    return [q / a, c / q] if q else [0.0]

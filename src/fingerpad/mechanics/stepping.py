@@ -214,7 +214,7 @@ class QuasiStatic:
             from fingerpad.mechanics.friction import Coulomb
 
             self.friction = Coulomb(friction, places)
-        self._factors = self._stiffness = self._found = self._nodal = None
+        self._factors = self._stiffness = self._found = self._nodal = self._touched = None
         self._set_zone(*(PER_NODE * end for end in skin.start))
         self.height = self._first_touch()
         self._reach_what_touches()
@@ -642,6 +642,8 @@ class QuasiStatic:
             last = step if not halvings else None
             self.total_iterations += iterations
             self.total_halvings += halvings
+            if between:
+                self._touches = [*self._touches[-1:], self._touch()]
             record = self._record(step, iterations, halvings, residual, passed)
             records.append(record)
             if on_step:
@@ -706,13 +708,17 @@ class QuasiStatic:
         return len(self._touches) < 2 or strides.judge(*self._touches, self._touch())
 
     def _touch(self):
+        rows = self._rows()
+        if self._touched is not None and self._touched[0] is rows:
+            return self._touched[1]
         force, gradient, length, edges = self._on_nodes()
         x = (self.points + self.body.u)[self.skin.nodes, 0]
         push, pull = self._forces()
         drag, press = push.sum(0)
         stuck = self.contact_force[self.friction.state == 0].sum() if self.friction else 0.0
         share = float(stuck / max(self.contact_force.sum(), 1e-300))
-        return Touch(x, force / length, edges, self.distance, float(drag / press) if press else 0.0, share)
+        self._touched = rows, Touch(x, force / length, edges, self.distance, float(drag / press) if press else 0.0, share)
+        return self._touched[1]
 
     def _give_up_if_vain(self, failure, size, halvings, records):
         """NonConvergence where smaller parts of a step are of no use."""
@@ -768,7 +774,6 @@ class QuasiStatic:
 
     def _record(self, step, iterations, halvings, residual, passed):
         force, gradient, length, edges = self._on_nodes()
-        self._touches = [*self._touches[-1:], self._touch()]
         rows = self._rows()
         kept = self.contact_force[rows.place]
         total = max(kept.sum(), 1e-300)

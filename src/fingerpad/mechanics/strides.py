@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -52,6 +53,7 @@ class Touch:
     drag: float
     sticks: float = 0.0
 
+    @cached_property
     def patches(self) -> np.ndarray:
         """(k, 2) m, edges of every piece of skin that touches: where the squares of its last two pressures fall to zero."""
         x, square = self.x, self.pressure**2
@@ -117,7 +119,7 @@ class Passage:
         for out, each, touch, at in zip(moved, values, (self.first, self.last), self.origin, strict=True):
             x, known = touch.x[self.window], each[self.window]
             if falls:
-                edges = np.sort(touch.patches().ravel())
+                edges = np.sort(touch.patches.ravel())
                 beyond = np.searchsorted(x, edges).clip(1, len(x) - 1)
                 between = (known[beyond] > 0) != (known[beyond - 1] > 0)
                 x, known = np.insert(x, beyond[between], edges[between]), np.insert(known, beyond[between], 0.0)
@@ -131,7 +133,7 @@ def _anchors(first: Touch, last: Touch) -> np.ndarray | None:
     A piece of the contact that has come or gone has no edges in the other state, and fades where it is.
     """
     along = first.distance - last.distance  # the surface goes as the pad comes along it the other way
-    pieces, pieces_then = first.patches(), last.patches()
+    pieces, pieces_then = first.patches, last.patches
     lefts, rights = (_same(pieces[:, side], pieces_then[:, side], along) for side in (0, 1))
     found = [(pieces[i, 0], pieces_then[j, 0]) for i, j in lefts.items()]
     found += [(pieces[i, 1], pieces_then[j, 1]) for i, j in rights.items()]

@@ -94,9 +94,9 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     skin_stretch: float = 1.0e-3
     inertia_limit: float = 0.1
     edges_per_half_width: float = 2.0
-    seconds_start: float = 1.2
-    seconds_finite: float = 2.0e-6
-    seconds_small: float = 1.0e-6
+    seconds_start: float = 0.8
+    seconds_finite: float = 0.9e-6
+    seconds_small: float = 0.45e-6
     iterations_finite: float = 2.6
     iterations_small: float = 2.0
 
