@@ -19,13 +19,15 @@ All functions live in this one module because the on-disk cache of compiled code
 must know of the laws' files is in the loops' closures.
 """
 
-from functools import cache
+from functools import cache, wraps
 from types import SimpleNamespace
 
 import numpy as np
 from numba import njit
+from numba.core.caching import IndexDataCacheFile
 from numba.extending import register_jitable
 
+from fingerpad.files import locked
 from fingerpad.laws import Law
 
 _JIT = {"cache": True, "fastmath": {"contract", "nsz", "reassoc", "arcp"}, "error_model": "numpy", "boundscheck": False}
@@ -33,6 +35,21 @@ _INLINE = _JIT | {"inline": "always"}
 
 _LANES = 8
 """Numbers that a processor's vector may hold: rows are filled up with zeros to a multiple of it."""
+
+
+def _one_at_a_time(save):
+    """Keep compiled code while no other process does: two that take the same number for different loops would leave an index that
+    leads from one to the machine code of the other."""
+
+    @wraps(save)
+    def alone(self, key, data):
+        with locked(self._cache_path, wait=True):
+            save(self, key, data)
+
+    return alone
+
+
+IndexDataCacheFile.save = _one_at_a_time(IndexDataCacheFile.save)
 
 
 @njit(**_INLINE)

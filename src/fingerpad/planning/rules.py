@@ -71,7 +71,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     mesh_order: float = 1.0
     time_order: float = 1.0
     edge_share: float = 0.14
-    safety: float = 1.56
+    safety: float = 1.45
     fillet_error: float = 0.4
     fillet_order: float = 1.5
     edge_error: float = 0.8
