@@ -186,7 +186,7 @@ def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
 
 
 def test_steps_of_a_stroke_follow_tolerance_or_hand(stroke):
-    assert plan(changed(stroke, accuracy=0.03)).slide_step < plan(changed(stroke, accuracy=0.1)).slide_step
+    assert plan(changed(stroke, accuracy=0.02)).slide_step < plan(changed(stroke, accuracy=0.1)).slide_step
     own = plan(changed(slid(stroke, speed=10e-3), accuracy=Discretisation(steps=100)))
     assert own.slide_step is None and own.steps == pytest.approx(100, abs=85)
     assert plan(changed(stroke, accuracy=Discretisation(skin_edge=0.2e-3))).slide_step == 0.25e-3

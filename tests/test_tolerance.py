@@ -106,16 +106,16 @@ def test_ridged_pads_are_refined_under_the_contact():
 
 
 def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatch):
-    """Of 80 mm over the wavy surface: 10, 5 and 3.5 % are had for ever more work; 2 % is not, and the last bit not paid for."""
+    """Of 80 mm over the wavy surface: 10, 3.5 and 2 % are had for ever more work; 1 % is not, and the last bit not paid for."""
     long = scene({"shape": "wavy"}, [*PRESS, {"slide": "80 mm", "speed": "10 mm/s", "keep": "force"}], friction=0.35)
-    had = [plan(long.with_accuracy(accuracy)) for accuracy in (0.1, 0.05, 0.035)]
+    had = [plan(long.with_accuracy(accuracy)) for accuracy in (0.1, 0.035, 0.02)]
     work = [chosen.nodes * chosen.steps for chosen in had]
     assert all(chosen.missed() is None for chosen in had) and work == sorted(work)
     assert had[0].nodes < 20_000 and "of strokes root mean square" in had[0].covers
-    missing = plan(long.with_accuracy(0.02))
+    missing = plan(long.with_accuracy(0.01))
     monkeypatch.setattr("fingerpad.planning.discretisation._NEAR", 0.0)
-    least = plan(long.with_accuracy(0.02))
-    assert "not to be had" in missing.missed() and missing.estimated_error < 0.035
+    least = plan(long.with_accuracy(0.01))
+    assert "not to be had" in missing.missed() and missing.estimated_error < 0.02
     assert missing.nodes < 0.5 * least.nodes and missing.estimated_error < 1.2 * least.estimated_error
 
 
@@ -230,7 +230,7 @@ def test_unloading_ends_with_a_small_error_and_tells_the_largest():
     motion = [{"press_to_force": "20 gf"}, {"press_to_force": "0.001 gf"}]
     totals = summary(simulate(scene(motion=motion, accuracy="draft")))
     loaded, unloaded = (leg["estimated_error"] for leg in totals["legs"])
-    assert max(loaded, unloaded) == totals["run"]["estimated_error"] < 0.06
+    assert max(loaded, unloaded) == totals["run"]["estimated_error"] < 0.07
     assert totals["run"]["largest_error"] >= loaded
     pressed = summary(simulate(scene(motion=motion[:1], accuracy="draft")))
     assert pressed["run"]["estimated_error"] == pytest.approx(loaded)

@@ -100,11 +100,12 @@ def _measured_error(edge: float, half_width: float, steps: int | None, stroked: 
     def stroke(count, table, order):
         return _read(count, tuple(table), tuple(table.values()), order) if stroked else 0.0
 
-    # a stroke's errors come on top of those of a press as narrow
-    error = between(rows, known.mesh, rules.mesh_order) + stroke(rows, known.stroke_mesh, rules.mesh_order)
+    # a stroke's errors come on top of those of a press as narrow: nodes that come and go, not alike for mesh and steps
+    error, ways = between(rows, known.mesh, rules.mesh_order), [stroke(rows, known.stroke_mesh, rules.mesh_order)]
     if steps is not None:
-        error += between(steps, known.time, rules.time_order) + stroke(steps, known.stroke_time, rules.time_order)
-    return rules.safety * error
+        error += between(steps, known.time, rules.time_order)
+        ways.append(stroke(steps, known.stroke_time, rules.time_order))
+    return rules.safety * (error + float(np.hypot.reduce(ways)))
 
 
 def _read(count: float, counts: tuple[int, ...], errors: tuple[float, ...], order: float) -> float:

@@ -36,7 +36,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         presets: by name.
         errors: what a tolerance is met with, and what a run believes of itself.
         mesh_order, time_order: with which errors are taken to go on beyond the meshes and steps that were measured.
-        edge_share: of an element's edge, by which an edge of the contact may be misplaced: little more than a quarter of the
+        edge_share: of an element's edge, by which an edge of the contact may be misplaced: little more than a fifth of the
             node spacing.
         safety: factor on both, for errors swing with where nodes happen to lie: the least that covers the scenes drawn at random.
         fillet_error, fillet_order: of the peak pressure, over that power of element edge / length of the contact on the rounded
@@ -70,8 +70,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     errors: MeasuredErrors = field(default_factory=MeasuredErrors)
     mesh_order: float = 1.0
     time_order: float = 1.0
-    edge_share: float = 0.14
-    safety: float = 1.45
+    edge_share: float = 0.11
+    safety: float = 1.65
     fillet_error: float = 0.4
     fillet_order: float = 1.5
     edge_error: float = 0.8
