@@ -115,7 +115,7 @@ def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatc
     missing = plan(long.with_accuracy(0.01))
     monkeypatch.setattr("fingerpad.planning.discretisation._NEAR", 0.0)
     least = plan(long.with_accuracy(0.01))
-    assert "not to be had" in missing.missed() and missing.estimated_error < 0.02
+    assert "not to be had" in missing.missed() and missing.estimated_error < 0.025
     assert missing.nodes < 0.5 * least.nodes and missing.estimated_error < 1.2 * least.estimated_error
 
 

@@ -69,7 +69,8 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
             error = estimated_error(edge / finer / outer, half_width, time, moves, edge, rules=rules, bumpy=bumpy)
             work = (7 * rows + more + wide) * (4 * rows + more) * steps
             found.append((error, work, edge / finer, edge, growth, steps))
-    enough = max(tolerance, (1 + _NEAR) * min(found)[0])
+    least = min(found)[0]
+    enough = tolerance if least <= tolerance else (1 + _NEAR) * least
     _, focus, edge, growth, steps = min(rest for error, *rest in found if error <= enough)
     outline, slide_step = scene.specimen.outline, thesis.slide_step * thesis.steps / steps
     # so many elements across the epidermis, however thick it is
