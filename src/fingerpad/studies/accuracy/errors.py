@@ -264,7 +264,7 @@ def planner_table(records: Records) -> pd.DataFrame:
     Errors of a mesh are those to the limit in the mesh at the default's steps, errors of steps those to the limit in the steps
     on the default's mesh; never below the limit's own uncertainty (and, of meshes, that of adding both, which is a product of
     theirs and falls with the edge beyond the default's mesh) nor below those of what is finer. Of presses the largest at the
-    moments looked at, relative to what it is of; of strokes their root mean square, relative to the largest value, as runs have it.
+    moments looked at, relative to what it is of; of strokes their root mean square, relative to the largest, as runs have it.
     """
     rows = []
     for kind, counts, limits in (("mesh", ROWS, mesh_limits), ("steps", STEPS, step_limits)):
