@@ -362,6 +362,7 @@ DECIDES = {
     "mesh_order": "errors of meshes beyond those measured: order in the edge",
     "time_order": "errors of steps beyond those measured: order in the step",
     "edge_share": "error, at least: an edge of the contact is misplaced by this share of an element's edge",
+    "stroked": "factor on those of strokes",
     "safety": "factor on measured errors and on that",
     "fillet_error": "error of the peak pressure on a rounded edge, over edge / length of the contact there, to a power",
     "fillet_order": "that power",
@@ -399,6 +400,7 @@ WHERE = {
     "mesh_order": "figures/tables/accuracy_orders.csv",
     "time_order": "figures/tables/accuracy_orders.csv",
     "edge_share": "figures/tables/accuracy_belief.csv",
+    "stroked": "figures/tables/accuracy_drawn.csv",
     "safety": "figures/tables/accuracy_belief.csv",
     **dict.fromkeys(
         ("fillet_error", "fillet_order", "edge_error", "edge_floor", "edge_finest", "bumps"),
