@@ -221,10 +221,7 @@ def test_presets_have_error_and_cost(table):
 
 
 def test_planner_believes_at_least_the_committed_errors():
-    """The constants of the planner are the study's, or those of the same study of another pad where they are larger.
-
-    The other pad's are from before edges of contact moved through elements, and so they are larger nearly everywhere.
-    """
+    """The constants of the planner are the study's, or larger."""
     kept = pd.read_csv(TABLES / "accuracy_planner.csv").set_index(["kind", "count"])
     known, own = RULES.errors, []
     for kind, pressed, stroked in (("mesh", known.mesh, known.stroke_mesh), ("steps", known.time, known.stroke_time)):

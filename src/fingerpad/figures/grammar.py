@@ -24,6 +24,7 @@ import xarray as xr
 
 from fingerpad.figures import axes as axs
 from fingerpad.measures.errors import (
+    LEFT,
     PARTS,
     Companion,
     Companions,
@@ -50,7 +51,6 @@ from fingerpad.measures.responses import curvature_of
 from fingerpad.measures.runs import Runs
 from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height
 from fingerpad.measures.table import MEASURES
-from fingerpad.planning.errors import REMAINS, STEPS_REMAIN
 from fingerpad.publishing import style
 from fingerpad.publishing.write import without_round_off
 from fingerpad.receptors.recordings import read_rates
@@ -231,9 +231,7 @@ def largest_of(pairs: Sequence[tuple[pd.DataFrame, pd.DataFrame]], sizes: pd.Dat
 
     pairs: numbers that differ by the mesh, by the steps, and by how many outputs are read.
     """
-    parts = [100 * (a - b).abs() / sizes.replace(0, np.nan) for a, b in pairs]
-    parts[0] *= REMAINS
-    parts[1] *= STEPS_REMAIN
+    parts = [100 * left * (a - b).abs() / sizes.replace(0, np.nan) for left, (a, b) in zip(LEFT, pairs, strict=True)]
     worst = sum(part.fillna(0) for part in parts).to_numpy().argmax(axis=1)
     rows = np.arange(len(worst))
     return pd.DataFrame({name: part.to_numpy()[rows, worst] for name, part in zip(PARTS, parts, strict=True)}, parts[0].index)

@@ -31,6 +31,8 @@ from fingerpad.results import scene_of
 
 MESH, STEPS, SAMPLING = PARTS = ("mesh_error (%)", "time_step_error (%)", "sampling_error (%)")
 """Columns of the three parts of an error."""
+LEFT = REMAINS, STEPS_REMAIN, 1.0
+"""What is left of a value's changes: on the companions' mesh, by their steps, and (all of it) by what sampling leaves out."""
 SHOWN_ABOVE = 2.0
 """Per cent from which on an error is drawn as a band or a bar."""
 
@@ -62,6 +64,11 @@ class Errors:
     mesh: float
     steps: float
     sampling: float
+
+    @classmethod
+    def left(cls, *changes: float) -> Errors:
+        """Of what a value changes by on the companions' mesh, by their steps and by sampling, what is left (:data:`LEFT`)."""
+        return cls(*(share * change for share, change in zip(LEFT, changes, strict=True)))
 
     @property
     def total(self) -> float:
@@ -161,7 +168,7 @@ def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) ->
     (xm, ym), (xb, yb), sparse = curve(companion.mesh), curve(companion.both), curve(companion.sparse)
     mesh = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
     steps = norm(xb, yb - np.interp(xb, *sparse))
-    return Errors(share * REMAINS * mesh, share * STEPS_REMAIN * steps, share * sampling(history, curve))
+    return Errors.left(share * mesh, share * steps, share * sampling(history, curve))
 
 
 def shared_place(place: float, companion: Companion | None) -> float:
@@ -206,8 +213,7 @@ def _of_number(history: xr.Dataset, companion: Companion | None, feature: Featur
     mesh, sparse, both = (np.nan if companion is None else feature(getattr(companion, kind)) for kind in kinds)
     share = 100 / (np.linalg.norm(own) or np.inf)
     pairs = (own, mesh), (sparse, both), (own, feature(thinned(history)))
-    mesh, steps, sampled = (share * float(np.linalg.norm(np.atleast_1d(a) - np.atleast_1d(b))) for a, b in pairs)
-    return Errors(REMAINS * mesh, STEPS_REMAIN * steps, sampled)
+    return Errors.left(*(share * float(np.linalg.norm(np.atleast_1d(a) - np.atleast_1d(b))) for a, b in pairs))
 
 
 def furthest(found: Iterable[Errors]) -> Errors:

@@ -22,7 +22,6 @@ from fingerpad.measures.errors import Companions, Errors, thinned
 from fingerpad.measures.features import Feature, Histories, Meshes
 from fingerpad.measures.inputs import Each
 from fingerpad.measures.measure import Measure, Together, measures_of
-from fingerpad.planning.errors import REMAINS, STEPS_REMAIN
 from fingerpad.results import scene_of
 
 INSTEAD = ("mesh_companion", "sparse_mesh_companion", "companion", "sparse")
@@ -128,7 +127,7 @@ class Instead:
         """The errors of a number that is made of measures, in its unit."""
         each = (self.mesh, self.sparse_mesh, self.both, self.sparse)
         mesh, sparse_mesh, both, sparse = (_number(number, measures) for measures in each)
-        return Errors(REMAINS * abs(value - mesh), STEPS_REMAIN * abs(sparse_mesh - both), abs(value - sparse))
+        return Errors.left(abs(value - mesh), abs(sparse_mesh - both), abs(value - sparse))
 
 
 def _number(number: Callable[[Measures], float], measures: Measures) -> float:
