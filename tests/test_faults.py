@@ -301,27 +301,6 @@ def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
         assert told() == first
 
 
-def test_compiled_code_that_is_cut_off_is_named(tmp_path):
-    """Kernels kept from before, cut short: a line that says where."""
-    package = tmp_path / "src" / "fingerpad"
-    shutil.copytree(ROOT / "src" / "fingerpad", package, ignore=shutil.ignore_patterns("*.tmp.*"))
-    (tmp_path / "config").symlink_to(ROOT / "config")
-    scene = write(tmp_path, changed(accuracy=COARSE))
-    words = [sys.executable, "-m", "fingerpad", "run", str(scene), "--out", str(tmp_path / "out"), "--quiet"]
-
-    def run():
-        environment = os.environ | {"PYTHONPATH": str(package.parent), "OMP_NUM_THREADS": "1"}
-        return subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, env=environment)
-
-    kept = sorted(package.rglob("*.nbi"))
-    assert kept, "nothing compiled is kept beside the kernels"
-    for path in kept:
-        path.write_bytes(path.read_bytes()[:40])
-    done = run()
-    assert done.returncode == 3 and done.stderr.count("\n") == 1, done.stderr
-    assert "cannot be read" in done.stderr and str(package) in done.stderr and not (tmp_path / "out").exists()
-
-
 def test_a_cut_or_foreign_result_is_named(tmp_path, histories):
     """Cut anywhere, empty, another program's, or another kind of result: one line that names it and says what to do."""
     import xarray as xr

@@ -106,19 +106,6 @@ def _of_the_machine(error: Exception) -> str | None:
         return f"'{error.filename}' fails: {error.strerror}" if error.filename else f"output cannot be written: {error.strerror}"
     if isinstance(error, ImportError) and any(words in str(error) for words in ("failed to map", "cannot allocate")):
         return f"not enough memory to load what a run needs: {error}; try a larger limit (ulimit -v)"
-    if (place := _spoilt_kernels(error)) is not None:
-        return f"the compiled code kept in '{place}' cannot be read ({type(error).__name__}); remove its .nbi and .nbc files"
-    return None
-
-
-def _spoilt_kernels(error: BaseException) -> str | None:
-    """Where numba keeps what it has compiled, if that is what could not be loaded."""
-    trace = error.__traceback__
-    while trace is not None:
-        code, there = trace.tb_frame.f_code, trace.tb_frame.f_locals.get("self")
-        if code.co_filename.endswith(os.path.join("numba", "core", "caching.py")) and "load" in code.co_name:
-            return str(getattr(there, "_cache_path", getattr(there, "cache_path", None)) or os.path.dirname(__file__))
-        trace = trace.tb_next
     return None
 
 

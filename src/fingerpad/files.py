@@ -115,13 +115,13 @@ def cache_folder(name: str) -> Path | None:
 
 
 @contextlib.contextmanager
-def locked(directory: str | Path, wait: bool = False) -> Iterator[tuple[int, ...]]:
+def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
     """Hold a directory for this process; the lock ends with the process, however that ends, and leaves no file.
 
     Yields the descriptors by which it is held: processes to which they are passed hold it too.
 
     Raises:
-        BlockingIOError: another process holds it, unless `wait` is for it to let go.
+        BlockingIOError: another process holds it.
     """
     try:
         import fcntl
@@ -131,7 +131,7 @@ def locked(directory: str | Path, wait: bool = False) -> Iterator[tuple[int, ...
     handle = os.open(directory, os.O_RDONLY)
     try:
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise
         except OSError:  # a file system without locks

@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 TREE = (".test", "CITATION.cff", "Snakefile", "config", "profiles", "pyproject.toml", "requirements.lock", "src", "workflow")
-COMPILED_TOO = shutil.ignore_patterns("*.egg-info", "*.tmp.*", "*.pyc.*")  # all but what is being written
+COMPILED_TOO = shutil.ignore_patterns("*.egg-info", ".*.loop", "*.pyc.*")  # all but what is being written
 QUIET = ("--quiet", "host")
 SMOKE = ("--configfile", "config/smoke.yaml")
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import lapack
 
-from fingerpad.mechanics import kernels
+from fingerpad.mechanics import compiled
 
 
 class ContactError(RuntimeError):
@@ -68,7 +68,7 @@ class Zone:
     def along(self, directions: list[np.ndarray], matrix: np.ndarray) -> np.ndarray:
         """Components along each of the directions (nz, 2) at the points, of the columns (nc, n) of a matrix: (nd nz, n)."""
         out = np.empty((len(directions) * len(self), matrix.shape[1]))
-        kernels.at_points(self._columns, self._values, np.stack(directions), np.ascontiguousarray(matrix), out)
+        compiled.at_points(self._columns, self._values, np.stack(directions), np.ascontiguousarray(matrix), out)
         return out
 
     def spread(self, forces: np.ndarray) -> np.ndarray:
@@ -78,7 +78,7 @@ class Zone:
     def bend(self, matrix: np.ndarray, direction: np.ndarray, weight: np.ndarray) -> np.ndarray:
         """A matrix (nc, nc) less ``weight`` (nz,) times the square of the displacement along ``direction`` (nz, 2)."""
         out = matrix.copy()
-        kernels.bend(out, self._columns, self._values, direction, weight)
+        compiled.bend(out, self._columns, self._values, direction, weight)
         return out
 
     @property
@@ -164,7 +164,7 @@ def _inverse(matrix):
     if failed:
         return np.linalg.inv(matrix), False
     inverse = lapack.dpotri(factors, lower=0, overwrite_c=1)[0].T
-    kernels.mirror(inverse)
+    compiled.mirror(inverse)
     return inverse, True
 
 

@@ -8,7 +8,7 @@ last linear step predicted (Magisano, Leonetti and Garcea 2017), which lets a wh
 import numpy as np
 
 from fingerpad.laws import NEO_HOOKE, Assigned
-from fingerpad.mechanics import kernels
+from fingerpad.mechanics import compiled
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import Branches
 from fingerpad.specimen.materials import Prony
@@ -49,7 +49,7 @@ class FiniteStrainBody:
         self.u = np.zeros(space.points.shape)
         self.lagged = lagged
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
-        self._loops = [(kernels.loops(part.law, *space.sizes), part.constants, part.elements) for part in self.laws]
+        self._loops = [(compiled.loops(part.law, *space.sizes), part.constants, part.elements) for part in self.laws]
         self._dilatation = np.zeros((len(space.cells), space.psi.shape[2]))
         self._lag, self._predicted = self._dilatation.copy(), None
         self.branches = Branches(prony, space.weight.shape) if prony else None
@@ -95,7 +95,7 @@ class FiniteStrainBody:
         self._data[:] = 0
         force = np.zeros_like(self.u)
         if self._predicted is not None:
-            kernels.dilatation_loop(*self.space.sizes)(*self._predicted, self.space.mesh, self._lag)
+            compiled.dilatation_loop(*self.space.sizes)(*self._predicted, self.space.mesh, self._lag)
             self._predicted = None
         lag = self._lag if self.lagged else self._dilatation
         self.smallest_jacobian = min(
@@ -177,7 +177,7 @@ def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.nd
     """
     out = np.empty((len(cells), 4))
     for part in laws:
-        kernels.stress_loop(part.law)(u, cells, grad, shear, part.constants, part.elements, out)
+        compiled.stress_loop(part.law)(u, cells, grad, shear, part.constants, part.elements, out)
     return out
 
 

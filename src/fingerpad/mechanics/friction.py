@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lapack
 
-from fingerpad.mechanics import kernels
+from fingerpad.mechanics import compiled
 from fingerpad.mechanics.contact import ContactError, ContactStep, Zone, pressing_stiffness, respond, soften, stable
 
 #: What :attr:`Coulomb.state` holds where there is contact: 0 sticks, +-1 slips with the friction on the skin along +-t.
@@ -214,7 +214,7 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
         i, j = len(on), len(stick)
         size = i + j + (load is not None)
         system, right = np.empty((size, size), order="F"), np.zeros((size, 2), order="F")
-        kernels.exchanged(a, share, on, stick, system)
+        compiled.exchanged(a, share, on, stick, system)
         needed = offset if bound is None else offset + a[:, n:] @ given
         right[:i, 0], right[i : i + j, 0] = -needed[:n][on], -needed[n:][stick]
         if load is not None:

@@ -15,41 +15,24 @@ of, so that their innermost ones are vectors of the processor. ``H`` is the (sym
 passing ``None`` compiles a kernel in which it does not exist. ``p_lag`` is the pressure the last linear step predicted (mixed
 integration point; Magisano, Leonetti and Garcea 2017), while the residual keeps the true one.
 
-All functions live in this one module because the on-disk cache of compiled code notices only changes of its own file; what it
-must know of the laws' files is in the loops' closures.
+All functions live in this one module, for what is kept of them on disk (:mod:`compiled`, through which they are called) knows of
+changes of this file and of the laws' alone.
 """
 
-from functools import cache, wraps
+from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
 from numba import njit
-from numba.core.caching import IndexDataCacheFile
 from numba.extending import register_jitable
 
-from fingerpad.files import locked
 from fingerpad.laws import Law
 
-_JIT = {"cache": True, "fastmath": {"contract", "nsz", "reassoc", "arcp"}, "error_model": "numpy", "boundscheck": False}
+_JIT = {"fastmath": {"contract", "nsz", "reassoc", "arcp"}, "error_model": "numpy", "boundscheck": False}
 _INLINE = _JIT | {"inline": "always"}
 
 _LANES = 8
 """Numbers that a processor's vector may hold: rows are filled up with zeros to a multiple of it."""
-
-
-def _one_at_a_time(save):
-    """Keep compiled code while no other process does: two that take the same number for different loops would leave an index that
-    leads from one to the machine code of the other."""
-
-    @wraps(save)
-    def alone(self, key, data):
-        with locked(self._cache_path, wait=True):
-            save(self, key, data)
-
-    return alone
-
-
-IndexDataCacheFile.save = _one_at_a_time(IndexDataCacheFile.save)
 
 
 @njit(**_INLINE)
@@ -221,13 +204,12 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     :attr:`Space.mesh`, ``constants`` (ne, number of constants) are the law's, and ``only`` (ne,) bool says which elements follow
     it.
     """
-    law_energy, law_stress, law_tangent, law_source = law.energy, law.stress, law.tangent, law.source
+    law_energy, law_stress, law_tangent = law.energy, law.stress, law.tangent
     for formula in (law_energy, law_stress, law_tangent):
         register_jitable(inline="always")(formula)
-    jit = _JIT | {"cache": law.stress.__module__.startswith("fingerpad.")}
     wide_x, wide_y = (-(-width // _LANES) * _LANES for width in (2 * nodes, nodes))
 
-    @njit(**jit)
+    @njit(**_JIT)
     def assemble_tangent(u, mesh, mu, kappa, constants, only, dilatation_lag, history, factor, pointwise, scatter, data, force):
         """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``.
 
@@ -236,7 +218,6 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded); force (n, 2), accumulated.
         Returns the smallest det F.
         """
-        law_source  # noqa: B018 - only in the closure: it is what tells the cache on disk that a law has been edited
         cells, reference, inverse, weight, psi = mesh
         turned = np.ascontiguousarray(reference.T)
         local, drawn, f, theta = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points)), np.empty(modes)
@@ -360,10 +341,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             _rest(force, cells[e], reference, drawn)
         return smallest
 
-    @njit(**jit)
+    @njit(**_JIT)
     def internal_force(u, mesh, mu, kappa, constants, only, history, factor, pointwise, force, dilatation):
         """Internal force (n, 2), accumulated in ``force``; fills ``dilatation`` (ne, nm). Returns the smallest det F."""
-        law_source  # noqa: B018 - only in the closure: it is what tells the cache on disk that a law has been edited
         cells, reference, inverse, weight, psi = mesh
         local, drawn, f = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points))
         smallest = np.inf
@@ -401,14 +381,13 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             _rest(force, cells[e], reference, drawn)
         return smallest
 
-    @njit(**jit)
+    @njit(**_JIT)
     def commit(u, mesh, mu, constants, only, decay, gain, branches, stress, stretch, new_branches, new_stress, new_stretch):
         """Branch stresses (nb, ne, nq, 4), isochoric stress (ne, nq, 4) and C 11, 22, 12 (ne, nq, 3) after a step, into the new.
 
         ``decay``, ``gain`` (nb,) of the step; ``mu`` (ne,) long-term moduli. Returns the work done on the branches, by the
         trapezoidal rule, J/m.
         """
-        law_source  # noqa: B018 - only in the closure: it is what tells the cache on disk that a law has been edited
         cells, reference, inverse, weight, _ = mesh
         local, drawn, f = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points))
         change = np.empty(4)
@@ -438,13 +417,12 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                 new_stretch[e, q, 0], new_stretch[e, q, 1], new_stretch[e, q, 2] = c11, c22, c12
         return work
 
-    @njit(**jit)
+    @njit(**_JIT)
     def energies(u, mesh, mu, kappa, constants, only, pointwise, dilatation, beta, branches):
         """Energy of the network and that of the Maxwell springs, tau_i : tau_i / (4 beta_i mu), J/m.
 
         ``dilatation`` (ne, nm) modes; ``beta`` (nb,) and ``branches`` (nb, ne, nq, 4), None without.
         """
-        law_source  # noqa: B018 - only in the closure: it is what tells the cache on disk that a law has been edited
         cells, reference, inverse, weight, _ = mesh
         local, drawn, f = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points))
         network = springs = 0.0
@@ -477,16 +455,15 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
 @cache
 def stress_loop(law: Law):
     """The loop that gives a law's stress at points with gradients of their own."""
-    law_stress, law_source = law.stress, law.source
+    law_stress = law.stress
     register_jitable(inline="always")(law_stress)
 
-    @njit(**_JIT | {"cache": law.stress.__module__.startswith("fingerpad.")})
+    @njit(**_JIT)
     def isochoric_stress(u, cells, grad, mu, constants, only, out):
         """Isochoric second Piola-Kirchhoff stress 11, 22, 12, 33 into ``out`` (np, 4) where only (np,) says so.
 
         Shapes: u (n, 2); cells (np, nen); grad (np, nen, 2); mu (np,).
         """
-        law_source  # noqa: B018 - only in the closure: it is what tells the cache on disk that a law has been edited
         for e in range(len(cells)):
             if not only[e]:
                 continue

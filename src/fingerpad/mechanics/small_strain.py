@@ -8,7 +8,7 @@ times the deviatoric stress of v.
 import numpy as np
 
 from fingerpad.laws import Assigned
-from fingerpad.mechanics import kernels
+from fingerpad.mechanics import compiled
 from fingerpad.mechanics.finite_strain import everywhere_neo_hooke
 from fingerpad.mechanics.linear_solver import SymmetricPattern
 from fingerpad.mechanics.space import Space
@@ -54,7 +54,7 @@ class SmallStrainBody:
         zero = np.zeros_like(self.u)
         no_lag = np.zeros((len(space.cells), space.psi.shape[2]))
         for part in self.laws:
-            kernels.loops(part.law, *space.sizes).assemble_tangent(
+            compiled.loops(part.law, *space.sizes).assemble_tangent(
                 zero, space.mesh, deviatoric * self.shear, volumetric * self.bulk,
                 part.constants, part.elements, no_lag, None, 1.0, None, pattern.scatter, data, zero.copy(),
             )  # fmt: skip
@@ -108,7 +108,7 @@ class SmallStrainBody:
     def dilatation(self) -> np.ndarray:
         """(ne, nm) modes of div u."""
         space, out = self.space, np.empty((len(self.space.cells), self.space.psi.shape[2]))
-        kernels.dilatation_loop(*space.sizes)(np.zeros_like(self.u), self.u, space.mesh, out)
+        compiled.dilatation_loop(*space.sizes)(np.zeros_like(self.u), self.u, space.mesh, out)
         return out
 
     def save(self):

@@ -35,7 +35,7 @@ CONTEXT = ["https://w3id.org/ro/crate/1.1/context", {"sha256": "https://w3id.org
 SNAKEMAKE = "https://w3id.org/workflowhub/workflow-ro-crate#snakemake"
 LICENSE = "https://spdx.org/licenses/GPL-3.0-or-later"
 BIOSCHEMAS = "https://bioschemas.org/profiles/{}/1.0-RELEASE"
-LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "*.pyc", "*.nbi", "*.nbc")
+LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "*.pyc")
 KINDS = {".csv": "text/csv", ".png": "image/png", ".gif": "image/gif", ".md": "text/markdown", ".yaml": "application/yaml"}
 
 
