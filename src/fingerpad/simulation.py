@@ -35,6 +35,7 @@ from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.measures import below_outline, below_skin, touched_side
 from fingerpad.specimen.pad import PadMesh, skin_chain
+from fingerpad.stimuli.motion import among
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -231,14 +232,14 @@ class Simulation:
         done: list[Record] = []
         # one a leg and time: of the increments of a steady leg, all at one time, the last
         snapshots: dict[tuple[int, float], dict[str, np.ndarray]] = {}
-        wanted = self.scene.outputs.snapshots
+        wanted = sorted(self.scene.outputs.snapshots)
         total = self._nominal_end()
         counts = {"iterations": 0, "cutbacks": 0}
 
         def after(record: Record):
             states.append(self._sampled(done[-1].time if done else 0.0))
             done.append(record)
-            if any(abs(record.time - t) <= 1e-9 * max(t, 1e-12) for t in wanted):
+            if among(wanted, record.time):
                 snapshots[record.leg, record.time] = self._full_field(record)
             if progress:
                 counts["iterations"] += record.iterations

@@ -1,9 +1,11 @@
 """Surfaces of straight lines and circular arcs, whose distance is exact."""
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from fingerpad.machine_code import Loop, sources
 from fingerpad.stimuli.profile import Profile, Walls
 
 
@@ -65,6 +67,8 @@ class Curve(Profile):
         before, after = (slope + turn)[:-1], (slope - turn)[1:]
         self._kink = np.concatenate([[0.0], after - before])  # at the start of each piece
         self._bisector = np.concatenate([[0.0], (before + after) / 2])
+        self._ends = self.x, self.y, self._kink, self._bisector
+        self._pieces = self._centre, self._tangent, self._side, self._radius, self._line, self._reach
         self._valleys = np.flatnonzero(self._kink < -self.flat)
         self.valleys = len(self._valleys) > 0
         near = {"rtol": 0, "atol": 1e-9 * np.ptp(self.x)}
@@ -140,37 +144,23 @@ class Curve(Profile):
         return np.abs(y - height) * share_of_height(self._steepest)
 
     def evaluate(self, points):
+        points = np.ascontiguousarray(points, float)
         x, y = points.T
         height = self._height(x)
         within = self._farthest(x, y, height) * (1 + 1e-9) + 2 * self.overlap
-        first = np.searchsorted(self.x[1:-1], x - within, side="left")
-        count = np.searchsorted(self.x[1:-1], x + within, side="right") + 1 - first
-        begin = np.cumsum(count) - count
-        row = np.repeat(np.arange(len(points)), count)
-        piece = np.arange(len(row)) - begin[row] + first[row]
+        distance, gradient, curvature = np.empty(len(points)), np.empty(points.shape), np.empty(len(points))
+        limits = self.overlap, self.touch
+        _closest(points, y > height, within, self._ends, self._pieces, limits, distance, gradient, curvature)
+        return distance, gradient, curvature
 
-        def closest(distance):
-            least = np.minimum.reduceat(distance, begin)
-            where = np.flatnonzero(~(distance > least[row]))  # the first of equals, and anything for a point that is none
-            return least, piece[where[np.searchsorted(row[where], np.arange(len(points)))]]
 
-        distance, _, beyond = self._to_piece(points[row], piece)
-        to_piece, on = closest(np.where(beyond <= self.overlap, np.abs(distance), np.inf))
-        corner = np.hypot(x[row] - self.x[piece], y[row] - self.y[piece])
-        to_corner, at = closest(np.where(piece > 0, corner, np.inf))
+def _compiler():
+    from fingerpad.stimuli.curve_loop import closest
 
-        distance, gradient, curvature = self._from_piece(points, on)
-        is_corner = to_corner < to_piece - self.overlap
-        sign, length = np.where(y > height, -1.0, 1.0), np.maximum(to_corner, self.touch)
-        distance = np.where(is_corner, sign * to_corner, distance)
-        arm = points - np.column_stack([self.x[at], self.y[at]])
-        gradient = np.where(is_corner[:, None], (sign / length)[:, None] * arm, gradient)
-        curvature = np.where(is_corner, sign / length, curvature)
+    return closest
 
-        hit = (to_corner < self.touch) & (np.abs(self._kink[at]) > 1e-9)
-        angle = self._bisector[at]
-        gradient = np.where(hit[:, None], np.column_stack([np.sin(angle), -np.cos(angle)]), gradient)
-        return distance, gradient, np.where(hit, 0.0, curvature)
+
+_closest = Loop("closest_on_curve", _compiler, sources(Path(__file__).with_name("curve_loop.py")))
 
 
 def share_of_height(slope: float) -> float:

@@ -7,6 +7,7 @@ of a programme ask of legs are its attributes; nothing outside this module asks 
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import get_annotations
@@ -455,7 +456,7 @@ def programme(
         stride: so many steps of a leg are made one, but for those that press anew.
     """
     how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
-    time, at, last = 0.0, Goal(None, None, 0.0), None
+    time, at, last, wanted = 0.0, Goal(None, None, 0.0), None, sorted(snapshots)
     for number, leg in enumerate(legs):
         reached = Reached(*present()) if present else Reached(at.force or 0.0, at.depth or 0.0)
         sizes, goals, last = leg.path(at, last, reached, how)
@@ -464,13 +465,19 @@ def programme(
         passes = leg.strokes and parts is not None
         for count, (dt, goal) in enumerate(zip(sizes, goals, strict=True), start=1):
             begin, time = time, time + (float(dt) if dt < STEADY else 0.0)
-            for cut in sorted(t for t in snapshots if begin + 1e-9 * time < t < time - 1e-9 * time):
+            for cut in wanted[bisect_right(wanted, begin + 1e-9 * time) : bisect_left(wanted, time * (1 - 1e-9))]:
                 at = _between(at, goal, (cut - begin) / (time - begin))
                 yield Step(number, cut, cut - begin, *at)
                 begin = cut
-            solved = not passes or count == len(goals) or any(abs(time - t) <= 1e-9 * time for t in snapshots)
+            solved = not passes or count == len(goals) or among(wanted, time)
             yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh, solved=solved)
             at = goal
+
+
+def among(times: Sequence[float], time: float) -> bool:
+    """Is ``time`` one of ascending ``times`` (s), but for rounding?"""
+    next_one = bisect_left(times, time * (1 - 1e-9))
+    return next_one < len(times) and times[next_one] <= time * (1 + 1e-9)
 
 
 def _joined(sizes: np.ndarray, goals: list[Goal], stride: int) -> tuple[np.ndarray, list[Goal]]:
