@@ -90,6 +90,37 @@ def test_contact_lengths_are_the_chords_less_what_the_corner_takes(slow):
     assert [found[k] for k in chords if k != "26"] == pytest.approx([v for k, v in chords.items() if k != "26"], abs=2 * st.FINE)
 
 
+def _passed_by_hertz(stroke, half_width):
+    """The stroke with Hertz's pressure under a contact that goes over the centre node half way, one stroke distance one place."""
+    x, d = stroke["skin_x"].values, st.distance(stroke)
+    away = (x - x[centre_node(stroke)])[None] - (d - d.mean())[:, None]
+    pressure = 5e3 * np.sqrt(np.maximum(1 - (away / half_width) ** 2, 0)) * (stroke["skin_y"].values > 0)
+    return _with(stroke, contact_pressure=pressure)
+
+
+def _spacing(stroke):
+    """m, of the nodes beside the centre node."""
+    x = stroke["skin_x"].values
+    return np.sort(abs(x - x[centre_node(stroke)])[stroke["skin_y"].values > 0])[1]
+
+
+def _contact_of_centre(stroke):
+    return st.FINE * np.count_nonzero(st._finely(stroke)[1])
+
+
+@pytest.mark.parametrize("spacings", [4.3, 6.1, 9.85])
+def test_contact_of_the_centre_begins_and_ends_between_nodes_and_outputs(slow, spacings):
+    """Half a node off at either end is what counting nodes is wrong by, and so is another law of the pressure at the edge."""
+    half_width = spacings * _spacing(slow)
+    assert _contact_of_centre(_passed_by_hertz(slow, half_width)) == pytest.approx(2 * half_width, abs=2 * st.FINE)
+
+
+def test_mutant_that_takes_the_last_node_for_the_edge(slow, monkeypatch):
+    half_width = 6.1 * _spacing(slow)
+    monkeypatch.setattr(st, "edge_of", lambda x, pressure, spacing, on_edge: x[-1])
+    assert abs(_contact_of_centre(_passed_by_hertz(slow, half_width)) - 2 * half_width) > 10 * st.FINE
+
+
 def test_contact_is_lost_at_the_corner_only(slow):
     ((left, back),) = st.lost_contacts(slow)
     assert left < 8e-3 < back and back - left == pytest.approx(0.8e-3, abs=0.5e-3)

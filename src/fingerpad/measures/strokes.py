@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from fingerpad.contact_edge import edge_of
 from fingerpad.measures.features import PRESSURE, Trace, centre_node, centre_pressure, energy
 from fingerpad.measures.skin import WINDOW, skin_curvature
 from fingerpad.results import scene_of
@@ -36,6 +37,12 @@ NODES = (-1.0, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 1.0)
 
 FINE = 5e-6
 """Stroke distance (m) that the contact of the centre node is resolved to, between outputs."""
+
+_ON_EDGE = 2
+"""Of the skin's nodes on an edge of a quadratic element."""
+
+_BESIDE = 6
+"""Spacings of nodes from the edge of the contact within which it is located between them."""
 
 
 def profile_and_height(history: xr.Dataset) -> tuple[Profile, np.ndarray]:
@@ -122,19 +129,28 @@ def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Place of the centre node and whether it touches, every `FINE` of stroke distance.
 
     Between outputs both its place and its distance from the edge of the contact, along the undeformed skin and below zero
-    outside, are interpolated: the edge passes over the node where that changes its sign. It is taken to be a quarter of a spacing
-    beyond the last node that touches, for a node touches from a quarter before it to a quarter after it.
+    outside, are interpolated: the edge passes over the node where that changes its sign.
     """
-    x, node = stroke["skin_x"].values, centre_node(stroke)
     upper = stroke["skin_y"].values > 0
-    touches = stroke[PRESSURE].values[:, upper] > 0
-    apart = abs(x[upper] - x[node])
-    inside = touching(stroke)
-    within = np.where(touches != inside[:, None], apart, apart.max()).min(axis=1)
-    within -= np.where(inside, 0.75, 0.25) * np.sort(apart)[1]
+    x, centre = stroke["skin_x"].values[upper], stroke["skin_x"].values[centre_node(stroke)]
+    pressure, inside = stroke[PRESSURE].values[:, upper], touching(stroke)
+    apart = abs(x - centre)
+    within = np.where((pressure > 0) != inside[:, None], apart, apart.max()).min(axis=1)
+    for k in np.flatnonzero((within < _BESIDE * np.sort(apart)[1]) & (pressure > 0).any(axis=1)):
+        within[k] = (1 if inside[k] else -1) * _inside(x, pressure[k], centre)
     d = distance(stroke)
     fine = np.arange(d[0], d[-1], FINE)
     return np.interp(fine, d, place(stroke)), np.interp(fine, d, np.where(inside, within, -within)) > 0
+
+
+def _inside(x: np.ndarray, pressure: np.ndarray, place: float) -> float:
+    """How far (m) a place is from the nearest edge of the contact, below zero outside; x, pressure of ascending nodes."""
+    on, spacing, deepest = np.flatnonzero(pressure > 0), np.gradient(x), -np.inf
+    for run in np.split(on, np.flatnonzero(np.diff(on) > 1) + 1):
+        left = -edge_of(-x[run[::-1]], pressure[run[::-1]], spacing[run[0]], _ON_EDGE)
+        right = edge_of(x[run], pressure[run], spacing[run[-1]], _ON_EDGE)
+        deepest = max(deepest, min(place - left, right - place))
+    return deepest
 
 
 def contact_lengths(stroke: xr.Dataset) -> dict[str, float]:
