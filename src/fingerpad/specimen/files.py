@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -338,6 +339,13 @@ def read_pad_mesh(path: str | Path, layers: Sequence[str] = (), fixed: Sequence[
     path = Path(path)
     if not path.is_file():
         raise MeshError(f"{path}: there is no such mesh file; a gmsh .msh file is allowed")
+    state = path.stat()
+    return _read(path, (state.st_mtime_ns, state.st_size, state.st_ino), tuple(layers), tuple(fixed), tuple(free))
+
+
+@lru_cache(maxsize=1)  # a plan looks at the mesh before it is solved on
+def _read(path: Path, state: tuple[int, ...], layers: tuple[str, ...], fixed: tuple[str, ...], free: tuple[str, ...]) -> PadMesh:
+    """`read_pad_mesh` of a file in a `state`."""
     tags, places, surfaces, lines, count = _read_groups(path)
     regions = _layers(path, surfaces, layers)
     held = _held(path, lines, fixed, free)
