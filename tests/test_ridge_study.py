@@ -49,6 +49,10 @@ def test_index_is_the_contrast_of_the_two_ways(made):
         directional_index(ridged, 800e-6, 0.0)
 
 
+LEFT_OUT = 5e-4
+"""A quarter of the force that a draft stroke may leave out of balance: how energies differ by it depends on the processor."""
+
+
 def test_strokes_to_either_side_are_mirror_images(base):
     """The identity that lets one stroke stand for two, simulated once on a draft mesh."""
     draft = base.with_accuracy("draft")
@@ -60,9 +64,9 @@ def test_strokes_to_either_side_are_mirror_images(base):
     )
     for depth in (600e-6, DEPTH, 935e-6):
         for x in offsets:
-            np.testing.assert_allclose(energy(right, depth, x), energy(left, depth, -x), rtol=1e-4)  # as much is out of balance
+            np.testing.assert_allclose(energy(right, depth, x), energy(left, depth, -x), rtol=LEFT_OUT)
     found, mirrored = both_ways(right, DEPTH, -BESIDE)
-    np.testing.assert_allclose(mirrored, energy(left, DEPTH, -BESIDE)[-len(mirrored) :], rtol=1e-4)
+    np.testing.assert_allclose(mirrored, energy(left, DEPTH, -BESIDE)[-len(mirrored) :], rtol=LEFT_OUT)
     assert directional_index(right, DEPTH, -BESIDE) > 0.3 and (found > 1.5 * mirrored).all()
 
 
