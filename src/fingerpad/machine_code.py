@@ -68,8 +68,8 @@ class Loop:
         dispatcher.compile(types := tuple(map(typeof, arguments)))
         made = dispatcher.overloads[types]
         if self._sources is not None:
-            code = made.library.serialize_using_object_code()[2][0]
-            self._keep(kinds, pickle.dumps((made.fndesc.llvm_cpython_wrapper_name, made.environment.env_name, code)))
+            (_, _, (code, _)), function, environment, *_ = made._reduce()  # what numba itself would keep
+            self._keep(kinds, pickle.dumps((function.llvm_cpython_wrapper_name, environment.env_name, code)))
         return made.entry_point
 
     def _keep(self, kinds: tuple, content: bytes) -> None:
