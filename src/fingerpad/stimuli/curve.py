@@ -105,23 +105,14 @@ class Curve(Profile):
         rise = self._side[piece] * np.sqrt(np.maximum(self._radius[piece] ** 2 - (x - cx) ** 2, 0))
         return np.where(self._line[piece], cy + (x - cx) * ty / tx, cy - rise)
 
-    def _to_piece(self, points, piece):
-        """Signed distance to a piece going on beyond its ends, arm from its centre, and by how much its ends are overshot (m)."""
-        arm, tangent, side = points - self._centre[piece], self._tangent[piece], self._side[piece]
-        along, across = np.einsum("ni,ni->n", arm, tangent), np.einsum("ni,ni->n", arm, _normal(tangent))
-        length, line, reach, radius = np.hypot(along, across), self._line[piece], self._reach[piece], self._radius[piece]
-        past = np.where(line, along - reach, radius * (np.abs(np.arctan2(along, side * across)) - reach))
-        short = np.where(line & (piece > 0), -along, -np.inf)
-        past = np.where(piece < len(self.bend) - 1, past, -np.inf)
-        return np.where(line, across, side * (length - radius)), arm, np.maximum(past, short)
-
     def _from_piece(self, points, piece):
         """Signed distance to a piece going on beyond its ends, with gradient and curvature."""
-        distance, arm, _ = self._to_piece(points, piece)
-        tangent, side, line = self._tangent[piece], self._side[piece], self._line[piece]
-        length = np.maximum(np.hypot(*arm.T), 1e-15)
-        gradient = np.where(line[:, None], _normal(tangent), (side / length)[:, None] * arm)
-        return distance, gradient, np.where(line, 0.0, side / length)
+        arm, tangent, side, line = points - self._centre[piece], self._tangent[piece], self._side[piece], self._line[piece]
+        across, length = np.einsum("ni,ni->n", arm, _normal(tangent)), np.hypot(*arm.T)
+        distance = np.where(line, across, side * (length - self._radius[piece]))
+        bend = side / np.maximum(length, 1e-15)
+        gradient = np.where(line[:, None], _normal(tangent), bend[:, None] * arm)
+        return distance, gradient, np.where(line, 0.0, bend)
 
     def walls(self, points, reach, flat=0.0):
         at, last = self._valleys[self._kink[self._valleys] < -flat], len(self.bend) - 1
