@@ -1,12 +1,19 @@
 """Meshes from elsewhere go the same way as the built one and give the same answer."""
 
+import json
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from fingerpad import load_scene, plan, simulate
+from fingerpad.figures.axes import error_text
+from fingerpad.measures.errors import Companion, curve_errors, number_errors, over_time
+from fingerpad.measures.features import width
+from fingerpad.measures.table import measures_table
 from fingerpad.planning.bounds import PlanError
+from fingerpad.planning.plan import companion
 from fingerpad.results import summary
 from fingerpad.specimen import write_pad
 from fingerpad.specimen.build import build_pad_mesh
@@ -142,3 +149,35 @@ def test_a_raised_skin_bends_as_its_nodes_do(built):
         {"skin": np.array([[0, 3], [3, 2], [2, 1]])}, False,
     ).raised()  # fmt: skip
     np.testing.assert_array_equal(square.points[square.cells[0, 4:]], [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]])
+
+
+@pytest.mark.parametrize(
+    ("change", "element", "others"),
+    [(linear, "Q1P0", "Q2P1"), (linear, "Q2P1", "Q1P0"), (triangles, "P2B", "P2B"), (lambda mesh: mesh, "Q2P1", "Q2P1")],
+)
+def test_what_the_mesh_makes_wrong_is_told_by_other_elements_on_it_or_not_at_all(change, element, others, tmp_path):
+    """Linear quads by quadratic ones and the other way round, no less than it is; of all others it is not known, and not zero."""
+    motion = [{"press_to_force": "10 gf", "rate": "40 gf/s"}]
+    document = {"stimulus": {"shape": "cylinder", "curvature": "210 1/m"}, "motion": motion}
+    coarse, fine = (load_scene({**document, "accuracy": each}) for each in ("draft", "fine"))
+    write_pad(change(build_pad_mesh(coarse.specimen.outline, plan(coarse).mesh_size)), tmp_path / "my.msh")
+    scene = load_scene({**document, "specimen": {"mesh": str(tmp_path / "my.msh")}})
+    scene = scene.with_accuracy({"element": element, "steps": plan(fine).steps_per_leg})
+    own = plan(scene)
+    hows = own, companion(scene, own), companion(scene, own, 2)
+    assert [how.element for how in hows] == [element, others, others]
+    run, mesh, both = (simulate(scene, how) for how in hows)
+    assert [json.loads(h.attrs["cost"])["nodes"] for h in (mesh, both)] == pytest.approx([hows[1].nodes] * 2, rel=0.04)
+    pair = Companion(mesh, both)
+    errors = curve_errors(run, pair, over_time(width)), number_errors(run, pair, lambda h: float(h["indentation_depth"][-1]))
+    rows = measures_table({"press": run}, {"press": pair}, {}).set_index(["quantity", "condition"])
+    said = error_text(pd.DataFrame({"source": ["simulated"], **{k: [v] for k, v in errors[0].columns.items()}}))
+    if element == others:  # mutant: the difference, which is nothing
+        assert all(np.isnan(each.mesh) and each.steps > 0 for each in errors)
+        assert rows["mesh_companion"].isna().all() and rows["companion"].notna().any()
+        assert said.startswith("Largest error: mesh not known, steps ")
+        return
+    truth = simulate(fine)
+    true = 100 * abs(float(run["indentation_depth"][-1] / truth["indentation_depth"][-1]) - 1)
+    assert 0.7 * true < errors[1].mesh < (2 * true if element == "Q1P0" else 15 * true)
+    assert rows["mesh_companion"].notna().any() and "mesh not known" not in said

@@ -89,7 +89,7 @@ def footnote(frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH) 
 
 def error_text(frame: pd.DataFrame) -> str:
     """``Largest error: mesh 1.2 %, steps 0.3 %, sampling 0.1 %`` of the curve or point that is furthest off, with its surface
-    where that stands out; nothing where none is known."""
+    where that stands out, and ``not known`` where only that of the mesh is not; nothing where none is known."""
     sums = total(frame)
     if not sums.notna().any():
         return ""
@@ -97,8 +97,11 @@ def error_text(frame: pd.DataFrame) -> str:
     def shown(value: float) -> str:
         return f"{value:.1f} %" if value >= 0.05 or value == 0 else "<0.1 %"
 
-    words = zip(("mesh", "steps", "sampling"), frame.loc[sums.idxmax(), list(PARTS)], strict=True)
+    mesh, steps, sampling = frame.loc[sums.idxmax(), list(PARTS)]
+    words = zip(("mesh", "steps", "sampling"), (mesh, steps, sampling), strict=True)
     said = ", ".join(f"{word} {shown(value)}" for word, value in words if value == value)
+    if mesh != mesh and steps == steps:  # a mesh of the user's own
+        said = f"mesh not known, {said}"
     of = ""
     if "surface" in frame:
         worst = sums.groupby(frame["surface"]).max().sort_values(ascending=False)

@@ -30,6 +30,7 @@ from fingerpad.measures.errors import (
     Companions,
     at_output,
     curve_errors,
+    instead,
     over_stroke,
     over_time,
     thinned,
@@ -126,13 +127,13 @@ class Data:
     def numbers(self, runs: Runs, columns: Mapping[Q, Feature], own: bool = False) -> pd.DataFrame:
         """One row a surface: curvature, numbers, the largest of their errors, relative to the largest of all or to its `own`."""
         histories = [history for _, history, _ in self.runs(runs)]
-        companions = [companion for *_, companion in self.runs(runs)]
+        others = [instead(history, companion) for _, history, companion in self.runs(runs)]
 
         def read_all(found: Sequence[xr.Dataset | None]) -> pd.DataFrame:
             return pd.DataFrame({q: [np.nan if h is None else read(h) for h in found] for q, read in columns.items()})
 
         rows, sparse = read_all(histories), read_all([thinned(history) for history in histories])
-        mesh, left, both = (read_all([c and getattr(c, kind) for c in companions]) for kind in ("mesh", "sparse", "both"))
+        mesh, left, both = (read_all(found) for found in zip(*others, strict=True))
         sizes = rows.abs() if own else rows.abs().max()
         errors = largest_of([(rows, mesh), (left, both), (rows, sparse)], sizes)
         rows.insert(0, CURVATURE, [curvature_of(history) for history in histories])
@@ -143,10 +144,9 @@ class Data:
         """One row a run and convexity: its name and curvature, measures by their names, and the largest of their errors."""
         parts = []
         for name, history, coarse in self.runs(runs):
-            others = (coarse.mesh, coarse.sparse, coarse.both) if coarse else (None, None, None)
             fine, sparse, mesh, left, both = (
                 pd.DataFrame({q: MEASURES[m](h) if h is not None else {} for q, m in columns.items()}, dtype=float)
-                for h in (history, thinned(history), *others)
+                for h in (history, thinned(history), *instead(history, coarse))
             )
             sparse, mesh, left, both = (each.reindex(fine.index) for each in (sparse, mesh, left, both))
             errors = largest_of([(fine, mesh), (left, both), (fine, sparse)], fine.abs())

@@ -2,7 +2,8 @@
 
 mesh
     what is left by what it changes by on its companions' coarser mesh, with the run's own steps and outputs, if it converges with
-    the order that was measured (`REMAINS`).
+    the order that was measured (`REMAINS`). On a mesh of the user's own by what it changes by with its linear quads made
+    quadratic, or the other way round; of all other elements it is not known.
 time steps
     the same of what it changes by on that mesh when every two steps are made one, read at the outputs that are left; of a stroke,
     when steps may be twice as long and what lies between its states off by twice as much.
@@ -16,6 +17,7 @@ figures/tables/accuracy_shown has them beside what curves change by on finer mes
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import astuple, dataclass
 from functools import cached_property
@@ -52,6 +54,17 @@ class Companion:
     def sparse(self) -> xr.Dataset:
         """The one with the run's own steps at the outputs of the other: what these two differ by is the steps'."""
         return self.mesh if self.mesh.sizes["time"] == self.both.sizes["time"] else thinned(self.mesh)
+
+    def apart(self, history: xr.Dataset) -> xr.Dataset | None:
+        """The one with the run's own steps; None where it is solved on the run's very mesh, of whose error it tells nothing."""
+        own, other = (json.loads(each.attrs.get("plan", "{}")) for each in (history, self.mesh))
+        external = "mesh_size_SI" in own and own["mesh_size_SI"] is None
+        return None if external and own["discretisation"]["element"] == other["discretisation"]["element"] else self.mesh
+
+
+def instead(history: xr.Dataset, companion: Companion | None) -> tuple[xr.Dataset | None, ...]:
+    """What stands in for a run: on another mesh, and of the steps' part with its own steps and coarser ones; None: not known."""
+    return (companion.apart(history), companion.sparse, companion.both) if companion else (None, None, None)
 
 
 Companions = Mapping[str, Companion]
@@ -165,8 +178,10 @@ def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) ->
     if companion is None:
         return Errors(np.nan, np.nan, share * sampling(history, curve))
     # over the skin at the nodes of the coarser mesh: what is between them is no error of these
-    (xm, ym), (xb, yb), sparse = curve(companion.mesh), curve(companion.both), curve(companion.sparse)
-    mesh = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
+    (xb, yb), sparse, mesh = curve(companion.both), curve(companion.sparse), np.nan
+    if (other := companion.apart(history)) is not None:
+        xm, ym = curve(other)
+        mesh = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
     steps = norm(xb, yb - np.interp(xb, *sparse))
     return Errors.left(share * mesh, share * steps, share * sampling(history, curve))
 
@@ -209,8 +224,7 @@ def number_errors(history: xr.Dataset, companion: Companion | None, *features: F
 
 def _of_number(history: xr.Dataset, companion: Companion | None, feature: Feature) -> Errors:
     own = np.atleast_1d(feature(history))
-    kinds = "mesh", "sparse", "both"
-    mesh, sparse, both = (np.nan if companion is None else feature(getattr(companion, kind)) for kind in kinds)
+    mesh, sparse, both = (np.nan if other is None else feature(other) for other in instead(history, companion))
     share = 100 / (np.linalg.norm(own) or np.inf)
     pairs = (own, mesh), (sparse, both), (own, feature(thinned(history)))
     return Errors.left(*(share * float(np.linalg.norm(np.atleast_1d(a) - np.atleast_1d(b))) for a, b in pairs))

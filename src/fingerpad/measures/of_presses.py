@@ -330,7 +330,7 @@ def rate(history):
     """By Eq 5-1 at 915 um: the highest, means over windows, and at the ends of the hold."""
     frame = predicted_rate(shown(history))
     found = {"peak": frame[IMPULSE_RATE].max(), "end": frame[IMPULSE_RATE].iloc[-1]}
-    if is_stroke(history):
+    if is_stroke(history) or ramp_end(history) == history.sizes["time"] - 1:  # nothing is held
         return found
     held = frame[frame[TIME] >= history["time"].values[ramp_end(history)]][IMPULSE_RATE].to_numpy()
     found |= {w: windowed(history, frame[TIME], frame[IMPULSE_RATE], w) for w in ("hold", "steady")}

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from fingerpad.files import write_atomically
 from fingerpad.measures import of_any, of_presses, of_scenes, of_strokes
@@ -138,8 +139,13 @@ def _number(number: Callable[[Measures], float], measures: Measures) -> float:
 
 
 def _instead(histories: Histories, coarse: Companions) -> tuple[Histories, ...]:
+    def on_another_mesh(scene: str) -> xr.Dataset:
+        if (found := coarse[scene].apart(histories[scene])) is None:
+            raise KeyError(scene)
+        return found
+
     return (
-        Each(lambda scene: coarse[scene].mesh, coarse),
+        Each(on_another_mesh, coarse),
         Each(lambda scene: coarse[scene].sparse, coarse),
         Each(lambda scene: coarse[scene].both, coarse),
         Each(lambda scene: thinned(histories[scene]), histories),

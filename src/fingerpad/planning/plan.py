@@ -346,8 +346,10 @@ def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: in
 
 
 def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER) -> Plan:
-    """The plan of a run's companion: its `own` in all but edges so many times as long, unless the mesh is external, and so many
-    steps made one."""
+    """The plan of a run's companion: its `own` in all but edges so many times as long, and so many steps made one.
+
+    An external mesh keeps its edges: linear quads are solved as quadratic ones and the other way round, all others as they are.
+    """
     scheduled = list(schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride))
     steps = expected_states(scheduled, own.slide_step, stride)
     out = replace(own, stride=stride, steps=steps, outputs=len(scheduled))
@@ -358,6 +360,10 @@ def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER
         nodes = nodes // 2 + 1 if own.effects["symmetry"].on else nodes
         edge, error = coarser * own.contact_edge, coarser * own.estimated_error
         out = replace(out, mesh_size=size, nodes=nodes, smallest_edge=smallest, contact_edge=edge, estimated_error=error)
+    elif (external := external_mesh(scene)).element == "quad4":
+        element = "Q1P0" if own.element == "Q2P1" else "Q2P1"
+        nodes = len(external.elevated(element).points)
+        out = replace(out, element=element, nodes=nodes // 2 + 1 if own.effects["symmetry"].on else nodes)
     return replace(out, predicted_cost_s=_cost(out.nodes, steps, out.effects, RULES))
 
 
