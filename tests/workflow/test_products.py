@@ -340,6 +340,10 @@ def test_subjects_of_ones_own_are_calibrated_to_in_ones_own_results(own):
         ),
         ({"scenes": ["press_round"]}, "press_round.yaml: is not a scene of press.yaml; allowed: one of press_flat, press_line"),
         ({"figure_numbers": ["9-99"]}, "config.yaml: figure_numbers[0]: '9-99' is not drawn, the nearest is"),
+        (
+            {"figure_numbers": ["5-6"]},
+            "config.yaml: figure_numbers[0]: '5-6' shows scenes that the configuration has not: stroke_sub_10; allowed",
+        ),
         ({"table_names": ["sumary"]}, "config.yaml: table_names[0]: 'sumary' is not a table; allowed: "),
         ({"subjects": "nowhere"}, "config.yaml: subjects: 'nowhere' holds no CSV file; allowed: a folder of at least one"),
         (

@@ -143,6 +143,9 @@ class Products:
         for i, number in enumerate(c.figure_numbers or ()):
             if number not in self.specs:
                 self._wrong(("figure_numbers", i), number, f"is not drawn{nearest(number, self.specs)}", "")
+            if lacking := [scene for scene in self.specs[number].needs if scene not in c.every_scene]:
+                said = f"shows scenes that the configuration has not: {', '.join(lacking)}"
+                self._wrong(("figure_numbers", i), number, said, "figures of its scenes, or leave figure_numbers out")
         known = (*TABLES, *RECEPTOR_TABLES, "mesh_quality", "summary")
         for i, name in enumerate(c.table_names):
             if name not in known:
