@@ -9,8 +9,9 @@ import xarray as xr
 
 from fingerpad import load_scene, plan
 from fingerpad.measures.errors import PARTS
+from fingerpad.planning.errors import PLATES, WAVES, StrokeErrors
 from fingerpad.planning.plan import RULES
-from fingerpad.scenes.scene import Cylinder
+from fingerpad.scenes.scene import Cylinder, Flat, Slide
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.pad import MeshSize, element_edges, skin_chain
 from fingerpad.specimen.quality import check_orientation
@@ -20,6 +21,7 @@ from fingerpad.studies.accuracy import run as study
 from fingerpad.studies.accuracy.convergence import fitted_order, limit, observed_order
 from fingerpad.studies.accuracy.picture import STUDIES
 from fingerpad.studies.accuracy.run import FAMILY, Point, points, split
+from fingerpad.studies.accuracy.strokes import LARGEST, MEAN, discretised, strokes, strokes_table
 
 pytestmark = pytest.mark.unit
 
@@ -224,13 +226,57 @@ def test_planner_believes_at_least_the_committed_errors():
     """The constants of the planner are the study's, or larger."""
     kept = pd.read_csv(TABLES / "accuracy_planner.csv").set_index(["kind", "count"])
     known, own = RULES.errors, []
-    for kind, pressed, stroked in (("mesh", known.mesh, known.stroke_mesh), ("steps", known.time, known.stroke_time)):
+    for kind, pressed in (("mesh", known.mesh), ("steps", known.time)):
         rows = kept.loc[kind]
         for measured, believed in zip(rows[["1260", "210", "flat"]].to_numpy(), pressed.values(), strict=True):
             own += [b / m for m, b in zip(measured, believed, strict=True)]
-        own += [b / m for m, b in zip(rows["stroke"].dropna(), stroked.values(), strict=True)]
         assert list(pressed) == list(rows.index)
     assert min(own) == 1 and max(own) < 9 and np.median(own) < 2.5
+    kept = pd.read_csv(TABLES / "accuracy_strokes.csv").set_index(["kind", "count"])
+    for over, stroked in known.strokes.items():
+        for kind, table in (("mesh", stroked.mesh), ("steps", stroked.time)):
+            rows = kept.loc[kind][[f"{over}, {which}" for which in (LARGEST, MEAN)]]
+            np.testing.assert_array_equal(list(table.values()), rows.clip(lower=1e-4))
+            assert list(table) == list(rows.index)
+
+
+def test_strokes_errors_are_the_largest_and_the_mean_square_of_all_none_below_a_finer_one():
+    rows = [("waves", name, *how, error) for name, errors in (("a", (0.09, 0.04, 0.01, 0.03)), ("b", (0.03, 0.02, 0.02, 0.02)))
+            for how, error in zip(((2, 20), (7, 20), (14, 20), (7, 10)), errors, strict=True)]  # fmt: skip
+    made = strokes_table(pd.DataFrame(rows, columns=["over", "scene", "rows", "steps", "error"])).set_index(["kind", "count"])
+    assert made[f"waves, {LARGEST}"].to_dict() == {
+        ("mesh", 2): 0.09, ("mesh", 7): 0.04, ("mesh", 14): 0.02, ("steps", 10): 0.0, ("steps", 20): 0.0}  # fmt: skip
+    assert made.loc[("mesh", 7), f"waves, {MEAN}"] == pytest.approx(0.032)
+
+
+def test_a_long_stroke_is_as_wrong_as_strokes_are_on_the_whole_and_a_short_one_as_the_worst():
+    """In between the mean square is that of one of the worst and of many others; mutant: the root of a mean of roots."""
+    errors = StrokeErrors({7: (0.05, 0.01)}, {}, way=2e-3)
+    assert [errors.on(way, errors.mesh)[7] for way in (1e-3, 2e-3)] == [0.05, 0.05]
+    assert errors.on(8e-3, errors.mesh)[7] == pytest.approx(np.sqrt((0.05**2 + 3 * 0.01**2) / 4))
+    assert errors.on(1.0, errors.mesh)[7] == pytest.approx(0.01, rel=0.05)
+
+
+def test_a_stroke_over_waves_is_believed_to_be_wronger_than_one_over_a_plate(scenes):
+    """And needs a finer mesh; a long one less than a short one."""
+    waves, first, _ = load_scene(SCENES / "stroke_10.yaml").stimulus, *scenes["stroke"].motion
+    errors, nodes = [], []
+    for over, way in ((Flat(), 2e-3), (waves, 60e-3), (waves, 2e-3)):
+        scene = scenes["stroke"].varied({"stimulus": over, "motion": (first, Slide(slide=way, speed=0.01))})
+        errors.append(plan(scene).estimated_error)
+        nodes.append(plan(scene.with_accuracy(0.02)).nodes)
+    assert errors == sorted(errors) and nodes == sorted(nodes) and nodes[0] < 13000 < nodes[1] < 30000 < nodes[2]
+
+
+def test_drawn_strokes_are_discretised_as_asked():
+    scene = strokes(PLATES)["22_wavy_4"]
+    assert isinstance(scene.stimulus, Flat) and len(strokes(PLATES)) == len(strokes(WAVES)) > 10
+    coarse, fine = (discretised(scene, rows, 20) for rows in (4, 14))
+    assert (
+        coarse.contact_edge == pytest.approx(3.5 * fine.contact_edge)
+        and coarse.steps_per_leg == 20
+        and coarse.asked_error is None
+    )
 
 
 @pytest.mark.parametrize("curvature", [79.0, 420.0, 2500.0])

@@ -23,7 +23,7 @@ from fingerpad.mechanics.stepping import FOLDED, NewtonSettings, NonConvergence,
 from fingerpad.mechanics.strides import Between
 from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.effects import EFFECTS
-from fingerpad.planning.errors import estimated_error
+from fingerpad.planning.errors import estimated_error, stroke_of
 from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import Plan, plan, refined
 from fingerpad.planning.rules import RULES
@@ -293,14 +293,14 @@ class Simulation:
         touching = np.array([np.count_nonzero(record.nodal_force) / self.share for record in records])
         ends = [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
         lost = self._lost_work(records)
-        stroked = any(record.distance for record in records)
-        own = {k: max(self._error_at(width[k], stroked), lost, 0.5 if touching[k] < 4 else 0.0) for k in ends}
+        stroke = stroke_of(self.scene, self.profile.uneven) if any(record.distance for record in records) else None
+        own = {k: max(self._error_at(width[k], stroke), lost, 0.5 if touching[k] < 4 else 0.0) for k in ends}
         legs = []
         for k in ends:
             largest = int(np.argmax(force[: k + 1]))
             unloaded = force[k] < _UNLOADED * force[largest] and width[k] < width[largest]
             legs.append(own[k] * width[k] / width[largest] if unloaded else own[k])
-        beside = [self._error_at(each, stroked) * each / width.max() for each in np.unique(width) if each > 0]
+        beside = [self._error_at(each, stroke) * each / width.max() for each in np.unique(width) if each > 0]
         judged = [k for k, error in zip(ends, legs, strict=True) if error == own[k]]
         narrowest = min((width[k] for k in judged), default=0.0)
         return {
@@ -310,8 +310,8 @@ class Simulation:
             "narrowest_half_width": max(narrowest / 2, 1e-9),
         }
 
-    def _error_at(self, width, stroked) -> float:
-        """The error law for a contact of ``width`` m."""
+    def _error_at(self, width, stroke) -> float:
+        """The error law for a contact of ``width`` m, on a stroke if there is one."""
         plan = self.plan
         half_width = min(width / 2, plan.contact.narrowest or np.inf)
         around = plan.mesh_size and plan.mesh_size.skin_edge
@@ -320,7 +320,7 @@ class Simulation:
             plan.contact_edge,
             half_width or _NO_CONTACT,
             steps,
-            stroked,
+            stroke,
             around,
             rules=RULES,
             bumpy=self.scene.stimulus.irregular,

@@ -170,6 +170,7 @@ def test_studies_make_their_tables_and_figures(thesis):
                     "accuracy_planner",
                     "presets",
                     "accuracy_edges",
+                    "accuracy_strokes",
                     "accuracy_belief",
                     "accuracy_drawn",
                     "accuracy_shown",

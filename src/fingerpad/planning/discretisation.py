@@ -10,7 +10,7 @@ import numpy as np
 
 from fingerpad.planning.bounds import PlanError, micrometres, percent
 from fingerpad.planning.contact import contact_reach, earliest_half_width, moves_along
-from fingerpad.planning.errors import THESIS_ROWS, estimated_error
+from fingerpad.planning.errors import THESIS_ROWS, Stroke, estimated_error
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.planning.rules import Preset, Rules
 from fingerpad.planning.schedule import leg_durations
@@ -26,7 +26,7 @@ _MOST_COLUMNS = 2000  # of refined elements to either side
 
 
 def preset_for(
-    scene: Scene, rules: Rules, contact: ContactEstimate, tolerance: float | None
+    scene: Scene, rules: Rules, contact: ContactEstimate, tolerance: float | None, stroke: Stroke | None
 ) -> tuple[Preset, Discretisation | None]:
     """The discretisation asked for: a named one, the cheapest that meets a tolerance, or one by hand."""
     accuracy = scene.accuracy
@@ -34,7 +34,7 @@ def preset_for(
     if isinstance(accuracy, str):
         return rules.presets[accuracy], None
     if scene.tolerance is not None:
-        return _cheapest(scene, min(scene.tolerance, tolerance or 1.0), contact, rules), by_hand
+        return _cheapest(scene, min(scene.tolerance, tolerance or 1.0), contact, rules, stroke), by_hand
     thesis = rules.presets["thesis"]
     if by_hand is not None:
         edge = accuracy.skin_edge or thesis.skin_edge
@@ -44,7 +44,7 @@ def preset_for(
     raise AssertionError(accuracy)
 
 
-def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules) -> Preset:
+def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules, stroke: Stroke | None) -> Preset:
     """Of the measured meshes and steps those of least nodes times steps that meet it or, if none does, come near the least error.
 
     A mesh that suffices for the widest contact measured is refined under a narrower one that stays where it is.
@@ -66,7 +66,7 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
             wide = 1.2 * contact_reach(scene, contact) / edge * (finer - 1)
             if finer > 1 and (edge / finer < rules.least_edge or wide > _MOST_COLUMNS):
                 break
-            error = estimated_error(edge / finer / outer, half_width, time, moves, edge, rules=rules, bumpy=bumpy)
+            error = estimated_error(edge / finer / outer, half_width, time, stroke, edge, rules=rules, bumpy=bumpy)
             work = (7 * rows + more + wide) * (4 * rows + more) * steps
             found.append((error, work, edge / finer, edge, growth, steps))
     least = min(found)[0]

@@ -20,16 +20,52 @@ STEPS_REMAIN = 1 / (2.0**ORDER - 1)
 """The same over what it changes by with steps twice as long, of which measured orders are as large."""
 
 
+PLATES, WAVES = "plates", "waves"
+"""What a pad is stroked over: a surface that is alike all along, or any other."""
+
+
+@dataclass(frozen=True)
+class StrokeErrors:
+    """Relative errors of strokes drawn at random, over their way of some ``way`` m: the largest, and the root of the mean square.
+
+    By elements across the epidermis (``mesh``), and what fewer steps of a leg than the default's add (``time``).
+    """
+
+    mesh: Mapping[int, tuple[float, float]]
+    time: Mapping[int, tuple[float, float]]
+    way: float = 1.75e-3
+
+    def on(self, way: float, table: Mapping[int, tuple[float, float]]) -> Mapping[int, float]:
+        """A table's errors over a way (m): one as long as those drawn may be the worst of them, a longer one has many in it."""
+        share = min(1.0, self.way / way)
+        return {n: float(np.sqrt(share * largest**2 + (1 - share) * mean**2)) for n, (largest, mean) in table.items()}
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """What a pad is stroked ``over``, and the shortest ``way`` m of a leg along it."""
+
+    over: str
+    way: float
+
+
+def stroke_of(scene: Any, uneven: bool) -> Stroke | None:
+    """The stroke of a scene along a surface that is ``uneven`` or not; None: it goes nowhere along it."""
+    ways = [abs(leg.along) for leg in scene.motion if leg.along]
+    return Stroke(WAVES if uneven else PLATES, min(ways)) if ways else None
+
+
 @dataclass(frozen=True)
 class MeasuredErrors:
     """Largest relative error of depth, width, centre and peak pressure and strain energies, as the study of accuracy found it.
 
-    Those of the inferred pad (figures/tables/accuracy_planner.csv). Between half widths errors are interpolated in logarithms.
+    Those of the inferred pad (figures/tables/accuracy_planner.csv, and accuracy_strokes.csv). Between half widths errors are
+    interpolated in logarithms.
 
     Attributes:
         half_widths: m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the ramp. edge: m, along the skin,
         where 7 elements go across the epidermis. mesh: elements across the epidermis -> error (half_widths). time: steps of a leg
-        -> error (half_widths). stroke_mesh, stroke_time: those of the plate's stroke, over its way.
+        -> error (half_widths). strokes: by what is stroked over.
     """
 
     half_widths: tuple[float, ...] = (0.37e-3, 1.09e-3, 2.3e-3)
@@ -54,17 +90,25 @@ class MeasuredErrors:
             80: (0.000059, 0.000096, 0.00012),
         }
     )
-    stroke_mesh: Mapping[int, float] = field(
-        default_factory=lambda: {1: 0.076, 2: 0.016, 4: 0.0067, 7: 0.0046, 10: 0.0042, 14: 0.0039, 22: 0.0037}
+    strokes: Mapping[str, StrokeErrors] = field(
+        default_factory=lambda: {
+            PLATES: StrokeErrors(
+                {2: (0.025, 0.017), 4: (0.014, 0.0077), 7: (0.01, 0.0055), 10: (0.0076, 0.0039), 14: (0.003, 0.0016)},
+                {10: (1e-4, 1e-4), 20: (1e-4, 1e-4), 40: (1e-4, 1e-4)},
+            ),
+            WAVES: StrokeErrors(
+                {2: (0.22, 0.077), 4: (0.047, 0.022), 7: (0.022, 0.011), 10: (0.014, 0.0073), 14: (0.014, 0.005)},
+                {10: (0.019, 0.0075), 20: (0.0036, 0.0026), 40: (0.0036, 0.0026)},
+            ),
+        }
     )
-    stroke_time: Mapping[int, float] = field(default_factory=lambda: {5: 0.012, 10: 0.0043, 20: 0.0031, 40: 0.0031, 80: 0.0031})
 
 
 def estimated_error(
     edge: float,
     half_width: float,
     steps: int | None = None,
-    stroked: bool = False,
+    stroke: Stroke | None = None,
     body_edge: float | None = None,
     *,
     rules: Any,
@@ -77,17 +121,20 @@ def estimated_error(
 
     Args:
         edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
-        steps: of a leg; None when neither time nor a way matters. stroked: does the pad move along the surface?
+        steps: of a leg; None when neither time nor a way matters. stroke: the pad's along the surface, if there is one.
         body_edge: m, skin edge around the contact where that is coarser: no finer than the widest contact measured needs it.
         bumpy: has the surface bumps of its own within the contact, as measured ones have?
     """
-    found = [_measured_error(edge, half_width, steps, stroked, rules), rules.safety * rules.edge_share * edge / half_width]
+    factor = rules.safety * (rules.bumps if bumpy else 1.0)
+    found = [_measured_error(edge, half_width, steps, stroke, rules, factor)]
+    if stroke is None:  # on the way along a surface edges pass over many nodes, which is in what was measured
+        found.append(factor * rules.edge_share * edge / half_width)
     if body_edge is not None and body_edge > edge:
-        found.append(_measured_error(body_edge, rules.errors.half_widths[-1], steps, stroked, rules))
-    return float(max(found)) * (rules.bumps if bumpy else 1.0)
+        found.append(_measured_error(body_edge, rules.errors.half_widths[-1], steps, stroke, rules, factor))
+    return float(max(found))
 
 
-def _measured_error(edge: float, half_width: float, steps: int | None, stroked: bool, rules: Any) -> float:
+def _measured_error(edge: float, half_width: float, steps: int | None, stroke: Stroke | None, rules: Any, factor: float) -> float:
     known = rules.errors
     # narrower contacts than were measured are similar to the narrowest one on a coarser mesh
     alike = edge * max(known.half_widths[0] / half_width, 1.0)
@@ -97,14 +144,20 @@ def _measured_error(edge: float, half_width: float, steps: int | None, stroked: 
         columns = [_read(count, tuple(table), column, order) for column in zip(*table.values(), strict=True)]
         return float(np.exp(np.interp(np.log(half_width), np.log(known.half_widths), np.log(columns))))
 
-    def stroke(count, table, order):
-        return rules.stroked * _read(count, tuple(table), tuple(table.values()), order) if stroked else 0.0
-
-    # a stroke's errors come on top of those of a press as narrow
-    error = between(rows, known.mesh, rules.mesh_order) + stroke(rows, known.stroke_mesh, rules.mesh_order)
+    error = factor * between(rows, known.mesh, rules.mesh_order)
     if steps is not None:
-        error += between(steps, known.time, rules.time_order) + stroke(steps, known.stroke_time, rules.time_order)
-    return rules.safety * error
+        error += factor * between(steps, known.time, rules.time_order)
+    if stroke is None:
+        return error
+    # a stroke's errors come on top of those of a press as narrow
+    strokes = known.strokes[stroke.over]
+
+    def stroked(count, table, order):
+        here = strokes.on(stroke.way, table)
+        return rules.stroked * _read(count, tuple(here), tuple(here.values()), order)
+
+    error += stroked(rows, strokes.mesh, rules.mesh_order)
+    return error + (stroked(steps, strokes.time, rules.time_order) if steps is not None else 0.0)
 
 
 def _read(count: float, counts: tuple[int, ...], errors: tuple[float, ...], order: float) -> float:

@@ -41,7 +41,7 @@ from fingerpad.planning.discretisation import (
 from fingerpad.planning.effect import Case, Effect
 from fingerpad.planning.effects import EFFECTS, finite_strain, in_order, viscoelasticity
 from fingerpad.planning.effects import ridges as ridge_effect
-from fingerpad.planning.errors import COARSER, estimated_error
+from fingerpad.planning.errors import COARSER, estimated_error, stroke_of
 from fingerpad.planning.estimates import ContactEstimate
 from fingerpad.planning.rules import RULES, Rules
 from fingerpad.planning.schedule import BETWEEN, NEWTON, expected_states, schedule
@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _OUT_OF_BALANCE = 2e-3  # relative, at most, whatever the mesh
+_WORTH = 0.9  # of an error, to which a finer mesh must bring it to be run on
 _SKIN_NODES = 6.0  # at most, over the square root of all nodes of the pad
 
 
@@ -244,7 +245,7 @@ def plan(
     # noise is no contact's curvature
     profile = measured.felt(usual_edge(scene, external, rules))
     pad = pad_estimate(scene.specimen, external, measured.face)
-    moves = moves_along(scene)
+    moves, stroke = moves_along(scene), stroke_of(scene, profile.uneven)
     # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
     contact = worst_contact(scene, pad, profile, profile.convexity if moves or not profile.uneven else 0.0)
     contact = replace(contact, narrowest=least_half_width(scene, pad, profile, contact, found))
@@ -256,7 +257,7 @@ def plan(
             f"allowed: up to {rules.inertia_limit:g}"
         )
     rounding = rounding_of(scene, pad, profile, contact) if profile.edges and not profile.unbounded else 0.0
-    preset, by_hand = preset_for(scene, rules, contact, tolerance)
+    preset, by_hand = preset_for(scene, rules, contact, tolerance, stroke)
     tolerance = preset.tolerance
     case = Case(scene, profile, pad, contact, external, moves, tolerance, rules, {})
     effects = _decided(case)
@@ -274,7 +275,7 @@ def plan(
 
         def on_mesh(mesh: PadMesh) -> float:
             edge = coarseness(mesh, rules) * apex_edge(mesh)
-            found = estimated_error(edge, narrowest, time, moves, rules=rules, bumpy=scene.stimulus.irregular)
+            found = estimated_error(edge, narrowest, time, stroke, rules=rules, bumpy=scene.stimulus.irregular)
             return max(found, edges_error(profile, edge, rounding, rules)[0])
 
         external, raised = raised_for(by_hand, external, tolerance, on_mesh)
@@ -304,7 +305,7 @@ def plan(
         # presets are fine beside the face, not where it ends and the pressure is largest
         at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
     at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
-    in_contact = estimated_error(edge, narrowest, time, moves, around, rules=rules, bumpy=scene.stimulus.irregular)
+    in_contact = estimated_error(edge, narrowest, time, stroke, around, rules=rules, bumpy=scene.stimulus.irregular)
     mesh = surface.error + max(in_contact, at_edges)
     linear = 0.0 if effects["finite_strain"].on else finite_strain.small_strain_error(case)
     if linear and scene.tolerance is not None and "finite_strain" not in scene.effects and linear + mesh > scene.tolerance:
@@ -337,8 +338,8 @@ def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: in
     if runs >= rules.most_runs:
         return f"after {runs} runs"
     # what misses by some share is aimed at by as much below
-    finer = plan(scene, rules, narrowest, before.asked_error * min(1.0, max(before.asked_error / error, 0.25)))
-    if finer.estimated_error > 0.9 * error:
+    finer = plan(scene, rules, narrowest, before.asked_error * min(_WORTH, max(before.asked_error / error, 0.25)))
+    if finer.estimated_error > _WORTH * error:
         return "a finer mesh would not help"
     if finer.nodes > rules.most_nodes_again:
         return f"{percent(finer.estimated_error)} would need {finer.nodes} nodes"

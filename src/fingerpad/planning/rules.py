@@ -38,9 +38,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         mesh_order, time_order: with which errors are taken to go on beyond the meshes and steps that were measured.
         edge_share: of an element's edge, by which an edge of the contact may be misplaced: little more than a quarter of the
             node spacing.
-        safety: factor on both, for errors swing with where nodes happen to lie: the least that covers the scenes drawn at random.
-        stroked: factor on those of strokes, for the one measured is a plate's, and waves leave less evenly: the least that covers
-            the strokes drawn at random.
+        safety: factor on both, for errors swing with where nodes happen to lie: the least that covers presses drawn at random.
+        stroked: factor on those of strokes, for others than those measured.
         fillet_error, fillet_order: of the peak pressure, over that power of element edge / length of the contact on the rounded
             edge that presses. edge_error: of the centre
             pressure and the strain energies, over element edge / half width of the face, under a true edge; edge_floor: what it
@@ -74,7 +73,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     time_order: float = 1.0
     edge_share: float = 0.14
     safety: float = 1.56
-    stroked: float = 1.75
+    stroked: float = 1.25
     fillet_error: float = 0.4
     fillet_order: float = 1.5
     edge_error: float = 0.8

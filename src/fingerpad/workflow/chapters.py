@@ -64,6 +64,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.studies.accuracy.drawn import CLASSES
     from fingerpad.studies.accuracy.run import FAMILY, sweeps
     from fingerpad.studies.accuracy.shown import MADE_FINER
+    from fingerpad.studies.accuracy.strokes import STROKED_OVER
     from fingerpad.studies.explanations.run import PRESSED, READ_ONLY, READINGS, STROKED
     from fingerpad.studies.stability.picture import PARTS
     from fingerpad.studies.views.frames import FRAMES
@@ -82,5 +83,6 @@ def _read() -> dict[str, Any]:
     offers = {"OUTSIDE": list(OUTSIDE), "CLASSES": list(CLASSES), "METHODS": dict(PARTS)}
     simulated = [name for name in READINGS if name not in READ_ONLY]
     offers |= {"READINGS": simulated, "READ_ONLY": list(READ_ONLY), "READ": [*PRESSED, *STROKED]}
+    offers["STROKED_OVER"] = list(STROKED_OVER)
     offers["VIEWS"] = {name: list(scenes) for name, (_, scenes) in FRAMES.items()}
     return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps()), "MADE_FINER": list(MADE_FINER)} | offers

@@ -512,6 +512,10 @@ class Products:
         pressed = [scene for kind, scene in family.items() if kind != "stroke"]
         told = {"scenes": [self.scene(scene) for scene in pressed], "written": self._written(*pressed)}
         yield Job("accuracy_edges", self._read(*pressed), {"table": self.tables(["accuracy_edges"])}, told, **long)
+        rows = [self.result(f"accuracy/strokes/{over}.csv") for over in offered()["STROKED_OVER"]]
+        for over, part in zip(offered()["STROKED_OVER"], rows, strict=True):
+            yield Job(run := "accuracy_strokes", self._read(base), {"rows": [part]}, {"over": [over]}, f"{run}_{over}", **long)
+        yield Job("accuracy_strokes_table", {"parts": rows}, {"table": self.tables(["accuracy_strokes"])})
         rows = [self.result(f"accuracy/belief/{name}.csv") for name in outside]
         for k in range(0, len(outside), 7):
             told, made = {"names": list(outside[k : k + 7]), **self._told(base)}, {"rows": rows[k : k + 7]}

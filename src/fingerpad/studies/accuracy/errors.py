@@ -259,32 +259,32 @@ def orders_table(records: Records) -> pd.DataFrame:
 
 
 def planner_table(records: Records) -> pd.DataFrame:
-    """What the planner goes by: relative error of the headline quantities by mesh size, and by steps of a leg.
+    """What the planner goes by of presses: relative error of the headline quantities by mesh size, and by steps of a leg.
 
     Errors of a mesh are those to the limit in the mesh at the default's steps, errors of steps those to the limit in the steps
     on the default's mesh; never below the limit's own uncertainty (and, of meshes, that of adding both, which is a product of
-    theirs and falls with the edge beyond the default's mesh) nor below those of what is finer. Of presses the largest at the
-    moments looked at, relative to what it is of; of strokes their root mean square, relative to the largest, as runs have it.
+    theirs and falls with the edge beyond the default's mesh) nor below those of what is finer. The largest at the moments looked
+    at, relative to what it is of.
     """
     rows = []
     for kind, counts, limits in (("mesh", ROWS, mesh_limits), ("steps", STEPS, step_limits)):
         columns = {}
-        for family in FAMILY:
+        for family in PRESSED:
             if Point(family).name not in records:
                 continue
-            worst, size = np.zeros(len(counts)), _over_way if family == "stroke" else _at_most
+            worst = np.zeros(len(counts))
             for quantity in HEADLINE:
                 known = limits(records, family, quantity)
                 value = np.array([each.value for each in known])
                 extra = interplay(records, family, quantity) if kind == "mesh" else 0.0
                 unsure = np.array([each.uncertainty for each in known])
                 for k, n in enumerate(counts):
-                    floor = size(unsure + extra * min(1.0, DEFAULT_ROWS / n), value)
+                    floor = _at_most(unsure + extra * min(1.0, DEFAULT_ROWS / n), value)
                     record = records.get((Point(family, rows=n) if kind == "mesh" else Point(family, steps=n)).name)
                     if record is None or not record["values"]:
                         worst[k] = np.nan
                         continue
-                    off = size(np.array(record["values"][quantity]) - value, value)
+                    off = _at_most(np.array(record["values"][quantity]) - value, value)
                     worst[k] = max(worst[k], off, floor)
             columns[family] = np.fmax.accumulate(worst[::-1])[::-1]
         for k, n in enumerate(counts):
@@ -294,10 +294,6 @@ def planner_table(records: Records) -> pd.DataFrame:
 
 def _at_most(off: np.ndarray, value: np.ndarray) -> float:
     return float(np.max(np.abs(off / value)))
-
-
-def _over_way(off: np.ndarray, value: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(off**2)) / np.abs(value).max())
 
 
 def presets_table(table: pd.DataFrame) -> pd.DataFrame:
