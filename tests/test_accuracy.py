@@ -265,7 +265,7 @@ def test_a_stroke_over_waves_is_believed_to_be_wronger_than_one_over_a_plate(sce
         scene = scenes["stroke"].varied({"stimulus": over, "motion": (first, Slide(slide=way, speed=0.01))})
         errors.append(plan(scene).estimated_error)
         nodes.append(plan(scene.with_accuracy(0.02)).nodes)
-    assert errors == sorted(errors) and nodes == sorted(nodes) and nodes[0] < 13000 < nodes[1] < 30000 < nodes[2]
+    assert max(errors[:2]) < errors[2] and max(nodes[:2]) < 30000 < nodes[2]
 
 
 def test_drawn_strokes_are_discretised_as_asked():

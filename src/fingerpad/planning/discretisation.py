@@ -57,7 +57,8 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     bumpy = scene.stimulus.irregular
     outer = 3 if ridges is not None and ridges.outer is not None else 1  # columns of outer ridges
     found = []
-    for rows, steps in product(known.mesh, (n for n in known.time if n >= rules.least_steps)):
+    least_steps = rules.least_steps_stroked if moves else rules.least_steps
+    for rows, steps in product(known.mesh, (n for n in known.time if n >= least_steps)):
         edge, growth = known.edge * THESIS_ROWS / rows, min(thesis.growth ** (THESIS_ROWS / rows), 3.0)
         time = steps if timed or moves else None
         for finer in 2 ** np.arange(0, _FINEST_FOCUS, 0.5) if still else (1,):

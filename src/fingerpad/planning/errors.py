@@ -26,7 +26,7 @@ PLATES, WAVES = "plates", "waves"
 
 @dataclass(frozen=True)
 class StrokeErrors:
-    """Relative errors of strokes drawn at random, over their way of some ``way`` m: the largest, and the root of the mean square.
+    """Relative errors of strokes drawn at random, a press and a way of some ``way`` m: the largest, the root of the mean square.
 
     By elements across the epidermis (``mesh``), and what fewer steps of a leg than the default's add (``time``).
     """
@@ -93,12 +93,12 @@ class MeasuredErrors:
     strokes: Mapping[str, StrokeErrors] = field(
         default_factory=lambda: {
             PLATES: StrokeErrors(
-                {2: (0.025, 0.017), 4: (0.014, 0.0077), 7: (0.01, 0.0055), 10: (0.0076, 0.0039), 14: (0.003, 0.0016)},
-                {10: (1e-4, 1e-4), 20: (1e-4, 1e-4), 40: (1e-4, 1e-4)},
+                {2: (0.053, 0.024), 4: (0.026, 0.014), 7: (0.02, 0.011), 10: (0.015, 0.0081), 14: (0.0077, 0.0038)},
+                {10: (1e-4, 4.5e-4), 20: (1e-4, 1e-4), 40: (1e-4, 1e-4)},
             ),
             WAVES: StrokeErrors(
-                {2: (0.22, 0.077), 4: (0.047, 0.022), 7: (0.022, 0.011), 10: (0.014, 0.0073), 14: (0.014, 0.005)},
-                {10: (0.019, 0.0075), 20: (0.0036, 0.0026), 40: (0.0036, 0.0026)},
+                {2: (0.39, 0.13), 4: (0.16, 0.051), 7: (0.029, 0.015), 10: (0.017, 0.0095), 14: (0.017, 0.0059)},
+                {10: (0.012, 0.0031), 20: (0.0038, 9.5e-4), 40: (0.0038, 9.5e-4)},
             ),
         }
     )
@@ -149,15 +149,15 @@ def _measured_error(edge: float, half_width: float, steps: int | None, stroke: S
         error += factor * between(steps, known.time, rules.time_order)
     if stroke is None:
         return error
-    # a stroke's errors come on top of those of a press as narrow
     strokes = known.strokes[stroke.over]
 
     def stroked(count, table, order):
         here = strokes.on(stroke.way, table)
         return rules.stroked * _read(count, tuple(here), tuple(here.values()), order)
 
-    error += stroked(rows, strokes.mesh, rules.mesh_order)
-    return error + (stroked(steps, strokes.time, rules.time_order) if steps is not None else 0.0)
+    on_the_way = stroked(rows, strokes.mesh, rules.mesh_order)
+    on_the_way += stroked(steps, strokes.time, rules.time_order) if steps is not None else 0.0
+    return max(error, on_the_way)  # those of strokes are of the press before as well
 
 
 def _read(count: float, counts: tuple[int, ...], errors: tuple[float, ...], order: float) -> float:

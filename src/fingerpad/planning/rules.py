@@ -52,7 +52,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         most_nodes: of a mesh, and most_memory: share of the machine's, that a plan may ask for; bytes_node, bytes_step: needed
             for each node, and for each node and step.
         most_runs: of a scene whose run missed its tolerance; most_nodes_again: of a mesh on which it is run again.
-        least_steps: of a leg; fewer would do for its end, but a curve of fewer is none.
+        least_steps: of a leg; fewer would do for its end, but a curve of fewer is none. least_steps_stroked: where there is a
+            stroke, for friction remembers the way that each step took, and events lie between outputs.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
         edges_per_half_width: least edges in a contact to either side; presets have more.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
@@ -92,6 +93,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     most_runs: int = 3
     most_nodes_again: float = 3e5
     least_steps: int = 10
+    least_steps_stroked: int = 20
     fine_half_width: float = 3.4e-3
     skin_stretch: float = 1.0e-3
     inertia_limit: float = 0.1

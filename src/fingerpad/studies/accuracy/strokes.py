@@ -1,24 +1,24 @@
 """What strokes are wrong by, on meshes and with steps of several lengths: over plates and over waves, drawn at random.
 
 Each run is held to one on the finest mesh with steps half as long, as :func:`~fingerpad.studies.accuracy.belief.difference` has
-it over the way; what the press before is wrong by is not among it. It does not fall evenly: where a corner of the waves comes to
-lie between nodes, and at which output the contact leaves the centre, is as it happens. So the largest error of the strokes
-counts, and the root of the mean square of all, to which a longer stroke, with as much in it as in many of these, comes nearer.
+it, at the end of the press before, on which friction leaves its mark, and over the way. It does not fall evenly: where a corner
+of the waves comes to lie between nodes, and at which output the contact leaves the centre, is as it happens. So the largest
+error of the strokes counts, and the root of the mean square of all, to which a longer stroke, with as much in it as in many of
+these, comes nearer.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import cycle
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
 from fingerpad.planning.errors import PLATES, WAVES
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.planning.rules import RULES
-from fingerpad.results import scene_of
 from fingerpad.scenes.scene import Scene
 from fingerpad.studies.accuracy.belief import difference
 from fingerpad.studies.accuracy.drawn import drawn
@@ -32,25 +32,28 @@ FINEST = 22, 40
 STROKED_OVER = PLATES, WAVES
 SEEDS, COUNT = (22, 23), 60
 """Of the scenes drawn, and how many of each, of which the strokes over waves are taken: as they are, and over a plate instead."""
+RATE, SPEEDS = "40 gf/s", ("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s")
+"""With which the same are pressed and, one after the other, stroked, where the skin relaxes."""
 LARGEST, MEAN = "largest", "root mean square"
 """Of the errors of all strokes."""
 
 
 def strokes(over: str, seeds: tuple[int, ...] = SEEDS) -> dict[str, Scene]:
-    """The strokes over plates or over waves, by name."""
-    found = {}
-    for seed in seeds:
-        for name, kind, document in drawn(seed, COUNT):
-            if kind == "wavy":
-                change = {"stimulus": hard_cases.FLAT} if over == PLATES else {}
-                found[f"{seed}_{name}"] = hard_cases.scene_of(document | change, name)
-    return found
+    """The strokes over plates or over waves, by name: all as they are drawn, steady ones, and then all in time."""
+    drawn_ones = {f"{seed}_{name}": each for seed in seeds for name, kind, each in drawn(seed, COUNT) if kind == "wavy"}
+    change = {"stimulus": hard_cases.FLAT} if over == PLATES else {}
+    found = {name: document | change for name, document in drawn_ones.items()}
+    for (name, document), speed in zip(list(found.items()), cycle(SPEEDS), strict=False):
+        press, slide = document["motion"]
+        found[f"{name}_timed"] = document | {"motion": [press | {"rate": RATE}, slide | {"speed": speed, "keep": "force"}]}
+    return {name: hard_cases.scene_of(document, name) for name, document in found.items()}
 
 
 def discretised(scene: Scene, rows: int, steps: int) -> Plan:
     """The plan of a scene with so many elements across the epidermis and steps a leg, elsewhere as tolerances are met."""
     known = RULES.errors
-    only = replace(RULES, errors=replace(known, mesh={rows: known.mesh[rows]}, time={steps: known.time[steps]}))
+    these = replace(known, mesh={rows: known.mesh[rows]}, time={steps: known.time[steps]})
+    only = replace(RULES, errors=these, least_steps_stroked=steps)
     return replace(plan(scene.with_accuracy({"tolerance": 0.05, "once": True}), only), asked_error=None)
 
 
@@ -58,14 +61,9 @@ def stroke_errors(over: str, name: str, scene: Scene) -> Iterator[dict[str, obje
     """A row a mesh and a length of steps: relative error, and the quantity that has it."""
     from fingerpad.simulation import simulate
 
-    def stroked(rows: int, steps: int) -> xr.Dataset:
-        history = simulate(scene, discretised(scene, rows, steps))
-        legs = [leg for leg, motion in enumerate(scene_of(history).motion) if motion.strokes]
-        return history.isel(time=np.r_[0, np.flatnonzero(np.isin(history["leg"].values, legs))])
-
-    truth = stroked(*FINEST)
+    truth = simulate(scene, discretised(scene, *FINEST))
     for rows, steps in dict.fromkeys([*((n, DEFAULT_STEPS) for n in MESHES), *((DEFAULT_ROWS, n) for n in STEPS)]):
-        off, worst = difference(stroked(rows, steps), truth)
+        off, worst = difference(simulate(scene, discretised(scene, rows, steps)), truth)
         yield {"over": over, "scene": name, "rows": rows, "steps": steps, "error": off, "worst quantity": worst}
 
 
