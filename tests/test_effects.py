@@ -185,10 +185,10 @@ def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
     assert half_cost / cost == pytest.approx(half.steps / chosen.steps)
 
 
-def test_steps_of_a_stroke_follow_tolerance_or_hand(stroke):
-    """Those of a tolerance are as long as the thesis preset's at most, for friction remembers them, whatever is asked."""
-    tight, loose = (plan(changed(stroke, accuracy=accuracy)).slide_step for accuracy in (0.003, 0.1))
-    assert tight < loose == plan(stroke).slide_step
+def test_steps_of_a_stroke_follow_preset_or_hand(stroke):
+    """Those of a tolerance are as long as the thesis preset's: friction remembers longer ones, and shorter ones buy nothing."""
+    assert {plan(changed(stroke, accuracy=accuracy)).slide_step for accuracy in (0.1, 0.02, "thesis")} == {0.25e-3}
+    assert plan(changed(stroke, accuracy="draft")).slide_step == 2 * plan(changed(stroke, accuracy="thesis")).slide_step
     own = plan(changed(slid(stroke, speed=10e-3), accuracy=Discretisation(steps=100)))
     assert own.slide_step is None and own.steps == pytest.approx(100, abs=85)
     assert plan(changed(stroke, accuracy=Discretisation(skin_edge=0.2e-3))).slide_step == 0.25e-3
