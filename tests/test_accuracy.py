@@ -272,11 +272,8 @@ def test_drawn_strokes_are_discretised_as_asked():
     scene = strokes(PLATES)["22_wavy_4"]
     assert isinstance(scene.stimulus, Flat) and len(strokes(PLATES)) == len(strokes(WAVES)) > 10
     coarse, fine = (discretised(scene, rows, 20) for rows in (4, 14))
-    assert (
-        coarse.contact_edge == pytest.approx(3.5 * fine.contact_edge)
-        and coarse.steps_per_leg == 20
-        and coarse.asked_error is None
-    )
+    assert coarse.contact_edge == pytest.approx(3.5 * fine.contact_edge)
+    assert coarse.steps_per_leg == 20 and coarse.asked_error is None
 
 
 @pytest.mark.parametrize("curvature", [79.0, 420.0, 2500.0])

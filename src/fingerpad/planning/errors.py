@@ -26,9 +26,11 @@ PLATES, WAVES = "plates", "waves"
 
 @dataclass(frozen=True)
 class StrokeErrors:
-    """Relative errors of strokes drawn at random, a press and a way of some ``way`` m: the largest, the root of the mean square.
+    """Relative errors of strokes drawn at random, a press and a way: the largest, and the root of the mean square of all.
 
-    By elements across the epidermis (``mesh``), and what fewer steps of a leg than the default's add (``time``).
+    Attributes:
+        mesh: elements across the epidermis -> both. time: steps of a leg -> what both are more than with the default's steps.
+        way: m, the middle of those drawn (1 to 2.5 mm).
     """
 
     mesh: Mapping[int, tuple[float, float]]
@@ -36,7 +38,7 @@ class StrokeErrors:
     way: float = 1.75e-3
 
     def on(self, way: float, table: Mapping[int, tuple[float, float]]) -> Mapping[int, float]:
-        """A table's errors over a way (m): one as long as those drawn may be the worst of them, a longer one has many in it."""
+        """A table's errors over a way (m): as long as those drawn it may be the worst of them, longer it has many in it."""
         share = min(1.0, self.way / way)
         return {n: float(np.sqrt(share * largest**2 + (1 - share) * mean**2)) for n, (largest, mean) in table.items()}
 
@@ -116,8 +118,8 @@ def estimated_error(
 ) -> float:
     """Expected relative error of depth, width, pressure and strain energy at the legs' ends, from :class:`MeasuredErrors`.
 
-    Of a leg that strokes: the root mean square over its way, relative to the largest value on it. And at least what an edge of
-    the contact between two nodes may be misplaced by.
+    Of a leg that strokes: the root mean square over its way, relative to the largest value on it. Of presses at least what an
+    edge of the contact between two nodes may be misplaced by.
 
     Args:
         edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
