@@ -1,19 +1,25 @@
 """Every element alone: patch test, tangent, energy, uniform pressure on its edges."""
 
+from decimal import Decimal, getcontext
+
 import numpy as np
 import pytest
 from meshes import KIND, mapped, nodes_of, rectangle
 from pressing import press
 from problems import lame_constants, make_body, solve
 
+from fingerpad.laws import LAWS, NEO_HOOKE, assign
+from fingerpad.laws.law import isochoric
 from fingerpad.mechanics.contact_points import ContactPoints
+from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import smoothed_pressure
-from fingerpad.mechanics.space import edge_load_vectors
+from fingerpad.mechanics.space import TOGETHER, Space, edge_load_vectors
 from fingerpad.reference_solutions import manufactured
 from fingerpad.specimen.materials import Prony
 
 ELEMENTS = ("Q1P0", "Q2P1", "P2B")
 AFFINE = manufactured.affine([[0.08, 0.15], [-0.1, -0.06]], [0.02, -0.03])
+YEOH = LAWS["yeoh"]
 PRONY = Prony((0.055, 0.3691), (3.25, 0.3414))
 
 
@@ -71,7 +77,7 @@ def deformed_body(element, prony=None, poisson=0.45, shake=0.003):
     random = np.random.default_rng(5)
     for dt in (0.1, 0.3):
         body.begin_step(dt)
-        u = AFFINE.displacement(body.space.points) + random.normal(0, shake, body.u.shape)
+        u = 0.4 * AFFINE.displacement(body.space.points) + random.normal(0, shake, body.u.shape)
         u[body.space.fixed] = 0
         body.displace(u)
         body.commit()
@@ -79,6 +85,7 @@ def deformed_body(element, prony=None, poisson=0.45, shake=0.003):
     u = 1.3 * body.u + random.normal(0, shake / 2, body.u.shape)
     u[body.space.fixed] = 0
     body.displace(u)
+    assert body.smallest_jacobian > 0.1, "a folded element ends the loops before all are counted"
     return body
 
 
@@ -107,6 +114,81 @@ def test_tangent_is_the_derivative_of_the_force(element, prony, must_fail):
     """With the lagged pressure at its present value the tangent equals differences of the force."""
     check_tangent(element, prony)
     must_fail(check_tangent, element, prony, lag_share=0.9)
+
+
+def answers(body, steps=(0.1, 0.3)):
+    """Force, tangent, dilatation, energies and Jacobian of a body whose nodes have been moved at random, after each step."""
+    random, out = np.random.default_rng(1), []
+    for dt in steps:
+        body.begin_step(dt)
+        body.displace(body.u + random.normal(0, 0.002, body.u.shape))
+        body.internal_force()
+        dilatation = body.dilatation().copy()
+        data, force = body.tangent()
+        out += [body.internal_force(), force, data[:-1].copy(), dilatation]
+        body.commit()
+        out += [np.array(body.energies()), np.array(body.smallest_jacobian)]
+    return out
+
+
+def check_mixed_laws(element, prony, moved=0):
+    """Elements of two laws that say the same, in no order, are those of one law; ``moved``: whose blocks begin too late."""
+    mesh = rectangle(11, 7, 1.0, 0.8, KIND[element], distortion=0.2)
+    space = Space(mesh.points, mesh.cells, mesh.element, boundary(mesh, "bottom"), element)
+    shear, bulk = (np.full(len(mesh.cells), value) for value in lame_constants(3.0, 0.45))
+    alone = FiniteStrainBody(space, shear, bulk, prony, pointwise=2.0)
+    yeoh = np.random.default_rng(0).random(len(mesh.cells)) < 0.6
+    mixed = FiniteStrainBody(space, shear, bulk, prony, pointwise=2.0, laws=assign([(NEO_HOOKE, ()), (YEOH, (0, 0))], 1 * yeoh))
+    for *_, blocks in mixed._loops:
+        blocks[:1, 1] += np.uint64(moved)
+    for one, both in zip(answers(alone), answers(mixed), strict=True):
+        error = np.abs(both - one).max() / np.abs(one).max()
+        assert error < 1e-12, f"truth: laws in parts are off by {error:.2e}"
+
+
+@pytest.mark.parametrize("prony", [None, PRONY], ids=["elastic", "viscoelastic"])
+@pytest.mark.parametrize("element", ["Q2P1", "Q1P0"])
+def test_elements_of_several_laws_are_all_counted_once(element, prony, must_fail):
+    check_mixed_laws(element, prony)
+    must_fail(check_mixed_laws, element, prony, moved=1)
+
+
+@pytest.mark.parametrize("count", [1, 31, 32, 33, 100])
+def test_blocks_hold_every_element_that_is_asked_for(count):
+    mesh = rectangle(count, 1, 1.0, 0.8, "quad4")
+    space = Space(mesh.points, mesh.cells, "quad4", boundary(mesh, "bottom"))
+    for which in (np.ones(count, bool), np.zeros(count, bool), np.random.default_rng(count).random(count) < 0.5):
+        found = [TOGETHER * block + k for block, first, last in space.blocks(which).tolist() for k in range(first, last)]
+        assert found == np.flatnonzero(which).tolist()
+        assert all(first < last <= TOGETHER for _, first, last in space.blocks(which).tolist())
+
+
+def check_factor(step=0.0):
+    found = compiled_factor(spread := np.concatenate([np.exp(np.linspace(-30, 30, 1001)), 1 + np.linspace(-0.1, 0.1, 1001)]))
+    getcontext().prec = 40
+    truth = np.array([float(Decimal(jac) ** (Decimal(-2) / 3)) for jac in spread.tolist()])
+    error = np.abs(found * (1 + step) / truth - 1).max()
+    assert error < 6e-16, f"truth: J^(-2/3) is off by {error:.1e}"
+    np.testing.assert_allclose(found, isochoric(spread), rtol=2e-14)
+
+
+def compiled_factor(values):
+    from numba import njit
+
+    from fingerpad.mechanics import kernels  # what it says of isochoric is what compiled loops go by
+
+    @njit(**kernels._JIT)
+    def each(values, out):
+        for k in range(len(values)):
+            out[k] = isochoric(values[k])
+
+    each(values, out := np.empty_like(values))
+    return out
+
+
+def test_the_isochoric_factor_is_right_to_rounding(must_fail):
+    check_factor()
+    must_fail(check_factor, step=1e-15)
 
 
 def check_force_is_gradient(element, strain, wrong_bulk=1.0):

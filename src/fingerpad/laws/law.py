@@ -12,6 +12,11 @@ from pathlib import Path
 import numpy as np
 
 
+def isochoric(jac):
+    """J^(-2/3), which takes the change of volume out of I1; where a formula is compiled, so is this."""
+    return jac ** (-2.0 / 3.0)
+
+
 @dataclass(frozen=True)
 class Constant:
     """A dimensionless constant of a law: what it means, its default, and its bounds (included)."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from fingerpad.laws import NEO_HOOKE, Assigned
 from fingerpad.mechanics import compiled
-from fingerpad.mechanics.space import Space
+from fingerpad.mechanics.space import Space, blocked
 from fingerpad.mechanics.viscoelasticity import Branches
 from fingerpad.specimen.materials import Prony
 
@@ -49,13 +49,17 @@ class FiniteStrainBody:
         self.u = np.zeros(space.points.shape)
         self.lagged = lagged
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
-        self._loops = [(compiled.loops(part.law, *space.sizes), part.constants, part.elements) for part in self.laws]
+        self._loops = [
+            (compiled.loops(part.law, *space.sizes), np.ascontiguousarray(part.constants.T), space.blocks(part.elements))
+            for part in self.laws
+        ]
         self._dilatation = np.zeros((len(space.cells), space.psi.shape[2]))
         self._lag, self._predicted = self._dilatation.copy(), None
-        self.branches = Branches(prony, space.weight.shape) if prony else None
+        undeformed = blocked(np.tile([[1.0], [1.0], [0.0], [0.0]], (*space.weight.shape[:1], 1, space.weight.shape[1])))
+        self.branches = Branches(prony, undeformed.shape) if prony else None
         self._factor, self._history = 1.0, None
         self.branch_work = 0.0
-        self._stretch = np.tile([1.0, 1.0, 0.0], (*space.weight.shape, 1)) if prony else None
+        self._stretch = np.ascontiguousarray(undeformed[:, :3]) if prony else None
         self._pointwise = None if pointwise is None else pointwise * self.shear
         self.smallest_jacobian = 1.0
         self._data = None
@@ -63,8 +67,7 @@ class FiniteStrainBody:
     def begin_step(self, dt: float) -> None:
         """Prepare a step of ``dt`` seconds (None: no time passes)."""
         if self.branches is not None:
-            self._factor, history = self.branches.begin(dt)
-            self._history = np.ascontiguousarray(history[..., :3])
+            self._factor, self._history = self.branches.begin(dt)
 
     def displace(self, u: np.ndarray, lag: np.ndarray | None = None) -> np.ndarray:
         """Put the body at ``u`` (a predictor); the lagged dilatation becomes that of ``u`` unless given.
@@ -123,6 +126,8 @@ class FiniteStrainBody:
             branches = self.branches
             before = branches.q, branches.last, self._stretch
             after = [np.empty_like(each) for each in before]
+            for each in after:
+                each[..., -1, :, :, :] = 0.0  # the last block may have room for more elements than there are
             self.branch_work += sum(
                 loops.commit(self.u, self.space.mesh, self.shear, *part, *branches.coefficients, *before, *after)
                 for loops, *part in self._loops

@@ -11,9 +11,13 @@ derivative are
 
 so no 4 x 4 tangent is ever formed: a Laplacian, a cross product and a rank-two update do. All of it is drawn back to the
 reference cell, whose gradients are the same for all elements, and the loops are compiled for the sizes of the element they are
-of, so that their innermost ones are vectors of the processor. ``H`` is the (symmetric) history stress of the Prony branches;
-passing ``None`` compiles a kernel in which it does not exist. ``p_lag`` is the pressure the last linear step predicted (mixed
-integration point; Magisano, Leonetti and Garcea 2017), while the residual keeps the true one.
+of. ``H`` is the (symmetric) history stress of the Prony branches; passing ``None`` compiles a kernel in which it does not exist.
+``p_lag`` is the pressure the last linear step predicted (mixed integration point; Magisano, Leonetti and Garcea 2017), while the
+residual keeps the true one.
+
+Elements go through the loops side by side, a block at a time: what is known of a block is stored with its elements as the last
+axis, and the innermost loops are over them, as wide as the processor's vectors are. Only the tangent's matrices are multiplied
+element by element: there they are over rows.
 
 All functions live in this one module, for what is kept of them on disk (:mod:`compiled`, through which they are called) knows of
 changes of this file and of the laws' alone.
@@ -23,10 +27,12 @@ from functools import cache
 from types import SimpleNamespace
 
 import numpy as np
-from numba import njit
-from numba.extending import register_jitable
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic, overload, register_jitable
 
 from fingerpad.laws import Law
+from fingerpad.laws.law import isochoric
 
 _JIT = {"fastmath": {"contract", "nsz", "reassoc", "arcp"}, "error_model": "numpy", "boundscheck": False}
 _INLINE = _JIT | {"inline": "always"}
@@ -35,55 +41,34 @@ _LANES = 8
 """Numbers that a processor's vector may hold: rows are filled up with zeros to a multiple of it."""
 
 
-@njit(**_INLINE)
-def _deform(u, cell, reference, inverse, local, drawn, f):
-    """Deformation gradient 11, 12, 21, 22 and its determinant at the points of one element, into ``f`` (5, nq).
-
-    ``cell`` (nen,), ``reference`` (nen, 2 nq) and ``inverse`` (4, nq) as in :attr:`Space.mesh`; ``local`` (2, nen) and ``drawn``
-    (2, 2 nq) are for the displacements and their gradients on the reference cell. Returns the smallest determinant.
-    """
-    nodes, points = local.shape[1], f.shape[1]
-    for a in range(nodes):
-        local[0, a] = u[cell[a], 0]
-        local[1, a] = u[cell[a], 1]
-    for c in range(drawn.shape[1]):
-        x = y = 0.0
-        for a in range(nodes):
-            x += local[0, a] * reference[a, c]
-            y += local[1, a] * reference[a, c]
-        drawn[0, c] = x
-        drawn[1, c] = y
-    smallest = np.inf
-    for q in range(points):
-        f[0, q] = 1.0 + inverse[0, q] * drawn[0, q] + inverse[1, q] * drawn[0, points + q]
-        f[1, q] = inverse[2, q] * drawn[0, q] + inverse[3, q] * drawn[0, points + q]
-        f[2, q] = inverse[0, q] * drawn[1, q] + inverse[1, q] * drawn[1, points + q]
-        f[3, q] = 1.0 + inverse[2, q] * drawn[1, q] + inverse[3, q] * drawn[1, points + q]
-        f[4, q] = f[0, q] * f[3, q] - f[1, q] * f[2, q]
-        smallest = min(smallest, f[4, q])
-    return smallest
+@intrinsic
+def _bits(context, number):
+    """A double's bits as an integer."""
+    return types.int64(types.float64), lambda context, builder, signature, given: builder.bitcast(given[0], ir.IntType(64))
 
 
-@njit(**_INLINE)
-def _rest(force, cell, reference, drawn):
-    """Add to the nodal ``force`` (n, 2) what stresses ``drawn`` (2, 2 nq) back to the reference cell are worth there."""
-    for a in range(len(cell)):
-        x = y = 0.0
-        for c in range(drawn.shape[1]):
-            x += drawn[0, c] * reference[a, c]
-            y += drawn[1, c] * reference[a, c]
-        force[cell[a], 0] += x
-        force[cell[a], 1] += y
+@intrinsic
+def _from_bits(context, number):
+    """The double of these bits."""
+    return types.float64(types.int64), lambda context, builder, signature, given: builder.bitcast(given[0], ir.DoubleType())
 
 
-@njit(**_INLINE)
-def _project(weight, modes, f, theta):
-    """Dilatation modes ``theta`` (nm,) of one element with weight (nq,), modes (nm, nq) and ``f`` (5, nq)."""
-    for m in range(len(theta)):
-        total = 0.0
-        for q in range(f.shape[1]):
-            total += weight[q] * modes[m, q] * (f[4, q] - 1.0)
-        theta[m] = total
+_THIRDS = 4.0 / 3.0 * 2.0**52 * (1023.0 - 0.051)
+"""Less a third of a number's bits: the bits of its -1/3rd power, which is wrong by 3.4 % at most."""
+
+
+@overload(isochoric, jit_options=_JIT, inline="always")
+def _isochoric_factor(jac):
+    """J^(-2/3) from its exponent, by two steps of fourth order: to two units in the last place, at a tenth of a power's cost."""
+
+    def factor(jac):
+        root = _from_bits(np.int64(_THIRDS - _bits(jac) / 3.0))
+        for _ in range(2):
+            left = 1.0 - jac * root * root * root
+            root += root * left * (1.0 / 3.0 + left * (2.0 / 9.0 + left * (14.0 / 81.0)))
+        return root * root
+
+    return factor
 
 
 @njit(**_INLINE)
@@ -177,21 +162,98 @@ def exchanged(compliance, share, on, stick, out):
 
 
 @cache
+def _common(nodes: int, points: int, modes: int) -> tuple:
+    """What the loops over elements have in common, for elements of these sizes.
+
+    Each works on those of a block from ``first`` to before ``last``; ``start`` is the number of the block's own first. Arrays
+    have the elements of a block as their last axis.
+    """
+
+    @njit(**_INLINE)
+    def deform(u, cells, reference, inverse, start, first, last, local, drawn, f):
+        """Deformation gradient 11, 12, 21, 22 and its determinant at their points, into ``f`` (5, nq, ...).
+
+        ``local`` (2, nen, ...) and ``drawn`` (2, 2 nq, ...) are for the displacements and their gradients on the reference cell.
+        Returns the smallest determinant.
+        """
+        for k in range(first, last):
+            for a in range(nodes):
+                local[0, a, k] = u[cells[start + k, a], 0]
+                local[1, a, k] = u[cells[start + k, a], 1]
+        for i in range(2):
+            for c in range(2 * points):
+                for k in range(first, last):
+                    total = 0.0
+                    for a in range(nodes):
+                        total += local[i, a, k] * reference[a, c]
+                    drawn[i, c, k] = total
+        smallest = np.inf
+        for q in range(points):
+            low = np.inf
+            for k in range(first, last):
+                i11, i12, i21, i22 = inverse[0, q, k], inverse[1, q, k], inverse[2, q, k], inverse[3, q, k]
+                x1, x2, y1, y2 = drawn[0, q, k], drawn[0, points + q, k], drawn[1, q, k], drawn[1, points + q, k]
+                f11, f12 = 1.0 + i11 * x1 + i12 * x2, i21 * x1 + i22 * x2
+                f21, f22 = i11 * y1 + i12 * y2, 1.0 + i21 * y1 + i22 * y2
+                jac = f11 * f22 - f12 * f21
+                f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k] = f11, f12, f21, f22, jac
+                low = min(low, jac)
+            smallest = min(smallest, low)
+        return smallest
+
+    @njit(**_INLINE)
+    def project(weight, psi, first, last, f, theta):
+        """Their dilatation modes into ``theta`` (nm, ...)."""
+        for m in range(modes):
+            for k in range(first, last):
+                total = 0.0
+                for q in range(points):
+                    total += weight[q, k] * psi[m, q, k] * (f[4, q, k] - 1.0)
+                theta[m, k] = total
+
+    @njit(**_INLINE)
+    def rest(cells, reference, start, first, last, drawn, local, force):
+        """Add to the nodal ``force`` (n, 2) what stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth there."""
+        for i in range(2):
+            for a in range(nodes):
+                for k in range(first, last):
+                    total = 0.0
+                    for c in range(2 * points):
+                        total += drawn[i, c, k] * reference[a, c]
+                    local[i, a, k] = total
+        for k in range(first, last):
+            for a in range(nodes):
+                force[cells[start + k, a], 0] += local[0, a, k]
+                force[cells[start + k, a], 1] += local[1, a, k]
+
+    return deform, project, rest
+
+
+@cache
 def dilatation_loop(nodes: int, points: int, modes: int):
     """The loop that predicts dilatations, for elements of these sizes."""
+    deform, project, _ = _common(nodes, points, modes)
 
     @njit(**_JIT)
     def predict_dilatation(u, du, mesh, out):
         """Linear prediction ``int psi_a (J - 1 + cof F : grad du)`` of the dilatation modes, into ``out`` (ne, nm)."""
-        cells, reference, inverse, weight, psi = mesh
-        local, drawn, f, d = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points)), np.empty((5, points))
-        for e in range(len(cells)):
-            _deform(u, cells[e], reference, inverse[e], local, drawn, f)
-            _deform(du, cells[e], reference, inverse[e], local, drawn, d)
+        cells, reference, inverses, weights, all_psi = mesh
+        together = weights.shape[2]
+        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
+        f, d, theta = np.empty((5, points, together)), np.empty((5, points, together)), np.empty((modes, together))
+        for block in range(len(weights)):
+            begin = block * together
+            start, first, last = np.uint64(begin), np.uint64(0), np.uint64(min(together, len(cells) - begin))
+            deform(u, cells, reference, inverses[block], start, first, last, local, drawn, f)
+            deform(du, cells, reference, inverses[block], start, first, last, local, drawn, d)
             for q in range(points):
-                d11, d22 = d[0, q] - 1.0, d[3, q] - 1.0
-                f[4, q] += f[3, q] * d11 - f[2, q] * d[1, q] - f[1, q] * d[2, q] + f[0, q] * d22
-            _project(weight[e], psi[e], f, out[e])
+                for k in range(first, last):
+                    d11, d22 = d[0, q, k] - 1.0, d[3, q, k] - 1.0
+                    f[4, q, k] += f[3, q, k] * d11 - f[2, q, k] * d[1, q, k] - f[1, q, k] * d[2, q, k] + f[0, q, k] * d22
+            project(weights[block], all_psi[block], first, last, f, theta)
+            for m in range(modes):
+                for k in range(first, last):
+                    out[start + k, m] = theta[m, k]
 
     return predict_dilatation
 
@@ -201,27 +263,34 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     """The element loops of a law for elements with so many nodes, quadrature points and pressure modes.
 
     The law's formulas are compiled into them: assemble_tangent, internal_force, commit and energies. In all of them ``mesh`` is
-    :attr:`Space.mesh`, ``constants`` (ne, number of constants) are the law's, and ``only`` (ne,) bool says which elements follow
-    it.
+    :attr:`Space.mesh`, ``constants`` (number of constants, ne) are the law's, and ``blocks`` (k, 3) says which elements follow
+    it: those of a block, from the first to before the last (:meth:`Space.blocks`).
     """
+    deform, project, rest = _common(nodes, points, modes)
     law_energy, law_stress, law_tangent = law.energy, law.stress, law.tangent
     for formula in (law_energy, law_stress, law_tangent):
         register_jitable(inline="always")(formula)
     wide_x, wide_y = (-(-width // _LANES) * _LANES for width in (2 * nodes, nodes))
 
     @njit(**_JIT)
-    def assemble_tangent(u, mesh, mu, kappa, constants, only, dilatation_lag, history, factor, pointwise, scatter, data, force):
+    def assemble_tangent(u, mesh, mu, kappa, constants, blocks, dilatation_lag, history, factor, pointwise, scatter, data, force):
         """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``.
 
-        Shapes: u (n, 2); mu, kappa (ne,); dilatation_lag (ne, nm); history (ne, nq, 3) second Piola-Kirchhoff 11, 22, 12, or
-        None; factor: share of the isochoric stress that answers at once; pointwise (ne,): extra volumetric modulus that is not
-        projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded); force (n, 2), accumulated.
+        Shapes: u (n, 2); mu, kappa (ne,); dilatation_lag (ne, nm); history (blocks, 4, nq, together) second Piola-Kirchhoff 11,
+        22, 12, 33, or None; factor: share of the isochoric stress that answers at once; pointwise (ne,): extra volumetric modulus
+        that is not projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded); force (n, 2),
+        accumulated.
         Returns the smallest det F.
         """
-        cells, reference, inverse, weight, psi = mesh
+        cells, reference, inverses, weights, all_psi = mesh
+        together = weights.shape[2]
         turned = np.ascontiguousarray(reference.T)
-        local, drawn, f, theta = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points)), np.empty(modes)
-        cofactor, moduli, part = np.empty((2, 2 * points)), np.empty((10, points)), np.empty((2, 2 * points))
+        # of every point the stress, cof F and the moduli, all drawn back to the reference cell
+        local, found = np.empty((2, nodes, together)), np.empty((18, points, together))
+        drawn, cofactor, moduli = found[:4].reshape(2, 2 * points, together), found[4:8], found[8:]
+        f, theta = np.empty((5, points, together)), np.empty((modes, together))
+        lag, answer, part = np.empty((modes, together)), np.empty((6, together)), np.empty((2, 2 * points, together))
+        modal, own = np.empty((modes, 2, nodes, together)), np.empty((10, points))
         # K = left^T right: the gradients of the virtual displacements, x and y, and below them their dilatation modes; and how
         # stresses answer to all degrees of freedom, the second time only to those along y
         left = np.empty((2, nodes, 2 * points + modes))
@@ -229,224 +298,263 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         right_x, right_y = np.zeros((2 * points + modes, wide_x)), np.zeros((2 * points + modes, wide_y))
         row = np.empty(wide_x)
         smallest = np.inf
-        for e in range(len(cells)):
-            if not only[e]:
-                continue
-            smallest = min(smallest, _deform(u, cells[e], reference, inverse[e], local, drawn, f))
+        for block, first, last in blocks:
+            start = block * np.uint64(together)
+            inverse, weight, psi = inverses[block], weights[block], all_psi[block]
+            smallest = min(smallest, deform(u, cells, reference, inverse, start, first, last, local, drawn, f))
             if smallest <= 0.0:
                 return smallest
-            _project(weight[e], psi[e], f, theta)
+            project(weight, psi, first, last, f, theta)
+            for m in range(modes):
+                for k in range(first, last):
+                    lag[m, k] = dilatation_lag[start + k, m]
             for q in range(points):
-                w = weight[e, q]
-                f11, f12, f21, f22, jac = f[0, q], f[1, q], f[2, q], f[3, q], f[4, q]
-                p = plag = 0.0
-                for m in range(modes):
-                    p += psi[e, m, q] * theta[m]
-                    plag += psi[e, m, q] * dilatation_lag[e, m]
-                i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
-                mod, t, fold, alpha, beta = law_tangent(i1, jac, factor * mu[e], constants[e])
-                s = mod * t / (3.0 * jac)
-                p = kappa[e] * p - s
-                cross = kappa[e] * plag - s
-                if pointwise is not None:
-                    extra = pointwise[e] * (jac - 1.0)
-                    p += extra
-                    cross += extra
-                    beta += pointwise[e]
-                l11 = l22 = mod
-                l12 = 0.0
-                if history is not None:
-                    l11 += history[e, q, 0]
-                    l22 += history[e, q, 1]
-                    l12 += history[e, q, 2]
-                i11, i12, i21, i22 = inverse[e, 0, q], inverse[e, 1, q], inverse[e, 2, q], inverse[e, 3, q]
-                # rows of F, its cofactor and (m I + H) J^-T on the reference cell
-                fx1, fx2 = f11 * i11 + f12 * i21, f11 * i12 + f12 * i22
-                fy1, fy2 = f21 * i11 + f22 * i21, f21 * i12 + f22 * i22
-                cx1, cx2 = f22 * i11 - f21 * i21, f22 * i12 - f21 * i22
-                cy1, cy2 = f11 * i21 - f12 * i11, f11 * i22 - f12 * i12
-                n11, n12 = w * (l11 * i11 + l12 * i21), w * (l11 * i12 + l12 * i22)
-                n21, n22 = w * (l12 * i11 + l22 * i21), w * (l12 * i12 + l22 * i22)
-                drawn[0, q] = f11 * n11 + f12 * n21 + w * p * cx1
-                drawn[0, points + q] = f11 * n12 + f12 * n22 + w * p * cx2
-                drawn[1, q] = f21 * n11 + f22 * n21 + w * p * cy1
-                drawn[1, points + q] = f21 * n12 + f22 * n22 + w * p * cy2
-                cofactor[0, q] = w * cx1
-                cofactor[0, points + q] = w * cx2
-                cofactor[1, q] = w * cy1
-                cofactor[1, points + q] = w * cy2
-                fold *= w
-                alpha *= w
-                beta *= w
-                cross *= w * (i11 * i22 - i12 * i21)
-                ax1, ax2 = alpha * cx1 + fold * fx1, alpha * cx2 + fold * fx2
-                ay1, ay2 = alpha * cy1 + fold * fy1, alpha * cy2 + fold * fy2
-                bx1, bx2 = alpha * fx1 + beta * cx1, alpha * fx2 + beta * cx2
-                by1, by2 = alpha * fy1 + beta * cy1, alpha * fy2 + beta * cy2
-                lap11, lap12, lap22 = i11 * n11 + i21 * n21, i11 * n12 + i21 * n22, i12 * n12 + i22 * n22
-                moduli[0, q] = lap11 + fx1 * ax1 + cx1 * bx1
-                moduli[1, q] = lap12 + fx1 * ax2 + cx1 * bx2
-                moduli[2, q] = lap22 + fx2 * ax2 + cx2 * bx2
-                moduli[3, q] = fx1 * ay1 + cx1 * by1
-                moduli[4, q] = fx1 * ay2 + cx1 * by2 + cross
-                moduli[5, q] = fx2 * ay1 + cx2 * by1 - cross
-                moduli[6, q] = fx2 * ay2 + cx2 * by2
-                moduli[7, q] = lap11 + fy1 * ay1 + cy1 * by1
-                moduli[8, q] = lap12 + fy1 * ay2 + cy1 * by2
-                moduli[9, q] = lap22 + fy2 * ay2 + cy2 * by2
-            for q in range(points):
-                for b in range(cells.shape[1]):
-                    d1, d2 = turned[q, b], turned[points + q, b]
-                    right_x[q, b] = moduli[0, q] * d1 + moduli[1, q] * d2
-                    right_x[points + q, b] = moduli[1, q] * d1 + moduli[2, q] * d2
-                    right_x[q, nodes + b] = moduli[3, q] * d1 + moduli[4, q] * d2
-                    right_x[points + q, nodes + b] = moduli[5, q] * d1 + moduli[6, q] * d2
-                    right_y[q, b] = moduli[7, q] * d1 + moduli[8, q] * d2
-                    right_y[points + q, b] = moduli[8, q] * d1 + moduli[9, q] * d2
+                for k in range(first, last):
+                    e = start + k
+                    f11, f12, f21, f22, jac = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k]
+                    p = plag = 0.0
+                    for m in range(modes):
+                        p += psi[m, q, k] * theta[m, k]
+                        plag += psi[m, q, k] * lag[m, k]
+                    i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
+                    mod, t, fold, alpha, beta = law_tangent(i1, jac, factor * mu[e], constants[:, e])
+                    s = mod * t / (3.0 * jac)
+                    p = kappa[e] * p - s
+                    cross = kappa[e] * plag - s
+                    if pointwise is not None:
+                        extra = pointwise[e] * (jac - 1.0)
+                        p += extra
+                        cross += extra
+                        beta += pointwise[e]
+                    answer[0, k], answer[1, k], answer[2, k] = mod, p, cross
+                    answer[3, k], answer[4, k], answer[5, k] = fold, alpha, beta
+                for k in range(first, last):
+                    w = weight[q, k]
+                    f11, f12, f21, f22 = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k]
+                    mod, p, cross = answer[0, k], answer[1, k], answer[2, k]
+                    fold, alpha, beta = answer[3, k], answer[4, k], answer[5, k]
+                    l11 = l22 = mod
+                    l12 = 0.0
+                    if history is not None:
+                        l11 += history[block, 0, q, k]
+                        l22 += history[block, 1, q, k]
+                        l12 += history[block, 2, q, k]
+                    i11, i12, i21, i22 = inverse[0, q, k], inverse[1, q, k], inverse[2, q, k], inverse[3, q, k]
+                    # rows of F, its cofactor and (m I + H) J^-T on the reference cell
+                    fx1, fx2 = f11 * i11 + f12 * i21, f11 * i12 + f12 * i22
+                    fy1, fy2 = f21 * i11 + f22 * i21, f21 * i12 + f22 * i22
+                    cx1, cx2 = f22 * i11 - f21 * i21, f22 * i12 - f21 * i22
+                    cy1, cy2 = f11 * i21 - f12 * i11, f11 * i22 - f12 * i12
+                    n11, n12 = w * (l11 * i11 + l12 * i21), w * (l11 * i12 + l12 * i22)
+                    n21, n22 = w * (l12 * i11 + l22 * i21), w * (l12 * i12 + l22 * i22)
+                    found[0, q, k] = f11 * n11 + f12 * n21 + w * p * cx1
+                    found[1, q, k] = f11 * n12 + f12 * n22 + w * p * cx2
+                    found[2, q, k] = f21 * n11 + f22 * n21 + w * p * cy1
+                    found[3, q, k] = f21 * n12 + f22 * n22 + w * p * cy2
+                    found[4, q, k], found[5, q, k] = w * cx1, w * cx2
+                    found[6, q, k], found[7, q, k] = w * cy1, w * cy2
+                    fold *= w
+                    alpha *= w
+                    beta *= w
+                    cross *= w * (i11 * i22 - i12 * i21)
+                    ax1, ax2 = alpha * cx1 + fold * fx1, alpha * cx2 + fold * fx2
+                    ay1, ay2 = alpha * cy1 + fold * fy1, alpha * cy2 + fold * fy2
+                    bx1, bx2 = alpha * fx1 + beta * cx1, alpha * fx2 + beta * cx2
+                    by1, by2 = alpha * fy1 + beta * cy1, alpha * fy2 + beta * cy2
+                    lap11, lap12, lap22 = i11 * n11 + i21 * n21, i11 * n12 + i21 * n22, i12 * n12 + i22 * n22
+                    found[8, q, k] = lap11 + fx1 * ax1 + cx1 * bx1
+                    found[9, q, k] = lap12 + fx1 * ax2 + cx1 * bx2
+                    found[10, q, k] = lap22 + fx2 * ax2 + cx2 * bx2
+                    found[11, q, k] = fx1 * ay1 + cx1 * by1
+                    found[12, q, k] = fx1 * ay2 + cx1 * by2 + cross
+                    found[13, q, k] = fx2 * ay1 + cx2 * by1 - cross
+                    found[14, q, k] = fx2 * ay2 + cx2 * by2
+                    found[15, q, k] = lap11 + fy1 * ay1 + cy1 * by1
+                    found[16, q, k] = lap12 + fy1 * ay2 + cy1 * by2
+                    found[17, q, k] = lap22 + fy2 * ay2 + cy2 * by2
+            rest(cells, reference, start, first, last, drawn, local, force)
             for m in range(modes):
                 for q in range(points):
-                    part[0, q] = psi[e, m, q] * cofactor[0, q]
-                    part[0, points + q] = psi[e, m, q] * cofactor[0, points + q]
-                    part[1, q] = psi[e, m, q] * cofactor[1, q]
-                    part[1, points + q] = psi[e, m, q] * cofactor[1, points + q]
+                    for k in range(first, last):
+                        part[0, q, k] = psi[m, q, k] * cofactor[0, q, k]
+                        part[0, points + q, k] = psi[m, q, k] * cofactor[1, q, k]
+                        part[1, q, k] = psi[m, q, k] * cofactor[2, q, k]
+                        part[1, points + q, k] = psi[m, q, k] * cofactor[3, q, k]
+                for i in range(2):
+                    for a in range(nodes):
+                        for k in range(first, last):
+                            total = 0.0
+                            for c in range(2 * points):
+                                total += part[i, c, k] * reference[a, c]
+                            modal[m, i, a, k] = total
+            for k in range(first, last):
+                e = start + k
+                for d in range(10):
+                    for q in range(points):
+                        own[d, q] = moduli[d, q, k]
+                for q in range(points):
+                    for b in range(cells.shape[1]):
+                        d1, d2 = turned[q, b], turned[points + q, b]
+                        right_x[q, b] = own[0, q] * d1 + own[1, q] * d2
+                        right_x[points + q, b] = own[1, q] * d1 + own[2, q] * d2
+                        right_x[q, nodes + b] = own[3, q] * d1 + own[4, q] * d2
+                        right_x[points + q, nodes + b] = own[5, q] * d1 + own[6, q] * d2
+                        right_y[q, b] = own[7, q] * d1 + own[8, q] * d2
+                        right_y[points + q, b] = own[8, q] * d1 + own[9, q] * d2
+                for m in range(modes):
+                    for a in range(nodes):
+                        x, y = modal[m, 0, a, k], modal[m, 1, a, k]
+                        left[0, a, 2 * points + m] = x
+                        left[1, a, 2 * points + m] = y
+                        right_x[2 * points + m, a] = kappa[e] * x
+                        right_x[2 * points + m, nodes + a] = kappa[e] * y
+                        right_y[2 * points + m, a] = kappa[e] * y
+                n = 0
                 for a in range(cells.shape[1]):
-                    x = y = 0.0
-                    for c in range(2 * points):
-                        x += part[0, c] * reference[a, c]
-                        y += part[1, c] * reference[a, c]
-                    left[0, a, 2 * points + m] = x
-                    left[1, a, 2 * points + m] = y
-                    right_x[2 * points + m, a] = kappa[e] * x
-                    right_x[2 * points + m, nodes + a] = kappa[e] * y
-                    right_y[2 * points + m, a] = kappa[e] * y
-            n = 0
-            for a in range(cells.shape[1]):
-                for b in range(right_x.shape[1]):
-                    total = 0.0
-                    for c in range(2 * points + modes):
-                        total += left[0, a, c] * right_x[c, b]
-                    row[b] = total
-                for b in range(a, 2 * nodes):
-                    data[scatter[e, n]] += row[b]
-                    n += 1
-            for a in range(cells.shape[1]):
-                for b in range(right_y.shape[1]):
-                    total = 0.0
-                    for c in range(2 * points + modes):
-                        total += left[1, a, c] * right_y[c, b]
-                    row[b] = total
-                for b in range(a, nodes):
-                    data[scatter[e, n]] += row[b]
-                    n += 1
-            _rest(force, cells[e], reference, drawn)
+                    for b in range(right_x.shape[1]):
+                        total = 0.0
+                        for c in range(2 * points + modes):
+                            total += left[0, a, c] * right_x[c, b]
+                        row[b] = total
+                    for b in range(a, 2 * nodes):
+                        data[scatter[e, n]] += row[b]
+                        n += 1
+                for a in range(cells.shape[1]):
+                    for b in range(right_y.shape[1]):
+                        total = 0.0
+                        for c in range(2 * points + modes):
+                            total += left[1, a, c] * right_y[c, b]
+                        row[b] = total
+                    for b in range(a, nodes):
+                        data[scatter[e, n]] += row[b]
+                        n += 1
         return smallest
 
     @njit(**_JIT)
-    def internal_force(u, mesh, mu, kappa, constants, only, history, factor, pointwise, force, dilatation):
+    def internal_force(u, mesh, mu, kappa, constants, blocks, history, factor, pointwise, force, dilatation):
         """Internal force (n, 2), accumulated in ``force``; fills ``dilatation`` (ne, nm). Returns the smallest det F."""
-        cells, reference, inverse, weight, psi = mesh
-        local, drawn, f = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points))
+        cells, reference, inverses, weights, all_psi = mesh
+        together = weights.shape[2]
+        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
+        f, theta = np.empty((5, points, together)), np.empty((modes, together))
         smallest = np.inf
-        for e in range(len(cells)):
-            if not only[e]:
-                continue
-            smallest = min(smallest, _deform(u, cells[e], reference, inverse[e], local, drawn, f))
+        for block, first, last in blocks:
+            start = block * np.uint64(together)
+            inverse, weight, psi = inverses[block], weights[block], all_psi[block]
+            smallest = min(smallest, deform(u, cells, reference, inverse, start, first, last, local, drawn, f))
             if smallest <= 0.0:
                 return smallest
-            _project(weight[e], psi[e], f, dilatation[e])
+            project(weight, psi, first, last, f, theta)
+            for m in range(modes):
+                for k in range(first, last):
+                    dilatation[start + k, m] = theta[m, k]
             for q in range(points):
-                f11, f12, f21, f22, jac = f[0, q], f[1, q], f[2, q], f[3, q], f[4, q]
-                p = 0.0
-                for m in range(modes):
-                    p += psi[e, m, q] * dilatation[e, m]
-                i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
-                mod, t = law_stress(i1, jac, factor * mu[e], constants[e])
-                p = kappa[e] * p - mod * t / (3.0 * jac)
-                if pointwise is not None:
-                    p += pointwise[e] * (jac - 1.0)
-                l11 = l22 = mod
-                l12 = 0.0
-                if history is not None:
-                    l11 += history[e, q, 0]
-                    l22 += history[e, q, 1]
-                    l12 += history[e, q, 2]
-                p11, p12 = f11 * l11 + f12 * l12 + p * f22, f11 * l12 + f12 * l22 - p * f21
-                p21, p22 = f21 * l11 + f22 * l12 - p * f12, f21 * l12 + f22 * l22 + p * f11
-                w = weight[e, q]
-                i11, i12, i21, i22 = w * inverse[e, 0, q], w * inverse[e, 1, q], w * inverse[e, 2, q], w * inverse[e, 3, q]
-                drawn[0, q] = p11 * i11 + p12 * i21
-                drawn[0, points + q] = p11 * i12 + p12 * i22
-                drawn[1, q] = p21 * i11 + p22 * i21
-                drawn[1, points + q] = p21 * i12 + p22 * i22
-            _rest(force, cells[e], reference, drawn)
+                for k in range(first, last):
+                    e = start + k
+                    f11, f12, f21, f22, jac = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k]
+                    p = 0.0
+                    for m in range(modes):
+                        p += psi[m, q, k] * theta[m, k]
+                    i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
+                    mod, t = law_stress(i1, jac, factor * mu[e], constants[:, e])
+                    p = kappa[e] * p - mod * t / (3.0 * jac)
+                    if pointwise is not None:
+                        p += pointwise[e] * (jac - 1.0)
+                    l11 = l22 = mod
+                    l12 = 0.0
+                    if history is not None:
+                        l11 += history[block, 0, q, k]
+                        l22 += history[block, 1, q, k]
+                        l12 += history[block, 2, q, k]
+                    p11, p12 = f11 * l11 + f12 * l12 + p * f22, f11 * l12 + f12 * l22 - p * f21
+                    p21, p22 = f21 * l11 + f22 * l12 - p * f12, f21 * l12 + f22 * l22 + p * f11
+                    w = weight[q, k]
+                    i11, i12, i21, i22 = inverse[0, q, k], inverse[1, q, k], inverse[2, q, k], inverse[3, q, k]
+                    drawn[0, q, k] = w * (p11 * i11 + p12 * i21)
+                    drawn[0, points + q, k] = w * (p11 * i12 + p12 * i22)
+                    drawn[1, q, k] = w * (p21 * i11 + p22 * i21)
+                    drawn[1, points + q, k] = w * (p21 * i12 + p22 * i22)
+            rest(cells, reference, start, first, last, drawn, local, force)
         return smallest
 
     @njit(**_JIT)
-    def commit(u, mesh, mu, constants, only, decay, gain, branches, stress, stretch, new_branches, new_stress, new_stretch):
-        """Branch stresses (nb, ne, nq, 4), isochoric stress (ne, nq, 4) and C 11, 22, 12 (ne, nq, 3) after a step, into the new.
+    def commit(u, mesh, mu, constants, blocks, decay, gain, branches, stress, stretch, new_branches, new_stress, new_stretch):
+        """Branch stresses, isochoric stress and C 11, 22, 12 after a step, into the new.
 
+        Shapes: branches (nb, blocks, 4, nq, together); stress (blocks, 4, nq, together); stretch (blocks, 3, nq, together).
         ``decay``, ``gain`` (nb,) of the step; ``mu`` (ne,) long-term moduli. Returns the work done on the branches, by the
         trapezoidal rule, J/m.
         """
-        cells, reference, inverse, weight, _ = mesh
-        local, drawn, f = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points))
-        change = np.empty(4)
+        cells, reference, inverses, weights, _ = mesh
+        together = weights.shape[2]
+        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
+        f, now = np.empty((5, points, together)), np.empty((7, together))
         work = 0.0
-        for e in range(len(cells)):
-            if not only[e]:
-                continue
-            _deform(u, cells[e], reference, inverse[e], local, drawn, f)
+        for block, first, last in blocks:
+            start = block * np.uint64(together)
+            inverse, weight = inverses[block], weights[block]
+            deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
             for q in range(points):
-                f11, f12, f21, f22, jac = f[0, q], f[1, q], f[2, q], f[3, q], f[4, q]
-                c11, c22, c12 = f11 * f11 + f21 * f21, f12 * f12 + f22 * f22, f11 * f12 + f21 * f22
-                i1 = c11 + c22 + 1.0
-                mod, t = law_stress(i1, jac, mu[e], constants[e])
-                s11, s22, s12, s33 = _isochoric(mod, t, i1, c11, c22, c12, jac)
-                change[0], change[1] = s11 - stress[e, q, 0], s22 - stress[e, q, 1]
-                change[2], change[3] = s12 - stress[e, q, 2], s33 - stress[e, q, 3]
-                new_stress[e, q, 0], new_stress[e, q, 1], new_stress[e, q, 2], new_stress[e, q, 3] = s11, s22, s12, s33
-                m11 = m22 = m12 = 0.0
-                for b in range(len(decay)):
-                    for c in range(4):
-                        new_branches[b, e, q, c] = decay[b] * branches[b, e, q, c] + gain[b] * change[c]
-                    m11 += branches[b, e, q, 0] + new_branches[b, e, q, 0]
-                    m22 += branches[b, e, q, 1] + new_branches[b, e, q, 1]
-                    m12 += branches[b, e, q, 2] + new_branches[b, e, q, 2]
-                done = m11 * (c11 - stretch[e, q, 0]) + m22 * (c22 - stretch[e, q, 1]) + 2.0 * m12 * (c12 - stretch[e, q, 2])
-                work += 0.25 * weight[e, q] * done
-                new_stretch[e, q, 0], new_stretch[e, q, 1], new_stretch[e, q, 2] = c11, c22, c12
+                for k in range(first, last):
+                    f11, f12, f21, f22, jac = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k]
+                    c11, c22, c12 = f11 * f11 + f21 * f21, f12 * f12 + f22 * f22, f11 * f12 + f21 * f22
+                    i1 = c11 + c22 + 1.0
+                    mod, t = law_stress(i1, jac, mu[start + k], constants[:, start + k])
+                    now[0, k], now[1, k], now[2, k], now[3, k] = _isochoric(mod, t, i1, c11, c22, c12, jac)
+                    now[4, k], now[5, k], now[6, k] = c11, c22, c12
+                for c in range(4):
+                    # the mean of a branch's stress before and after, times the way: 12 counts twice, and C is twice E
+                    share = 0.0 if c == 3 else 0.5 if c == 2 else 0.25
+                    for b in range(len(decay)):
+                        for k in range(first, last):
+                            after = decay[b] * branches[b, block, c, q, k] + gain[b] * (now[c, k] - stress[block, c, q, k])
+                            new_branches[b, block, c, q, k] = after
+                        if c < 3:
+                            for k in range(first, last):
+                                way = share * weight[q, k] * (now[4 + c, k] - stretch[block, c, q, k])
+                                work += (branches[b, block, c, q, k] + new_branches[b, block, c, q, k]) * way
+                    for k in range(first, last):
+                        new_stress[block, c, q, k] = now[c, k]
+                    if c < 3:
+                        for k in range(first, last):
+                            new_stretch[block, c, q, k] = now[4 + c, k]
         return work
 
     @njit(**_JIT)
-    def energies(u, mesh, mu, kappa, constants, only, pointwise, dilatation, beta, branches):
+    def energies(u, mesh, mu, kappa, constants, blocks, pointwise, dilatation, beta, branches):
         """Energy of the network and that of the Maxwell springs, tau_i : tau_i / (4 beta_i mu), J/m.
 
-        ``dilatation`` (ne, nm) modes; ``beta`` (nb,) and ``branches`` (nb, ne, nq, 4), None without.
+        ``dilatation`` (ne, nm) modes; ``beta`` (nb,) and ``branches`` (nb, blocks, 4, nq, together), None without.
         """
-        cells, reference, inverse, weight, _ = mesh
-        local, drawn, f = np.empty((2, nodes)), np.empty((2, 2 * points)), np.empty((5, points))
+        cells, reference, inverses, weights, _ = mesh
+        together = weights.shape[2]
+        local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
+        f = np.empty((5, points, together))
         network = springs = 0.0
-        for e in range(len(cells)):
-            if not only[e]:
-                continue
-            _deform(u, cells[e], reference, inverse[e], local, drawn, f)
-            for m in range(modes):
-                network += 0.5 * kappa[e] * dilatation[e, m] ** 2
+        for block, first, last in blocks:
+            start = block * np.uint64(together)
+            inverse, weight = inverses[block], weights[block]
+            deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+            for k in range(first, last):
+                for m in range(modes):
+                    network += 0.5 * kappa[start + k] * dilatation[start + k, m] ** 2
             for q in range(points):
-                f11, f12, f21, f22, jac = f[0, q], f[1, q], f[2, q], f[3, q], f[4, q]
-                i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
-                network += weight[e, q] * law_energy(i1, jac, mu[e], constants[e])
-                if pointwise is not None:
-                    network += 0.5 * weight[e, q] * pointwise[e] * (jac - 1.0) ** 2
+                for k in range(first, last):
+                    e = start + k
+                    f11, f12, f21, f22, jac = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k]
+                    i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
+                    w = weight[q, k]
+                    network += w * law_energy(i1, jac, mu[e], constants[:, e])
+                    if pointwise is not None:
+                        network += 0.5 * w * pointwise[e] * (jac - 1.0) ** 2
                 if branches is not None:
                     for b in range(len(beta)):
-                        s11, s22, s12, s33 = (
-                            branches[b, e, q, 0],
-                            branches[b, e, q, 1],
-                            branches[b, e, q, 2],
-                            branches[b, e, q, 3],
-                        )
-                        springs += weight[e, q] * _spring(f11, f12, f21, f22, s11, s22, s12, s33) / (4.0 * beta[b] * mu[e])
+                        for k in range(first, last):
+                            e = start + k
+                            s11, s22 = branches[b, block, 0, q, k], branches[b, block, 1, q, k]
+                            s12, s33 = branches[b, block, 2, q, k], branches[b, block, 3, q, k]
+                            square = _spring(f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], s11, s22, s12, s33)
+                            springs += weight[q, k] * square / (4.0 * beta[b] * mu[e])
         return network, springs
 
     return SimpleNamespace(assemble_tangent=assemble_tangent, internal_force=internal_force, commit=commit, energies=energies)

@@ -54,9 +54,10 @@ class SmallStrainBody:
         zero = np.zeros_like(self.u)
         no_lag = np.zeros((len(space.cells), space.psi.shape[2]))
         for part in self.laws:
+            constants, blocks = np.ascontiguousarray(part.constants.T), space.blocks(part.elements)
             compiled.loops(part.law, *space.sizes).assemble_tangent(
                 zero, space.mesh, deviatoric * self.shear, volumetric * self.bulk,
-                part.constants, part.elements, no_lag, None, 1.0, None, pattern.scatter, data, zero.copy(),
+                constants, blocks, no_lag, None, 1.0, None, pattern.scatter, data, zero.copy(),
             )  # fmt: skip
         return data
 

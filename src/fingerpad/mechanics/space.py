@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -10,6 +11,18 @@ from fingerpad.mechanics.linear_solver import SymmetricPattern
 from fingerpad.specimen.element_kinds import KINDS
 
 DEFAULT_ELEMENT = {name: kind.solved for name, kind in KINDS.items() if kind.solved}
+
+
+TOGETHER = 32
+"""Elements of a block, which go through the element loops side by side: what is worked out of them fits the nearest memory."""
+
+
+def blocked(values: np.ndarray) -> np.ndarray:
+    """Values of elements (ne, ...) in blocks of elements side by side: (blocks, ..., TOGETHER), filled up with zeros."""
+    count = -(-len(values) // TOGETHER)
+    filled = np.zeros((count * TOGETHER, *values.shape[1:]))
+    filled[: len(values)] = values
+    return np.ascontiguousarray(np.moveaxis(filled.reshape(count, TOGETHER, *values.shape[1:]), 1, -1))
 
 
 @dataclass(frozen=True)
@@ -40,8 +53,8 @@ class Space:
         points, cells: as used (with bubble nodes). grad (ne, nq, nen, 2) 1/m; weight (ne, nq) m^2 (times the measure);
         psi (ne, nq, nm) pressure modes, orthonormal in the weight; equation (n, 2) equation number or -1; size.
         mesh: what the element loops read, as tuple: cells; gradients on the reference cell (nen, 2 nq), all along its first
-        coordinate before all along the second; (ne, 4, nq) what makes gradients of them, 1/m, with 11, 12, 21, 22 of the
-        inverse Jacobian; weight; pressure modes (ne, nm, nq). sizes: nen, nq, nm.
+        coordinate before all along the second; and, in blocks of elements (:func:`blocked`), what makes gradients of them
+        (4, nq), 1/m, with 11, 12, 21, 22 of the inverse Jacobian; weight (nq); pressure modes (nm, nq). sizes: nen, nq, nm.
 
     Raises:
         ValueError: an element is inverted or the element does not fit the mesh.
@@ -75,8 +88,9 @@ class Space:
         self._orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
         self.psi = np.ascontiguousarray(np.einsum("eqa,eba->eqb", modes, self._orthonormal))
         reference = np.concatenate([self.element.gradients[..., 0], self.element.gradients[..., 1]]).T
-        inverse = inverse.reshape(*self.weight.shape, 4).swapaxes(1, 2)
-        self.mesh = (cells, *map(np.ascontiguousarray, (reference, inverse, self.weight, self.psi.swapaxes(1, 2))))
+        inverse = inverse.reshape(*self.weight.shape, 4)
+        parts = (inverse.swapaxes(1, 2), self.weight, self.psi.swapaxes(1, 2))
+        self.mesh = (cells, np.ascontiguousarray(reference), *map(blocked, parts))
         self.sizes = (cells.shape[1], *self.psi.shape[1:])
         self.equation = np.full(points.shape, -1, dtype=np.int64)
         self.equation[~fixed] = np.arange(np.count_nonzero(~fixed))
@@ -114,6 +128,16 @@ class Space:
         local = (points - self._centre[elements]) / self._span[elements][:, None]
         raw = np.column_stack([np.ones(len(points)), local])[:, :count]
         return np.einsum("na,nba->nb", raw, self._orthonormal[elements])
+
+    def blocks(self, which: np.ndarray) -> np.ndarray:
+        """(k, 3): of each block with elements of ``which`` (ne,) bool, its number and the first and last + 1 of a run of them."""
+        change = np.flatnonzero(np.diff(which, prepend=False, append=False))
+        runs = [
+            (begin // TOGETHER, begin % TOGETHER, begin % TOGETHER + end - begin)
+            for start, stop in change.reshape(-1, 2)
+            for begin, end in pairwise(sorted({start, stop, *range(-(-start // TOGETHER) * TOGETHER, stop, TOGETHER)}))
+        ]
+        return np.array(runs, dtype=np.uint64).reshape(-1, 3)
 
     def to_equations(self, field: np.ndarray) -> np.ndarray:
         """Values of a nodal field (n, 2) at the free equations (size,)."""

@@ -21,18 +21,19 @@ def step_coefficients(prony: Prony, dt: float) -> tuple[np.ndarray, np.ndarray, 
 
 
 class Branches:
-    """History of the Prony branches at a set of points: stress ``q`` (nb, ..., 4) and the last ``S_iso`` (..., 4).
+    """History of the Prony branches at a set of points: stress ``q`` (nb, ...) and the last ``S_iso`` (...).
 
-    Components are 11, 22, 12, 33. Committed only after a step has converged.
+    ``shape``: of a stress there, whichever of its axes are the components 11, 22, 12, 33. Committed only after a step has
+    converged.
     """
 
     def __init__(self, prony: Prony, shape: tuple[int, ...]):
         self.prony = prony
-        self.q = np.zeros((len(prony.tau), *shape, 4))
-        self.last = np.zeros((*shape, 4))
+        self.q = np.zeros((len(prony.tau), *shape))
+        self.last = np.zeros(shape)
 
     def begin(self, dt: float) -> tuple[float, np.ndarray]:
-        """Factor of the new isochoric stress and the history stress (..., 4) for a step of ``dt``."""
+        """Factor of the new isochoric stress and the history stress (...) for a step of ``dt``."""
         self._decay, self._gamma, factor = step_coefficients(self.prony, dt)
         weight = self.prony.beta * self._gamma
         history = np.tensordot(self._decay, self.q, axes=1) - weight.sum() * self.last
@@ -44,7 +45,7 @@ class Branches:
         return self._decay, self.prony.beta * self._gamma
 
     def commit(self, stress: np.ndarray) -> None:
-        """Accept the new isochoric stress (..., 4) of the step begun last."""
+        """Accept the new isochoric stress (...) of the step begun last."""
         gain = (self.prony.beta * self._gamma).reshape(-1, *(1,) * stress.ndim)
         decay = self._decay.reshape(-1, *(1,) * stress.ndim)
         self.q = decay * self.q + gain * (stress - self.last)[None]

@@ -157,7 +157,7 @@ class MaterialPoints:
         self.shear_instantaneous = None if shear_instantaneous is None else np.asarray(shear_instantaneous)[element]
         self._linear = body.geometrically_linear
         prony = body.prony if self._linear else body.branches and body.branches.prony
-        self.branches = Branches(prony, (len(element),)) if prony else None
+        self.branches = Branches(prony, (len(element), 4)) if prony else None
 
     def _gradient(self, body):
         return np.einsum("nai,naj->nij", body.u[self.cells], self.grad)
