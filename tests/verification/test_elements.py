@@ -144,6 +144,8 @@ def check_mixed_laws(element, prony, moved=0):
     for one, both in zip(answers(alone), answers(mixed), strict=True):
         error = np.abs(both - one).max() / np.abs(one).max()
         assert error < 1e-12, f"truth: laws in parts are off by {error:.2e}"
+    if prony:  # what is left over of the last block stays empty: garbage there would be multiplied in every step
+        assert not mixed.branches.q[..., -1, :, :, len(mesh.cells) % TOGETHER :].any()
 
 
 @pytest.mark.parametrize("prony", [None, PRONY], ids=["elastic", "viscoelastic"])
