@@ -6,11 +6,11 @@ times the deviatoric stress of v.
 """
 
 import numpy as np
+import scipy.sparse as sp
 
 from fingerpad.laws import Assigned
 from fingerpad.mechanics import compiled
 from fingerpad.mechanics.finite_strain import everywhere_neo_hooke
-from fingerpad.mechanics.linear_solver import SymmetricPattern
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import step_coefficients
 from fingerpad.specimen.materials import Prony
@@ -41,25 +41,36 @@ class SmallStrainBody:
         self.v = np.zeros((len(prony.tau) if prony else 0, *self.u.shape))
         self._last = self.u.copy()
         self.branch_work = 0.0
-        nodes = space.cells
-        everything = SymmetricPattern(np.concatenate([2 * nodes, 2 * nodes + 1], axis=1), 2 * len(space.points))
-        self._deviatoric = everything.matrix(self._stiffness(everything, 1.0, 0.0))
-        self._volumetric = everything.matrix(self._stiffness(everything, 0.0, 1.0))
-        self._free = [self._stiffness(space.pattern, 1.0, 0.0), self._stiffness(space.pattern, 0.0, 1.0)]
+        parts = self._stiffness(1.0, 0.0), self._stiffness(0.0, 1.0)
+        self._deviatoric, self._volumetric = map(self._everything, parts)
+        scatter, most = space.pattern.scatter.ravel(), space.pattern.nonzeros + 1
+        self._free = [np.bincount(scatter, part.ravel(), most) for part in parts]
         self._factored = None
         self._begin(1.0, np.zeros_like(self.u))
 
-    def _stiffness(self, pattern, deviatoric, volumetric):
-        space, data = self.space, pattern.new_data()
-        zero = np.zeros_like(self.u)
+    def _stiffness(self, deviatoric, volumetric):
+        """(ne, nd(nd+1)/2): the upper triangle of every element's matrix."""
+        space, zero = self.space, np.zeros_like(self.u)
+        out = np.zeros(space.pattern.scatter.size)
+        each = np.arange(out.size, dtype=np.int32).reshape(space.pattern.scatter.shape)
         no_lag = np.zeros((len(space.cells), space.psi.shape[2]))
         for part in self.laws:
             constants, blocks = np.ascontiguousarray(part.constants.T), space.blocks(part.elements)
             compiled.loops(part.law, *space.sizes).assemble_tangent(
                 zero, space.mesh, deviatoric * self.shear, volumetric * self.bulk,
-                constants, blocks, no_lag, None, 1.0, None, pattern.scatter, data, zero.copy(),
+                constants, blocks, no_lag, None, 1.0, None, each, out, zero.copy(),
             )  # fmt: skip
-        return data
+        return out.reshape(each.shape)
+
+    def _everything(self, upper):
+        """The matrix (2 n, 2 n) of all degrees of freedom, also of those that are prescribed."""
+        dofs = np.concatenate([2 * self.space.cells, 2 * self.space.cells + 1], axis=1)
+        rows, columns = np.triu_indices(dofs.shape[1])
+        above = rows < columns
+        values = np.concatenate([upper.ravel(), upper[:, above].ravel()])
+        i = np.concatenate([dofs[:, rows].ravel(), dofs[:, columns[above]].ravel()])
+        j = np.concatenate([dofs[:, columns].ravel(), dofs[:, rows[above]].ravel()])
+        return sp.csr_matrix((values, (i, j)), shape=(self.u.size, self.u.size))
 
     def _begin(self, factor, history):
         self._factor, self._history = factor, history
