@@ -38,9 +38,10 @@ class Law:
         dP = m dF + psi_J C0:dF + f F (F:dF) + g (F (c:dF) + c (F:dF)) + h c (c:dF)
                                                                      f = 4 psi_11,  g = 2 psi_1J,  h = psi_JJ
 
-    The formulas take ``(i1, jac, mu, constants)`` and work on numbers, where they are compiled into the element loops, and on
-    arrays alike; ``constants[k]`` is the k-th constant. The shear modulus ``mu`` (Pa) multiplies everything: undeformed, every
-    law is the linear solid of that modulus, and Prony branches relax it; without it (zero) t is still a number.
+    The formulas take ``(i1, jac, mu, constants)``, and J^(-2/3) from :func:`isochoric`; they work on numbers, where they are
+    compiled into the element loops, and on arrays alike; ``constants[k]`` is the k-th constant. The shear modulus ``mu`` (Pa)
+    multiplies everything: undeformed, every law is the linear solid of that modulus, and Prony branches relax it; without it
+    (zero) t is still a number.
 
     Attributes:
         name: in the scene language. energy: psi, Pa. stress: ``(m, t)``. tangent: ``(m, t, f, g, h)``.

@@ -166,7 +166,8 @@ def _common(nodes: int, points: int, modes: int) -> tuple:
     """What the loops over elements have in common, for elements of these sizes.
 
     Each works on those of a block from ``first`` to before ``last``; ``start`` is the number of the block's own first. Arrays
-    have the elements of a block as their last axis.
+    have the elements of a block as their last axis. The three are unsigned: an index that could count from the end would make
+    gathers of what are rows.
     """
 
     @njit(**_INLINE)
@@ -212,8 +213,8 @@ def _common(nodes: int, points: int, modes: int) -> tuple:
                 theta[m, k] = total
 
     @njit(**_INLINE)
-    def rest(cells, reference, start, first, last, drawn, local, force):
-        """Add to the nodal ``force`` (n, 2) what stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth there."""
+    def to_nodes(reference, first, last, drawn, local):
+        """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes: ``local`` (2, nen, ...)."""
         for i in range(2):
             for a in range(nodes):
                 for k in range(first, last):
@@ -221,18 +222,22 @@ def _common(nodes: int, points: int, modes: int) -> tuple:
                     for c in range(2 * points):
                         total += drawn[i, c, k] * reference[a, c]
                     local[i, a, k] = total
+
+    @njit(**_INLINE)
+    def add(cells, start, first, last, local, force):
+        """Add forces ``local`` (2, nen, ...) on their nodes to the nodal ``force`` (n, 2)."""
         for k in range(first, last):
             for a in range(nodes):
                 force[cells[start + k, a], 0] += local[0, a, k]
                 force[cells[start + k, a], 1] += local[1, a, k]
 
-    return deform, project, rest
+    return deform, project, to_nodes, add
 
 
 @cache
 def dilatation_loop(nodes: int, points: int, modes: int):
     """The loop that predicts dilatations, for elements of these sizes."""
-    deform, project, _ = _common(nodes, points, modes)
+    deform, project, *_ = _common(nodes, points, modes)
 
     @njit(**_JIT)
     def predict_dilatation(u, du, mesh, out):
@@ -266,7 +271,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     :attr:`Space.mesh`, ``constants`` (number of constants, ne) are the law's, and ``blocks`` (k, 3) says which elements follow
     it: those of a block, from the first to before the last (:meth:`Space.blocks`).
     """
-    deform, project, rest = _common(nodes, points, modes)
+    deform, project, to_nodes, add = _common(nodes, points, modes)
     law_energy, law_stress, law_tangent = law.energy, law.stress, law.tangent
     for formula in (law_energy, law_stress, law_tangent):
         register_jitable(inline="always")(formula)
@@ -372,7 +377,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     found[15, q, k] = lap11 + fy1 * ay1 + cy1 * by1
                     found[16, q, k] = lap12 + fy1 * ay2 + cy1 * by2
                     found[17, q, k] = lap22 + fy2 * ay2 + cy2 * by2
-            rest(cells, reference, start, first, last, drawn, local, force)
+            to_nodes(reference, first, last, drawn, local)
+            add(cells, start, first, last, local, force)
             for m in range(modes):
                 for q in range(points):
                     for k in range(first, last):
@@ -380,13 +386,7 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         part[0, points + q, k] = psi[m, q, k] * cofactor[1, q, k]
                         part[1, q, k] = psi[m, q, k] * cofactor[2, q, k]
                         part[1, points + q, k] = psi[m, q, k] * cofactor[3, q, k]
-                for i in range(2):
-                    for a in range(nodes):
-                        for k in range(first, last):
-                            total = 0.0
-                            for c in range(2 * points):
-                                total += part[i, c, k] * reference[a, c]
-                            modal[m, i, a, k] = total
+                to_nodes(reference, first, last, part, modal[m])
             for k in range(first, last):
                 e = start + k
                 for d in range(10):
@@ -474,7 +474,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     drawn[0, points + q, k] = w * (p11 * i12 + p12 * i22)
                     drawn[1, q, k] = w * (p21 * i11 + p22 * i21)
                     drawn[1, points + q, k] = w * (p21 * i12 + p22 * i22)
-            rest(cells, reference, start, first, last, drawn, local, force)
+            to_nodes(reference, first, last, drawn, local)
+            add(cells, start, first, last, local, force)
         return smallest
 
     @njit(**_JIT)

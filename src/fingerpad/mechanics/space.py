@@ -130,7 +130,10 @@ class Space:
         return np.einsum("na,nba->nb", raw, self._orthonormal[elements])
 
     def blocks(self, which: np.ndarray) -> np.ndarray:
-        """(k, 3): of each block with elements of ``which`` (ne,) bool, its number and the first and last + 1 of a run of them."""
+        """(k, 3): of each block with elements of ``which`` (ne,) bool, its number and the first and last + 1 of a run of them.
+
+        Unsigned, which the element loops are compiled for.
+        """
         change = np.flatnonzero(np.diff(which, prepend=False, append=False))
         runs = [
             (begin // TOGETHER, begin % TOGETHER, begin % TOGETHER + end - begin)
