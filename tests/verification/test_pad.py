@@ -209,10 +209,10 @@ def test_finite_strain_becomes_small_strain(half, shape, must_fail):
 
 #: Newton iterations and factorisations of a ramp and hold of 16 steps
 EFFORT = {
-    ("flat", "small"): (16, 16),
-    ("flat", "finite"): (34, 12),
-    ("cylinder", "small"): (17, 17),
-    ("cylinder", "finite"): (38, 13),
+    ("flat", "small"): (23, 4),
+    ("flat", "finite"): (34, 6),
+    ("cylinder", "small"): (23, 4),
+    ("cylinder", "finite"): (38, 6),
 }
 
 
@@ -227,8 +227,31 @@ def test_solver_effort(half, shape, strain):
     assert len(records) == 16
     assert not any(record.halvings for record in records)
     iterations = sum(record.iterations for record in records)
-    assert iterations <= 3 * len(records) and solver.factorisations <= len(records) + 1
+    assert iterations <= 3 * len(records) and solver.factorisations <= len(records) / 2
     np.testing.assert_allclose((iterations, solver.factorisations), EFFORT[shape, strain], atol=2)
+
+
+def pressures(shape, settings, of_displacement=False):
+    """(ne, nm) moduli times dilatations at the end of a ramp and hold, of the body or as its displacement has them."""
+    body = pad_body(half_mesh(), "finite", 0.4999, THESIS)
+    solver = QuasiStatic(body, skin_of(half_mesh(), "skin"), SHAPES[shape], settings)
+    solver.run(ramp_and_hold("force", LOAD / 2, 8))
+    if of_displacement:
+        body.displace(body.u)
+    return body.bulk[:, None] * body.dilatation()
+
+
+def check_pressures(shape, **more):
+    truth = pressures(shape, TIGHT)
+    error = np.linalg.norm(pressures(shape, NewtonSettings(force_tolerance=2e-3), **more) - truth) / np.linalg.norm(truth)
+    assert error < 1e-5, f"truth: pressures are off by {error:.2e}"
+
+
+@BOTH_SHAPES
+def test_pressures_are_found_by_equilibrium(shape, must_fail):
+    """Loosely converged at nu = 0.4999, on factors of states long past, pressures are right; kappa times volume is not."""
+    check_pressures(shape)
+    must_fail(check_pressures, shape, of_displacement=True)
 
 
 def check_one_step(mesh, shape, poisson, lagged=True):

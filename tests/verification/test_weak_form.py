@@ -93,7 +93,7 @@ def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
     body.displace(u, lag)
     data, force = body.tangent()
     close(force, form.force(u, slopes, change * factor, history))
-    close(body.internal_force(), force)
+    close(body.against(body.internal_force()), force)
     at_points = np.einsum("eqa,ea->eq", space.psi, lag)
     stiffness = form.stiffness(u, slopes, at_points, change * factor, history)
     free = ~space.fixed.ravel()

@@ -24,6 +24,12 @@ def dilatation_loop(nodes: int, points: int, modes: int) -> Loop:
 
 
 @cache
+def volume_loop(nodes: int, points: int, modes: int) -> Loop:
+    """:func:`kernels.volume_loop`."""
+    return _loop("volume_loop", (nodes, points, modes))
+
+
+@cache
 def stress_loop(law: Law) -> Loop:
     """:func:`kernels.stress_loop`."""
     return _loop("stress_loop", (law,))

@@ -1,8 +1,15 @@
 """The finite-strain body: nearly incompressible, hyperelastic, total Lagrangian, with or without Prony branches.
 
-To the isochoric energy of its laws (:mod:`fingerpad.laws`) comes kappa/2 (J - 1)^2, whose dilatation is projected on the
-element's pressure modes and condensed (Simo, Taylor and Pister 1985). The tangent's geometric part uses the pressure that the
-last linear step predicted (Magisano, Leonetti and Garcea 2017), which lets a whole load go on in one step.
+To the isochoric energy of its laws (:mod:`fingerpad.laws`) comes that of a dilatation ``d`` of its own, in the element's
+pressure modes, which the projection ``v`` of J - 1 is to equal (Simo, Taylor and Pister 1985): kappa (d v - d^2/2), the pressure
+being kappa d. Newton's method, with the tangent of a state ``0`` that need not be the present one, is
+
+    (K + kappa B0^T B0) du = -f(u, d) - kappa B0^T (v(u) - d),      d <- v(u) + B0 du,      B = dv/du,
+
+so that pressure is found by equilibrium, and never as kappa times a small difference of displacements: what ``v`` and ``d``
+still differ by after a step is a change of volume too small to matter long before it is a force too small to matter. The
+geometric part of a tangent uses the pressure that the last linear step found (Magisano, Leonetti and Garcea 2017), which lets a
+whole load go on in one step.
 """
 
 import numpy as np
@@ -23,6 +30,7 @@ class FiniteStrainBody:
         pointwise: volumetric modulus in units of ``shear`` that is not projected on the pressure modes; a few of them keep
             elements under an edge from folding, where det F varies wildly within one element. None leaves it out.
         laws: what the elements answer to a change of shape; None: neo-Hooke.
+        lagged: False makes pressures follow displacement at once: plain Newton's method, to be held to the other.
 
     Attributes:
         u: (n, 2) displacement, m; smallest_jacobian: min det F of the last evaluation.
@@ -53,8 +61,9 @@ class FiniteStrainBody:
             (compiled.loops(part.law, *space.sizes), np.ascontiguousarray(part.constants.T), space.blocks(part.elements))
             for part in self.laws
         ]
-        self._dilatation = np.zeros((len(space.cells), space.psi.shape[2]))
-        self._lag, self._predicted = self._dilatation.copy(), None
+        self._volume = np.zeros((len(space.cells), space.psi.shape[2]))
+        self._dilatation = self._volume.copy()
+        self._about = self.u, self._volume.copy()
         undeformed = blocked(np.tile([[1.0], [1.0], [0.0], [0.0]], (*space.weight.shape[:1], 1, space.weight.shape[1])))
         self.branches = Branches(prony, undeformed.shape) if prony else None
         self._factor, self._history = 1.0, None
@@ -69,56 +78,73 @@ class FiniteStrainBody:
         if self.branches is not None:
             self._factor, self._history = self.branches.begin(dt)
 
-    def displace(self, u: np.ndarray, lag: np.ndarray | None = None) -> np.ndarray:
-        """Put the body at ``u`` (a predictor); the lagged dilatation becomes that of ``u`` unless given.
+    def displace(self, u: np.ndarray, dilatation: np.ndarray | None = None) -> np.ndarray:
+        """Put the body at ``u`` (a predictor); the dilatation (ne, nm) becomes that of ``u`` unless given.
 
         Returns the internal force there (n, 2) N/m, in the step begun last.
         """
         self.u = np.array(u)
+        self._dilatation = self._volume if dilatation is None else np.array(dilatation)
         force = self.internal_force()
-        self._lag, self._predicted = self._dilatation.copy() if lag is None else lag, None
+        if dilatation is None:
+            self._dilatation = self._volume.copy()
         return force
 
     def internal_force(self) -> np.ndarray:
-        """(n, 2) N/m at the current displacement."""
+        """(n, 2) N/m at the current displacement and dilatation."""
         force = np.zeros_like(self.u)
         self.smallest_jacobian = min(
             loops.internal_force(
-                self.u, self.space.mesh, self.shear, self.bulk, *part, self._history, self._factor, self._pointwise, force,
-                self._dilatation,
+                self.u, self.space.mesh, self.shear, self.bulk, *part, self._history, self._factor, self._pointwise,
+                self._dilatation if self.lagged else self._volume, self._volume, force,
             )
             for loops, *part in self._loops
         )  # fmt: skip
+        if not self.lagged:
+            self._dilatation = self._volume.copy()
         return force
 
     def tangent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients of the pattern (nonzeros + 1,) and internal force (n, 2) at the current displacement."""
+        """Coefficients of the pattern (nonzeros + 1,) at the current displacement, and the force (n, 2) that goes with them: the
+        internal one and kappa B^T (v - d), which together are that of a dilatation that is the displacement's."""
         if self._data is None:
             self._data = self.space.pattern.new_data()
         self._data[:] = 0
         force = np.zeros_like(self.u)
-        if self._predicted is not None:
-            compiled.dilatation_loop(*self.space.sizes)(*self._predicted, self.space.mesh, self._lag)
-            self._predicted = None
-        lag = self._lag if self.lagged else self._dilatation
         self.smallest_jacobian = min(
             loops.assemble_tangent(
-                self.u, self.space.mesh, self.shear, self.bulk, *part, lag, self._history, self._factor, self._pointwise,
-                self.space.pattern.scatter, self._data, force,
+                self.u, self.space.mesh, self.shear, self.bulk, *part, self._dilatation if self.lagged else self._volume,
+                self._volume, self._history, self._factor, self._pointwise, self.space.pattern.scatter, self._data, force,
             )
             for loops, *part in self._loops
         )  # fmt: skip
+        self._about = self.u, self._volume.copy()
         return self._data, force
 
     def linearise(self, solver) -> tuple[np.ndarray, np.ndarray]:
-        """Factor the tangent; returns the Schur complement (nc, nc) and the internal force (n, 2)."""
+        """Factor the tangent; returns the Schur complement (nc, nc) and the force (n, 2) that goes with it."""
         data, force = self.tangent()
         return solver.factor(data), force
 
+    def against(self, internal: np.ndarray) -> np.ndarray:
+        """The force (n, 2) that goes with the tangent that was factored last, wherever that was, of the ``internal`` one here."""
+        force = internal.copy()
+        amiss = self._volume - self._dilatation
+        compiled.volume_loop(*self.space.sizes)(self._about[0], amiss, self.space.mesh, self.bulk, force)
+        return force
+
     def advance(self, du: np.ndarray, share: float = 1.0) -> None:
-        """Accept ``share`` of the linear step ``du`` (n, 2); the predicted dilatation becomes the next lag."""
-        self._predicted = self.u, share * du  # worked out only when a tangent is asked for
+        """Accept ``share`` of the linear step ``du`` (n, 2), and the dilatation that it leads to."""
+        about, before = self._about
+        found = np.empty_like(self._volume)
+        compiled.dilatation_loop(*self.space.sizes)(about, share * du, self.space.mesh, found)
+        self._dilatation = self._volume + (found - before)
         self.u = self.u + share * du
+
+    def volume_amiss(self) -> tuple[float, float]:
+        """What the displacement's dilatation and its own differ by, and its own, as norms of pressures (N)."""
+        bulk = self.bulk[:, None]
+        return float(np.linalg.norm(bulk * (self._volume - self._dilatation))), float(np.linalg.norm(bulk * self._dilatation))
 
     def commit(self) -> None:
         """The step has converged: let the branches move on, and add up the work that was done on them."""
@@ -136,20 +162,24 @@ class FiniteStrainBody:
             self._stretch = after[2]
 
     def dilatation(self) -> np.ndarray:
-        """(ne, nm) modes of J - 1; the pressure is kappa times them."""
+        """(ne, nm) modes of the dilatation; the pressure is kappa times them."""
+        return self._dilatation
+
+    @property
+    def pressed(self) -> np.ndarray:
+        """What a state is of beside its displacement: :meth:`dilatation`."""
         return self._dilatation
 
     def save(self):
         """Everything needed to come back to this state."""
         history = self.branches and (self.branches.state(), self.branch_work, self._stretch)
-        return self.u.copy(), self._dilatation.copy(), history
+        return self.u.copy(), self._dilatation.copy(), self._volume.copy(), history
 
     def restore(self, state) -> None:
         """Come back to a saved state."""
-        self.u, self._dilatation = (np.array(part) for part in state[:2])
-        self._lag, self._predicted = self._dilatation.copy(), None
+        self.u, self._dilatation, self._volume = (np.array(part) for part in state[:3])
         if self.branches is not None:
-            branches, self.branch_work, self._stretch = state[2]
+            branches, self.branch_work, self._stretch = state[3]
             self.branches.restore(branches)
 
     def energies(self) -> tuple[float, float, float]:
@@ -161,12 +191,13 @@ class FiniteStrainBody:
         springs = (None, None) if self.branches is None else (self.branches.prony.beta, self.branches.q)
         network, spring = np.sum(
             [
-                loops.energies(self.u, self.space.mesh, self.shear, self.bulk, *part, self._pointwise, self._dilatation, *springs)
+                loops.energies(self.u, self.space.mesh, self.shear, *part, self._pointwise, *springs)
                 for loops, *part in self._loops
             ],
             axis=0,
         )
-        return float(network), float(spring), self.branch_work
+        volumetric = self.bulk @ np.sum(self._dilatation * (self._volume - 0.5 * self._dilatation), axis=1)
+        return float(network + volumetric), float(spring), self.branch_work
 
 
 def everywhere_neo_hooke(count: int) -> tuple[Assigned, ...]:

@@ -264,6 +264,43 @@ def dilatation_loop(nodes: int, points: int, modes: int):
 
 
 @cache
+def volume_loop(nodes: int, points: int, modes: int):
+    """The loop for what pressures on a given shape are worth at the nodes, for elements of these sizes."""
+    deform, _, to_nodes, add = _common(nodes, points, modes)
+
+    @njit(**_JIT)
+    def force_of_dilatation(u, dilatation, mesh, kappa, force):
+        """Nodal forces ``int kappa (psi_a dilatation_a) cof F : grad v``, accumulated in ``force`` (n, 2).
+
+        Shapes: u (n, 2); dilatation (ne, nm); kappa (ne,).
+        """
+        cells, reference, inverses, weights, all_psi = mesh
+        together = weights.shape[2]
+        local, drawn, f = np.empty((2, nodes, together)), np.empty((2, 2 * points, together)), np.empty((5, points, together))
+        for block in range(len(weights)):
+            begin = block * together
+            start, first, last = np.uint64(begin), np.uint64(0), np.uint64(min(together, len(cells) - begin))
+            inverse, weight, psi = inverses[block], weights[block], all_psi[block]
+            deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+            for q in range(points):
+                for k in range(first, last):
+                    p = 0.0
+                    for m in range(modes):
+                        p += psi[m, q, k] * dilatation[start + k, m]
+                    p *= kappa[start + k] * weight[q, k]
+                    i11, i12, i21, i22 = inverse[0, q, k], inverse[1, q, k], inverse[2, q, k], inverse[3, q, k]
+                    f11, f12, f21, f22 = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k]
+                    drawn[0, q, k] = p * (f22 * i11 - f21 * i21)
+                    drawn[0, points + q, k] = p * (f22 * i12 - f21 * i22)
+                    drawn[1, q, k] = p * (f11 * i21 - f12 * i11)
+                    drawn[1, points + q, k] = p * (f11 * i22 - f12 * i12)
+            to_nodes(reference, first, last, drawn, local)
+            add(cells, start, first, last, local, force)
+
+    return force_of_dilatation
+
+
+@cache
 def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     """The element loops of a law for elements with so many nodes, quadrature points and pressure modes.
 
@@ -278,10 +315,13 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     wide_x, wide_y = (-(-width // _LANES) * _LANES for width in (2 * nodes, nodes))
 
     @njit(**_JIT)
-    def assemble_tangent(u, mesh, mu, kappa, constants, blocks, dilatation_lag, history, factor, pointwise, scatter, data, force):
-        """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``.
+    def assemble_tangent(
+        u, mesh, mu, kappa, constants, blocks, dilatation, volume, history, factor, pointwise, scatter, data, force
+    ):
+        """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``, its pressures being of its volume.
 
-        Shapes: u (n, 2); mu, kappa (ne,); dilatation_lag (ne, nm); history (blocks, 4, nq, together) second Piola-Kirchhoff 11,
+        Shapes: u (n, 2); mu, kappa (ne,); dilatation (ne, nm) of the pressures in the geometric part; volume (ne, nm), filled
+        with the dilatation of ``u``, which may be the same array; history (blocks, 4, nq, together) second Piola-Kirchhoff 11,
         22, 12, 33, or None; factor: share of the isochoric stress that answers at once; pointwise (ne,): extra volumetric modulus
         that is not projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded); force (n, 2),
         accumulated.
@@ -312,7 +352,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             project(weight, psi, first, last, f, theta)
             for m in range(modes):
                 for k in range(first, last):
-                    lag[m, k] = dilatation_lag[start + k, m]
+                    volume[start + k, m] = theta[m, k]
+                for k in range(first, last):
+                    lag[m, k] = dilatation[start + k, m]
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
@@ -431,8 +473,12 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         return smallest
 
     @njit(**_JIT)
-    def internal_force(u, mesh, mu, kappa, constants, blocks, history, factor, pointwise, force, dilatation):
-        """Internal force (n, 2), accumulated in ``force``; fills ``dilatation`` (ne, nm). Returns the smallest det F."""
+    def internal_force(u, mesh, mu, kappa, constants, blocks, history, factor, pointwise, dilatation, volume, force):
+        """Internal force (n, 2) of the pressures kappa times ``dilatation`` (ne, nm), accumulated in ``force``.
+
+        Fills ``volume`` (ne, nm), the dilatation of ``u``; it may be the same array, then pressures are of it. Returns the
+        smallest det F.
+        """
         cells, reference, inverses, weights, all_psi = mesh
         together = weights.shape[2]
         local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
@@ -447,7 +493,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             project(weight, psi, first, last, f, theta)
             for m in range(modes):
                 for k in range(first, last):
-                    dilatation[start + k, m] = theta[m, k]
+                    volume[start + k, m] = theta[m, k]
+                for k in range(first, last):
+                    theta[m, k] = dilatation[start + k, m]
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
@@ -522,10 +570,10 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         return work
 
     @njit(**_JIT)
-    def energies(u, mesh, mu, kappa, constants, blocks, pointwise, dilatation, beta, branches):
-        """Energy of the network and that of the Maxwell springs, tau_i : tau_i / (4 beta_i mu), J/m.
+    def energies(u, mesh, mu, constants, blocks, pointwise, beta, branches):
+        """Energy of the network's change of shape and that of the Maxwell springs, tau_i : tau_i / (4 beta_i mu), J/m.
 
-        ``dilatation`` (ne, nm) modes; ``beta`` (nb,) and ``branches`` (nb, blocks, 4, nq, together), None without.
+        ``beta`` (nb,) and ``branches`` (nb, blocks, 4, nq, together), None without.
         """
         cells, reference, inverses, weights, _ = mesh
         together = weights.shape[2]
@@ -536,9 +584,6 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             start = block * np.uint64(together)
             inverse, weight = inverses[block], weights[block]
             deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
-            for k in range(first, last):
-                for m in range(modes):
-                    network += 0.5 * kappa[start + k] * dilatation[start + k, m] ** 2
             for q in range(points):
                 for k in range(first, last):
                     e = start + k

@@ -21,6 +21,7 @@ class SmallStrainBody:
 
     geometrically_linear = True
     smallest_jacobian = 1.0
+    pressed = 0.0  # a state is of its displacement alone
 
     @property
     def factor(self) -> float:
@@ -53,12 +54,12 @@ class SmallStrainBody:
         space, zero = self.space, np.zeros_like(self.u)
         out = np.zeros(space.pattern.scatter.size)
         each = np.arange(out.size, dtype=np.int32).reshape(space.pattern.scatter.shape)
-        no_lag = np.zeros((len(space.cells), space.psi.shape[2]))
+        no_lag, volume = np.zeros((2, len(space.cells), space.psi.shape[2]))
         for part in self.laws:
             constants, blocks = np.ascontiguousarray(part.constants.T), space.blocks(part.elements)
             compiled.loops(part.law, *space.sizes).assemble_tangent(
                 zero, space.mesh, deviatoric * self.shear, volumetric * self.bulk,
-                constants, blocks, no_lag, None, 1.0, None, each, out, zero.copy(),
+                constants, blocks, no_lag, volume, None, 1.0, None, each, out, zero.copy(),
             )  # fmt: skip
         return out.reshape(each.shape)
 
@@ -83,7 +84,7 @@ class SmallStrainBody:
             branch = np.tensordot(beta * self._decay, self.v, axes=1) - np.sum(beta * self._gamma) * self._last
             self._begin(factor, branch)
 
-    def displace(self, u: np.ndarray, lag=None) -> np.ndarray:
+    def displace(self, u: np.ndarray, dilatation=None) -> np.ndarray:
         self.u = np.array(u)
         return self.internal_force()
 
@@ -103,6 +104,14 @@ class SmallStrainBody:
             self._data = self.stiffness()
             self._factored = (key, solver.factor(self._data), solver)
         return self._factored[1].copy(), self.internal_force()
+
+    def against(self, internal: np.ndarray) -> np.ndarray:
+        """The force that goes with the tangent: the ``internal`` one."""
+        return internal
+
+    def volume_amiss(self) -> tuple[float, float]:
+        """Nothing: pressures are those of the displacement."""
+        return 0.0, 0.0
 
     def advance(self, du: np.ndarray, share: float = 1.0) -> None:
         self.u = self.u + share * du

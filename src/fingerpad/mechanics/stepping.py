@@ -58,18 +58,23 @@ class _TooFar(_StepFailure):
 class NewtonSettings:
     """Tolerances relative to the current contact force and to the node spacing, and limits.
 
+    Forces on nodes may be out of balance by ``force_tolerance``, their sum by ``whole``, and pressure may be off what volume
+    stands for by ``volume`` times as small a share as forces.
     A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was. ``snap_iterations``
     are allowed on top when a node is popping round an edge: through an unstable state Newton's method only descends. All attempts
-    at a scheduled step may take ``most_iterations``. Factors are kept, from step to step too, while what they leave is within
-    ``chord`` tolerances and they would end, as they go on, ``outlook`` iterations later, no step needs more than ``patience`` of
-    them, and what answers at once in a step has changed by no more than ``stiffening``. A zone ``loose`` times as wide as it need
-    be is drawn together, and ``spare`` times as wide condensed anew. A push that points farther than ``aside`` (rad) from the
-    vertical is one at the side. An iteration goes only as far as det F stays above ``squeeze`` of what it was, where that is
-    at least a fifth of its way. ``single``: the tangent is factored in single precision, as the next iteration corrects what that
-    is wrong by; until a step does not converge.
+    at a scheduled step may take ``most_iterations``. Factors are kept within a step while what they leave is within ``chord``
+    tolerances and they would end, as they go on, ``outlook`` iterations later; and from step to step until the steps that they
+    served have taken ``patience`` iterations beyond the fewest of one, which is what new ones cost, while what answers at once in
+    a step has changed by no more than ``stiffening``. A zone ``loose`` times as wide as it need be is drawn together, and
+    ``spare`` times as wide condensed anew. A push that points farther than ``aside`` (rad) from the vertical is one at the side.
+    An iteration goes only as far as det F stays above ``squeeze`` of what it was, where that is at least a fifth of its way.
+    ``single``: the tangent is factored in single precision, as the next iteration corrects what that is wrong by; until a step
+    does not converge.
     """
 
     force_tolerance: float = 1e-4
+    whole: float = 5e-4
+    volume: float = 10.0
     least_scale: float = 1e-3
     gap_tolerance: float = 1e-3
     max_iterations: int = 14
@@ -79,7 +84,7 @@ class NewtonSettings:
     energy_share: float = 0.35
     chord: float = 100.0
     outlook: float = 2.0
-    patience: int = 3
+    patience: int = 4
     stiffening: float = 0.1
     aside: float = np.radians(50.0)
     spare: float = 2.0
@@ -140,20 +145,18 @@ class Record:
 
 @dataclass(frozen=True)
 class _Past:
-    """A state before a step of ``dt``: displacement (n, 2) m, contact forces (np,) N/m and depth m."""
+    """A state before a step of ``dt``: displacement (n, 2) m, dilatation (the body's own), contact forces (np,) N/m, depth m."""
 
     dt: float
     u: np.ndarray
+    pressed: np.ndarray
     force: np.ndarray
     depth: float
 
     def plus(self, weights, others):
         """Linear combination of this state and others."""
-        states = [self, *others]
-        parts = [
-            sum(w * getattr(state, name) for w, state in zip(weights, states, strict=True)) for name in ("u", "force", "depth")
-        ]
-        return _Past(self.dt, *parts)
+        states, parts = [self, *others], ("u", "pressed", "force", "depth")
+        return _Past(self.dt, *(sum(w * getattr(s, part) for w, s in zip(weights, states, strict=True)) for part in parts))
 
 
 def first_touch(skin: np.ndarray, profile) -> float:
@@ -207,7 +210,7 @@ class QuasiStatic:
         self.depth = self.distance = 0.0
         self.time = 0.0
         self.work = self._gross = self._missing = self.force = self._tangential = 0.0
-        self._most_force = self._most_work = 0.0
+        self._most_force = self._most_work = self._pressed = 0.0
         self._energies = (0.0, 0.0, 0.0)
         self.friction = None
         if friction is not None:
@@ -215,6 +218,7 @@ class QuasiStatic:
 
             self.friction = Coulomb(friction, places)
         self._factors = self._stiffness = self._found = self._nodal = self._touched = None
+        self._served: list[int] = []  # iterations of the steps that the factors have served
         self._set_zone(*(PER_NODE * end for end in skin.start))
         self.height = self._first_touch()
         self._reach_what_touches()
@@ -372,7 +376,7 @@ class QuasiStatic:
         settings = self.settings
         limit, iteration, before = settings.max_iterations, 0, np.inf
         self._softened = False
-        keep, reused = self._factors_fit(), 0
+        keep = self._factors_fit()
         while iteration < limit:
             iteration += 1
             self._spent += 1
@@ -387,9 +391,9 @@ class QuasiStatic:
                 raise _StepFailure(str(error)) from error
             if not np.isfinite(residual):
                 raise _StepFailure("the residual is not finite")
-            reused = reused + 1 if keep else 0
             if residual <= 1.0 and not self._zone_is_tight(1) and not self._touches_elsewhere():
-                if self._softened or reused > settings.patience:
+                self._served.append(iteration)
+                if self._softened or sum(self._served) - len(self._served) * min(self._served) >= settings.patience:
                     self._factors = None
                 return iteration, residual
             if guessed and residual > before:
@@ -401,13 +405,9 @@ class QuasiStatic:
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
 
     def _factors_fit(self):
-        """Are there factors of this zone, and of a step in which as much of the stress answers at once?
-
-        A linear body sees to that by itself.
-        """
+        """Are there factors of this zone, and of a step in which as much of the stress answers at once?"""
         return (
             self._factors is not None
-            and not self.body.geometrically_linear
             and self._factors[0] is self.solver
             and abs(self.body.factor - self._factors[1]) <= self.settings.stiffening * self.body.factor
         )
@@ -420,14 +420,14 @@ class QuasiStatic:
         body, settings = self.body, self.settings
         space = body.space
         if reuse:
-            internal = self._internal
+            internal = body.against(self._internal)
         else:
             schur, internal = body.linearise(self.solver)
             self._take(schur)
             if not body.smallest_jacobian > 0:
                 raise _StepFailure("an element has turned inside out")
             self.factorisations += 1
-            self._factors = self.solver, body.factor
+            self._factors, self._served = (self.solver, body.factor), []
         load = -internal if self.external is None else self.external - internal
         rows, schur, reduced = self._rows(), self._narrowed.schur, self._narrowed.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
@@ -469,16 +469,22 @@ class QuasiStatic:
         scale = max(scale, settings.least_scale * self._most_force)
         if scale == 0:  # nothing touches: the body must come back to rest
             scale = body.space.measure.out_of_plane_stretch * np.abs(internal).sum() + 1e-30
-        equilibrium = np.linalg.norm(space.to_equations(unbalanced)) / scale
+        unbalanced[space.fixed] = 0.0
+        equilibrium, whole = np.linalg.norm(unbalanced) / scale, np.linalg.norm(unbalanced.sum(axis=0)) / scale
         gap = rows.closing(self.contact_force[rows.place])
         opening = np.abs(gap[active]).max(initial=0.0)
         penetration = max(0.0, -gap.min(initial=0.0))
         balance = 0.0
         if control == "force" and target > 0:
             balance = abs(target + push[:, 1].sum()) / target
+        amiss, pressed = body.volume_amiss()
+        self._pressed = max(self._pressed, pressed)
+        volume = amiss / max(pressed, settings.least_scale * self._pressed, 1e-300)
         residual = max(
             equilibrium / settings.force_tolerance,
+            whole / settings.whole,
             balance / settings.force_tolerance,
+            volume / (settings.volume * settings.force_tolerance),
             max(opening, penetration, stuck) / (settings.gap_tolerance * self.skin.spacing),
         )
         return residual if share == 1.0 else max(residual, 2.0)
@@ -553,17 +559,17 @@ class QuasiStatic:
         self._begin = self.body.u, self.depth, self.distance
         # a steady stroke takes no time: its steps are as long as their way
         size = dt if dt < STEADY else abs(distance - self.distance) or dt
-        body, past = self.body, _Past(size, self.body.u, self.contact_force, self.depth)
+        body, past = self.body, self._now(size)
         try:
             clearance = 0.0 if self.force else self._clearance()
             self.distance = distance
             body.begin_step(dt)
             guesses = self._predictions(size) if predict else []
-            self._internal = body.displace(guesses[-1 if self._quadratic else 0].u if guesses else body.u)
+            guess = guesses[-1 if self._quadratic else 0] if guesses else past
+            self._internal = body.displace(guess.u, guess.pressed)
             if guesses and not body.smallest_jacobian > 0.1:
-                self._internal = body.displace(past.u)
+                self._internal = body.displace(past.u, past.pressed)
             elif guesses:
-                guess = guesses[-1 if self._quadratic else 0]
                 self.contact_force, self.depth = np.maximum(guess.force, 0), guess.depth
             iterations, residual = self._attempt(control, target, bool(guesses))
             if guesses:
@@ -597,10 +603,13 @@ class QuasiStatic:
         self._past = [past, *self._past[:1]]
         return iterations, residual
 
+    def _now(self, dt):
+        return _Past(dt, self.body.u, self.body.pressed, self.contact_force, self.depth)
+
     def _predictions(self, dt):
         """Where the path goes on to in a step of ``dt``: along the straight line through the last two states, and along the
         parabola through the last three if there are as many."""
-        now, found = _Past(dt, self.body.u, self.contact_force, self.depth), []
+        now, found = self._now(dt), []
         sizes = [past.dt for past in self._past]
         if sizes:
             ratio = dt / sizes[0]
