@@ -41,6 +41,8 @@ FINE = 5e-6
 _ON_EDGE = 2
 """Of the skin's nodes on an edge of a quadratic element."""
 
+_FAR = 8
+"""Spacings by which one edge of the contact is farther than the other one for certain: it lies within four of its last node."""
 _BESIDE = 6
 """Spacings of nodes from the edge of the contact within which it is located between them."""
 
@@ -147,9 +149,12 @@ def _inside(x: np.ndarray, pressure: np.ndarray, place: float) -> float:
     """How far (m) a place is from the nearest edge of the contact, below zero outside; x, pressure of ascending nodes."""
     on, spacing, deepest = np.flatnonzero(pressure > 0), np.gradient(x), -np.inf
     for run in np.split(on, np.flatnonzero(np.diff(on) > 1) + 1):
-        left = -edge_of(-x[run[::-1]], pressure[run[::-1]], spacing[run[0]], _ON_EDGE)
-        right = edge_of(x[run], pressure[run], spacing[run[-1]], _ON_EDGE)
-        deepest = max(deepest, min(place - left, right - place))
+        left, right = place - x[run[0]], x[run[-1]] - place  # to the last nodes, from which the edges are not far
+        if left < right + _FAR * spacing[run[0]]:
+            left += edge_of(-x[run[::-1]], pressure[run[::-1]], spacing[run[0]], _ON_EDGE) + x[run[0]]
+        if right < left + _FAR * spacing[run[-1]]:
+            right += edge_of(x[run], pressure[run], spacing[run[-1]], _ON_EDGE) - x[run[-1]]
+        deepest = max(deepest, min(left, right))
     return deepest
 
 
