@@ -21,20 +21,10 @@ from scipy.spatial import cKDTree
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.files import write_atomically
-from fingerpad.measures.inputs import read_results
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.receptors.respond import respond
-from fingerpad.results import (
-    COORDINATES,
-    FRICTION_VARIABLES,
-    VARIABLES,
-    read_dataset,
-    read_history,
-    summary,
-    write_history,
-    write_vtu,
-)
+from fingerpad.results import COORDINATES, FRICTION_VARIABLES, VARIABLES, read_history, summary, write_history, write_vtu
 from fingerpad.scenes.scene import Discretisation
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
@@ -198,15 +188,6 @@ def test_fields_are_what_receptors_see(run):
     there, here = receptors.sample(body), simulation.fields.sample(body)
     for name in there:
         np.testing.assert_allclose(here[name][some], there[name], rtol=1e-8, err_msg=name)
-
-
-def test_what_measures_read_leaves_full_fields_in_the_file(run, tmp_path):
-    """All else is in memory; the fields are there when they are looked at."""
-    write_history(run[3], path := tmp_path / "simulations" / "some" / "history.nc")
-    lean = read_results([path])[0]["some"]
-    left = {name for name, variable in lean.variables.items() if not variable._in_memory}
-    assert left == {name for name in lean.variables if name.startswith("snapshot_")} and left
-    xr.testing.assert_identical(lean, read_dataset(path))
 
 
 def test_the_last_state_is_the_field_when_no_snapshot_is_named():

@@ -390,10 +390,8 @@ class ResultError(ValueError):
     """A file is no result of this package, or but a part of one; the message names it."""
 
 
-def read_dataset(path: str | Path, holds: tuple[str, ...] = (), snapshots: bool = True) -> xr.Dataset:
+def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
     """Read a result into memory, which must hold some variables.
-
-    ``snapshots``: False leaves full fields in the file, most of what it holds, until one is looked at.
 
     Raises:
         ResultError: the file is cut off, of another kind, or lacks them. FileNotFoundError: there is none.
@@ -401,7 +399,7 @@ def read_dataset(path: str | Path, holds: tuple[str, ...] = (), snapshots: bool 
     import xarray as xr
 
     try:
-        found = xr.load_dataset(path, engine="netcdf4") if snapshots else _without_snapshots(path)
+        found = xr.load_dataset(path, engine="netcdf4")
     except (FileNotFoundError, PermissionError):
         raise
     except (OSError, RuntimeError, ValueError, KeyError) as error:
@@ -410,16 +408,6 @@ def read_dataset(path: str | Path, holds: tuple[str, ...] = (), snapshots: bool 
     for name in holds:
         if name not in found.variables:
             raise ResultError(f"{path}: holds no {name}, so is no result of this kind; remove it and run again")
-    return found
-
-
-def _without_snapshots(path):
-    import xarray as xr
-
-    found = xr.open_dataset(path, engine="netcdf4")
-    for name, variable in found.variables.items():
-        if not name.startswith("snapshot_"):
-            variable.load()
     return found
 
 

@@ -56,9 +56,9 @@ def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping
     for path in files:
         if path.suffix == ".nc":
             kinds.get(path.parent.parent.name, kinds["simulations"]).append(path)
-    mesh, both = (_Opened(_read_dataset, kinds[kind]) for kind in ("coarse_mesh", "coarse"))
+    mesh, both = (_Opened(read_dataset, kinds[kind]) for kind in ("coarse_mesh", "coarse"))
     return (
-        _Opened(_read_dataset, kinds["simulations"]),
+        _Opened(read_dataset, kinds["simulations"]),
         _Opened(_read_mesh, (path for path in files if path.suffix == ".msh")),
         Each(lambda scene: Companion(mesh[scene], both[scene]), both),
     )
@@ -66,11 +66,7 @@ def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping
 
 def read_coarse(paths: Iterable[str | Path]) -> Mapping[str, xr.Dataset]:
     """Histories of the companions with coarser meshes and steps, by scene, of those among some files of the workflow."""
-    return _Opened(_read_dataset, (path for path in map(Path, paths) if path.parent.parent.name == "coarse"))
-
-
-def _read_dataset(path: Path) -> xr.Dataset:
-    return read_dataset(path, snapshots=False)
+    return _Opened(read_dataset, (path for path in map(Path, paths) if path.parent.parent.name == "coarse"))
 
 
 def _read_mesh(path: Path) -> Any:
