@@ -137,10 +137,11 @@ class Plan:
 
     @property
     def between(self) -> tuple[float, float] | None:
-        """Of a stroke: the longest way (m) between two states, and by how much of the pressure what lies between may be off."""
-        if not (self.strokes and self.slide_step):
-            return None
-        return self.slide_step * self.stride, BETWEEN * self.contact_edge * self.stride
+        """Of a stroke: the longest way (m) between two states, and by how much of the pressure what lies between may be off.
+
+        The latter is the mesh's, whatever the stride: twice as much hides bumps that bear little of the load.
+        """
+        return (self.slide_step * self.stride, BETWEEN * self.contact_edge) if self.strokes and self.slide_step else None
 
     @property
     def newton_tolerance(self) -> float | None:
