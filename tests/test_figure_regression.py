@@ -174,7 +174,10 @@ def test_published_picture_shows_its_data(number, tmp_path):
 
 @pytest.mark.skipif(not RESULTS.is_dir(), reason="no results/thesis here: make figures has not been run")
 def test_published_data_are_those_of_the_cached_results(cached, reference, tmp_path):
-    for number, spec in FIGURES.items():
+    made = {number: spec for number, spec in FIGURES.items() if set(spec.needs) <= set(cached[0])}
+    if not made:
+        pytest.skip("results/thesis holds all scenes of no figure")
+    for number, spec in made.items():
         write_frame(spec.frame(*cached, reference, *spec.measurements(MEASURED)), tmp_path / "new.csv")
         changed = differences(read_frame(tmp_path / "new.csv"), read_frame(PUBLISHED / f"fig_{number}.csv"))
         assert not changed, f"Fig. {number}: {changed}; run make figures"
