@@ -217,6 +217,15 @@ def test_companions_have_the_steps_of_the_run_all_or_every_second(name):
     assert sum(s.dt for s in second if s.dt < steady) == pytest.approx(sum(s.dt for s in every if s.dt < steady))
 
 
+def test_a_companion_passes_twice_the_way_and_no_coarser_events():
+    """What lies between its states is judged as its mesh is: with twice the tolerance its steps jump over small bumps."""
+    scene = load_scene(SCENES / "stroke_10.yaml")
+    own = plan(scene)
+    mesh, both = companion(scene, own), companion(scene, own, 2)
+    (longest, tolerance), *others = own.between, mesh.between, both.between
+    np.testing.assert_allclose(others, [(longest, COARSER * tolerance), (2 * longest, COARSER * tolerance)])
+
+
 def test_companions_of_a_press_find_its_errors():
     """Simulated: a press on an intermediate mesh, with its companions and with the truth on a finer one."""
     scene = load_scene(

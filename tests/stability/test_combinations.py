@@ -118,6 +118,16 @@ def test_a_mirror_image_is_told_from_what_is_none():
     assert mirrored(history) == pytest.approx(0.02 / np.sqrt(2), rel=0.05)
 
 
+@pytest.mark.parametrize(("side", "apart"), [(0.0, 1e-3), (0.5, 0.01)])
+def test_side_forces_are_told_apart_by_the_force_they_belong_to(side, apart):
+    """A frictionless press has one of rounding, which may change as it will; a drag half as large as the force may not."""
+    one, other = (
+        xr.Dataset({"leg": ("time", [0, 0]), "force": ("time", [0, 1.0]), "tangential_force": ("time", [0, side + more])})
+        for more in (1e-6, 1e-6 + (0.01 * side or 1e-5))
+    )
+    assert difference(one, other, ("force", "tangential_force")) == pytest.approx(apart, rel=1e-3)
+
+
 def test_the_other_solver_is_another_and_agrees(tmp_path):
     first = simulation(PRESS, "default", tmp_path).run(None)
     with second_solver():

@@ -58,8 +58,8 @@ class _TooFar(_StepFailure):
 class NewtonSettings:
     """Tolerances relative to the current contact force and to the node spacing, and limits.
 
-    Forces on nodes may be out of balance by ``force_tolerance``, their sum by ``whole``, and pressure may be off what volume
-    stands for by ``volume`` times as small a share as forces.
+    Forces on nodes may be out of balance by ``force_tolerance``, their sum by ``whole``; what pressures and volumes are apart by
+    may be ``volume`` times as large a share of the pressures (norms over the elements).
     A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was. ``snap_iterations``
     are allowed on top when a node is popping round an edge: through an unstable state Newton's method only descends. All attempts
     at a scheduled step may take ``most_iterations``. Factors are kept within a step while what they leave is within ``chord``
