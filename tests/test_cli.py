@@ -450,4 +450,4 @@ def test_a_run_loads_neither_labels_nor_a_compiler_nor_the_mesher_of_a_mesh_it_k
     run = ("run", scene, "--out", tmp_path / "out", "--force", "--quiet")
     first, second = loaded(*run), loaded(*run)
     assert "pygmsh" in first
-    assert not second & {"numba", "pint", "xarray", "pandas", "matplotlib", "gmsh", "pygmsh", "meshio", "rich"}
+    assert not second & {"numba", "pint", "xarray", "pandas", "matplotlib", "gmsh", "pygmsh", "meshio", "rich", "scipy", "skfem"}

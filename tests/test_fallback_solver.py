@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fingerpad import load_scene, simulate
-from fingerpad.mechanics import linear_solver
+from fingerpad.mechanics import dense, linear_solver
 from wrong_scenes import write
 
 pytestmark = pytest.mark.unit
@@ -44,7 +44,7 @@ def test_fallback_gives_the_same_answers(case, tmp_path, monkeypatch):
 
 
 def test_fallback_is_taken_where_there_is_no_pardiso(monkeypatch):
-    monkeypatch.setattr(linear_solver, "_mkl_path", lambda: None)
+    monkeypatch.setattr(dense, "_loaded", lambda: None)
     pattern = linear_solver.SymmetricPattern(np.array([[0, 1, 2]]), 3)
     assert linear_solver.condensation(pattern, np.array([1])).name == "superlu"
 
@@ -53,7 +53,7 @@ _THREADS_OF_MKL = """
 import numpy as np
 from fingerpad.mechanics.linear_solver import PardisoCondensation, SymmetricPattern
 solver = PardisoCondensation(SymmetricPattern(np.array([[0, 1]]), 2), np.array([0]))
-print(solver._handle.libmkl.MKL_Get_Max_Threads())
+print(solver._library.MKL_Get_Max_Threads())
 """
 
 

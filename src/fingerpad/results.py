@@ -198,7 +198,7 @@ def provenance() -> dict[str, Any]:
     from importlib.metadata import PackageNotFoundError, version
 
     packages = {}
-    for name in ("fingerpad", "numpy", "scipy", "numba", "scikit-fem", "gmsh", "meshio", "mkl", "pypardiso", "xarray"):
+    for name in ("fingerpad", "numpy", "scipy", "numba", "scikit-fem", "gmsh", "meshio", "mkl", "xarray"):
         try:
             packages[name] = version(name)
         except PackageNotFoundError:

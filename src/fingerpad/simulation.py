@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 from threadpoolctl import threadpool_limits
 
 from fingerpad.dense_output import at_outputs
@@ -34,6 +33,7 @@ from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.measures import below_outline, below_skin, touched_side
+from fingerpad.specimen.near import same_place
 from fingerpad.specimen.pad import PadMesh, skin_chain
 from fingerpad.stimuli.motion import among
 
@@ -547,6 +547,6 @@ class _Unfolding:
 
 
 def _mirror_match(solved, whole):
-    distance, index = cKDTree(solved).query(np.column_stack([np.abs(whole[:, 0]), whole[:, 1]]))
-    assert distance.max() < 1e-6 * np.ptp(whole[:, 0]), "the half mesh is not half of the whole"
+    index = same_place(np.column_stack([np.abs(whole[:, 0]), whole[:, 1]]), solved, 1e-6 * np.ptp(whole[:, 0]))
+    assert index.min() >= 0, "the half mesh is not half of the whole"
     return index

@@ -176,6 +176,6 @@ def test_points_are_found_in_long_elements_beside_many_narrow_ones(kind):
     values = body.space.element.shape(found.xi)[0]
     np.testing.assert_allclose(np.einsum("na,nai->ni", values, body.space.points[body.space.cells[found.element]]), points)
     receptors = MaterialPoints(body, points, None)
-    assert receptors.recovery is not None and receptors.recovery.shape[0] == len(points)
+    assert receptors.recovery is not None and len(receptors.recovery.starts) == len(points)
     with pytest.raises(ReceptorError, match="outside"):
         locate(body.space, np.array([[0.5, 0.15], [0.5, 1.2]]))

@@ -18,9 +18,8 @@ from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import lapack
 
-from fingerpad.mechanics import compiled
+from fingerpad.mechanics import compiled, dense
 
 
 class ContactError(RuntimeError):
@@ -160,10 +159,10 @@ class ContactStep:
 
 def _inverse(matrix):
     """The inverse of a symmetric matrix, and whether it is positive definite: by Cholesky if it is, LU otherwise."""
-    factors, failed = lapack.dpotrf(matrix.T, lower=0)
-    if failed:
+    factor = dense.cholesky(matrix)
+    if factor is None:
         return np.linalg.inv(matrix), False
-    inverse = lapack.dpotri(factors, lower=0, overwrite_c=1)[0].T
+    inverse = dense.inverse(factor)
     compiled.mirror(inverse)
     return inverse, True
 
@@ -325,15 +324,7 @@ def stable(matrix, compliance, active):
     By the inertia of the bordered matrix: the active compliance must have as many negative eigenvalues as ``matrix``.
     """
     inside = compliance[np.ix_(active, active)]
-    return _negative_eigenvalues(matrix) == _negative_eigenvalues((inside + inside.T) / 2)
-
-
-def _negative_eigenvalues(matrix):
-    """Their number, of a symmetric matrix, by Sylvester's law: the negative pivots of L D L^T, one in each block of two."""
-    if not len(matrix):
-        return 0
-    factors, pivots, _ = lapack.dsytrf(matrix, lower=1, lwork=64 * len(matrix))
-    return int(np.sum(np.diag(factors)[pivots > 0] < 0) + np.sum(pivots < 0) // 2)
+    return dense.negative_eigenvalues(matrix) == dense.negative_eigenvalues((inside + inside.T) / 2)
 
 
 def _pivot(compliance, offset, active):

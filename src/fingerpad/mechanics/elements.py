@@ -22,8 +22,8 @@ pressure; Crouzeix and Raviart (1973) for the triangle with a bubble.
 from dataclasses import dataclass
 
 import numpy as np
-from skfem import ElementQuad1, ElementQuad2, ElementTriP2, ElementTriP2B
-from skfem.quadrature import get_quadrature
+
+from fingerpad.specimen.shapes import SHAPES, square_rule, triangle_rule
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class ReferenceElement:
 
     Attributes:
         name: key in :data:`ELEMENTS`.
-        nodes_per_element: ``nen``.
+        kind: of its displacement, key in :data:`fingerpad.specimen.shapes.SHAPES`.
         points: (nq, 2) quadrature points; ``weights``: (nq,).
         values: (nq, nen) shape functions; ``gradients``: (nq, nen, 2) with respect to the reference coordinates.
         pressure_modes: 1, 3, or nq (pointwise).
@@ -40,13 +40,18 @@ class ReferenceElement:
     """
 
     name: str
+    kind: str
     points: np.ndarray
     weights: np.ndarray
     values: np.ndarray
     gradients: np.ndarray
     pressure_modes: int
     nodes: np.ndarray
-    triangle: bool
+
+    @property
+    def triangle(self) -> bool:
+        """Whether its cell is one."""
+        return self.kind.startswith("tri")
 
     @property
     def nodes_per_element(self) -> int:
@@ -54,61 +59,31 @@ class ReferenceElement:
 
     def shape(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Shape functions (n, nen) and reference gradients (n, nen, 2) at reference points ``xi`` (n, 2)."""
-        return _SHAPES[self.name](np.asarray(xi, dtype=float))
-
-
-def _lagrange(element, count):
-    def shape(xi):
-        values = np.empty((len(xi), count))
-        gradients = np.empty((len(xi), count, 2))
-        for i in range(count):
-            values[:, i], gradient = element.lbasis(xi.T, i)
-            gradients[:, i] = gradient.T
-        return values, gradients
-
-    return shape
-
-
-def _triangle_with_bubble(xi):
-    """Quadratic triangle plus a cubic bubble, made nodal at the centroid (7 nodes)."""
-    values, gradients = _lagrange(ElementTriP2B(), 7)(xi)
-    at_centroid = np.array([-1 / 9] * 3 + [4 / 9] * 3)
-    values[:, :6] -= values[:, 6:] * at_centroid
-    gradients[:, :6] -= gradients[:, 6:] * at_centroid[:, None]
-    return values, gradients
+        return SHAPES[self.kind](np.asarray(xi, dtype=float))
 
 
 _QUAD4 = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
 _QUAD9 = np.vstack([_QUAD4, [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]]])
 _TRI7 = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5], [1 / 3, 1 / 3]])
-_Q1, _Q2 = _lagrange(ElementQuad1(), 4), _lagrange(ElementQuad2(), 9)
-_SHAPES = {
-    "Q2P1": _Q2,
-    "Q2": _Q2,
-    "Q2R": _Q2,
-    "Q1P0": _Q1,
-    "Q1": _Q1,
-    "P2B": _triangle_with_bubble,
-    "P2": _lagrange(ElementTriP2(), 6),
-}
 
 
-def _build(name, kind, degree, modes, nodes):
-    points, weights = get_quadrature(kind, degree)
-    values, gradients = _SHAPES[name](points.T)
-    return ReferenceElement(
-        name, points.T.copy(), weights.copy(), values, gradients, modes or len(weights), nodes, kind is ElementTriP2
-    )
+def _build(name: str, kind: str, rule: tuple[np.ndarray, np.ndarray], modes: int | None, nodes: np.ndarray) -> ReferenceElement:
+    points, weights = rule
+    values, gradients = SHAPES[kind](points)
+    return ReferenceElement(name, kind, points, weights, values, gradients, modes or len(weights), nodes)
 
 
 ELEMENTS = {
-    "Q2P1": _build("Q2P1", ElementQuad2, 5, 3, _QUAD9),
-    "Q1P0": _build("Q1P0", ElementQuad1, 3, 1, _QUAD4),
-    "P2B": _build("P2B", ElementTriP2, 5, 3, _TRI7),
-    "Q2": _build("Q2", ElementQuad2, 5, 0, _QUAD9),
-    "Q1": _build("Q1", ElementQuad1, 3, 0, _QUAD4),
-    "Q2R": _build("Q2R", ElementQuad2, 3, 0, _QUAD9),
-    "P2": _build("P2", ElementTriP2, 4, 0, _TRI7[:6]),
+    element.name: element
+    for element in (
+        _build("Q2P1", "quad9", square_rule(3), 3, _QUAD9),
+        _build("Q1P0", "quad4", square_rule(2), 1, _QUAD4),
+        _build("P2B", "tri7", triangle_rule(5), 3, _TRI7),
+        _build("Q2", "quad9", square_rule(3), None, _QUAD9),
+        _build("Q1", "quad4", square_rule(2), None, _QUAD4),
+        _build("Q2R", "quad9", square_rule(2), None, _QUAD9),
+        _build("P2", "tri6", triangle_rule(4), None, _TRI7[:6]),
+    )
 }
 
 #: Weights of a uniform line load on one edge: 1/2, 1/2 (linear) and the basis of quadratic edges (start, end, middle).

@@ -14,7 +14,6 @@ small dense system. What a zone's softness adds to the gaps it takes from the sl
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lapack
 
 from fingerpad.mechanics import compiled
 from fingerpad.mechanics.contact import ContactError, ContactStep, Zone, pressing_stiffness, respond, soften, stable
@@ -222,9 +221,10 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
             system[-1, :i] = -lever[:n][on] - share[on] * lever[n:][on]
             system[-1, i : i + j] = -lever[n:][stick]
             system[-1, -1], right[-1] = answer.corner, (load + lever[n:] @ given, 1.0)
-        solution, failed = lapack.dgesv(system, right)[2:] if size else (right, 0)
-        if failed:
-            raise ContactError("the frictional contact compliance is singular")
+        try:
+            solution = np.linalg.solve(system, right)
+        except np.linalg.LinAlgError as error:
+            raise ContactError("the frictional contact compliance is singular") from error
         f, tau = np.zeros(n), np.zeros(n)
         f[on] = solution[:i, 0]
         tau[on] = share[on] * f[on] + given[on]

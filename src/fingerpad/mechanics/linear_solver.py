@@ -6,17 +6,18 @@ problem has been solved by whoever owns it, a backward sweep gives the rest. PAR
 factorisation; where it is not available SuperLU gives the same answers, slower.
 """
 
+from __future__ import annotations
+
 import ctypes
-import glob
-import os
 import sys
+from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
-import scipy.sparse.linalg as spla
-from scipy.linalg import lapack
 
-from fingerpad.threads import threads
+from fingerpad.mechanics import dense
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 
 class FactorisationError(RuntimeError):
@@ -51,26 +52,24 @@ class SymmetricPattern:
         """Zeroed coefficient storage (nonzeros + 1,); the last entry is the discard slot."""
         return np.zeros(self.nonzeros + 1)
 
-    def matrix(self, data: np.ndarray) -> sp.csr_matrix:
+    def matrix(self, data: np.ndarray) -> csr_matrix:
         """The full symmetric matrix (both triangles) as CSR."""
+        import scipy.sparse as sp  # here, for it is slow to import
+
         upper = sp.csr_matrix((data[:-1], self.indices, self.indptr), shape=(self.size, self.size))
         return (upper + sp.triu(upper, 1).T).tocsr()
 
 
-def _mkl_path():
-    found = sorted(glob.glob(os.path.join(sys.prefix, "lib", "libmkl_rt.so*")), key=len)
-    return found[0] if found else None
-
-
 def pardiso_available() -> bool:
-    return os.environ.get("FINGERPAD_LINEAR_SOLVER", "pardiso") == "pardiso" and _mkl_path() is not None
+    """Whether there is PARDISO, and it is wanted."""
+    return dense.mkl() is not None
 
 
 _NO_MEMORY = -2  # of PARDISO's errors, the only one that is not the matrix's fault
 
 
 class PardisoCondensation:
-    """Intel MKL PARDISO (through the pypardiso wheel) as LDL^T; ``single``: in single precision, half as much to read and write.
+    """Intel MKL PARDISO as LDL^T; ``single``: in single precision, half as much to read and write.
 
     Its Cholesky is a quarter faster, but with a Schur complement it crashes the process, instead of reporting, when the
     tangent is indefinite; LDL^T takes definite and indefinite tangents alike.
@@ -79,37 +78,33 @@ class PardisoCondensation:
     name = "pardiso"
 
     def __init__(self, pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):
-        os.environ.setdefault("PYPARDISO_MKL_RT", _mkl_path())
-        from pypardiso import PyPardisoSolver
-
+        self._library = dense.mkl()
         self._pattern, self.condensed = pattern, np.asarray(condensed, dtype=np.int64)
         if np.any(np.diff(self.condensed) <= 0):
             raise ValueError("condensed equations must be ascending")
-        self._ia, self._ja = pattern.indptr + 1, pattern.indices + 1
-        perm = np.zeros(pattern.size, dtype=np.int32)
-        perm[self.condensed] = 1
-        self._handle = PyPardisoSolver(mtype=-2)
-        self._handle.perm = perm
-        self._handle.iparm[:] = 0
-        # numpy's thread limits do not reach a library that is loaded later, and two threads on one matrix take twice the time
-        self._handle.libmkl.MKL_Set_Num_Threads(ctypes.c_int(threads()))
         self._real = np.dtype(np.float32 if single else np.float64)
+        self._data = self._dummy = np.zeros(max(pattern.size, pattern.nonzeros), self._real)
+        self._ia, self._ja = pattern.indptr + 1, pattern.indices + 1
+        self._perm = np.zeros(pattern.size, dtype=np.int32)
+        self._perm[self.condensed] = 1
+        self._handle, self._parameters = np.zeros(64, np.int64), np.zeros(64, np.int32)
         # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia; precision; Schur complement, factors
         for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 24: 1, 28: int(single), 36: 2 if len(self.condensed) else 0}.items():
-            self._handle.iparm[i - 1] = value
-        self._data = self._dummy = np.zeros(max(pattern.size, pattern.nonzeros), self._real)
+            self._parameters[i - 1] = value
         self._call(11, self._dummy, np.zeros(pattern.size, self._real))
 
-    def _call(self, phase, right, out):
-        handle = self._handle
-        i32, f64, one = ctypes.POINTER(ctypes.c_int32), ctypes.POINTER(ctypes.c_double), ctypes.c_int32(1)
+    def _call(self, phase: int, right: np.ndarray, out: np.ndarray) -> int:
+        """One phase of PARDISO, of one real symmetric indefinite matrix (-2) and one right-hand side, without a report."""
         error = ctypes.c_int32(0)
-        handle._mkl_pardiso(
-            handle.pt.ctypes.data_as(ctypes.POINTER(handle._pt_type[0])), one, one, ctypes.c_int32(handle.mtype),
-            ctypes.c_int32(phase), ctypes.c_int32(self._pattern.size), self._data.ctypes.data_as(f64),
-            self._ia.ctypes.data_as(i32), self._ja.ctypes.data_as(i32), handle.perm.ctypes.data_as(i32), one,
-            handle.iparm.ctypes.data_as(i32), ctypes.c_int32(0), right.ctypes.data_as(f64), out.ctypes.data_as(f64), error,
-        )  # fmt: skip
+        numbers = (ctypes.byref(ctypes.c_int32(value)) for value in (1, 1, -2, phase, self._pattern.size, 1, 0))
+        factors, matrix, kind, phase_, size, sides, report = numbers
+        handle, data, ia, ja, perm, parameters, b, x = (
+            ctypes.c_void_p(array.ctypes.data)
+            for array in (self._handle, self._data, self._ia, self._ja, self._perm, self._parameters, right, out)
+        )
+        self._library.pardiso(
+            handle, factors, matrix, kind, phase_, size, data, ia, ja, perm, sides, parameters, report, b, x, ctypes.byref(error)
+        )
         if error.value == _NO_MEMORY:
             raise MemoryError(f"{self._pattern.size} equations are too many for PARDISO")
         return error.value
@@ -130,7 +125,7 @@ class PardisoCondensation:
     @property
     def negative_pivots(self) -> int:
         """Negative eigenvalues of the last factored matrix: 0 for a stable equilibrium without contact forces."""
-        return int(self._handle.iparm[22])
+        return int(self._parameters[22])
 
     def forward(self, right: np.ndarray) -> np.ndarray:
         """Reduced right-hand side (nc,) for the condensed degrees of freedom; keeps the rest for :meth:`backward`."""
@@ -164,10 +159,12 @@ class SuperLUCondensation:
         self.negative_pivots = 0
 
     def factor(self, data: np.ndarray) -> np.ndarray:
+        from scipy.sparse.linalg import splu  # here, for it is slow to import
+
         matrix = self._pattern.matrix(data).tocsc()
         i, c = self._interior, self.condensed
         try:
-            self._lu = spla.splu(matrix[i][:, i], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+            self._lu = splu(matrix[i][:, i], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
         except RuntimeError as error:
             raise FactorisationError("the tangent is singular") from error
         self._coupling = matrix[c][:, i]
@@ -205,11 +202,11 @@ class Narrowed:
         if kept.all():
             self.schur = schur
             return True
-        self._factors, failed = lapack.dpotrf(schur[np.ix_(rest, rest)], lower=1, overwrite_a=1)
-        if failed:
+        factor = dense.cholesky(schur[np.ix_(rest, rest)])
+        if factor is None:
             return False
-        self._coupling = np.asfortranarray(schur[np.ix_(rest, kept)])
-        self._answer = lapack.dpotrs(self._factors, self._coupling, lower=1)[0]
+        self._factor, self._coupling = factor, np.asfortranarray(schur[np.ix_(rest, kept)])
+        self._answer = dense.solved(factor, self._coupling)
         self.schur = schur[np.ix_(kept, kept)] - self._coupling.T @ self._answer
         return True
 
@@ -219,7 +216,7 @@ class Narrowed:
         if self._kept.all():
             return reduced
         rest = reduced[~self._kept]
-        self._alone = lapack.dpotrs(self._factors, rest, lower=1)[0]
+        self._alone = dense.solved(self._factor, rest)
         return reduced[self._kept] - self._answer.T @ rest
 
     def backward(self, values: np.ndarray) -> np.ndarray:

@@ -6,7 +6,6 @@ times the deviatoric stress of v.
 """
 
 import numpy as np
-import scipy.sparse as sp
 
 from fingerpad.laws import Assigned
 from fingerpad.mechanics import compiled
@@ -65,13 +64,15 @@ class SmallStrainBody:
 
     def _everything(self, upper):
         """The matrix (2 n, 2 n) of all degrees of freedom, also of those that are prescribed."""
+        from scipy.sparse import csr_matrix  # here, for it is slow to import
+
         dofs = np.concatenate([2 * self.space.cells, 2 * self.space.cells + 1], axis=1)
         rows, columns = np.triu_indices(dofs.shape[1])
         above = rows < columns
         values = np.concatenate([upper.ravel(), upper[:, above].ravel()])
         i = np.concatenate([dofs[:, rows].ravel(), dofs[:, columns[above]].ravel()])
         j = np.concatenate([dofs[:, columns].ravel(), dofs[:, rows[above]].ravel()])
-        return sp.csr_matrix((values, (i, j)), shape=(self.u.size, self.u.size))
+        return csr_matrix((values, (i, j)), shape=(self.u.size, self.u.size))
 
     def _begin(self, factor, history):
         self._factor, self._history = factor, history

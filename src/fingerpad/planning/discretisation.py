@@ -161,9 +161,10 @@ def mesh_size_for(
         if scene.tolerance is not None:
             radial = min(edge, radial or edge)
     elif preset.focus is None and _refined_at_apex(scene) and contact.half_width < edges * preset.skin_edge:
-        # its edge passes from node to node, and the curves of a narrow contact show how far these are apart
+        # its edge passes from node to node, and the curves of a narrow contact show how far these are apart: along the skin alone
         edge = _staged(max(contact.half_width / edges, rules.least_edge), np.floor)
-        focus, radial = _all_over(_staged(contact_reach(scene, contact), np.ceil), edge)
+        focus, _ = _all_over(_staged(contact_reach(scene, contact), np.ceil), edge)
+        radial = max(edge, _staged(contact.half_width / rules.rows_per_half_width, np.floor))
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),

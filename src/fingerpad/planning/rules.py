@@ -55,7 +55,9 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         least_steps: of a leg; fewer would do for its end, but a curve of fewer is none. least_steps_stroked: where there is a
             stroke, for friction remembers the way that each step took, and events lie between outputs.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
-        edges_per_half_width: least edges in a contact to either side; presets have more.
+        edges_per_half_width: least edges in a contact to either side; presets have more. rows_per_half_width: rows of elements in
+            as much of the depth below it, where it is refined for them: more make no curve better, fewer no worse where the
+            layers have as many.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
         skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
         seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
@@ -64,9 +66,9 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
 
     presets: Mapping[str, Preset] = field(
         default_factory=lambda: {
-            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3, 4.5),
-            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 9.0),
-            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3, 14.0),
+            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3, 6.0),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 13.5),
+            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3, 20.0),
         }
     )
     errors: MeasuredErrors = field(default_factory=MeasuredErrors)
@@ -98,6 +100,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     skin_stretch: float = 1.0e-3
     inertia_limit: float = 0.1
     edges_per_half_width: float = 2.0
+    rows_per_half_width: float = 3.0
     seconds_start: float = 0.8
     seconds_finite: float = 0.9e-6
     seconds_small: float = 0.45e-6

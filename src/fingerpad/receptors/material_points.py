@@ -12,12 +12,11 @@ disagree even in trend (see :func:`strain_energies`).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.spatial import cKDTree
 
 from fingerpad.mechanics.finite_strain import deviator_square, isochoric_energy, isochoric_stress, push_forward
 from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import Branches
+from fingerpad.specimen.near import nearest
 
 
 class ReceptorError(ValueError):
@@ -30,6 +29,23 @@ class Location:
 
     element: np.ndarray
     xi: np.ndarray
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Weighted sums, one a receptor, of what is sampled: a matrix (nr, samples) by its rows.
+
+    Attributes:
+        weights, index: (m,) of all rows after each other, and of which sample. starts: (nr,) where each row begins.
+    """
+
+    weights: np.ndarray
+    index: np.ndarray
+    starts: np.ndarray
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """Sums (nr, ...) of values (samples, ...)."""
+        return np.add.reduceat((self.weights * values[self.index].T).T, self.starts, axis=0)
 
 
 def locate(space: Space, points: np.ndarray) -> Location:
@@ -49,7 +65,7 @@ def _containing(space, points, tolerance=1e-6):
     a curved map takes no point outside.)"""
     nodes = space.points[space.cells]
     centres = nodes.mean(1)
-    near = cKDTree(centres).query(points, k=np.arange(1, min(24, len(centres)) + 1))[1]
+    near = nearest(points, centres, 24)
     parts = [_among(space, nodes, points, near, tolerance)]
     for k in np.setdiff1d(np.arange(len(points)), parts[0][0]):  # beside a row of many narrow elements a long one is farther off
         every = np.argsort(np.hypot(*(centres - points[k]).T), kind="stable")[None]
@@ -103,7 +119,7 @@ def _layers(body):
 
 
 def _mean_of_neighbours(space, layers, points):
-    """Where points are sampled, and the sparse matrix (nr, samples) of their means; None where each is sampled once.
+    """Where points are sampled, and their means (nr,); None where each is sampled once.
 
     Strain jumps from element to element; a value from one side would tell left from right. So a point on a border takes the mean
     over the elements there that are of one layer with the nearest.
@@ -114,7 +130,7 @@ def _mean_of_neighbours(space, layers, points):
     owner, found = owner[same], Location(found.element[same], found.xi[same])
     if len(owner) == len(points):
         return found, None
-    return found, csr_array((1 / np.bincount(owner)[owner], (owner, np.arange(len(owner)))), (len(points), len(owner)))
+    return found, Sums(1 / np.bincount(owner)[owner], np.arange(len(owner)), np.unique(owner, return_index=True)[1])
 
 
 class MaterialPoints:
@@ -229,11 +245,11 @@ class MaterialPoints:
         return np.einsum("nb,nb->n", body.dilatation()[self.location.element], self.psi)
 
     def _recovered(self, found):
-        return found if self.recovery is None else {name: self.recovery @ values for name, values in found.items()}
+        return found if self.recovery is None else {name: self.recovery(values) for name, values in found.items()}
 
 
 def _quadratic_recovery(space, layers, points, neighbours: int = 24):
-    """Quadrature points to sample and the sparse matrix (nr, samples) that fits a quadratic through those of the same layer.
+    """Quadrature points to sample and the sums (nr,) that fit a quadratic through those of the same layer.
 
     Energies of linear elements are wrong by several per cent at a point but much better at their quadrature points, so each
     receptor's value is that of a least-squares quadratic through the nearest ``neighbours`` of them.
@@ -244,7 +260,7 @@ def _quadratic_recovery(space, layers, points, neighbours: int = 24):
     near, weights = [None] * len(points), [None] * len(points)
     for number in np.unique(layers[hosts]):
         same, here = np.flatnonzero(layer == number), np.flatnonzero(layers[hosts] == number)
-        found = same[cKDTree(position[same]).query(points[here], k=np.arange(1, min(neighbours, len(same)) + 1))[1]]
+        found = same[nearest(points[here], position[same], neighbours)]
         x, y = np.moveaxis(
             (position[found] - points[here, None]) / np.sqrt(space.weight[hosts[here]].sum(1))[:, None, None], -1, 0
         )
@@ -252,9 +268,8 @@ def _quadratic_recovery(space, layers, points, neighbours: int = 24):
         for k, one, weight in zip(here, found, fit, strict=True):
             near[k], weights[k] = one, weight
     used, index = np.unique(np.concatenate(near), return_inverse=True)
-    rows = np.repeat(np.arange(len(points)), [len(one) for one in near])
-    matrix = csr_array((np.concatenate(weights), (rows, index)), (len(points), len(used)))
-    return Location(used // nq, space.element.points[used % nq]), matrix
+    starts = np.cumsum([0, *(len(one) for one in near[:-1])])
+    return Location(used // nq, space.element.points[used % nq]), Sums(np.concatenate(weights), index, starts)
 
 
 def logarithmic_strain(f: np.ndarray) -> np.ndarray:

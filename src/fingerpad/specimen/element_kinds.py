@@ -1,4 +1,4 @@
-"""The one table of element kinds: how gmsh, meshio and scikit-fem call them, and how the solver treats them by default."""
+"""The one table of element kinds: how gmsh and meshio call them, and how the solver treats them by default."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ class Kind:
 
     Attributes:
         name: as in `PadMesh.element`. corners, nodes: their numbers. gmsh: its element type. meshio: its name there, and in VTK.
-        skfem: name of scikit-fem's displacement element of the same shape functions. solved: key of the mixed element it is
-        solved with (see :mod:`fingerpad.mechanics.elements`), None where it is raised or completed first.
+        solved: key of the mixed element it is solved with (see :mod:`fingerpad.mechanics.elements`), None where it is raised or
+        completed first.
         mirrored: order of the nodes of the mirror image that is counter-clockwise again.
     """
 
@@ -21,7 +21,6 @@ class Kind:
     nodes: int
     gmsh: int
     meshio: str
-    skfem: str
     solved: str | None
     mirrored: tuple[int, ...]
 
@@ -34,12 +33,12 @@ class Kind:
 KINDS = {
     kind.name: kind
     for kind in (
-        Kind("tri3", 3, 3, 2, "triangle", "ElementTriP1", None, (1, 0, 2)),
-        Kind("tri6", 3, 6, 9, "triangle6", "ElementTriP2", "P2B", (1, 0, 2, 3, 5, 4)),
-        Kind("quad4", 4, 4, 3, "quad", "ElementQuad1", "Q1P0", (1, 0, 3, 2)),
-        Kind("quad8", 4, 8, 16, "quad8", "ElementQuadS2", None, (1, 0, 3, 2, 4, 7, 6, 5)),
-        Kind("quad9", 4, 9, 10, "quad9", "ElementQuad2", "Q2P1", (1, 0, 3, 2, 4, 7, 6, 5, 8)),
-        Kind("tri7", 3, 7, 42, "triangle7", "ElementTriP2B", "P2B", (1, 0, 2, 3, 5, 4, 6)),
+        Kind("tri3", 3, 3, 2, "triangle", None, (1, 0, 2)),
+        Kind("tri6", 3, 6, 9, "triangle6", "P2B", (1, 0, 2, 3, 5, 4)),
+        Kind("quad4", 4, 4, 3, "quad", "Q1P0", (1, 0, 3, 2)),
+        Kind("quad8", 4, 8, 16, "quad8", None, (1, 0, 3, 2, 4, 7, 6, 5)),
+        Kind("quad9", 4, 9, 10, "quad9", "Q2P1", (1, 0, 3, 2, 4, 7, 6, 5, 8)),
+        Kind("tri7", 3, 7, 42, "triangle7", "P2B", (1, 0, 2, 3, 5, 4, 6)),
     )
 }
 LINES = {2: 1, 3: 8}  # gmsh's type of a line, by its number of nodes

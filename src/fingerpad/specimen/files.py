@@ -21,6 +21,7 @@ import numpy as np
 
 from fingerpad.files import read_input, write_atomically
 from fingerpad.specimen.element_kinds import KINDS, LINES
+from fingerpad.specimen.near import same_place, twins
 from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
 from fingerpad.specimen.quality import check_orientation
 
@@ -237,14 +238,12 @@ def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str
 
 def _require_joined(path: Path, mesh: PadMesh, boundary: dict, place) -> None:
     """Two edges at one place are no boundary but a gap between elements that do not share their nodes."""
-    from scipy.spatial import cKDTree
-
     pairs = list(boundary)
     middles = mesh.points[np.array(pairs)].mean(axis=1)
-    twins = cKDTree(middles).query_pairs(_SAME_PLACE * np.ptp(mesh.points[:, 0]), output_type="ndarray")
-    if len(twins):
+    double = twins(middles, _SAME_PLACE * np.ptp(mesh.points[:, 0]))
+    if len(double):
         raise MeshError(
-            f"{path}: {2 * len(twins)} edges, the first at {place(pairs[twins[0, 0]])}, lie twice at the same place; "
+            f"{path}: {2 * len(double)} edges, the first at {place(pairs[double[0, 0]])}, lie twice at the same place; "
             "elements must share their nodes (are the layers joined?)"
         )
 
@@ -265,14 +264,12 @@ def _in_order(path: Path, skin: np.ndarray) -> np.ndarray:
 
 def _is_symmetric(mesh: PadMesh) -> bool:
     """Whether the mesh is its own mirror image in x = 0, with no element astride the axis."""
-    from scipy.spatial import cKDTree
-
     near = _SAME_PLACE * np.ptp(mesh.points[:, 0])
     x = mesh.points[mesh.cells, 0]
     if ((x.min(axis=1) < -near) & (x.max(axis=1) > near)).any():
         return False
-    distance, image = cKDTree(mesh.points).query(mesh.points * (-1.0, 1.0))
-    if distance.max() > near or len(np.unique(image)) < len(image):
+    image = same_place(mesh.points * (-1.0, 1.0), mesh.points, near)
+    if image.min() < 0 or len(np.unique(image)) < len(image):
         return False
 
     def same(rows: np.ndarray, labels: np.ndarray) -> bool:

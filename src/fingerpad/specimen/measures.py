@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fingerpad.specimen.near import distance
 from fingerpad.specimen.outline import OutlineLike, bisect, curve_of
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges, skin_chain
 
@@ -102,11 +103,8 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     Raises:
         MeshError: no point of that depth exists at that offset.
     """
-    from scipy.spatial import cKDTree  # here, for it is slow to import
-
     depths, offsets = np.broadcast_arrays(np.atleast_1d(np.asarray(depths, float)), np.asarray(offsets, float))
     skin = _fine_skin(mesh)
-    tree = cKDTree(skin)
     order = np.argsort(skin[:, 0])
     upper = skin[order]
     upper = upper[touched_side(upper[:, 1])]
@@ -119,11 +117,11 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     high = np.interp(offsets, upper[:, 0], upper[:, 1])
 
     def deep(height):
-        return tree.query(np.column_stack([offsets, height]))[0] > depths
+        return distance(np.column_stack([offsets, height]), skin) > depths
 
     low, high = bisect(deep, high - 4 * depths, high)
     found = np.column_stack([offsets, (low + high) / 2])
-    if np.any(np.abs(tree.query(found)[0] - depths) > 1e-3 * depths):
+    if np.any(np.abs(distance(found, skin) - depths) > 1e-3 * depths):
         raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")
     return found
 

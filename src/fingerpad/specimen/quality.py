@@ -9,6 +9,7 @@ import numpy as np
 
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges
+from fingerpad.specimen.shapes import SHAPES
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -17,15 +18,6 @@ _SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0), (1, 0.5), (0.5, 1)
 _TRIANGLE = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
 _GAUSS = 0.5 + np.sqrt(0.6) * (_SQUARE - 0.5)
 _TRIANGLE_POINTS = np.array([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)])  # three-point rule
-
-
-def _derivatives(element: str, at: np.ndarray) -> np.ndarray:
-    """Derivatives of the shape functions at points (m, 2) of scikit-fem's reference element, shape (m, 2, nodes per element)."""
-    import skfem  # here, for it is slow to import
-
-    kind = KINDS[element]
-    shape = getattr(skfem, kind.skfem)()
-    return np.stack([np.transpose(shape.lbasis(at.T, node)[1]) * np.ones((len(at), 1)) for node in range(kind.nodes)], axis=-1)
 
 
 def sample_points(element: str) -> tuple[np.ndarray, np.ndarray]:
@@ -37,7 +29,7 @@ def sample_points(element: str) -> tuple[np.ndarray, np.ndarray]:
 
 def jacobians(mesh: PadMesh, at: np.ndarray) -> np.ndarray:
     """Jacobian matrices (elements, m, 2, 2) in m at reference points (m, 2); [..., k, :] is tangent k."""
-    return np.einsum("mkn,enx->emkx", _derivatives(mesh.element, at), mesh.points[mesh.cells], optimize=True)
+    return np.einsum("mnk,enx->emkx", SHAPES[mesh.element](at)[1], mesh.points[mesh.cells], optimize=True)
 
 
 def _determinant(tangents: np.ndarray) -> np.ndarray:

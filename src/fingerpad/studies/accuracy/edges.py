@@ -1,21 +1,25 @@
-"""Does the edge of the contact move continuously? Kinks of the curves of a ramp and hold, with more and less smoothing.
+"""Does the edge of the contact move continuously? Kinks of the curves of a ramp and hold, with other smoothing and meshes.
 
 Contact that begins node by node leaves a kink in every curve whenever one joins. Contact at points inside elements
 (:mod:`fingerpad.mechanics.contact_points`) leaves less than can be seen, if its pressures are smoothed enough to be those of one
-edge and not so much that the contact widens.
+edge and not so much that the contact widens. How far the pressures across the contact are off is a matter of the nodes along the
+skin alone.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
+from fingerpad.measures.errors import norm
 from fingerpad.mechanics import contact_points
+from fingerpad.planning.plan import plan
 from fingerpad.receptors.laws import rate_by_leg
 from fingerpad.simulation import simulate
 from fingerpad.studies.accuracy.run import DEPTHS
@@ -24,6 +28,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from fingerpad.scenes.scene import Scene
+    from fingerpad.specimen.pad import MeshSize
 
 OUTPUTS = 40
 """Of the ramp, and as many of the hold."""
@@ -80,24 +85,60 @@ def alternation(history: xr.Dataset) -> float:
     return float(np.abs(pressure[on] - near).max(initial=0.0) / pressure.max())
 
 
-def pressed(scene: Scene, share: float = 1.0) -> xr.Dataset:
-    """The history of a ramp and hold with outputs that are close enough to see kinks."""
+def pressed(scene: Scene, share: float = 1.0, sized: Callable[[MeshSize], MeshSize] = lambda size: size) -> xr.Dataset:
+    """The history of a ramp and hold with outputs that are close enough to see kinks, on its own mesh or one of another size."""
     from fingerpad.scenes.scene import Receptors
 
     receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
+    made = scene.with_accuracy("thesis").varied({"outputs.receptors": receptors, "outputs.per_leg": OUTPUTS})
+    chosen = plan(made)
     with smoothed(share):
-        return simulate(scene.with_accuracy("thesis").varied({"outputs.receptors": receptors, "outputs.per_leg": OUTPUTS}))
+        return simulate(made, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True))
+
+
+def everywhere(size: MeshSize) -> MeshSize:
+    """No finer in the contact than around it."""
+    return replace(size, focus=(), skin_radial_edge=None)
+
+
+def into_the_skin(size: MeshSize) -> MeshSize:
+    """As fine into the skin as along it."""
+    return replace(size, skin_radial_edge=min((edge for _, edge in size.focus), default=size.skin_edge))
+
+
+MESHES = {"own": lambda size: size, "not refined": everywhere, "refined into the skin too": into_the_skin}
+"""Meshes of a surface; of one that is not refined the first two are one."""
+FINER = 1 / 3
+"""Edges of the mesh whose pressures are compared with, over those of the own."""
+
+
+def pressure_off(history: xr.Dataset, truth: xr.Dataset) -> float:
+    """Largest error of the pressure profile at an output, its onset left out, as a norm over that of the truth."""
+
+    def profile(of: xr.Dataset, k: int) -> tuple[np.ndarray, np.ndarray]:
+        place = np.flatnonzero(of["skin_y"].values > 0)
+        place = place[np.argsort(of["skin_x"].values[place])]
+        return of["skin_x"].values[place], of["contact_pressure"].values[k, place]
+
+    def off(k: int) -> float:
+        (x, found), (at, true) = profile(history, k), profile(truth, k)
+        return norm(x, found - np.interp(x, at, true)) / norm(at, true)
+
+    return max(off(k) for k in range(ONSET, history.sizes["time"]))
 
 
 def rows(surface: str, scene: Scene) -> list[dict[str, object]]:
-    """Kinks, alternation and answers (per cent off the method's own) of a surface with each smoothing."""
+    """Kinks, alternation and answers (per cent off the method's own) of a surface with each smoothing and on each mesh."""
     out, own = [], None
-    for share in SHARES:
-        history = pressed(scene, share)
+    truth = pressed(scene, sized=lambda size: size.coarser(FINER))
+    for mesh, share in (*(("own", share) for share in SHARES), *((mesh, 1.0) for mesh in list(MESHES)[1:])):
+        history = pressed(scene, share, MESHES[mesh])
         own = history if own is None else own
-        row = {"surface": surface, "smoothing (of the method's)": share, "nodes": json.loads(history.attrs["cost"])["nodes"]}
+        row = {"surface": surface, "mesh": mesh, "smoothing (of the method's)": share}
+        row |= {"nodes": json.loads(history.attrs["cost"])["nodes"]}
         row |= {f"kink of {name} (%)": 100 * value for name, value in kinks(history).items()}
         row["alternation (%)"] = 100 * alternation(history)
+        row["pressure profile off (%)"] = 100 * pressure_off(history, truth)
         for name in ("indentation_depth", "contact_width", "centre_pressure"):
             row[f"{name} off (%)"] = 100 * (float(history[name][-1]) / float(own[name][-1]) - 1)
         out.append(row)

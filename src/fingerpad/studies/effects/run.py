@@ -385,7 +385,8 @@ DECIDES = {
     "least_steps_stroked": "the same where there is a stroke",
     "fine_half_width": "fine skin mesh to either side of the apex, at least (m)",
     "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
-    "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (4.5, 9, 14)",
+    "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (6, 13.5, 20)",
+    "rows_per_half_width": "local refinement: rows of elements in as much of the depth below the contact",
     "inertia_limit": "scenes with rho v^2 / mu above this are refused",
     "seconds_start": "predicted cost: start of a process (s)",
     "seconds_finite": "predicted cost: a node and Newton iteration, finite strain (s)",
@@ -420,6 +421,7 @@ WHERE = {
     "least_steps_stroked": "figures/tables/accuracy_strokes.csv",
     "fine_half_width": "contact of a plate at 20 gf reaches 2.4 mm (figures/thesis/fig_4-10.csv)",
     "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",
+    "rows_per_half_width": "figures/tables/accuracy_edges.csv",
     "inertia_limit": "chosen: 1e-4 at 40 mm/s, a tenth of the elastic forces at the limit",
 }
 """Where the evidence is that is not of this study; costs are those of figures/tables/speed.md."""
