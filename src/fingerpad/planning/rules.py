@@ -67,7 +67,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     presets: Mapping[str, Preset] = field(
         default_factory=lambda: {
             "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3, 6.0),
-            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 13.5),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 12.0),
             "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3, 20.0),
         }
     )

@@ -385,7 +385,7 @@ DECIDES = {
     "least_steps_stroked": "the same where there is a stroke",
     "fine_half_width": "fine skin mesh to either side of the apex, at least (m)",
     "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
-    "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (6, 13.5, 20)",
+    "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (6, 12, 20)",
     "rows_per_half_width": "local refinement: rows of elements in as much of the depth below the contact",
     "inertia_limit": "scenes with rho v^2 / mu above this are refused",
     "seconds_start": "predicted cost: start of a process (s)",
