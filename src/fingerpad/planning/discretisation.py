@@ -169,9 +169,16 @@ def mesh_size_for(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
         layer_edge=preset.layer_edge,
-        growth=preset.growth,
+        growth=_growth(scene, preset, rules),
         focus=focus,
         skin_radial_edge=radial,
+    )
+
+
+def _growth(scene: Scene, preset: Preset, rules: Rules) -> float:
+    """From one edge to the next: of a preset larger where the contact moves, whose mesh is mostly away from it."""
+    return (
+        min(preset.growth**rules.stroked_growth, 3.0) if isinstance(scene.accuracy, str) and moves_along(scene) else preset.growth
     )
 
 

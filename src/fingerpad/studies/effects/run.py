@@ -387,6 +387,7 @@ DECIDES = {
     "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
     "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (6, 12, 20)",
     "rows_per_half_width": "local refinement: rows of elements in as much of the depth below the contact",
+    "stroked_growth": "growth of edges away from a contact that moves: this power of the preset's",
     "inertia_limit": "scenes with rho v^2 / mu above this are refused",
     "seconds_start": "predicted cost: start of a process (s)",
     "seconds_finite": "predicted cost: a node and Newton iteration, finite strain (s)",
@@ -422,6 +423,7 @@ WHERE = {
     "fine_half_width": "contact of a plate at 20 gf reaches 2.4 mm (figures/thesis/fig_4-10.csv)",
     "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",
     "rows_per_half_width": "figures/tables/accuracy_edges.csv",
+    "stroked_growth": "figures/tables/accuracy_shown.csv: strokes are as near to finer ones as with the preset's own",
     "inertia_limit": "chosen: 1e-4 at 40 mm/s, a tenth of the elastic forces at the limit",
 }
 """Where the evidence is that is not of this study; costs are those of figures/tables/speed.md."""
