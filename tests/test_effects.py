@@ -293,12 +293,24 @@ def test_mesh_follows_edges_and_needles(ramp):
     """Edges of the profile and contacts narrower than the mesh get finer skin there; broad ones do not."""
     assert plan(changed(ramp, stimulus=Flat())).mesh_size.focus == ()
     sharp = plan(changed(ramp, stimulus=Cylinder(curvature=1259.84)))
-    assert 2**-0.25 <= 9 * sharp.contact_edge / sharp.contact.half_width <= 1 and sharp.estimated_error < 0.03
+    assert 2**-0.25 <= 12 * sharp.contact_edge / sharp.contact.half_width <= 1 and sharp.estimated_error < 0.03
+    deep = 3 * sharp.mesh_size.skin_radial_edge / sharp.contact.half_width
+    assert 2**-0.25 <= deep <= 1, "into the skin a quarter as fine as along it"
     bar = plan(changed(ramp, stimulus=Bar(width=1.5875e-3, fillet=0.1e-3))).mesh_size
     assert bar.focus[0][0] == pytest.approx(0.79375e-3) and bar.focus[0][1] <= 0.05e-3
     assert plan(changed(ramp, stimulus=Line())).mesh_size.focus
     needle = plan(changed(ramp, stimulus=Cylinder(curvature=1e4))).mesh_size
     assert needle.focus and needle.focus[0][1] < 0.1e-3
+
+
+def test_edges_grow_faster_away_from_a_presets_stroke_alone(ramp):
+    """Its curves are those of the mesh along its way; what was measured with some growth, and what is given by hand, keeps it."""
+    slide = (PressToForce(press_to_force=0.2, rate=0.4), Slide(slide=5e-3, speed=10e-3, keep="force"))
+    press, stroke = (plan(changed(ramp, motion=motion)).mesh_size for motion in (slide[:1], slide))
+    assert stroke.growth == pytest.approx(press.growth**2) and stroke.skin_edge == press.skin_edge
+    for accuracy in (0.02, Discretisation(element="Q2P1", skin_edge=134.4e-6, steps=30)):
+        one, other = (plan(changed(ramp, motion=motion, accuracy=accuracy)).mesh_size for motion in (slide[:1], slide))
+        assert other.growth <= max(one.growth, press.growth)
 
 
 def test_discretisation_by_hand(ramp):
