@@ -95,13 +95,12 @@ def square_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
 def triangle_rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
     """Points (6 or 7, 2) of the reference triangle and weights, exact for polynomials of degree 4 or 5 (Dunavant 1985)."""
     if degree == 4:
-        orbits = ((0.445948490915965, 0.223381589678011), (0.091576213509771, 0.109951743655322))
-        points, weights = [], []
+        a, share = np.array([0.445948490915965, 0.091576213509771]), np.array([0.223381589678011, 0.109951743655322])
+        centre = np.zeros((0, 3))
     else:
-        root = np.sqrt(15.0)
-        orbits = (((6 + root) / 21, (155 + root) / 1200), ((6 - root) / 21, (155 - root) / 1200))
-        points, weights = [(1 / 3, 1 / 3)], [9 / 40]
-    for a, weight in orbits:
-        points += [(1 - 2 * a, a), (a, 1 - 2 * a), (a, a)]
-        weights += [weight] * 3
-    return np.array(points), np.array(weights) / 2
+        root = np.sqrt(15.0) * np.array([1.0, -1.0])
+        a, share = (6 + root) / 21, (155 + root) / 1200
+        centre = np.array([(1 / 3, 1 / 3, 9 / 40)])
+    turned = (np.column_stack([x, y, share]) for x, y in ((a, 1 - 2 * a), (1 - 2 * a, a), (a, a)))
+    found = np.concatenate([centre, *turned])
+    return found[:, :2].copy(), found[:, 2] / 2
