@@ -92,7 +92,7 @@ def test_lopsided_stimulus_keeps_the_whole_pad(ramp, tmp_path):
     lopsided = Sampled(csv=csv, x=(-1e-3, 0.0, 1e-3), y=(1e-3, 0.0, 2e-3))
     whole, half = plan(changed(ramp, stimulus=lopsided)), plan(ramp)
     assert not whole.effects["symmetry"].on and half.effects["symmetry"].on
-    assert whole.nodes > 1.9 * half.nodes
+    assert whole.nodes > 1.8 * half.nodes  # half of it is also refined where it touches
 
 
 def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):

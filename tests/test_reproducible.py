@@ -8,7 +8,7 @@ import pytest
 
 from fingerpad import load_scene, simulate
 from fingerpad.cli import main
-from fingerpad.mechanics import linear_solver
+from fingerpad.mechanics import dense, linear_solver
 from fingerpad.results import Arrays, write_history
 from fingerpad.simulation import solve
 from wrong_scenes import changed, write
@@ -50,9 +50,13 @@ def test_a_history_is_written_as_the_same_bytes(tmp_path):
 
 @pytest.mark.skipif(not linear_solver.pardiso_available(), reason="PARDISO is not installed here")
 def test_one_and_two_threads_agree(monkeypatch):
-    one = simulate(load_scene(SCENE))
-    monkeypatch.setattr(linear_solver, "threads", lambda: 2)
-    two = simulate(load_scene(SCENE))
+    def with_threads(number):
+        monkeypatch.setattr(dense, "threads", lambda: number)
+        dense._loaded.cache_clear()
+        assert dense.mkl().MKL_Get_Max_Threads() == number
+        return simulate(load_scene(SCENE))
+
+    two, one = with_threads(2), with_threads(1)
     for name in ("indentation_depth", "force", "stored_energy", "strain_energy_density"):
         scale = np.abs(one[name].values).max()
         np.testing.assert_allclose(two[name].values, one[name].values, rtol=0, atol=1e-9 * scale, err_msg=name)

@@ -177,9 +177,8 @@ def mesh_size_for(
 
 def _growth(scene: Scene, preset: Preset, rules: Rules) -> float:
     """From one edge to the next: of a preset larger where the contact moves, whose mesh is mostly away from it."""
-    return (
-        min(preset.growth**rules.stroked_growth, 3.0) if isinstance(scene.accuracy, str) and moves_along(scene) else preset.growth
-    )
+    stroked = isinstance(scene.accuracy, str) and moves_along(scene)
+    return max(preset.growth, min(preset.growth**2, rules.stroked_growth)) if stroked else preset.growth
 
 
 def _staged(length: float, rounded: Callable[[float], float]) -> float:

@@ -58,7 +58,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         edges_per_half_width: least edges in a contact to either side; presets have more. rows_per_half_width: rows of elements in
             as much of the depth below it, where it is refined for them: more make no curve better, fewer no worse where the
             layers have as many.
-        stroked_growth: power of a preset's growth, where the contact moves: its curves are those of the mesh along its way.
+        stroked_growth: most to which a preset's growth is squared where the contact moves: its curves are those of the mesh along
+            its way.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
         skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
         seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
@@ -102,7 +103,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     inertia_limit: float = 0.1
     edges_per_half_width: float = 2.0
     rows_per_half_width: float = 3.0
-    stroked_growth: float = 2.0
+    stroked_growth: float = 1.44
     seconds_start: float = 0.8
     seconds_finite: float = 0.9e-6
     seconds_small: float = 0.45e-6

@@ -387,7 +387,7 @@ DECIDES = {
     "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
     "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (6, 12, 20)",
     "rows_per_half_width": "local refinement: rows of elements in as much of the depth below the contact",
-    "stroked_growth": "growth of edges away from a contact that moves: this power of the preset's",
+    "stroked_growth": "growth of edges away from a contact that moves: the preset's squared, up to this",
     "inertia_limit": "scenes with rho v^2 / mu above this are refused",
     "seconds_start": "predicted cost: start of a process (s)",
     "seconds_finite": "predicted cost: a node and Newton iteration, finite strain (s)",
