@@ -352,6 +352,27 @@ def presets():
     return "\n".join(lines)
 
 
+def _profiles(mesh: str) -> pd.Series:
+    """Largest error (%) of the pressure across the contact, by surface."""
+    rows = table("figures/tables/accuracy_edges").query("mesh == @mesh and `smoothing (of the method's)` == 1")
+    return rows.set_index("surface")["pressure profile off (%)"]
+
+
+@number
+def profiles_refined():
+    return several(_profiles("own"))
+
+
+@number
+def profiles_not_refined():
+    return digits(_profiles("not refined").max())
+
+
+@number
+def profiles_refined_into_the_skin():
+    return several(_profiles("refined into the skin too"))
+
+
 @number
 def growth_exponent():
     return digits(table("figures/studies/accuracy_growth").query("element == 'Q2P1'")["exponent"].iloc[0], 3)

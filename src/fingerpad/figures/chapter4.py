@@ -16,7 +16,7 @@ import xarray as xr
 
 from fingerpad.figures import axes as axs
 from fingerpad.figures.grammar import Data, Figure, Lines, Own, Panels, Phases, nine
-from fingerpad.measures.errors import Curve, Errors, at_output, curve_errors, over_time, shared_place
+from fingerpad.measures.errors import Curve, Errors, at_output, curve_errors, family_errors, over_time, shared_place
 from fingerpad.measures.features import (
     PHASES,
     PRESSURE,
@@ -137,15 +137,13 @@ def critical_distance(data: Data) -> pd.DataFrame:
 def nodes(data: Data) -> pd.DataFrame:
     """Pressure against time at each skin node of the right half that ever touches."""
     ((_, history, coarse),) = data.runs(K210)
-    parts = []
-    for node in surface_nodes(history):
-        x = float(history["skin_x"].values[node])
-        part = {NODE: round(x * 1e3, 5), TIME: history["time"].values, P: history[PRESSURE].values[:, node]}
-        parts.append(
-            pd.DataFrame(
-                part | curve_errors(history, coarse, over_time(partial(pressure_at, place=shared_place(x, coarse)))).columns
-            )
-        )
+    places = {node: float(history["skin_x"].values[node]) for node in surface_nodes(history)}
+    curves = [over_time(partial(pressure_at, place=shared_place(x, coarse))) for x in places.values()]
+    errors = family_errors(history, coarse, curves).columns
+    parts = [
+        pd.DataFrame({NODE: round(x * 1e3, 5), TIME: history["time"].values, P: history[PRESSURE].values[:, node]} | errors)
+        for node, x in places.items()
+    ]
     return pd.concat(parts, ignore_index=True)
 
 
@@ -389,7 +387,7 @@ FIGURES = (
                              names={P_PEAK: "maximum", P_CENTRE: "centre node"}),
                   ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6}), width=style.COLUMN_WIDTH),
     Figure("4-16", "Pressure at each node of the contact region, K = 210 1/m", K210, TIME, (P,), {TIME: "T151", P: "T150"},
-           Panels(height=3.4, fill=every_node), rows=nodes),
+           Panels(height=3.4, fill=every_node), rows=nodes, how="all nodes together"),
     Figure("4-20", "Pressure and strain energy profiles, 150 gf/s ramp to 20 gf", THREE, X, (P,), {},
            Own(height=6.2, header=0.16, paint=three_by_three), rows=profiles_and_receptors, after=axes_of_three),
     Figure("4-21", f"Strain energy density at 915 µm and contact pressure × {PRESSURE_SCALE}, centre", NINE, TIME,

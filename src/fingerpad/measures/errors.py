@@ -172,6 +172,17 @@ def curve_errors(history: xr.Dataset, companion: Companion | None, *curves: Curv
     return furthest(_of_curve(history, companion, curve) for curve in curves)
 
 
+def family_errors(history: xr.Dataset, companion: Companion | None, curves: Iterable[Curve]) -> Errors:
+    """Errors of curves drawn as one family: r.m.s. of all of them over that of what they show, in per cent.
+
+    For many lines of one quantity on one axis, of which some hardly rise from zero: relative to themselves these tell nothing.
+    """
+    found = [(norm(*curve(history)), astuple(_of_curve(history, companion, curve))) for curve in curves]
+    size, parts = np.array([size for size, _ in found]), np.array([parts for _, parts in found])
+    whole = np.linalg.norm(size) or np.inf
+    return Errors(*(np.linalg.norm(size[:, None] * np.where(size[:, None] > 0, parts, 0.0), axis=0) / whole).tolist())
+
+
 def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) -> Errors:
     x, y = curve(history)
     share = 100 / (norm(x, y) or np.inf)
