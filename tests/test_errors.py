@@ -16,6 +16,7 @@ from fingerpad.measures.errors import (
     Curve,
     Errors,
     curve_errors,
+    family_errors,
     norm,
     number_errors,
     over_stroke,
@@ -281,3 +282,24 @@ def test_note_says_the_parts_of_the_curve_that_is_furthest_off():
     assert axs.error_text(frame.assign(**dict.fromkeys(PARTS[:2], np.nan))) == "Largest error: sampling 0.1 %"
     assert axs.error_text(frame.assign(**dict.fromkeys(PARTS, np.nan))) == ""
     assert total(frame).tolist() == pytest.approx([1.6] * 11 + [5.01] * 11)
+
+
+def test_lines_of_one_family_share_one_error_and_one_that_hardly_rises_does_not_decide_it():
+    """Mutant: the furthest line of all says that next to nothing is wrong by as much as it is."""
+    size = 1000.0
+
+    def line(share):
+        return over_time(lambda history: share * history["value"].values + (1 - share) * history["beside"].values)
+
+    def two(h, dt):
+        return solved(h, dt, 0.3, 0.0).assign(beside=solved(h, dt, size * 0.3, 0.0)["value"] / size)
+
+    run, other = two(0.1, 0.02), Companion(two(0.1 * COARSER, 0.02), two(0.1 * COARSER, 0.04))
+    strong, weak = line(1.0), line(0.0)
+    alone, family = (curve_errors(run, other, strong).mesh, family_errors(run, other, [strong, weak]).mesh)
+    sizes = [norm(*strong(run)), norm(*weak(run))]
+    truth = np.linalg.norm([alone * sizes[0], curve_errors(run, other, weak).mesh * sizes[1]]) / np.linalg.norm(sizes)
+    assert family == pytest.approx(truth) and family_errors(run, other, [strong]).mesh == pytest.approx(alone)
+    flat = over_time(lambda history: 1e-9 * history["beside"].values)
+    assert family_errors(run, other, [strong, flat]).mesh == pytest.approx(alone, rel=1e-6)
+    assert np.isnan(family_errors(run, None, [strong]).mesh)
