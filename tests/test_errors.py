@@ -303,3 +303,16 @@ def test_lines_of_one_family_share_one_error_and_one_that_hardly_rises_does_not_
     flat = over_time(lambda history: 1e-9 * history["beside"].values)
     assert family_errors(run, other, [strong, flat]).mesh == pytest.approx(alone, rel=1e-6)
     assert np.isnan(family_errors(run, None, [strong]).mesh)
+
+
+def test_the_error_stated_of_points_that_are_joined_is_that_of_their_line():
+    """Relative to a point that is next to nothing an error tells nothing of the line through it."""
+    rows = pd.DataFrame(
+        {"line": ["a", "a", "b"], "shown": [0.01, 1.0, 2.0], PARTS[0]: [50.0, 1.0, 2.0], PARTS[1]: 0.0, PARTS[2]: 0.0}
+    )
+    frame = pd.concat([rows, pd.DataFrame({"line": ["a"], "shown": [7.0]})], ignore_index=True)  # not simulated
+    found = axs.of_lines(frame, [("line", "shown")])
+    assert found[PARTS[0]].tolist() == pytest.approx([np.hypot(0.5, 1.0) / np.hypot(0.01, 1.0), 2.0])
+    assert axs.error_text(frame) == "Largest error: mesh 50.0 %, steps 0.0 %, sampling 0.0 %"
+    assert axs.error_text(frame, [("line", "shown")]) == "Largest error of a line: mesh 2.0 %, steps 0.0 %, sampling 0.0 %"
+    assert axs.error_text(rows.assign(**dict.fromkeys(PARTS, np.nan)), [("line", "shown")]) == ""

@@ -64,12 +64,15 @@ def rows_of(frame: pd.DataFrame, column: str, value: object) -> pd.DataFrame:
 # --- notes -----------------------------------------------------------------------------------------------
 
 
-def footnote(frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH) -> list[str]:
-    """What a picture shows: simulated or predicted, with which errors (and `how` they are taken), from which strain energy."""
+def footnote(frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH, lines: Lines = ()) -> list[str]:
+    """What a picture shows: simulated or predicted, with which errors, from which strain energy.
+
+    `how` errors are taken, or of which `lines` through points they are (:func:`error_text`), is said as well.
+    """
     own = frame[is_simulated(frame)]
     shown = [column for column in own if own[column].notna().any()]
     predicted = any("(impulses/s)" in c or c.startswith(("burst_", "impulse_time", "trial")) for c in shown)
-    error = error_text(frame)
+    error = error_text(frame, lines)
     energy = predicted or any(c.startswith("strain_energy") for c in shown)
     of = " from strain energy" if predicted else ""
     meant = (" on instantaneous moduli" if predicted else "; strain energy on instantaneous moduli") if energy else ""
@@ -87,9 +90,27 @@ def footnote(frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH) 
     return style.wrapped([line + "."], width)
 
 
-def error_text(frame: pd.DataFrame) -> str:
+Lines = Sequence[tuple[str, str]]
+"""Lines that points are joined to: the columns that name them and that hold what they show."""
+
+
+def of_lines(frame: pd.DataFrame, lines: Lines) -> pd.DataFrame:
+    """The errors of lines through points, one row a line: r.m.s. of what its points are wrong by, over that of their values."""
+    found = []
+    for named, shown in lines:
+        for _, rows in frame.dropna(subset=[*PARTS, shown]).groupby(named):
+            size = rows[shown].to_numpy(float)
+            off = np.linalg.norm(rows[list(PARTS)].to_numpy(float) * size[:, None], axis=0)
+            found.append(off / (np.linalg.norm(size) or np.inf))
+    return pd.DataFrame(found, columns=list(PARTS))
+
+
+def error_text(frame: pd.DataFrame, lines: Lines = ()) -> str:
     """``Largest error: mesh 1.2 %, steps 0.3 %, sampling 0.1 %`` of the curve or point that is furthest off, with its surface
-    where that stands out, and ``not known`` where only that of the mesh is not; nothing where none is known."""
+    where that stands out, and ``not known`` where only that of the mesh is not; nothing where none is known. Where points are
+    joined to `lines` it is that of a line."""
+    if lines:
+        return error_text(of_lines(frame, lines)).replace("Largest error", "Largest error of a line")
     sums = total(frame)
     if not sums.notna().any():
         return ""

@@ -271,7 +271,7 @@ FIGURES = (
                   fill=Lines(by="series", names={TEN: f"stroked at {TEN}"}, bars=True,
                              looks={"ramp and hold": {"marker": "o", "ms": 3.5, "color": style.INK},
                                     TEN: OTHER | {"marker": "s", "ms": 3.5}})),
-           rows=largest_energies, width=style.COLUMN_WIDTH),
+           rows=largest_energies, width=style.COLUMN_WIDTH, joined="series"),
     Figure("5-24", "Strain energy density 560 µm under the centre at five stroking velocities", SPEEDS, DISTANCE, (sed(SHALLOW),),
            {DISTANCE: "T308", SED: "T307"}, stack(5.6), surface=(40, 80), constants={RECEPTOR: SHALLOW * 1e6}),
 )  # fmt: skip

@@ -289,6 +289,8 @@ class Figure:
         Name of the measured data (a key of `MEASURED`) shown beside; empty: none.
     meshes
         Whether it is made from the meshes of its runs too.
+    joined
+        Column that names the lines which points are joined to, if they are: the error stated is the largest of a line.
     how, note
         How the error is taken; or ``note(frame)``, the line under the picture but for the thesis's statement.
     remarks
@@ -315,6 +317,7 @@ class Figure:
     surface: tuple[float, float] | None = None
     measured: str = ""
     meshes: bool = False
+    joined: str = ""
     how: str | None = None
     remarks: tuple[str, ...] = ()
     note: Callable[[pd.DataFrame], Sequence[str]] | None = None
@@ -382,7 +385,8 @@ class Figure:
         with style.theme():
             how = self.how if self.how is not None else HOW if self.surface else ""
             wide = style.note_width(self.width)
-            lines = style.wrapped(self.note(frame), wide) if self.note else axs.footnote(frame, how, wide)
+            through = [(self.joined, q) for q in self.y if self.joined]
+            lines = style.wrapped(self.note(frame), wide) if self.note else axs.footnote(frame, how, wide, through)
             lines += axs.statement(frame, wide)
             fig = style.sheet(self.title, lines, self.layout.height, self.number, self.layout.header, width=self.width)
             panels = self.layout.draw(fig, frame, self)
