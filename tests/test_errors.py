@@ -316,3 +316,5 @@ def test_the_error_stated_of_points_that_are_joined_is_that_of_their_line():
     assert axs.error_text(frame) == "Largest error: mesh 50.0 %, steps 0.0 %, sampling 0.0 %"
     assert axs.error_text(frame, [("line", "shown")]) == "Largest error of a line: mesh 2.0 %, steps 0.0 %, sampling 0.0 %"
     assert axs.error_text(rows.assign(**dict.fromkeys(PARTS, np.nan)), [("line", "shown")]) == ""
+    own = axs.error_text(rows.assign(**{PARTS[0]: np.nan, PARTS[1]: 1.0}), [("line", "shown")])  # on a mesh of the user's own
+    assert own == "Largest error of a line: mesh not known, steps 1.0 %, sampling 0.0 %"

@@ -21,6 +21,7 @@ from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.provenance import digest, imported_sources
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
+from fingerpad.specimen.near import nearest
 from fingerpad.threads import threads
 
 if TYPE_CHECKING:
@@ -426,13 +427,12 @@ def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]
     if "snapshot_time" not in history:
         return []
     import meshio
-    from scipy.spatial import cKDTree
 
     history = history.labelled() if isinstance(history, Arrays) else history
     directory, nodes = Path(directory), history.sizes["node"]
     kind = kind_of(history.sizes["element_node"]).meshio
     position, region = history.node_position.values, history.element_region
-    skin = cKDTree(position).query(np.column_stack([history.skin_x, history.skin_y]))[1]
+    skin = nearest(np.column_stack([history.skin_x, history.skin_y]), position, 1)[:, 0]
     times = history.snapshot_time.values.tolist()
     paths, parts = [], []
     for k, time in enumerate(times):

@@ -95,10 +95,13 @@ Lines = Sequence[tuple[str, str]]
 
 
 def of_lines(frame: pd.DataFrame, lines: Lines) -> pd.DataFrame:
-    """The errors of lines through points, one row a line: r.m.s. of what its points are wrong by, over that of their values."""
+    """The errors of lines through points, one row a line: r.m.s. of what its points are wrong by, over that of their values.
+
+    NaN in a part that is not known of one of its points; points of which none is known do not count.
+    """
     found = []
     for named, shown in lines:
-        for _, rows in frame.dropna(subset=[*PARTS, shown]).groupby(named):
+        for _, rows in frame.dropna(subset=[shown]).dropna(subset=list(PARTS), how="all").groupby(named):
             size = rows[shown].to_numpy(float)
             off = np.linalg.norm(rows[list(PARTS)].to_numpy(float) * size[:, None], axis=0)
             found.append(off / (np.linalg.norm(size) or np.inf))

@@ -1,4 +1,4 @@
-"""Points in the plane that lie at the same place, and those nearest to others; without a tree, which is slow to import."""
+"""Points in the plane that lie at the same place, and those nearest to others; few without a tree, which is slow to import."""
 
 from __future__ import annotations
 
