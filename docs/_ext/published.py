@@ -409,6 +409,18 @@ def beliefs_covered():
 
 
 @number
+def beliefs_missed():
+    """The runs that are wronger than they believe, in words."""
+    rows = table("figures/tables/accuracy_belief")
+    rows = rows[rows["believed error (%)"] < rows["true error (%)"]]
+    said = [
+        f"{row['scene']} ({row['accuracy']}) believes {row['believed error (%)']:.1f} and is off by {row['true error (%)']:.1f} %"
+        for _, row in rows.iterrows()
+    ]
+    return "; ".join(said).replace("_", " ") or "none"
+
+
+@number
 def belief_scenes():
     return table("figures/tables/accuracy_belief")["scene"].nunique()
 
@@ -499,9 +511,25 @@ def hard_cases_drawn_stable():
     return rows.loc[rows["drawn"], "stable"].sum()
 
 
+def _silent() -> pd.DataFrame:
+    """Cases that end outside their limits and do not say so."""
+    return _cases()[_cases()["outcome"] == "unsound"]
+
+
 @number
 def hard_cases_silent():
-    return (_cases()["outcome"] == "unsound").sum()
+    return len(_silent())
+
+
+@number
+def hard_cases_silent_ones():
+    return ", ".join(map(str, _silent()["no."])) or "none"
+
+
+@number
+def hard_cases_silent_cured():
+    """Of those, how many are stable on the mesh that is planned for a finer preset."""
+    return _silent()["stable when relaxed"].astype(str).str.startswith("mesh: planned").sum()
 
 
 @number
