@@ -54,6 +54,7 @@ from fingerpad.measures.quantities import (
 )  # fmt: skip
 from fingerpad.measures.responses import DEPTHS
 from fingerpad.measures.runs import FAST, NINE, PADS
+from fingerpad.planning.errors import PROFILE_ORDER
 from fingerpad.publishing import style
 
 if TYPE_CHECKING:
@@ -138,7 +139,7 @@ def nodes(data: Data) -> pd.DataFrame:
     """Pressure against time at each skin node of the right half that ever touches."""
     ((_, history, coarse),) = data.runs(K210)
     places = {node: float(history["skin_x"].values[node]) for node in surface_nodes(history)}
-    curves = [over_time(partial(pressure_at, place=shared_place(x, coarse))) for x in places.values()]
+    curves = [over_time(partial(pressure_at, place=shared_place(x, coarse)), PROFILE_ORDER) for x in places.values()]
     errors = family_errors(history, coarse, curves).columns
     parts = [
         pd.DataFrame({NODE: round(x * 1e3, 5), TIME: history["time"].values, P: history[PRESSURE].values[:, node]} | errors)

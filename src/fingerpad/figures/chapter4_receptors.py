@@ -75,6 +75,7 @@ from fingerpad.measures.responses import (
 )
 from fingerpad.measures.runs import FAST, LOWER, NINE
 from fingerpad.measures.table import reading
+from fingerpad.planning.errors import PROFILE_ORDER
 from fingerpad.publishing import style
 from fingerpad.receptors.fits import gain_and_threshold, r_squared
 from fingerpad.receptors.laws import THESIS_RATE, rectified
@@ -238,7 +239,8 @@ def nodes_by_law(data: Data) -> pd.DataFrame:
     together, parts = fit_nodes("4-1", nodes), []
     for node in surface_nodes(history)[:NODE_COUNT]:
         x = history["skin_x"].values[node] * 1e3
-        errors = curve_errors(history, coarse, over_time(partial(pressure_at, place=shared_place(x * 1e-3, coarse)))).columns
+        pressed = over_time(partial(pressure_at, place=shared_place(x * 1e-3, coarse)), PROFILE_ORDER)
+        errors = curve_errors(history, coarse, pressed).columns
         part = pd.DataFrame({TIME: history["time"].values, P: history[PRESSURE].values[:, node]})
         parts.append(part.assign(series="simulated", **{NODE: round(x, 5)}, **errors))
         own = nodes[np.isclose(nodes[NODE], x)]

@@ -44,6 +44,7 @@ from fingerpad.measures.runs import NINE, SPEEDS, STEPPED_OVER, SUB_SPEEDS, WITH
 from fingerpad.measures.skin import skin_curvature
 from fingerpad.measures.strokes import LOCATIONS, NODES, distance, loaded, nodes_at, profile_and_height, time_of
 from fingerpad.measures.table import reading
+from fingerpad.planning.errors import PROFILE_ORDER
 from fingerpad.publishing import style
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def locations(data: Data, runs: Runs) -> pd.DataFrame:
         over = np.linspace(-5e-3, 5e-3, 201)
         skin = {"series": "skin", X: x[shown] * 1e3, Y: y[shown] * 1e3, P: p[shown]}
         surface = {"series": axs.SURFACE, X: over * 1e3, Y: (heights[index] + shape.outline(over + reached)) * 1e3}
-        errors = curve_errors(history, coarse, Curve(partial(profile_at, at=reached), outputs=False)).columns
+        errors = curve_errors(history, coarse, Curve(partial(profile_at, at=reached), False, PROFILE_ORDER)).columns
         for rows, checked in ((skin, errors), (surface, {})):
             part = {"source": SIMULATED, "panel": f"{location:g} mm"} | rows | {DISTANCE: reached * 1e3} | checked
             parts.append(pd.DataFrame(part))

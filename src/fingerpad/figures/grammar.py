@@ -52,6 +52,7 @@ from fingerpad.measures.responses import curvature_of
 from fingerpad.measures.runs import Runs
 from fingerpad.measures.strokes import arcs, convexities, loaded, profile_and_height
 from fingerpad.measures.table import MEASURES
+from fingerpad.planning.errors import PROFILE_ORDER
 from fingerpad.publishing import style
 from fingerpad.publishing.write import without_round_off
 from fingerpad.receptors.recordings import read_rates
@@ -116,7 +117,7 @@ class Data:
             sunk = -history["skin_displacement_y"].values
             for index, phase in phase_indices(history):
                 x, p = edged_profile(history, index)
-                errors = curve_errors(history, coarse, at_output(float(history["time"][index]), edged_profile))
+                errors = curve_errors(history, coarse, at_output(float(history["time"][index]), edged_profile, PROFILE_ORDER))
                 near = in_contact(history, index)
                 down = np.interp(x, profile(history, index)[0][near], sunk[index][near]) if near.any() else 0 * x
                 keep = (x >= 0) & near.any() if half else np.full(len(x), near.any())

@@ -2,8 +2,8 @@
 
 mesh
     what is left by what it changes by on its companions' coarser mesh, with the run's own steps and outputs, if it converges with
-    the order that was measured (`REMAINS`). On a mesh of the user's own by what it changes by with its linear quads made
-    quadratic, or the other way round; of all other elements it is not known.
+    the order that was measured, pressure profiles with a lower one (`remains`). On a mesh of the user's own by what it changes by
+    with its linear quads made quadratic, or the other way round; of all other elements it is not known.
 time steps
     the same of what it changes by on that mesh when every two steps are made one, read at the outputs that are left; of a stroke,
     when steps may be twice as long and what lies between its states off by twice as much.
@@ -28,7 +28,7 @@ import xarray as xr
 
 from fingerpad.measures.features import Feature, Trace
 from fingerpad.measures.strokes import distance, loaded
-from fingerpad.planning.errors import REMAINS, STEPS_REMAIN
+from fingerpad.planning.errors import COARSER, ORDER, REMAINS, STEPS_REMAIN, remains
 from fingerpad.results import scene_of
 
 MESH, STEPS, SAMPLING = PARTS = ("mesh_error (%)", "time_step_error (%)", "sampling_error (%)")
@@ -60,6 +60,15 @@ class Companion:
         own, other = (json.loads(each.attrs.get("plan", "{}")) for each in (history, self.mesh))
         external = "mesh_size_SI" in own and own["mesh_size_SI"] is None
         return None if external and own["discretisation"]["element"] == other["discretisation"]["element"] else self.mesh
+
+    def mesh_error(self, history: xr.Dataset, curve: Curve) -> float:
+        """What a curve is wrong by because of the mesh, as a norm in the unit of its values; NaN where that is not known."""
+        if (other := self.apart(history)) is None:
+            return np.nan
+        (x, y), (xm, ym) = curve(history), curve(other)
+        # over the skin at the nodes of the coarser mesh: what is between them is no error of these
+        change = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
+        return remains(COARSER, curve.order) * change
 
 
 def instead(history: xr.Dataset, companion: Companion | None) -> tuple[xr.Dataset | None, ...]:
@@ -112,10 +121,13 @@ class Curve:
         ``read(history)``: places (n,), in one direction, twice where the curve jumps, and values (n,).
     outputs
         Whether its points are outputs; else they are places on the skin at one output.
+    order
+        With which it converges with the mesh.
     """
 
     read: Callable[[xr.Dataset], tuple[np.ndarray, np.ndarray]]
     outputs: bool = True
+    order: float = ORDER
 
     def __call__(self, history: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
         """Places that grow, and values."""
@@ -136,9 +148,9 @@ class Curve:
         return [(x[k], y[k]) for k in kept]
 
 
-def over_time(trace: Trace) -> Curve:
+def over_time(trace: Trace, order: float = ORDER) -> Curve:
     """A trace over time."""
-    return Curve(lambda history: (history["time"].values, trace(history)))
+    return Curve(lambda history: (history["time"].values, trace(history)), order=order)
 
 
 def over_stroke(trace: Trace) -> Curve:
@@ -146,7 +158,7 @@ def over_stroke(trace: Trace) -> Curve:
     return Curve(lambda history: (distance(stroke := loaded(history)), trace(stroke)))
 
 
-def at_output(time: float, read: Callable[[xr.Dataset, int], tuple[np.ndarray, np.ndarray]]) -> Curve:
+def at_output(time: float, read: Callable[[xr.Dataset, int], tuple[np.ndarray, np.ndarray]], order: float = ORDER) -> Curve:
     """A curve over the skin, ``read(history, index)``, at the output nearest to a time (s)."""
     return Curve(lambda history: read(history, int(np.argmin(abs(history["time"].values - time)))), outputs=False)
 
@@ -188,13 +200,9 @@ def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) ->
     share = 100 / (norm(x, y) or np.inf)
     if companion is None:
         return Errors(np.nan, np.nan, share * sampling(history, curve))
-    # over the skin at the nodes of the coarser mesh: what is between them is no error of these
-    (xb, yb), sparse, mesh = curve(companion.both), curve(companion.sparse), np.nan
-    if (other := companion.apart(history)) is not None:
-        xm, ym = curve(other)
-        mesh = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
-    steps = norm(xb, yb - np.interp(xb, *sparse))
-    return Errors.left(share * mesh, share * steps, share * sampling(history, curve))
+    (xb, yb), sparse = curve(companion.both), curve(companion.sparse)
+    steps = STEPS_REMAIN * norm(xb, yb - np.interp(xb, *sparse))
+    return Errors(share * companion.mesh_error(history, curve), share * steps, share * sampling(history, curve))
 
 
 def shared_place(place: float, companion: Companion | None) -> float:

@@ -164,7 +164,11 @@ def mesh_size_for(
         # its edge passes from node to node, and the curves of a narrow contact show how far these are apart: along the skin alone
         edge = _staged(max(contact.half_width / edges, rules.least_edge), np.floor)
         focus, _ = _all_over(_staged(contact_reach(scene, contact), np.ceil), edge)
-        radial = max(edge, _staged(contact.half_width / rules.rows_per_half_width, np.floor))
+        rows = max(preset.rows, rules.rows_per_half_width)
+        radial = max(edge, _staged(contact.half_width / rows, np.floor))
+    elif _stroked(scene) and scene.specimen.ridges is None:
+        # what is read of a stroke is read there: centre pressure and what it does to receptors
+        focus, _ = _all_over(max(rules.stroked_middle, offsets), rules.stroked_share * preset.skin_edge)
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
@@ -177,8 +181,12 @@ def mesh_size_for(
 
 def _growth(scene: Scene, preset: Preset, rules: Rules) -> float:
     """From one edge to the next: of a preset larger where the contact moves, whose mesh is mostly away from it."""
-    stroked = isinstance(scene.accuracy, str) and moves_along(scene)
-    return max(preset.growth, min(preset.growth**2, rules.stroked_growth)) if stroked else preset.growth
+    return max(preset.growth, min(preset.growth**2, rules.stroked_growth)) if _stroked(scene) else preset.growth
+
+
+def _stroked(scene: Scene) -> bool:
+    """Whether a preset is asked for of a contact that moves."""
+    return isinstance(scene.accuracy, str) and moves_along(scene)
 
 
 def _staged(length: float, rounded: Callable[[float], float]) -> float:

@@ -14,8 +14,17 @@ COARSER = 1.5
 """Edges of a companion's mesh over those of the run's own."""
 ORDER = 1.5
 """With which curves are taken to converge with the mesh: measured ones, at 1 to 2, do so on either side of it."""
-REMAINS = 1 / (COARSER**ORDER - 1)
-"""What a result is wrong by over what it changes by on its companion's mesh (Richardson 1911)."""
+PROFILE_ORDER = 1.0
+"""The same of pressure profiles, whose slope has no bound at the contact's edge: they are wrong in the last element there."""
+
+
+def remains(edges: float, order: float = ORDER) -> float:
+    """What a result is wrong by over what it changes by when edges are so many times as long (Richardson 1911)."""
+    return 1 / abs(edges**order - 1)
+
+
+REMAINS = remains(COARSER)
+"""What a result is wrong by over what it changes by on its companion's mesh."""
 STEPS_REMAIN = 1 / (2.0**ORDER - 1)
 """The same over what it changes by with steps twice as long, of which measured orders are as large."""
 

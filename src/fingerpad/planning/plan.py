@@ -288,7 +288,8 @@ def plan(
         size = mesh_size_for(scene, preset, profile, contact, widest.half_width, wander, rounding, rules)
         check_size(scene, size, ridges, rules)
         nodes, smallest = counted(scene.specimen, size, ridges)
-        edge = min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
+        # a contact that moves leaves the middle, where a stroked pad is finer
+        edge = size.skin_edge if moves else min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
         if ridges is not None:
             layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
             effects["ridges"], edge = ridge_effect.resolved(effects["ridges"], layered, edge)

@@ -13,7 +13,8 @@ from fingerpad.planning.errors import MeasuredErrors
 class Preset:
     """A discretisation: edges m, steps per leg, longest step of a slide m.
 
-    ``tolerance`` is what an effect left out may change. ``edges`` are at least in half of a contact that stays where it is.
+    ``tolerance`` is what an effect left out may change. ``edges`` are at least in half of a contact that stays where it is,
+    ``rows`` in as much of the depth below it: of meshes that soon grow coarse more, or strain energies fall short.
     ``focus`` is the edge m to which the mesh is refined in the contact,
     along the skin and into it (None: not refined unless the contact is narrower than an edge).
     """
@@ -25,6 +26,7 @@ class Preset:
     tolerance: float
     slide_step: float | None
     edges: float = 0.0
+    rows: float = 0.0
     focus: float | None = None
 
 
@@ -55,11 +57,13 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         least_steps: of a leg; fewer would do for its end, but a curve of fewer is none. least_steps_stroked: where there is a
             stroke, for friction remembers the way that each step took, and events lie between outputs.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
-        edges_per_half_width: least edges in a contact to either side; presets have more. rows_per_half_width: rows of elements in
-            as much of the depth below it, where it is refined for them: more make no curve better, fewer no worse where the
-            layers have as many.
+        edges_per_half_width: least edges in a contact to either side; presets have more. rows_per_half_width: least rows of
+            elements in as much of the depth below it, where it is refined for them: of the presets `thesis` and `fine` more make
+            no curve better, fewer no worse where the layers have as many.
         stroked_growth: most to which a preset's growth is squared where the contact moves: its curves are those of the mesh along
             its way.
+        stroked_share: of a preset's skin edge, under the middle of a pad that is stroked, where its curves are read, and
+            stroked_middle: m to either side.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
         skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
         seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
@@ -68,9 +72,9 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
 
     presets: Mapping[str, Preset] = field(
         default_factory=lambda: {
-            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3, 6.0),
-            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 12.0),
-            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3, 20.0),
+            "draft": Preset(268.8e-6, 243e-6, 10, 1.35, 0.06, 0.5e-3, 6.0, 6.0),
+            "thesis": Preset(134.4e-6, 121.5e-6, 20, 1.2, 0.02, 0.25e-3, 20.0),
+            "fine": Preset(67.2e-6, 60.7e-6, 40, 1.15, 0.007, 0.125e-3, 33.0),
         }
     )
     errors: MeasuredErrors = field(default_factory=MeasuredErrors)
@@ -104,6 +108,8 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     edges_per_half_width: float = 2.0
     rows_per_half_width: float = 3.0
     stroked_growth: float = 1.44
+    stroked_share: float = 0.6
+    stroked_middle: float = 1e-3
     seconds_start: float = 0.8
     seconds_finite: float = 0.9e-6
     seconds_small: float = 0.45e-6

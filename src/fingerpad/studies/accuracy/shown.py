@@ -13,17 +13,34 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.figures.grammar import Figure
-from fingerpad.measures.errors import MESH, PARTS, Companion, Companions
+from fingerpad.measures.errors import MESH, PARTS, Companion, Companions, Curve, norm
 from fingerpad.measures.features import Histories, Meshes
-from fingerpad.planning.errors import ORDER, REMAINS
+from fingerpad.planning.errors import REMAINS, remains
 
 FINER = 0.5
 """Edges of the finer runs over those of the scenes."""
-LEFT = 1 / (1 - FINER**ORDER)
+LEFT = remains(FINER)
 """What a curve is wrong by over what it changes by on the finer mesh."""
 MADE_FINER = ("stroke_", "ramp40_", "ramp150_", "press10_", "press15_", "step_sub", "plate_", "ridged_stroke_")
 """How names of scenes begin that are made finer: all that figures read but presses on ridges, and outer ridges."""
 STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"
+
+
+class Finer(Companion):
+    """A finer run in a companion's place."""
+
+    def mesh_error(self, history: xr.Dataset, curve: Curve) -> float:
+        """What a curve is wrong by as it is drawn, in the measure of numbers, which tell what is left of a companion's changes.
+
+        Over the skin it is drawn straight from node to node. What that leaves out the finer mesh shows in full; only what its
+        nodes change by goes on to change.
+        """
+        (x, y), (at, fine) = curve(history), curve(self.mesh)
+        there = np.interp(x, at, fine)
+        wrong = remains(FINER, curve.order) * (there - y)
+        if curve.outputs:
+            return REMAINS / LEFT * norm(x, wrong)
+        return REMAINS / LEFT * norm(at, np.interp(at, x, wrong) + fine - np.interp(at, x, there))
 
 
 def shown(
@@ -39,7 +56,7 @@ def shown(
         a mesh with edges `FINER` times as long. reference: the thesis's numbers.
     """
     histories, meshes, coarse = results
-    truth = {scene: Companion(history, history) for scene, history in finer.items()}
+    truth = {scene: Finer(history, history) for scene, history in finer.items()}
     rows = []
     for spec, measured in figures:
         if not spec.read_companions or not truth.keys() >= set(spec.read_companions):

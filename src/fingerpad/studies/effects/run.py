@@ -385,9 +385,11 @@ DECIDES = {
     "least_steps_stroked": "the same where there is a stroke",
     "fine_half_width": "fine skin mesh to either side of the apex, at least (m)",
     "skin_stretch": "fine skin mesh, further in frictional strokes (m)",
-    "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (6, 12, 20)",
-    "rows_per_half_width": "local refinement: rows of elements in as much of the depth below the contact",
+    "edges_per_half_width": "local refinement: edges in the contact's half-width at least; presets have more (6, 20, 33)",
+    "rows_per_half_width": "local refinement: rows of elements in as much of the depth below the contact at least; `draft` has 6",
     "stroked_growth": "growth of edges away from a contact that moves: the preset's squared, up to this",
+    "stroked_share": "edges under the middle of a pad that is stroked, over the preset's",
+    "stroked_middle": "the middle: to either side at least (m)",
     "inertia_limit": "scenes with rho v^2 / mu above this are refused",
     "seconds_start": "predicted cost: start of a process (s)",
     "seconds_finite": "predicted cost: a node and Newton iteration, finite strain (s)",
@@ -424,6 +426,7 @@ WHERE = {
     "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",
     "rows_per_half_width": "figures/tables/accuracy_edges.csv",
     "stroked_growth": "figures/tables/accuracy_shown.csv: strokes are as near to finer ones as with the preset's own",
+    **dict.fromkeys(("stroked_share", "stroked_middle"), "figures/tables/accuracy_shown.csv, of strokes"),
     "inertia_limit": "chosen: 1e-4 at 40 mm/s, a tenth of the elastic forces at the limit",
 }
 """Where the evidence is that is not of this study; costs are those of figures/tables/speed.md."""
