@@ -37,8 +37,8 @@ class Figure:
 
 @cache
 def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
-    """What is on offer: `figures` by number, and the studies' `FAMILY`, `SWEEPS`, `MADE_FINER`, `OUTSIDE`, `CLASSES` (accuracy),
-    `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations), `VIEWS` with scenes.
+    """What is on offer: `figures` by number, and the studies' `FAMILY`, `EDGED`, `SWEEPS`, `MADE_FINER`, `OUTSIDE`, `CLASSES`
+    (accuracy), `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations), `VIEWS` with scenes.
 
     Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
     """
@@ -62,7 +62,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.figures.registry import CHAPTERS
     from fingerpad.studies.accuracy.belief import OUTSIDE
     from fingerpad.studies.accuracy.drawn import CLASSES
-    from fingerpad.studies.accuracy.run import FAMILY, sweeps
+    from fingerpad.studies.accuracy.run import EDGED, FAMILY, sweeps
     from fingerpad.studies.accuracy.shown import MADE_FINER
     from fingerpad.studies.accuracy.strokes import STROKED_OVER
     from fingerpad.studies.explanations.run import PRESSED, READ_ONLY, READINGS, STROKED
@@ -85,4 +85,10 @@ def _read() -> dict[str, Any]:
     offers |= {"READINGS": simulated, "READ_ONLY": list(READ_ONLY), "READ": [*PRESSED, *STROKED]}
     offers["STROKED_OVER"] = list(STROKED_OVER)
     offers["VIEWS"] = {name: list(scenes) for name, (_, scenes) in FRAMES.items()}
-    return {"figures": figures, "FAMILY": FAMILY, "SWEEPS": list(sweeps()), "MADE_FINER": list(MADE_FINER)} | offers
+    return {
+        "figures": figures,
+        "FAMILY": FAMILY,
+        "EDGED": EDGED,
+        "SWEEPS": list(sweeps()),
+        "MADE_FINER": list(MADE_FINER),
+    } | offers

@@ -509,9 +509,9 @@ class Products:
         tables = self.tables(["accuracy", "accuracy_orders", "accuracy_planner", "presets"])
         told = {"scenes": [self.scene(scene) for scene in family.values()], "written": self._written(*family.values())}
         yield Job("accuracy_tables", read, {"tables": tables}, told)
-        pressed = [scene for kind, scene in family.items() if kind != "stroke"]
-        told = {"scenes": [self.scene(scene) for scene in pressed], "written": self._written(*pressed)}
-        yield Job("accuracy_edges", self._read(*pressed), {"table": self.tables(["accuracy_edges"])}, told, **long)
+        edged = offered()["EDGED"].values()
+        told = {"scenes": [self.scene(scene) for scene in edged], "written": self._written(*edged)}
+        yield Job("accuracy_edges", self._read(*edged), {"table": self.tables(["accuracy_edges"])}, told, **long)
         rows = [self.result(f"accuracy/strokes/{over}.csv") for over in offered()["STROKED_OVER"]]
         for over, part in zip(offered()["STROKED_OVER"], rows, strict=True):
             yield Job(run := "accuracy_strokes", self._read(base), {"rows": [part]}, {"over": [over]}, f"{run}_{over}", **long)

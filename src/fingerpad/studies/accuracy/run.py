@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 FAMILY = {"flat": "ramp40_flat", "210": "ramp40_k210", "1260": "ramp40_k1260", "stroke": "accuracy_stroke"}
 """Name in the study -> scene."""
 PRESSED = ("flat", "210", "1260")
+EDGED = {"flat": "ramp40_flat", "105": "ramp40_k105", "210": "ramp40_k210", "1260": "ramp40_k1260"}
+"""Surface -> scene whose contact's edges are looked at."""
 ELEMENTS = ("Q2P1", "Q1P0", "P2B", "Q1", "Q2", "Q2R")
 """Keys of the elements; the last three are for teaching."""
 ROWS = (1, 2, 4, 7, 10, 14, 22)

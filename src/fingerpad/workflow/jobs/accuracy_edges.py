@@ -3,9 +3,9 @@
 from fingerpad import load_scene
 from fingerpad.publishing.write import publish_table
 from fingerpad.studies.accuracy.edges import table
-from fingerpad.studies.accuracy.run import PRESSED
+from fingerpad.studies.accuracy.run import EDGED
 
 
 def run(job):
-    """`scenes` in the order of PRESSED -> `table`."""
-    publish_table(table(dict(zip(PRESSED, map(load_scene, job.scenes), strict=True))), job.table[0])
+    """`scenes` in the order of EDGED -> `table`."""
+    publish_table(table(dict(zip(EDGED, map(load_scene, job.scenes), strict=True))), job.table[0])
