@@ -38,8 +38,8 @@ class Figure:
 @cache
 def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
     """What is on offer: `figures` by number, and the studies' `FAMILY`, `EDGED`, `SWEEPS`, `MADE_FINER`, `OUTSIDE`, `CLASSES`
-    (accuracy), `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations), `VIEWS` with
-    scenes.
+    (accuracy), `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations), `VIEWS`
+    with scenes.
 
     Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
     """
