@@ -23,6 +23,7 @@ from fingerpad.stimuli.profile import Profile
 _FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
 _NEAR = 0.15  # of the least error there is, by which a tolerance that cannot be met is missed further for less work
 _MOST_COLUMNS = 2000  # of refined elements to either side
+_STAGE = 2.0**0.25  # by how much finer a mesh is in a contact, if at all
 
 
 def preset_for(
@@ -160,9 +161,12 @@ def mesh_size_for(
         focus += tuple((x, edge) for x in sorted(places))
         if scene.tolerance is not None:
             radial = min(edge, radial or edge)
-    elif preset.focus is None and _refined_at_apex(scene) and contact.half_width < edges * preset.skin_edge:
+    elif (
+        preset.focus is None
+        and _refined_at_apex(scene)
+        and (edge := _staged(max(contact.half_width / edges, rules.least_edge), np.floor)) <= preset.skin_edge / _STAGE
+    ):
         # its edge passes from node to node, and the curves of a narrow contact show how far these are apart: along the skin alone
-        edge = _staged(max(contact.half_width / edges, rules.least_edge), np.floor)
         focus, _ = _all_over(_staged(contact_reach(scene, contact), np.ceil), edge)
         rows = max(preset.rows, rules.rows_per_half_width)
         radial = max(edge, _staged(contact.half_width / rows, np.floor))
