@@ -415,6 +415,26 @@ def test_stated_errors_stand_beside_those_of_the_curves():
     assert len(STUDIES["accuracy_shown"](frame).axes) == 2 and len(frame) <= len(table)
 
 
+@pytest.mark.parametrize("order", [1.0, 1.5])
+def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
+    """Own nodes at x^2 + c on every second of a finer run's at x^2, what they err by converges, chords between them do not."""
+    from fingerpad.measures.errors import Curve, norm
+    from fingerpad.planning.errors import REMAINS, remains
+    from fingerpad.studies.accuracy.shown import FINER, LEFT, Finer
+
+    def profile(spacing: float, more: float = 0.0) -> xr.Dataset:
+        x = np.arange(0, 1 + spacing / 2, spacing)
+        return xr.Dataset({"x": ("node", x), "y": ("node", x**2 + more)})
+
+    curve = Curve(lambda h: (h["x"].values, h["y"].values), False, order)
+    own, other = profile(0.1, 0.01), profile(0.05)
+    found = LEFT / REMAINS * Finer(other, other).mesh_error(own, curve)
+    x = other["x"].values
+    chord = np.interp(x, own["x"], own["x"] ** 2) - x**2
+    assert found == pytest.approx(norm(x, chord + 0.01 * remains(FINER, order)))
+    assert found != pytest.approx(remains(FINER, order) * norm(x, chord + 0.01), rel=0.01)
+
+
 def test_errors_stated_in_the_published_figures_are_those_of_their_curves():
     """Of nearly all at least half of it; and few curves are wrong by more than 3 %."""
     drawn = pd.read_csv(ROOT / "figures" / "studies" / "accuracy_shown.csv")

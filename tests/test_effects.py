@@ -92,7 +92,7 @@ def test_lopsided_stimulus_keeps_the_whole_pad(ramp, tmp_path):
     lopsided = Sampled(csv=csv, x=(-1e-3, 0.0, 1e-3), y=(1e-3, 0.0, 2e-3))
     whole, half = plan(changed(ramp, stimulus=lopsided)), plan(ramp)
     assert not whole.effects["symmetry"].on and half.effects["symmetry"].on
-    assert whole.nodes > 1.8 * half.nodes  # half of it is also refined where it touches
+    assert whole.nodes > 1.5 * half.nodes  # half of it is also refined where it touches
 
 
 def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):
@@ -291,11 +291,14 @@ def test_presets_and_tolerances_order_cost_and_error(ramp):
 
 def test_mesh_follows_edges_and_needles(ramp):
     """Edges of the profile and contacts narrower than the mesh get finer skin there; broad ones do not."""
-    assert plan(changed(ramp, stimulus=Flat())).mesh_size.focus == ()
+    flat = plan(changed(ramp, stimulus=Flat()))
+    assert flat.mesh_size.focus == () and flat.contact.half_width < 20 * flat.contact_edge, "they would hardly be finer"
     sharp = plan(changed(ramp, stimulus=Cylinder(curvature=1259.84)))
-    assert 2**-0.25 <= 12 * sharp.contact_edge / sharp.contact.half_width <= 1 and sharp.estimated_error < 0.03
+    assert 2**-0.25 <= 20 * sharp.contact_edge / sharp.contact.half_width <= 1 and sharp.estimated_error < 0.03
     deep = 3 * sharp.mesh_size.skin_radial_edge / sharp.contact.half_width
-    assert 2**-0.25 <= deep <= 1, "into the skin a quarter as fine as along it"
+    assert 2**-0.25 <= deep <= 1, "into the skin a seventh as fine as along it"
+    rough = plan(changed(ramp, stimulus=Cylinder(curvature=1259.84), accuracy="draft"))
+    assert rough.mesh_size.skin_radial_edge == rough.contact_edge, "a draft's grow so fast that it needs as many rows as columns"
     bar = plan(changed(ramp, stimulus=Bar(width=1.5875e-3, fillet=0.1e-3))).mesh_size
     assert bar.focus[0][0] == pytest.approx(0.79375e-3) and bar.focus[0][1] <= 0.05e-3
     assert plan(changed(ramp, stimulus=Line())).mesh_size.focus
@@ -303,14 +306,18 @@ def test_mesh_follows_edges_and_needles(ramp):
     assert needle.focus and needle.focus[0][1] < 0.1e-3
 
 
-def test_edges_grow_faster_away_from_a_presets_stroke_alone(ramp):
+def test_a_presets_stroke_is_finer_in_the_middle_and_coarser_away_from_it(ramp):
     """Its curves are those of the mesh along its way; what was measured with some growth, and what is given by hand, keeps it."""
     slide = (PressToForce(press_to_force=0.2, rate=0.4), Slide(slide=5e-3, speed=10e-3, keep="force"))
     press, stroke = (plan(changed(ramp, motion=motion)).mesh_size for motion in (slide[:1], slide))
     assert stroke.growth == pytest.approx(press.growth**2) and stroke.skin_edge == press.skin_edge
+    places, edges = zip(*stroke.focus, strict=True)
+    assert set(edges) == {0.6 * stroke.skin_edge} and places[0] == 0 and places[-1] > 1e-3
+    moved = plan(changed(ramp, motion=slide))
+    assert moved.contact_edge == stroke.skin_edge, "the contact leaves the middle"
     for accuracy in (0.02, Discretisation(element="Q2P1", skin_edge=134.4e-6, steps=30)):
         one, other = (plan(changed(ramp, motion=motion, accuracy=accuracy)).mesh_size for motion in (slide[:1], slide))
-        assert other.growth <= max(one.growth, press.growth)
+        assert other.growth <= max(one.growth, press.growth) and other.focus == ()
 
 
 def test_discretisation_by_hand(ramp):

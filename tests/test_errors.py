@@ -1,5 +1,6 @@
 """Errors of curves in three parts: each is found alone where it is known, and companions have the steps they say."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -145,6 +146,8 @@ def test_each_part_is_found_alone(alone):
     assert found.mesh == pytest.approx(REMAINS * (COARSER**2 - 1) * true[0] if alone == "mesh" else 0, abs=1e-9)
     assert found.steps == pytest.approx(STEPS_REMAIN * true[1] if alone == "steps" else 0, rel=0.02, abs=1e-9)
     assert 0 < found.sampling < 1 and found.total == pytest.approx(found.mesh + found.steps + found.sampling)
+    first = curve_errors(run, Companion(coarse, both), replace(VALUE, order=1.0)).mesh
+    assert first == pytest.approx(found.mesh * 2 / REMAINS), "of first order as much is left as half as long edges change"
     rate = Curve(lambda h: (h["time"].values, np.gradient(h["value"].values, h["time"].values)))
     assert curve_errors(run, Companion(coarse, thinned(coarse)), rate).steps < 1e-9  # fewer outputs are not fewer steps
     if alone != "neither":  # mutant: one companion for both parts tells them apart no longer
