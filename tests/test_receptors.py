@@ -463,6 +463,8 @@ def test_sensor_knows_less_from_pressure_alone(histories):
 def test_contact_nodes_are_rows_in_contact_off_the_edge(histories):
     nodes = responses.contact_nodes(histories["ramp40_k210"])
     assert (nodes[responses.P] > 0).all() and (nodes[responses.EDGE_DISTANCE] > 0.05).all()
+    places = nodes[responses.NODE].unique() * 1e-3 / responses.NODE_SPACING
+    np.testing.assert_allclose(places, np.arange(len(places)), atol=1e-9, err_msg="the thesis's places, whatever the mesh")
     assert (nodes[responses.BELOW_EDGE] > 0).all(), "skin under a cylinder is deeper than at its edge"
     assert (nodes.loc[nodes["ramp"], responses.NODE_SPEED] > 0).mean() > 0.95
     fitted = responses.pressure_by_law("4-1", nodes, responses.fit_nodes("4-1", nodes))

@@ -22,7 +22,6 @@ from fingerpad.figures.chapter4 import HOLD, K210, OTHER_PADS, WIDTH_IDS, by_sur
 from fingerpad.figures.grammar import Data, Figure, Own, Panels, below, nine
 from fingerpad.measures.errors import PARTS, Curve, curve_errors, over_time, shared_place
 from fingerpad.measures.features import (
-    PRESSURE,
     SIMULATED,
     SURFACES,
     energy,
@@ -30,7 +29,6 @@ from fingerpad.measures.features import (
     is_simulated,
     pressure_at,
     ramp_end,
-    surface_nodes,
 )
 from fingerpad.measures.quantities import (
     CURVATURE,
@@ -65,6 +63,7 @@ from fingerpad.measures.responses import (
     fit_sum,
     mean_frequency,
     mean_pressure,
+    node_places,
     peak_energy_rate,
     predicted_rate,
     pressure_by_law,
@@ -237,11 +236,11 @@ def nodes_by_law(data: Data) -> pd.DataFrame:
     ((_, history, coarse),) = data.runs(K210)
     nodes = contact_nodes(history, NODE_COUNT)
     together, parts = fit_nodes("4-1", nodes), []
-    for node in surface_nodes(history)[:NODE_COUNT]:
-        x = history["skin_x"].values[node] * 1e3
-        pressed = over_time(partial(pressure_at, place=shared_place(x * 1e-3, coarse)), PROFILE_ORDER)
+    for place in node_places(NODE_COUNT):
+        x = place * 1e3
+        pressed = over_time(partial(pressure_at, place=shared_place(place, coarse)), PROFILE_ORDER)
         errors = curve_errors(history, coarse, pressed).columns
-        part = pd.DataFrame({TIME: history["time"].values, P: history[PRESSURE].values[:, node]})
+        part = pd.DataFrame({TIME: history["time"].values, P: pressure_at(history, place)})
         parts.append(part.assign(series="simulated", **{NODE: round(x, 5)}, **errors))
         own = nodes[np.isclose(nodes[NODE], x)]
         if own["past_peak"].sum() < 4:
@@ -500,9 +499,7 @@ def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     }
     wide = frame.assign(**{P: frame[P].fillna(frame[P_LAW])})
     nodes = frame[is_simulated(frame)].groupby(NODE)
-    for ax in axes.ravel()[len(nodes) :]:  # a coarse mesh has fewer nodes in contact
-        ax.set_visible(False)
-    for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), nodes, strict=False)):
+    for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), nodes, strict=True)):
         for series, (column, look) in looks.items():
             own = rows[rows["series"] == series]
             axs.curve(ax, own if column == P else own.assign(**dict.fromkeys(PARTS, np.nan)), TIME, column, **look)

@@ -59,6 +59,8 @@ DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))
 """m; depths of the thesis's receptors, the first six in the epidermis."""
 NODE_SURFACE, NODE_COUNT = "210", 12
 """Surface and number of nodes of Fig 4-17."""
+NODE_SPACING = 67.2e-6
+"""m; between the thesis's nodes, at whose places Figs 4-17 to 4-19 read any mesh (half of 134.4 um)."""
 TRIALS = 4
 """Trials of a surface in Fig 4-2."""
 SHALLOW_DEPTH = 600e-6
@@ -150,8 +152,13 @@ def energy_from_pressure(history: xr.Dataset, depth: float, law: SpatialSum, shi
 # -- nodes in contact, for Eqs 4-1 to 4-3 ------------------------------------------------------------------------------
 
 
+def node_places(count: int) -> np.ndarray:
+    """Places (m) along the skin at rest of so many of the thesis's nodes, from the centre on."""
+    return NODE_SPACING * np.arange(count)
+
+
 def contact_nodes(history: xr.Dataset, count: int | None = None) -> pd.DataFrame:
-    """Every output of every node in contact, from the centre to the right: what Eqs 4-1 to 4-3 relate.
+    """Every output of every node of the thesis's that is in contact, from the centre to the right: what Eqs 4-1 to 4-3 relate.
 
     Nodes are left out while they are nearer to the contact's edge than one node spacing, since the inverse distance has no
     bound there; the edge that the thesis sees is itself a node.
@@ -165,20 +172,23 @@ def contact_nodes(history: xr.Dataset, count: int | None = None) -> pd.DataFrame
         and from the largest pressure of the node on.
     """
     nodes = upper_skin(history)
-    x_rest = history["skin_x"].values[nodes]
-    x = skin_at(history)[0][:, nodes]
-    down = -history["skin_displacement_y"].values[:, nodes]
-    pressure, time, top = history[PRESSURE].values[:, nodes], history["time"].values, ramp_end(history)
+    skin = history["skin_x"].values[nodes]
+    x_rest = node_places(count or 1 + int(skin[-1] / NODE_SPACING + 1e-9))
+
+    def at_places(values: np.ndarray) -> np.ndarray:
+        return np.array([np.interp(x_rest, skin, row) for row in values])
+
+    everywhere, sunk = skin_at(history)[0][:, nodes], -history["skin_displacement_y"].values[:, nodes]
+    x, down, pressure = map(at_places, (everywhere, sunk, history[PRESSURE].values[:, nodes]))
+    time, top = history["time"].values, ramp_end(history)
     speed = np.concatenate(
         [np.gradient(down[: top + 1], time[: top + 1], axis=0), np.gradient(down[top:], time[top:], axis=0)[1:]]
     )
     edge = history["contact_width"].values / 2
-    at_edge = np.array([np.interp(e, row, d) for e, row, d in zip(edge, x, down, strict=True)])
+    at_edge = np.array([np.interp(e, row, d) for e, row, d in zip(edge, everywhere, sunk, strict=True)])
     rows = []
-    right = np.flatnonzero(x_rest > -1e-9)[:count]
-    spacing = np.diff(x_rest[right]).min()
-    for node in right:
-        on = np.flatnonzero((pressure[:, node] > 0) & (edge - x[:, node] >= spacing))
+    for node in range(len(x_rest)):
+        on = np.flatnonzero((pressure[:, node] > 0) & (edge - x[:, node] >= NODE_SPACING))
         rows.append(
             pd.DataFrame(
                 {
