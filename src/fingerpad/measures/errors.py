@@ -160,7 +160,7 @@ def over_stroke(trace: Trace) -> Curve:
 
 def at_output(time: float, read: Callable[[xr.Dataset, int], tuple[np.ndarray, np.ndarray]], order: float = ORDER) -> Curve:
     """A curve over the skin, ``read(history, index)``, at the output nearest to a time (s)."""
-    return Curve(lambda history: read(history, int(np.argmin(abs(history["time"].values - time)))), outputs=False)
+    return Curve(lambda history: read(history, int(np.argmin(abs(history["time"].values - time)))), False, order)
 
 
 def thinned(history: xr.Dataset, every: int = 2) -> xr.Dataset:

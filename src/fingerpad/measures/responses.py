@@ -60,7 +60,7 @@ DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))
 NODE_SURFACE, NODE_COUNT = "210", 12
 """Surface and number of nodes of Fig 4-17."""
 NODE_SPACING = 67.2e-6
-"""m; between the thesis's nodes, at whose places Figs 4-17 to 4-19 read any mesh (half of 134.4 um)."""
+"""m; between the nodes of Fig 4-17 (Cysyk 1999), at whose places Eqs 4-1 to 4-3 are read on any mesh."""
 TRIALS = 4
 """Trials of a surface in Fig 4-2."""
 SHALLOW_DEPTH = 600e-6
