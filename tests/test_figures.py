@@ -100,10 +100,8 @@ def test_errors_are_the_differences_to_the_companions(number):
 
     What of them remains."""
     errors, most = frame(number)[[MESH, STEPS]].dropna(), 3 if number in EDGED else 1
-    least, largest = (
-        left_on_meshes(number),
-        most * (remains(COARSER, PROFILE_ORDER) if number in EDGED else left_on_meshes(number)),
-    )
+    least = left_on_meshes(number)
+    largest = 3 * remains(COARSER, PROFILE_ORDER) if number in EDGED else least
     assert errors[MESH].between(0.98 * least, 1.02 * largest).all() and len(errors)
     assert (errors[STEPS] / STEPS_REMAIN).between(0.24, 0.26 * most).all()
 
