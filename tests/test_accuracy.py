@@ -400,8 +400,8 @@ def test_stated_errors_stand_beside_those_of_the_curves():
     import synthetic
     from drawn import REFERENCE, results
     from fingerpad.figures.registry import FIGURES
-    from fingerpad.planning.errors import REMAINS
-    from fingerpad.studies.accuracy.shown import LEFT, MADE_FINER, STATED, STATED_MESH, TRUE, shown
+    from fingerpad.planning.errors import COARSER, PROFILE_ORDER, remains
+    from fingerpad.studies.accuracy.shown import FINER, MADE_FINER, STATED, STATED_MESH, TRUE, shown
 
     histories, meshes, coarse, reference = results()
     finer = {name: history for name, history in synthetic.histories(1.02).items() if name.startswith(MADE_FINER)}
@@ -409,7 +409,8 @@ def test_stated_errors_stand_beside_those_of_the_curves():
     table = shown(figures, (histories, meshes, coarse), finer, reference)
     assert set(table["figure"]) == {"4-14", "5-6"}  # no finer runs on ridges
     mesh = table[table["curve"].str.contains("10 mm/s|simulated|79") | (table["figure"] == "4-14")]
-    assert (mesh[TRUE] / mesh[STATED_MESH]).to_numpy() == pytest.approx(2 * LEFT / REMAINS, rel=0.3)
+    left, remaining = (remains(edges, PROFILE_ORDER) for edges in (FINER, COARSER))
+    assert (mesh[TRUE] / mesh[STATED_MESH]).to_numpy() == pytest.approx(2 * left / remaining, rel=0.3)
     assert (table[STATED] >= table[STATED_MESH]).all()
     frame = found.FRAMES["accuracy_shown"](table)
     assert len(STUDIES["accuracy_shown"](frame).axes) == 2 and len(frame) <= len(table)
