@@ -312,7 +312,8 @@ def test_a_presets_stroke_is_finer_in_the_middle_and_coarser_away_from_it(ramp):
     press, stroke = (plan(changed(ramp, motion=motion)).mesh_size for motion in (slide[:1], slide))
     assert stroke.growth == pytest.approx(press.growth**2) and stroke.skin_edge == press.skin_edge
     places, edges = zip(*stroke.focus, strict=True)
-    assert set(edges) == {0.6 * stroke.skin_edge} and places[0] == 0 and places[-1] > 1e-3
+    assert set(edges) == {0.6 * stroke.skin_edge} and places[0] == 0
+    assert places[-1] > 1.5e-3, "two convexities press there at once"
     moved = plan(changed(ramp, motion=slide))
     assert moved.contact_edge == stroke.skin_edge, "the contact leaves the middle"
     for accuracy in (0.02, Discretisation(element="Q2P1", skin_edge=134.4e-6, steps=30)):

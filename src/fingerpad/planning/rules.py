@@ -109,7 +109,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     rows_per_half_width: float = 3.0
     stroked_growth: float = 1.44
     stroked_share: float = 0.6
-    stroked_middle: float = 1e-3
+    stroked_middle: float = 1.4e-3
     seconds_start: float = 0.8
     seconds_finite: float = 0.9e-6
     seconds_small: float = 0.45e-6
