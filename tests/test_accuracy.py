@@ -420,8 +420,8 @@ def test_stated_errors_stand_beside_those_of_the_curves():
 def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
     """Own nodes at x^2 + c on every second of a finer run's at x^2, what they err by converges, chords between them do not."""
     from fingerpad.measures.errors import Curve, norm
-    from fingerpad.planning.errors import REMAINS, remains
-    from fingerpad.studies.accuracy.shown import FINER, LEFT, Finer
+    from fingerpad.planning.errors import remains
+    from fingerpad.studies.accuracy.shown import FINER, Finer
 
     def profile(spacing: float, more: float = 0.0) -> xr.Dataset:
         x = np.arange(0, 1 + spacing / 2, spacing)
@@ -429,7 +429,7 @@ def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
 
     curve = Curve(lambda h: (h["x"].values, h["y"].values), False, order)
     own, other = profile(0.1, 0.01), profile(0.05)
-    found = LEFT / REMAINS * Finer(other, other).mesh_error(own, curve)
+    found = Finer(other, other).mesh_error(own, curve)
     x = other["x"].values
     chord = np.interp(x, own["x"], own["x"] ** 2) - x**2
     assert found == pytest.approx(norm(x, chord + 0.01 * remains(FINER, order)))

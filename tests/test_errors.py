@@ -1,5 +1,6 @@
 """Errors of curves in three parts: each is found alone where it is known, and companions have the steps they say."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,7 +28,7 @@ from fingerpad.measures.errors import (
     total,
 )
 from fingerpad.measures.features import centre_pressure, energy_rate, width
-from fingerpad.planning.errors import COARSER, REMAINS, STEPS_REMAIN
+from fingerpad.planning.errors import COARSER, ORDER, REMAINS, STEPS_REMAIN
 from fingerpad.planning.plan import companion
 from fingerpad.planning.schedule import schedule
 from fingerpad.receptors.laws import rate_by_leg
@@ -195,6 +196,31 @@ def test_rate_curve_with_a_jump_is_compared_on_either_side_of_it():
     history, other = synthetic.history("ramp40_k210"), synthetic.history("ramp40_k210", 1.01)
     rate = Curve(lambda h: energy_rate(h, 915e-6).to_numpy().T)
     assert curve_errors(history, Companion(other, other), rate).mesh == pytest.approx(REMAINS, rel=1e-4)
+
+
+@pytest.mark.parametrize("nodes, order", [(10000, 1.5), (7000, 1.0), (6900, 1.5)])
+def test_less_coarse_a_companion_more_is_left_of_what_a_curve_changes_by(nodes, order):
+    """Where geometry keeps edges short, as ridges do: by the root of the nodes, of curves and of numbers."""
+
+    def made(h, nodes):
+        run = solved(h, 0.02, 0.3, 0.0)
+        size = {"skin_edge": h}
+        return run.assign_attrs(plan=json.dumps({"discretisation": {"nodes": nodes, "element": "Q2P1"}, "mesh_size_SI": size}))
+
+    run, other = made(0.1, 10000), made(0.11, nodes)
+    pair, value = Companion(other, thinned(other)), replace(VALUE, order=order)
+    change = 100 * norm(run["time"].values, run["value"].values - other["value"].values)
+    change /= norm(run["time"].values, run["value"].values)
+    found, first = curve_errors(run, pair, value).mesh, (lambda history: float(history["value"][0]))
+    if nodes == 10000:
+        assert found == np.inf, "as fine: it tells nothing"
+        return
+    left = 1 / ((10000 / nodes) ** (order / 2) - 1)
+    assert found == pytest.approx(left * change)
+    number = 100 * abs(first(run) - first(other)) / abs(first(run))
+    assert number_errors(run, pair, first).mesh == pytest.approx(number / ((10000 / nodes) ** (ORDER / 2) - 1))
+    fewer = Companion(made(0.1, 100 * nodes), other)  # a finer run in its place
+    assert fewer.remains(run, order) == pytest.approx(1 / (1 - (10000 / (100 * nodes)) ** (order / 2)))
 
 
 # --- companions ----------------------------------------------------------------------------------------------

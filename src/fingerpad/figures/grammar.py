@@ -128,13 +128,13 @@ class Data:
     def numbers(self, runs: Runs, columns: Mapping[Q, Feature], own: bool = False) -> pd.DataFrame:
         """One row a surface: curvature, numbers, the largest of their errors, relative to the largest of all or to its `own`."""
         histories = [history for _, history, _ in self.runs(runs)]
-        others = [instead(history, companion) for _, history, companion in self.runs(runs)]
 
-        def read_all(found: Sequence[xr.Dataset | None]) -> pd.DataFrame:
-            return pd.DataFrame({q: [np.nan if h is None else read(h) for h in found] for q, read in columns.items()})
+        def read(history: xr.Dataset) -> pd.Series:
+            return pd.Series({q: each(history) for q, each in columns.items()}, dtype=float)
 
-        rows, sparse = read_all(histories), read_all([thinned(history) for history in histories])
-        mesh, left, both = (read_all(found) for found in zip(*others, strict=True))
+        rows, sparse = pd.DataFrame(map(read, histories)), pd.DataFrame([read(thinned(history)) for history in histories])
+        others = [instead(history, companion, read) for _, history, companion in self.runs(runs)]
+        mesh, left, both = map(pd.DataFrame, zip(*others, strict=True))
         sizes = rows.abs() if own else rows.abs().max()
         errors = largest_of([(rows, mesh), (left, both), (rows, sparse)], sizes)
         rows.insert(0, CURVATURE, [curvature_of(history) for history in histories])
@@ -143,13 +143,14 @@ class Data:
 
     def convexities(self, runs: Runs, columns: Mapping[Q, str]) -> pd.DataFrame:
         """One row a run and convexity: its name and curvature, measures by their names, and the largest of their errors."""
+
+        def read(history: xr.Dataset) -> pd.DataFrame:
+            return pd.DataFrame({q: MEASURES[m](history) for q, m in columns.items()}, dtype=float)
+
         parts = []
         for name, history, coarse in self.runs(runs):
-            fine, sparse, mesh, left, both = (
-                pd.DataFrame({q: MEASURES[m](h) if h is not None else {} for q, m in columns.items()}, dtype=float)
-                for h in (history, thinned(history), *instead(history, coarse))
-            )
-            sparse, mesh, left, both = (each.reindex(fine.index) for each in (sparse, mesh, left, both))
+            fine, others = read(history), (read(thinned(history)), *instead(history, coarse, read))
+            sparse, mesh, left, both = (each.reindex(fine.index) for each in others)
             errors = largest_of([(fine, mesh), (left, both), (fine, sparse)], fine.abs())
             exact = [convexities(history)[label].curvature for label in fine.index]
             rows = pd.concat([fine, errors], axis=1).rename_axis("convexity").reset_index()

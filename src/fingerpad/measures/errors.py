@@ -2,8 +2,9 @@
 
 mesh
     what is left by what it changes by on its companions' coarser mesh, with the run's own steps and outputs, if it converges with
-    the order that was measured, pressure profiles with a lower one (`remains`). On a mesh of the user's own by what it changes by
-    with its linear quads made quadratic, or the other way round; of all other elements it is not known.
+    the order that was measured, pressure profiles with a lower one (`remains`), and edges are longer as the root of the nodes is
+    smaller: geometry, ridges above all, keeps some as short. On a mesh of the user's own by what it changes by with its linear
+    quads made quadratic, or the other way round; of all other elements it is not known.
 time steps
     the same of what it changes by on that mesh when every two steps are made one, read at the outputs that are left; of a stroke,
     when steps may be twice as long and what lies between its states off by twice as much.
@@ -21,6 +22,7 @@ import json
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import astuple, dataclass
 from functools import cached_property
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -38,6 +40,9 @@ LEFT = REMAINS, STEPS_REMAIN, 1.0
 SHOWN_ABOVE = 2.0
 """Per cent from which on an error is drawn as a band or a bar."""
 
+Number = TypeVar("Number", float, np.ndarray, pd.Series, pd.DataFrame)
+"""A number, or some."""
+
 _SMOOTH, _ROUGH = 2.0, 0.0  # orders at which straight lines come closer to a curve
 _FEW = 5  # outputs, of which fewer do not show an order
 _ROUND_OFF = 1e-9
@@ -46,6 +51,8 @@ _ROUND_OFF = 1e-9
 @dataclass(frozen=True)
 class Companion:
     """A scene on a coarser mesh: with the run's own steps, and with `both` coarser, every two steps made one."""
+
+    EDGES: ClassVar[float] = COARSER  # over the run's own, where plans do not tell nodes
 
     mesh: xr.Dataset
     both: xr.Dataset
@@ -57,9 +64,19 @@ class Companion:
 
     def apart(self, history: xr.Dataset) -> xr.Dataset | None:
         """The one with the run's own steps; None where it is solved on the run's very mesh, of whose error it tells nothing."""
-        own, other = (json.loads(each.attrs.get("plan", "{}")) for each in (history, self.mesh))
-        external = "mesh_size_SI" in own and own["mesh_size_SI"] is None
-        return None if external and own["discretisation"]["element"] == other["discretisation"]["element"] else self.mesh
+        own, other = _planned(history), _planned(self.mesh)
+        return None if _external(own) and own["discretisation"]["element"] == other["discretisation"]["element"] else self.mesh
+
+    def remains(self, history: xr.Dataset, order: float = ORDER) -> float:
+        """What a curve is wrong by over what it changes by on the other mesh; infinite where that is as fine.
+
+        Its edges are taken to be longer as the root of its nodes is smaller (representative size; Celik et al. 2008, Eq 2).
+        """
+        own, other = _planned(history), _planned(self.mesh)
+        if not own or _external(own):
+            return remains(self.EDGES, order)
+        nodes, others = (each["discretisation"]["nodes"] for each in (own, other))
+        return remains((nodes / others) ** 0.5, order) if nodes != others else np.inf
 
     def mesh_error(self, history: xr.Dataset, curve: Curve) -> float:
         """What a curve is wrong by because of the mesh, as a norm in the unit of its values; NaN where that is not known."""
@@ -68,12 +85,29 @@ class Companion:
         (x, y), (xm, ym) = curve(history), curve(other)
         # over the skin at the nodes of the coarser mesh: what is between them is no error of these
         change = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
-        return remains(COARSER, curve.order) * change
+        return self.remains(history, curve.order) * change
+
+    def number(self, history: xr.Dataset, own: Number, other: Number) -> Number:
+        """A number, of what it is on the run's `own` mesh and on the other, on one with edges `COARSER` times as long."""
+        return own + self.remains(history) / REMAINS * (other - own)
 
 
-def instead(history: xr.Dataset, companion: Companion | None) -> tuple[xr.Dataset | None, ...]:
-    """What stands in for a run: on another mesh, and of the steps' part with its own steps and coarser ones; None: not known."""
-    return (companion.apart(history), companion.sparse, companion.both) if companion else (None, None, None)
+def _planned(history: xr.Dataset) -> dict[str, Any]:
+    return json.loads(history.attrs.get("plan", "{}"))
+
+
+def _external(planned: Mapping[str, Any]) -> bool:
+    return "mesh_size_SI" in planned and planned["mesh_size_SI"] is None
+
+
+def instead(history: xr.Dataset, companion: Companion | None, read: Callable[[xr.Dataset], Number]) -> tuple[Number, ...]:
+    """What is read in place of a run's: on a coarser mesh, and there with its own steps and coarser ones; NaN: not known."""
+    own = read(history)
+    if companion is None:
+        return (own * np.nan,) * 3
+    other = companion.apart(history)
+    mesh = own * np.nan if other is None else companion.number(history, own, read(other))
+    return mesh, read(companion.sparse), read(companion.both)
 
 
 Companions = Mapping[str, Companion]
@@ -242,11 +276,13 @@ def number_errors(history: xr.Dataset, companion: Companion | None, *features: F
 
 
 def _of_number(history: xr.Dataset, companion: Companion | None, feature: Feature) -> Errors:
-    own = np.atleast_1d(feature(history))
-    mesh, sparse, both = (np.nan if other is None else feature(other) for other in instead(history, companion))
+    def read(found: xr.Dataset) -> np.ndarray:
+        return np.atleast_1d(feature(found))
+
+    own, (mesh, sparse, both) = read(history), instead(history, companion, read)
     share = 100 / (np.linalg.norm(own) or np.inf)
-    pairs = (own, mesh), (sparse, both), (own, feature(thinned(history)))
-    return Errors.left(*(share * float(np.linalg.norm(np.atleast_1d(a) - np.atleast_1d(b))) for a, b in pairs))
+    pairs = (own, mesh), (sparse, both), (own, read(thinned(history)))
+    return Errors.left(*(share * float(np.linalg.norm(a - b)) for a, b in pairs))
 
 
 def furthest(found: Iterable[Errors]) -> Errors:

@@ -19,15 +19,15 @@ import xarray as xr
 
 from fingerpad.files import write_atomically
 from fingerpad.measures import of_any, of_presses, of_scenes, of_strokes
-from fingerpad.measures.errors import Companions, Errors, thinned
+from fingerpad.measures.errors import Companion, Companions, Errors, thinned
 from fingerpad.measures.features import Feature, Histories, Meshes
 from fingerpad.measures.inputs import Each
 from fingerpad.measures.measure import Measure, Together, measures_of
 from fingerpad.results import scene_of
 
 INSTEAD = ("mesh_companion", "sparse_mesh_companion", "companion", "sparse")
-"""Columns of numbers on a coarser mesh, there of the outputs that are left with coarser steps, with these, and of every second
-output of the histories themselves."""
+"""Columns of numbers on a mesh with edges half as long again (as those on the companions' tell), on these of the outputs that are
+left with coarser steps, with these steps, and of every second output of the histories themselves."""
 COLUMNS = ("scene", "quantity", "condition", "unit", "value", *INSTEAD)
 
 MEASURES: dict[str, Measure] = {**measures_of(of_scenes), **measures_of(of_presses), **measures_of(of_strokes)}
@@ -117,7 +117,12 @@ class Instead:
     @classmethod
     def of(cls, histories: Histories, coarse: Companions) -> Instead:
         """Read of histories and their companions when first asked for."""
-        return cls(*map(Measures.of, _instead(histories, coarse)))
+        own, mesh, *others = map(Measures.of, (histories, *_instead(histories, coarse)))
+
+        def find(quantity: str, scene: str) -> Mapping[str, float]:
+            return _coarser(coarse[scene], histories[scene], own.find(quantity, scene), mesh.find(quantity, scene))
+
+        return cls(Measures(find), *others)
 
     @classmethod
     def in_table(cls, table: pd.DataFrame) -> Instead:
@@ -136,6 +141,11 @@ def _number(number: Callable[[Measures], float], measures: Measures) -> float:
         return number(measures)
     except KeyError:
         return float("nan")
+
+
+def _coarser(companion: Companion, history: xr.Dataset, own: Mapping[str, float], other: Mapping[str, float]) -> dict[str, float]:
+    """A measure on a mesh with edges half as long again, of what it is on the run's own and on its companion's."""
+    return {at: companion.number(history, own[at], value) for at, value in other.items() if at in own}
 
 
 def _instead(histories: Histories, coarse: Companions) -> tuple[Histories, ...]:
@@ -160,6 +170,8 @@ def measures_table(histories: Histories, coarse: Companions, meshes: Meshes) -> 
             values = _read(measure, scene, fine, meshes)
             solved = measure.of in ("history", "stroke") and values
             found = [_read(measure, scene, runs, {}, said=False) if solved else {} for runs in others]
+            if found[0]:
+                found[0] = _coarser(coarse[scene], histories[scene], values, found[0])
             for condition, value in values.items():
                 instead = (each.get(condition, np.nan) for each in found)
                 rows.append((scene, measure.name, condition, measure.unit, value, *instead))

@@ -15,12 +15,9 @@ import xarray as xr
 from fingerpad.figures.grammar import Figure
 from fingerpad.measures.errors import MESH, PARTS, Companion, Companions, Curve, norm
 from fingerpad.measures.features import Histories, Meshes
-from fingerpad.planning.errors import REMAINS, remains
 
 FINER = 0.5
 """Edges of the finer runs over those of the scenes."""
-LEFT = remains(FINER)
-"""What a curve is wrong by over what it changes by on the finer mesh."""
 MADE_FINER = ("stroke_", "ramp40_", "ramp150_", "press10_", "press15_", "step_sub", "plate_", "ridged_stroke_")
 """How names of scenes begin that are made finer: all that figures read but presses on ridges, and outer ridges."""
 STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"
@@ -29,18 +26,20 @@ STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true e
 class Finer(Companion):
     """A finer run in a companion's place."""
 
+    EDGES = FINER
+
     def mesh_error(self, history: xr.Dataset, curve: Curve) -> float:
-        """What a curve is wrong by as it is drawn, in the measure of numbers, which tell what is left of a companion's changes.
+        """What a curve is wrong by as it is drawn.
 
         Over the skin it is drawn straight from node to node. What that leaves out the finer mesh shows in full; only what its
         nodes change by goes on to change.
         """
         (x, y), (at, fine) = curve(history), curve(self.mesh)
         there = np.interp(x, at, fine)
-        wrong = remains(FINER, curve.order) * (there - y)
+        wrong = self.remains(history, curve.order) * (there - y)
         if curve.outputs:
-            return REMAINS / LEFT * norm(x, wrong)
-        return REMAINS / LEFT * norm(at, np.interp(at, x, wrong) + fine - np.interp(at, x, there))
+            return norm(x, wrong)
+        return norm(at, np.interp(at, x, wrong) + fine - np.interp(at, x, there))
 
 
 def shown(
@@ -65,7 +64,7 @@ def shown(
         named = [column for column in _SERIES if column in stated]
         both = stated[named].fillna("").astype(str).agg(" ".join, axis=1).str.strip().to_frame("curve")
         both[STATED_MESH], both[STATED] = stated[MESH], stated[list(PARTS)].sum(axis=1, min_count=1)
-        both[TRUE] = LEFT / REMAINS * true[MESH]
+        both[TRUE] = true[MESH]
         found = both[(both[STATED_MESH] > 0) & np.isfinite(both[TRUE])].drop_duplicates()
         rows.append(found.assign(figure=spec.number))
     table = pd.concat(rows, ignore_index=True)
