@@ -10,8 +10,10 @@ import pytest
 import xarray as xr
 
 import synthetic
+from drawn import results
 from fingerpad import plan, simulate
 from fingerpad.figures import axes as axs
+from fingerpad.figures.registry import FIGURES
 from fingerpad.measures.errors import (
     PARTS,
     Companion,
@@ -190,6 +192,25 @@ def test_a_companion_one_per_cent_away_is_that_far(name, over, trace):
     if over is over_stroke:  # the other way too
         run, other = (h.assign(stroke_distance=-h["stroke_distance"]) for h in (make(name), make(name, 1.01)))
         assert curve_errors(run, Companion(other, other), over(trace)).mesh == pytest.approx(REMAINS, rel=1e-6)
+
+
+@pytest.mark.parametrize("number, low, high", [("5-1", 0, 70), ("5-22", 40, 80), ("5-23", 40, 80)])
+def test_errors_of_impulses_are_those_of_the_part_of_the_stroke_that_is_shown(number, low, high):
+    """A companion that is off before or after it does not change them; one that is off within does."""
+    histories, meshes, coarse, reference = results()
+
+    def off(first, last):
+        def changed(history):
+            x, energy = 1e3 * history["stroke_distance"], history["strain_energy_density"]
+            return history.assign(strain_energy_density=energy.where((x < first) | (x > last), 1.2 * energy))
+
+        names = ("stroke_1", "stroke_5", "stroke_10", "stroke_20", "stroke_40")
+        others = {name: changed(histories[name]) for name in names}
+        frame = FIGURES[number].frame(histories, meshes, coarse | {n: Companion(h, h) for n, h in others.items()}, reference)
+        return frame[PARTS[0]].max()
+
+    outside = off(0.5, low - 1) if low else off(high + 1, 79.5)
+    assert outside < 1e-6 and off(low + 2, high - 2) > 1
 
 
 def test_rate_curve_with_a_jump_is_compared_on_either_side_of_it():

@@ -92,8 +92,15 @@ def of_rate(column: Q, depth: float = DEEP, law: ImpulseRate = THESIS_RATE) -> Q
     return column.reading(lambda stroke: predicted_rate(stroke, depth, law)[column].to_numpy())
 
 
-def rate_errors(history: xr.Dataset, coarse: Companion | None, depth: float = DEEP, law: ImpulseRate = THESIS_RATE) -> Errors:
-    return curve_errors(history, coarse, over_stroke(of_rate(IMPULSE_RATE, depth, law).read))
+def rate_errors(
+    history: xr.Dataset,
+    coarse: Companion | None,
+    depth: float = DEEP,
+    law: ImpulseRate = THESIS_RATE,
+    way: tuple[float, ...] = (),
+) -> Errors:
+    """Of the predicted rate from one place to another of the way (mm), over all of it where none are given."""
+    return curve_errors(history, coarse, over_stroke(of_rate(IMPULSE_RATE, depth, law).read, *(1e-3 * place for place in way)))
 
 
 def law_of(data: Data, depth: float) -> ImpulseRate:
@@ -113,19 +120,20 @@ def rasters(data: Data, number: str, low: float, high: float, depth: float = DEE
     bars = stroke_histogram(rate, impulses, repetitions).assign(panel=HISTOGRAM)
     rows = pd.concat([ticks, bars], ignore_index=True)
     rows = rows[rows[DISTANCE].between(low, high)].assign(source=PREDICTED, series=TEN)
-    rows = rows.assign(**{RECEPTOR: depth * 1e6} | rate_errors(history, coarse, depth, law).columns)
+    rows = rows.assign(**{RECEPTOR: depth * 1e6} | rate_errors(history, coarse, depth, law, (low, high)).columns)
     return pd.concat([data.surface(TEN_RUN[TEN], low, high), rows], ignore_index=True)
 
 
 def frequencies(data: Data) -> pd.DataFrame:
     """Instantaneous frequency of predicted impulses of a shallow receptor, mean of 12 strokes at every velocity."""
-    parts, repetitions = [data.surface(TEN_RUN[TEN], 40, 80)], STROKES_SHOWN["5-23"]
-    at, law = np.arange(40, 80.01, 0.1), law_of(data, SHALLOW)
+    way = (40.0, 80.0)
+    parts, repetitions = [data.surface(TEN_RUN[TEN], *way)], STROKES_SHOWN["5-23"]
+    at, law = np.arange(way[0], way[1] + 0.01, 0.1), law_of(data, SHALLOW)
     for series, history, coarse in data.runs(SPEEDS):
         rate, impulses = impulses_of(history, repetitions, SHALLOW, law)
         frequency = mean_frequency(impulses, repetitions, np.interp(at, rate[DISTANCE], rate[TIME]))[FREQUENCY]
         row = {"source": PREDICTED, "panel": series, "series": series, DISTANCE: at, FREQUENCY: frequency}
-        parts.append(pd.DataFrame(row | {RECEPTOR: SHALLOW * 1e6} | rate_errors(history, coarse, SHALLOW, law).columns))
+        parts.append(pd.DataFrame(row | {RECEPTOR: SHALLOW * 1e6} | rate_errors(history, coarse, SHALLOW, law, way).columns))
     return pd.concat(parts, ignore_index=True)
 
 

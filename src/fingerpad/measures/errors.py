@@ -187,9 +187,15 @@ def over_time(trace: Trace, order: float = ORDER) -> Curve:
     return Curve(lambda history: (history["time"].values, trace(history)), order=order)
 
 
-def over_stroke(trace: Trace) -> Curve:
-    """A trace of the loaded outputs of a stroke, over its distance."""
-    return Curve(lambda history: (distance(stroke := loaded(history)), trace(stroke)))
+def over_stroke(trace: Trace, low: float = -np.inf, high: float = np.inf) -> Curve:
+    """A trace of the loaded outputs of a stroke, over its distance, from `low` to `high` (m) of it."""
+
+    def read(history: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+        x, y = distance(stroke := loaded(history)), trace(stroke)
+        shown = (x >= low) & (x <= high)
+        return x[shown], y[shown]
+
+    return Curve(read)
 
 
 def at_output(time: float, read: Callable[[xr.Dataset, int], tuple[np.ndarray, np.ndarray]], order: float = ORDER) -> Curve:
