@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 from fingerpad.dense_output import at_outputs
 from fingerpad.laws import assign
 from fingerpad.mechanics.finite_strain import FiniteStrainBody
-from fingerpad.mechanics.pressure import smoothed_pressure
+from fingerpad.mechanics.pressure import checkerboard, smoothed_pressure
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
 from fingerpad.mechanics.stepping import FOLDED, NewtonSettings, NonConvergence, QuasiStatic, Record, Skin, hard_here
@@ -49,6 +49,7 @@ _WIDTHS = 64  # of the contact, at which its error is looked up
 _NO_CONTACT = 1e-5  # m, half-width that stands for none
 _UNBALANCED = 0.03  # of the work, noted as missing energy beyond it; of a press at once the work is not known as well
 _SQUEEZED = 0.1  # det F, noted below it
+_UNEVEN = 0.15  # of the peak pressure, r.m.s. from node to node, noted beyond it
 _STIFF_IN_BULK = 200.0  # bulk over shear modulus, beyond which single precision does not tell them apart
 
 
@@ -339,7 +340,7 @@ class Simulation:
         ]
         return sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
 
-    def _doubts(self, records) -> Iterator[str]:
+    def _doubts(self, records, pressures) -> Iterator[str]:
         """What should make a person doubt the states that were found."""
         missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
         missing = np.abs(missing).max() / max(max(abs(record.work) for record in records), 1e-300)
@@ -348,12 +349,18 @@ class Simulation:
             yield f"the energy found is off the work that was done by up to {missing:.1%}: more steps or a finer mesh will tell"
         if least < _SQUEEZED and not self.body.geometrically_linear:
             yield f"an element keeps {least:.1%} of its volume at one point: a finer mesh, or a fillet, will tell"
+        uneven = max((board for each in pressures if np.isfinite(board := checkerboard(*each))), default=0.0)
+        if uneven > _UNEVEN and not self.plan.unbounded_peak:
+            yield f"pressure goes up and down from node to node, by {uneven:.0%} of its peak (r.m.s.): a finer mesh will tell"
         if self.stepper.wavered:
             yield "states near to one another may be in equilibrium, and round-off choose between them: smaller steps will tell"
 
-    def _notes(self, records):
-        """What a person should know of the states that were found, and of the contact with a measured profile."""
-        doubts, hard = list(self._doubts(records)), hard_in(self.scene)
+    def _notes(self, records, pressures):
+        """What a person should know of the states that were found, and of the contact with a measured profile.
+
+        pressures: at the ends of legs, at the nodes of the skin and their averages.
+        """
+        doubts, hard = list(self._doubts(records, pressures)), hard_in(self.scene)
         doubts += [f"or try {hard_here(hard)}"] if doubts and hard else []
         notes = [*doubts, *(note for note in self.plan.surface.notes if "expected" not in note)]
         for record in records:
@@ -450,6 +457,8 @@ class Simulation:
         for name in states[0]:
             out[name] = np.array([state[name] for state in states])
         widths = out["contact_width"]
+        ends = [k for k in range(1, count) if k + 1 == count or out["leg"][k + 1] != out["leg"][k]]
+        pressures = [(out["contact_pressure"][k], out["contact_pressure_smoothed"][k]) for k in ends]
         time_found = np.array([0.0] + [record.time for record in records])
         out, times = at_outputs(out, time_found, records, self.whole.points[chain, 0], apex)
         coordinates = {
@@ -481,7 +490,7 @@ class Simulation:
                 **self._errors(records, widths),
                 "error_covers": self.plan.covers,
                 "singular": int(self.plan.unbounded_peak),
-                "notes": self._notes(records),
+                "notes": self._notes(records, pressures),
                 "provenance": provenance(),
             },
         )

@@ -25,6 +25,19 @@ def smoothed_pressure(nodal_force, length, mirrored: bool) -> np.ndarray:
     return np.where(nodal_force > 0, smooth, 0.0)
 
 
+def checkerboard(pressure: np.ndarray, smoothed: np.ndarray) -> float:
+    """R.m.s. of nodal pressure less its 5-point average over the peak pressure, inside the contact.
+
+    Inside: from the third to the third last touching node (ns,), nodes that have been lifted off between them included. nan where
+    there are fewer than three.
+    """
+    on = np.flatnonzero(pressure > 0)
+    if len(on) < 7:
+        return np.nan
+    inside = slice(on[2], on[-3] + 1)
+    return float(np.sqrt(np.mean((pressure - smoothed)[inside] ** 2)) / pressure.max())
+
+
 def contact_edges(x, pressure, spacing, mirrored: bool = False) -> tuple[float, float]:
     """Left and right edge of the contact (m), from outermost to outermost; (nan, nan) without contact.
 

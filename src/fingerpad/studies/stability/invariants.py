@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import xarray as xr
 
+from fingerpad.mechanics.pressure import checkerboard
 from fingerpad.results import leg_ends, states_found
 from fingerpad.simulation import Simulation
 from fingerpad.studies.stability.hard_cases import Limits
@@ -32,19 +33,6 @@ class Held:
         apart = np.abs(np.array(self._found)[: len(pushed)] - pushed)[:, 1 if self._made.mesh.half else 0 :]
         most = np.abs(pushed).max(initial=0.0)
         return float(apart.max() / most) if most else np.nan
-
-
-def checkerboard(pressure: np.ndarray, smoothed: np.ndarray) -> float:
-    """R.m.s. of nodal pressure less its 5-point average over the peak pressure, inside the contact.
-
-    Inside: from the third to the third last touching node (ns,), nodes that have been lifted off between them included. nan where
-    there are fewer than three.
-    """
-    on = np.flatnonzero(pressure > 0)
-    if len(on) < 7:
-        return np.nan
-    inside = slice(on[2], on[-3] + 1)
-    return float(np.sqrt(np.mean((pressure - smoothed)[inside] ** 2)) / pressure.max())
 
 
 def mirrored(history: xr.Dataset) -> float:

@@ -46,7 +46,12 @@ unsound: it completed outside its limits and says nothing; breaks off: an error 
 :data:`SLOWEST`."""
 EFFORT = ("cuts", "factorisations", "effort")
 """Measures of what a run took."""
-NOTED = {"energy": "the energy found", "det_f": "of its volume", "solver": "states near to one another"}
+NOTED = {
+    "energy": "the energy found",
+    "det_f": "of its volume",
+    "solver": "states near to one another",
+    "checkerboard": "from node to node",
+}
 """Measure -> the words by which a run notes that it is wrong."""
 SLOWEST = 120.0
 """s of process time after which a simulation is let go."""
