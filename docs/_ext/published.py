@@ -527,12 +527,6 @@ def hard_cases_silent_ones():
 
 
 @number
-def hard_cases_silent_cured():
-    """Of those, how many are stable on the mesh that is planned for a finer preset."""
-    return _silent()["stable when relaxed"].astype(str).str.startswith("mesh: planned").sum()
-
-
-@number
 def hard_cases_rest():
     """The others in words, by how they ended."""
     said = {
