@@ -632,12 +632,12 @@ def choice_scenes():
 @number
 def worst_left_out():
     rows = table("figures/tables/planner_choices")
-    return digits(rows[rows["verdict"] == "rightly left out"].query("planned == 'off'")["share"].max())
+    return digits(rows[rows["verdict"].str.endswith("left out")].query("planned == 'off'")["share"].max())
 
 
 @number
 def wrong_choices():
-    return (~table("figures/tables/planner_choices")["verdict"].str.startswith("rightly")).sum()
+    return (table("figures/tables/planner_choices")["verdict"] == "carried for nothing").sum()
 
 
 def _peers() -> pd.DataFrame:
