@@ -293,7 +293,7 @@ class Simulation:
         """
         width, force = np.asarray(width[1:]), np.array([record.force for record in records])
         touching = np.array([np.count_nonzero(record.nodal_force) / self.share for record in records])
-        ends = [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
+        ends = _leg_ends(records)
         lost = self._lost_work(records)
         stroke = stroke_of(self.scene, self.profile.uneven) if any(record.distance for record in records) else None
         own = {k: max(self._error_at(width[k], stroke), lost, 0.5 if touching[k] < 4 else 0.0) for k in ends}
@@ -358,7 +358,7 @@ class Simulation:
     def _notes(self, records, pressures):
         """What a person should know of the states that were found, and of the contact with a measured profile.
 
-        pressures: at the ends of legs, at the nodes of the skin and their averages.
+        pressures: (ns,) Pa at the ends of legs, at the nodes of the skin and their 5-point averages.
         """
         doubts, hard = list(self._doubts(records, pressures)), hard_in(self.scene)
         doubts += [f"or try {hard_here(hard)}"] if doubts and hard else []
@@ -457,8 +457,7 @@ class Simulation:
         for name in states[0]:
             out[name] = np.array([state[name] for state in states])
         widths = out["contact_width"]
-        ends = [k for k in range(1, count) if k + 1 == count or out["leg"][k + 1] != out["leg"][k]]
-        pressures = [(out["contact_pressure"][k], out["contact_pressure_smoothed"][k]) for k in ends]
+        pressures = [(out["contact_pressure"][k + 1], out["contact_pressure_smoothed"][k + 1]) for k in _leg_ends(records)]
         time_found = np.array([0.0] + [record.time for record in records])
         out, times = at_outputs(out, time_found, records, self.whole.points[chain, 0], apex)
         coordinates = {
@@ -517,6 +516,11 @@ class Simulation:
             for name in ("peak_pressure", "contact_pressure"):
                 history[name].attrs["comment"] = "at a true edge pressure is unbounded: its largest value is the mesh's"
         return history
+
+
+def _leg_ends(records) -> list[int]:
+    """Which of the states found are the last ones of their legs."""
+    return [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
 
 
 def _apex(skin: np.ndarray) -> int:
