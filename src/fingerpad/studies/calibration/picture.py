@@ -259,19 +259,14 @@ def friction(frame: pd.DataFrame) -> Figure:
     right.fill_between(curve[COEFFICIENT], curve["lowest (mm)"], curve["highest (mm)"], color=INK, alpha=0.13, lw=0)
     right.plot(curve[COEFFICIENT], curve[LATERAL], "o-", color=INK, ms=3, lw=1.2)
     right.plot(estimate[COEFFICIENT], estimate[LATERAL], "*", color=CATEGORIES[1], ms=8, zorder=4)
-    for marker, row in zip("<>^v", panels.get("variations", frame.iloc[:0]).to_dict("records"), strict=False):
+    variations = panels.get("variations", frame.iloc[:0])[:4]
+    low, high = curve["lowest (mm)"].min(), curve["highest (mm)"].max()
+    on_white = {"fc": "white", "ec": "none", "alpha": 0.7, "pad": 0.6}
+    names = spread(variations[LATERAL], 0.08 * (high - low), low, high) if len(variations) else ()
+    for marker, row, place in zip("<>^v", variations.to_dict("records"), names, strict=False):
+        right.plot([row[COEFFICIENT], 0.5], [row[LATERAL], place], color=GREY, lw=0.5, zorder=1)
         right.plot(row[COEFFICIENT], row[LATERAL], marker, color=CATEGORIES[3], ms=4, mfc="white", ls="none")
-        above = row[LATERAL] > estimate[LATERAL]
-        right.annotate(
-            textwrap.fill(row["series"], 20),
-            (row[COEFFICIENT], row[LATERAL]),
-            xytext=(6 if above else -6, 0),
-            textcoords="offset points",
-            ha="left" if above else "right",
-            va="center",
-            color=INK,
-            fontsize=6.5,
-        )
+        right.text(0.51, place, row["series"], va="center", color=INK, fontsize=6.5, bbox=on_white)
     right.margins(y=0.1)
     right.set(ylabel="displacement over the waves (mm)", title="mean and range; open: one thing changed")
     right.tick_params(labelbottom=False)
