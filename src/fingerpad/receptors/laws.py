@@ -71,8 +71,9 @@ def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np
     """
     s = np.asarray(x, float) - np.asarray(reference, float)[..., None]
     far = np.abs(s)
-    once = np.sign(s) * -r * np.expm1(-far / r)  # integral of the kernel, and the integral of that
-    twice = r * far + r**2 * np.expm1(-far / r)
+    fallen = r * np.expm1(-far / r)
+    once = -np.sign(s) * fallen  # integral of the kernel, and the integral of that
+    twice = r * (far + fallen)
     slope = np.diff(twice, axis=-1) / np.diff(s, axis=-1)
     return np.diff(np.concatenate([once[..., :1], slope, once[..., -1:]], axis=-1), axis=-1)
 
@@ -94,7 +95,10 @@ class SpatialSum:
 
     def weighted_pressure(self, x, pressure, reference=0.0) -> np.ndarray:
         """The integral (...), Pa m. x, pressure: (..., n) m, Pa. reference: (...) m, where the receptor is, shift included."""
-        return np.einsum("...n,...n->...", kernel_weights(x, reference, self.r), np.asarray(pressure, float))
+        x, pressure = np.asarray(x, float), np.asarray(pressure, float)
+        on = np.flatnonzero(np.any(pressure != 0, axis=tuple(range(pressure.ndim - 1))))
+        touched = slice(max(on[0] - 1, 0), on[-1] + 2) if len(on) else slice(0, 2)  # weights beyond it meet no pressure
+        return np.einsum("...n,...n->...", kernel_weights(x[..., touched], reference, self.r), pressure[..., touched])
 
     def strain_energy(self, x, pressure, indentation=0.0, reference=0.0) -> np.ndarray:
         """Strain energy density (...), Pa.
