@@ -378,7 +378,7 @@ def _write_netcdf(history: Arrays, path: Path) -> None:
             text = each.values.dtype.kind in "UO"
             packed = "zlib" if each.values.ndim > 1 and not text else None
             fill = np.nan if each.values.dtype.kind == "f" else None
-            made = file.createVariable(name, str if text else each.values.dtype, each.dims, packed, 4, fill_value=fill)
+            made = file.createVariable(name, str if text else each.values.dtype, each.dims, packed, complevel=4, fill_value=fill)
             made.setncatts(each.attrs)
             if name in history.variables:  # the convention of the CF metadata, by which xarray tells coordinates
                 belong = sorted(other for other, dims in beside.items() if dims <= set(each.dims))

@@ -8,7 +8,7 @@ scatter of samples would be far too narrow. They come from leaving out one group
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,13 @@ class SkinSample:
     indentation: np.ndarray
     energy: np.ndarray
     reference: np.ndarray | float = 0.0
+    _weighted: dict[float, np.ndarray] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    def weighted(self, r: float) -> np.ndarray:
+        """Integral (time) Pa m of Eq 4-4 with a spatial constant r (m); kept, for fits that leave groups out ask for it again."""
+        if r not in self._weighted:
+            self._weighted[r] = SpatialSum(r, 0.0, 1.0).weighted_pressure(self.x, self.pressure, self.reference)
+        return self._weighted[r]
 
     def by(self, law: SpatialSum, shift: np.ndarray | float = 0.0) -> np.ndarray:
         """Strain energy (time) Pa by Eq 4-4, of a receptor that is a shift (m) to the side."""
@@ -51,10 +58,9 @@ def spatial_sum(samples: Sequence[SkinSample], with_depth: bool = True, bounds: 
     data = np.concatenate([sample.energy for sample in samples])
 
     def at(log_r: float) -> tuple[np.ndarray, np.ndarray]:
-        law = SpatialSum(float(np.exp(log_r)), 0.0, 1.0)
         columns = []
         for sample in samples:
-            weighted = law.weighted_pressure(sample.x, sample.pressure, sample.reference)
+            weighted = sample.weighted(float(np.exp(log_r)))
             columns.append(np.column_stack([weighted * sample.indentation, weighted] if with_depth else [weighted]))
         terms = np.vstack(columns)
         return terms, linear(terms, data)
