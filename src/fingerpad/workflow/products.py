@@ -474,7 +474,8 @@ class Products:
     def _study_pictures(self, name: str, names: list[str], data: list[str], module: str) -> Job:
         made = {"pictures": self.pictures(names, f"{name}_")}
         told = {"study": [module]}
-        return Job("pictures", {"data": data}, made, told, f"{name}_pictures", (module,), priority=1)  # several at once, none may be last
+        # several pictures by one job, which had better not be the last
+        return Job("pictures", {"data": data}, made, told, f"{name}_pictures", (module,), priority=1)
 
     def ridges(self) -> Iterator[Job]:
         """The study of ridges, if the configuration varies their height."""
