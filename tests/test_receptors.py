@@ -62,6 +62,16 @@ def test_a_place_more_or_less_does_not_change_the_sum(places, between, r):
     assert fine == pytest.approx(coarse, rel=1e-6)
 
 
+@pytest.mark.parametrize("touched", [slice(0, 0), slice(0, 1), slice(4, 5), slice(3, 9), slice(16, 17), slice(0, 17)])
+def test_pressure_is_weighed_where_there_is_some_as_it_is_on_all_of_the_skin(touched):
+    random = np.random.default_rng(3)
+    x, reference = np.sort(random.uniform(-2e-3, 2e-3, (5, 17))), random.uniform(-1e-3, 1e-3, 5)
+    pressure = np.zeros((5, 17))
+    pressure[:, touched] = random.uniform(0, 1e4, pressure[:, touched].shape)
+    whole = np.sum(kernel_weights(x, reference, LAW.r) * pressure, axis=1)
+    assert LAW.weighted_pressure(x, pressure, reference) == pytest.approx(whole, rel=1e-12, abs=0)
+
+
 def pressure_field(seed, frames=25, nodes=90):
     """Places, pressures and indentations of a contact that grows, its middle wandering."""
     random = np.random.default_rng(seed)
