@@ -234,7 +234,7 @@ def test_less_coarse_a_companion_more_is_left_of_what_a_curve_changes_by(nodes, 
     change /= norm(run["time"].values, run["value"].values)
     found, first = curve_errors(run, pair, value).mesh, (lambda history: float(history["value"][0]))
     if nodes == 10000:
-        assert found == np.inf, "as fine: it tells nothing"
+        assert np.isnan(found), "as fine: it tells nothing"
         return
     left = 1 / ((10000 / nodes) ** (order / 2) - 1)
     assert found == pytest.approx(left * change)

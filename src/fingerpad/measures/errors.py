@@ -63,12 +63,12 @@ class Companion:
         return self.mesh if self.mesh.sizes["time"] == self.both.sizes["time"] else thinned(self.mesh)
 
     def apart(self, history: xr.Dataset) -> xr.Dataset | None:
-        """The one with the run's own steps; None where it is solved on the run's very mesh, of whose error it tells nothing."""
-        own, other = _planned(history), _planned(self.mesh)
-        return None if _external(own) and own["discretisation"]["element"] == other["discretisation"]["element"] else self.mesh
+        """The one with the run's own steps; None where its mesh has as many nodes as the run's: it tells nothing of its error."""
+        own, other = (_planned(each).get("discretisation", {}).get("nodes") for each in (history, self.mesh))
+        return None if own is not None and own == other else self.mesh
 
     def remains(self, history: xr.Dataset, order: float = ORDER) -> float:
-        """What a curve is wrong by over what it changes by on the other mesh; infinite where that is as fine.
+        """What a curve is wrong by over what it changes by on the other mesh, which is :meth:`apart`.
 
         Its edges are taken to be longer as the root of its nodes is smaller (representative size; Celik et al. 2008, Eq 2).
         """
@@ -76,7 +76,7 @@ class Companion:
         if not own or _external(own):
             return remains(self.EDGES, order)
         nodes, others = (each["discretisation"]["nodes"] for each in (own, other))
-        return remains((nodes / others) ** 0.5, order) if nodes != others else np.inf
+        return remains((nodes / others) ** 0.5, order)
 
     def mesh_error(self, history: xr.Dataset, curve: Curve) -> float:
         """What a curve is wrong by because of the mesh, as a norm in the unit of its values; NaN where that is not known."""
