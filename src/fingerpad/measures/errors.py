@@ -68,7 +68,7 @@ class Companion:
         return None if own is not None and own == other else self.mesh
 
     def remains(self, history: xr.Dataset, order: float = ORDER) -> float:
-        """What a curve is wrong by over what it changes by on the other mesh, which is :meth:`apart`.
+        """What a curve is wrong by over what it changes by on the other mesh, if that is :meth:`apart`.
 
         Its edges are taken to be longer as the root of its nodes is smaller (representative size; Celik et al. 2008, Eq 2).
         """

@@ -19,7 +19,7 @@ from fingerpad.measures.features import Histories, Meshes
 FINER = 0.5
 """Edges of the finer runs over those of the scenes."""
 MADE_FINER = ("stroke_", "ramp40_", "ramp150_", "press10_", "press15_", "step_sub", "plate_", "ridged_stroke_", "ridged_40_")
-"""How names of scenes begin that are made finer: all that figures read but those of chapter 3 and outer ridges."""
+"""How names of scenes begin that are made finer: all that figures read but chapter 3's and the homogeneous pad."""
 STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"
 
 
