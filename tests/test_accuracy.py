@@ -16,7 +16,7 @@ from fingerpad.scenes.scene import Cylinder, Flat, Slide
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.pad import MeshSize, element_edges, skin_chain
 from fingerpad.specimen.quality import check_orientation
-from fingerpad.studies.accuracy import belief, drawn
+from fingerpad.studies.accuracy import belief, drawn, ridges
 from fingerpad.studies.accuracy import errors as found
 from fingerpad.studies.accuracy import run as study
 from fingerpad.studies.accuracy.convergence import fitted_order, limit, observed_order
@@ -201,7 +201,7 @@ def test_growth_is_the_exponent():
     assert found.growth(nodes, np.r_[9.0, 2e-4 * nodes[1:] ** 1.2]) == pytest.approx((2e-4, 1.2))
 
 
-@pytest.mark.parametrize("name", sorted(set(STUDIES) - {"accuracy_belief", "accuracy_drawn", "accuracy_shown"}))
+@pytest.mark.parametrize("name", ["accuracy_error", "accuracy_error_stroke", "accuracy_growth"])
 def test_figures_are_drawn_from_the_table_read_back(table, name, tmp_path):
     table.to_csv(tmp_path / "t.csv", index=False)
     frame = found.FRAMES[name](pd.read_csv(tmp_path / "t.csv", dtype={"scene": str}))
@@ -318,6 +318,33 @@ def test_committed_beliefs_cover_the_truth():
     rows = pd.read_csv(TABLES / "accuracy_belief.csv", dtype={"accuracy": str})
     assert set(rows["scene"]) == set(belief.OUTSIDE) and belief.covered(rows) >= 0.9
     assert STUDIES["accuracy_belief"](rows).axes
+
+
+def test_committed_errors_beside_ridges_are_those_expected():
+    """Of nineteen places in twenty in every case, of all of them within twice as much."""
+    rows = pd.read_csv(TABLES / "accuracy_ridges.csv")
+    expected = [
+        100 * ridges.RULES.ridge_error * height / pitch * elements**-ridges.RULES.ridge_order
+        for height, pitch, elements in rows[["height (mm)", "pitch (mm)", "elements from ridge to ridge"]].to_numpy()
+    ]
+    np.testing.assert_allclose(rows["expected error (%)"], expected, rtol=1e-4)
+    assert (rows["error of 19 places in 20 (%)"] <= expected).all()
+    assert (rows["largest error (%)"] <= 2 * rows["expected error (%)"]).all()
+    own = rows[(rows["height (mm)"] == 0.15) & (rows["pitch (mm)"] == 0.48)]
+    for _, part in own.groupby("surface"):
+        assert part["error of 19 places in 20 (%)"].is_monotonic_decreasing and len(part) == len(ridges.ELEMENTS)
+    assert len(STUDIES["accuracy_ridges"](rows).axes) == rows["surface"].nunique()
+
+
+def test_elements_among_ridges_are_what_changes_strain_energy_beside_them():
+    """Eight or eighteen of them from ridge to ridge: as far from the truth as the planner expects, and the press is the same."""
+    scene = ridges.ridged(load_scene(SCENES / "ramp40_k210.yaml"), 0.15, 0.48)
+    few, more, truth = (ridges.pressed(scene, elements) for elements in (8, 18, 30))
+    on = ridges.beside(scene)
+    assert 0.5 < on.mean() < 1 and truth["contact_width"].values[-1] == pytest.approx(few["contact_width"].values[-1], rel=5e-3)
+    energy = [run["strain_energy_density"].values[-1][on] for run in (few, more, truth)]
+    off = [np.percentile(np.abs(each / energy[-1] - 1), 95) for each in energy[:-1]]
+    assert off[1] < off[0] / 2 and off[0] < ridges.expected(scene, 8) and off[1] < ridges.expected(scene, 18)
 
 
 def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Dataset:

@@ -1,6 +1,7 @@
 """Ridges and the stratum corneum: where they lie, how they are meshed, and that none at all costs and changes nothing."""
 
 import hashlib
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -419,7 +420,7 @@ def test_plan_says_why_and_how_finely():
     chosen = plan(scene({"ridges": "inner"}, accuracy="thesis"))
     effect = chosen.effects["ridges"]
     assert effect.on and "0.48 mm apart, 0.15 mm high" in effect.why
-    assert "10.7 elements from ridge to ridge, 4 rows" in effect.why
+    assert re.search(r"10\.\d elements from ridge to ridge, 22\.\d in the middle, 4 rows", effect.why)
     assert chosen.effects["symmetry"].on
     mesh = build_pad_mesh(Specimen().outline, chosen.mesh_size, Specimen(ridges="inner").ridges)
     assert chosen.nodes == len(mesh.points) // 2 + 1
@@ -430,7 +431,7 @@ def test_plan_says_why_and_how_finely():
 def test_ridges_change_nothing_else_of_the_plan():
     plain, ridged = (plan(scene({"ridges": each}, accuracy="thesis")) for each in ("none", "inner"))
     assert not plain.effects["ridges"].on and plain.effects["ridges"].why == "the specimen has none"
-    assert ridged.mesh_size == plain.mesh_size and ridged.contact_edge == plain.contact_edge
+    assert replace(ridged.mesh_size, focus=()) == plain.mesh_size and ridged.contact_edge == plain.contact_edge
     assert {name: e for name, e in ridged.effects.items() if name != "ridges"} == {
         name: e for name, e in plain.effects.items() if name != "ridges"
     }

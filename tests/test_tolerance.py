@@ -102,6 +102,31 @@ def test_ridged_pads_are_refined_under_the_contact():
         np.testing.assert_allclose(last[1][name], last[0][name], rtol=0.02, err_msg=name)
 
 
+def test_ridges_are_refined_where_receptors_are_beside_them():
+    """The wider the contact the less it refines the mesh, and strain energies beside ridges do not get better by that."""
+    outputs = {"receptors": {"depths": ["915 um"], "offsets": ["-46 um", "46 um"]}}
+    ramp, ridged = [{"press_to_force": "20 gf", "rate": "40 gf/s"}], {"ridges": "inner"}
+    plans = {a: plan(scene(FLAT, ramp, accuracy=a, specimen=ridged, outputs=outputs)) for a in ("draft", "thesis", "fine", 0.01)}
+    for asked, error in (("draft", 0.06), ("thesis", 0.02), ("fine", 0.007), (0.01, 0.01)):
+        assert plans[asked].least_error == pytest.approx(error, rel=1e-6) and plans[asked].missed() is None
+    middle = [min(edge for x, edge in plans[asked].mesh_size.focus if x == 0) for asked in plans]
+    assert middle[0] > middle[1] > middle[3] > middle[2] and plans["thesis"].contact_edge == pytest.approx(134.4e-6)
+    assert plans["thesis"].nodes < 1.2 * plan(scene(FLAT, ramp, accuracy={"skin_edge": "134.4 um"}, specimen=ridged)).nodes
+    far = outputs | {"receptors": {"depths": ["500 um"], "offsets": ["0 um"]}}
+    away = plan(scene(FLAT, ramp, accuracy="thesis", specimen=ridged, outputs=far, effects={"ridges": "on"}))
+    assert away.least_error == 0 and not away.mesh_size.focus
+    by_hand = plan(scene(FLAT, ramp, accuracy={"skin_edge": "134.4 um"}, specimen=ridged, outputs=outputs))
+    assert by_hand.least_error > 0.05 and not by_hand.mesh_size.focus and by_hand.error_from.startswith("elements among ridges")
+
+
+def test_steps_by_hand_leave_the_mesh_to_the_plan():
+    """As of `thesis`, of presses and of strokes."""
+    press, stroke = [{"press_to_force": "20 gf"}], [{"press_to_force": "20 gf"}, {"slide": "4 mm", "speed": "10 mm/s"}]
+    for motion, stimulus in ((press, cylinder(1260)), (stroke, FLAT)):
+        named, by_hand = (plan(scene(stimulus, motion, accuracy=a)) for a in ("thesis", {"steps": 40}))
+        assert named.mesh_size == by_hand.mesh_size and named.mesh_size.focus
+
+
 # -- true edges ---------------------------------------------------------------------------------------------------------
 
 

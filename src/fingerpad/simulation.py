@@ -329,7 +329,7 @@ class Simulation:
             rules=RULES,
             bumpy=self.scene.stimulus.irregular,
         )
-        return max(found, plan.edge_error) + plan.small_strain_error + plan.surface.error
+        return max(found, plan.least_error) + plan.small_strain_error + plan.surface.error
 
     def _lost_work(self, records) -> float:
         missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]

@@ -17,12 +17,13 @@ from fingerpad.planning.schedule import leg_durations
 from fingerpad.scenes.scene import Discretisation, Scene
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import apex_edge
-from fingerpad.specimen.pad import MeshSize, PadMesh
+from fingerpad.specimen.pad import MeshSize, PadMesh, all_over
 from fingerpad.stimuli.profile import Profile
 
 _FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
 _NEAR = 0.15  # of the least error there is, by which a tolerance that cannot be met is missed further for less work
 _MOST_COLUMNS = 2000  # of refined elements to either side
+_WIDER = 1.2  # than a contact is estimated to be, the mesh is as fine as it is there
 _STAGE = 2.0**0.25  # by how much finer a mesh is in a contact, if at all
 
 
@@ -37,12 +38,11 @@ def preset_for(
     if scene.tolerance is not None:
         return _cheapest(scene, min(scene.tolerance, tolerance or 1.0), contact, rules, stroke), by_hand
     thesis = rules.presets["thesis"]
-    if by_hand is not None:
-        edge = accuracy.skin_edge or thesis.skin_edge
-        scale = edge / thesis.skin_edge
-        error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
-        return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), by_hand
-    raise AssertionError(accuracy)
+    if edges_chosen(scene):
+        return thesis, by_hand
+    edge = accuracy.skin_edge
+    error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
+    return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * edge / thesis.skin_edge, tolerance=error), by_hand
 
 
 def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules, stroke: Stroke | None) -> Preset:
@@ -53,10 +53,9 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     thesis, known = rules.presets["thesis"], rules.errors
     timed = bool(scene.specimen.prony) and any(duration is not None for duration in leg_durations(scene))
     moves, half_width = moves_along(scene), earliest_half_width(scene, contact, timed)
-    ridges = scene.specimen.ridges
-    still = not moves and scene.specimen.mesh is None and (ridges is None or ridges.outer is None)
+    still = not moves and scene.specimen.mesh is None and _only_inner(scene)
     bumpy = scene.stimulus.irregular
-    outer = 3 if ridges is not None and ridges.outer is not None else 1  # columns of outer ridges
+    outer = 1 if _only_inner(scene) else 3  # columns of outer ridges
     found = []
     least_steps = rules.least_steps_stroked if moves else rules.least_steps
     for rows, steps in product(known.mesh, (n for n in known.time if n >= least_steps)):
@@ -149,9 +148,9 @@ def mesh_size_for(
     offsets = max((abs(x) for x in scene.outputs.receptors.offsets), default=0.0)
     fine = max(rules.fine_half_width, 1.3 * half_width, half_width + wander, offsets)
     focus, radial = (), None
-    edges = max(preset.edges if scene.specimen.ridges is None else 0.0, rules.edges_per_half_width)
+    edges = max(preset.edges if _only_inner(scene) else 0.0, rules.edges_per_half_width)
     if preset.focus is not None:
-        focus, radial = _all_over(min(half_width, contact_reach(scene, contact)), preset.focus)
+        focus, radial = all_over(_WIDER * min(half_width, contact_reach(scene, contact)), preset.focus), preset.focus
     if profile.edges:
         edge = _edge_size(profile, preset, None if scene.tolerance is None else preset.tolerance, rounding, rules)
         places = {abs(x) for x in profile.edges}
@@ -167,12 +166,12 @@ def mesh_size_for(
         and (edge := _staged(max(contact.half_width / edges, rules.least_edge), np.floor)) <= preset.skin_edge / _STAGE
     ):
         # its edge passes from node to node, and the curves of a narrow contact show how far these are apart: along the skin alone
-        focus, _ = _all_over(_staged(contact_reach(scene, contact), np.ceil), edge)
+        focus = all_over(_WIDER * _staged(contact_reach(scene, contact), np.ceil), edge)
         rows = max(preset.rows, rules.rows_per_half_width)
         radial = max(edge, _staged(contact.half_width / rows, np.floor))
     elif _stroked(scene) and scene.specimen.ridges is None:
         # what is read of a stroke is read there: centre pressure and what it does to receptors
-        focus, _ = _all_over(max(rules.stroked_middle, offsets), rules.stroked_share * preset.skin_edge)
+        focus = all_over(_WIDER * max(rules.stroked_middle, offsets), rules.stroked_share * preset.skin_edge)
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
@@ -189,8 +188,8 @@ def _growth(scene: Scene, preset: Preset, rules: Rules) -> float:
 
 
 def _stroked(scene: Scene) -> bool:
-    """Whether a preset is asked for of a contact that moves."""
-    return isinstance(scene.accuracy, str) and moves_along(scene)
+    """Whether a contact that moves has the edges of a preset."""
+    return edges_chosen(scene) and scene.tolerance is None and moves_along(scene)
 
 
 def _staged(length: float, rounded: Callable[[float], float]) -> float:
@@ -198,16 +197,19 @@ def _staged(length: float, rounded: Callable[[float], float]) -> float:
     return float(2.0 ** (rounded(4 * np.log2(length)) / 4))
 
 
-def _all_over(half_width: float, edge: float) -> tuple[tuple[tuple[float, float], ...], float]:
-    """Places (m) with that ``edge`` (m) all over a contact, somewhat wider than it is estimated; and the edge below it."""
-    reach = 1.2 * half_width
-    places = np.linspace(0.0, reach, max(2, round(reach / edge / 2) + 1))
-    return tuple((float(x), edge) for x in places), edge
-
-
 def _refined_at_apex(scene: Scene) -> bool:
     """Whether a contact narrower than an edge is refined for: not where edges are given by hand or the contact moves."""
-    return not isinstance(scene.accuracy, Discretisation) and not moves_along(scene)
+    return edges_chosen(scene) and not moves_along(scene)
+
+
+def edges_chosen(scene: Scene) -> bool:
+    """Whether edges are not given by hand."""
+    return getattr(scene.accuracy, "skin_edge", None) is None
+
+
+def _only_inner(scene: Scene) -> bool:
+    """Whether edges along the skin are those that are asked for: outer ridges have a third of them."""
+    return scene.specimen.ridges is None or scene.specimen.ridges.outer is None
 
 
 def _edge_size(profile: Profile, preset: Preset, asked: float | None, rounding: float, rules: Rules) -> float:

@@ -29,6 +29,7 @@ from fingerpad.planning.contact import (
 )
 from fingerpad.planning.discretisation import (
     coarseness,
+    edges_chosen,
     edges_error,
     element_for,
     mesh_size_for,
@@ -72,11 +73,12 @@ class Plan:
         slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
         nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
         contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
-        part of it that small strain is to blame for; edge_error: at least this because of the profile's edges. error_from: what
-        most of it comes from. asked_error: the tolerance, None where none is asked for; once: whether it is tried for once only.
-        unbounded_peak: whether the profile has a true edge, where pressure has no bound and a peak is the mesh's. specimen:
-        sentences on what is touched, and what of it the scene left out. surface: what the mesh makes of a measured profile.
-        stride: so many steps are made one. strokes: does the pad move along the surface, so that errors are of a way?
+        part of it that small strain is to blame for; least_error: at least this because of the profile's edges or of
+        ridges. error_from: what most of it comes from. asked_error: the tolerance, None where none is asked for; once: whether it
+        is tried for once only. unbounded_peak: whether the profile has a true edge, where pressure has no bound and a peak is the
+        mesh's. specimen: sentences on what is touched, and what of it the scene left out. surface: what the mesh makes of a
+        measured profile. stride: so many steps are made one. strokes: does the pad move along the surface, so that errors are of
+        a way?
     """
 
     effects: dict[str, Effect]
@@ -95,7 +97,7 @@ class Plan:
     estimated_error: float
     predicted_cost_s: float
     small_strain_error: float = 0.0
-    edge_error: float = 0.0
+    least_error: float = 0.0
     error_from: str = ""
     asked_error: float | None = None
     once: bool = False
@@ -189,7 +191,7 @@ class Plan:
             "small_strain_error": self.small_strain_error,
             "specimen": list(self.specimen),
             "surface_SI": asdict(self.surface),
-            "edge_error": self.edge_error,
+            "least_error": self.least_error,
             "error_from": self.error_from,
             "error_covers": self.covers,
             "asked_error": self.asked_error,
@@ -210,9 +212,9 @@ class Plan:
             {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
             ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
             data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
-            data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["edge_error"], data["error_from"],
-            data["asked_error"], data["once"], data["unbounded_peak"], tuple(data["specimen"]), Surface(**data["surface_SI"]),
-            data["stride"], data.get("strokes", False), known.get("outputs", known["steps"]),
+            data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["least_error"],
+            data["error_from"], data["asked_error"], data["once"], data["unbounded_peak"], tuple(data["specimen"]),
+            Surface(**data["surface_SI"]), data["stride"], data.get("strokes", False), known.get("outputs", known["steps"]),
         )  # fmt: skip
 
     def write(self, path: str | Path) -> None:
@@ -280,16 +282,19 @@ def plan(
             return max(found, edges_error(profile, edge, rounding, rules)[0])
 
         external, raised = raised_for(by_hand, external, tolerance, on_mesh)
-    element = element_for(by_hand, external)
+    element, at_ridges = element_for(by_hand, external), 0.0
     if external is None:
         # on its way over a surface the contact is also flat
         widest = worst_contact(scene, pad, profile, 0.0) if moves and profile.uneven else contact
         wander = wander_of(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
         size = mesh_size_for(scene, preset, profile, contact, widest.half_width, wander, rounding, rules)
-        check_size(scene, size, ridges, rules)
-        nodes, smallest = counted(scene.specimen, size, ridges)
         # a contact that moves leaves the middle, where a stroked pad is finer
         edge = size.skin_edge if moves else min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
+        at_focus = min([edge, *(each for _, each in size.focus)])
+        if ridges is not None:
+            size, at_ridges = ridge_effect.meshed(scene, size, tolerance if edges_chosen(scene) else None, rules)
+        check_size(scene, size, ridges, rules)
+        nodes, smallest = counted(scene.specimen, size, ridges)
         if ridges is not None:
             layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
             effects["ridges"], edge = ridge_effect.resolved(effects["ridges"], layered, edge)
@@ -302,25 +307,26 @@ def plan(
     may_change = rules.profile_share * tolerance
     surface = surface_of(measured, edge, way_of(scene), pad, partial(worst_contact, scene, pad, profile), may_change)
     around = None if size is None else size.skin_edge
-    at_edge = edge if size is None else min([edge, *(each for _, each in size.focus)])
+    at_edge = edge if size is None else min(edge, at_focus)
     if size is not None and profile.edge_radius and scene.tolerance is None:
         # presets are fine beside the face, not where it ends and the pressure is largest
         at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
     at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
     in_contact = estimated_error(edge, narrowest, time, stroke, around, rules=rules, bumpy=scene.stimulus.irregular)
-    mesh = surface.error + max(in_contact, at_edges)
+    mesh = surface.error + max(in_contact, at_edges, at_ridges)
     linear = 0.0 if effects["finite_strain"].on else finite_strain.small_strain_error(case)
     if linear and scene.tolerance is not None and "finite_strain" not in scene.effects and linear + mesh > scene.tolerance:
         effects["finite_strain"], linear = finite_strain.beside_mesh(case, mesh), 0.0
     sources = {
         f"edges of {micrometres(edge)} um in a contact of {micrometres(narrowest)} um to either side": in_contact,
         edges_said: at_edges,
+        "elements among ridges that receptors are beside": at_ridges,
         "small strain": linear,
         "what the mesh cannot feel of the profile": surface.error,
     }
     return Plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
-        linear + mesh, _cost(nodes, steps, effects, rules), linear, at_edges,
+        linear + mesh, _cost(nodes, steps, effects, rules), linear, max(at_edges, at_ridges),
         max(sources, key=sources.get), scene.tolerance, scene.once, peak_is_unbounded(profile, at_edge, rounding, rules),
         (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface, strokes=moves, outputs=outputs,
     )  # fmt: skip

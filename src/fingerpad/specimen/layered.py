@@ -67,6 +67,11 @@ def ridge_column(size: MeshSize, ridged: RidgedPad) -> float:
     return min(size.skin_edge, 3.0 * ridged.wave / PER_PITCH)
 
 
+def apex_column(outline: OutlineLike, size: MeshSize, ridges: RidgesLike) -> float:
+    """Edge (m) along the skin of the columns at the apex from which the ridges' are made: these are a third as wide."""
+    return min([ridge_column(size, RidgedPad(outline, ridges)), *(edge for x, edge in size.focus if x == 0)])
+
+
 def skin_edge(outline: OutlineLike, size: MeshSize, ridges: RidgesLike, edge: float) -> float:
     """Edge (m) along the skin under the apex that would be `edge` in the plain mesh."""
     edge = min(edge, ridge_column(size, RidgedPad(outline, ridges)))

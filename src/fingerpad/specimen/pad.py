@@ -21,6 +21,11 @@ class MeshError(ValueError):
     """A mesh or mesh size cannot be used; the message is one line."""
 
 
+def all_over(reach: float, edge: float) -> tuple[tuple[float, float], ...]:
+    """A mesh size's ``focus`` with that ``edge`` (m) from the apex to so far (m) to either side of it."""
+    return tuple((float(x), edge) for x in np.linspace(0.0, reach, max(2, round(reach / edge / 2) + 1)))
+
+
 @dataclass(frozen=True)
 class MeshSize:
     """How fine the built mesh shall be; all lengths in m.

@@ -42,6 +42,11 @@ def mean_shape(shape: str, limiting: float = 0.0) -> float:
     return _MEAN[shape] * (0.5 * (1.0 + limiting) if limiting else 1.0)
 
 
+def wave_of(inner: Any) -> float:
+    """Distance (m) from one inner ridge to the next, limiting ones counted."""
+    return inner.pitch / 2 if inner.limiting else inner.pitch
+
+
 class RidgedPad:
     """Depths of a ridged pad below its smooth outline.
 
@@ -64,7 +69,7 @@ class RidgedPad:
         self.inner, self.outer, self.half_width = ridges.inner, ridges.outer, ridges.half_width
         inner = self.inner
         self.pitch, self.corneum = inner.pitch, corneum
-        self.wave = inner.pitch / 2 if inner.limiting else inner.pitch
+        self.wave = wave_of(inner)
         self.extent = self.half_width + self.pitch
         if inner.phase in ("tip", "valley"):
             self.tip = 0.0 if inner.phase == "tip" else 0.5 * inner.pitch

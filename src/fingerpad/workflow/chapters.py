@@ -37,9 +37,9 @@ class Figure:
 
 @cache
 def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
-    """What is on offer: `figures` by number, and the studies' `FAMILY`, `EDGED`, `SWEEPS`, `MADE_FINER`, `OUTSIDE`, `CLASSES`
-    (accuracy), `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations), `VIEWS`
-    with scenes.
+    """What is on offer: `figures` by number, and the studies' `FAMILY`, `EDGED`, `RIDGED`, `SWEEPS`, `MADE_FINER`, `OUTSIDE`,
+    `CLASSES` (accuracy), `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations),
+    `VIEWS` with scenes.
 
     Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
     """
@@ -63,6 +63,7 @@ def _read() -> dict[str, Any]:
     from fingerpad.figures.registry import CHAPTERS
     from fingerpad.studies.accuracy.belief import OUTSIDE
     from fingerpad.studies.accuracy.drawn import CLASSES
+    from fingerpad.studies.accuracy.ridges import SURFACES
     from fingerpad.studies.accuracy.run import EDGED, FAMILY, sweeps
     from fingerpad.studies.accuracy.shown import MADE_FINER
     from fingerpad.studies.accuracy.strokes import STROKED_OVER
@@ -90,6 +91,7 @@ def _read() -> dict[str, Any]:
         "figures": figures,
         "FAMILY": FAMILY,
         "EDGED": EDGED,
+        "RIDGED": list(SURFACES),
         "SWEEPS": list(sweeps()),
         "MADE_FINER": list(MADE_FINER),
     } | offers

@@ -513,6 +513,9 @@ class Products:
         edged = offered()["EDGED"].values()
         told = {"scenes": [self.scene(scene) for scene in edged], "written": self._written(*edged)}
         yield Job("accuracy_edges", self._read(*edged), {"table": self.tables(["accuracy_edges"])}, told, **long)
+        pressed = [family[surface] for surface in offered()["RIDGED"]]
+        told = {"scenes": [self.scene(scene) for scene in pressed], "written": self._written(*pressed)}
+        yield Job("accuracy_ridges", self._read(*pressed), {"table": self.tables(["accuracy_ridges"])}, told, **long)
         rows = [self.result(f"accuracy/strokes/{over}.csv") for over in offered()["STROKED_OVER"]]
         for over, part in zip(offered()["STROKED_OVER"], rows, strict=True):
             yield Job(run := "accuracy_strokes", self._read(base), {"rows": [part]}, {"over": [over]}, f"{run}_{over}", **long)
@@ -532,6 +535,7 @@ class Products:
             ("accuracy_pictures", "accuracy", ("error", "error_stroke", "growth")),
             ("accuracy_belief_picture", "accuracy_belief", ("belief",)),
             ("accuracy_drawn_picture", "accuracy_drawn", ("drawn",)),
+            ("accuracy_ridges_picture", "accuracy_ridges", ("ridges",)),
             ("accuracy_shown_picture", "accuracy_shown", ("shown",)),
         ):
             read, made = {"table": self.tables([table])}, {"pictures": self.pictures(pictures, "accuracy_")}

@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown, rule
+
+if TYPE_CHECKING:
+    from fingerpad.scenes.scene import Scene
+    from fingerpad.specimen.pad import MeshSize
+
+
+_ROUND_OFF = 1e-12
 
 
 @dataclass(frozen=True)
@@ -19,6 +29,15 @@ class RidgeRules:
         11.0, "ridges: always on where the epidermis is stiffer than this times the dermis",
         "the thesis's moduli, 10; not studied beyond",
     )  # fmt: skip
+    ridge_error: float = rule(
+        7.0, "error of strain energies beside ridges: this times height / pitch, times (element / pitch) to a power",
+        "figures/tables/accuracy_ridges.csv",
+    )  # fmt: skip
+    ridge_order: float = rule(1.5, "that power", "figures/tables/accuracy_ridges.csv")
+    ridge_near: float = rule(
+        2.0, "receptors are beside ridges within so many heights of the depth at which the epidermis ends",
+        "figures/tables/accuracy_ridges.csv",
+    )  # fmt: skip
 
 
 def decide(case: Case) -> Effect:
@@ -31,13 +50,11 @@ def decide(case: Case) -> Effect:
     why = f"the specimen has inner ridges {inner.pitch * 1e3:.3g} mm apart, {inner.height * 1e3:.3g} mm high"
     if outer is not None:
         why += f", and outer ones {(outer.period or inner.pitch) * 1e3:.3g} mm apart, {outer.height * 1e3:.3g} mm high"
-    border = specimen.outline.epidermis_thickness
-    depths = case.scene.outputs.receptors.depths
     known = (
         outer is None
         and not case.moves
         and layers.epidermis.youngs_modulus <= rules.ridge_contrast * layers.dermis.youngs_modulus
-        and min((abs(depth - border) for depth in depths), default=border) > 2 * inner.height
+        and not _felt(case.scene, rules)
     )
     narrow = max(1.0, rules.ridge_width * inner.pitch / max(case.contact.half_width, 1e-6))
     worth = rules.ridge_change * narrow * inner.height / inner.pitch
@@ -46,13 +63,43 @@ def decide(case: Case) -> Effect:
     return Effect(False, f"{why}: they change up to {worth:.1%} of a press, {case.tolerance:.1%} is allowed")
 
 
+def _felt(scene: Scene, rules: RidgeRules) -> bool:
+    """Whether a receptor is beside ridges."""
+    border, height = scene.specimen.outline.epidermis_thickness, scene.specimen.ridges.inner.height
+    return any(abs(depth - border) <= rules.ridge_near * height for depth in scene.outputs.receptors.depths)
+
+
+def meshed(scene: Scene, size: MeshSize, tolerance: float | None, rules: RidgeRules) -> tuple[MeshSize, float]:
+    """The mesh made finer among ridges that receptors are beside, as a ``tolerance`` asks for, and the error that is left there.
+
+    Args:
+        tolerance: relative; None: edges are given by hand.
+    """
+    from fingerpad.specimen.layered import apex_column
+    from fingerpad.specimen.pad import all_over
+    from fingerpad.specimen.ridges import wave_of
+
+    if not _felt(scene, rules):
+        return size, 0.0
+    ridges = scene.specimen.ridges
+    wave, column = wave_of(ridges.inner), apex_column(scene.specimen.outline, size, ridges)
+    factor = rules.ridge_error * ridges.inner.height / wave
+    share = (tolerance / factor) ** (1 / rules.ridge_order) * (1 - _ROUND_OFF) if tolerance else np.inf
+    if (wanted := max(3 * wave * share, rules.least_edge)) < column:
+        reach = max(map(abs, scene.outputs.receptors.offsets)) + ridges.inner.pitch
+        size, column = replace(size, focus=(*size.focus, *all_over(reach, wanted))), wanted
+    return size, factor * (column / 3 / wave) ** rules.ridge_order
+
+
 def resolved(effect: Effect, layered: tuple, edge: float) -> tuple[Effect, float]:
     """The effect with how finely ridges are meshed, and the skin's edge (m) under the apex; ``edge`` without ridges."""
-    from fingerpad.specimen.layered import ridge_resolution, skin_edge
+    from fingerpad.specimen.layered import apex_column, ridge_resolution, skin_edge
+    from fingerpad.specimen.ridges import wave_of
 
     per_ridge, per_height = ridge_resolution(*layered)
-    said = f"{per_ridge:.1f} elements from ridge to ridge, {per_height} rows within their height of the interface"
-    return replace(effect, why=f"{effect.why}: {said}"), skin_edge(*layered[:3], edge)
+    middle = wave_of(layered[2].inner) / (apex_column(*layered[:3]) / 3)
+    said = f"{per_ridge:.1f} elements from ridge to ridge, {middle:.1f} in the middle, {per_height} rows within their height"
+    return replace(effect, why=f"{effect.why}: {said} of the interface"), skin_edge(*layered[:3], edge)
 
 
 _PRESS = {

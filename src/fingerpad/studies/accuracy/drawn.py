@@ -19,7 +19,10 @@ from fingerpad.planning.plan import Plan, plan
 from fingerpad.scenes.scene import Bar, Sampled, Scene
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.files import write_pad
+from fingerpad.specimen.pad import all_over
+from fingerpad.specimen.ridges import wave_of
 from fingerpad.studies.accuracy.belief import FINEST, QUANTITIES, difference, finer, record
+from fingerpad.studies.accuracy.ridges import TRUTH
 from fingerpad.studies.accuracy.run import split
 from fingerpad.studies.stability.hard_cases import FLAT, cylinder, force, scene_of
 
@@ -34,10 +37,12 @@ did not count; of eleven of seed 24, unseen after that, ten were covered, and on
 LEVELS = (0.1, 0.05)
 """Accuracies that are asked for, one drawn for each scene; an external mesh is what it is."""
 HEAVY = ("wavy", "ridges")
-"""Classes whose truth is large, tried at the first of these only."""
+"""Classes tried at the first of these only, or at one of their own."""
 FINER, FINER_STILL, ROUNDED = 1.7, 2.5, 200
-"""By how much the truth's edges are shorter than the run's, of strokes and ridged pads and of others; a true edge is rounded by
-the width over this."""
+"""By how much the truth's edges are shorter than the run's, of strokes and large meshes and of others; among ridges they
+are shorter still; a true edge is rounded by the width over this."""
+BESIDE = 6, (0.7, 1.1), 0.24
+"""Receptors drawn beside ridges: their number, and the bounds of their depths and of their offsets to either side, mm."""
 
 
 def drawn(seed: int = SEED, count: int = SCENES) -> Iterator[tuple[str, str, dict[str, Any]]]:
@@ -85,11 +90,22 @@ def drawn(seed: int = SEED, count: int = SCENES) -> Iterator[tuple[str, str, dic
         elif kind == "ridges":
             document["specimen"] = {"ridges": {"inner": {"height": f"{between(50, 150)} um", "phase": pick("tip", "valley")}}}
             document["stimulus"] = pick(FLAT, cylinder(between(20, 600)), bar(True))
+            own = np.random.default_rng((seed, number))  # these came to the scenes later
+            document |= {"outputs": {"receptors": _beside(own)}, "accuracy": float(own.choice((*LEVELS, 0.02)))}
         elif kind == "external":
             document["made"] = {"edge": between(80e-6, 300e-6), "element": pick("quad9", "quad4", "tri6")}
         elif kind == "force":
             document["motion"] = pick(load(1e-4, 0.03), load(50, 120))
         yield f"{kind}_{number}", kind, document
+
+
+def _beside(draw: np.random.Generator) -> dict[str, list[str]]:
+    """Receptors beside ridges, in a document."""
+    count, depths, aside = BESIDE
+    return {
+        "depths": [f"{depth:.3f} mm" for depth in np.sort(draw.uniform(*depths, count))],
+        "offsets": [f"{offset:.3f} mm" for offset in np.sort(draw.uniform(-aside, aside, 2))],
+    }
 
 
 def truth_of(scene: Scene, last: Plan) -> Any:
@@ -98,8 +114,13 @@ def truth_of(scene: Scene, last: Plan) -> Any:
 
     if last.unbounded_peak:
         return _of_true_edge(scene, ROUNDED)
-    heavy = last.effects["ridges"].on or not last.effects["symmetry"].on or last.nodes > 5000
-    return simulate(scene, finer(last, FINER if heavy else FINER_STILL))
+    ridges = scene.specimen.ridges if last.effects["ridges"].on else None
+    light = last.effects["symmetry"].on and last.nodes <= 5000
+    made = finer(last, FINER_STILL if light or ridges else FINER)
+    if ridges:  # of which a mesh has some elements however coarse it is
+        focus = all_over(1.5 * ridges.inner.pitch, 3 * wave_of(ridges.inner) / TRUTH)
+        made = replace(made, mesh_size=replace(made.mesh_size, focus=(*made.mesh_size.focus, *focus)))
+    return simulate(scene, made)
 
 
 def _of_true_edge(scene, rounded):

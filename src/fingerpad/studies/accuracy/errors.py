@@ -377,6 +377,7 @@ FRAMES = {
     "accuracy_growth": growth_frame,
     "accuracy_belief": lambda table: table,
     "accuracy_drawn": lambda table: table,
+    "accuracy_ridges": lambda table: table,
     "accuracy_shown": lambda table: table.drop_duplicates(list(table.columns[2:])).reset_index(drop=True),
 }
 """Figure name -> its data frame, of the table of accuracy, of beliefs, or of errors shown, of which each curve is drawn once."""

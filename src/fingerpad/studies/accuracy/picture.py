@@ -213,6 +213,35 @@ def drawn(frame: pd.DataFrame) -> Figure:
 
 
 @styled
+def ridges(frame: pd.DataFrame) -> Figure:
+    """Errors of strain energies beside ridges against the elements among them, and those expected."""
+    fig = study_figure(
+        "How many elements does a ridge need?",
+        [
+            "Simulated. Errors of strain energies about inner ridges, 15 µm or more off their boundary, at the top of a ramp to "
+            "20 gram-weight, against 48 elements from ridge to ridge. Points: nineteen places in twenty have no more; bars: to "
+            "the largest. Lines: what a run expects."
+        ],
+        3.3,
+    )
+    axes = fig.subplots(1, frame["surface"].nunique(), sharey=True)
+    across = "elements from ridge to ridge"
+    for ax, (surface, here) in zip(axes, frame.groupby("surface", sort=False), strict=True):
+        for place, ((height, pitch), part) in enumerate(here.groupby(["height (mm)", "pitch (mm)"], sort=False)):
+            usual, most = part["error of 19 places in 20 (%)"], part["largest error (%)"]
+            beside, colour = part[across] * 1.03 ** (place - 2.5), CATEGORIES[place]
+            ax.vlines(beside, usual, most, color=colour, lw=0.8)
+            ax.plot(beside, usual, MARKERS[place], color=colour, ms=4.5, mfc="white", label=f"{height:g} mm every {pitch:g} mm")
+            ax.plot(part[across], part["expected error (%)"], color=colour, lw=0.9, zorder=0)
+        ax.set(xscale="log", yscale="log", xlabel=across, title="plate" if surface == "flat" else f"{surface} 1/m")
+        ax.set_xticks(counts := sorted(frame[across].unique()), [str(count) for count in counts])
+        ax.minorticks_off()
+    axes[0].set_ylabel("error of strain energy (%)")
+    axes[-1].legend(fontsize=6.5, title="ridges", title_fontsize=6.5, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return fig
+
+
+@styled
 def shown(frame: pd.DataFrame) -> Figure:
     """Errors that figures state against those of their curves."""
     stated, true = frame["stated error (%)"], frame["true error (%)"]
@@ -255,6 +284,7 @@ STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
     "accuracy_growth": growth,
     "accuracy_belief": belief,
     "accuracy_drawn": drawn,
+    "accuracy_ridges": ridges,
     "accuracy_shown": shown,
 }
 """Figure name -> drawing function of its data frame."""
