@@ -100,9 +100,11 @@ def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
     close(matrix(body, data), stiffness[np.ix_(free, free)])
 
 
-@ELEMENTS
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(
+    ("element", "law"), [(e, law) for e in KIND for law in LAWS if law == "neo_hooke" or e in ("Q2P1", "Q1P0", "P2B")]
+)
 def test_finite_strain(element, law, must_fail):
+    """Every element with one law, and every law with the elements that are solved with: each pair is compiled on its own."""
     check_finite(element, law)
     must_fail(check_finite, element, law, change=1 + 1e-8)
 
