@@ -18,7 +18,7 @@ import xarray as xr
 from fingerpad.figures import axes as axs
 from fingerpad.figures.chapter5 import DEEP, OTHER, SHALLOW, TEN, TEN_RUN
 from fingerpad.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, below, stack
-from fingerpad.measures.errors import PARTS, Companion, Curve, Errors, curve_errors, over_stroke
+from fingerpad.measures.errors import PARTS, Companion, Curve, Errors, curve_errors, family_errors, over_stroke
 from fingerpad.measures.features import SIMULATED, is_simulated
 from fingerpad.measures.quantities import (
     BURST_RATE,
@@ -140,11 +140,11 @@ def frequencies(data: Data) -> pd.DataFrame:
 def both_ways(data: Data) -> pd.DataFrame:
     """Predicted impulses of ten strokes of a plate over a pad with inner ridges, each way."""
     parts, right = [], RIDGED["right"]
+    sides = [over_stroke(partial(plate_trace, offset=offset)) for offset in (ASIDE, -ASIDE)]  # the other way in a mirror
+    errors = family_errors(data.histories[right], data.coarse.get(right), sides).columns
     for way, scene in RIDGED.scenes.items():
         rate = plate_rate(data.histories[scene])
         ticks = raster(rate, STROKES_SHOWN["5-27"], SEED).rename(columns={"trial": TRIAL})[[TRIAL, DISTANCE]]
-        side = partial(plate_trace, offset=ASIDE if way == "right" else -ASIDE)
-        errors = curve_errors(data.histories[right], data.coarse.get(right), over_stroke(side)).columns
         for panel, rows in ((RASTER, ticks), ("rate", rate[[DISTANCE, IMPULSE_RATE]])):
             of = {"source": PREDICTED, "series": way, "panel": panel, RECEPTOR: round(DEEP * 1e6), **errors}
             parts.append(rows.assign(**of))

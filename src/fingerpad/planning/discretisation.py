@@ -42,7 +42,8 @@ def preset_for(
         return thesis, by_hand
     edge = accuracy.skin_edge
     error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
-    return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * edge / thesis.skin_edge, tolerance=error), by_hand
+    scale = edge / thesis.skin_edge
+    return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), by_hand
 
 
 def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules, stroke: Stroke | None) -> Preset:
