@@ -292,7 +292,7 @@ def plan(
         edge = size.skin_edge if moves else min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
         at_focus = min([edge, *(each for _, each in size.focus)])
         if ridges is not None:
-            size, at_ridges = ridge_effect.meshed(scene, size, tolerance if edges_chosen(scene) else None, rules)
+            size, at_ridges = ridge_effect.meshed(scene, size, tolerance if edges_chosen(scene) else None, moves, rules)
         check_size(scene, size, ridges, rules)
         nodes, smallest = counted(scene.specimen, size, ridges)
         if ridges is not None:

@@ -34,6 +34,10 @@ class RidgeRules:
         "figures/tables/accuracy_ridges.csv",
     )  # fmt: skip
     ridge_order: float = rule(1.5, "that power", "figures/tables/accuracy_ridges.csv")
+    ridge_stroked: float = rule(
+        0.5, "share of a tolerance that strain energies beside ridges are meshed for in strokes, whose rates follow from them",
+        "figures/studies/accuracy_shown.csv",
+    )  # fmt: skip
     ridge_near: float = rule(
         2.0, "receptors are beside ridges within so many heights of the depth at which the epidermis ends",
         "figures/tables/accuracy_ridges.csv",
@@ -69,11 +73,11 @@ def _felt(scene: Scene, rules: RidgeRules) -> bool:
     return any(abs(depth - border) <= rules.ridge_near * height for depth in scene.outputs.receptors.depths)
 
 
-def meshed(scene: Scene, size: MeshSize, tolerance: float | None, rules: RidgeRules) -> tuple[MeshSize, float]:
+def meshed(scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, rules: RidgeRules) -> tuple[MeshSize, float]:
     """The mesh made finer among ridges that receptors are beside, as a ``tolerance`` asks for, and the error that is left there.
 
     Args:
-        tolerance: relative; None: edges are given by hand.
+        tolerance: relative; None: edges are given by hand. moves: does the pad move along the surface?
     """
     from fingerpad.specimen.layered import apex_column
     from fingerpad.specimen.pad import all_over
@@ -84,8 +88,9 @@ def meshed(scene: Scene, size: MeshSize, tolerance: float | None, rules: RidgeRu
     ridges = scene.specimen.ridges
     wave, column = wave_of(ridges.inner), apex_column(scene.specimen.outline, size, ridges)
     factor = rules.ridge_error * ridges.inner.height / wave
-    share = (tolerance / factor) ** (1 / rules.ridge_order) * (1 - _ROUND_OFF) if tolerance else np.inf
-    if (wanted := max(3 * wave * share, rules.least_edge)) < column:
+    allowed = np.inf if tolerance is None else tolerance * (rules.ridge_stroked if moves else 1.0)
+    wanted = 3 * wave * (allowed / factor) ** (1 / rules.ridge_order) * (1 - _ROUND_OFF)
+    if (wanted := max(wanted, rules.least_edge)) < column:
         reach = max(map(abs, scene.outputs.receptors.offsets)) + ridges.inner.pitch
         size, column = replace(size, focus=(*size.focus, *all_over(reach, wanted))), wanted
     return size, factor * (column / 3 / wave) ** rules.ridge_order
