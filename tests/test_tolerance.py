@@ -119,6 +119,15 @@ def test_ridges_are_refined_where_receptors_are_beside_them():
     assert by_hand.least_error > 0.05 and not by_hand.mesh_size.focus and by_hand.error_from.startswith("elements among ridges")
 
 
+def test_ridges_that_are_stroked_are_meshed_for_half_the_tolerance():
+    """Rates are what strain energies change by."""
+    outputs = {"receptors": {"depths": ["915 um"], "offsets": ["0 um"]}}
+    stroke = [{"press_to_force": "20 gf"}, {"slide": "4 mm", "speed": "10 mm/s"}]
+    for asked, error in (("thesis", 0.01), (0.05, 0.025)):
+        chosen = plan(scene(FLAT, stroke, accuracy=asked, specimen={"ridges": "inner"}, outputs=outputs, friction=0.3))
+        assert chosen.least_error == pytest.approx(error, rel=1e-6)
+
+
 def test_steps_by_hand_leave_the_mesh_to_the_plan():
     """As of `thesis`, of presses and of strokes."""
     press, stroke = [{"press_to_force": "20 gf"}], [{"press_to_force": "20 gf"}, {"slide": "4 mm", "speed": "10 mm/s"}]
