@@ -1,16 +1,32 @@
-"""Compile the element loops into the package's cache: once at set-up instead of in the first simulations."""
+"""Compile the element loops into the package's cache: once at set-up, by two processes, instead of in the first simulations."""
 
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from fingerpad import load_scene, simulate
 from fingerpad.scenes.scene import Bar, Discretisation, Flat, PressToForce, Slide, Wavy
 
-scene = load_scene(Path("config/scenes/ramp40_k210.yaml"))
-scene = scene.model_copy(update={"accuracy": Discretisation(element=None, skin_edge=1e-3, steps=2)})
-light = (PressToForce(press_to_force=1e-6, rate=None),)
-simulate(scene)
-simulate(scene.model_copy(update={"motion": light, "effects": {"finite_strain": True}}))
-simulate(scene.model_copy(update={"motion": light, "effects": {"finite_strain": False}, "stimulus": Wavy()}))
-simulate(scene.model_copy(update={"motion": light, "effects": {"finite_strain": True}, "stimulus": Bar(width=1e-3)}))
-stroke = (*light, Slide(slide=1e-4, speed=1e-3))
-simulate(scene.model_copy(update={"motion": stroke, "friction": 0.3, "stimulus": Flat()}))
+SCENE = load_scene(Path("config/scenes/ramp40_k210.yaml"))
+SCENE = SCENE.model_copy(update={"accuracy": Discretisation(element=None, skin_edge=1e-3, steps=2)})
+LIGHT = (PressToForce(press_to_force=1e-6, rate=None),)
+STROKE = (*LIGHT, Slide(slide=1e-4, speed=1e-3))
+CHANGES = (
+    ({},),  # with viscosity takes as long as all without
+    (
+        {"motion": LIGHT, "effects": {"finite_strain": True}},
+        {"motion": LIGHT, "effects": {"finite_strain": False}, "stimulus": Wavy()},
+        {"motion": LIGHT, "effects": {"finite_strain": True}, "stimulus": Bar(width=1e-3)},
+        {"motion": STROKE, "friction": 0.3, "stimulus": Flat()},
+    ),
+)
+
+
+def compiled(changes):
+    """Simulate the scene with each of some changes."""
+    for update in changes:
+        simulate(SCENE.model_copy(update=update))
+
+
+if __name__ == "__main__":
+    with ProcessPoolExecutor(len(CHANGES)) as pool:
+        list(pool.map(compiled, CHANGES))

@@ -16,7 +16,7 @@ from fingerpad.planning.rules import Preset, Rules
 from fingerpad.planning.schedule import leg_durations
 from fingerpad.scenes.scene import Discretisation, Scene
 from fingerpad.specimen.element_kinds import KINDS
-from fingerpad.specimen.measures import apex_edge
+from fingerpad.specimen.measures import apex_edge, touched_side
 from fingerpad.specimen.pad import MeshSize, PadMesh, all_over
 from fingerpad.stimuli.profile import Profile
 
@@ -239,6 +239,28 @@ def edges_error(profile: Profile, edge: float, rounding: float, rules: Rules) ->
 def peak_is_unbounded(profile: Profile, edge: float, rounding: float, rules: Rules) -> bool:
     """Whether the pressure at the profile's edges is the mesh's: they are true ones, or roundings that ``edge`` m cannot tell."""
     return bool(profile.unbounded or (profile.edges and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1))
+
+
+def receptors_error(scene: Scene, external: PadMesh, rules: Rules) -> float:
+    """What linear quads make wrong of strain energy at receptors: in each it is nearly that of its middle, however fine the skin.
+
+    It changes with the depth, so that half an element's height is as much of it as that is of the depth.
+    """
+    if external.element != "quad4":
+        return 0.0
+    skin, receptors = external.points[np.unique(external.curves["skin"])], scene.outputs.receptors
+    upper = skin[touched_side(skin[:, 1])]
+    upper = upper[np.argsort(upper[:, 0])]
+    corners = external.points[external.cells]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    height, worst = high[:, 1] - low[:, 1], 0.0
+    for x in receptors.offsets:
+        over = np.flatnonzero((low[:, 0] <= x) & (x <= high[:, 0]))
+        for depth in receptors.depths:
+            y = np.interp(x, *upper.T) - depth
+            here = over[(low[over, 1] <= y) & (y <= high[over, 1])]
+            worst = max(worst, float(height[here].max(initial=0.0)) / depth)
+    return rules.linear_quad_height * worst
 
 
 def coarseness(external: PadMesh, rules: Rules) -> float:

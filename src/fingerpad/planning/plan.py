@@ -36,6 +36,7 @@ from fingerpad.planning.discretisation import (
     peak_is_unbounded,
     preset_for,
     raised_for,
+    receptors_error,
     usual_edge,
     wander_of,
 )
@@ -73,12 +74,12 @@ class Plan:
         slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
         nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
         contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
-        part of it that small strain is to blame for; least_error: at least this because of the profile's edges or of
-        ridges. error_from: what most of it comes from. asked_error: the tolerance, None where none is asked for; once: whether it
-        is tried for once only. unbounded_peak: whether the profile has a true edge, where pressure has no bound and a peak is the
-        mesh's. specimen: sentences on what is touched, and what of it the scene left out. surface: what the mesh makes of a
-        measured profile. stride: so many steps are made one. strokes: does the pad move along the surface, so that errors are of
-        a way?
+        part of it that small strain is to blame for; least_error: at least this because of the profile's edges or of the elements
+        that receptors are in. error_from: what most of it comes from. asked_error: the tolerance, None where none is asked for;
+        once: whether it is tried for once only. unbounded_peak: whether the profile has a true edge, where pressure has no bound
+        and a peak is the mesh's. specimen: sentences on what is touched, and what of it the scene left out. surface: what the
+        mesh makes of a measured profile. stride: so many steps are made one. strokes: does the pad move along the surface, so
+        that errors are of a way?
     """
 
     effects: dict[str, Effect]
@@ -279,11 +280,12 @@ def plan(
         def on_mesh(mesh: PadMesh) -> float:
             edge = coarseness(mesh, rules) * apex_edge(mesh)
             found = estimated_error(edge, narrowest, time, stroke, rules=rules, bumpy=scene.stimulus.irregular)
-            return max(found, edges_error(profile, edge, rounding, rules)[0])
+            return max(found, edges_error(profile, edge, rounding, rules)[0], receptors_error(scene, mesh, rules))
 
         external, raised = raised_for(by_hand, external, tolerance, on_mesh)
-    element, at_ridges = element_for(by_hand, external), 0.0
+    element = element_for(by_hand, external)
     if external is None:
+        at_receptors = 0.0
         # on its way over a surface the contact is also flat
         widest = worst_contact(scene, pad, profile, 0.0) if moves and profile.uneven else contact
         wander = wander_of(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
@@ -292,14 +294,14 @@ def plan(
         edge = size.skin_edge if moves else min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
         at_focus = min([edge, *(each for _, each in size.focus)])
         if ridges is not None:
-            size, at_ridges = ridge_effect.meshed(scene, size, tolerance if edges_chosen(scene) else None, moves, rules)
+            size, at_receptors = ridge_effect.meshed(scene, size, tolerance if edges_chosen(scene) else None, moves, rules)
         check_size(scene, size, ridges, rules)
         nodes, smallest = counted(scene.specimen, size, ridges)
         if ridges is not None:
             layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
             effects["ridges"], edge = ridge_effect.resolved(effects["ridges"], layered, edge)
     else:
-        size, nodes = None, len(external.points)
+        size, nodes, at_receptors = None, len(external.points), receptors_error(scene, external, rules)
         smallest, edge = quality_of(external)["smallest_edge_m"], coarseness(external, rules) * apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
@@ -313,20 +315,20 @@ def plan(
         at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
     at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
     in_contact = estimated_error(edge, narrowest, time, stroke, around, rules=rules, bumpy=scene.stimulus.irregular)
-    mesh = surface.error + max(in_contact, at_edges, at_ridges)
+    mesh = surface.error + max(in_contact, at_edges, at_receptors)
     linear = 0.0 if effects["finite_strain"].on else finite_strain.small_strain_error(case)
     if linear and scene.tolerance is not None and "finite_strain" not in scene.effects and linear + mesh > scene.tolerance:
         effects["finite_strain"], linear = finite_strain.beside_mesh(case, mesh), 0.0
     sources = {
         f"edges of {micrometres(edge)} um in a contact of {micrometres(narrowest)} um to either side": in_contact,
         edges_said: at_edges,
-        "elements among ridges that receptors are beside": at_ridges,
+        f"elements {'in the mesh' if size is None else 'among ridges'} that receptors are in": at_receptors,
         "small strain": linear,
         "what the mesh cannot feel of the profile": surface.error,
     }
     return Plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
-        linear + mesh, _cost(nodes, steps, effects, rules), linear, max(at_edges, at_ridges),
+        linear + mesh, _cost(nodes, steps, effects, rules), linear, max(at_edges, at_receptors),
         max(sources, key=sources.get), scene.tolerance, scene.once, peak_is_unbounded(profile, at_edge, rounding, rules),
         (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface, strokes=moves, outputs=outputs,
     )  # fmt: skip
