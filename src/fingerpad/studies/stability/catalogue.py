@@ -291,6 +291,6 @@ REFERENCE = frozenset([name for name, case in CATALOGUE.items() if _has_referenc
 FAST = tuple(
     case.name
     for case in COMBINED
-    if case.name.startswith(("56:", "59:", "63:", "66:", "70:", "73:", "80:", "83:", "86:", "89:", "97:", "192:"))
+    if case.name.startswith(("56:", "59:", "63:", "66:", "70:", "73:", "80:", "83:", "89:", "97:", "177:", "192:"))
 )
 """Of the combinations, some that take no time: those that the tests run."""
