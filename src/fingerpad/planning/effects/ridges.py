@@ -91,7 +91,7 @@ def meshed(scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, r
     allowed = np.inf if tolerance is None else tolerance * (rules.ridge_stroked if moves else 1.0)
     wanted = 3 * wave * (allowed / factor) ** (1 / rules.ridge_order) * (1 - _ROUND_OFF)
     if (wanted := max(wanted, rules.least_edge)) < column:
-        reach = max(map(abs, scene.outputs.receptors.offsets)) + ridges.inner.pitch
+        reach = max(map(abs, scene.outputs.receptors.offsets), default=0.0) + ridges.inner.pitch
         size, column = replace(size, focus=(*size.focus, *all_over(reach, wanted))), wanted
     return size, factor * (column / 3 / wave) ** rules.ridge_order
 
