@@ -31,7 +31,9 @@ def check_size(scene: Scene, size: MeshSize, ridges: Any, rules: Rules) -> None:
             f"allowed: {rules.most_nodes:g} nodes, edges of about {micrometres(least)} um"
         )
     if ridges is not None:
-        wave = ridges.inner.pitch / (2 if ridges.inner.limiting else 1)
+        from fingerpad.specimen.ridges import wave_of
+
+        wave = wave_of(ridges.inner)
         nodes = 8 * 20 * 8 * (ridges.half_width + ridges.inner.pitch) / wave
         if nodes > rules.most_nodes:
             raise PlanError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -73,6 +73,13 @@ def _felt(scene: Scene, rules: RidgeRules) -> bool:
     return any(abs(depth - border) <= rules.ridge_near * height for depth in scene.outputs.receptors.depths)
 
 
+def error_beside(inner: Any, elements: float, rules: RidgeRules) -> float:
+    """Relative error of strain energies beside inner ridges, with so many elements from one ridge to the next."""
+    from fingerpad.specimen.ridges import wave_of
+
+    return rules.ridge_error * inner.height / wave_of(inner) * elements**-rules.ridge_order
+
+
 def meshed(scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, rules: RidgeRules) -> tuple[MeshSize, float]:
     """The mesh made finer among ridges that receptors are beside, as a ``tolerance`` asks for, and the error that is left there.
 
@@ -87,13 +94,12 @@ def meshed(scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, r
         return size, 0.0
     ridges = scene.specimen.ridges
     wave, column = wave_of(ridges.inner), apex_column(scene.specimen.outline, size, ridges)
-    factor = rules.ridge_error * ridges.inner.height / wave
     allowed = np.inf if tolerance is None else tolerance * (rules.ridge_stroked if moves else 1.0)
-    wanted = 3 * wave * (allowed / factor) ** (1 / rules.ridge_order) * (1 - _ROUND_OFF)
+    wanted = 3 * wave * (allowed / error_beside(ridges.inner, 1.0, rules)) ** (1 / rules.ridge_order) * (1 - _ROUND_OFF)
     if (wanted := max(wanted, rules.least_edge)) < column:
         reach = max(map(abs, scene.outputs.receptors.offsets), default=0.0) + ridges.inner.pitch
         size, column = replace(size, focus=(*size.focus, *all_over(reach, wanted))), wanted
-    return size, factor * (column / 3 / wave) ** rules.ridge_order
+    return size, error_beside(ridges.inner, wave / (column / 3), rules)
 
 
 def resolved(effect: Effect, layered: tuple, edge: float) -> tuple[Effect, float]:

@@ -194,7 +194,7 @@ def drawn(frame: pd.DataFrame) -> Figure:
         [
             f"Simulated: {asked['scene'].nunique()} random scenes, each asked for 10, 5 or, beside ridges, 2 %. Truth: largest "
             "difference of depth, width, pressures and strain energies at the legs' ends, of strokes root mean square, to edges "
-            f"1.7 to 2.5 times as short. Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs."
+            f"at least 1.7 times as short. Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs."
         ],
         3.9,
     )

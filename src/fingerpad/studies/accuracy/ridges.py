@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from fingerpad.planning.effects.ridges import error_beside
 from fingerpad.planning.plan import plan
 from fingerpad.planning.rules import RULES
 from fingerpad.scenes.scene import Discretisation, PressToForce, Receptors, Scene
@@ -69,24 +70,21 @@ def beside(scene: Scene) -> np.ndarray:
     return (np.abs(np.array(receptors.depths)[:, None] - border) >= OFF).ravel()
 
 
-def expected(scene: Scene, elements: int) -> float:
-    """The planner's error of such a mesh."""
-    inner = scene.specimen.ridges.inner
-    return RULES.ridge_error * inner.height / wave_of(inner) * elements**-RULES.ridge_order
-
-
 def rows(surface: str, base: Scene) -> list[dict[str, object]]:
     """Errors (%) of strain energies by ridges and elements, under one surface."""
     out = []
     for height, pitch in SIZES:
         scene = ridged(base, height, pitch)
-        counted = beside(scene)
+        inner, counted = scene.specimen.ridges.inner, beside(scene)
         truth = pressed(scene, TRUTH)["strain_energy_density"].values[-1][counted]
         for elements in ELEMENTS:
             found = pressed(scene, elements)
             off = 100 * np.abs(found["strain_energy_density"].values[-1][counted] / truth - 1)
             row = {"surface": surface, "height (mm)": height, "pitch (mm)": pitch, "elements from ridge to ridge": elements}
-            row |= {"nodes": json.loads(found.attrs["cost"])["nodes"], "expected error (%)": 100 * expected(scene, elements)}
+            row |= {
+                "nodes": json.loads(found.attrs["cost"])["nodes"],
+                "expected error (%)": 100 * error_beside(inner, elements, RULES),
+            }
             row |= {"error of 19 places in 20 (%)": np.percentile(off, 95), "largest error (%)": off.max()}
             out.append(row)
     return out
