@@ -38,5 +38,4 @@ def test_nearest_are_those_of_a_tree(most, monkeypatch):
     points, others = rng.uniform(size=(40, 2)), rng.uniform(size=(500, 2))
     truth = cKDTree(others).query(points, k=24)
     np.testing.assert_array_equal(near.nearest(points, others, 24), truth[1])
-    np.testing.assert_allclose(near.distance(points, others), truth[0][:, 0])
     assert near.nearest(points, others[:3], 24).shape == (40, 3)

@@ -1,8 +1,9 @@
 """A history at all its outputs, from the states that were found: between them no more is solved (Hairer, Norsett and Wanner 1993,
 section II.6, call that dense output).
 
-What the body does goes from state to state along a smooth curve through them (Akima 1970, as modified in MATLAB's makima), a leg
-at a time; the contact goes along with the surface (:mod:`fingerpad.mechanics.strides`).
+What the body does goes from state to state along a cubic spline through them, twice continuously differentiable, for rates are
+asked of it: one a leg, and another where contact is lost or comes back. The contact goes along with the surface
+(:mod:`fingerpad.mechanics.strides`).
 """
 
 from __future__ import annotations
@@ -44,8 +45,13 @@ def at_outputs(found: dict[str, np.ndarray], time: np.ndarray, records: Sequence
         own = np.flatnonzero(found["leg"] == leg)
         own = own[own > 0]
         knots, here = np.append(max(own[0] - 1, 0), own), passed & np.isin(state, own)
-        for name in smooth:
-            out[name][here] = _through(found["stroke_distance"][knots], found[name][knots], place[here])
+        way = np.sign(found["stroke_distance"][own[-1]] - found["stroke_distance"][knots[0]]) or 1.0
+        pieces = _pieces(found["force"][knots] > 0)
+        which = np.searchsorted(way * found["stroke_distance"][knots[pieces[1:, 0]]], way * place[here], side="right")
+        for piece, (first, last) in enumerate(pieces):
+            part, inside = knots[first : last + 1], np.flatnonzero(here)[which == piece]
+            for name in smooth:
+                out[name][inside] = _through(way * found["stroke_distance"][part], found[name][part], way * place[inside])
     out["stroke_distance"] = place
     for name in _TAKEN:
         out[name][passed] = 0
@@ -54,16 +60,25 @@ def at_outputs(found: dict[str, np.ndarray], time: np.ndarray, records: Sequence
     return out, times
 
 
+def _pieces(touches: np.ndarray) -> np.ndarray:
+    """(k, 2) first and last state of the pieces that states (n,) fall into: of those that touch or do not, one at the end shared.
+
+    The state without contact beside one with it is of both: force has gone to zero there.
+    """
+    beside = np.zeros(len(touches), bool)
+    beside[1:-1] = ~touches[1:-1] & (touches[:-2] | touches[2:])
+    ends = np.unique([0, *np.flatnonzero(beside), len(touches) - 1])
+    return np.column_stack([ends[:-1], ends[1:]])
+
+
 def _through(place, values, at):
-    """Values (k, ...) at places (k,) of a smooth curve through those (n, ...) at places (n,), rising or falling."""
-    way = np.sign(place[-1] - place[0]) or 1.0
+    """Values (k, ...) at places (k,) of a smooth curve through those (n, ...) at rising places (n,)."""
     if len(place) < _LEAST:
         flat = values.reshape(len(place), -1)
-        found = np.stack([np.interp(way * at, way * place, each) for each in flat.T], axis=-1)
-        return found.reshape(len(at), *values.shape[1:])
-    from scipy.interpolate import Akima1DInterpolator
+        return np.stack([np.interp(at, place, each) for each in flat.T], axis=-1).reshape(len(at), *values.shape[1:])
+    from scipy.interpolate import CubicSpline
 
-    return Akima1DInterpolator(way * place, values, method="makima")(way * at)
+    return CubicSpline(place, values)(at)
 
 
 def _contact(out, found, state, passed, place, records, skin_x):

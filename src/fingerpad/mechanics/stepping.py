@@ -283,11 +283,14 @@ class QuasiStatic:
         return max(on[0] - more, 0), min(on[-1] + 1 + more, len(self.places))
 
     def _follow(self):
-        """Draw the zone together round a contact that has moved on: every iteration pays for its size."""
+        """Draw the zone together round a contact that has moved on: every iteration pays for its size.
+
+        What is condensed onto is left as wide as it was made before the first stroke: a press comes to fill it.
+        """
         on = np.flatnonzero(self._touching())
         if len(on):
             first, last = self._round(on, 24, 4)
-            if len(self._wide) > self.settings.spare * (last - first):
+            if self.distance and len(self._wide) > self.settings.spare * (last - first):
                 self._set_zone(first, last)
             first, last = self._round(on, 16, 8)
             if len(self.zone) > self.settings.loose * (last - first):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from fingerpad.specimen.near import distance
 from fingerpad.specimen.outline import OutlineLike, bisect, curve_of
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges, skin_chain
 
@@ -116,14 +115,18 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
         )
     high = np.interp(offsets, upper[:, 0], upper[:, 1])
 
-    def deep(height):
-        return distance(np.column_stack([offsets, height]), skin) > depths
+    # of the skin (k,) all that may be as near as that, the same number (w) for every point
+    first, last = (np.searchsorted(skin[order, 0], offsets + side * 1.01 * depths) for side in (-1, 1))
+    x, y = skin[order[np.minimum(first[:, None] + np.arange(max(1, np.max(last - first))), len(skin) - 1)]].transpose(2, 0, 1)
 
-    low, high = bisect(deep, high - 4 * depths, high)
-    found = np.column_stack([offsets, (low + high) / 2])
-    if np.any(np.abs(distance(found, skin) - depths) > 1e-3 * depths):
+    def below(height):
+        return np.hypot(x - offsets[:, None], y - height[:, None]).min(axis=1)
+
+    low, high = bisect(lambda height: below(height) > depths, high - 4 * depths, high)
+    found = (low + high) / 2
+    if np.any(np.abs(below(found) - depths) > 1e-3 * depths):
         raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")
-    return found
+    return np.column_stack([offsets, found])
 
 
 def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:

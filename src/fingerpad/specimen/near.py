@@ -34,11 +34,6 @@ def same_place(points: np.ndarray, others: np.ndarray, tolerance: float) -> np.n
     return out
 
 
-def distance(points: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Distances (n,) of points (n, 2) from the nearest of ``others`` (k, 2)."""
-    return np.hypot(*(others[nearest(points, others, 1)[:, 0]] - points).T)
-
-
 def nearest(points: np.ndarray, others: np.ndarray, number: int) -> np.ndarray:
     """Indices (n, number) of those of ``others`` (k, 2) that are nearest to each of the points (n, 2), the nearest first."""
     number = min(number, len(others))
