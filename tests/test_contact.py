@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fingerpad.mechanics.contact import ContactError, Zone, respond, solve_contact, stable
+from fingerpad.mechanics.contact import ContactError, Flexibility, Zone, respond, solve_contact, stable, until_stable
 from fingerpad.mechanics.contact_points import ContactPoints
 from fingerpad.mechanics.linear_solver import (
     FactorisationError,
@@ -134,19 +134,41 @@ def test_response_is_that_of_the_bent_matrix(definite):
     rows = [(zone.shape[:, :, None] * direction[:, None]).reshape(9, 12)[:, free] for direction in (normal, tangent)]
     root = rng.normal(size=(10, 10))
     schur = root @ root.T + (20.0 if definite else -2.0) * np.eye(10)
-    answer = respond(zone, schur, right, normal, bent, np.ones(9), [normal, tangent])
+    flexible = Flexibility.of(zone, schur, normal, bent, np.ones(9))
+    answer = respond(zone, flexible, right, [normal, tangent])
     matrix = schur - rows[1].T @ (bent[:, None] * rows[1])
     border, stacked, inverse = -rows[1].T @ (bent * tangent[:, 1]), np.concatenate(rows), np.linalg.inv(matrix)
     compliance = stacked @ inverse @ stacked.T
     compliance[:9, :9] += zone.softness
     compliance[9:, 9:] += zone.softness_along
-    assert answer.definite == definite == (np.linalg.eigvalsh(matrix)[0] > 0)
-    np.testing.assert_allclose(answer.matrix, matrix, atol=1e-12)
+    assert flexible.definite == definite == (np.linalg.eigvalsh(matrix)[0] > 0)
+    np.testing.assert_allclose(flexible.matrix, matrix, atol=1e-12)
     np.testing.assert_allclose(answer.compliance, compliance, atol=1e-9)
     np.testing.assert_allclose(answer.free, stacked @ inverse @ right, atol=1e-9)
     forces = rng.normal(size=18)
     expected = inverse @ (right + stacked.T @ forces - border * 0.7)
     np.testing.assert_allclose(answer.displacement(forces, 0.7), expected, atol=1e-9)
+
+
+def test_a_flexibility_of_before_is_used_as_long_as_it_leads_to_a_solution():
+    """What it cannot solve is tried with the flexibility of now, and only what that cannot solve is softened."""
+    zone, schur, right, gap, gradient = problem(9)
+    now = (zone, schur, gradient, np.full(12, 50.0), np.full(12, 0.01))
+    before, tried = Flexibility.of(zone, schur, gradient, np.full(12, 10.0), np.full(12, 0.01)), []
+
+    def found(fails):
+        def attempt(flexible):
+            tried.append(flexible)
+            if len(tried) <= fails:
+                raise ContactError("as asked")
+            return solve((zone, schur, right, gap, gradient), force=1.0)
+
+        tried.clear()
+        return until_stable(attempt, *now, before)
+
+    assert not found(0).softened and tried == [before]
+    assert not found(1).softened and tried[0] is before and np.array_equal(tried[1].matrix, Flexibility.of(*now).matrix)
+    assert found(2).softened and not np.array_equal(tried[1].matrix, tried[2].matrix)
 
 
 def test_curvature_enters_the_tangent():

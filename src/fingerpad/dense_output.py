@@ -1,9 +1,9 @@
 """A history at all its outputs, from the states that were found: between them no more is solved (Hairer, Norsett and Wanner 1993,
 section II.6, call that dense output).
 
-What the body does goes from state to state along a cubic spline through them, twice continuously differentiable, for rates are
-asked of it: one a leg, and another where contact is lost or comes back. The contact goes along with the surface
-(:mod:`fingerpad.mechanics.strides`).
+What the body does goes from state to state along cubic splines through them, twice continuously differentiable, for rates are
+asked of it: one a leg, and another wherever a piece of the contact has come or gone, which leaves a kink. The contact goes along
+with the surface (:mod:`fingerpad.mechanics.strides`).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _OF_THE_STEP = ("leg", "residual", "complementarity_error", "energy_balance_erro
 _TAKEN = ("newton_iterations", "cutbacks")
 """What it took to find a state: between them nothing."""
 _LEAST = 4
-"""States, of which fewer are joined by straight lines."""
+"""States, through fewer of which goes no cubic."""
 
 
 def at_outputs(found: dict[str, np.ndarray], time: np.ndarray, records: Sequence[Record], skin_x: np.ndarray, apex: int):
@@ -46,12 +46,9 @@ def at_outputs(found: dict[str, np.ndarray], time: np.ndarray, records: Sequence
         own = own[own > 0]
         knots, here = np.append(max(own[0] - 1, 0), own), passed & np.isin(state, own)
         way = np.sign(found["stroke_distance"][own[-1]] - found["stroke_distance"][knots[0]]) or 1.0
-        pieces = _pieces(found["force"][knots] > 0)
-        which = np.searchsorted(way * found["stroke_distance"][knots[pieces[1:, 0]]], way * place[here], side="right")
-        for piece, (first, last) in enumerate(pieces):
-            part, inside = knots[first : last + 1], np.flatnonzero(here)[which == piece]
-            for name in smooth:
-                out[name][inside] = _through(way * found["stroke_distance"][part], found[name][part], way * place[inside])
+        kinks = _kinks(found["contact_pressure"][knots] > 0)
+        for name in smooth:
+            out[name][here] = _through(way * found["stroke_distance"][knots], found[name][knots], kinks, way * place[here])
     out["stroke_distance"] = place
     for name in _TAKEN:
         out[name][passed] = 0
@@ -60,25 +57,35 @@ def at_outputs(found: dict[str, np.ndarray], time: np.ndarray, records: Sequence
     return out, times
 
 
-def _pieces(touches: np.ndarray) -> np.ndarray:
-    """(k, 2) first and last state of the pieces that states (n,) fall into: of those that touch or do not, one at the end shared.
-
-    The state without contact beside one with it is of both: force has gone to zero there.
-    """
-    beside = np.zeros(len(touches), bool)
-    beside[1:-1] = ~touches[1:-1] & (touches[:-2] | touches[2:])
-    ends = np.unique([0, *np.flatnonzero(beside), len(touches) - 1])
-    return np.column_stack([ends[:-1], ends[1:]])
+def _kinks(touches: np.ndarray) -> np.ndarray:
+    """States (k,) that have more pieces of contact, or fewer, than the one before; touches: (states, ns), of nodes."""
+    pieces = np.count_nonzero(np.diff(touches.astype(np.int8), axis=1, prepend=0) > 0, axis=1)
+    return np.flatnonzero(np.diff(pieces)) + 1
 
 
-def _through(place, values, at):
-    """Values (k, ...) at places (k,) of a smooth curve through those (n, ...) at rising places (n,)."""
+def _through(place, values, kinks, at):
+    """Values (k, ...) at places (k,) of curves through those (n, ...) at rising places (n,): splines from one of the states
+    ``kinks`` to before the next. What lies between two splines goes on as they do, but neither higher nor lower than its ends
+    (Fritsch and Carlson 1980)."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    slopes = np.concatenate([_slopes(place[each], values[each]) for each in np.split(np.arange(len(place)), kinks)])
+    out = CubicHermiteSpline(place, values, slopes)(at)
+    for ends in np.column_stack([kinks - 1, kinks]):
+        inside = (at > place[ends[0]]) & (at < place[ends[1]])
+        most = 3 * np.diff(values[ends], axis=0) / np.diff(place[ends])
+        held = np.clip(slopes[ends], np.minimum(most, 0), np.maximum(most, 0))
+        out[inside] = CubicHermiteSpline(place[ends], values[ends], held)(at[inside])
+    return out
+
+
+def _slopes(place, values):
+    """Of a cubic spline through values (n, ...) at places (n,); through a few a parabola or a straight line."""
     if len(place) < _LEAST:
-        flat = values.reshape(len(place), -1)
-        return np.stack([np.interp(at, place, each) for each in flat.T], axis=-1).reshape(len(at), *values.shape[1:])
+        return np.gradient(values, place, axis=0) if len(place) > 1 else np.zeros_like(values)
     from scipy.interpolate import CubicSpline
 
-    return CubicSpline(place, values)(at)
+    return CubicSpline(place, values)(place, 1)
 
 
 def _contact(out, found, state, passed, place, records, skin_x):

@@ -14,8 +14,10 @@ Friction, when a plan calls for it, has a module of its own on the same condense
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
@@ -153,8 +155,12 @@ class ContactStep:
     force: np.ndarray  # (nz,) N/m, >= 0, along the gap's gradient
     active: np.ndarray  # (nz,) bool
     pivots: int
+    flexible: Flexibility  # that it was found with
     softened: bool = False  # part of the gaps' second derivative was left out: the state was not stable with it
     stiffness: float | None = None  # N/m^2, of the force against the depth while the same nodes touch
+
+
+Step = TypeVar("Step", bound=ContactStep)
 
 
 def _inverse(matrix):
@@ -168,6 +174,39 @@ def _inverse(matrix):
 
 
 @dataclass
+class Flexibility:
+    """How a zone yields once the body has been condensed away.
+
+    Attributes:
+        matrix: (nc, nc) Schur complement with the geometric term of the gaps. inverse: of it. definite: is it positive definite?
+        border: (nc,) and corner, what that term adds where the profile's depth comes in; None where there is no such term.
+    """
+
+    matrix: np.ndarray
+    inverse: np.ndarray
+    definite: bool
+    border: np.ndarray | None
+    corner: float
+
+    @classmethod
+    def of(cls, zone: Zone, schur, gradient, curvature, previous_force) -> Flexibility:
+        """Arguments as in :func:`solve_contact`."""
+        matrix, border, corner = schur, None, 0.0
+        bent = previous_force * curvature
+        if np.any(bent != 0):
+            tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
+            matrix = zone.bend(schur, tangent, bent)
+            border = -zone.spread((bent * tangent[:, 1])[:, None] * tangent)
+            corner = -float(bent @ tangent[:, 1] ** 2)
+        return cls(matrix, *_inverse(matrix), border, corner)
+
+    @property
+    def bent(self) -> bool:
+        """Is there a geometric term?"""
+        return self.border is not None
+
+
+@dataclass
 class Response:
     """How constraint rows answer to multipliers on them once the body has been condensed away.
 
@@ -176,19 +215,15 @@ class Response:
     :meth:`displacement`.
 
     Attributes:
-        matrix: (nc, nc) Schur complement with the geometric term of the gaps. compliance: (nr, nr). free, lever: (nr,).
-        corner, load_shift: the depth's own equation ``load = load_shift - lever @ m + corner * dd``. bent: is there such a term?
-        definite: is the matrix positive definite?
+        compliance: (nr, nr). free, lever: (nr,). corner, load_shift: the depth's own equation
+        ``load = load_shift - lever @ m + corner * dd``.
     """
 
-    matrix: np.ndarray
     compliance: np.ndarray
     free: np.ndarray
     lever: np.ndarray
     corner: float
     load_shift: float
-    bent: bool
-    definite: bool
     _zone: Zone
     _directions: list[np.ndarray]
     _inverse: np.ndarray
@@ -202,43 +237,57 @@ class Response:
         return out if self._bend is None else out - self._bend * depth_change
 
 
-def respond(zone, schur, right, gradient, curvature, previous_force, directions) -> Response:
-    """Response of the zone to forces on its nodes.
+def respond(zone: Zone, flexible: Flexibility, right: np.ndarray, directions: list[np.ndarray]) -> Response:
+    """Response of the zone to forces on its points.
 
     Args:
-        schur, right, gradient, curvature, previous_force: as in :func:`solve_contact`. directions: list of (nz, 2) unit vectors,
-            each giving nz rows: the normals, and the tangents where there is friction.
+        right: as in :func:`solve_contact`. directions: of (nz, 2) unit vectors, each giving nz rows: the normals, and the
+            tangents where there is friction.
     """
-    matrix, border, corner = schur, None, 0.0
-    bent = previous_force * curvature
-    if np.any(bent != 0):
-        tangent = np.column_stack([-gradient[:, 1], gradient[:, 0]])
-        matrix = zone.bend(schur, tangent, bent)
-        border = -zone.spread((bent * tangent[:, 1])[:, None] * tangent)
-        corner = -float(bent @ tangent[:, 1] ** 2)
+    inverse, corner = flexible.inverse, flexible.corner
     lever = np.concatenate([direction[:, 1] for direction in directions])
-    inverse, definite = _inverse(matrix)
     unloaded = inverse @ right
     compliance = zone.along(directions, zone.along(directions, inverse).T)
     free = zone.along(directions, unloaded[:, None])[:, 0]
     if zone.softness is not None:
-        each = len(gradient)
+        each = len(zone)
         compliance[:each, :each] += zone.softness
         if len(directions) > 1:
             compliance[each:, each:] += zone.softness_along
     load_shift, bend = 0.0, None
-    if border is not None:
-        bend = inverse @ border
+    if flexible.border is not None:
+        bend = inverse @ flexible.border
         lever = lever - zone.along(directions, bend[:, None])[:, 0]
-        corner -= float(border @ bend)
-        load_shift = float(border @ unloaded)
-    bent = border is not None
-    return Response(
-        matrix, compliance, free, lever, corner, load_shift, bent, definite, zone, directions, inverse, unloaded, bend
-    )  # fmt: skip
+        corner -= float(flexible.border @ bend)
+        load_shift = float(flexible.border @ unloaded)
+    return Response(compliance, free, lever, corner, load_shift, zone, directions, inverse, unloaded, bend)
 
 
-def soften(error, schur, curvature, previous_force, bent) -> tuple[np.ndarray, np.ndarray]:
+def until_stable(
+    attempt: Callable[[Flexibility], Step], zone, schur, gradient, curvature, previous_force, flexible: Flexibility | None
+) -> Step:
+    """What ``attempt`` finds with the ``flexible`` of before if there is one, or else with that of now; and as long as that has
+    no stable solution, with less and less of what makes it unstable. Arguments as in :func:`solve_contact`.
+
+    Raises:
+        ContactError: of the attempt, when there is nothing to soften.
+    """
+    before, softened = flexible, False
+    while True:
+        flexible = flexible or Flexibility.of(zone, schur, gradient, curvature, previous_force)
+        try:
+            step = attempt(flexible)
+        except ContactError as error:
+            if flexible is not before:
+                schur, curvature = _soften(error, schur, curvature, previous_force, flexible.bent)
+                softened = True
+            flexible = None
+            continue
+        step.softened = softened
+        return step
+
+
+def _soften(error, schur, curvature, previous_force, bent) -> tuple[np.ndarray, np.ndarray]:
     """The Schur complement and the curvature to try next when a linearised problem has no stable solution.
 
     ``bent``: did the geometric term take part? Raises ``error`` when there is nothing to soften.
@@ -267,36 +316,34 @@ def solve_contact(
     *,
     force: float | None = None,
     depth_change: float | None = None,
+    flexible: Flexibility | None = None,
 ) -> ContactStep:
     """Solve the linearised unilateral problem exactly.
 
     Args:
         schur: (nc, nc) N/m^2. right: (nc,) reduced residual without contact forces, N/m. gap: (nz,) m. gradient: (nz, 2).
         curvature: (nz,) 1/m, second derivative of the gap along the tangent. previous_force: (nz,) N/m multipliers that weigh it.
-        active: (nz,) bool first guess. Exactly one of force (N/m, the sum of -gradient_y f) and depth_change (m).
+        active: (nz,) bool first guess. Exactly one of force (N/m, the sum of -gradient_y f) and depth_change (m). flexible: of
+        an iteration before, to be used as long as it leads to a solution.
 
     Raises:
         ContactError: pivoting does not end, or nothing can carry the force.
     """
-    softened = False
-    while True:
-        answer = respond(zone, schur, right, gradient, curvature, previous_force, [gradient])
+
+    def attempt(flexible):
+        answer = respond(zone, flexible, right, [gradient])
         offset = gap + answer.free
-        try:
-            if depth_change is not None:
-                dd = depth_change
-                f, on, pivots = _pivot(answer.compliance, offset + answer.lever * dd, active)
-            else:
-                load = force - answer.load_shift
-                f, dd, on, pivots = _pivot_with_depth(answer.compliance, offset, answer.lever, answer.corner, load, active)
-            if answer.bent and not (answer.definite or stable(answer.matrix, answer.compliance, on)):
-                raise ContactError("the curved contact is not stable")
-        except ContactError as error:
-            schur, curvature = soften(error, schur, curvature, previous_force, answer.bent)
-            softened = True
-            continue
+        if depth_change is not None:
+            dd = depth_change
+            f, on, pivots = _pivot(answer.compliance, offset + answer.lever * dd, active)
+        else:
+            load = force - answer.load_shift
+            f, dd, on, pivots = _pivot_with_depth(answer.compliance, offset, answer.lever, answer.corner, load, active)
+        require_stable(flexible, answer.compliance, on)
         yields = pressing_stiffness(answer, answer.compliance[np.ix_(on, on)], np.flatnonzero(on))
-        return ContactStep(answer.displacement(f, dd), dd, f, on, pivots, softened, yields)
+        return ContactStep(answer.displacement(f, dd), dd, f, on, pivots, flexible, stiffness=yields)
+
+    return until_stable(attempt, zone, schur, gradient, curvature, previous_force, flexible)
 
 
 def pressing_stiffness(answer: Response, system: np.ndarray, rows: np.ndarray, share: np.ndarray | None = None) -> float | None:
@@ -316,6 +363,12 @@ def pressing_stiffness(answer: Response, system: np.ndarray, rows: np.ndarray, s
     if share is not None:
         multipliers[len(share) :] += share * multipliers[: len(share)]
     return float(answer.corner - answer.lever @ multipliers)
+
+
+def require_stable(flexible: Flexibility, compliance: np.ndarray, active: np.ndarray) -> None:
+    """ContactError where gaps bend the matrix so much that it is not :func:`stable`."""
+    if flexible.bent and not (flexible.definite or stable(flexible.matrix, compliance, active)):
+        raise ContactError("the curved contact is not stable")
 
 
 def stable(matrix, compliance, active):

@@ -16,7 +16,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fingerpad.mechanics import compiled
-from fingerpad.mechanics.contact import ContactError, ContactStep, Zone, pressing_stiffness, respond, soften, stable
+from fingerpad.mechanics.contact import (
+    ContactError,
+    ContactStep,
+    Flexibility,
+    Zone,
+    pressing_stiffness,
+    require_stable,
+    respond,
+    until_stable,
+)
 
 #: What :attr:`Coulomb.state` holds where there is contact: 0 sticks, +-1 slips with the friction on the skin along +-t.
 STICK = 0
@@ -72,7 +81,7 @@ class Coulomb:
 
     def solve(
         self, zone: Zone, part: slice, schur, right, gap, gradient, curvature, previous_force, active, motion, *,
-        partner=None, force: float | None = None, depth_change: float | None = None,
+        partner=None, force: float | None = None, depth_change: float | None = None, flexible: Flexibility | None = None,
     ) -> FrictionStep:  # fmt: skip
         """Solve the linearised unilateral and frictional problem exactly; arguments as of :func:`contact.solve_contact`.
 
@@ -87,28 +96,24 @@ class Coulomb:
         moved = np.einsum("ni,ni->n", motion, tangent)
         if zone.softness is not None:
             moved = moved - zone.softness_along @ self._before[part]
-        softened = False
-        while True:
-            answer = respond(zone, schur, right, gradient, curvature, previous_force, [gradient, tangent])
+
+        def attempt(flexible):
+            answer = respond(zone, flexible, right, [gradient, tangent])
             offset = answer.free + np.concatenate([gap, moved])
             load = None
             if depth_change is not None:
                 offset = offset + answer.lever * depth_change
             else:
                 load = force - answer.load_shift
-            try:
-                found = _solve(self.coefficient, answer, offset, load, active, self.state[part], partner)
-                f, tau, dd, on, state, pivots, yields = found
-                normal = answer.compliance[: len(gap), : len(gap)]
-                if answer.bent and not (answer.definite or stable(answer.matrix, normal, on)):
-                    raise ContactError("the curved contact is not stable")
-            except ContactError as error:
-                schur, curvature = soften(error, schur, curvature, previous_force, answer.bent)
-                softened = True
-                continue
+            f, tau, dd, on, state, pivots, yields = _solve(
+                self.coefficient, answer, offset, load, active, self.state[part], partner
+            )
+            require_stable(flexible, answer.compliance[: len(gap), : len(gap)], on)
             dd = depth_change if depth_change is not None else dd
             du = answer.displacement(np.concatenate([f, tau]), dd)
-            return FrictionStep(du, dd, f, on, pivots, softened, yields, tau, state)
+            return FrictionStep(du, dd, f, on, pivots, flexible, stiffness=yields, tangential=tau, state=state)
+
+        return until_stable(attempt, zone, schur, gradient, curvature, previous_force, flexible)
 
     def accept(self, part: slice, step: FrictionStep) -> None:
         """Take over forces and states of a solution."""

@@ -217,7 +217,7 @@ class QuasiStatic:
             from fingerpad.mechanics.friction import Coulomb
 
             self.friction = Coulomb(friction, places)
-        self._factors = self._stiffness = self._found = self._nodal = self._touched = None
+        self._factors = self._flexible = self._stiffness = self._found = self._nodal = self._touched = None
         self._served: list[int] = []  # iterations of the steps that the factors have served
         self._set_zone(*(PER_NODE * end for end in skin.start))
         self.height = self._first_touch()
@@ -435,10 +435,14 @@ class QuasiStatic:
         rows, schur, reduced = self._rows(), self._narrowed.schur, self._narrowed.forward(space.to_equations(load))
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
         known = schur, reduced, rows.gap, rows.gradient, rows.curvature, self.contact_force[rows.place], self.active[rows.place]
+        # the geometric term of the gaps is part of the tangent, and kept as long as the rest of it
+        same = self._flexible is not None and self._flexible[0] is rows.zone and self._flexible[1] is schur
+        goal["flexible"] = self._flexible[2] if same else None
         if self.friction is None:
             step = solve_contact(rows.zone, *known, **goal)
         else:
             step = self.friction.solve(rows.zone, rows.place, *known, self._motion(rows.zone), partner=rows.partner, **goal)
+        self._flexible = None if step.softened else (rows.zone, schur, step.flexible)
         self._softened |= step.softened
         self._stiff = step.stiffness
         du = space.to_nodes(self._narrowed.backward(step.condensed_displacement))
