@@ -102,6 +102,10 @@ def _contact(out, found, state, passed, place, records, skin_x):
         outputs = np.flatnonzero(state == k)
         way = last.distance - first.distance
         before = first.distance
+        if frictional:
+            ratios = [_ratio(found, j) for j in (k - 1, k)]
+            states = [_spread(found, j, found["contact_state"][j]) for j in (k - 1, k)]
+            slipped = _spread(found, k, found["slip"][k])
         for i in outputs:
             here = Passage.at(first, last, (place[i] - first.distance) / way, x[i]) if passed[i] else None
             if here:
@@ -110,15 +114,13 @@ def _contact(out, found, state, passed, place, records, skin_x):
             if not frictional:
                 continue
             if here:
-                ratios = [_ratio(found, j) for j in (k - 1, k)]
-                ratio, most = here.value(*ratios), here.value(*np.abs(ratios))
-                both = here.value(*(_spread(found, j, found["contact_state"][j]) for j in (k - 1, k)))
+                ratio, most, both = here.value(*ratios), here.value(*np.abs(ratios)), here.value(*states)
                 # what slips in both states, and the same way, slips between them
                 slides = (both > 2 - 1e-9) & (np.abs(ratio) > most - 1e-9)
                 pressure = out["contact_pressure"][i]
                 out["tangential_traction"][i] = pressure * ratio
                 out["contact_state"][i] = np.where(slides, 2, 1) * (pressure > 0)
-            slip = _spread(found, k, found["slip"][k]) if passed[i] else found["slip"][k]
+            slip = slipped if passed[i] else found["slip"][k]
             out["slip"][i] = slip * (place[i] - before) / way * (out["contact_state"][i] == 2)
             before = place[i]
 

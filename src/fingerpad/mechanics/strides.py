@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -40,7 +40,7 @@ class Between:
     tolerance: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Touch:
     """The contact of one state: places ``x`` (ns,) m of the skin's nodes across, ``pressure`` (ns,) Pa, the contact's outermost
     ``edges`` m, how far the pad has come along the surface (``distance`` m), the drag over the force, and the share of the force
@@ -90,13 +90,8 @@ class Passage:
     @classmethod
     def at(cls, first: Touch, last: Touch, share: float, x: np.ndarray) -> Passage:
         """See the class."""
-        on = np.flatnonzero((first.pressure > 0) | (last.pressure > 0))
-        if not len(on):
-            return cls(first, last, share, slice(0, 0), None)
-        window = slice(max(on[0] - _MARGIN, 0), on[-1] + 1 + _MARGIN)
-        anchors = _anchors(first, last)
-        rising = all(np.all(np.diff(places[window]) > 0) for places in (first.x, last.x, x))
-        if anchors is None or not rising:
+        window, anchors = _way(first, last)
+        if anchors is None or not np.all(np.diff(x[window]) > 0):
             return cls(first, last, share, window, None)
         now = (1 - share) * anchors[0] + share * anchors[1]
         return cls(first, last, share, window, np.stack([_along(x[window], now, each) for each in anchors]))
@@ -125,6 +120,17 @@ class Passage:
                 x, known = np.insert(x, beyond[between], edges[between]), np.insert(known, beyond[between], 0.0)
             out[self.window] = np.interp(at, x, known)
         return moved
+
+
+@lru_cache(maxsize=4)
+def _way(first: Touch, last: Touch) -> tuple[slice, np.ndarray | None]:
+    """The nodes where there is contact in either of two states, and beside it, and their anchors."""
+    on = np.flatnonzero((first.pressure > 0) | (last.pressure > 0))
+    if not len(on):
+        return slice(0, 0), None
+    window = slice(max(on[0] - _MARGIN, 0), on[-1] + 1 + _MARGIN)
+    rising = all(np.all(np.diff(touch.x[window]) > 0) for touch in (first, last))
+    return window, _anchors(first, last) if rising else None
 
 
 def _anchors(first: Touch, last: Touch) -> np.ndarray | None:
