@@ -29,6 +29,7 @@ import pandas as pd
 import xarray as xr
 
 from fingerpad.measures.features import Feature, Trace
+from fingerpad.measures.kept import kept
 from fingerpad.measures.strokes import distance, loaded
 from fingerpad.planning.errors import COARSER, ORDER, REMAINS, STEPS_REMAIN, remains
 from fingerpad.results import scene_of
@@ -203,6 +204,7 @@ def at_output(time: float, read: Callable[[xr.Dataset, int], tuple[np.ndarray, n
     return Curve(lambda history: read(history, int(np.argmin(abs(history["time"].values - time)))), False, order)
 
 
+@kept
 def thinned(history: xr.Dataset, every: int = 2) -> xr.Dataset:
     """Every so many-th output of each leg, and the last of each; of a stroke, of its loaded outputs."""
     if "stroke_distance" in history and np.ptp(history["stroke_distance"].values):

@@ -12,6 +12,7 @@ import xarray as xr
 
 from fingerpad.contact_edge import edge_of
 from fingerpad.measures.features import PRESSURE, Trace, centre_node, centre_pressure, energy
+from fingerpad.measures.kept import kept
 from fingerpad.measures.skin import WINDOW, skin_curvature
 from fingerpad.results import scene_of
 from fingerpad.stimuli.curve import Segment
@@ -63,6 +64,7 @@ def convexities(history: xr.Dataset) -> dict[str, Segment]:
     return {f"{piece.curvature:.0f}": piece for piece in arcs(history) if piece.curvature > 0}
 
 
+@kept
 def loaded(history: xr.Dataset) -> xr.Dataset:
     """The history at its last output of each stroke distance: at the end of the press, and of every step that follows.
 
