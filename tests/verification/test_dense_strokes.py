@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from fingerpad import load_scene, plan, simulate
+from fingerpad.mechanics.contact import Flexibility
+from fingerpad.mechanics.stepping import QuasiStatic
 from fingerpad.mechanics.strides import Passage
 from fingerpad.planning.plan import Plan
 from fingerpad.results import states_found
@@ -94,3 +96,33 @@ def test_factors_in_single_precision_will_do(scene):
     assert off(one.contact_pressure.values, two.contact_pressure.values) < 2e-3
     assert off(one.strain_energy_density.values, two.strain_energy_density.values) < 2e-4
     assert not np.array_equal(one.contact_pressure.values, two.contact_pressure.values)
+
+
+def test_what_the_skin_yields_to_is_inverted_as_often_as_factors_change(scene, monkeypatch):
+    """Not in every iteration: the geometric term of the contact is kept with the factors. Answers are as if it was not."""
+    short, made = scene.varied({"motion[1].slide": 3e-3}), []
+    of = Flexibility.of.__func__
+    monkeypatch.setattr(Flexibility, "of", classmethod(lambda cls, *given: made.append(1) or of(cls, *given)))
+    run = Simulation(short, plan(short), None)
+    kept, inverted, iterations = run.run(None), len(made), run.stepper.total_iterations
+    assert run.stepper.factorisations <= inverted < 0.5 * iterations
+    iterate = QuasiStatic.iterate
+
+    def forgetting(stepper, *given, **named):
+        stepper._flexible = None
+        return iterate(stepper, *given, **named)
+
+    monkeypatch.setattr(QuasiStatic, "iterate", forgetting)
+    anew = Simulation(short, plan(short), None).run(None)
+    assert int(kept.newton_iterations.sum()) <= 1.1 * int(anew.newton_iterations.sum())
+    assert off(kept.strain_energy_density.values, anew.strain_energy_density.values) < 2e-4
+    assert off(kept.contact_pressure.values, anew.contact_pressure.values) < 2e-3
+
+
+def test_a_press_is_condensed_once():
+    """Onto what the plan says will touch, however little of it touches at first; a stroke follows its contact."""
+    scene = load_scene(SCENES / "ramp40_k210.yaml")
+    run = Simulation(scene, plan(scene), None)
+    wide = run.stepper._wide
+    run.run(None)
+    assert run.stepper._wide is wide
