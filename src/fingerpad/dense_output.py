@@ -69,7 +69,7 @@ def _through(place, values, kinks, at):
     (Fritsch and Carlson 1980)."""
     from scipy.interpolate import CubicHermiteSpline
 
-    slopes = np.concatenate([_slopes(place[each], values[each]) for each in np.split(np.arange(len(place)), kinks)])
+    slopes = _slopes(place, values, kinks)
     out = CubicHermiteSpline(place, values, slopes)(at)
     for ends in np.column_stack([kinks - 1, kinks]):
         inside = (at > place[ends[0]]) & (at < place[ends[1]])
@@ -79,13 +79,18 @@ def _through(place, values, kinks, at):
     return out
 
 
-def _slopes(place, values):
-    """Of a cubic spline through values (n, ...) at places (n,); through a few a parabola or a straight line."""
-    if len(place) < _LEAST:
-        return np.gradient(values, place, axis=0) if len(place) > 1 else np.zeros_like(values)
-    from scipy.interpolate import CubicSpline
+def _slopes(place, values, kinks):
+    """Of splines through values (n, ...) at places (n,), and where these would be of few states Akima's (1970; as modified in
+    MATLAB's makima), which no kink nearby misleads much."""
+    from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
-    return CubicSpline(place, values)(place, 1)
+    if len(place) < _LEAST:
+        return np.gradient(values, place, axis=0)
+    slopes = Akima1DInterpolator(place, values, method="makima")(place, 1)
+    for each in np.split(np.arange(len(place)), kinks):
+        if len(each) >= _LEAST:
+            slopes[each] = CubicSpline(place[each], values[each])(place[each], 1)
+    return slopes
 
 
 def _contact(out, found, state, passed, place, records, skin_x):
