@@ -271,7 +271,7 @@ def test_a_curve_has_a_kink_where_contact_is_lost_and_comes_back():
 def test_a_piece_of_contact_in_one_state_alone_leaves_no_wiggle():
     places, every = np.arange(1, 9) * 0.25e-3, np.arange(1, 41) * 0.05e-3
     found, time, records = made(places, np.setdiff1d(np.round(every, 9), np.round(places, 9)))
-    found["contact_pressure"][4, 3] = 1.0
+    found["contact_pressure"][6, 3] = 1.0
     out, _ = at_outputs(found, time, records, X, len(X) // 2)
     truth = 1e-3 + np.sin(2 * np.pi * out["stroke_distance"] / 4e-3) * 1e-4
     assert np.abs(out["indentation_depth"] - truth).max() < 1e-6
