@@ -115,19 +115,22 @@ def ridges(repeats: int = 3) -> list[list]:
 
 
 def strokes() -> list[list]:
-    """The five full strokes over the wavy surface, one after the other."""
+    """The five full strokes over the wavy surface, one after the other, and a factorisation after each."""
     scenes = [load_scene(SCENES / f"stroke_{speed}.yaml") for speed in (1, 5, 10, 20, 40)]
     plans = [plan(scene) for scene in scenes]
-    start = time.process_time()
-    histories = [simulate(scene, chosen) for scene, chosen in zip(scenes, plans, strict=True)]
-    total = time.process_time() - start
+    plain, data, right = _plain(Simulation(scenes[0], plans[0], None).body)
+    total, histories, solved = 0.0, [], []
+    for scene, chosen in zip(scenes, plans, strict=True):
+        start = time.process_time()
+        histories.append(simulate(scene, chosen))
+        total += time.process_time() - start
+        solved.append(seconds(lambda: (plain.factor(data), plain.forward(right)), 5)[1])
     steps, iterations, cuts = (
         sum(int(f(h)) for h in histories) for f in (states_found, lambda h: h.newton_iterations.sum(), lambda h: h.cutbacks.sum())
     )
     outputs = np.diff(histories[0].stroke_distance.values).max() * 1e3
     how = f"{plans[0].nodes} nodes, {steps} steps, {cuts} cuts, 80 mm each at 1 to 40 mm/s, outputs every {outputs:.2g} mm"
-    plain, data, right = _plain(Simulation(scenes[0], plans[0], None).body)
-    ratio = total / len(scenes) / seconds(lambda: (plain.factor(data), plain.forward(right)), 15)[1]
+    ratio = total / len(scenes) / statistics.median(solved)
     return [
         ["five full strokes", total, "s", "<= 240", total <= 240, 1, how],
         [
