@@ -48,6 +48,7 @@ EFFORT = ("cuts", "factorisations", "effort")
 """Measures of what a run took."""
 NOTED = {
     "energy": "the energy found",
+    "halving": "more steps",
     "det_f": "of its volume",
     "solver": "states near to one another",
     "checkerboard": "from node to node",
