@@ -217,6 +217,15 @@ def test_a_half_round_is_a_half_round(solid):
     assert layers_below(mesh) == [("cover", pytest.approx(1e-3)), ("foam", pytest.approx(7e-3 if solid else 3e-3))]
 
 
+def test_receptors_below_a_steep_skin_are_as_deep_along_its_normal():
+    """On a half-round their distance from its middle is known; the skin that is nearest to them is well aside."""
+    mesh = build_stack_mesh(stack(radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3), solid=True), SIZE)
+    depth, offset = np.array([0.3e-3, 1e-3, 1e-3, 2e-3]), np.array([5e-3, -5e-3, 0.0, 4e-3])
+    found = below_skin(mesh, depth, offset)
+    np.testing.assert_array_equal(found[:, 0], offset)
+    np.testing.assert_allclose(np.hypot(*found.T), 8e-3 - depth, rtol=0, atol=4e-6)  # between points of the skin
+
+
 def test_receptors_below_a_flat_and_a_partial_skin():
     mesh = own()
     depth, offset = np.array([0.3e-3, 2e-3]), np.array([4e-3, -6e-3])
