@@ -65,9 +65,10 @@ class NewtonSettings:
     at a scheduled step may take ``most_iterations``. Factors are kept within a step while what they leave is within ``chord``
     tolerances and they would end, as they go on, ``outlook`` iterations later; and from step to step until the steps that they
     served have taken ``patience`` iterations beyond the fewest of one, which is what new ones cost, while what answers at once in
-    a step has changed by no more than ``stiffening``. A zone ``loose`` times as wide as it need be is drawn together, and
-    ``spare`` times as wide condensed anew. A push that points farther than ``aside`` (rad) from the vertical is one at the side.
-    An iteration goes only as far as det F stays above ``squeeze`` of what it was, where that is at least a fifth of its way.
+    a step has changed by no more than ``stiffening``. A zone ``loose`` times as wide as it need be is drawn together, and, once
+    there has been a stroke, one ``spare`` times as wide condensed anew. A push that points farther than ``aside`` (rad) from the
+    vertical is one at the side. An iteration goes only as far as det F stays above ``squeeze`` of what it was, where that is at
+    least a fifth of its way.
     ``single``: the tangent is factored in single precision, as the next iteration corrects what that is wrong by; until a step
     does not converge.
     """
