@@ -201,7 +201,7 @@ def system(seed, definite):
     dofs = np.array([rng.choice(size, nd, replace=False) for _ in range(elements)])
     dofs.reshape(-1)[:size] = np.arange(size)
     dofs[rng.random(dofs.shape) < 0.0] = -1
-    pattern, dense = SymmetricPattern(dofs, size), np.zeros((size, size))
+    pattern, dense = SymmetricPattern(dofs, np.arange(size)[:, None]), np.zeros((size, size))
     data = pattern.new_data()
     rows, cols = np.triu_indices(nd)
     for e in range(elements):
@@ -278,10 +278,32 @@ def test_part_of_a_zone_is_the_zone_of_its_points():
     assert whole.part(slice(0, 6)) is whole
 
 
+def test_entries_of_elements_go_where_their_equations_meet():
+    """Of nodes with both components free, one, or none, in elements of any order; mutant: ranks left out of rows."""
+    rng = np.random.default_rng(5)
+    nodes, nen = 30, 4
+    cells = np.array([rng.choice(nodes, nen, replace=False) for _ in range(25)])
+    cells.reshape(-1)[:nodes] = rng.permutation(nodes)
+    equation = np.full((nodes, 2), -1)
+    free = rng.random(equation.shape) < 0.7
+    equation[free] = np.arange(free.sum())
+    pattern, dense = SymmetricPattern(cells, equation), np.zeros((free.sum(), free.sum()))
+    data = pattern.new_data()
+    for e, cell in enumerate(cells):
+        k = rng.normal(size=(2 * nen, 2 * nen))
+        np.add.at(data, pattern.scatter[e], (k + k.T)[np.triu_indices(2 * nen)])
+        at = np.concatenate([equation[cell, 0], equation[cell, 1]])
+        known = at >= 0
+        dense[np.ix_(at[known], at[known])] += (k + k.T)[np.ix_(known, known)]
+    np.testing.assert_allclose(pattern.matrix(data).toarray(), dense, atol=1e-12)
+    rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
+    assert (np.diff(rows * pattern.size + pattern.indices) > 0).all() and (pattern.indices >= rows).all()
+
+
 def test_node_without_element_is_named():
     """An equation that no element touches is an error, not a singular matrix later."""
     with pytest.raises(FactorisationError, match="no element"):
-        SymmetricPattern(np.array([[0, 1, 2, 3]]), 5)
+        SymmetricPattern(np.array([[0, 1, 2, 3]]), np.arange(5)[:, None])
 
 
 def test_condensed_equations_must_ascend():

@@ -45,14 +45,14 @@ def test_fallback_gives_the_same_answers(case, tmp_path, monkeypatch):
 
 def test_fallback_is_taken_where_there_is_no_pardiso(monkeypatch):
     monkeypatch.setattr(dense, "_loaded", lambda: None)
-    pattern = linear_solver.SymmetricPattern(np.array([[0, 1, 2]]), 3)
+    pattern = linear_solver.SymmetricPattern(np.array([[0, 1, 2]]), np.arange(3)[:, None])
     assert linear_solver.condensation(pattern, np.array([1])).name == "superlu"
 
 
 _THREADS_OF_MKL = """
 import numpy as np
 from fingerpad.mechanics.linear_solver import PardisoCondensation, SymmetricPattern
-solver = PardisoCondensation(SymmetricPattern(np.array([[0, 1]]), 2), np.array([0]))
+solver = PardisoCondensation(SymmetricPattern(np.array([[0, 1]]), np.arange(2)[:, None]), np.array([0]))
 print(solver._library.MKL_Get_Max_Threads())
 """
 

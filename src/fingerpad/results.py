@@ -374,17 +374,21 @@ def _write_netcdf(history: Arrays, path: Path) -> None:
             file.createDimension(name, size)
         file.setncatts(history.attrs)
         beside = {name: set(each.dims) for name, each in history.coordinates.items() if each.dims != (name,)}
+        made = {}
         for name, each in (history.variables | history.coordinates).items():
             text = each.values.dtype.kind in "UO"
             packed = "zlib" if each.values.ndim > 1 and not text else None
             fill = np.nan if each.values.dtype.kind == "f" else None
-            made = file.createVariable(name, str if text else each.values.dtype, each.dims, packed, complevel=4, fill_value=fill)
-            made.setncatts(each.attrs)
+            kind = str if text else each.values.dtype
+            made[name] = file.createVariable(name, kind, each.dims, packed, complevel=4, fill_value=fill)
+            made[name].setncatts(each.attrs)
             if name in history.variables:  # the convention of the CF metadata, by which xarray tells coordinates
                 belong = sorted(other for other, dims in beside.items() if dims <= set(each.dims))
                 if belong:
-                    made.setncattr("coordinates", " ".join(belong))
-            made[...] = each.values.astype(object) if text else each.values
+                    made[name].setncattr("coordinates", " ".join(belong))
+        # all after all, as a file is laid out anew at each change from the one to the other: a third of the time
+        for name, each in (history.variables | history.coordinates).items():
+            made[name][...] = each.values.astype(object) if each.values.dtype.kind in "UO" else each.values
 
 
 class ResultError(ValueError):

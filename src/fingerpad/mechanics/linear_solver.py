@@ -27,26 +27,49 @@ class FactorisationError(RuntimeError):
 class SymmetricPattern:
     """Upper-triangular CSR pattern of the free degrees of freedom and where each element entry goes.
 
+    Found from pairs of nodes, of which there are a quarter as many as of equations.
+
     Args:
-        element_dofs: (ne, nd) equation number of each local degree of freedom, -1 where prescribed.
-        size: number of equations.
+        cells: (ne, nen) nodes of the elements, whose entries are in the order of components, then nodes.
+        equation: (n, nc) equation number of each component of a node, ascending; -1 where prescribed.
+
+    Raises:
+        FactorisationError: a free node belongs to no element.
     """
 
-    def __init__(self, element_dofs: np.ndarray, size: int):
-        self.size = size
-        rows, cols = np.triu_indices(element_dofs.shape[1])
-        i, j = element_dofs[:, rows], element_dofs[:, cols]
-        key = np.minimum(i, j).astype(np.int64) * size + np.maximum(i, j)
-        used = (i >= 0) & (j >= 0)
-        keys, position = np.unique(key[used], return_inverse=True)
-        diagonal = np.arange(size, dtype=np.int64) * (size + 1)
-        if not np.isin(diagonal, keys, assume_unique=True).all():
+    def __init__(self, cells: np.ndarray, equation: np.ndarray):
+        nodes, components = equation.shape
+        free = equation >= 0
+        self.size = int(np.count_nonzero(free))
+        count = free.sum(axis=1)
+        rank = (free.cumsum(axis=1) - 1).astype(np.int32)  # of an equation among those of its node
+        rows, cols = np.triu_indices(cells.shape[1])
+        a, b = cells[:, rows].astype(np.int64), cells[:, cols].astype(np.int64)
+        keys, pair = np.unique(np.minimum(a, b) * nodes + np.maximum(a, b), return_inverse=True)
+        low, high = np.divmod(keys, nodes)
+        # in the rows of a node stand its own equations, then those of its higher neighbours
+        ends = np.concatenate([[0], np.cumsum(count[high])])
+        first, last = ends[np.searchsorted(low, np.arange(nodes))], ends[np.searchsorted(low, np.arange(nodes), side="right")]
+        if (last - first < count).any():
             raise FactorisationError("some nodes belong to no element")
-        self.nonzeros = len(keys)
-        self.scatter = np.full(key.shape, self.nonzeros, dtype=np.int32)  # the extra slot swallows prescribed entries
-        self.scatter[used] = position
-        self.indices = (keys % size).astype(np.int32)
-        self.indptr = np.searchsorted(keys // size, np.arange(size + 1)).astype(np.int32)
+        lengths = ((last - first)[:, None] - rank)[free]
+        self.indptr = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int32)
+        self.nonzeros = int(self.indptr[-1])
+
+        number = np.zeros((cells.shape[1],) * 2, dtype=np.int64)
+        number[rows, cols] = number[cols, rows] = np.arange(len(rows))  # of a pair of an element's nodes
+        at = np.concatenate([equation[cells, c] for c in range(components)], axis=1).astype(np.int32)
+        rows, cols = np.triu_indices(at.shape[1])
+        i, j = at[:, rows], at[:, cols]
+        row, col = np.minimum(i, j), np.maximum(i, j)
+        rank = rank[free]
+        # equations of a node's lower neighbours, in its rows
+        before = (ends[:-1] - first[low]).astype(np.int32)[pair.reshape(a.shape)]
+        place = (self.indptr[:-1] - rank)[row] + before[:, number[rows % cells.shape[1], cols % cells.shape[1]]] + rank[col]
+        self.scatter = np.where(row >= 0, place, np.int32(self.nonzeros))  # the extra slot swallows prescribed entries
+        self.indices = np.empty(self.nonzeros + 1, dtype=np.int32)
+        self.indices[self.scatter] = col
+        self.indices = self.indices[:-1].copy()
 
     def new_data(self) -> np.ndarray:
         """Zeroed coefficient storage (nonzeros + 1,); the last entry is the discard slot."""

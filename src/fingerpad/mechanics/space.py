@@ -110,11 +110,7 @@ class Space:
 
     @cached_property
     def pattern(self) -> SymmetricPattern:
-        return SymmetricPattern(self.element_equations(), self.size)
-
-    def element_equations(self) -> np.ndarray:
-        """(ne, 2 nen) equations in local order (all x, all y)."""
-        return np.concatenate([self.equation[self.cells, 0], self.equation[self.cells, 1]], axis=1)
+        return SymmetricPattern(self.cells, self.equation)
 
     def pressure_modes(self, elements: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Orthonormal pressure modes (n, nm) of ``elements`` (n,) at physical ``points`` (n, 2).

@@ -210,36 +210,46 @@ def _with_centre(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.
 def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The named boundary facets, material on the right, from the end nodes of the file's line elements."""
     edges = element_edges(mesh.cells, mesh.element)
-    unique, first, uses = np.unique(np.sort(edges[:, :2], axis=1), axis=0, return_index=True, return_counts=True)
-    boundary = {pair: edge for pair, edge, use in zip(map(tuple, unique.tolist()), first, uses, strict=True) if use == 1}
+    n = len(mesh.points)
 
-    def place(pair: tuple[int, int]) -> str:
-        x, y = mesh.points[list(pair)].mean(axis=0) * 1e3
+    def keys(ends: np.ndarray) -> np.ndarray:
+        """A number for two end nodes, in whichever order."""
+        return ends.min(axis=1).astype(np.int64) * n + ends.max(axis=1)
+
+    def place(key: int) -> str:
+        x, y = mesh.points[[key // n, key % n]].mean(axis=0) * 1e3
         return f"({x:.3f}, {y:.3f}) mm"
+
+    unique, first, uses = np.unique(keys(edges[:, :2]), return_index=True, return_counts=True)
+    boundary, numbers = unique[uses == 1], first[uses == 1]
+    free = np.ones(len(boundary), dtype=bool)
+
+    def facets(chosen: np.ndarray) -> np.ndarray:
+        return edges[numbers[chosen]][:, [1, 0, *range(2, edges.shape[1])]]
 
     curves = {}
     for name, lines in pairs.items():
-        chosen = []
-        for pair in dict.fromkeys(map(tuple, np.sort(lines, axis=1).tolist())):
-            if pair not in boundary:
-                raise MeshError(
-                    f"{path}: curve {name} has an edge at {place(pair)} that is not on the boundary, or in "
-                    f"two curves; {', '.join(pairs)} must be boundary edges, each in one curve"
-                )
-            chosen.append(boundary.pop(pair))
-        facets = edges[chosen]
-        curves[name] = facets[:, [1, 0, *range(2, facets.shape[1])]]
-    if boundary:
-        _require_joined(path, mesh, boundary, place)
-        facets = edges[list(boundary.values())]
-        curves[UNNAMED] = facets[:, [1, 0, *range(2, facets.shape[1])]]
+        wanted, order = np.unique(keys(lines), return_index=True)
+        wanted = wanted[np.argsort(order)]  # as they stand in the file
+        chosen = np.searchsorted(boundary, wanted)
+        there = chosen < len(boundary)
+        there[there] = (boundary[chosen[there]] == wanted[there]) & free[chosen[there]]
+        if not there.all():
+            raise MeshError(
+                f"{path}: curve {name} has an edge at {place(wanted[np.argmin(there)])} that is not on the boundary, or in "
+                f"two curves; {', '.join(pairs)} must be boundary edges, each in one curve"
+            )
+        free[chosen] = False
+        curves[name] = facets(chosen)
+    if free.any():
+        _require_joined(path, mesh, np.column_stack(np.divmod(boundary[free], n)), lambda pair: place(pair[0] * n + pair[1]))
+        curves[UNNAMED] = facets(np.flatnonzero(free))
     return curves
 
 
-def _require_joined(path: Path, mesh: PadMesh, boundary: dict, place) -> None:
-    """Two edges at one place are no boundary but a gap between elements that do not share their nodes."""
-    pairs = list(boundary)
-    middles = mesh.points[np.array(pairs)].mean(axis=1)
+def _require_joined(path: Path, mesh: PadMesh, pairs: np.ndarray, place) -> None:
+    """Two edges (m, 2) at one place are no boundary but a gap between elements that do not share their nodes."""
+    middles = mesh.points[pairs].mean(axis=1)
     double = twins(middles, _SAME_PLACE * np.ptp(mesh.points[:, 0]))
     if len(double):
         raise MeshError(
@@ -275,7 +285,7 @@ def _is_symmetric(mesh: PadMesh) -> bool:
     def same(rows: np.ndarray, labels: np.ndarray) -> bool:
         mine = np.column_stack((labels, np.sort(rows, axis=1)))
         mirrored = np.column_stack((labels, np.sort(image[rows], axis=1)))
-        return np.array_equal(np.unique(mine, axis=0), np.unique(mirrored, axis=0))
+        return np.array_equal(*(each[np.lexsort(each.T)] for each in (mine, mirrored)))
 
     return same(mesh.cells, mesh.region) and all(
         same(facets, np.zeros(len(facets), dtype=int)) for facets in mesh.curves.values()
