@@ -211,6 +211,14 @@ def test_results_without_out_go_to_a_folder_of_the_scene_s_name(tmp_path, scene,
     assert capsys.readouterr().out.endswith("results in results/my_scene\n")
 
 
+@pytest.mark.parametrize(("seconds", "said"), [(None, "1.5 s; "), (0.2, "1.5 s; "), (1.2, "1.5 s, 1.2 of them to compile, once; ")])
+def test_a_run_says_what_it_took_to_compile(seconds, said):
+    from fingerpad.cli import _closing_line
+
+    once = {} if seconds is None else {"compiling_s": seconds}
+    assert f"5 iterations, {said}" in _closing_line(SUMMARY | {"run": SUMMARY["run"] | once}, Path("results"), "gf")
+
+
 def test_quiet_says_nothing_and_vtu_adds_fields(tmp_path, solver, capsys):
     scene = write(tmp_path, changed(outputs={"snapshots": ["1 s"]}))
     assert main(["run", str(scene), "--out", str(tmp_path / "out"), "--quiet", "--vtu"]) == 0

@@ -58,6 +58,16 @@ def test_a_kept_loop_gives_what_the_compiled_one_gives(folder, extra, weights):
     assert answers[0] == answers[1] and len(list(folder.iterdir())) == 1
 
 
+def test_what_is_compiled_is_counted_as_such_and_what_is_kept_is_not(folder):
+    values, out = np.array([0.3, 0.7, 1.9]), np.zeros(3)
+    spent = []
+    for loop in (Loop("weighted", weighted, "counted"), Loop("weighted", never, "counted")):
+        before = machine_code.compiling()
+        loop(values, (values, 0.25), 2.0, None, out)
+        spent.append(machine_code.compiling() - before)
+    assert spent[0] > 0.01 and spent[1] == 0
+
+
 def test_other_types_sources_or_makers_are_compiled_anew(folder, monkeypatch):
     """Strides, sizes of integers and whatever else is compiled in are no matter of the arrays' contents."""
     values, out = np.array([0.3, 0.7, 1.9]), np.zeros(3)

@@ -16,7 +16,7 @@ from wrong_scenes import changed, write
 pytestmark = pytest.mark.unit
 
 SCENE = changed(motion=[{"press_to_force": "10 gf", "rate": "40 gf/s"}], accuracy={"skin_edge": "0.5 mm", "steps": 4})
-COSTS = ("cpu_s", "wall_s", "peak_rss_MB")
+COSTS = ("cpu_s", "compiling_s", "wall_s", "peak_rss_MB")
 """Of a summary and of the attribute `cost`: what differs between two runs of one scene."""
 
 

@@ -69,6 +69,18 @@ def test_provenance_and_cost_are_in_the_file(run):
     assert json.loads(attrs["plan"])["effects"]["symmetry"]["on"]
 
 
+def test_compiling_is_no_cost_of_a_simulation(monkeypatch):
+    """It is stated beside it; mutant: left in."""
+    from fingerpad import simulate, simulation
+
+    told = iter([100.0, 107.0])
+    monkeypatch.setattr(simulation, "compiling", lambda: next(told))
+    monkeypatch.setattr(simulation.time, "process_time", lambda: 50.0)
+    scene = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_depth": "0.1 mm"}], "accuracy": "draft"}
+    cost = json.loads(simulate(scene).attrs["cost"])
+    assert cost["compiling_s"] == 7.0 and cost["cpu_s"] == -7.0
+
+
 def test_half_model_is_unfolded(run):
     """Skin and pressure are those of the whole pad, symmetric to the last bit; receptors are read in other elements."""
     end = run[3].isel(time=-1)

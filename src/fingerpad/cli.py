@@ -590,10 +590,12 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
 
     last, run = totals["legs"][-1], totals["run"]
     force = last["force_N"] / parse_quantity(f"1 {unit}", "force")
+    once = run.get("compiling_s", 0.0)
+    compiled = f", {once:.2g} of them to compile, once" if once > 0.5 else ""
     return (
         f"depth {last['depth_mm']:.3g} mm, force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "
         f"contact {last['contact_width_mm']:.3g} mm wide; {run['steps']} steps, "
-        f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s; "
+        f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s{compiled}; "
         f"{_error_line(totals)}; results in {directory}"
     )
 

@@ -16,6 +16,7 @@ import importlib.util
 import pickle
 import platform
 import sys
+import time
 from collections.abc import Callable
 from functools import cache
 from importlib.machinery import EXTENSION_SUFFIXES, ExtensionFileLoader
@@ -62,6 +63,14 @@ class Loop:
         return linker.link(*kept) if kept else None
 
     def _compiled(self, kinds: tuple, arguments: tuple) -> Callable:
+        global _spent
+        start = time.process_time()
+        try:
+            return self._compiled_by_numba(kinds, arguments)
+        finally:
+            _spent += time.process_time() - start
+
+    def _compiled_by_numba(self, kinds: tuple, arguments: tuple) -> Callable:
         from numba import typeof
 
         dispatcher = self._compiler()
@@ -86,6 +95,14 @@ class Loop:
 
     def _file(self, kinds: tuple) -> str:
         return f"{self._name}.{self._made_of()}.{_digest(repr(kinds), _processor())[:16]}.loop"
+
+
+_spent = 0.0
+
+
+def compiling() -> float:
+    """Process time (s) that has gone into compiling loops since the process started."""
+    return _spent
 
 
 def sources(*files: str | Path) -> str:
