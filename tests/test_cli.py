@@ -211,7 +211,9 @@ def test_results_without_out_go_to_a_folder_of_the_scene_s_name(tmp_path, scene,
     assert capsys.readouterr().out.endswith("results in results/my_scene\n")
 
 
-@pytest.mark.parametrize(("seconds", "said"), [(None, "1.5 s; "), (0.2, "1.5 s; "), (1.2, "1.5 s, 1.2 of them to compile, once; ")])
+@pytest.mark.parametrize(
+    ("seconds", "said"), [(None, "1.5 s; "), (0.2, "1.5 s; "), (1.2, "1.5 s, 1.2 of them to compile, once;")]
+)
 def test_a_run_says_what_it_took_to_compile(seconds, said):
     from fingerpad.cli import _closing_line
 
