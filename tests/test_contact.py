@@ -298,6 +298,7 @@ def test_entries_of_elements_go_where_their_equations_meet():
     np.testing.assert_allclose(pattern.matrix(data).toarray(), dense, atol=1e-12)
     rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
     assert (np.diff(rows * pattern.size + pattern.indices) > 0).all() and (pattern.indices >= rows).all()
+    assert pattern.scatter.flags.c_contiguous and pattern.scatter.dtype == np.int32  # what the loops are compiled for
 
 
 def test_node_without_element_is_named():

@@ -66,7 +66,8 @@ class SymmetricPattern:
         # equations of a node's lower neighbours, in its rows
         before = (ends[:-1] - first[low]).astype(np.int32)[pair.reshape(a.shape)]
         place = (self.indptr[:-1] - rank)[row] + before[:, number[rows % cells.shape[1], cols % cells.shape[1]]] + rank[col]
-        self.scatter = np.where(row >= 0, place, np.int32(self.nonzeros))  # the extra slot swallows prescribed entries
+        place = np.where(row >= 0, place, np.int32(self.nonzeros))  # the extra slot swallows prescribed entries
+        self.scatter = np.ascontiguousarray(place)  # an element's entries side by side, as the loops run through them
         self.indices = np.empty(self.nonzeros + 1, dtype=np.int32)
         self.indices[self.scatter] = col
         self.indices = self.indices[:-1].copy()
