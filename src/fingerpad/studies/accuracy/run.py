@@ -200,11 +200,19 @@ RULER = Point("flat", rows=2)
 
 def measure_all(sweep: list[Point], scene: Scene) -> Iterator[dict[str, Any]]:
     """What :func:`measure` says of each point; each in a process of its own, with the kernels loaded before."""
+    processes = get_context("fork")
+    with processes.Pool(1) as pool:  # what compiling takes of memory is nobody's
+        pool.apply(_load_kernels, (sweep, scene))
+    _load_kernels(sweep, scene)
+    with processes.Pool(1, maxtasksperchild=1) as pool:
+        yield from pool.imap(partial(measure, scene=scene), sweep)
+
+
+def _load_kernels(sweep: list[Point], scene: Scene) -> None:
+    """Those of a sweep and of the yardstick, compiled if they are not kept."""
     for finite in {point.finite for point in sweep}:
         first = replace(sweep[0], rows=2, steps=5, finite=finite)
         _run(first, *discretised(first, scene)), _run(RULER, *discretised(RULER, _plate(scene)))
-    with get_context("fork").Pool(1, maxtasksperchild=1) as pool:
-        yield from pool.imap(partial(measure, scene=scene), sweep)
 
 
 def _plate(scene: Scene) -> Scene:
