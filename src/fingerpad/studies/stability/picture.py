@@ -149,7 +149,7 @@ def tally(part: pd.DataFrame) -> list[str]:
     """How many cases of a method ended how; ``part``: its rows of :func:`long`."""
     ends = part.drop_duplicates("case")["outcome"].value_counts()
     said = [f"{ends[outcome]} {text}" for outcome, text in OUTCOMES.items() if outcome in ends]
-    return said if "unsound" in ends or "wrong" in ends else [*said, "none fails silently"]
+    return said if "unsound" in ends or "wrong" in ends else [*said, "none silent"]
 
 
 # -- the picture --------------------------------------------------------------------------------------------------------------
