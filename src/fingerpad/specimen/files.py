@@ -229,8 +229,7 @@ def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str
 
     curves = {}
     for name, lines in pairs.items():
-        wanted, order = np.unique(keys(lines), return_index=True)
-        wanted = wanted[np.argsort(order)]  # as they stand in the file
+        wanted = np.unique(keys(lines))
         chosen = np.searchsorted(boundary, wanted)
         there = chosen < len(boundary)
         there[there] = (boundary[chosen[there]] == wanted[there]) & free[chosen[there]]
