@@ -389,6 +389,11 @@ def small_strain_errors():
 
 
 @number
+def small_strain_costs():
+    return several(table("figures/tables/accuracy").query("strain == 'small'")["cost (1 = default)"])
+
+
+@number
 def half_plane_worst():
     return digits(_without("elastic half-plane").max())
 

@@ -70,7 +70,8 @@ def stroke_of(scene: Any, uneven: bool) -> Stroke | None:
 class MeasuredErrors:
     """Largest relative error of depth, width, centre and peak pressure and strain energies, as the study of accuracy found it.
 
-    Those of the inferred pad (figures/tables/accuracy_planner.csv, and accuracy_strokes.csv). Between half widths errors are
+    Those of the inferred pad (figures/tables/accuracy_planner.csv, and accuracy_strokes.csv); of presses those of an earlier
+    version of that table where they were larger. Between half widths errors are
     interpolated in logarithms.
 
     Attributes:
