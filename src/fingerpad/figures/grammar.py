@@ -394,8 +394,7 @@ class Figure:
             panels = self.layout.draw(fig, frame, self)
             if self.extra:
                 self.extra(panels, frame)
-            style.letter(fig)
-            return fig
+            return style.finished(fig)
 
 
 # --- layouts ---------------------------------------------------------------------------------------------

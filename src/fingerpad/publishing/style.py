@@ -41,8 +41,8 @@ RC = {
     "ytick.major.width": 0.6, "xtick.major.size": 2.5, "ytick.major.size": 2.5, "xtick.minor.size": 1.5, "ytick.minor.size": 1.5,
     "xtick.major.pad": 2.5, "ytick.major.pad": 2.5, "lines.linewidth": 1.1, "lines.markersize": 4,
     "lines.solid_capstyle": "round", "legend.frameon": False, "figure.facecolor": "white", "savefig.facecolor": "white",
-    "axes.formatter.use_mathtext": True, "axes.formatter.limits": (-4, 5), "pdf.fonttype": 42, "mathtext.fontset": "dejavusans",
-    "hatch.linewidth": 0.4, "errorbar.capsize": 1.5,
+    "axes.formatter.limits": (-4, 5), "pdf.fonttype": 42, "mathtext.fontset": "dejavusans", "hatch.linewidth": 0.4,
+    "errorbar.capsize": 1.5,
 }  # fmt: skip
 
 SOLID, DASHED, DOTTED, DASH_DOT, LONG = "-", (0, (4, 1.8)), (0, (1, 1.4)), (0, (4, 1.5, 1, 1.5)), (0, (8, 2))
@@ -129,9 +129,7 @@ def styled(draw: Callable[[pd.DataFrame], Figure]) -> Callable[[pd.DataFrame], F
     @wraps(draw)
     def inner(frame: pd.DataFrame) -> Figure:
         with theme():
-            fig = draw(frame)
-            letter(fig)
-            return fig
+            return finished(draw(frame))
 
     return inner
 
@@ -206,6 +204,13 @@ def study_figure(title: str, note: Sequence[str], height: float, header: float =
     return sheet(title, wrapped(note, note_width(width)), height, header=header, width=width)
 
 
+def finished(fig: Figure) -> Figure:
+    """A picture whose panels are drawn, with their letters and the powers of ten of their axes."""
+    set_powers(fig)
+    letter(fig)
+    return fig
+
+
 def letter(fig: Figure) -> None:
     """Bold lower-case letters above the left end of the panels, if there is more than one; twins and insets have none, nor has
     a matrix of more panels than there are letters."""
@@ -219,6 +224,25 @@ def letter(fig: Figure) -> None:
     for tag, ax in zip("abcdefghijklmnopqrstuvwxyz", places.values(), strict=False):
         ax.annotate(tag, (0, 1), (-4, 5), "axes fraction", "offset points", ha="right", va="baseline", fontweight="bold",
                     annotation_clip=False)  # fmt: skip
+
+
+def set_powers(fig: Figure) -> None:
+    """Powers of ten beside an axis as mathematics, the ticks themselves as text: as mathematics they take a quarter of the time
+    of a picture, and look the same."""
+    from matplotlib.ticker import ScalarFormatter
+
+    class Powers(ScalarFormatter):
+        def get_offset(self):
+            self.set_useMathText(True)
+            try:
+                return super().get_offset()
+            finally:
+                self.set_useMathText(False)
+
+    for ax in [each for ax in fig.axes for each in (ax, *ax.child_axes)]:
+        for axis in (ax.xaxis, ax.yaxis):
+            if type(axis.get_major_formatter()) is ScalarFormatter:
+                axis.set_major_formatter(Powers())
 
 
 def in_kilo(axis: Axis) -> None:
