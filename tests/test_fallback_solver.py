@@ -37,8 +37,8 @@ def test_fallback_gives_the_same_answers(case, tmp_path, monkeypatch):
     found, truth = by("superlu", scene, monkeypatch), by("pardiso", scene, monkeypatch)
     for name in ("indentation_depth", "force", "tangential_force", "stored_energy", "contact_pressure", "strain_energy_density"):
         scale = max(np.abs(truth[name].values).max(), 1e-12)
-        # strokes are factored in single precision, and end where less than their tolerance is left out of balance
-        within = 1e-9 if case != "stroked" else 1e-4
+        # factored in single precision, they end where less than their tolerance is left out of balance, of strokes the larger
+        within = 1e-5 if case != "stroked" else 1e-4
         np.testing.assert_allclose(found[name].values, truth[name].values, atol=within * scale, rtol=0, err_msg=name)
     assert int(found.newton_iterations.sum()) == int(truth.newton_iterations.sum())
 

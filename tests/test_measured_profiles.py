@@ -5,10 +5,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from fingerpad import load_scene, plan, simulate
+from fingerpad import load_scene, plan, simulate, simulation
 from fingerpad.cli import main
 from fingerpad.documents import SceneError
-from fingerpad.mechanics import stepping
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.plan import PlanError, read_plan
 from fingerpad.results import summary
@@ -300,7 +299,7 @@ def test_the_advice_works(folder, monkeypatch):
     """Noise of micrometres every micrometre takes long as it is; the message names it and a smoothing with which it does not."""
     x, y, shape = measured(7)
     y = shape + 20 * (y - shape)
-    monkeypatch.setattr(stepping, "NewtonSettings", partial(stepping.NewtonSettings, most_iterations=20))
+    monkeypatch.setattr(simulation, "NewtonSettings", partial(simulation.NewtonSettings, most_iterations=20))
     with pytest.raises(NonConvergence, match='corners are 1 um apart, the nodes 134 um: stimulus.smooth: "269 um"') as caught:
         pressed(folder, x, y, "none")
     advised = str(caught.value).split("stimulus.smooth: ")[1].split(" or more")[0]

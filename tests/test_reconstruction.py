@@ -199,7 +199,7 @@ def test_moduli_read_as_instantaneous_are_a_factor_on_load_and_bulk_modulus():
     direct, scaled, other = (pads.of_press(simulate(scene.varied(mesh))) for scene in scenes)
     for name, unit in pads.MEASURES.items():
         factor = 1 if unit in pads.SCALE_FREE else left
-        assert factor * scaled[name] == pytest.approx(direct[name], rel=1e-6), name
+        assert factor * scaled[name] == pytest.approx(direct[name], rel=1e-5), name
     assert left * other["energy_915"] > 1.1 * direct["energy_915"]  # so the bulk modulus is an unknown of its own
 
 

@@ -392,7 +392,7 @@ def _write_netcdf(history: Arrays, path: Path) -> None:
 
 
 def _mostly_zero(values: np.ndarray) -> bool:
-    """Is it worth packing? What is solved for has digits to the last: packed it takes four times as long, for a fifth less room."""
+    """Is it worth packing? What is solved for has digits to the last: packed it takes four times the time, a fifth less room."""
     return np.count_nonzero(values) < values.size / 2
 
 

@@ -155,10 +155,9 @@ class Simulation:
         self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None) if fields else None
         friction = scene.friction if plan.effects["friction"].on else None
         observers = (self.receptors, self.fields) if fields else (self.receptors,)
-        settings = None
-        if plan.strokes:
-            soft = float((self.body.bulk / self.body.shear).max()) < _STIFF_IN_BULK
-            settings = NewtonSettings(force_tolerance=plan.newton_tolerance or NewtonSettings.force_tolerance, single=soft)
+        soft = float((self.body.bulk / self.body.shear).max()) < _STIFF_IN_BULK
+        tolerance = {"force_tolerance": plan.newton_tolerance} if plan.newton_tolerance else {}
+        settings = NewtonSettings(single=soft, **tolerance)
         self.stepper = QuasiStatic(self.body, self.skin, self.profile, settings, observers, friction=friction)
         self._require_room()
         for name, effect in EFFECTS.items():

@@ -1,6 +1,6 @@
 """Every case of the catalogue is stable by the default method, or fails cleanly; and the measures tell when it is not."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -241,8 +241,7 @@ def test_a_run_notes_pressure_that_alternates_but_not_that_of_an_edge(monkeypatc
 
 def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
     """Starved of iterations where nodes pop round a fillet it does; round an edge, starved as much, steps are only cut."""
-    settings = stepping.NewtonSettings(max_iterations=3, snap_iterations=0)
-    monkeypatch.setattr(stepping, "NewtonSettings", lambda: settings)
+    monkeypatch.setattr(simulation, "NewtonSettings", partial(stepping.NewtonSettings, max_iterations=3, snap_iterations=0))
     names = "bar, fillet 0.03 mm, 2 mm", "sharp bar, 2 mm"
     notes = [run(CATALOGUE[name], compare=False).history.attrs["notes"] for name in names]
     assert ["states near to one another" in each for each in notes] == [True, False]
@@ -250,16 +249,16 @@ def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
 
 def test_a_step_is_not_tried_for_ever(monkeypatch):
     case = CATALOGUE["needle through the pad"]
-    settings = stepping.NewtonSettings(most_iterations=30)
-    monkeypatch.setattr(stepping, "NewtonSettings", lambda: settings)
+    monkeypatch.setattr(simulation, "NewtonSettings", partial(stepping.NewtonSettings, most_iterations=30))
     found = run(case, compare=False)
     assert found.outcome == CLEAN and "Newton iterations did not suffice for a step cut" in found.message
 
 
 def test_a_run_that_stops_keeps_its_last_state_and_says_why(monkeypatch):
     """A solver starved of iterations fails cleanly, with the steps before; one that says nothing would not count as clean."""
-    settings = stepping.NewtonSettings(max_iterations=2, snap_iterations=0, max_halvings=0)
-    monkeypatch.setattr(stepping, "NewtonSettings", lambda: settings)
+    monkeypatch.setattr(
+        simulation, "NewtonSettings", partial(stepping.NewtonSettings, max_iterations=2, snap_iterations=0, max_halvings=0)
+    )
     found = run(CATALOGUE["nu 0.49999, flat"], compare=False)
     assert not found.completed and found.outcome == CLEAN and "try" in found.message
     monkeypatch.setattr(stepping.QuasiStatic, "_advice", lambda self, reason: "")

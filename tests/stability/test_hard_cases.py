@@ -4,14 +4,14 @@ Every case runs the default method through the same door a user has. "Sound" is 
 force that pushes, complementarity, det F well above zero and an energy balance within the trapezoidal rule's reach.
 """
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fingerpad import load_scene, simulate
+from fingerpad import load_scene, simulate, simulation
 from fingerpad.cli import main
-from fingerpad.mechanics import stepping
 from fingerpad.results import read_history, summary
 from fingerpad.scenes.scene import Cylinder, Discretisation, Hold, Layer, Layers, PressToDepth, PressToForce
 
@@ -98,8 +98,8 @@ accuracy: draft
 @pytest.fixture
 def starved(monkeypatch):
     """A solver that may iterate once and halve a step twice: enough for a light touch, not for 100 gram-weight."""
-    settings = stepping.NewtonSettings(max_iterations=1, snap_iterations=0, max_halvings=2)
-    monkeypatch.setattr(stepping, "NewtonSettings", lambda: settings)
+    starving = partial(simulation.NewtonSettings, max_iterations=1, snap_iterations=0, max_halvings=2)
+    monkeypatch.setattr(simulation, "NewtonSettings", starving)
 
 
 def test_failure_saves_the_last_state_and_names_the_cause(starved, tmp_path, capsys):

@@ -71,7 +71,7 @@ def _write_film(frames: list[np.ndarray], path: Path) -> None:
     from imageio_ffmpeg import write_frames  # here, for only films need it
 
     high, wide = frames[0].shape[:2]
-    exact = ["-crf", "34", "-b:v", "0", "-cpu-used", "4", "-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "webm"]
+    exact = "-crf 34 -b:v 0 -cpu-used 4 -threads 1 -fflags +bitexact -flags:v +bitexact -f webm".split()
     writer = write_frames(
         str(path), (wide, high), fps=1000 / FRAME_TIME, codec="libvpx-vp9", output_params=exact, macro_block_size=2, quality=None
     )

@@ -239,7 +239,7 @@ def set_powers(fig: Figure) -> None:
             finally:
                 self.set_useMathText(False)
 
-    for ax in [each for ax in fig.axes for each in (ax, *ax.child_axes)]:
+    for ax in [each for outer in fig.axes for each in (outer, *outer.child_axes)]:
         for axis in (ax.xaxis, ax.yaxis):
             if type(axis.get_major_formatter()) is ScalarFormatter:
                 axis.set_major_formatter(Powers())

@@ -44,7 +44,7 @@ class Limits:
     balance: float = limit(1e-3, "forces balanced within {:g}")
     symmetry: float = limit(1e-3, "its own mirror image within {:g}")
     effort: float = limit(4, "up to {:g} times its easy neighbour's iterations")
-    solver: float = limit(1e-6, "the other solver within {:g}")
+    solver: float = limit(1e-4, "the other solver within {:g}")
     reference: float = limit(1, "off a converged reference by up to {:g} times what it believes, or a draft may be")
 
     def described(self) -> str:
@@ -82,7 +82,8 @@ class Case:
 
     @property
     def allowed(self) -> Limits:
-        """Its limits. Strokes, factored in single precision, end where less than their tolerance is left out of balance."""
+        """Its limits. Factored in single precision, a run ends where less than its tolerance is left out of balance, of strokes
+        the larger one."""
         return replace(self.limits, solver=max(self.limits.solver, 1e-3)) if self.strokes else self.limits
 
     @property
