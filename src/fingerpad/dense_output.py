@@ -2,8 +2,9 @@
 section II.6, call that dense output).
 
 What the body does goes from state to state along cubic splines through them, twice continuously differentiable, for rates are
-asked of it: one a leg, and another wherever a piece of the contact has come or gone, which leaves a kink. The contact goes along
-with the surface (:mod:`fingerpad.mechanics.strides`).
+asked of it: one a leg, and another wherever a piece of the contact has come or gone, which leaves a kink. They are over the way
+of a stroke, else over time. The contact goes along with the surface (:mod:`fingerpad.mechanics.strides`); where nothing moves
+along it, it goes from one state to the next as its width does, over which the pressure of a growing contact is nearly straight.
 """
 
 from __future__ import annotations
@@ -21,38 +22,59 @@ _TAKEN = ("newton_iterations", "cutbacks")
 """What it took to find a state: between them nothing."""
 _LEAST = 4
 """States, through fewer of which goes no cubic."""
+_SAME = 1e-6
+"""Of a width, which has not changed if it has by less."""
 
 
-def at_outputs(found: dict[str, np.ndarray], time: np.ndarray, records: Sequence[Record], skin_x: np.ndarray, apex: int):
+def at_outputs(
+    found: dict[str, np.ndarray], time: np.ndarray, records: Sequence[Record], skin_x: np.ndarray, apex: int, half: bool = False
+):
     """The arrays of a history (states, ...) and its times (states,) s at all outputs.
 
     Args:
-        found: at the unloaded pad and each of ``records``. skin_x: (skin nodes,) m, undeformed. apex: the middle skin node.
+        found: at the unloaded pad and each of ``records``. skin_x: (skin nodes,) m, undeformed. apex: the middle skin node. half:
+        are the records' edges of the right half?
     """
     count = [len(record.passed) + 1 for record in records]
     state = np.concatenate([[0], np.repeat(np.arange(1, len(records) + 1), count)]).astype(int)
     passed = np.concatenate([[False], *(np.arange(n) < n - 1 for n in count)]).astype(bool)
     out = {"interpolated": passed.astype(np.int8)} | {name: values[state] for name, values in found.items()}
-    times = np.asarray(time)[state]
+    time = np.asarray(time)
+    times = time[state]
     if not passed.any():
         return out, times
     steps = [step for record in records for step in record.passed]
     times[passed] = [step.time for step in steps]
-    place = found["stroke_distance"][state]
+    place, share = found["stroke_distance"][state], np.ones(len(state))
     place[passed] = [step.distance for step in steps]
     smooth = [name for name in found if name not in (*_OF_THE_STEP, *_TAKEN, "stroke_distance")]
     for leg in np.unique(found["leg"][state[passed]]):
         own = np.flatnonzero(found["leg"] == leg)
         own = own[own > 0]
         knots, here = np.append(max(own[0] - 1, 0), own), passed & np.isin(state, own)
-        way = np.sign(found["stroke_distance"][own[-1]] - found["stroke_distance"][knots[0]]) or 1.0
+        way = np.sign(found["stroke_distance"][own[-1]] - found["stroke_distance"][knots[0]])
+        known, at = (way * found["stroke_distance"], way * place) if way else (time, times)
         kinks = _kinks(found["contact_pressure"][knots] > 0)
         for name in smooth:
-            out[name][here] = _through(way * found["stroke_distance"][knots], found[name][knots], kinks, way * place[here])
+            out[name][here] = _through(known[knots], found[name][knots], kinks, at[here])
+        last = state[here]
+        share[here] = (at[here] - known[last - 1]) / (known[last] - known[last - 1])
+        if not way:
+            width = found["contact_width"]
+            grown = width[last] - width[last - 1]
+            changed = np.abs(grown) > _SAME * width[last]
+            share[here] = np.where(
+                changed, (out["contact_width"][here] - width[last - 1]) / np.where(changed, grown, 1.0), share[here]
+            ).clip(0, 1)
     out["stroke_distance"] = place
     for name in _TAKEN:
         out[name][passed] = 0
-    _contact(out, found, state, passed, place, records, skin_x)
+    _contact(out, found, state, passed, share, records, skin_x, half)
+    pressed = passed & (place == found["stroke_distance"][state - 1])
+    pressed &= np.minimum(out["centre_pressure"], out["contact_pressure"][:, apex]) > 0
+    # a press does not take the middle out of the contact, where the spline is the better of the two
+    ratio = out["centre_pressure"][pressed] / out["contact_pressure"][pressed, apex]
+    out["contact_pressure"][pressed] *= ratio[:, None]
     out["peak_pressure"], out["centre_pressure"] = out["contact_pressure"].max(axis=1), out["contact_pressure"][:, apex]
     return out, times
 
@@ -86,33 +108,35 @@ def _slopes(place, values, kinks):
 
     if len(place) < _LEAST:
         return np.gradient(values, place, axis=0)
-    slopes = Akima1DInterpolator(place, values, method="makima")(place, 1)
-    for each in np.split(np.arange(len(place)), kinks):
+    pieces = np.split(np.arange(len(place)), kinks)
+    slopes = np.empty(values.shape)
+    if min(map(len, pieces)) < _LEAST:
+        slopes[:] = Akima1DInterpolator(place, values, method="makima")(place, 1)
+    for each in pieces:
         if len(each) >= _LEAST:
             slopes[each] = CubicSpline(place[each], values[each])(place[each], 1)
     return slopes
 
 
-def _contact(out, found, state, passed, place, records, skin_x):
-    """Pressure, traction, slip and state of the contact between states, into ``out``."""
+def _contact(out, found, state, passed, share, records, skin_x, half):
+    """Pressure, traction, slip and state of the contact between states, into ``out``; share: (outputs,) of the way from one."""
     x, frictional = skin_x + out["skin_displacement_x"], "contact_state" in found
 
     def touch(k):
-        edges, drag = (records[k - 1].edges, 0.0) if k else ((np.nan, np.nan), 0.0)
+        edges = records[k - 1].edges if k else (np.nan, np.nan)
+        edges = (-edges[1], edges[1]) if half else edges
         moved = skin_x + found["skin_displacement_x"][k]
-        return Touch(moved, found["contact_pressure"][k], edges, found["stroke_distance"][k], drag)
+        return Touch(moved, found["contact_pressure"][k], edges, found["stroke_distance"][k], 0.0)
 
     for k in np.unique(state[passed]):
         first, last = touch(k - 1), touch(k)
-        outputs = np.flatnonzero(state == k)
-        way = last.distance - first.distance
-        before = first.distance
+        outputs, before = np.flatnonzero(state == k), 0.0
         if frictional:
             ratios = [_ratio(found, j) for j in (k - 1, k)]
             states = [_spread(found, j, found["contact_state"][j]) for j in (k - 1, k)]
             slipped = _spread(found, k, found["slip"][k])
         for i in outputs:
-            here = Passage.at(first, last, (place[i] - first.distance) / way, x[i]) if passed[i] else None
+            here = Passage.at(first, last, share[i], x[i]) if passed[i] else None
             if here:
                 for name in ("contact_pressure", "contact_pressure_smoothed"):
                     out[name][i] = here.pressure(*found[name][[k - 1, k]])
@@ -126,8 +150,8 @@ def _contact(out, found, state, passed, place, records, skin_x):
                 out["tangential_traction"][i] = pressure * ratio
                 out["contact_state"][i] = np.where(slides, 2, 1) * (pressure > 0)
             slip = slipped if passed[i] else found["slip"][k]
-            out["slip"][i] = slip * (place[i] - before) / way * (out["contact_state"][i] == 2)
-            before = place[i]
+            out["slip"][i] = slip * (share[i] - before) * (out["contact_state"][i] == 2)
+            before = share[i]
 
 
 def _ratio(found, k):

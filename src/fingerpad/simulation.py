@@ -319,7 +319,7 @@ class Simulation:
         plan = self.plan
         half_width = min(width / 2, plan.contact.narrowest or np.inf)
         around = plan.mesh_size and plan.mesh_size.skin_edge
-        steps = plan.steps_per_leg / plan.stride if plan.timed or plan.strokes else None
+        steps = plan.states_per_leg if plan.timed or plan.strokes else None
         found = estimated_error(
             plan.contact_edge,
             half_width or _NO_CONTACT,
@@ -459,7 +459,7 @@ class Simulation:
         widths = out["contact_width"]
         pressures = [(out["contact_pressure"][k + 1], out["contact_pressure_smoothed"][k + 1]) for k in _leg_ends(records)]
         time_found = np.array([0.0] + [record.time for record in records])
-        out, times = at_outputs(out, time_found, records, self.whole.points[chain, 0], apex)
+        out, times = at_outputs(out, time_found, records, self.whole.points[chain, 0], apex, self.mesh.half)
         coordinates = {
             "time": times,
             "receptor_depth": self.depth,

@@ -154,12 +154,12 @@ def _anchors(first: Touch, last: Touch) -> np.ndarray | None:
 
 
 def _same(edges: np.ndarray, then: np.ndarray, along: float) -> dict[int, int]:
-    """Which edges (k,) m, all left or all right, are which then: nearest to one another, and not far."""
+    """Which edges (k,) m, all left or all right, are which then: nearest to one another and, if the surface moves, not far."""
     if not len(edges) or not len(then):
         return {}
-    apart = np.abs(then - edges[:, None] - along / 2)
+    apart, far = np.abs(then - edges[:, None] - along / 2), _NOT_FAR * abs(along) if along else np.inf
     nearest, back = apart.argmin(axis=1), apart.argmin(axis=0)
-    return {i: int(j) for i, j in enumerate(nearest) if back[j] == i and apart[i, j] <= _NOT_FAR * abs(along)}
+    return {i: int(j) for i, j in enumerate(nearest) if back[j] == i and apart[i, j] <= far}
 
 
 def _along(x: np.ndarray, now: np.ndarray, then: np.ndarray) -> np.ndarray:
@@ -191,7 +191,7 @@ class Strides:
     def __init__(self, steps: Iterator[Step], between: Between | None = None):
         self._steps, self._between = iter(steps), between
         self._waiting: deque[Step] = deque()
-        self._taken, self._wanted, self._at, self._leg = 0, 0.0, 0.0, -1
+        self._taken, self._wanted, self._at, self._leg, self._most = 0, 0.0, 0.0, -1, 0
 
     def next(self) -> tuple[Step, tuple[Step, ...]] | None:
         """The next step, and the scheduled ones that it passes; None after the last."""
@@ -208,7 +208,7 @@ class Strides:
             if taken and abs(step.distance - self._at) > self._wanted * (1 + 1e-9):
                 break
             taken.append(step)
-            if step.solved or self._between is None:
+            if step.solved or len(taken) == self._most:
                 break
         self._taken = len(taken)
         last = taken[-1]
@@ -233,11 +233,12 @@ class Strides:
         """Make the stride half as long; False where it passes nothing."""
         if self._taken < 2:
             return False
-        self._wanted = abs(self._waiting[self._taken // 2 - 1].distance - self._at)
+        self._most = self._taken // 2
+        self._wanted = abs(self._waiting[self._most - 1].distance - self._at)
         return True
 
     def found(self, step: Step) -> None:
         """A state has been found at the end of the stride."""
         for _ in range(self._taken):
             self._waiting.popleft()
-        self._at = step.distance
+        self._at, self._most = step.distance, 0

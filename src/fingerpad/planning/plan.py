@@ -79,7 +79,8 @@ class Plan:
         once: whether it is tried for once only. unbounded_peak: whether the profile has a true edge, where pressure has no bound
         and a peak is the mesh's. specimen: sentences on what is touched, and what of it the scene left out. surface: what the
         mesh makes of a measured profile. stride: so many steps are made one. strokes: does the pad move along the surface, so
-        that errors are of a way?
+        that errors are of a way? every: of so many outputs of presses and holds a state is found at one, for more are asked for
+        than the accuracy needs.
     """
 
     effects: dict[str, Effect]
@@ -108,6 +109,7 @@ class Plan:
     stride: int = 1
     strokes: bool = False
     outputs: int = 0
+    every: int = 1
 
     @property
     def covers(self) -> str:
@@ -134,9 +136,14 @@ class Plan:
         return 3e5 + (self.outputs + 1) * each_time + (snapshots + 1) * nodes * (200 if fields else 40)
 
     @property
-    def stepping(self) -> tuple[int, bool, float | None, int]:
-        """What :func:`schedule` needs to know: steps of each leg, does time matter, longest step of a slide (m), stride."""
-        return self.steps_per_leg, self.timed, self.slide_step, self.stride
+    def stepping(self) -> tuple[int, bool, float | None, int, int]:
+        """What :func:`schedule` needs to know: steps of a leg, does time matter, longest step of a slide (m), stride, every."""
+        return self.steps_per_leg, self.timed, self.slide_step, self.stride, self.every
+
+    @property
+    def states_per_leg(self) -> float:
+        """As many steps of a leg as its time error is of."""
+        return self.steps_per_leg / (self.stride * self.every)
 
     @property
     def between(self) -> tuple[float, float] | None:
@@ -188,6 +195,7 @@ class Plan:
             "steps_per_leg": self.steps_per_leg,
             "slide_step_SI": self.slide_step,
             "stride": self.stride,
+            "every": self.every,
             "timed": self.timed,
             "small_strain_error": self.small_strain_error,
             "specimen": list(self.specimen),
@@ -216,6 +224,7 @@ class Plan:
             data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["least_error"],
             data["error_from"], data["asked_error"], data["once"], data["unbounded_peak"], tuple(data["specimen"]),
             Surface(**data["surface_SI"]), data["stride"], data.get("strokes", False), known.get("outputs", known["steps"]),
+            data.get("every", 1),
         )  # fmt: skip
 
     def write(self, path: str | Path) -> None:
@@ -267,14 +276,15 @@ def plan(
     effects = _decided(case)
     ridges, state = scene.specimen.ridges if effects["ridges"].on else None, viscoelasticity.moduli_state(case)
     timed = effects["viscoelasticity"].on
-    steps_per_leg, slide_step = preset.steps, preset.slide_step
+    steps_per_leg, slide_step, every = preset.steps, preset.slide_step, 1
     if by_hand and by_hand.steps:
         steps_per_leg, slide_step = max(1, round(by_hand.steps / len(scene.motion))), None
     elif timed:
         steps_per_leg = max(steps_per_leg, scene.outputs.per_leg or 0)
-    scheduled = list(schedule(scene, steps_per_leg, timed, slide_step=slide_step))
+        every = steps_per_leg // preset.steps
+    scheduled = list(schedule(scene, steps_per_leg, timed, slide_step, every=every))
     outputs, steps = len(scheduled), expected_states(scheduled, slide_step)
-    time, narrowest, raised = steps_per_leg if timed or moves else None, earliest_half_width(scene, contact, timed), ""
+    time, narrowest, raised = steps_per_leg / every if timed or moves else None, earliest_half_width(scene, contact, timed), ""
     if external is not None:
 
         def on_mesh(mesh: PadMesh) -> float:
@@ -330,7 +340,7 @@ def plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
         linear + mesh, _cost(nodes, steps, effects, rules), linear, max(at_edges, at_receptors),
         max(sources, key=sources.get), scene.tolerance, scene.once, peak_is_unbounded(profile, at_edge, rounding, rules),
-        (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface, strokes=moves, outputs=outputs,
+        (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface, strokes=moves, outputs=outputs, every=every,
     )  # fmt: skip
 
 
@@ -361,7 +371,7 @@ def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER
 
     An external mesh keeps its edges: linear quads are solved as quadratic ones and the other way round, all others as they are.
     """
-    scheduled = list(schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride))
+    scheduled = list(schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride, own.every))
     steps = expected_states(scheduled, own.slide_step, stride)
     out = replace(own, stride=stride, steps=steps, outputs=len(scheduled))
     if own.mesh_size is not None:

@@ -31,7 +31,15 @@ NEWTON = 15.0
 """1/m: the force that may be left out of balance in a stroke, relative, over the skin's edge."""
 
 
-def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | None = None, stride: int = 1, present=None):
+def schedule(
+    scene: Scene,
+    steps_per_leg: int,
+    timed: bool,
+    slide_step: float | None = None,
+    stride: int = 1,
+    every: int = 1,
+    present=None,
+):
     """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`).
 
     A steady press is one step, which is cut where Newton's method does not converge. Friction remembers how it was loaded, and
@@ -49,6 +57,7 @@ def schedule(scene: Scene, steps_per_leg: int, timed: bool, slide_step: float | 
         increments=min(steps_per_leg, _MOST_INCREMENTS if on_the_way else _ROUND_EDGES if scene.stimulus.singular else 1),
         parts=partial(_parts, scene, slide_step) if slide_step else None,
         stride=stride,
+        every=every,
     )
 
 

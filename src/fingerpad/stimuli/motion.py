@@ -101,7 +101,7 @@ class Leg(Strict):
     Attributes:
         key: its name in a scene. presses: does it press to a target, so that a programme may begin with it? needs_contact: is it
         senseless when nothing is pressed? releases: is nothing pressed after it? loads: does it deform the skin? strokes: does it
-        rub the skin? fresh: are its steps?
+        rub the skin? fresh: are its steps? early: share of its outputs, from the first, that need a state each.
         force, depth: N, m, which it presses to. along: m, its way along the surface. kept: "force" or "depth" on that way. speed:
         m/s, None for a steady leg, or one that has none; every leg says it.
     """
@@ -113,6 +113,7 @@ class Leg(Strict):
     loads: ClassVar[bool] = True
     strokes: ClassVar[bool] = False
     fresh: ClassVar[bool] = False
+    early: ClassVar[float] = 1.0
     force: ClassVar[float | None] = None
     depth: ClassVar[float | None] = None
     along: ClassVar[float] = 0.0
@@ -150,6 +151,8 @@ class Leg(Strict):
 LEGS: dict[str, type[Leg]] = {}
 
 _PUSH = ": the stimulus must press into the skin"
+_EARLY = 0.25
+"""Of a press, in which the contact grows as the root of what has passed, and a curve through few of its states would be off."""
 
 
 def _ramp(start: float, end: float, speed: float | None, how: Stepping) -> tuple[list[float], np.ndarray, float | None]:
@@ -169,6 +172,7 @@ class PressToForce(Leg):
     """Press until the force is reached."""
 
     presses = True
+    early = _EARLY
 
     press_to_force: quantity("force", note=_PUSH)
     """Normal force at the end of the leg."""
@@ -199,6 +203,7 @@ class PressToDepth(Leg):
     """Press until the indentation depth is reached."""
 
     presses = True
+    early = _EARLY
 
     press_to_depth: quantity("length", note=_PUSH)
     """Depth of the stimulus below first touch at the end of the leg."""
@@ -226,6 +231,7 @@ class Hold(Leg):
     """Keep what the leg before prescribed."""
 
     loads = False
+    early = 0.0
 
     hold: Time
     """Duration."""
@@ -439,6 +445,7 @@ def programme(
     increments: int = 1,
     parts: Callable[[np.ndarray], np.ndarray] | None = None,
     stride: int = 1,
+    every: int = 1,
 ) -> Iterator[Step]:
     """Steps of a motion programme, leg by leg.
 
@@ -454,6 +461,7 @@ def programme(
         parts: into how many (k,) the longest steps of a slide are cut by outputs, by their place (k,) m along the surface. Where
             it is given, states need to be found only at the end of a slide and at snapshots.
         stride: so many steps of a leg are made one, but for those that press anew.
+        every: at one of so many outputs of a press or hold, once the early ones are over, and at snapshots a state must be found.
     """
     how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
     time, at, last, wanted = 0.0, Goal(None, None, 0.0), None, sorted(snapshots)
@@ -469,7 +477,9 @@ def programme(
                 at = _between(at, goal, (cut - begin) / (time - begin))
                 yield Step(number, cut, cut - begin, *at)
                 begin = cut
-            solved = not passes or count == len(goals) or among(wanted, time)
+            left = len(goals) - count
+            needed = not left if passes else count <= leg.early * len(goals) or left % every == 0
+            solved = needed or among(wanted, time)
             yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh, solved=solved)
             at = goal
 
