@@ -7,7 +7,7 @@ import pytest
 
 from fingerpad.dense_output import at_outputs
 from fingerpad.mechanics.strides import Between, Passage, Strides, Touch, missed
-from fingerpad.stimuli.motion import STEADY, Step
+from fingerpad.stimuli.motion import STEADY, Hold, Lift, PressToForce, Step, programme
 
 pytestmark = pytest.mark.unit
 
@@ -275,6 +275,64 @@ def test_a_piece_of_contact_in_one_state_alone_leaves_no_wiggle():
     out, _ = at_outputs(found, time, records, X, len(X) // 2)
     truth = 1e-3 + np.sin(2 * np.pi * out["stroke_distance"] / 4e-3) * 1e-4
     assert np.abs(out["indentation_depth"] - truth).max() < 1e-6
+
+
+def pressed(times, passed):
+    """Arrays at states of a press whose contact grows as Hertz's does under a force that rises evenly, and their records."""
+    time = np.array([0.0, *times])
+    width = 4e-3 * np.sqrt(time)
+    contact = np.array([hertz(half_width=max(w / 2, 1e-9), peak=1e7 * w) * (w > 0) for w in width])
+    kept = {name: np.zeros(len(time)) for name in ("stroke_distance", "residual", "newton_iterations", "cutbacks")}
+    found = kept | {"leg": np.zeros(len(time), int), "skin_displacement_x": np.zeros(contact.shape), "force": 10 * time}
+    found |= {"contact_width": width, "contact_pressure": contact, "contact_pressure_smoothed": contact.copy()}
+    found |= {"peak_pressure": 1e7 * width, "centre_pressure": contact[:, len(X) // 2].copy()}
+    records = []
+    for k, end in enumerate(times):
+        steps = tuple(Step(0, t, 0.0, force=10 * t, solved=False) for t in passed if time[k] < t < end)
+        records.append(SimpleNamespace(passed=steps, edges=(0.0, width[k + 1] / 2)))
+    return found, time, records
+
+
+def test_a_press_goes_from_state_to_state_as_its_width_does():
+    """Mutants: the contact goes evenly in time; its edges are not told apart from nodes that come in; the right half for all."""
+    every = np.arange(1, 41) / 40
+    solved = np.append(every[:10], every[11::2])
+    out, times = at_outputs(*pressed(solved, np.setdiff1d(every, solved)), X, len(X) // 2, half=True)
+    assert np.allclose(times, np.append(0, every)) and out["interpolated"].sum() == 15
+    width = 4e-3 * np.sqrt(times)
+    assert np.abs(out["contact_width"] - width).max() < 1e-4 * width[-1] and np.allclose(out["force"], 10 * times)
+    assert np.abs(out["peak_pressure"] - 1e7 * width).max() < 1e-4 * 1e7 * width[-1]
+    for k in np.flatnonzero(out["interpolated"]):
+        truth = hertz(half_width=width[k] / 2, peak=1e7 * width[k])
+        assert off(out["contact_pressure"][k], truth) < 0.002
+        assert np.array_equal(out["contact_pressure"][k] > 0, truth > 0)
+        assert out["contact_pressure"][k, len(X) // 2] == pytest.approx(out["centre_pressure"][k], rel=1e-12)
+
+
+def test_states_of_a_press_are_found_where_its_accuracy_needs_them():
+    """Of 40 outputs of a press the first ten, then every fourth and snapshots, of a hold every fourth; of a lift all."""
+    press, hold = PressToForce(press_to_force=1.0, rate=2.0), Hold(hold=2.0)
+    legs = press, hold, Lift(lift=1e-3)
+    steps = list(programme(legs, steps=40, contact_length=0.01, snapshots=[0.4125], every=4))
+    found = [[k for k, step in enumerate((s for s in steps if s.leg == leg), start=1) if step.solved] for leg in range(3)]
+    assert found == [[*range(1, 11), 12, 16, 20, 24, 28, 32, 33, 36, 40], [*range(4, 41, 4)], [*range(1, 41)]]
+    assert all(step.solved for step in programme(legs, steps=40, contact_length=0.01))
+
+
+def test_strides_pass_what_need_not_be_found_of_a_press():
+    """However far apart states of a stroke may be; what goes wrong is tried again with half as many outputs, then with none."""
+    steps = [Step(0, 0.1 * k, 0.1, force=float(k), solved=k in (1, 8)) for k in range(1, 9)]
+    for between in (None, Between(0.25e-3, 0.01)):
+        strides = Strides(iter(steps), between)
+        strides.found(strides.next()[0])
+        step, passed = strides.next()
+        assert (step.force, len(passed)) == (8.0, 6) and step.dt == pytest.approx(0.7)
+        sizes = []
+        while strides.shorten():
+            sizes.append(len(strides.next()[1]) + 1)
+        assert sizes == [3, 1]
+        strides.found(strides.next()[0])
+        assert len(strides.next()[1]) == 5
 
 
 def test_nothing_changes_where_every_output_was_found():
