@@ -10,6 +10,7 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.optimize import isotonic_regression
 
 import synthetic
 from drawn import RATES, REFERENCE, frame, picture, results, saved
@@ -222,6 +223,14 @@ def test_phases_end_with_the_top_of_the_ramp_and_the_steady_state():
 def test_labels_keep_their_order_and_distance(values):
     placed = spread(values, 0.5, 0, 10)
     assert (np.diff(placed) >= 0.5 - 1e-12).all() and placed.min() >= 0 and placed.max() <= 10 + 1e-12
+
+
+def test_labels_are_as_near_to_what_they_name_as_their_order_allows():
+    rng = np.random.default_rng(3)
+    for count in (1, 2, 9, 20):
+        values = np.sort(rng.normal(size=count))
+        truth = isotonic_regression(values - 0.3 * np.arange(count)).x + 0.3 * np.arange(count)
+        np.testing.assert_allclose(spread(values, 0.3, -1e9, 1e9), truth, atol=1e-12)
 
 
 # --- geometry ------------------------------------------------------------------------------------------

@@ -258,14 +258,16 @@ def in_kilo(axis: Axis) -> None:
 def spread(values: Sequence[float], gap: float, low: float, high: float) -> np.ndarray:
     """Positions at least `gap` apart, in the order of `values` and closest to them (least squares).
 
-    They stay within ``low .. high`` where there is room. Used to place direct labels. Ties keep their order.
+    They stay within ``low .. high`` where there is room. Used to place direct labels. Ties keep their order. What is closest is
+    an isotonic regression, by the formula of largest least means (Barlow, Bartholomew, Bremner and Brunk 1972): scipy's takes a
+    third of a second to import, for a dozen labels.
     """
-    from scipy.optimize import isotonic_regression  # here, for it is slow to import
-
     values = np.asarray(values, float)
-    order = np.argsort(values, kind="stable")
-    steps = gap * np.arange(len(values))
-    shifted = isotonic_regression(values[order] - steps).x
+    order, count = np.argsort(values, kind="stable"), np.arange(len(values))
+    steps = gap * count
+    sums = np.append(0.0, np.cumsum(values[order] - steps))
+    means = (sums[1:] - sums[:-1, None]) / np.maximum(count - count[:, None] + 1, 1)
+    shifted = np.array([means[: k + 1, k:].min(axis=1).max() for k in count])
     shifted = np.clip(shifted, low, max(low, high - steps[-1]))
     out = np.empty_like(values)
     out[order] = shifted + steps
