@@ -329,7 +329,7 @@ def test_a_leg_that_takes_time_has_as_many_outputs_as_are_asked_for(folder):
 
     def steps(outputs, **changes):
         chosen = fingerpad.plan(load_scene(write(folder, changed(outputs=outputs, accuracy="draft", **changes))))
-        return chosen.steps_per_leg, chosen.steps
+        return chosen.steps_per_leg, chosen.outputs
 
     usual = steps({})
     assert steps({"per_leg": 2}) == usual and usual[0] < 64 and steps({"per_leg": 64}) == (64, 128)

@@ -7,6 +7,7 @@ import pytest
 
 from fingerpad import load_scene, plan, simulate
 from fingerpad.results import leg_ends, states_found
+from fingerpad.studies.accuracy.edges import kinks
 
 pytestmark = pytest.mark.verification
 
@@ -38,6 +39,7 @@ def test_outputs_between_states_are_those_that_are_solved_for(surface):
     assert (apart < 0.03 * np.linalg.norm(solved["contact_pressure"].values, axis=1) + 1e-9).all()
     assert found.newton_iterations.sum() < 0.8 * solved.newton_iterations.sum()
     assert (leg_ends(found)["interpolated"] == 0).all()
+    assert max(kinks(found).values()) < 3e-3
 
 
 def test_no_more_states_than_the_accuracy_needs_unless_steps_are_given():

@@ -86,14 +86,15 @@ def alternation(history: xr.Dataset) -> float:
 
 
 def pressed(scene: Scene, share: float = 1.0, sized: Callable[[MeshSize], MeshSize] = lambda size: size) -> xr.Dataset:
-    """The history of a ramp and hold with outputs that are close enough to see kinks, on its own mesh or one of another size."""
+    """The history of a ramp and hold with outputs that are close enough to see kinks, a state at each, for splines between states
+    would hide some; on its own mesh or one of another size."""
     from fingerpad.scenes.scene import Receptors
 
     receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
     made = scene.with_accuracy("thesis").varied({"outputs.receptors": receptors, "outputs.per_leg": OUTPUTS})
     chosen = plan(made)
     with smoothed(share):
-        return simulate(made, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True))
+        return simulate(made, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True, every=1))
 
 
 def everywhere(size: MeshSize) -> MeshSize:
