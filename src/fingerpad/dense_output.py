@@ -4,7 +4,7 @@ section II.6, call that dense output).
 What the body does goes from state to state along cubic splines through them, twice continuously differentiable, for rates are
 asked of it: one a leg, and another wherever a piece of the contact has come or gone, which leaves a kink. They are over the way
 of a stroke, else over time. The contact goes along with the surface (:mod:`fingerpad.mechanics.strides`); where nothing moves
-along it, it goes from one state to the next as its width does, over which the pressure of a growing contact is nearly straight.
+along it, it is as wide as splines say, and nodes that stay in it have curves of their own.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ _OF_THE_STEP = ("leg", "residual", "complementarity_error", "energy_balance_erro
 """What an output has of the state it leads to."""
 _TAKEN = ("newton_iterations", "cutbacks")
 """What it took to find a state: between them nothing."""
+_PRESSURES = ("contact_pressure", "contact_pressure_smoothed")
 _LEAST = 4
 """States, through fewer of which goes no cubic."""
 _SAME = 1e-6
@@ -56,7 +57,10 @@ def at_outputs(
         known, at = (way * found["stroke_distance"], way * place) if way else (time, times)
         kinks = _kinks(found["contact_pressure"][knots] > 0)
         for name in smooth:
-            out[name][here] = _through(known[knots], found[name][knots], kinks, at[here])
+            if name in _PRESSURES and not way:
+                out[name][here] = _of_nodes(known[knots], found[name][knots], at[here])
+            else:
+                out[name][here] = _through(known[knots], found[name][knots], kinks, at[here])
         last = state[here]
         share[here] = (at[here] - known[last - 1]) / (known[last] - known[last - 1])
         if not way:
@@ -72,7 +76,7 @@ def at_outputs(
     _contact(out, found, state, passed, share, records, skin_x, half)
     still = passed & (place == found["stroke_distance"][state - 1])
     pressed = still & (np.minimum(out["centre_pressure"], out["contact_pressure"][:, apex]) > 0)
-    # nothing passes under a press, whose splines are better than what is carried: the pressure is held to that of the middle
+    # nothing passes under a press, whose splines are the smoothest there is: pressures are held to that of the middle
     ratio = out["centre_pressure"][pressed] / out["contact_pressure"][pressed, apex]
     out["contact_pressure"][pressed] *= ratio[:, None]
     out["peak_pressure"] = np.where(still, out["peak_pressure"], out["contact_pressure"].max(axis=1))
@@ -139,8 +143,11 @@ def _contact(out, found, state, passed, share, records, skin_x, half):
         for i in outputs:
             here = Passage.at(first, last, share[i], x[i]) if passed[i] else None
             if here:
-                for name in ("contact_pressure", "contact_pressure_smoothed"):
-                    out[name][i] = here.pressure(*found[name][[k - 1, k]])
+                for name in _PRESSURES:
+                    ends = found[name][[k - 1, k]]
+                    carried = here.pressure(*ends)
+                    still = first.distance == last.distance
+                    out[name][i] = _pressing(out[name][i], carried, ends, share[i]) if still else carried
             if not frictional:
                 continue
             if here:
@@ -153,6 +160,22 @@ def _contact(out, found, state, passed, share, records, skin_x, half):
             slip = slipped if passed[i] else found["slip"][k]
             out["slip"][i] = slip * (share[i] - before) * (out["contact_state"][i] == 2)
             before = share[i]
+
+
+def _of_nodes(place, pressure, at):
+    """Pressures (k, ns) at places (k,) of nodes under which nothing passes, from those (n, ns) at places (n,): their squares,
+    which grow evenly from where a node begins to touch, along Akima's curves."""
+    from scipy.interpolate import Akima1DInterpolator
+
+    return np.sqrt(np.maximum(Akima1DInterpolator(place, pressure**2, method="makima")(at), 0.0))
+
+
+def _pressing(of_nodes, carried, ends, share):
+    """Pressure (ns,) under a press: nodes that touch in the states at both ``ends`` (2, ns) have their own; one that comes or
+    goes has what goes along with the contact's edge, but no more than if its square grew from the first moment."""
+    touches = ends > 0
+    most = ends.max(axis=0) * np.sqrt(np.where(touches[1], share, 1 - share))
+    return np.where(touches.all(axis=0), of_nodes, np.minimum(carried, most))
 
 
 def _ratio(found, k):
