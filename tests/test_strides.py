@@ -301,7 +301,7 @@ def test_a_press_goes_from_state_to_state_as_its_width_does():
     assert np.allclose(times, np.append(0, every)) and out["interpolated"].sum() == 15
     width = 4e-3 * np.sqrt(times)
     assert np.abs(out["contact_width"] - width).max() < 1e-4 * width[-1] and np.allclose(out["force"], 10 * times)
-    assert np.abs(out["peak_pressure"] - 1e7 * width).max() < 1e-4 * 1e7 * width[-1]
+    assert np.abs(out["centre_pressure"] - 1e7 * width).max() < 1e-4 * 1e7 * width[-1]
     for k in np.flatnonzero(out["interpolated"]):
         truth = hertz(half_width=width[k] / 2, peak=1e7 * width[k])
         assert off(out["contact_pressure"][k], truth) < 0.002

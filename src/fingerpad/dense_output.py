@@ -74,13 +74,7 @@ def at_outputs(
     for name in _TAKEN:
         out[name][passed] = 0
     _contact(out, found, state, passed, share, records, skin_x, half)
-    still = passed & (place == found["stroke_distance"][state - 1])
-    pressed = still & (np.minimum(out["centre_pressure"], out["contact_pressure"][:, apex]) > 0)
-    # nothing passes under a press, whose splines are the smoothest there is: pressures are held to that of the middle
-    ratio = out["centre_pressure"][pressed] / out["contact_pressure"][pressed, apex]
-    out["contact_pressure"][pressed] *= ratio[:, None]
-    out["peak_pressure"] = np.where(still, out["peak_pressure"], out["contact_pressure"].max(axis=1))
-    out["centre_pressure"] = out["contact_pressure"][:, apex]
+    out["peak_pressure"], out["centre_pressure"] = out["contact_pressure"].max(axis=1), out["contact_pressure"][:, apex]
     return out, times
 
 
