@@ -143,6 +143,17 @@ def test_round_trip(run, tmp_path):
     assert [path.name for path in (tmp_path / "deep").iterdir()] == ["history.nc"]
 
 
+def test_only_what_is_mostly_zero_is_packed(run, tmp_path):
+    """Mutants: all is; nothing is."""
+    history, path = run[3].copy(), tmp_path / "history.nc"
+    history["contact_pressure"] = history["contact_pressure"] * (history["skin_x"] > 2e-3)
+    write_history(history, path)
+    with netCDF4.Dataset(path) as file:
+        packed = {name: file[name].filters()["zlib"] for name in ("contact_pressure", "skin_displacement_y")}
+    assert packed == {"contact_pressure": True, "skin_displacement_y": False}
+    np.testing.assert_array_equal(read_history(path).contact_pressure, history.contact_pressure)
+
+
 def test_snapshots_become_vtu(run, tmp_path):
     """Full fields open in ParaView: whole pad, moved nodes, layers, mean stress."""
     _, _, mesh, history, _ = run

@@ -269,7 +269,7 @@ def _effort(said: str, neighbour: Case) -> float:
 
 def judged(case: Case, history: xr.Dataset, measured: Mapping[str, float]) -> Run:
     """A completed run with its outcome."""
-    beyond, notes = excess(measured, case.allowed), history.attrs["notes"]
+    beyond, notes = excess(measured, case.limits), history.attrs["notes"]
     wrong = [name for name in beyond if name not in EFFORT and np.isfinite(measured[name])]
     admitted = history.attrs["estimated_error"] >= 0.5 or all(name in NOTED and NOTED[name] in notes for name in wrong)
     outcome = STABLE if not beyond else LABOURS if not wrong else ADMITS if admitted else SILENT
@@ -313,7 +313,7 @@ def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
         row |= {"outcome": done.outcome, "completed": float(done.completed), "message": done.message, "saved": saved}
         if method == METHODS[0] and done.outcome != STABLE:
             row["relaxed"] = cured(case, done)
-        row |= dict(done.measured) | {f"limit {key}": getattr(case.allowed, key) for key in done.measured}
+        row |= dict(done.measured) | {f"limit {key}": getattr(case.limits, key) for key in done.measured}
         if done.completed:
             row |= {"depth_mm": 1e3 * done.history.indentation_depth.values[-1], "force_N_per_m": done.history.force.values[-1]}
         rows.append(row)
