@@ -22,7 +22,7 @@ from fingerpad.measures.errors import MESH, PARTS, STEPS
 from fingerpad.measures.quantities import CURVATURE, RADIUS
 from fingerpad.measures.table import MEASURES, reading
 from fingerpad.planning.errors import COARSER, PROFILE_ORDER, REMAINS, STEPS_REMAIN, remains
-from fingerpad.publishing.style import COLOURS, INK, spread
+from fingerpad.publishing.style import COLOURS, INK, finished, spread, theme
 from fingerpad.publishing.write import publish, without_round_off, write_frame, write_picture
 from fingerpad.reference_data import empty_reference, read_reference
 from regression import BASELINE_DPI, SIMILARITY, differences, similarity, summary, summary_differences, tolerance
@@ -223,6 +223,17 @@ def test_phases_end_with_the_top_of_the_ramp_and_the_steady_state():
 def test_labels_keep_their_order_and_distance(values):
     placed = spread(values, 0.5, 0, 10)
     assert (np.diff(placed) >= 0.5 - 1e-12).all() and placed.min() >= 0 and placed.max() <= 10 + 1e-12
+
+
+def test_powers_of_ten_are_mathematics_and_ticks_are_text(tmp_path):
+    """Mutants: powers as text (1e6); ticks as mathematics, which take a quarter of a picture's time."""
+    with theme():
+        fig = mpl.figure.Figure()
+        ax = fig.subplots()
+        ax.plot([0, 1], [0, 3e7])
+        write_picture(finished(fig), tmp_path / "powers.png")
+    assert ax.yaxis.get_offset_text().get_text() == r"$\times\mathdefault{10^{7}}\mathdefault{}$"
+    assert not any("$" in label.get_text() for label in ax.get_yticklabels())
 
 
 def test_labels_are_as_near_to_what_they_name_as_their_order_allows():

@@ -317,6 +317,8 @@ def test_states_of_a_press_are_found_where_its_accuracy_needs_them():
     found = [[k for k, step in enumerate((s for s in steps if s.leg == leg), start=1) if step.solved] for leg in range(3)]
     assert found == [[*range(1, 11), 12, 16, 20, 24, 28, 32, 33, 36, 40], [*range(4, 41, 4)], [*range(1, 41)]]
     assert all(step.solved for step in programme(legs, steps=40, contact_length=0.01))
+    steady = programme([PressToForce(press_to_force=1.0)], steps=40, contact_length=0.01, increments=8, every=4)
+    assert all(step.solved is True for step in steady)  # they take no time that anything could lie between
 
 
 def test_strides_pass_what_need_not_be_found_of_a_press():

@@ -21,6 +21,7 @@ _OF_THE_STEP = ("leg", "residual", "complementarity_error", "energy_balance_erro
 _TAKEN = ("newton_iterations", "cutbacks")
 """What it took to find a state: between them nothing."""
 _PRESSURES = ("contact_pressure", "contact_pressure_smoothed")
+"""What goes along with the contact and falls to zero at its edges."""
 _LEAST = 4
 """States, through fewer of which goes no cubic."""
 _SAME = 1e-6
@@ -129,7 +130,7 @@ def _contact(out, found, state, passed, share, records, skin_x, half):
 
     for k in np.unique(state[passed]):
         first, last = touch(k - 1), touch(k)
-        outputs, before = np.flatnonzero(state == k), 0.0
+        outputs, before, still = np.flatnonzero(state == k), 0.0, first.distance == last.distance
         if frictional:
             ratios = [_ratio(found, j) for j in (k - 1, k)]
             states = [_spread(found, j, found["contact_state"][j]) for j in (k - 1, k)]
@@ -140,7 +141,6 @@ def _contact(out, found, state, passed, share, records, skin_x, half):
                 for name in _PRESSURES:
                     ends = found[name][[k - 1, k]]
                     carried = here.pressure(*ends)
-                    still = first.distance == last.distance
                     out[name][i] = _pressing(out[name][i], carried, ends, share[i]) if still else carried
             if not frictional:
                 continue

@@ -461,7 +461,8 @@ def programme(
         parts: into how many (k,) the longest steps of a slide are cut by outputs, by their place (k,) m along the surface. Where
             it is given, states need to be found only at the end of a slide and at snapshots.
         stride: so many steps of a leg are made one, but for those that press anew.
-        every: at one of so many outputs of a press or hold, once the early ones are over, and at snapshots a state must be found.
+        every: of a press or hold that takes time, a state must be found at one of so many outputs, once the early ones are over,
+            and at snapshots.
     """
     how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
     time, at, last, wanted = 0.0, Goal(None, None, 0.0), None, sorted(snapshots)
@@ -477,9 +478,9 @@ def programme(
                 at = _between(at, goal, (cut - begin) / (time - begin))
                 yield Step(number, cut, cut - begin, *at)
                 begin = cut
-            left = len(goals) - count
-            needed = not left if passes else count <= leg.early * len(goals) or left % every == 0
-            solved = needed or among(wanted, time)
+            left, early = len(goals) - count, count <= leg.early * len(goals)
+            needed = not left if passes else early or dt >= STEADY or left % every == 0
+            solved = bool(needed or among(wanted, time))
             yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh, solved=solved)
             at = goal
 
