@@ -461,3 +461,20 @@ def test_a_run_loads_neither_labels_nor_a_compiler_nor_the_mesher_of_a_mesh_it_k
     first, second = loaded(*run), loaded(*run)
     assert "pygmsh" in first
     assert not second & {"numba", "pint", "xarray", "pandas", "matplotlib", "gmsh", "pygmsh", "meshio", "rich", "scipy", "skfem"}
+
+
+@pytest.mark.parametrize("main", ["from fingerpad.cli import main; main(['plan', 'none.yaml'])", ""])
+def test_what_is_unreachable_at_the_end_is_not_looked_for(main):
+    """Of a command: without it, the interpreter's last search finds what points at itself."""
+    said = (
+        "import gc\n"
+        "class Round:\n"
+        "    def __init__(self): self.itself = self\n"
+        "    def __del__(self): print('found')\n"
+        f"{main}\n"
+        "seldom = gc.get_threshold()[0] > 10_000\n"
+        "Round()\n"
+        "print('seldom' if seldom else 'often')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", said], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == (["seldom"] if main else ["often", "found"])

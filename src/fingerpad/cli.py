@@ -18,6 +18,8 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
+from fingerpad.processes import collect_seldom
+
 if TYPE_CHECKING:
     from fingerpad.planning.plan import Plan
     from fingerpad.scenes.scene import Scene
@@ -63,6 +65,7 @@ def main(arguments: list[str] | None = None) -> int:
     Raises:
         SystemExit: by argparse, with code 2 for a wrong command line and 0 after help and version.
     """
+    collect_seldom()
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it would look for them in every package there is
     for stream in (sys.stdout, sys.stderr):  # any name of a file can be printed
         if hasattr(stream, "reconfigure"):

@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fingerpad.files import disk_is_full, write_atomically, write_text
+from fingerpad.processes import threads
 from fingerpad.provenance import digest, imported_sources
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
 from fingerpad.specimen.near import nearest
-from fingerpad.threads import threads
 
 if TYPE_CHECKING:
     import xarray as xr

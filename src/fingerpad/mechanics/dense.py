@@ -14,7 +14,7 @@ from typing import Protocol
 
 import numpy as np
 
-from fingerpad.threads import threads
+from fingerpad.processes import threads
 
 _COLUMNS = 102  # LAPACK's layout: column by column
 

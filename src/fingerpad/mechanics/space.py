@@ -50,8 +50,9 @@ class Space:
         fixed: (n, 2) bool, prescribed degrees of freedom.
 
     Attributes:
-        points, cells: as used (with bubble nodes). grad (ne, nq, nen, 2) 1/m; weight (ne, nq) m^2 (times the measure);
-        psi (ne, nq, nm) pressure modes, orthonormal in the weight; equation (n, 2) equation number or -1; size.
+        points, cells: as used (with bubble nodes). weight (ne, nq) m^2 (times the measure);
+        centres (ne, 2) m, means of the elements' nodes; psi (ne, nq, nm) pressure modes, orthonormal in the weight;
+        equation (n, 2) equation number or -1; size.
         mesh: what the element loops read, as tuple: cells; gradients on the reference cell (nen, 2 nq), all along its first
         coordinate before all along the second; and, in blocks of elements (:func:`blocked`), what makes gradients of them
         (4, nq), 1/m, with 11, 12, 21, 22 of the inverse Jacobian; weight (nq); pressure modes (nm, nq). sizes: nen, nq, nm.
@@ -73,23 +74,21 @@ class Space:
             raise ValueError(f"element {self.element.name} does not fit a mesh of {kind}")
         self.points, self.cells, self.fixed = points, cells, fixed
         x = points[cells]
-        jacobian = np.einsum("qai,eaj->eqij", self.element.gradients, x)
-        det = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
+        (a, b), (c, d) = ([along @ x[..., i].T for i in (0, 1)] for along in np.moveaxis(self.element.gradients, -1, 0))
+        det = (a * d - b * c).T  # of the Jacobian, each of whose components is (nq, ne)
         if det.min() <= 0:
             raise ValueError(f"element {int(det.min(1).argmin())} is inverted")
-        inverse = np.linalg.inv(jacobian)
-        self.grad = np.ascontiguousarray(np.einsum("eqij,qaj->eqai", inverse, self.element.gradients))
-        position = np.einsum("qa,eai->eqi", self.element.values, x)
+        self._inverse = np.stack([d.T, -b.T, -c.T, a.T], axis=-1) / det[..., None]
+        position = np.stack([x[..., i] @ self.element.values.T for i in (0, 1)], axis=-1)
         self.weight = det * self.element.weights * self.measure.volume_weight(position)
-        self._centre = x.mean(1)
+        self.centres = x.mean(1)
         self._span = np.sqrt(self.weight.sum(1))
         modes = self._raw_modes(position)
-        gram = np.einsum("eq,eqa,eqb->eab", self.weight, modes, modes)
+        gram = (self.weight[..., None] * modes).swapaxes(1, 2) @ modes
         self._orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
-        self.psi = np.ascontiguousarray(np.einsum("eqa,eba->eqb", modes, self._orthonormal))
+        self.psi = np.ascontiguousarray(modes @ self._orthonormal.swapaxes(1, 2))
         reference = np.concatenate([self.element.gradients[..., 0], self.element.gradients[..., 1]]).T
-        inverse = inverse.reshape(*self.weight.shape, 4)
-        parts = (inverse.swapaxes(1, 2), self.weight, self.psi.swapaxes(1, 2))
+        parts = (self._inverse.swapaxes(1, 2), self.weight, self.psi.swapaxes(1, 2))
         self.mesh = (cells, np.ascontiguousarray(reference), *map(blocked, parts))
         self.sizes = (cells.shape[1], *self.psi.shape[1:])
         self.equation = np.full(points.shape, -1, dtype=np.int64)
@@ -101,12 +100,18 @@ class Space:
         count = self.element.pressure_modes
         if count not in (1, 3):
             return np.broadcast_to(np.eye(count), (len(position), count, count))
-        local = (position - self._centre[:, None]) / self._span[:, None, None]
+        local = (position - self.centres[:, None]) / self._span[:, None, None]
         return np.concatenate([np.ones((*local.shape[:2], 1)), local], axis=2)[:, :, :count]
 
     @property
     def nodes(self) -> int:
         return len(self.points)
+
+    @cached_property
+    def grad(self) -> np.ndarray:
+        """Gradients (ne, nq, nen, 2), 1/m, of the shape functions at the quadrature points."""
+        inverse = self._inverse.reshape(*self.weight.shape, 2, 2)
+        return np.ascontiguousarray(np.einsum("eqij,qaj->eqai", inverse, self.element.gradients))
 
     @cached_property
     def pattern(self) -> SymmetricPattern:
@@ -121,7 +126,7 @@ class Space:
         count = self.element.pressure_modes
         if count not in (1, 3):
             raise ValueError(f"{self.element.name} has no pressure field")
-        local = (points - self._centre[elements]) / self._span[elements][:, None]
+        local = (points - self.centres[elements]) / self._span[elements][:, None]
         raw = np.column_stack([np.ones(len(points)), local])[:, :count]
         return np.einsum("na,nba->nb", raw, self._orthonormal[elements])
 

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+_CLOSE = 1e-12
+"""Of a half-width or a force, near enough to that sought."""
+
+
 def layer_kernel(stiffness_ratio: float, wavenumber: float) -> float:
     """Surface compliance of a layer (modulus 1) on a half-plane (modulus ``stiffness_ratio``) over that of the layer alone.
 
@@ -63,7 +67,9 @@ class PadEstimate:
             # the shift stands for the bone: contacts much wider than the epidermis feel a finite thickness
             wavenumber = self.epidermis_thickness / half_width + 0.65
             modulus = self.stiff / layer_kernel(ratio, wavenumber)
-            half_width = 0.5 * (half_width + np.sqrt(4 * force * radius / (np.pi * modulus)))
+            before, half_width = half_width, 0.5 * (half_width + np.sqrt(4 * force * radius / (np.pi * modulus)))
+            if abs(half_width - before) <= _CLOSE * half_width:
+                break
         depth = force / (2 * np.pi * self.soft) * (max(np.log(self.soft_thickness / half_width), 0.0) + 2.5)
         return ContactEstimate(
             float(half_width), float(depth), float(max(0.65 * half_width / radius, depth / self.soft_thickness))
@@ -76,7 +82,7 @@ class PadEstimate:
     def force_of(self, depth: float, curvature: float = 0.0) -> float:
         """Force (N/m) that presses to ``depth`` m."""
         low, high = (1e-6, 1e6) if depth > self.pressed(1e-6, curvature).depth else (1e-30, 1e-6)
-        for _ in range(80):
+        while high > (1 + _CLOSE) * low:
             middle = np.sqrt(low * high)
             low, high = (middle, high) if self.pressed(middle, curvature).depth < depth else (low, middle)
         return float(np.sqrt(low * high))

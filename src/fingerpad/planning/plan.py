@@ -50,7 +50,7 @@ from fingerpad.planning.schedule import BETWEEN, NEWTON, expected_states, schedu
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.planning.surface import Surface, surface_of
 from fingerpad.scenes.scene import Scene, load_scene
-from fingerpad.specimen import counted, quality_of
+from fingerpad.specimen import counted, shortest_edge
 from fingerpad.specimen.measures import apex_edge
 from fingerpad.specimen.pad import MeshSize, PadMesh
 
@@ -312,7 +312,7 @@ def plan(
             effects["ridges"], edge = ridge_effect.resolved(effects["ridges"], layered, edge)
     else:
         size, nodes, at_receptors = None, len(external.points), receptors_error(scene, external, rules)
-        smallest, edge = quality_of(external)["smallest_edge_m"], coarseness(external, rules) * apex_edge(external)
+        smallest, edge = shortest_edge(external), coarseness(external, rules) * apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
     check_memory(scene, nodes, outputs, rules)

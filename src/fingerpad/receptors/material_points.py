@@ -63,13 +63,12 @@ def _containing(space, points, tolerance=1e-6):
     """Every element that each point lies in, borders included: the points' indices (m,), ascending and for each the element with
     the nearest centre first, and their :class:`Location` (m,). (scikit-fem has no finder for curved elements, and its inverse of
     a curved map takes no point outside.)"""
-    nodes = space.points[space.cells]
-    centres = nodes.mean(1)
+    centres = space.centres
     near = nearest(points, centres, 24)
-    parts = [_among(space, nodes, points, near, tolerance)]
+    parts = [_among(space, points, near, tolerance)]
     for k in np.setdiff1d(np.arange(len(points)), parts[0][0]):  # beside a row of many narrow elements a long one is farther off
         every = np.argsort(np.hypot(*(centres - points[k]).T), kind="stable")[None]
-        owner, element, xi = _among(space, nodes, points[[k]], every, tolerance)
+        owner, element, xi = _among(space, points[[k]], every, tolerance)
         if not len(owner):
             x, y = points[k] * 1e3
             raise ReceptorError(f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue")
@@ -79,17 +78,14 @@ def _containing(space, points, tolerance=1e-6):
     return owner[order], Location(element[order], xi[order])
 
 
-def _among(space, nodes, points, candidates, tolerance):
-    """Points' indices (m,), elements (m,) and reference coordinates (m, 2) of what lies in which of its candidates (n, k).
-
-    Args:
-        nodes: (ne, nen, 2) m, of the elements. points: (n, 2) m.
-    """
-    low, high = nodes.min(1)[candidates], nodes.max(1)[candidates]
+def _among(space, points, candidates, tolerance):
+    """Which points (n, 2) lie in which of their candidates (n, k): indices (m,), elements (m,), reference coordinates (m, 2)."""
+    nodes = space.points[space.cells[candidates]]
+    low, high = nodes.min(2), nodes.max(2)
     # a quadratic side bulges beyond the box round its nodes by an eighth of it at most
     owner, column = np.nonzero((np.abs(points[:, None] - (low + high) / 2) <= 0.65 * (high - low)).all(2))
     element = candidates[owner, column]
-    xi = _inverse_map(space.element, nodes[element], points[owner])
+    xi = _inverse_map(space.element, nodes[owner, column], points[owner])
     inside = (xi >= -tolerance).all(1)
     inside &= xi.sum(1) <= 1 + tolerance if space.element.triangle else (xi <= 1 + tolerance).all(1)
     return owner[inside], element[inside], xi[inside]
@@ -115,7 +111,11 @@ def _inverse_map(element, nodes, points):
 def _layers(body):
     """(ne,) number of the material that each element is of: its shear modulus and its law."""
     laws = [part.elements[:, None] * np.column_stack([np.ones(len(part.constants)), part.constants]) for part in body.laws]
-    return np.unique(np.column_stack([body.shear, *laws]), axis=0, return_inverse=True)[1].ravel()
+    layer = np.zeros(len(body.shear), int)
+    for each in np.column_stack([body.shear, *laws]).T:  # one by one, for that is faster than whole rows
+        values, number = np.unique(each, return_inverse=True)
+        layer = np.unique(layer * len(values) + number, return_inverse=True)[1]
+    return layer
 
 
 def _mean_of_neighbours(space, layers, points):

@@ -17,6 +17,7 @@ _HOME = {
     "read_pad_mesh": "fingerpad.specimen.files",
     "write_pad": "fingerpad.specimen.files",
     "quality_of": "fingerpad.specimen.quality",
+    "shortest_edge": "fingerpad.specimen.quality",
     "quality_table": "fingerpad.specimen.quality",
     "RidgedPad": "fingerpad.specimen.ridges",
     "ridge_resolution": "fingerpad.specimen.layered",
@@ -41,11 +42,11 @@ def _counted_layers(*layered) -> tuple[int, float]:
 def counted(specimen, size, ridges) -> tuple[int, float]:
     """Nodes and shortest edge (m) of the mesh of such a size of an outline (with `ridges` or None), a slab or a half-round."""
     if specimen.stack is not None:
-        from fingerpad.specimen.quality import quality_of
+        from fingerpad.specimen.quality import shortest_edge
         from fingerpad.specimen.stacks import build_stack_mesh
 
-        quality = quality_of(build_stack_mesh(specimen.stack, size))
-        return quality["nodes"], quality["smallest_edge_m"]
+        mesh = build_stack_mesh(specimen.stack, size)
+        return len(mesh.points), shortest_edge(mesh)
     return _counted_layers(specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None)
 
 

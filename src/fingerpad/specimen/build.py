@@ -24,7 +24,7 @@ from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.grid import columns_of, node_positions, rows_of
 from fingerpad.specimen.outline import OutlineLike, curve_of
 from fingerpad.specimen.pad import REGIONS, MeshError, MeshSize, PadMesh
-from fingerpad.specimen.quality import check_orientation, quality_of
+from fingerpad.specimen.quality import check_orientation, shortest_edge
 
 if TYPE_CHECKING:
     from fingerpad.specimen.ridges import RidgesLike
@@ -177,7 +177,7 @@ def count_nodes(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None 
 def smallest_edge(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False) -> float:
     """Shortest element edge (m, corner to corner) of `build_pad_mesh` with these arguments (without gmsh)."""
     if ridges or corneum:
-        return quality_of(build_pad_mesh(outline, size, ridges, corneum))["smallest_edge_m"]
+        return shortest_edge(build_pad_mesh(outline, size, ridges, corneum))
     curve = curve_of(outline)
     columns, _ = columns_of(curve, size)
     rows, _, fat_rows, fat_edge = rows_of(curve, size)

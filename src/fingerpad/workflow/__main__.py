@@ -6,20 +6,18 @@ the log; if the job fails, its last line is also shown where the workflow was st
 
 from __future__ import annotations
 
-import gc
 import importlib
 import os
 import sys
 import traceback
 from types import SimpleNamespace
 
-SPARSE = 20_000
-"""Objects made between two searches for unreachable ones: with Python's own 700 they take a seventh of a short job's time."""
+from fingerpad.processes import collect_seldom
 
 
 def main(words: list[str]) -> int:
     """Run a job and return its exit code."""
-    gc.set_threshold(SPARSE)
+    collect_seldom()
     name, *words = words
     keys: dict[str, list[str]] = {}
     for word in words:
