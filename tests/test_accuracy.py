@@ -336,8 +336,11 @@ def test_committed_errors_beside_ridges_are_those_expected():
     assert len(STUDIES["accuracy_ridges"](rows).axes) == rows["surface"].nunique()
 
 
-def test_elements_among_ridges_are_what_changes_strain_energy_beside_them():
-    """Eight or eighteen of them from ridge to ridge: as far from the truth as the planner expects, and the press is the same."""
+def test_elements_among_ridges_are_what_changes_strain_energy_beside_them(monkeypatch):
+    """Eight or eighteen of them from ridge to ridge: nearer to the truth than the planner expects, and the press is the same.
+
+    What is fitted over several elements makes up for few of them: in one element alone, energy is off by 2 %.
+    """
     scene = ridges.ridged(load_scene(SCENES / "ramp40_k210.yaml"), 0.15, 0.48)
     few, more, truth = (ridges.pressed(scene, elements) for elements in (8, 18, 30))
     on = ridges.beside(scene)
@@ -345,8 +348,11 @@ def test_elements_among_ridges_are_what_changes_strain_energy_beside_them():
     energy = [run["strain_energy_density"].values[-1][on] for run in (few, more, truth)]
     off = [np.percentile(np.abs(each / energy[-1] - 1), 95) for each in energy[:-1]]
     inner = scene.specimen.ridges.inner
-    assert off[1] < off[0] / 2
+    assert off[1] < 0.8 * off[0] and off[0] < 0.01
     assert off[0] < ridges.error_beside(inner, 8, RULES) and off[1] < ridges.error_beside(inner, 18, RULES)
+    monkeypatch.setattr("fingerpad.receptors.material_points.FITTED", {})
+    alone = ridges.pressed(scene, 8)["strain_energy_density"].values[-1][on]
+    assert np.percentile(np.abs(alone / energy[-1] - 1), 95) > 0.02
 
 
 def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Dataset:

@@ -103,9 +103,13 @@ BAR = {"shape": "bar", "width": "1/16 inch", "fillet": "0.1 mm"}, [{"press_to_de
 LIGHT = {"shape": "flat"}, [{"press_to_force": "2 gf"}], {"finite_strain": False}
 
 
-@pytest.mark.parametrize(("stimulus", "motion", "effects"), [BAR, LIGHT], ids=["filleted bar", "small strain"])
-def test_linear_quads_are_raised_where_the_accuracy_needs_it(stimulus, motion, effects, tmp_path):
-    """As they are they miss a converged strain energy by 7 and 17 %, raised by 1 and 5; the plan says why."""
+@pytest.mark.parametrize(
+    ("stimulus", "motion", "effects", "linear_off", "raised_off"),
+    [(*BAR, 0.015, 0.002), (*LIGHT, 0.12, 0.015)],
+    ids=["filleted bar", "small strain"],
+)
+def test_linear_quads_are_raised_where_the_accuracy_needs_it(stimulus, motion, effects, linear_off, raised_off, tmp_path):
+    """As they are they miss a converged strain energy by 1.6 and 13 %, raised by 0.1 and 1.2; the plan says why."""
     document = {"stimulus": stimulus, "motion": motion, "effects": effects}
     truth = summary(simulate(load_scene({**document, "accuracy": "fine"})))["legs"][-1]
     built = load_scene({**document, "accuracy": "draft"})
@@ -120,7 +124,7 @@ def test_linear_quads_are_raised_where_the_accuracy_needs_it(stimulus, motion, e
         leg = summary(simulate(scene, chosen))["legs"][-1]
         found[element] = np.abs(np.array(leg["strain_energy_Pa"]) / truth["strain_energy_Pa"] - 1).max()
         assert leg["centre_pressure_Pa"] == pytest.approx(truth["centre_pressure_Pa"], rel=0.05)
-    assert found["Q1P0"] > 0.06 and found[None] < 0.05
+    assert found["Q1P0"] > linear_off and found[None] < raised_off
 
 
 def test_linear_quads_stay_where_they_do_or_are_asked_for(built, tmp_path):

@@ -197,7 +197,7 @@ class Simulation:
         if self.mesh.half:
             points = np.abs(points * [1, 0]) + points * [0, 1]
         self.depth, self.offset = depth, offset
-        return MaterialPoints(self.body, points, instantaneous if self.prony else None)
+        return MaterialPoints(self.body, points, instantaneous if self.prony else None, self.mesh.half)
 
     def _skin(self):
         chain = skin_chain(self.mesh)

@@ -1,8 +1,8 @@
 """Mechanical state at chosen material points, with their own Prony history.
 
-Receptor depths fall where they fall, not on quadrature points. Each receptor is therefore treated like one more quadrature
-point (of zero weight): displacement gradient and pressure are evaluated there exactly as the element interpolates them, and
-the branch stresses follow the same recurrence as in the body.
+Receptor depths fall where they fall, not on quadrature points. What is sampled is treated like one more quadrature point (of zero
+weight): displacement gradient and pressure are evaluated there exactly as the element interpolates them, and the branch stresses
+follow the same recurrence as in the body. Receptors have what is fitted to samples round them (see :func:`_recovery`).
 
 What is sampled are the stimuli that receptors have been said to respond to (Phillips and Johnson 1981; Srinivasan and Dandekar
 1996). Five meanings of strain energy density (per undeformed volume) are kept apart, because under constant force they
@@ -10,13 +10,14 @@ disagree even in trend (see :func:`strain_energies`).
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from fingerpad.mechanics.finite_strain import deviator_square, isochoric_energy, isochoric_stress, push_forward
-from fingerpad.mechanics.space import Space
 from fingerpad.mechanics.viscoelasticity import Branches
 from fingerpad.specimen.near import nearest
+from fingerpad.specimen.shapes import square_rule, triangle_rule
 
 
 class ReceptorError(ValueError):
@@ -48,21 +49,17 @@ class Sums:
         return np.add.reduceat((self.weights * values[self.index].T).T, self.starts, axis=0)
 
 
-def locate(space: Space, points: np.ndarray) -> Location:
-    """The element each physical point (nr, 2), m, lies in: on a border the one with the nearest centre.
+def containing(space, points, tolerance=1e-6):
+    """Every element that each physical point (n, 2), m, lies in, borders included.
+
+    Scikit-fem has no finder for curved elements, and its inverse of a curved map takes no point outside.
+
+    Returns:
+        The points' indices (m,), ascending and for each the element with the nearest centre first; their :class:`Location` (m,).
 
     Raises:
         ReceptorError: a point lies in no element.
     """
-    owner, found = _containing(space, np.atleast_2d(points))
-    first = np.unique(owner, return_index=True)[1]
-    return Location(found.element[first], found.xi[first])
-
-
-def _containing(space, points, tolerance=1e-6):
-    """Every element that each point lies in, borders included: the points' indices (m,), ascending and for each the element with
-    the nearest centre first, and their :class:`Location` (m,). (scikit-fem has no finder for curved elements, and its inverse of
-    a curved map takes no point outside.)"""
     centres = space.centres
     near = nearest(points, centres, 24)
     parts = [_among(space, points, near, tolerance)]
@@ -119,18 +116,16 @@ def _layers(body):
 
 
 def _mean_of_neighbours(space, layers, points):
-    """Where points are sampled, and their means (nr,); None where each is sampled once.
+    """Where points are sampled (:class:`Location`), (m,) whose each sample is, and its share in the mean.
 
     Strain jumps from element to element; a value from one side would tell left from right. So a point on a border takes the mean
     over the elements there that are of one layer with the nearest.
     """
-    owner, found = _containing(space, points)
+    owner, found = containing(space, points)
     layer = layers[found.element]
     same = layer == layer[np.unique(owner, return_index=True)[1]][owner]
     owner, found = owner[same], Location(found.element[same], found.xi[same])
-    if len(owner) == len(points):
-        return found, None
-    return found, Sums(1 / np.bincount(owner)[owner], np.arange(len(owner)), np.unique(owner, return_index=True)[1])
+    return found, owner, 1 / np.bincount(owner)[owner]
 
 
 class MaterialPoints:
@@ -139,17 +134,15 @@ class MaterialPoints:
     Args:
         body: the body they belong to. points: (nr, 2) undeformed positions, m.
         shear_instantaneous: (ne,) Pa, the moduli the headline strain energy is measured with; None for a purely elastic
-            solid, whose strain energy has one meaning only.
+            solid, whose strain energy has one meaning only. mirrored: the body is half of one that is symmetric in x = 0.
 
     Raises:
         ReceptorError: a point lies outside the mesh.
     """
 
-    def __init__(self, body, points: np.ndarray, shear_instantaneous: np.ndarray):
-        space = body.space
-        points = np.atleast_2d(points)
-        recover = _quadratic_recovery if space.element.pressure_modes == 1 else _mean_of_neighbours
-        self._place(body, *recover(space, _layers(body), points), shear_instantaneous)
+    def __init__(self, body, points: np.ndarray, shear_instantaneous: np.ndarray, mirrored: bool = False):
+        recovered = _recovery(body.space, _layers(body), np.atleast_2d(points), mirrored)
+        self._place(body, *recovered, shear_instantaneous)
 
     @classmethod
     def centres(cls, body, shear_instantaneous: np.ndarray) -> "MaterialPoints":
@@ -226,10 +219,13 @@ class MaterialPoints:
             "hydrostatic_pressure": -self.bulk * dilatation,
             "dilatation": dilatation,
         }
-        return self._recovered(found)
+        if self.recovery is None:
+            return found
+        least = {"hydrostatic_pressure": -np.inf, "dilatation": -np.inf}  # all others are sizes, which a fit near zero may miss
+        return {name: np.maximum(self.recovery(values), least.get(name, 0.0)) for name, values in found.items()}
 
     def stress_and_strain(self, body) -> dict[str, np.ndarray]:
-        """``cauchy_stress`` (nr, 4: xx, yy, xy, zz) Pa and ``principal_strains`` (nr, 2: stretches less one, rising)."""
+        """``cauchy_stress`` (samples, 4: xx, yy, xy, zz) Pa, ``principal_strains`` (samples, 2: stretches less one, rising)."""
         gradient = self._gradient(body)
         if self._linear:
             f, jac = np.broadcast_to(np.eye(2), gradient.shape), np.ones(len(gradient))
@@ -239,37 +235,104 @@ class MaterialPoints:
             jac, strains = np.linalg.det(f), np.linalg.svd(f, compute_uv=False)[:, ::-1] - 1
         total = self._isochoric(body) + (0.0 if self.branches is None else self.branches.q.sum(0))
         stress = push_forward(f, total) / jac[:, None] + (self.bulk * self._dilatation(body))[:, None] * [1, 1, 0, 1]
-        return self._recovered({"cauchy_stress": stress, "principal_strains": strains})
+        return {"cauchy_stress": stress, "principal_strains": strains}
 
     def _dilatation(self, body):
         return np.einsum("nb,nb->n", body.dilatation()[self.location.element], self.psi)
 
-    def _recovered(self, found):
-        return found if self.recovery is None else {name: self.recovery(values) for name, values in found.items()}
+
+_EXACT = 1e-7
+"""What polynomials may be off by in their own fit."""
+FITTED = {"Q2P1": (square_rule(2)[0], 3), "Q1P0": (square_rule(1)[0], 2), "P2B": (triangle_rule(5)[0], 3)}
+"""By element, the points of the reference cell that are sampled, and the degree of the polynomial fitted to what is there."""
+_RADII = (1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8)
+"""Of the patch it is fitted on, in lengths of the element in the middle: the first that will do."""
+_MOST = 5.0
+"""Sum of the sizes of a fit's weights; one of more makes errors larger than they are beside the receptor."""
 
 
-def _quadratic_recovery(space, layers, points, neighbours: int = 24):
-    """Quadrature points to sample and the sums (nr,) that fit a quadratic through those of the same layer.
+def _recovery(space, layers, points, mirrored):
+    """Where to sample (:class:`Location`), and the sums (nr,) of samples that make values at points; None: samples are values.
 
-    Energies of linear elements are wrong by several per cent at a point but much better at their quadrature points, so each
-    receptor's value is that of a least-squares quadratic through the nearest ``neighbours`` of them.
+    Strain is right to a power of the edges more at some points of an element: in the middle of a linear quad, at the 2 x 2 Gauss
+    points of a quadratic one (Barlow 1976); a triangle's quadrature points are off either way. To what is there round a receptor,
+    in elements of its layer that hang together, a polynomial is fitted (Zienkiewicz and Zhu 1992). Where there are too few, as in
+    a layer of one row, and in elements of the teaching cases, values are those of the elements that the receptor lies in.
     """
-    nq, hosts = len(space.element.weights), locate(space, points).element
-    position = np.einsum("qa,eai->eqi", space.element.values, space.points[space.cells]).reshape(-1, 2)
-    layer = np.repeat(layers, nq)
-    near, weights = [None] * len(points), [None] * len(points)
-    for number in np.unique(layers[hosts]):
-        same, here = np.flatnonzero(layer == number), np.flatnonzero(layers[hosts] == number)
-        found = same[nearest(points[here], position[same], neighbours)]
-        x, y = np.moveaxis(
-            (position[found] - points[here, None]) / np.sqrt(space.weight[hosts[here]].sum(1))[:, None, None], -1, 0
-        )
-        fit = np.linalg.pinv(np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=2))[:, 0]
-        for k, one, weight in zip(here, found, fit, strict=True):
-            near[k], weights[k] = one, weight
-    used, index = np.unique(np.concatenate(near), return_inverse=True)
-    starts = np.cumsum([0, *(len(one) for one in near[:-1])])
-    return Location(used // nq, space.element.points[used % nq]), Sums(np.concatenate(weights), index, starts)
+    found, owner, share = _mean_of_neighbours(space, layers, points)
+    fits = _fits(space, layers, points, owner, found, mirrored) if space.element.name in FITTED else {}
+    if not fits and len(owner) == len(points):
+        return found, None
+    plain = ~np.isin(owner, list(fits))
+    rule = FITTED[space.element.name][0] if fits else np.zeros((1, 2))
+    used = np.unique(np.concatenate([sample for sample, _ in fits.values()] or [np.zeros(0, int)]))
+    location = Location(
+        np.concatenate([used // len(rule), found.element[plain]]), np.concatenate([rule[used % len(rule)], found.xi[plain]])
+    )
+    index = [np.searchsorted(used, sample) for sample, _ in fits.values()] + [len(used) + np.arange(np.count_nonzero(plain))]
+    weights = [weight for _, weight in fits.values()] + [share[plain]]
+    whose = [np.full(len(sample), k) for k, (sample, _) in fits.items()] + [owner[plain]]
+    index, weights, whose = (np.concatenate(each) for each in (index, weights, whose))
+    order = np.argsort(whose, kind="stable")
+    return location, Sums(weights[order], index[order], np.unique(whose[order], return_index=True)[1])
+
+
+def _fits(space, layers, points, owner, found, mirrored):
+    """{point: (samples (m,), weights (m,))}, samples numbered element by element; only of points where a fit is good.
+
+    Args:
+        owner, found: of :func:`_mean_of_neighbours`.
+    """
+    nodes = space.points[space.cells[found.element]]
+    inverse = np.linalg.inv(np.einsum("nai,naj->nij", space.element.shape(found.xi)[1], nodes))
+    best, degree = FITTED[space.element.name]
+    values = space.element.shape(best)[0]
+    fits = {}
+    for k, (own, elements) in enumerate(_patches(space, layers, owner, found.element)):
+        place = np.einsum("qa,eai->eqi", values, space.points[space.cells[elements]]).reshape(-1, 2)
+        sample = (len(values) * elements[:, None] + np.arange(len(values))).ravel()
+        if mirrored:
+            place, sample = np.concatenate([place, place * [-1, 1]]), np.tile(sample, 2)
+        away = (place - points[k]) @ inverse[own]  # in lengths of each of the elements that the point lies in
+        square = (away**2).sum(axis=2).mean(axis=0)
+        for radius in _RADII:
+            on = square < radius**2
+            weights = _fitted(away[0, on] / radius, 1 - square[on] / radius**2, degree)
+            if weights is not None:
+                fits[k] = sample[on], weights
+                break
+    return fits
+
+
+def _fitted(at, weight, degree):
+    """Weights (m,) of values at points (m, 2) in their best polynomial's value at the origin; None where they are too few."""
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    if len(at) < len(powers):
+        return None
+    terms = weight[:, None] * np.stack([at[:, 0] ** i * at[:, 1] ** j for i, j in powers], axis=1)
+    one = np.eye(len(powers))[0]
+    try:
+        out = terms @ np.linalg.solve(terms.T @ terms, one) * weight
+    except np.linalg.LinAlgError:
+        return None
+    exact = np.abs((terms / weight[:, None]).T @ out - one).max() < _EXACT
+    return out if exact and np.abs(out).sum() <= _MOST else None
+
+
+def _patches(space, layers, owner, element):
+    """Of every point which of some elements (m,) it lies in, and all of its layer that share a node with these, or the next."""
+    corners = space.cells[:, : 3 if space.element.triangle else 4]
+    order = np.argsort(corners.ravel(), kind="stable")
+    ends = np.searchsorted(corners.ravel()[order], np.arange(len(space.points) + 1))
+    owners = order // corners.shape[1]
+
+    @cache
+    def around(elements):
+        near = np.concatenate([owners[ends[node] : ends[node + 1]] for node in np.unique(corners[list(elements)])])
+        return tuple(np.unique(near[layers[near] == layers[elements[0]]]))
+
+    for own in np.split(np.arange(len(owner)), np.flatnonzero(np.diff(owner)) + 1):
+        yield own, np.array(around(around(tuple(element[own]))))
 
 
 def logarithmic_strain(f: np.ndarray) -> np.ndarray:
