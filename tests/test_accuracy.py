@@ -350,7 +350,7 @@ def test_elements_among_ridges_are_what_changes_strain_energy_beside_them(monkey
     inner = scene.specimen.ridges.inner
     assert off[1] < 0.8 * off[0] and off[0] < 0.01
     assert off[0] < ridges.error_beside(inner, 8, RULES) and off[1] < ridges.error_beside(inner, 18, RULES)
-    monkeypatch.setattr("fingerpad.receptors.material_points.FITTED", {})
+    monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     alone = ridges.pressed(scene, 8)["strain_energy_density"].values[-1][on]
     assert np.percentile(np.abs(alone / energy[-1] - 1), 95) > 0.02
 

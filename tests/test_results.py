@@ -202,7 +202,7 @@ def test_fields_are_consistent(run, tmp_path):
 
 def test_fields_are_what_receptors_see_in_one_element(run, monkeypatch):
     """A receptor in the middle of an element has the element's values, to the last bits, if nothing is fitted round it."""
-    monkeypatch.setattr("fingerpad.receptors.material_points.FITTED", {})
+    monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     simulation = Simulation(*run[:3], fields=True)
     body, space = simulation.body, simulation.body.space
     body.displace(np.where(space.fixed, 0, 1e-6 * np.sin(4000 * space.points[:, ::-1])))

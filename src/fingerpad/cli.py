@@ -36,7 +36,7 @@ _ERRORS = {
     "PlanError": ("planning.bounds", ""),
     "OutlineError": ("specimen.outline", "specimen.outline"),
     "MeshError": ("specimen.pad", "specimen.mesh"),
-    "ReceptorError": ("receptors.material_points", "outputs.receptors"),
+    "ReceptorError": ("receptors.recovery", "outputs.receptors"),
 }
 
 

@@ -13,7 +13,8 @@ from scipy.linalg import logm
 from skfem import ElementQuad1, ElementQuad2, ElementTriP2, MappingIsoparametric
 from strips import Layer, half_strip
 
-from fingerpad.receptors.material_points import Location, MaterialPoints, ReceptorError, containing, logarithmic_strain
+from fingerpad.receptors.material_points import MaterialPoints, logarithmic_strain
+from fingerpad.receptors.recovery import Location, ReceptorError, containing
 from fingerpad.reference_solutions import hertz, prony_point
 from fingerpad.specimen.materials import Prony
 from fingerpad.stimuli.shapes import Cylinder
@@ -126,7 +127,7 @@ def test_logarithmic_strain_is_half_the_logarithm_of_b():
 
 def test_between_elements_no_side_is_preferred(monkeypatch):
     """On the border of elements a receptor reads the mean of both sides, which differ, where nothing is fitted."""
-    monkeypatch.setattr("fingerpad.receptors.material_points.FITTED", {})
+    monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     mesh = rectangle(2, 2)
     fixed = np.zeros(mesh.points.shape, bool)
     fixed[nodes_of(mesh, "bottom")] = True
@@ -170,7 +171,7 @@ def test_energy_at_receptors_is_better_than_in_elements(element, within, monkeyp
     """What is fitted to the best points of elements round a receptor beats the element that it lies in (Barlow 1976), by a factor
     of 16, 18 and 5 on regular meshes; of linear quads it converges with one order more."""
     check_fit(element, within)
-    monkeypatch.setattr("fingerpad.receptors.material_points.FITTED", {})
+    monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     with pytest.raises(AssertionError, match="truth"):
         check_fit(element, 4 * within)
 

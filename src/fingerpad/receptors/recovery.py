@@ -1,0 +1,200 @@
+"""Where receptors are in a mesh, and what they read of it: fits to the points round them at which an element's strain is best."""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from fingerpad.specimen.near import nearest
+from fingerpad.specimen.shapes import square_rule, triangle_rule
+
+_EXACT = 1e-7
+"""What polynomials may be off by in their own fit."""
+FITTED = {"Q2P1": (square_rule(2)[0], 3), "Q1P0": (square_rule(1)[0], 2), "P2B": (triangle_rule(5)[0], 3)}
+"""By element, the points of the reference cell that are sampled, and the degree of the polynomial fitted to what is there."""
+_RADII = (1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8)
+"""Of the patch it is fitted on, in lengths of the element in the middle: the first that will do."""
+_MOST = 5.0
+"""Sum of the sizes of a fit's weights; one of more makes errors larger than they are beside the receptor."""
+
+
+class ReceptorError(ValueError):
+    """A receptor lies outside the meshed tissue."""
+
+
+@dataclass(frozen=True)
+class Location:
+    """Where material points sit in a mesh: element (nr,), reference coordinates (nr, 2)."""
+
+    element: np.ndarray
+    xi: np.ndarray
+
+
+@dataclass(frozen=True)
+class Sums:
+    """Weighted sums, one a receptor, of what is sampled: a matrix (nr, samples) by its rows.
+
+    Attributes:
+        weights, index: (m,) of all rows after each other, and of which sample. starts: (nr,) where each row begins.
+    """
+
+    weights: np.ndarray
+    index: np.ndarray
+    starts: np.ndarray
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """Sums (nr, ...) of values (samples, ...)."""
+        return np.add.reduceat((self.weights * values[self.index].T).T, self.starts, axis=0)
+
+
+def containing(space, points, tolerance=1e-6):
+    """Every element that each physical point (n, 2), m, lies in, borders included.
+
+    Scikit-fem has no finder for curved elements, and its inverse of a curved map takes no point outside.
+
+    Returns:
+        The points' indices (m,), ascending and for each the element with the nearest centre first; their :class:`Location` (m,).
+
+    Raises:
+        ReceptorError: a point lies in no element.
+    """
+    centres = space.centres
+    near = nearest(points, centres, 24)
+    parts = [_among(space, points, near, tolerance)]
+    for k in np.setdiff1d(np.arange(len(points)), parts[0][0]):  # beside a row of many narrow elements a long one is farther off
+        every = np.argsort(np.hypot(*(centres - points[k]).T), kind="stable")[None]
+        owner, element, xi = _among(space, points[[k]], every, tolerance)
+        if not len(owner):
+            x, y = points[k] * 1e3
+            raise ReceptorError(f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue")
+        parts.append((owner + k, element, xi))
+    owner, element, xi = (np.concatenate(part) for part in zip(*parts, strict=True))
+    order = np.argsort(owner, kind="stable")
+    return owner[order], Location(element[order], xi[order])
+
+
+def _among(space, points, candidates, tolerance):
+    """Which points (n, 2) lie in which of their candidates (n, k): indices (m,), elements (m,), reference coordinates (m, 2)."""
+    nodes = space.points[space.cells[candidates]]
+    low, high = nodes.min(2), nodes.max(2)
+    # a quadratic side bulges beyond the box round its nodes by an eighth of it at most
+    owner, column = np.nonzero((np.abs(points[:, None] - (low + high) / 2) <= 0.65 * (high - low)).all(2))
+    element = candidates[owner, column]
+    xi = _inverse_map(space.element, nodes[owner, column], points[owner])
+    inside = (xi >= -tolerance).all(1)
+    inside &= xi.sum(1) <= 1 + tolerance if space.element.triangle else (xi <= 1 + tolerance).all(1)
+    return owner[inside], element[inside], xi[inside]
+
+
+def _inverse_map(element, nodes, points):
+    """Reference coordinates (m, 2) of points in elements of nodes (m, nen, 2) by Newton's method; nan where it fails."""
+    xi = np.full((len(points), 2), 1 / 3 if element.triangle else 0.5)
+    moving = np.arange(len(points))
+    for _ in range(12):
+        values, gradients = element.shape(xi[moving])
+        residual = points[moving] - np.einsum("na,nai->ni", values, nodes[moving])
+        (a, b), (c, d) = np.einsum("nai,naj->ijn", nodes[moving], gradients)
+        with np.errstate(all="ignore"):
+            step = np.stack([d * residual[:, 0] - b * residual[:, 1], a * residual[:, 1] - c * residual[:, 0]]) / (a * d - b * c)
+        before = xi[moving]
+        xi[moving] = np.clip(np.nan_to_num(before + step.T), -2.0, 3.0)
+        moving = moving[np.abs(xi[moving] - before).max(1) > 1e-12]
+    xi[moving] = np.nan
+    return xi
+
+
+def _mean_of_neighbours(space, layers, points):
+    """Where points are sampled (:class:`Location`), (m,) whose each sample is, and its share in the mean.
+
+    Strain jumps from element to element; a value from one side would tell left from right. So a point on a border takes the mean
+    over the elements there that are of one layer with the nearest.
+    """
+    owner, found = containing(space, points)
+    layer = layers[found.element]
+    same = layer == layer[np.unique(owner, return_index=True)[1]][owner]
+    owner, found = owner[same], Location(found.element[same], found.xi[same])
+    return found, owner, 1 / np.bincount(owner)[owner]
+
+
+def recovery(space, layers, points, mirrored):
+    """Where to sample (:class:`Location`), and the sums (nr,) of samples that make values at points; None: samples are values.
+
+    Strain is right to a power of the edges more at some points of an element: in the middle of a linear quad, at the 2 x 2 Gauss
+    points of a quadratic one (Barlow 1976); a triangle's quadrature points are off either way. To what is there round a receptor,
+    in elements of its layer that hang together, a polynomial is fitted (Zienkiewicz and Zhu 1992). Where there are too few, as in
+    a layer of one row, and in elements of the teaching cases, values are those of the elements that the receptor lies in.
+    """
+    found, owner, share = _mean_of_neighbours(space, layers, points)
+    fits = _fits(space, layers, points, owner, found, mirrored) if space.element.name in FITTED else {}
+    if not fits and len(owner) == len(points):
+        return found, None
+    plain = ~np.isin(owner, list(fits))
+    rule = FITTED[space.element.name][0] if fits else np.zeros((1, 2))
+    used = np.unique(np.concatenate([sample for sample, _ in fits.values()] or [np.zeros(0, int)]))
+    location = Location(
+        np.concatenate([used // len(rule), found.element[plain]]), np.concatenate([rule[used % len(rule)], found.xi[plain]])
+    )
+    index = [np.searchsorted(used, sample) for sample, _ in fits.values()] + [len(used) + np.arange(np.count_nonzero(plain))]
+    weights = [weight for _, weight in fits.values()] + [share[plain]]
+    whose = [np.full(len(sample), k) for k, (sample, _) in fits.items()] + [owner[plain]]
+    index, weights, whose = (np.concatenate(each) for each in (index, weights, whose))
+    order = np.argsort(whose, kind="stable")
+    return location, Sums(weights[order], index[order], np.unique(whose[order], return_index=True)[1])
+
+
+def _fits(space, layers, points, owner, found, mirrored):
+    """{point: (samples (m,), weights (m,))}, samples numbered element by element; only of points where a fit is good.
+
+    Args:
+        owner, found: of :func:`_mean_of_neighbours`.
+    """
+    nodes = space.points[space.cells[found.element]]
+    inverse = np.linalg.inv(np.einsum("nai,naj->nij", space.element.shape(found.xi)[1], nodes))
+    best, degree = FITTED[space.element.name]
+    values = space.element.shape(best)[0]
+    fits = {}
+    for k, (own, elements) in enumerate(_patches(space, layers, owner, found.element)):
+        place = np.einsum("qa,eai->eqi", values, space.points[space.cells[elements]]).reshape(-1, 2)
+        sample = (len(values) * elements[:, None] + np.arange(len(values))).ravel()
+        if mirrored:
+            place, sample = np.concatenate([place, place * [-1, 1]]), np.tile(sample, 2)
+        away = (place - points[k]) @ inverse[own]  # in lengths of each of the elements that the point lies in
+        square = (away**2).sum(axis=2).mean(axis=0)
+        for radius in _RADII:
+            on = square < radius**2
+            weights = _fitted(away[0, on] / radius, 1 - square[on] / radius**2, degree)
+            if weights is not None:
+                fits[k] = sample[on], weights
+                break
+    return fits
+
+
+def _fitted(at, weight, degree):
+    """Weights (m,) of values at points (m, 2) in their best polynomial's value at the origin; None where they are too few."""
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
+    if len(at) < len(powers):
+        return None
+    terms = weight[:, None] * np.stack([at[:, 0] ** i * at[:, 1] ** j for i, j in powers], axis=1)
+    one = np.eye(len(powers))[0]
+    try:
+        out = terms @ np.linalg.solve(terms.T @ terms, one) * weight
+    except np.linalg.LinAlgError:
+        return None
+    exact = np.abs((terms / weight[:, None]).T @ out - one).max() < _EXACT
+    return out if exact and np.abs(out).sum() <= _MOST else None
+
+
+def _patches(space, layers, owner, element):
+    """Of every point which of some elements (m,) it lies in, and all of its layer that share a node with these, or the next."""
+    corners = space.cells[:, : 3 if space.element.triangle else 4]
+    order = np.argsort(corners.ravel(), kind="stable")
+    ends = np.searchsorted(corners.ravel()[order], np.arange(len(space.points) + 1))
+    owners = order // corners.shape[1]
+
+    @cache
+    def around(elements):
+        near = np.concatenate([owners[ends[node] : ends[node + 1]] for node in np.unique(corners[list(elements)])])
+        return tuple(np.unique(near[layers[near] == layers[elements[0]]]))
+
+    for own in np.split(np.arange(len(owner)), np.flatnonzero(np.diff(owner)) + 1):
+        yield own, np.array(around(around(tuple(element[own]))))
