@@ -2,7 +2,7 @@
 
 Receptor depths fall where they fall, not on quadrature points. What is sampled is treated like one more quadrature point (of zero
 weight): displacement gradient and pressure are evaluated there exactly as the element interpolates them, and the branch stresses
-follow the same recurrence as in the body. Receptors have what is fitted to samples round them (:mod:`fingerpad.receptors.recovery`).
+follow the same recurrence as in the body. Receptors have what is fitted to them (:mod:`fingerpad.receptors.recovery`).
 
 What is sampled are the stimuli that receptors have been said to respond to (Phillips and Johnson 1981; Srinivasan and Dandekar
 1996). Five meanings of strain energy density (per undeformed volume) are kept apart, because under constant force they
