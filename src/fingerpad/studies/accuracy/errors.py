@@ -259,7 +259,8 @@ def orders_table(records: Records) -> pd.DataFrame:
 
 
 def planner_table(records: Records) -> pd.DataFrame:
-    """What the planner goes by of presses: relative error of the headline quantities by mesh size, and by steps of a leg.
+    """What the planner goes by of presses: relative error of the headline quantities by mesh size, of strain energies alone, and of
+    the headline quantities by steps of a leg.
 
     Errors of a mesh are those to the limit in the mesh at the default's steps, errors of steps those to the limit in the steps
     on the default's mesh; never below the limit's own uncertainty (and, of meshes, that of adding both, which is a product of
@@ -267,20 +268,25 @@ def planner_table(records: Records) -> pd.DataFrame:
     at, relative to what it is of.
     """
     rows = []
-    for kind, counts, limits in (("mesh", ROWS, mesh_limits), ("steps", STEPS, step_limits)):
+    energies = tuple(quantity for quantity in HEADLINE if quantity.startswith("energy"))
+    for kind, counts, limits, quantities in (
+        ("mesh", ROWS, mesh_limits, HEADLINE),
+        ("energy", ROWS, mesh_limits, energies),
+        ("steps", STEPS, step_limits, HEADLINE),
+    ):
         columns = {}
         for family in PRESSED:
             if Point(family).name not in records:
                 continue
             worst = np.zeros(len(counts))
-            for quantity in HEADLINE:
+            for quantity in quantities:
                 known = limits(records, family, quantity)
                 value = np.array([each.value for each in known])
-                extra = interplay(records, family, quantity) if kind == "mesh" else 0.0
+                extra = interplay(records, family, quantity) if kind != "steps" else 0.0
                 unsure = np.array([each.uncertainty for each in known])
                 for k, n in enumerate(counts):
                     floor = _at_most(unsure + extra * min(1.0, DEFAULT_ROWS / n), value)
-                    record = records.get((Point(family, rows=n) if kind == "mesh" else Point(family, steps=n)).name)
+                    record = records.get((Point(family, steps=n) if kind == "steps" else Point(family, rows=n)).name)
                     if record is None or not record["values"]:
                         worst[k] = np.nan
                         continue
