@@ -259,8 +259,7 @@ def orders_table(records: Records) -> pd.DataFrame:
 
 
 def planner_table(records: Records) -> pd.DataFrame:
-    """What the planner goes by of presses: relative error of the headline quantities by mesh size, of strain energies alone, and of
-    the headline quantities by steps of a leg.
+    """What the planner goes by of presses: relative errors by mesh size, also of strain energies alone, and by steps of a leg.
 
     Errors of a mesh are those to the limit in the mesh at the default's steps, errors of steps those to the limit in the steps
     on the default's mesh; never below the limit's own uncertainty (and, of meshes, that of adding both, which is a product of
