@@ -16,6 +16,7 @@ import statistics  # noqa: E402
 import subprocess  # noqa: E402
 import sys  # noqa: E402
 import time  # noqa: E402
+from functools import partial  # noqa: E402
 from pathlib import Path  # noqa: E402
 
 import numpy as np  # noqa: E402
@@ -115,22 +116,23 @@ def ridges(repeats: int = 3) -> list[list]:
 
 
 def strokes() -> list[list]:
-    """The five full strokes over the wavy surface, one after the other, and a factorisation after each."""
+    """The five full strokes over the wavy surface, one after the other, and a factorisation on its own mesh after each."""
     scenes = [load_scene(SCENES / f"stroke_{speed}.yaml") for speed in (1, 5, 10, 20, 40)]
     plans = [plan(scene) for scene in scenes]
-    plain, data, right = _plain(Simulation(scenes[0], plans[0], None).body)
-    total, histories, solved = 0.0, [], []
+    total, histories, ratios = 0.0, [], []
     for scene, chosen in zip(scenes, plans, strict=True):
         start = time.process_time()
         histories.append(simulate(scene, chosen))
-        total += time.process_time() - start
-        solved.append(seconds(lambda: (plain.factor(data), plain.forward(right)), 5)[1])
+        total += (spent := time.process_time() - start)
+        plain, data, right = _plain(Simulation(scene, chosen, None).body)
+        ratios.append(spent / seconds(partial(_factor_and_solve, plain, data, right), 5)[1])
     steps, iterations, cuts = (
         sum(int(f(h)) for h in histories) for f in (states_found, lambda h: h.newton_iterations.sum(), lambda h: h.cutbacks.sum())
     )
     outputs = np.diff(histories[0].stroke_distance.values).max() * 1e3
-    how = f"{plans[0].nodes} nodes, {steps} steps, {cuts} cuts, 80 mm each at 1 to 40 mm/s, outputs every {outputs:.2g} mm"
-    ratio = total / len(scenes) / statistics.median(solved)
+    nodes = " and ".join(map(str, sorted({chosen.nodes for chosen in plans})))
+    how = f"{nodes} nodes, {steps} steps, {cuts} cuts, 80 mm each at 1 to 40 mm/s, outputs every {outputs:.2g} mm"
+    ratio = statistics.median(ratios)
     return [
         ["five full strokes", total, "s", "<= 240", total <= 240, 1, how],
         [
@@ -140,10 +142,15 @@ def strokes() -> list[list]:
             "<= 500",
             ratio <= 500,
             1,
-            f"{how}; factor and solve in double precision",
+            f"{how}; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; factor and solve in double precision, on its own mesh",
         ],
         ["iterations a step of a stroke", iterations / steps, "1", "<= 3", iterations <= 3 * steps, 1, how],
     ]
+
+
+def _factor_and_solve(plain, data, right) -> None:
+    plain.factor(data)
+    plain.forward(right)
 
 
 def _plain(body):
