@@ -142,7 +142,7 @@ def strokes() -> list[list]:
             "<= 500",
             ratio <= 500,
             1,
-            f"{how}; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; factor and solve in double precision, on its own mesh",
+            f"{how}; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; on its own mesh, in double precision",
         ],
         ["iterations a step of a stroke", iterations / steps, "1", "<= 3", iterations <= 3 * steps, 1, how],
     ]
