@@ -472,14 +472,17 @@ def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
 
 
 def test_errors_stated_in_the_published_figures_are_those_of_their_curves():
-    """Of nearly all at least half of it; and few curves are wrong by more than 3 %."""
+    """Of nearly all at least half of it; few are wrong by more than 3 %, and most state no more than a few times what they are.
+
+    Strain energies state more than before, for what receptors read converges faster than the order that is taken of all curves.
+    """
     drawn = pd.read_csv(ROOT / "figures" / "studies" / "accuracy_shown.csv")
     true, stated = drawn["true error (%)"], drawn["stated error (%)"]
     assert len(drawn) > 400 and drawn["figure"].nunique() > 40
-    assert (true <= 2 * stated).mean() > 0.93
-    assert (true > 3).mean() < 0.06 and stated.median() < 3 * true.median()
+    assert (true <= 2 * stated).mean() > 0.97
+    assert (true > 3).mean() < 0.01 and stated.median() < 4 * true.median()
 
 
-def test_errors_stated_in_the_published_figures_cover_the_true_ones_of_three_in_four():
+def test_errors_stated_in_the_published_figures_cover_the_true_ones_of_seven_in_eight():
     drawn = pd.read_csv(ROOT / "figures" / "studies" / "accuracy_shown.csv")
-    assert (drawn["true error (%)"] <= drawn["stated error (%)"]).mean() > 0.75
+    assert (drawn["true error (%)"] <= drawn["stated error (%)"]).mean() > 0.875
