@@ -242,6 +242,13 @@ def test_planner_believes_at_least_the_committed_errors():
             assert list(table) == list(rows.index)
 
 
+def test_a_light_press_is_believed_no_nearer_than_the_coarse_elements_under_it(tmp_path):
+    """A hundredth of a gram-weight, whose strain energy two rows of elements in the epidermis get wrong by 8 %."""
+    (scene,) = (each for each in drawn.drawn() if each[0] == "force_39")
+    run = drawn.beliefs(*scene, tmp_path)[0]
+    assert run["true error (%)"] <= run["believed error (%)"] <= 5
+
+
 def test_strokes_errors_are_the_largest_and_the_mean_square_of_all_none_below_a_finer_one():
     rows = [("waves", name, *how, error) for name, errors in (("a", (0.09, 0.04, 0.01, 0.03)), ("b", (0.03, 0.02, 0.02, 0.02)))
             for how, error in zip(((2, 20), (7, 20), (14, 20), (7, 10)), errors, strict=True)]  # fmt: skip

@@ -158,7 +158,7 @@ def estimated_error(
 
 
 def _at(half_width: float, known: MeasuredErrors, count: float, table: Mapping[int, tuple[float, ...]], order: float) -> float:
-    """Error of a contact of a half width by a table of the measured ones."""
+    """Relative error at a ``count`` by a ``table`` of it, for a contact of ``half_width`` m between those measured."""
     columns = [_read(count, tuple(table), column, order) for column in zip(*table.values(), strict=True)]
     return float(np.exp(np.interp(np.log(half_width), np.log(known.half_widths), np.log(columns))))
 

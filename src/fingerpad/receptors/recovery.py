@@ -123,6 +123,13 @@ def recovery(space, layers, points, mirrored):
     points of a quadratic one (Barlow 1976); a triangle's quadrature points are off either way. To what is there round a receptor,
     in elements of its layer that hang together, a polynomial is fitted (Zienkiewicz and Zhu 1992). Where there are too few, as in
     a layer of one row, and in elements of the teaching cases, values are those of the elements that the receptor lies in.
+
+    Args:
+        space: :class:`fingerpad.mechanics.space.Space`. layers: (ne,) number of each element's material. points: (nr, 2) m.
+        mirrored: the mesh is half of one that is symmetric in x = 0; what is fitted goes over the axis.
+
+    Raises:
+        ReceptorError: a point lies in no element.
     """
     found, owner, share = _mean_of_neighbours(space, layers, points)
     fits = _fits(space, layers, points, owner, found, mirrored) if space.element.name in FITTED else {}
