@@ -15,6 +15,7 @@ import numpy as np
 
 from fingerpad.mechanics.stepping import Record
 from fingerpad.mechanics.strides import Passage, Touch
+from fingerpad.splines import akima_slopes, hermite, spline_slopes
 
 _OF_THE_STEP = ("leg", "residual", "complementarity_error", "energy_balance_error", "min_detF")
 """What an output has of the state it leads to."""
@@ -57,11 +58,15 @@ def at_outputs(
         way = np.sign(found["stroke_distance"][own[-1]] - found["stroke_distance"][knots[0]])
         known, at = (way * found["stroke_distance"], way * place) if way else (time, times)
         kinks = _kinks(found["contact_pressure"][knots] > 0)
-        for name in smooth:
-            if name in _PRESSURES and not way:
-                out[name][here] = _of_nodes(known[knots], found[name][knots], at[here])
-            else:
-                out[name][here] = _through(known[knots], found[name][knots], kinks, at[here])
+        of_nodes = [name for name in smooth if name in _PRESSURES and not way]
+        for name in of_nodes:
+            out[name][here] = _of_nodes(known[knots], found[name][knots], at[here])
+        others = [name for name in smooth if name not in of_nodes]
+        columns = [found[name][knots].reshape(len(knots), -1) for name in others]
+        curves = _through(known[knots], np.concatenate(columns, axis=1), kinks, at[here])
+        ends = np.cumsum([each.shape[1] for each in columns])
+        for name, values in zip(others, np.split(curves, ends[:-1], axis=1), strict=True):
+            out[name][here] = values.reshape(-1, *found[name].shape[1:])
         last = state[here]
         share[here] = (at[here] - known[last - 1]) / (known[last] - known[last - 1])
         if not way:
@@ -86,35 +91,31 @@ def _kinks(touches: np.ndarray) -> np.ndarray:
 
 
 def _through(place, values, kinks, at):
-    """Values (k, ...) at places (k,) of curves through those (n, ...) at rising places (n,): splines from one of the states
+    """Values (k, nc) at places (k,) of curves through those (n, nc) at rising places (n,): splines from one of the states
     ``kinks`` to before the next. What lies between two splines goes on as they do, but neither higher nor lower than its ends
     (Fritsch and Carlson 1980)."""
-    from scipy.interpolate import CubicHermiteSpline
-
     slopes = _slopes(place, values, kinks)
-    out = CubicHermiteSpline(place, values, slopes)(at)
+    out = hermite(place, values, slopes, at)
     for ends in np.column_stack([kinks - 1, kinks]):
         inside = (at > place[ends[0]]) & (at < place[ends[1]])
         most = 3 * np.diff(values[ends], axis=0) / np.diff(place[ends])
         held = np.clip(slopes[ends], np.minimum(most, 0), np.maximum(most, 0))
-        out[inside] = CubicHermiteSpline(place[ends], values[ends], held)(at[inside])
+        out[inside] = hermite(place[ends], values[ends], held, at[inside])
     return out
 
 
 def _slopes(place, values, kinks):
-    """Of splines through values (n, ...) at places (n,), and where these would be of few states Akima's (1970; as modified in
-    MATLAB's makima), which no kink nearby misleads much."""
-    from scipy.interpolate import Akima1DInterpolator, CubicSpline
-
+    """Of splines through values (n, nc) at places (n,), and where these would be of few states Akima's, which no kink nearby
+    misleads much."""
     if len(place) < _LEAST:
         return np.gradient(values, place, axis=0)
     pieces = np.split(np.arange(len(place)), kinks)
     slopes = np.empty(values.shape)
     if min(map(len, pieces)) < _LEAST:
-        slopes[:] = Akima1DInterpolator(place, values, method="makima")(place, 1)
+        slopes[:] = akima_slopes(place, values)
     for each in pieces:
         if len(each) >= _LEAST:
-            slopes[each] = CubicSpline(place[each], values[each])(place[each], 1)
+            slopes[each] = spline_slopes(place[each], values[each])
     return slopes
 
 
@@ -159,9 +160,8 @@ def _contact(out, found, state, passed, share, records, skin_x, half):
 def _of_nodes(place, pressure, at):
     """Pressures (k, ns) at places (k,) of nodes under which nothing passes, from those (n, ns) at places (n,): their squares,
     which grow evenly from where a node begins to touch, along Akima's curves."""
-    from scipy.interpolate import Akima1DInterpolator
-
-    return np.sqrt(np.maximum(Akima1DInterpolator(place, pressure**2, method="makima")(at), 0.0))
+    squares = pressure**2
+    return np.sqrt(np.maximum(hermite(place, squares, akima_slopes(place, squares), at), 0.0))
 
 
 def _pressing(of_nodes, carried, ends, share):
