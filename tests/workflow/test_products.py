@@ -241,8 +241,8 @@ def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
         path = "src/" + module.replace(".", "/") + ".py"
         names = thesis.rerun(path)
         assert names and {thesis.jobs[name].run for name in names} == {"figures"}
-        own = {name for name in names if thesis.jobs[name].values["chapter"] == [module]}
-        assert own == {name for name in thesis.default() if thesis.jobs[name].values.get("chapter") == [module]}
+        own = {name for name in names if module in thesis.jobs[name].values["modules"]}
+        assert own == {name for name in thesis.default() if module in thesis.jobs[name].values.get("modules", [])}
         chapters = [{name.split("_")[1] for name in part} for part in (names, own)]
         assert chapters[0] == chapters[1], f"drawn again by an edit in {module}"
 

@@ -17,7 +17,7 @@ def test_default_is_at_most_ninety_jobs_by_the_profile_of_the_tree(fresh):
     jobs = fresh.jobs_in(text)
     assert "profiles/default" in text
     assert 50 < len(jobs) <= 91  # and `all` has no outputs
-    assert "figures/thesis/fig_4-10.png" in jobs["figures_4_6"]
+    assert "figures/thesis/fig_4-10.png" in jobs["figures_4_3"]
     assert "results/thesis/coarse/ramp40_k79/history.nc" in jobs["simulate_ramp40"]
     assert not any(path.startswith(str(fresh.root)) for paths in jobs.values() for path in paths)
 

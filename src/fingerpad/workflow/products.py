@@ -312,14 +312,14 @@ class Products:
         return f"{self.config.figures}/fig_{number}.png"
 
     def figures(self) -> Iterator[Job]:
-        """Histories and meshes -> figures: those of a chapter's module that rest on the same simulations share a process."""
+        """Histories and meshes -> figures: those of a chapter that rest on the same simulations share a process."""
         batch_of = {name: batch for batch, names in self.batches().items() for name in names}
         groups: dict[tuple, list[Figure]] = {}
         for figure in self.drawn:
             batches = frozenset(batch_of[scene] for scene in figure.needs)
-            groups.setdefault((figure.module, batches), []).append(figure)
+            groups.setdefault((figure.number.partition("-")[0], batches), []).append(figure)
         reference = self.at("config/reference/thesis_numbers.csv")
-        for (module, _), group in groups.items():
+        for group in groups.values():
             needs = list(dict.fromkeys(scene for figure in group for scene in figure.needs))
             patterns = {pattern for figure in group for pattern in figure.measured}
             read = {
@@ -330,9 +330,10 @@ class Products:
                 "measured": sorted(str(path) for pattern in patterns for path in Path(reference).parent.glob(pattern)),
             }
             called = f"figures_{group[0].number.replace('-', '_')}"
-            made, told = {"pictures": [self.picture_of(f.number) for f in group]}, {"chapter": [module]}
+            made = {"pictures": [self.picture_of(f.number) for f in group]}
+            modules = tuple(dict.fromkeys(figure.module for figure in group))
             # the longest first
-            yield Job("figures", read, made, told, called, (module,), priority=int(len(group) > 4))
+            yield Job("figures", read, made, {"modules": list(modules)}, called, modules, priority=int(len(group) > 4))
 
     def catalogue(self) -> Iterator[Job]:
         """figures/README.md, of the configuration that draws them all."""

@@ -15,9 +15,9 @@ from fingerpad.reference_data import read_reference
 
 
 def run(job):
-    """`histories`, `meshes`, `coarse`, the table `reference`, measured data beside it -> `pictures` of the module `chapter`."""
-    (chapter,), (reference,) = job.chapter, job.reference
-    specs = {spec.number: spec for spec in importlib.import_module(chapter).FIGURES}
+    """`histories`, `meshes`, `coarse`, the table `reference`, measured data beside it -> `pictures` of the `modules`."""
+    (reference,) = job.reference
+    specs = {spec.number: spec for module in job.modules for spec in importlib.import_module(module).FIGURES}
     results, table = read_results([*job.histories, *job.meshes, *job.coarse]), read_reference(reference)
     for picture in job.pictures:
         spec = specs[Path(picture).stem.removeprefix("fig_")]
