@@ -9,7 +9,7 @@ from drawn import picture, saved
 from fingerpad.figures.axes import statement, statement_row
 from fingerpad.figures.registry import FIGURES
 from fingerpad.publishing import style
-from fingerpad.publishing.write import publish
+from fingerpad.publishing.write import in_few_colours, publish
 
 pytestmark = pytest.mark.unit
 
@@ -147,3 +147,18 @@ def test_a_picture_is_written_as_vectors_too_where_a_folder_is_named(tmp_path, m
         publish(FIGURES["4-7"].draw(saved("4-7")), saved("4-7"), tmp_path / f"{name}.png")
     one, other = ((tmp_path / "vectors" / f"{name}.pdf").read_bytes() for name in "ab")
     assert one == other and one.startswith(b"%PDF")
+
+
+def test_pictures_in_few_colours_keep_white_and_all_colours_there_is_room_for():
+    rng = np.random.default_rng(5)
+    few = rng.integers(0, 256, (200, 3))
+    pixels = np.full((40, 50, 4), 255, np.uint8)
+    assert np.asarray(in_few_colours(pixels).convert("RGB")).min() == 255
+    pixels[10:30, 10:20, :3] = few[:, None].reshape(20, 10, 3)
+    assert (np.asarray(in_few_colours(pixels).convert("RGB")) == pixels[..., :3]).all()
+    pixels[:, 20:45, :3] = rng.integers(0, 128, (40, 25, 3))
+    found = in_few_colours(pixels)
+    shown = np.asarray(found.convert("RGB")).astype(int)
+    assert len(found.getcolors()) <= 255 and (shown[:, 45:] == 255).all() and (shown[:10, :10] == 255).all()
+    wrong = np.abs(shown - pixels[..., :3])
+    assert wrong[:, 20:45].mean() < 8  # of 128 in each of three directions, 254 boxes

@@ -14,6 +14,7 @@ from fingerpad.publishing.style import theme
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from PIL.Image import Image
 
 DPI = 300
 COLOURS = 255
@@ -62,16 +63,32 @@ def settle(fig: Figure, dpi: float = DPI) -> None:
 def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
     """Write a picture as PNG at a fixed resolution, in few colours and without metadata: same data, same bytes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from PIL import Image
 
     settle(fig, dpi)
     canvas = FigureCanvasAgg(fig)
     with theme():
         canvas.draw()  # savefig would draw all of it twice
-    plain = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-    counted = plain.getcolors(COLOURS)
-    few = plain.quantize(COLOURS if counted is None else len(counted), Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    few = in_few_colours(np.asarray(canvas.buffer_rgba()))
     write_atomically(path, lambda p: few.save(p, format="PNG", compress_level=6, dpi=(dpi, dpi)))
+
+
+def in_few_colours(pixels: np.ndarray) -> Image:
+    """A picture of opaque pixels (height, width, 4) uint8 with `COLOURS` at most: white stays what it is, and what is not white, a
+    small part of most pictures, has the others."""
+    from PIL import Image
+
+    inked = (pixels.view(np.uint32) != 0xFFFFFFFF)[..., 0]
+    places = np.zeros(inked.shape, np.uint8)
+    palette = [255, 255, 255]
+    if inked.any():
+        ink = Image.fromarray(pixels[inked][None, :, :3].copy())
+        counted = ink.getcolors(COLOURS - 1)
+        few = ink.quantize(COLOURS - 1 if counted is None else len(counted), Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+        places[inked] = np.asarray(few)[0] + 1
+        palette += few.getpalette()
+    out = Image.fromarray(places)
+    out.putpalette(palette)
+    return out
 
 
 def write_vectors(fig: Figure, path: Path) -> None:
