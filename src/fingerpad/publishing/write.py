@@ -73,8 +73,8 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
 
 
 def in_few_colours(pixels: np.ndarray) -> Image:
-    """A picture of opaque pixels (height, width, 4) uint8 with `COLOURS` at most: white stays white, and what is not, a small part
-    of most pictures, has the others."""
+    """A picture of opaque pixels (height, width, 4) uint8 with `COLOURS` at most: white stays white, and what is not, little of
+    most pictures, has the others."""
     from PIL import Image
 
     inked = (pixels.view(np.uint32) != 0xFFFFFFFF)[..., 0]
