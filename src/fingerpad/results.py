@@ -406,10 +406,8 @@ def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
     Raises:
         ResultError: the file is cut off, of another kind, or lacks them. FileNotFoundError: there is none.
     """
-    import xarray as xr
-
     try:
-        found = xr.load_dataset(path, engine="netcdf4")
+        found = _loaded(path)
     except (FileNotFoundError, PermissionError):
         raise
     except (OSError, RuntimeError, ValueError, KeyError) as error:
@@ -419,6 +417,19 @@ def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
         if name not in found.variables:
             raise ResultError(f"{path}: holds no {name}, so is no result of this kind; remove it and run again")
     return found
+
+
+def _loaded(path: str | Path) -> xr.Dataset:
+    """All of a file at once: xarray's own way opens a variable at a time, and looks for all its backends first."""
+    import netCDF4
+    import xarray as xr
+
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        found = xr.Dataset(
+            {name: (each.dimensions, each[...], each.__dict__) for name, each in file.variables.items()}, None, file.__dict__
+        )
+    return xr.decode_cf(found).load()
 
 
 def read_history(path: str | Path) -> xr.Dataset:
