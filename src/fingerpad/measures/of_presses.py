@@ -203,14 +203,13 @@ def critical_distance(history):
 
     Over the nodes that reach their largest pressure before the ramp ends.
     """
-    distances = []
-    for node in surface_nodes(history):
-        pressure = history[PRESSURE].values[:, node]
-        index = int(pressure.argmax())
-        if 0 < index < ramp_end(history):
-            x = float(skin_at(history, index)[0][node])
-            distances.append(float(history["contact_width"].values[index]) / 2 - x)
-    return 1e3 * np.mean(distances) if distances else np.nan
+    nodes = surface_nodes(history)
+    peaks = history[PRESSURE].values[:, nodes].argmax(axis=0)
+    within = (peaks > 0) & (peaks < ramp_end(history))
+    if not within.any():
+        return np.nan
+    x, _ = skin_at(history)
+    return 1e3 * np.mean(history["contact_width"].values[peaks[within]] / 2 - x[peaks[within], nodes[within]])
 
 
 # --- decay in the hold -----------------------------------------------------------------------------------
@@ -219,7 +218,7 @@ def critical_distance(history):
 def _decay(history: xr.Dataset, values: np.ndarray) -> tuple[float, float]:
     """Relative fall over the hold and time (s) to half of it."""
     top = ramp_end(history)
-    held, time = values[top:], history["time"].values[top:]
+    held, time = values[top:], history.variables["time"].values[top:]
     fall = float(1 - held[-1] / held[0]) if held[0] else float("nan")
     if not fall > 0:
         return fall, float("nan")
@@ -235,22 +234,21 @@ def _falls(history: xr.Dataset) -> dict[str, tuple[float, float]]:
 @measure("s", held)
 def half_of_fall(history):
     """Time to half of the fall of the pressure: of the largest, of the centre's, and at nodes past the peak."""
-    found = [_decay(history, history[PRESSURE].values[:, n])[1] for n in _past_peak(history)]
+    found = [_decay(history, values)[1] for values in history[PRESSURE].values.T[_past_peak(history)]]
     spread = {"shortest": min(found), "longest": max(found), "mean": np.mean(found)} if found else {}
     return {k: half for k, (_, half) in _falls(history).items()} | spread
 
 
-def _past_peak(history: xr.Dataset) -> list[int]:
+def _past_peak(history: xr.Dataset) -> np.ndarray:
     """Skin nodes from the centre to 0.6 mm within the contact's edge at the ramp's end."""
-    half_width = history["contact_width"].values[ramp_end(history)] / 2
-    return [n for n in surface_nodes(history) if history["skin_x"].values[n] < half_width - 0.6e-3]
+    nodes, half_width = surface_nodes(history), history["contact_width"].values[ramp_end(history)] / 2
+    return nodes[history["skin_x"].values[nodes] < half_width - 0.6e-3]
 
 
 def _late_peaks(history: xr.Dataset) -> np.ndarray:
     """Largest pressure (Pa) of each node that joins in the hold, from the centre outwards."""
-    touched = history[PRESSURE].values > 0
-    late = [n for n in surface_nodes(history) if touched[:, n].argmax() > ramp_end(history)]
-    return history[PRESSURE].values[:, late].max(axis=0)
+    pressure = history[PRESSURE].values[:, surface_nodes(history)]
+    return pressure[:, (pressure > 0).argmax(axis=0) > ramp_end(history)].max(axis=0)
 
 
 @measure("count", held)

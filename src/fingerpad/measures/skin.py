@@ -42,10 +42,10 @@ def local_curvature(x: np.ndarray, y: np.ndarray, node: int, window: float = WIN
     s = arc[..., near] / half
     weight = np.clip(1 - s**2, 0, None) ** 2
     basis = np.stack([np.ones_like(s), s, s**2], axis=-1)
-    normal = np.einsum("...n,...ni,...nj->...ij", weight, basis, basis)
+    weighted = np.moveaxis(weight[..., None] * basis, -1, -2)
     middle = np.stack([x[..., node], y[..., node]], axis=-1)[..., None, :]
     positions = np.stack([x[..., near], y[..., near]], axis=-1) - middle
-    fit = np.linalg.solve(normal, np.einsum("...n,...ni,...nk->...ik", weight, basis, positions))
+    fit = np.linalg.solve(weighted @ basis, weighted @ positions)
     slope, bend = fit[..., 1, :] / half, 2 * fit[..., 2, :] / half**2
     turn = slope[..., 0] * bend[..., 1] - slope[..., 1] * bend[..., 0]
     return turn / np.hypot(slope[..., 0], slope[..., 1]) ** 3
