@@ -17,7 +17,7 @@ from pathlib import Path
 from fingerpad.config import WorkflowConfig
 from fingerpad.documents import HIDE, Problem, SceneError, error_line, nearest
 from fingerpad.provenance import imported_sources
-from fingerpad.scenes.families import moves_along, read_scene, rests_on
+from fingerpad.scenes.families import Written, moves_along, read_scene, rests_on
 from fingerpad.workflow.chapters import Figure, offered
 
 RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
@@ -52,7 +52,7 @@ class Job:
         run: module of `fingerpad.workflow.jobs`. inputs, outputs: files by what they are to the job. values: parameters likewise.
         called: the rule's name, if it is not the module's. modules: further modules that the job imports by name. also: outputs
         beside the others. category, labels: of the outputs called pages, which the report shows. vectors: folder of the pictures
-        as PDF.
+        as PDF. priority: the higher the earlier, of what takes long or is waited for.
     """
 
     run: str
@@ -126,6 +126,7 @@ class Products:
     def __init__(self, config: WorkflowConfig, file: str | Path, root: str | Path) -> None:
         self.config, self.file, self.root = config, file, Path(root)
         self._found: dict[str, str] = {}
+        self._scenes: dict[str, Written] = {}
         self._check()
 
     # -- what there is -----------------------------------------------------------------------------------------------------
@@ -290,12 +291,12 @@ class Products:
         reruns the scenes whose meaning it changes, not all that share the file.
         """
         files = dict.fromkeys(os.path.relpath(path) for name in names for path in rests_on(self.scene(name)))
-        own = {os.path.relpath(path) for name in names for path in read_scene(self.scene(name)).files}
+        own = {os.path.relpath(path) for name in names for path in self._scene(name).files}
         return {"scene_files": [path for path in files if path in own], "files": [path for path in files if path not in own]}
 
     def _written(self, *names: str) -> list[str]:
         """Digests of what is written of scenes."""
-        texts = (json.dumps(read_scene(self.scene(name)).document, sort_keys=True, default=str) for name in names)
+        texts = (json.dumps(self._scene(name).document, sort_keys=True, default=str) for name in names)
         return [hashlib.sha256(text.encode()).hexdigest()[:16] for text in texts]
 
     def _told(self, name: str) -> dict[str, list[str]]:
@@ -304,7 +305,13 @@ class Products:
 
     def _family(self, name: str) -> str:
         """Name of the file that a scene is in."""
-        return read_scene(self.scene(name)).files[0].stem
+        return self._scene(name).files[0].stem
+
+    def _scene(self, name: str) -> Written:
+        """What is written of a scene, read once."""
+        if name not in self._scenes:
+            self._scenes[name] = read_scene(self.scene(name))
+        return self._scenes[name]
 
     # -- figures and tables ------------------------------------------------------------------------------------------------
 
@@ -395,7 +402,7 @@ class Products:
                 "coarse": self.both_companions(scene for scene in scenes if scene in self.coarse),
             }
             measures = {"measures": [self.result("measures.csv")]}
-            yield Job("measures", every, measures, mem_mb=2000, priority=1)  # three jobs follow from it one after the other
+            yield Job("measures", every, measures, mem_mb=2000, priority=1)
             read = measures | {"reference": [self.at("config/reference/thesis_numbers.csv")]}
             yield Job("tables", read, {"tables": self.tables(names)}, also=self._comparison_pages())
         if "mesh_quality" in c.table_names:
@@ -413,7 +420,7 @@ class Products:
                     s for s in self._of(c.scenes, "ramp40", "stroke") if s.startswith("ramp40_") or s == "stroke_10"
                 ),
             }
-            yield Job("receptor_tables", read, {"tables": self.tables(names)})
+            yield Job("receptor_tables", read, {"tables": self.tables(names)}, priority=1)
 
     def _of(self, names: Iterable[str], *families: str) -> list[str]:
         """Those of `names` that belong to some families."""
@@ -440,7 +447,7 @@ class Products:
 
         steady = [scene for scene in c.calibration_scenes if scene != RAMP]
         read = {"forces": self.forces, "histories": self.histories(steady), "coarse": self.companions([PLATE])}
-        yield Job("calibrate", read, {"data": data(*names, *estimates), "specimens": [self.result("specimens")]})
+        yield Job("calibrate", read, {"data": data(*names, *estimates), "specimens": [self.result("specimens")]}, priority=1)
         if RAMP in c.calibration_scenes:
             read = {
                 "relaxation": [self.at("config/reference/relaxation.csv")],
@@ -464,7 +471,7 @@ class Products:
                 "sweep": sweep,
                 "histories": self.histories(c.friction_scenes),
             }
-            yield Job("calibrate_friction", read, {"data": data("friction", "friction_estimates")})
+            yield Job("calibrate_friction", read, {"data": data("friction", "friction_estimates")}, priority=1)
             names, estimates = [*names, "friction"], [*estimates, "friction_estimates"]
         yield self._study_pictures("calibration", names, data(*names), "fingerpad.studies.calibration.picture")
         yield self._joined("calibration_table", data(*estimates), "calibration")
@@ -496,7 +503,7 @@ class Products:
         names = ["offset", "height", "friction", "mesh", "outer"]
         read = {"cases": cases, "histories": self.histories(OUTER), "coarse": self.companions(OUTER[:1])}
         data = [self.result(f"ridges/{name}.csv") for name in names]
-        yield Job("ridge_data", read, {"data": data})
+        yield Job("ridge_data", read, {"data": data}, priority=1)
         yield self._study_pictures("ridges", names, data, "fingerpad.studies.ridges.picture")
 
     def accuracy(self) -> Iterator[Job]:
