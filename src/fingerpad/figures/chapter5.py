@@ -41,7 +41,7 @@ from fingerpad.measures.quantities import (
     sed,
 )  # fmt: skip
 from fingerpad.measures.runs import NINE, SPEEDS, STEPPED_OVER, SUB_SPEEDS, WITHIN_400, Runs
-from fingerpad.measures.skin import skin_curvature
+from fingerpad.measures.skin import skin_curvatures
 from fingerpad.measures.strokes import LOCATIONS, NODES, distance, loaded, nodes_at, profile_and_height, time_of
 from fingerpad.measures.table import reading
 from fingerpad.planning.errors import PROFILE_ORDER
@@ -115,9 +115,10 @@ def nodes_over_time(data: Data) -> pd.DataFrame:
     """Pressure and skin curvature over time at nine nodes, 10 mm/s."""
     ((_, history, coarse),) = data.runs(SUB_TEN)
     stroke, parts = loaded(history), []
-    for place, node in zip(NODES, nodes_at(stroke), strict=True):
+    nodes = nodes_at(stroke)
+    for place, node, curvature in zip(NODES, nodes, skin_curvatures(stroke, nodes), strict=True):
         part = {"panel": f"X = {place:g} mm", NODE: round(1e3 * float(stroke["skin_x"].values[node]), 5), TIME: time_of(stroke)}
-        part |= {P: stroke[PRESSURE].values[:, node], SKIN_CURVATURE: 1e-3 * skin_curvature(stroke, node)}
+        part |= {P: stroke[PRESSURE].values[:, node], SKIN_CURVATURE: 1e-3 * curvature}
         pressed = over_stroke(partial(pressure_at, place=shared_place(float(stroke["skin_x"].values[node]), coarse)))
         parts.append(pd.DataFrame(part | curve_errors(history, coarse, pressed).columns))
     return pd.concat(parts, ignore_index=True)

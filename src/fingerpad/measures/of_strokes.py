@@ -37,7 +37,7 @@ from fingerpad.measures.responses import (
     stroke_law,
 )
 from fingerpad.measures.runs import NINE
-from fingerpad.measures.skin import WINDOW, skin_curvature
+from fingerpad.measures.skin import WINDOW, skin_curvatures
 from fingerpad.measures.strokes import (
     FULL,
     LOCATIONS,
@@ -149,11 +149,10 @@ def skin_drag(stroke):
 @stroked("1", wavy)
 def curvature_correlation(stroke):
     """Of pressure with the curvature of the skin while it touches: at the centre, and at the nine nodes of Fig 5-10."""
-    found = {"centre": _scaled_curvature(stroke)[3]}
-    for at, node in zip(NODES, nodes_at(stroke), strict=True):
-        pressure = stroke[PRESSURE].values[:, node]
-        if (pressure > 0).sum() > 2:
-            found[f"{at:g} mm"] = scaled(skin_curvature(stroke, node), pressure, pressure > 0)[3]
+    found, pressures = {"centre": _scaled_curvature(stroke)[3]}, stroke[PRESSURE].values
+    touched = {at: n for at, n in zip(NODES, nodes_at(stroke), strict=True) if (pressures[:, n] > 0).sum() > 2}
+    for (at, n), curvature in zip(touched.items(), skin_curvatures(stroke, touched.values()), strict=True):
+        found[f"{at:g} mm"] = scaled(curvature, pressures[:, n], pressures[:, n] > 0)[3]
     return found
 
 

@@ -7,6 +7,8 @@ lie on the profile, it equals the profile's curvature; a noise of e in the nodes
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import xarray as xr
 
@@ -33,9 +35,18 @@ def local_curvature(x: np.ndarray, y: np.ndarray, node: int, window: float = WIN
     (...,) 1/m. The weights fall off as (1 - (s / window)**2)**2 with the arc length s from the node.
     """
     x, y = np.asarray(x, float), np.asarray(y, float)
+    return _curvature(x, y, _way(x, y), node, window)
+
+
+def _way(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Arc length (..., nodes) m along a line, from its first node."""
     steps = np.hypot(np.diff(x), np.diff(y))
-    arc = np.concatenate([np.zeros((*steps.shape[:-1], 1)), np.cumsum(steps, axis=-1)], axis=-1)
-    arc -= arc[..., node, None]
+    return np.concatenate([np.zeros((*steps.shape[:-1], 1)), np.cumsum(steps, axis=-1)], axis=-1)
+
+
+def _curvature(x: np.ndarray, y: np.ndarray, way: np.ndarray, node: int, window: float) -> np.ndarray:
+    """`local_curvature` of a line with its arc length."""
+    arc = way - way[..., node, None]
     needed = np.maximum(-arc[..., node - LEAST_NODES], arc[..., node + LEAST_NODES])
     half = np.maximum(window, 1.25 * needed)[..., None]
     near = (np.abs(arc) < half).any(axis=tuple(range(arc.ndim - 1)))
@@ -51,6 +62,13 @@ def local_curvature(x: np.ndarray, y: np.ndarray, node: int, window: float = WIN
     return turn / np.hypot(slope[..., 0], slope[..., 1]) ** 3
 
 
-def skin_curvature(history: xr.Dataset, node: int, window: float = WINDOW) -> np.ndarray:
+def skin_curvature(history: xr.Dataset, node: int) -> np.ndarray:
     """Curvature (time) 1/m of the deformed skin at a skin node, as `local_curvature` defines it."""
-    return local_curvature(*skin_at(history), node, window)
+    return local_curvature(*skin_at(history), node)
+
+
+def skin_curvatures(history: xr.Dataset, nodes: Iterable[int]) -> list[np.ndarray]:
+    """Curvatures (time) 1/m of the deformed skin at several nodes; its arc length is found once."""
+    x, y = skin_at(history)
+    way = _way(x, y)
+    return [_curvature(x, y, way, node, WINDOW) for node in nodes]
