@@ -156,19 +156,19 @@ def _first_peak(history: xr.Dataset) -> dict[str, int]:
     return {"first": inner[0], "dip": inner[0] + int(p[inner[0] :].argmin()), "top": top} if inner else {"top": top}
 
 
-def _twin_peak(history: xr.Dataset, index: int) -> tuple[float, float]:
-    """Excess of the largest pressure over the centre's (relative) and its distance from the centre (m)."""
-    x, p = profile(history, index)
-    node = int(p.argmax())
-    centre = p[centre_node(history)]
-    return (float(p[node] / centre - 1) if centre > 0 else 0.0), abs(float(x[node]))
-
-
 @measure("1", held)
 def off_centre_excess(history):
-    """Of the largest pressure over the centre's: at the end, and the largest at any time."""
-    ever = max(_twin_peak(history, i)[0] for i in range(1, history.sizes["time"]))
-    return {"end": _twin_peak(history, history.sizes["time"] - 1)[0], "ever": ever}
+    """Of the largest pressure over the centre's: at the end, and the largest at any time; 0 while the centre does not touch."""
+    pressure = history[PRESSURE].values
+    centre = pressure[:, centre_node(history)]
+    excess = np.divide(pressure.max(axis=1), centre, out=np.ones_like(centre), where=centre > 0) - 1
+    return {"end": excess[-1], "ever": excess[1:].max()}
+
+
+def _off_centre(history: xr.Dataset) -> float:
+    """Distance (m) of the node of the largest pressure from the centre, at the end."""
+    x, p = profile(history, -1)
+    return abs(x[p.argmax()])
 
 
 @measure("1", held)
@@ -407,8 +407,7 @@ PRESSURE_MEASURES = (
     # at the first peak within the ramp, at the dip after it and at the ramp's end; without one the last alone
     Measure("ramp_pressure", "Pa", lambda h: {k: features.centre_pressure(h)[i] for k, i in _first_peak(h).items()}, held),
     Measure("ramp_pressure_time", "s", lambda h: {k: h["time"].values[i] for k, i in _first_peak(h).items()}, held),
-    # of the node of the largest pressure, at the end
-    Measure("off_centre_place", "mm", lambda h: 1e3 * _twin_peak(h, h.sizes["time"] - 1)[1], held),
+    Measure("off_centre_place", "mm", lambda h: 1e3 * _off_centre(h), held),
     Measure("fall_in_hold", "1", lambda h: {k: fall for k, (fall, _) in _falls(h).items()}, held),
     Measure("nodes_past_peak", "count", lambda h: len(_past_peak(h)), held),
 )
