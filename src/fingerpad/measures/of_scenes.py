@@ -14,7 +14,6 @@ from fingerpad.receptors.laws import THESIS_RATE
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import PadMesh
-from fingerpad.specimen.quality import quality_of
 from fingerpad.stimuli.curve import Segment
 from fingerpad.units import parse_quantity
 
@@ -162,8 +161,8 @@ def _smallest_edge(mesh: PadMesh) -> float:
 counted = partial(Measure, of="mesh")
 
 MESH = (
-    counted("nodes", "count", lambda mesh: quality_of(mesh)["nodes"], anywhere),
-    counted("elements", "count", lambda mesh: quality_of(mesh)["elements"], anywhere),
+    counted("nodes", "count", lambda mesh: len(mesh.points), anywhere),
+    counted("elements", "count", lambda mesh: len(mesh.cells), anywhere),
     counted("smallest_edge", "um", _smallest_edge, finger),
     counted("section", "mm", lambda mesh: {k: 1e3 * np.ptp(mesh.points[:, i]) for i, k in enumerate(("width", "height"))}),
     # layers with elements, the stratum corneum and the bone
