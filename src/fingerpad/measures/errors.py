@@ -21,7 +21,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import astuple, dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
@@ -94,7 +94,12 @@ class Companion:
 
 
 def _planned(history: xr.Dataset) -> dict[str, Any]:
-    return json.loads(history.attrs.get("plan", "{}"))
+    return _plan(history.attrs.get("plan", "{}"))
+
+
+@lru_cache(maxsize=256)
+def _plan(text: str) -> dict[str, Any]:
+    return json.loads(text)
 
 
 def _external(planned: Mapping[str, Any]) -> bool:
