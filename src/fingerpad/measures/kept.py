@@ -5,21 +5,20 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable
 from functools import wraps
-from typing import Concatenate, ParamSpec
+from typing import Concatenate, ParamSpec, TypeVar
 
 import xarray as xr
 
 Further = ParamSpec("Further")
+Made = TypeVar("Made")
 
 
-def kept(
-    make: Callable[Concatenate[xr.Dataset, Further], xr.Dataset],
-) -> Callable[Concatenate[xr.Dataset, Further], xr.Dataset]:
-    """The function, which makes a dataset of a history, not called again for the same one: what is read is not changed."""
-    made: dict[tuple, xr.Dataset] = {}
+def kept(make: Callable[Concatenate[xr.Dataset, Further], Made]) -> Callable[Concatenate[xr.Dataset, Further], Made]:
+    """The function, which makes something of a history, not called again for the same one: neither of the two is changed."""
+    made: dict[tuple, Made] = {}
 
     @wraps(make)
-    def found(history: xr.Dataset, *further: Further.args, **named: Further.kwargs) -> xr.Dataset:
+    def found(history: xr.Dataset, *further: Further.args, **named: Further.kwargs) -> Made:
         key = (id(history), further, tuple(named.items()))
         if key not in made:
             new = make(history, *further, **named)

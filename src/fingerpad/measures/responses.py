@@ -21,6 +21,7 @@ from fingerpad.measures.features import (
     receptor_index,
     skin_at,
 )
+from fingerpad.measures.kept import kept
 from fingerpad.measures.measure import speed_of, waves
 from fingerpad.measures.quantities import (
     BELOW_EDGE,
@@ -45,7 +46,7 @@ from fingerpad.measures.quantities import (
 )
 from fingerpad.measures.runs import NINE
 from fingerpad.measures.skin import skin_curvature
-from fingerpad.measures.strokes import FULL, convexities, loaded, passage, place
+from fingerpad.measures.strokes import FULL, convexities, distance, loaded, passage, place
 from fingerpad.receptors.fits import SkinSample, constant_shift, linear, r_squared, spatial_sum
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, pressure_terms, rate_by_leg, time_above
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
@@ -82,7 +83,7 @@ def curvature_of(history: xr.Dataset) -> float:
 
 def is_stroke(history: xr.Dataset) -> bool:
     """Whether anything slid or was stepped."""
-    return "stroke_distance" in history and bool(np.ptp(history["stroke_distance"].values) > 0)
+    return "stroke_distance" in history and bool(np.ptp(distance(history)) > 0)
 
 
 def strokes(histories: Histories) -> dict[str, xr.Dataset]:
@@ -243,6 +244,7 @@ def fit_nodes(law: str, nodes: pd.DataFrame) -> np.ndarray:
 # -- rates and impulses ----------------------------------------------------------------------------------------------------
 
 
+@kept
 def predicted_rate(
     history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, offset: float = 0.0
 ) -> pd.DataFrame:
@@ -394,6 +396,7 @@ def straight_line(x, y) -> tuple[float, float, float]:
 # -- bursts --------------------------------------------------------------------------------------------------------------------
 
 
+@kept
 def bursts(
     history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, threshold: float | None = None
 ) -> pd.DataFrame:

@@ -56,7 +56,7 @@ def profile_and_height(history: xr.Dataset) -> tuple[Profile, np.ndarray]:
 
 def arcs(history: xr.Dataset) -> list[Segment]:
     """Arcs of a history's wavy surface in their order, convex (curvature above 0) and hollow ones."""
-    return [piece for piece in profile_and_height(history)[0].segments if piece.curvature]
+    return [piece for piece in scene_of(history).stimulus.segments if piece.curvature]
 
 
 def convexities(history: xr.Dataset) -> dict[str, Segment]:
@@ -70,13 +70,13 @@ def loaded(history: xr.Dataset) -> xr.Dataset:
 
     What is loaded already is as it is.
     """
-    last = np.append(np.diff(history["stroke_distance"].values) != 0, True)
+    last = np.append(np.diff(distance(history)) != 0, True)
     return history if last.all() else history.isel(time=np.flatnonzero(last))
 
 
 def distance(stroke: xr.Dataset) -> np.ndarray:
     """Stroke distance (time) m."""
-    return stroke["stroke_distance"].values
+    return stroke.variables["stroke_distance"].values
 
 
 def time_of(stroke: xr.Dataset) -> np.ndarray:
@@ -92,7 +92,8 @@ def lateral(stroke: xr.Dataset) -> np.ndarray:
 def place(stroke: xr.Dataset) -> np.ndarray:
     """Point of the surface (time), m along it, that the centre node lies under."""
     node = centre_node(stroke)
-    return distance(stroke) + stroke["skin_x"].values[node] + stroke["skin_displacement_x"].values[:, node]
+    at_rest, moved = (stroke.variables[name].values[..., node] for name in ("skin_x", "skin_displacement_x"))
+    return distance(stroke) + at_rest + moved
 
 
 def touching(stroke: xr.Dataset) -> np.ndarray:
@@ -113,6 +114,7 @@ def nodes_at(history: xr.Dataset, places: tuple[float, ...] = NODES) -> list[int
     return [int(np.argmin(abs(x - place * 1e-3))) for place in places]
 
 
+@kept
 def centre_curvature(stroke: xr.Dataset) -> np.ndarray:
     """Curvature (time) 1/m of the skin at the centre node."""
     return skin_curvature(stroke, centre_node(stroke))
@@ -129,6 +131,7 @@ def scaled_curvature(stroke: xr.Dataset) -> np.ndarray:
     return scaled(centre_curvature(stroke), centre_pressure(stroke), touching(stroke))[0]
 
 
+@kept
 def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Place of the centre node and whether it touches, every `FINE` of stroke distance.
 
