@@ -72,10 +72,10 @@ def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np
     s = np.asarray(x, float) - np.asarray(reference, float)[..., None]
     far = np.abs(s)
     fallen = r * np.expm1(-far / r)
-    once = -np.sign(s) * fallen  # integral of the kernel, and the integral of that
+    once = -np.sign(s[..., [0, -1]]) * fallen[..., [0, -1]]  # integral of the kernel at the ends, and the integral of that
     twice = r * (far + fallen)
     slope = np.diff(twice, axis=-1) / np.diff(s, axis=-1)
-    return np.diff(np.concatenate([once[..., :1], slope, once[..., -1:]], axis=-1), axis=-1)
+    return np.diff(slope, axis=-1, prepend=once[..., :1], append=once[..., 1:])
 
 
 @dataclass(frozen=True)
