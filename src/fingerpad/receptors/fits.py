@@ -154,19 +154,25 @@ def gain_and_threshold(stimulus: np.ndarray, rate: np.ndarray) -> GainAndThresho
     tiny = 1e-9 * max(float(np.abs(rate).max()), 1e-300) / scale
     best = GainAndThreshold(tiny, float(stimulus.mean() - rate.mean() / tiny))
     least = float(((rate - best(stimulus)) ** 2).sum())
-    order = np.argsort(stimulus, kind="stable")
-    for k in range(len(order) - 1):
-        s, y = stimulus[order[k:]] - stimulus.mean(), rate[order[k:]]
-        if np.ptp(s) <= 1e-12 * scale:
-            continue
-        gain, offset = np.polyfit(s, y, 1)
-        if gain <= tiny:
-            continue
-        law = GainAndThreshold(float(gain), float(stimulus.mean() - offset / gain))
+    for law in _rising_lines(stimulus, rate, 1e-12 * scale, tiny):
         misfit = float(((rate - law(stimulus)) ** 2).sum())
         if misfit < least * (1 - 1e-12):
             best, least = law, misfit
     return best
+
+
+def _rising_lines(stimulus: np.ndarray, rate: np.ndarray, least_range: float, least_gain: float) -> list[GainAndThreshold]:
+    """Lines through all stimuli, all but the weakest, and so on, by least squares; those that rise, of stimuli that differ."""
+    order = np.argsort(stimulus, kind="stable")
+    s, y = stimulus[order] - stimulus.mean(), rate[order]
+    first = np.flatnonzero(s[-1] - s > least_range)
+    used = np.arange(len(s)) >= first[:, None]
+    middle, mean = (used @ values / used.sum(axis=1) for values in (s, y))
+    apart = used * (s - middle[:, None])
+    gains = apart @ y / (apart**2).sum(axis=1)
+    rising = gains > least_gain
+    thresholds = stimulus.mean() + middle[rising] - mean[rising] / gains[rising]
+    return [GainAndThreshold(*each) for each in zip(gains[rising].tolist(), thresholds.tolist(), strict=True)]
 
 
 def leave_one_out(stimulus: np.ndarray, rate: np.ndarray, groups: np.ndarray) -> np.ndarray:
