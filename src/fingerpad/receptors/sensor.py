@@ -74,9 +74,11 @@ def taxel_pressure(x, pressure, edges) -> np.ndarray:
         x: (..., k) m, increasing: places of the pressures, linear in between, none outside. pressure: (..., k) Pa.
     """
     x, pressure = np.asarray(x, float), np.asarray(pressure, float)
-    if x.ndim > 1:
-        return np.stack([taxel_pressure(a, b, edges) for a, b in zip(x, pressure, strict=True)])
-    both = np.unique(np.concatenate([x, np.clip(edges, x[0], x[-1])]))
-    value = np.interp(both, x, pressure)
-    carried = np.concatenate([[0.0], np.cumsum(np.diff(both) * (value[1:] + value[:-1]) / 2)])
-    return np.diff(np.interp(edges, both, carried)) / np.diff(edges)
+    spacing, inside = np.diff(x), np.clip(edges, x[..., :1], x[..., -1:])
+    carried = np.insert(np.cumsum(spacing * (pressure[..., 1:] + pressure[..., :-1]) / 2, axis=-1), 0, 0.0, axis=-1)
+    before = np.stack([(x[..., 1:-1] <= edge[..., None]).sum(axis=-1) for edge in np.moveaxis(inside, -1, 0)], axis=-1)
+    left, there, slope, up_to = (
+        np.take_along_axis(values, before, axis=-1) for values in (x, pressure, np.diff(pressure) / spacing, carried)
+    )
+    past = inside - left
+    return np.diff(up_to + past * (there + slope * past / 2), axis=-1) / np.diff(edges)
