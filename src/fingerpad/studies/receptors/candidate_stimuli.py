@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from fingerpad.measures.features import Histories, ramp_end
+from fingerpad.measures.kept import kept
 from fingerpad.measures.responses import CANDIDATES, RECEPTOR_DEPTH, curvature_of, stimulus, windowed
 from fingerpad.measures.runs import NINE
 from fingerpad.receptors.fits import gain_and_threshold, leave_one_out, r_squared, rms
@@ -59,13 +61,15 @@ def _held(surfaces: Mapping[str, xr.Dataset], name: str, depth: float) -> dict[s
 def _candidates():
     """Name, unit, whether it is taken at a depth, and number of every candidate."""
     for name, (_, unit, deep) in CANDIDATES.items():
-
-        def number(history, window, depth, name=name):
-            return windowed(history, history["time"].values, stimulus(history, name, depth), window)
-
-        yield name, unit, deep, number
+        yield name, unit, deep, partial(_average, name=name)
     yield "curvature", "1/m", False, lambda history, window, depth: curvature_of(history)
     yield "inverse contact width", "1/m", False, _inverse_width
+
+
+@kept
+def _average(history, window, depth, name):
+    """Of a candidate over a window, as every reading of every set of rates asks for it."""
+    return windowed(history, history.variables["time"].values, stimulus(history, name, depth), window)
 
 
 def _common_depths(matched: Mapping[float, Sequence[xr.Dataset]]) -> list[float]:
