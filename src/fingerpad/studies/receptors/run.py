@@ -206,9 +206,13 @@ def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
 
 def _share_of_skin(law: SpatialSum, sample, skin: np.ndarray) -> float:
     """The share of the skin's lateral displacement with which the law comes closest to a stroke, to a hundredth."""
+
+    def left(share: float) -> float:
+        return rms(sample.by(law, share * skin) - sample.energy)
+
     shares = np.arange(0, 1.505, 0.01)
-    left = [rms(sample.by(law, share * skin) - sample.energy) for share in shares]
-    return float(shares[int(np.argmin(left))])
+    near = 10 * int(np.argmin([left(share) for share in shares[::10]]))
+    return float(min(shares[max(near - 10, 0) : near + 11], key=left))
 
 
 def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
