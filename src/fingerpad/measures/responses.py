@@ -344,7 +344,7 @@ def time_mean(time, values, start: float | None = None, end: float | None = None
 def windowed(history: xr.Dataset, time, values, window: str) -> float:
     """A trace's number for a window of `fingerpad.receptors.recordings.WINDOWS`; "steady" is the last half of the hold."""
     time, values = np.asarray(time), np.asarray(values)
-    top, end = float(history["time"].values[ramp_end(history)]), float(history["time"].values[-1])
+    top, end = history.variables["time"].values[[ramp_end(history), -1]].tolist()
     if window == "peak":
         return float(values.max())
     start, stop = {"hold": (top, end), "steady": ((top + end) / 2, end), "first second": (0.0, 1.0), "first 200 ms": (0.0, 0.2)}[
@@ -454,7 +454,7 @@ def burst_values(stroke: xr.Dataset, column: str) -> dict[str, float]:
 def stimulus(history: xr.Dataset, name: str, depth: float) -> np.ndarray:
     """A candidate stimulus (time) of a receptor at a depth (m) under the centre, or on the skin over it: see `CANDIDATES`."""
     variable, _, _ = CANDIDATES[name]
-    values = history[variable].values
+    values = history.variables[variable].values
     if values.ndim == 2:
         values = values[:, receptor_index(history, depth)]
     return values
