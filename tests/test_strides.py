@@ -152,24 +152,6 @@ def test_a_stride_over_an_event_is_taken_back():
     assert sum(found) == 60 and found[:4] == [1, 2, 4, 5] and set(found[8:-1]) == {1}
 
 
-@pytest.mark.parametrize("off, longest", [(0.75, 5), (0.9, 1)])
-def test_strides_grow_past_what_does_not_grow_with_them(off, longest):
-    """As what nodes that come into contact leave between states; near the tolerance nothing is tried."""
-    found = walk(Strides(iter(outputs(300)), Between(0.25e-3, 0.01)), lambda way: 0.01 * off)
-    assert sum(found) == 300 and max(found) == longest and set(found[20:-1]) == {longest}
-
-
-def test_a_longer_stride_that_was_taken_back_is_not_tried_again_at_once():
-    tried = []
-
-    def error(way):
-        tried.append(round(way / 0.05e-3))
-        return 0.005 if tried[-1] == 1 else 0.03
-
-    assert set(walk(Strides(iter(outputs(200)), Between(0.25e-3, 0.01)), error)) == {1}
-    assert 10 < tried.count(2) < 200 / 8 and set(tried) == {1, 2}
-
-
 def test_every_output_is_found_while_stick_turns_to_slip():
     """A touch that sticks in part follows its predecessor by one output; a long stride to it is taken back."""
     plate = hertz(half_width=2e-3)
