@@ -30,11 +30,6 @@ _FEW = 0.02
 """Share of the force, of which no less sticks, or slips, where it counts."""
 _TOO_FAR = 2.0
 """Tolerances beyond which a stride is taken back."""
-_SAFE, _PATIENCE = 0.8, 2
-"""Tolerances within which strides are good enough, and how many of these in a row let none be longer before one passes a step
-more: what contact that passes over elements leaves between states hardly grows with the stride, as what is smooth does."""
-_BARRED = 8
-"""Strides after one that was taken back, before another is tried so."""
 
 
 @dataclass(frozen=True)
@@ -197,7 +192,6 @@ class Strides:
         self._steps, self._between = iter(steps), between
         self._waiting: deque[Step] = deque()
         self._taken, self._wanted, self._at, self._leg, self._most = 0, 0.0, 0.0, -1, 0
-        self._alike, self._tried = 0, False  # strides in a row that let none be longer; was the last one longer all the same?
 
     def next(self) -> tuple[Step, tuple[Step, ...]] | None:
         """The next step, and the scheduled ones that it passes; None after the last."""
@@ -227,20 +221,12 @@ class Strides:
         off = missed(before, middle, found) / self._between.tolerance
         turning = any(_FEW < touch.sticks < 1 - _FEW for touch in (middle, found))  # from stick to slip, or back
         if (off > _TOO_FAR or turning) and self._taken > 1:
-            self._alike, self._tried = -_BARRED, False
             return False
         if turning:
             self._wanted = 0.0
             return True
         way = abs(found.distance - middle.distance)
-        if self._tried:  # it is judged by the next one, which is as long
-            self._wanted, self._tried = way, False
-            return True
-        self._wanted, longer = way * float(np.clip(off**-0.5 if off else 2.0, 0.5, 2.0)), way * (1 + 1 / self._taken)
-        self._alike = self._alike + 1 if off < _SAFE and self._wanted < longer else min(self._alike, 0)
-        if self._alike > _PATIENCE:
-            self._wanted, self._alike, self._tried = longer, 0, True
-        self._wanted = min(self._wanted, self._between.longest)
+        self._wanted = min(way * float(np.clip(off**-0.5 if off else 2.0, 0.5, 2.0)), self._between.longest)
         return True
 
     def shorten(self) -> bool:
