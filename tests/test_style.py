@@ -9,7 +9,7 @@ from drawn import picture, saved
 from fingerpad.figures.axes import statement, statement_row
 from fingerpad.figures.registry import FIGURES
 from fingerpad.publishing import style
-from fingerpad.publishing.write import in_few_colours, publish
+from fingerpad.publishing.write import in_few_colours, publish, write_vectors
 
 pytestmark = pytest.mark.unit
 
@@ -147,6 +147,31 @@ def test_a_picture_is_written_as_vectors_too_where_a_folder_is_named(tmp_path, m
         publish(FIGURES["4-7"].draw(saved("4-7")), saved("4-7"), tmp_path / f"{name}.png")
     one, other = ((tmp_path / "vectors" / f"{name}.pdf").read_bytes() for name in "ab")
     assert one == other and one.startswith(b"%PDF")
+
+
+def test_fonts_are_taken_apart_once_for_all_pictures_and_for_what_is_rare_once_more(tmp_path, monkeypatch):
+    from matplotlib.backends import _backend_pdf_ps
+    from matplotlib.figure import Figure
+
+    calls, own = [], _backend_pdf_ps.get_glyphs_subset
+
+    def counted(*what):
+        calls.append(what)
+        return own(*what)
+
+    def written(text):
+        calls.clear()
+        fig = Figure()
+        fig.text(0.1, 0.5, text)
+        write_vectors(fig, tmp_path / "a.pdf")
+        return len(calls), (tmp_path / "a.pdf").read_bytes()
+
+    monkeypatch.setattr(_backend_pdf_ps, "get_glyphs_subset", counted)
+    texts = "pressure (kPa)", "first, 30 µm − 2 m²", "other: Ж", "pressure (kPa)"
+    found = [written(text) for text in texts]
+    assert [times for times, _ in found] == [1, 0, 1, 0]
+    assert found[0][1] == found[3][1] and len({content for _, content in found}) == 3
+    assert _backend_pdf_ps.get_glyphs_subset is counted
 
 
 def test_pictures_in_few_colours_keep_white_and_all_colours_there_is_room_for():

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from fingerpad.files import write_atomically
+from fingerpad.publishing.fonts import shared_fonts
 from fingerpad.publishing.style import theme
 
 if TYPE_CHECKING:
@@ -93,15 +94,11 @@ def in_few_colours(pixels: np.ndarray) -> Image:
 
 def write_vectors(fig: Figure, path: Path) -> None:
     """Write a picture as PDF without dates: same data, same bytes."""
-    from fontTools.subset import Options
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
 
-    # to place glyphs is over by then: these tables are half of what embedding takes, and no reader of a PDF looks at them
-    unread = [table for table in ("GDEF", "GPOS", "GSUB") if table not in Options._drop_tables_default]
-    Options._drop_tables_default.extend(unread)
     settle(fig)
     canvas, unsaid = FigureCanvasPdf(fig), {"CreationDate": None, "Producer": None}
-    with theme():
+    with theme(), shared_fonts():
         write_atomically(path, lambda p: canvas.print_pdf(p, metadata=unsaid))
 
 
