@@ -5,7 +5,7 @@ from itertools import groupby
 from pathlib import Path
 
 from fingerpad import load_scene, plan
-from fingerpad.files import write_text
+from fingerpad.files import write_atomically, write_text
 from fingerpad.planning.plan import companion
 from fingerpad.results import summary, write_history
 from fingerpad.simulation import solve
@@ -23,16 +23,20 @@ def run(job):
         scene = load_scene(path)
         if accuracy != "as_stated":
             scene = scene.with_accuracy(accuracy)
-        own, built, solved = plan(scene), None, {}
+        own, mesh, solved = plan(scene), None, {}
         for *_, stride, history in group:
-            folder = Path(history).parent
+            file = Path(history).with_name("mesh.msh")
             how = companion(scene, own, stride) if coarser else own
-            how.write(folder / "plan.json")
-            built, file = built or mesh_for(scene, how), folder / "mesh.msh"
-            write_pad(built, file)
+            how.write(file.with_name("plan.json"))
+            if mesh is None:
+                built = mesh_for(scene, how)
+                write_pad(built, file)
+                mesh, content = read_pad_mesh(file, built.regions, built.fixed), file.read_bytes()
+            else:
+                write_atomically(file, lambda p, content=content: p.write_bytes(content))
             if how.outputs not in solved:  # what is published is what is solved
-                solved[how.outputs] = solve(scene, how, mesh=read_pad_mesh(file, built.regions, built.fixed))
+                solved[how.outputs] = solve(scene, how, mesh=mesh)
             made = solved[how.outputs]
-            write_text(folder / "summary.json", json.dumps(summary(made), indent=2) + "\n")
+            write_text(file.with_name("summary.json"), json.dumps(summary(made), indent=2) + "\n")
             write_history(made, history)
             print(history, flush=True)
