@@ -364,7 +364,7 @@ def _read(path: Path, state: tuple[int, ...], layers: tuple[str, ...], fixed: tu
     if not np.isfinite(places).all() or np.ptp(places[:, 2]) > _SAME_PLACE * size:
         raise MeshError(f"{path}: nodes must be finite and lie in one plane, z = constant")
     _require_mm(path, places)
-    points = places[:, :2] / 1e3
+    points = places[:, :2].astype(float) / 1e3  # gmsh marks the order of bytes, of which netCDF4 would warn
     cells = np.searchsorted(used, cell_tags).astype(np.int32)
     if element == "quad8":
         points, cells = _with_centre(points, cells)
