@@ -187,3 +187,17 @@ def test_pictures_in_few_colours_keep_white_and_all_colours_there_is_room_for():
     assert len(found.getcolors()) <= 255 and (shown[:, 45:] == 255).all() and (shown[:10, :10] == 255).all()
     wrong = np.abs(shown - pixels[..., :3])
     assert wrong[:, 20:45].mean() < 8  # of 128 in each of three directions, 254 boxes
+
+
+def test_a_small_bar_of_colours_keeps_its_steps_beside_a_large_field():
+    bar = np.zeros((5, 256, 4), np.uint8) + np.uint8(255 * mpl.colormaps["viridis"](np.arange(256)))
+    rng = np.random.default_rng(6)
+    pixels = np.full((400, 600, 4), 255, np.uint8)
+    pixels[:300] = bar[0, rng.integers(230, 256, (300, 600))]  # the upper end of the map, in light and shade
+    pixels[:300, :, :3] -= rng.integers(0, 30, (300, 600, 1), np.uint8)
+    pixels[:100, :300, :3] = 196, 154, 120  # much of a picture has one colour, such as a layer's, and some is almost that
+    pixels[100:105, :300, :3] = 200, 154, 120
+    pixels[350:355, :256] = bar
+    wrong = np.abs(np.asarray(in_few_colours(pixels).convert("RGB")).astype(int) - pixels[..., :3])
+    assert wrong[:100, :300].max() == 0
+    assert wrong[350:355].mean() < 3  # 9 if all colours went by how many pixels have them

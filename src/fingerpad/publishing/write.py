@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 DPI = 300
 COLOURS = 255
 """Most colours of a committed picture: a third of the bytes of true colour, and no difference to see."""
+EXACT = 32
+"""Colours of a picture that are kept as they are, those of most pixels."""
+SOME = 64
+"""Most pixels that any other colour counts as when few are chosen for all of them."""
 FLOAT_FORMAT = "%.6g"
 VECTORS = "FINGERPAD_VECTORS"
 """Environment variable that names the folder PDFs are written to; the workflow sets it."""
@@ -74,21 +78,33 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
 
 
 def in_few_colours(pixels: np.ndarray) -> Image:
-    """A picture of opaque pixels (height, width, 4) uint8 with `COLOURS` at most: white stays white, and what is not, little of
-    most pictures, has the others."""
+    """A picture of opaque pixels (height, width, 4) uint8 with `COLOURS` at most, white always among them.
+
+    The `EXACT` that most pixels have stay what they are; the others are shared out among the rest, none of which counts as more
+    than `SOME` pixels: else a large field has all of them, and the bar that explains it three.
+    """
     from PIL import Image
 
-    inked = (pixels.view(np.uint32) != 0xFFFFFFFF)[..., 0]
+    words = pixels.view("<u4")[..., 0] & 0xFFFFFF
+    inked = words != 0xFFFFFF
+    ink = words[inked]
+    found, counts = np.unique(ink, return_counts=True)
+    order = np.argsort(-counts, kind="stable")
+    found, counts = found[order], counts[order]
+    palette = found.astype("<u4").view(np.uint8).reshape(-1, 4)[:, :3]
+    entries = np.arange(len(found))
+    if len(found) > COLOURS - 1:
+        counts = np.minimum(counts[EXACT:], SOME)
+        rest = Image.fromarray(np.repeat(palette[EXACT:], counts, axis=0)[None])
+        few = rest.quantize(COLOURS - 1 - EXACT, Image.Quantize.MEDIANCUT, kmeans=1, dither=Image.Dither.NONE)
+        entries[EXACT:] = EXACT + np.asarray(few)[0, np.cumsum(counts) - 1].astype(int)
+        palette = np.concatenate([palette[:EXACT], np.array(few.getpalette(), np.uint8).reshape(-1, 3)])
+    entry_of = np.zeros(1 << 24, np.uint8)
+    entry_of[found] = entries + 1
     places = np.zeros(inked.shape, np.uint8)
-    palette = [255, 255, 255]
-    if inked.any():
-        ink = Image.fromarray(pixels[inked][None, :, :3].copy())
-        counted = ink.getcolors(COLOURS - 1)
-        few = ink.quantize(COLOURS - 1 if counted is None else len(counted), Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-        places[inked] = np.asarray(few)[0] + 1
-        palette += few.getpalette()
+    places[inked] = entry_of[ink]
     out = Image.fromarray(places)
-    out.putpalette(palette)
+    out.putpalette([255, 255, 255, *palette.ravel().tolist()])
     return out
 
 
