@@ -118,7 +118,7 @@ def test_a_mirror_image_is_told_from_what_is_none():
     assert mirrored(history) == pytest.approx(0.02 / np.sqrt(2), rel=0.05)
 
 
-@pytest.mark.parametrize(("side", "apart"), [(0.0, 1e-3), (0.5, 0.01)])
+@pytest.mark.parametrize(("side", "apart"), [(0.0, 1e-4), (0.5, 0.01)])
 def test_side_forces_are_told_apart_by_the_force_they_belong_to(side, apart):
     """A frictionless press has one of rounding, which may change as it will; a drag half as large as the force may not."""
     one, other = (
