@@ -187,6 +187,7 @@ def test_every_rule_says_what_it_decides():
 def test_a_small_study_is_drawn_and_tabulated():
     """Symmetry alone, and made-up choices: markers right and left, a wrong choice in red, rules with evidence."""
     one = study(pairs()[1:2], repeats=1)
+    assert one["cost ratio"].item() == pytest.approx(one["with (s)"].item() / one["without (s)"].item())  # of one turn
     assert one["change"].item() < 1e-3 and one["unknowns with"].item() < 0.6 * one["unknowns without"].item()
     choice = {"seed": 1, "scene": "s", "stimulus": "flat", "accuracy": 0.02, "worth": 0.1, "of": "depth", "why": ""}
     found = pd.DataFrame(
