@@ -223,9 +223,9 @@ def test_columns_in_any_unit_of_length(content, tmp_path):
         ("x (nm),y (nm)\n-1,0\n1,1\n", "is 0.002 um wide by its column 'x (nm)'"),
         ("x (s),y (mm)\n-1,0\n1,1\n", "has the column 'x (s)', which has the wrong dimension"),
         ("x (mmm),y (mm)\n-1,0\n1,1\n", "has the column 'x (mmm)', which has the unknown unit 'mmm'"),
-        ("x (mm),z (mm)\n-1,0\n1,1\n", "has no column 'y (mm)'"),
-        ("# nothing\n", "fewer than two points"),
-        ("# one\n\nx (mm),y (mm)\n-1,0\n#\n1,nan\n", "no finite number in row 6"),
+        ("x (mm),h (mm)\n-1,0\n1,1\n", "has no column 'y (mm)'"),
+        ("# nothing\n", "holds no rows"),
+        ("# one\n\nx (mm),y (mm)\n-1,0\n#\n1,nan\n", "has 'nan' in row 6"),
     ],
 )
 def test_units_that_cannot_be_meant(content, words, tmp_path):

@@ -6,8 +6,6 @@ further subject is a further file in ``config/reference/force_depth``.
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections import Counter
 from collections.abc import Iterable
@@ -17,7 +15,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from fingerpad.files import read_input
+from fingerpad.tables import TableError
+from fingerpad.tables import read_table as read_text_table
 
 INDENTERS = ("flat plate", "flat probe 6.35 mm", "flat probe", "point probe", "cylinder")
 """Indenters that the files may name."""
@@ -47,8 +46,8 @@ class Column:
         bound = f" above {self.above:g}" if self.above is not None else f" from {self.least:g}" if self.least is not None else ""
         return f"a number{bound}{' or nothing' if self.optional else ''}"
 
-    def read(self, cell: str) -> str | float:
-        """The value of a cell; ValueError if it is not allowed."""
+    def read(self, cell: str | float) -> str | float:
+        """The value of a cell, text or a number; ValueError if it is not allowed."""
         if self.words or self.text:
             if self.optional and not cell:
                 return ""
@@ -133,12 +132,12 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
     frames = [read_table(file, FORCE_DEPTH) for file in files]
     for file, frame in zip(files, frames, strict=True):
         seen: dict[tuple, int] = {}
-        for row, record in enumerate(frame.itertuples(index=False), start=2):
+        for record in frame.itertuples():
             key = (record.subject, record.indenter, record.depth_mm, record.speed_mm_per_s)
             if key in seen:
                 what = f"subject '{key[0]}', {key[1]}, {key[2]:g} mm, {key[3]:g} mm/s"
-                raise ReferenceDataError(f"{file}: row {row}: {what} is in row {seen[key]} already; allowed: each once")
-            seen[key] = row
+                raise ReferenceDataError(f"{file}: row {record.Index}: {what} is in row {seen[key]} already; allowed: each once")
+            seen[key] = record.Index
     files_of = Counter(subject for frame in frames for subject in frame["subject"].unique())
     for file, frame in zip(files, frames, strict=True):
         named = {subject: f"{subject} ({file.stem})" for subject, count in files_of.items() if count > 1}
@@ -151,7 +150,7 @@ def read_relaxation(path: str | Path) -> pd.DataFrame:
     frame = read_table(path, RELAXATION)
     totals = frame.groupby("series", sort=False)["g"].sum()
     for series, total in totals[totals >= 1].items():
-        row = int(frame.index[frame["series"] == series][0]) + 2
+        row = frame.index[frame["series"] == series][0]
         raise ReferenceDataError(f"{path}: row {row}, column g: series '{series}' sums to {total:g}; allowed: less than 1")
     return frame
 
@@ -181,7 +180,7 @@ def read_bands(path: str | Path) -> pd.DataFrame:
     frame = read_table(path, BANDS)
     for row in frame.index[frame["high"] < frame["low"]]:
         low, high = frame.loc[row, ["low", "high"]]
-        raise ReferenceDataError(f"{path}: row {row + 2}, column high: '{high:g}'; allowed: from {low:g}")
+        raise ReferenceDataError(f"{path}: row {row}, column high: '{high:g}'; allowed: from {low:g}")
     return frame
 
 
@@ -190,51 +189,47 @@ def read_friction(path: str | Path) -> pd.DataFrame:
     frame = read_table(path, FRICTION)
     for row in frame.index[frame["high"] < frame["low"]]:
         low, high = frame.loc[row, ["low", "high"]]
-        raise ReferenceDataError(f"{path}: row {row + 2}, column high: '{high:g}'; allowed: a number from {low:g} or nothing")
+        raise ReferenceDataError(f"{path}: row {row}, column high: '{high:g}'; allowed: a number from {low:g} or nothing")
     return frame
 
 
 def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
-    """A CSV file with exactly the columns of `schema`, in any order, and at least one row.
+    """A table with exactly the columns of `schema`, in any order, and at least one row.
 
     Raises:
-        ReferenceDataError: it cannot be read, a column is missing, unknown or repeated, a row is too short or too long, or a
-        cell holds what its column does not allow. Rows are counted as in a text editor, the header being row 1.
+        ReferenceDataError: it cannot be read (:func:`fingerpad.tables.read_table`), a column is missing or unknown, or a cell
+        holds what its column does not allow.
+
+    Returns:
+        A row for each of the file's, indexed by its number as a text editor counts.
     """
-    path = Path(path)
+    path, columns = Path(path), ", ".join(schema)
     try:
-        text = read_input(path, "table").decode("utf-8-sig")
-        rows = [[cell.strip() for cell in row] for row in csv.reader(io.StringIO(text, newline=""))]
-    except (OSError, ValueError, csv.Error) as error:
+        table = read_text_table(path)
+    except TableError as error:
+        raise ReferenceDataError(f"{path}: {error}") from None
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or type(error).__name__
         raise ReferenceDataError(f"{path}: cannot be read ({reason}); allowed: a CSV file in UTF-8") from None
-    columns = ", ".join(schema)
-    header = rows[0] if rows else []
     for name in schema:
-        if header.count(name) != 1:
-            problem = "is missing" if name not in header else "is there twice"
-            raise ReferenceDataError(f"{path}: row 1: column {name} {problem}; allowed: {columns}")
-    for name in header:
+        if name not in table.header:
+            found = ", ".join(table.header)[:80]
+            raise ReferenceDataError(f"{path}: has no column {name}, but {found}; allowed: {columns}")
+    for name in table.header:
         if name not in schema:
-            raise ReferenceDataError(f"{path}: row 1: column '{name}' is not known; allowed: {columns}")
-    values: dict[str, list] = {name: [] for name in header}
-    for number, row in enumerate(rows[1:], start=2):
-        if not any(row):
-            if any(any(later) for later in rows[number:]):
-                raise ReferenceDataError(f"{path}: row {number}: is empty; allowed: {len(header)} cells")
-            break
-        if len(row) != len(header):
-            raise ReferenceDataError(f"{path}: row {number}: has {len(row)} cells; allowed: {len(header)}")
-        for name, cell in zip(header, row, strict=True):
+            raise ReferenceDataError(f"{path}: column '{name}' is not known; allowed: {columns}")
+    values: dict[str, list] = {name: [] for name in table.header}
+    for line, row in zip(table.lines, table.rows, strict=True):
+        for k, (name, cell) in enumerate(zip(table.header, row, strict=True)):
+            column = schema[name]
             try:
-                values[name].append(schema[name].read(cell))
+                number = cell and not (column.words or column.text)
+                values[name].append(column.read(table.number(cell, line, k) if number else cell))
             except ValueError:
-                raise ReferenceDataError(
-                    f"{path}: row {number}, column {name}: '{cell[:60]}'; allowed: {schema[name].allowed}"
-                ) from None
-    if not values[header[0]]:
+                raise ReferenceDataError(f"{path}: row {line}, column {name}: '{cell[:60]}'; allowed: {column.allowed}") from None
+    if not table.rows:
         raise ReferenceDataError(f"{path}: has no rows; allowed: at least one")
-    return pd.DataFrame(values)[list(schema)]
+    return pd.DataFrame(values, index=table.lines)[list(schema)]
 
 
 def read_reference(path: str | PathLike) -> pd.DataFrame:

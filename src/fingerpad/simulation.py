@@ -362,7 +362,7 @@ class Simulation:
         """
         doubts, hard = list(self._doubts(records, pressures)), hard_in(self.scene)
         doubts += [f"or try {hard_here(hard)}"] if doubts and hard else []
-        notes = [*doubts, *(note for note in self.plan.surface.notes if "expected" not in note)]
+        notes = [*doubts, *self.scene.stimulus.notes, *(note for note in self.plan.surface.notes if "expected" not in note)]
         for record in records:
             on = self.skin.nodes[record.nodal_force > 0]
             x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance

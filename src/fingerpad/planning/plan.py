@@ -340,7 +340,7 @@ def plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
         linear + mesh, _cost(nodes, steps, effects, rules), linear, max(at_edges, at_receptors),
         max(sources, key=sources.get), scene.tolerance, scene.once, peak_is_unbounded(profile, at_edge, rounding, rules),
-        (*specimen_said(scene.specimen, external), *filter(None, [raised])), surface, strokes=moves, outputs=outputs, every=every,
+        (*specimen_said(scene.specimen, external), *filter(None, [raised]), *measured.notes), surface, strokes=moves, outputs=outputs, every=every,
     )  # fmt: skip
 
 

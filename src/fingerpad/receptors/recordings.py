@@ -59,7 +59,7 @@ def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         stroked = frame["speed_mm_per_s"] > 0
         for row in frame.index[stroked != (frame["window"] == "burst")]:
             allowed = "burst" if stroked[row] else ", ".join(w for w in WINDOWS if w != "burst")
-            raise ReferenceDataError(f"{file}: row {row + 2}, column window: '{frame.loc[row, 'window']}'; allowed: {allowed}")
+            raise ReferenceDataError(f"{file}: row {row}, column window: '{frame.loc[row, 'window']}'; allowed: {allowed}")
         frames.append(frame.assign(file=file.name))
     if not frames:
         return pd.DataFrame(columns=[*RATES, "file"])

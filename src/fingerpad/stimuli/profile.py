@@ -41,6 +41,7 @@ class Profile:
         known: m, first and last x of measured points; contact beyond them is with a guess. smoothing: m, cut-off wavelength at
         which a measured surface was smoothed; 0 if it was not. segments: pieces of lines and arcs that it is made of, if it is.
         valleys: are there corners that point away from the skin, in which a node may lean on both sides (see :meth:`walls`)?
+        notes: how its file was read where that had to be guessed, in words.
     """
 
     symmetric: ClassVar[bool] = True
@@ -60,6 +61,7 @@ class Profile:
     smoothing: ClassVar[float] = 0.0
     segments: ClassVar[tuple] = ()
     valleys: ClassVar[bool] = False
+    notes: ClassVar[tuple[str, ...]] = ()
 
     def evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Distance (n,) m, gradient (n, 2) and curvature (n,) 1/m at ``points`` (n, 2) m."""

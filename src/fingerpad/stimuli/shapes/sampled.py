@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import ConfigDict
+from pydantic import ConfigDict, Field
 from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem
 from fingerpad.fields import quantity
-from fingerpad.files import read_input
 from fingerpad.stimuli.curve import Curve, share_of_height
 from fingerpad.stimuli.shapes.shape import CurvedShape
 from fingerpad.stimuli.smoothing import SKIN_EDGE, WAVE, cutoffs, is_rough, smoothed
-from fingerpad.units import QuantityError, parse_number, parse_quantity
+from fingerpad.tables import TableError, read_table
+from fingerpad.units import QuantityError, parse_quantity
 
 
 def _needs_its_file(schema: dict[str, Any]) -> None:
@@ -36,8 +34,8 @@ class Sampled(CurvedShape):
     Only differences of y matter: the profile comes down until it touches. figures/studies/profile_convention.png shows it.
     """
 
-    internal: ClassVar = frozenset({"x", "y"})
-    follows: ClassVar = {"csv": ("x", "y")}
+    internal: ClassVar = frozenset({"x", "y", "read_as"})
+    follows: ClassVar = {"csv": ("x", "y", "read_as")}
 
     model_config = ConfigDict(json_schema_extra=_needs_its_file)
     shape: Literal["sampled"] = "sampled"
@@ -49,6 +47,8 @@ class Sampled(CurvedShape):
     """What lies beyond the points: nothing (`open`), a `level` surface, or the `slope` of the last two, for ever."""
     x: SkipJsonSchema[tuple[float, ...]]
     y: SkipJsonSchema[tuple[float, ...]]
+    read_as: SkipJsonSchema[tuple[str, ...]] = Field((), exclude=True, repr=False)
+    """How the file was read where that had to be guessed, in words."""
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
@@ -59,12 +59,16 @@ class Sampled(CurvedShape):
             if not isinstance(data["csv"], (str, Path)):
                 raise Problem("is not a path", "the path of a CSV file", ("csv",))
             data["csv"] = Path(data["csv"]).expanduser() if context is None else context.resolve(data["csv"])
-            data["x"], data["y"] = _read_profile(data["csv"])
+            data["x"], data["y"], data["read_as"] = _read_profile(data["csv"])
         return data | {key: tuple(map(float, data[key])) for key in "xy" if isinstance(data.get(key), np.ndarray)}
 
     @cached_property
     def curve(self) -> Points:
         return Points(self.x, self.y, self.ends, self.smooth)
+
+    @property
+    def notes(self):
+        return self.read_as
 
     def recorded(self):
         """The file's name, and a hash of its points."""
@@ -72,85 +76,78 @@ class Sampled(CurvedShape):
         return {"csv": self.csv and self.csv.name, "sha256": hashlib.sha256(points).hexdigest()}
 
 
-_COLUMN = re.compile(r"\s*([xy])\s*\((.*)\)\s*", re.IGNORECASE)
+_COLUMN = re.compile(r"\s*([xyz])(?:\s*[(\[](.*)[)\]]|\s*/\s*(.*)|_(.*))\s*", re.IGNORECASE)
+"""A column's name: `x (mm)`, `x [mm]`, `x / mm` or `x_mm`."""
 NARROWEST, WIDEST = 10e-6, 10.0
 """Widths (m) between which a profile is believed to be in the unit that its columns name."""
-MOST_LINES = 500_000
-"""Of the file of a profile."""
 
 
-def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Points of a profile, m; `Problem` unless they are numbers with x strictly increasing, of a believable size."""
+def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...], tuple[str, ...]]:
+    """Points (x, y) of a profile in m, and how its file was read where that had to be guessed.
+
+    Raises
+    ------
+    Problem : they are no numbers, x does not increase, or their size is not believable.
+    """
 
     def wrong(problem: str, allowed: str = "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing") -> Problem:
         return Problem(problem, allowed, ("csv",))
 
     try:
-        content = read_input(path, "table")
-        if max(map(content.count, (b"\n", b"\r"))) > MOST_LINES:
-            raise wrong(
-                f"has more than {MOST_LINES} lines", f"up to {MOST_LINES}; a profile needs no more than the skin can feel"
-            )
-        rows = _rows(content.decode("utf-8-sig"))
-        line, header = next(rows, (0, None))
-        columns, factors = _profile_columns(header, wrong) if header else ([], [])
-        points: list[tuple[float, ...]] = []
-        for line, row in rows:
-            point = tuple(
-                factor * parse_number(row[k] if k < len(row) else "") for k, factor in zip(columns, factors, strict=True)
-            )
-            if points and point[0] <= points[-1][0]:
-                raise wrong(f"is not single-valued: x does not increase in row {line}")
-            points.append(point)
+        table = read_table(path)
+        found = _profile_columns(table.header)
+        x, y, *z = ([factor * number for number in table.numbers(k)] for k, factor in found.values())
     except FileNotFoundError:
         raise wrong("is not an existing file") from None
-    except QuantityError:
-        raise wrong(f"has no finite number in row {line}") from None
-    except Problem:
-        raise
-    except (OSError, ValueError, csv.Error) as error:
+    except TableError as error:
+        raise wrong(error.problem, error.allowed) from None
+    except (OSError, ValueError) as error:
         raise wrong(f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})") from None
-    if len(points) < 2:
+    notes, lines = list(table.notes), list(table.lines)
+    if len(x) < 2:
         raise wrong("has fewer than two points")
-    x, y = zip(*points, strict=True)
+    if z:
+        x, y = _without_lateral(x, y, *z, wrong)
+        notes.append(
+            "heights are read from z, for y does not move" if y is z[0] else "heights are read from y, for z does not move"
+        )
+    if x[0] > x[-1]:
+        x, y, lines = x[::-1], y[::-1], lines[::-1]
+    for before, after, line in zip(x, x[1:], lines[1:], strict=False):
+        if not after > before:
+            raise wrong(f"is not single-valued: x does not increase in row {line}")
     width = x[-1] - x[0]
     if not NARROWEST <= width <= WIDEST:
         size = f"{width:.3g} m" if width > WIDEST else f"{width * 1e6:.3g} um"
-        raise wrong(
-            f"is {size} wide by its column '{header[columns[0]]}'", "10 um to 10 m; is the unit another one, um, mm or m?"
-        )
-    return x, y
+        name = table.header[next(iter(found.values()))[0]]
+        raise wrong(f"is {size} wide by its column '{name}'", "10 um to 10 m; is the unit another one, um, mm or m?")
+    return tuple(x), tuple(y), tuple(f"{path.name}: {note}" for note in notes)
 
 
-def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
-    """The rows of a CSV file that say something, with the number of the line each ends in."""
-    at = 0
-
-    def lines() -> Iterator[str]:
-        nonlocal at
-        for line in io.StringIO(text, newline=""):
-            at += 1
-            if line.strip() and line.lstrip()[0] != "#":
-                yield line
-
-    for row in csv.reader(lines(), skipinitialspace=True):
-        yield at, row
-
-
-def _profile_columns(header: list[str], wrong: Callable[..., Problem]) -> tuple[list[int], list[float]]:
-    """Where x and y stand in a row, and their units in m."""
+def _profile_columns(header: tuple[str, ...]) -> dict[str, tuple[int, float]]:
+    """x, the heights, and z where there are both y and z -> where the column is, and its unit in m. Raises `TableError`."""
     found: dict[str, tuple[int, float]] = {}
     for k, name in enumerate(header):
-        match = _COLUMN.fullmatch(name)
-        if match and match[1].lower() not in found:
+        if match := _COLUMN.fullmatch(name):
+            unit = next(part for part in match.groups()[1:] if part is not None)
             try:
-                found[match[1].lower()] = k, parse_quantity(f"1 {match[2]}", "length")
+                found[match[1].lower()] = k, parse_quantity(f"1 {unit}", "length")
             except QuantityError as error:
-                raise wrong(f"has the column '{name}', which {error.problem}") from None
-    for name in "xy":
-        if name not in found:
-            raise wrong(f"has no column '{name} (mm)'")
-    return [found[name][0] for name in "xy"], [found[name][1] for name in "xy"]
+                raise TableError(f"has the column '{name}', which {error.problem}", "'x (mm)', 'y (mm)', or um, or m") from None
+    for name in ("x", "y"):
+        if name not in found and not (name == "y" and "z" in found):
+            columns = ", ".join(f"'{name[:30]}'" for name in header[:6])
+            raise TableError(f"has no column '{name} (mm)', but {columns}", "the columns 'x (mm)' and 'y (mm)', or um, or m")
+    return {name: found[name] for name in "xyz" if name in found}
+
+
+def _without_lateral(x: list[float], y: list[float], z: list[float], wrong: Callable[..., Problem]):
+    """The two of three columns in which a profile runs. Raises `Problem` where all three move."""
+    if max(y) == min(y):
+        return x, z
+    if max(z) == min(z):
+        return x, y
+    raise wrong("has columns x, y and z that all move", "a profile along one line: x and heights, y (or z) the same in all rows")
 
 
 class Points(Curve):
