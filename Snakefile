@@ -15,8 +15,11 @@ What a target makes follows from the configuration in fingerpad.workflow.product
 what a job does is in fingerpad.workflow.jobs. The profile is found by itself, through the link `profiles` beside this file.
 """
 
+import os
 import sys
 from pathlib import Path
+
+os.environ["MPLBACKEND"] = "agg"  # a notebook from which the workflow is started has another one
 
 from snakemake.utils import min_version
 

@@ -1,4 +1,4 @@
-"""Tables as instruments, spreadsheets and numpy write them: each is read right, or refused in one line that says what is there."""
+"""Tables as instruments, spreadsheets and numpy write them: each is read right, or refused in one line that says why."""
 
 import io
 import itertools

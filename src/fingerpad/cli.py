@@ -331,6 +331,10 @@ def _naming(path: Path, scene: Scene) -> Iterator[None]:
 
 def _check_writable(path: Path, directory: bool) -> None:
     """Refuses an output path that cannot be written, without writing anything."""
+    from fingerpad.files import unusable
+
+    if wrong := unusable(path):
+        raise _Refusal(f"--out: '{path}' has {wrong} in its name; allowed: a name without")
     try:
         if path.is_dir() != directory and (path.exists() or path.is_symlink()):
             raise _Refusal(f"--out: '{path}' is {'not ' if directory else ''}a directory")

@@ -59,6 +59,16 @@ def read_input(path: str | Path, kind: str) -> bytes:
         os.close(handle)
 
 
+def expanded(path: str | Path) -> Path:
+    """A path with ``~`` replaced by the home it stands for, where there is one."""
+    return Path(os.path.expanduser(path))
+
+
+def is_file(path: str | Path) -> bool:
+    """Whether there is such a file; unlike `Path.is_file` also for what can be no path, of too many letters for example."""
+    return os.path.isfile(path)
+
+
 def write_atomically(path: str | Path, write: Callable[[Path], object]) -> None:
     """Let ``write`` fill a temporary file beside ``path`` and then rename it; parents are created."""
     path = Path(path)
@@ -96,6 +106,13 @@ def _lives(process: int) -> bool:
     return True
 
 
+def unusable(path: Path) -> str:
+    """What in a path's name the NetCDF library cannot take, in words; "" where there is nothing."""
+    if "\\" in str(path):
+        return "a backslash"
+    return "a space at the end of a part" if any(part != part.strip() for part in path.parts) else ""
+
+
 def write_text(path: str | Path, text: str) -> None:
     """Write a text file, whole or not at all."""
     write_atomically(path, lambda partial: partial.write_text(text, encoding="utf-8"))
@@ -103,13 +120,13 @@ def write_text(path: str | Path, text: str) -> None:
 
 @cache
 def cache_folder(name: str) -> Path | None:
-    """A folder of the user's cache for what is slow to find out again; None where it cannot be written."""
+    """A folder of the user's cache for what is slow to find out again; None where there is none that can be written."""
     from platformdirs import user_cache_path
 
     try:
         folder = user_cache_path("fingerpad", ensure_exists=True) / name
         folder.mkdir(exist_ok=True)
-    except OSError:
+    except (OSError, RuntimeError):  # the latter of a user without a home
         return None
     return folder if os.access(folder, os.W_OK) else None
 

@@ -260,6 +260,14 @@ def unit_of(text: str) -> str:
     return match["unit"].strip()
 
 
+def number_of(text: str) -> float:
+    """The number of a quantity as it is written: 20.0 of ``"20 gf"``. Raises as :func:`unit_of`."""
+    match = _QUANTITY.fullmatch(text.strip())
+    if not match:
+        raise QuantityError("does not start with a finite number", "a number with its unit")
+    return float(match["number"]) / float(match["divisor"] or 1.0)
+
+
 def format_quantity(value: float, dimension: str) -> str:
     """Text of an SI value in the unit the field uses, such as ``"20 gf"``; `parse_quantity` reads it back."""
     kind = DIMENSIONS[dimension]

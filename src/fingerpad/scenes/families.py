@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.documents import HIDE, Problem, SceneError, error_line, read_yaml
+from fingerpad.files import is_file
 from fingerpad.scenes.specimen import DEFAULT_SPECIMEN, Source
 
 MOST = 1000
@@ -47,7 +48,7 @@ def read_scene(path: str | Path) -> Written:
         SceneError: there is neither, a file cannot be read, or it is a family itself.
     """
     path = Path(path)
-    home = path if path.is_file() else next(_homes(path), path)
+    home = path if is_file(path) else next(_homes(path), path)
     members = read_family(home)
     if path.stem in members:
         return members[path.stem]
@@ -114,7 +115,7 @@ def _homes(path: Path) -> Iterator[Path]:
     parts = path.stem.split("_")
     for n in range(len(parts) - 1, 0, -1):
         home = path.with_name("_".join(parts[:n]) + path.suffix)
-        if home.is_file() and "over" in (_extended(home, ())[0] or {}):
+        if is_file(home) and "over" in (_extended(home, ())[0] or {}):
             yield home
 
 
@@ -127,12 +128,17 @@ def _extended(path: Path, seen: tuple[Path, ...]) -> tuple[Any, tuple[Path, ...]
     if not isinstance(named, str):
         raise _wrong(path, ("extends",), named, "is not a path", "the path of a scene or family, relative to this file")
     base = path.parent / named
-    if not base.is_file() or base.resolve() in (each.resolve() for each in (path, *seen)):
-        problem = "extends itself" if base.is_file() else "is not an existing file"
+    if not is_file(base) or base.resolve() in (each.resolve() for each in (path, *seen)):
+        problem = "extends itself" if is_file(base) else "is not an existing file"
         raise _wrong(path, ("extends",), named, problem, "the path of a scene or family, relative to this file")
     if len(seen) >= MOST_EXTENDED:
         raise _wrong(path, ("extends",), named, "is one file too many", f"up to {MOST_EXTENDED} that extend each other")
     below, files = _extended(base, (*seen, path))
+    for where, part in ((path, document), (base, below)):
+        if not isinstance(part, Mapping) or not isinstance(part.get("over") or {}, Mapping):
+            over = part.get("over") if isinstance(part, Mapping) else HIDE
+            key = ("over",) if isinstance(part, Mapping) else ()
+            raise _wrong(where, key, over, "is not a mapping of keys", "keys, with a value for each")
     own = {key: value for key, value in document.items() if key not in ("extends", "over")}
     whole = merged({key: value for key, value in below.items() if key != "over"}, own)
     given = {str(axis): words for axis, words in below.get("over", {}).items()}

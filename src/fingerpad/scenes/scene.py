@@ -386,6 +386,11 @@ def recorded_scene(data: Mapping[str, Any]) -> Scene:
     if mesh is not None:
         data["specimen"] = data["specimen"] | {"mesh": Path(mesh["name"])}
     data["stimulus"] = {key: value for key, value in stimulus.items() if key != "sha256"}
+    return scene_of_record(data)
+
+
+def scene_of_record(data: Mapping[str, Any]) -> Scene:
+    """The scene whose `model_dump` is `data`: SI numbers, absolute paths. Raises SceneError."""
     try:
         return Scene.model_validate(data)
     except ValidationError as error:

@@ -24,7 +24,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem, Strict, explain, read_yaml
 from fingerpad.fields import SI, Length, SignedLength, Time, filled, listed, number, quantity
-from fingerpad.files import BUILT_IN
+from fingerpad.files import BUILT_IN, expanded, is_file
 from fingerpad.laws import LAWS, Law
 from fingerpad.units import QuantityError, format_quantity, parse_number
 
@@ -424,8 +424,8 @@ class Source:
         self._files: dict[str, SpecimenFile] = {}
 
     def resolve(self, name: str) -> Path:
-        """Path of a file named in the document, relative to it."""
-        return self.path.parent / Path(name).expanduser()
+        """Absolute path of a file that the document names relative to itself."""
+        return (self.path.parent / expanded(name)).absolute()
 
     def _folders(self) -> Iterator[Path]:
         folder = self.path.absolute().parent
@@ -590,7 +590,7 @@ class Specimen(Strict):
             # in Python a path may be one that a result remembers: whether it is there turns out when it is read
             in_document = context is not None or isinstance(data["mesh"], str)
             data["mesh"] = source.resolve(data["mesh"])
-            if in_document and not data["mesh"].is_file():
+            if in_document and not is_file(data["mesh"]):
                 raise Problem("is not an existing file", "the path of a .msh file, relative to the scene", ("mesh",))
             layers = data.get("layers")
             if isinstance(layers, Mapping) and not set(layers) <= set(_FINGER):

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fingerpad.files import read_input, write_atomically
+from fingerpad.files import is_file, read_input, write_atomically
 from fingerpad.specimen.element_kinds import KINDS, LINES
 from fingerpad.specimen.near import same_place, twins
 from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
@@ -343,7 +343,7 @@ def read_pad_mesh(path: str | Path, layers: Sequence[str] = (), fixed: Sequence[
         counter-clockwise, the mesh is not plane, a curve is not on the boundary, or coordinates cannot be mm.
     """
     path = Path(path)
-    if not path.is_file():
+    if not is_file(path):
         raise MeshError(f"{path}: there is no such mesh file; a gmsh .msh file is allowed")
     state = path.stat()
     return _read(path, (state.st_mtime_ns, state.st_size, state.st_ino), tuple(layers), tuple(fixed), tuple(free))

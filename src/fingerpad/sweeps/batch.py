@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from fingerpad.scenes.scene import Scene
+from fingerpad.scenes.scene import Scene, scene_of_record
 from fingerpad.sweeps.records import UNFINISHED, Writer
 
 MOST_DEATHS = 2
@@ -28,7 +28,7 @@ def run_batch(todo: Path, records: Path) -> None:
         OSError: a record or a history cannot be written; all records before are there.
     """
     spec = json.loads(todo.read_text(encoding="utf-8"))
-    base = Scene.model_validate(spec["base"])
+    base = scene_of_record(spec["base"])
     unfinished = records.with_suffix(UNFINISHED)
     before = signal.signal(signal.SIGTERM, _stop)  # whoever ends this process in order is not the scene's fault
     write, watch = Writer(unfinished), _Watch(records.with_suffix(".at"))

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fingerpad.documents import SceneError, read_yaml
+from fingerpad.files import is_file
 
 if TYPE_CHECKING:
     from fingerpad.sweeps.design import Design
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 def is_sweep(path: Path) -> bool:
     """Does a file describe a sweep: variations of a scene that it names?"""
     try:
-        document = read_yaml(path) if path.is_file() else None
+        document = read_yaml(path) if is_file(path) else None
     except SceneError:
         return False  # what is wrong with it is said where it is read
     return isinstance(document, dict) and "over" in document and "scene" in document

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.documents import SceneError
+from fingerpad.files import is_file
 from fingerpad.scenes.scene import Scene
 from fingerpad.sweeps.language import Read, Unit, quantiles, resolved
 
@@ -124,7 +125,7 @@ class Design:
     @property
     def shown(self) -> str:
         """The sweep's file, or its name."""
-        return str(self.read.file) if self.read.file.is_file() else self.read.name
+        return str(self.read.file) if is_file(self.read.file) else self.read.name
 
     def without_name(self, error: Exception) -> str:
         """An error's message without the base scene's name."""

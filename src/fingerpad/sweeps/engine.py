@@ -13,6 +13,7 @@ A batch is called after the content of its scenes, so that what was run is found
 from __future__ import annotations
 
 import contextlib
+import getpass
 import hashlib
 import json
 import os
@@ -24,7 +25,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fingerpad.files import BUILT_IN, disk_is_full, locked, write_text
+from fingerpad.files import BUILT_IN, cache_folder, disk_is_full, locked, unusable, write_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -196,6 +197,8 @@ def _described(design: Any, keys: list[str]) -> dict[str, Any]:
 @contextlib.contextmanager
 def held(folder: Path) -> Iterator[tuple[int, ...]]:
     """The folder of a sweep, for this process alone, by the descriptors yielded. Raises SweepError."""
+    if (wrong := unusable(folder.absolute())) or set("{}") & set(str(folder.absolute())):
+        raise SweepError(f"--out: '{folder}' has {wrong or 'braces'} in its name; allowed: a folder without")
     folder.mkdir(parents=True, exist_ok=True)
     with contextlib.ExitStack() as stack:
         try:
@@ -223,7 +226,8 @@ def run_layout(
     """
     folder = layout.folder.absolute()
     (folder / "logs").mkdir(exist_ok=True)
-    words = [sys.executable, "-m", "snakemake", "--snakefile", str(RULES), "--directory", str(folder)]
+    # started in the folder: Snakemake takes braces in names for wildcards
+    words = [sys.executable, "-P", "-m", "snakemake", "--snakefile", str(RULES)]
     words += ["--rerun-incomplete", "--keep-going", "--nocolor"]
     words += ["--workflow-profile", str(Path(profile).absolute())] if profile else ["--cores", str(cores), "--retries", "2"]
     (folder / ".snakemake" / "locks").mkdir(parents=True, exist_ok=True)
@@ -232,7 +236,14 @@ def run_layout(
     log = folder / "logs" / "snakemake.log"
     with log.open("w", encoding="utf-8") as said:
         process = subprocess.Popen(
-            [*words, "sweep"], stdout=said, stderr=said, stdin=subprocess.DEVNULL, start_new_session=True, pass_fds=lock
+            [*words, "sweep"],
+            cwd=folder,
+            env=_surroundings(folder),
+            stdout=said,
+            stderr=said,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
+            pass_fds=lock,
         )
         try:
             while True:
@@ -259,6 +270,18 @@ def run_layout(
         raise NotFinished(
             f"{done} of {layout.scenes} scenes are done and kept; {_why(folder)}; the same command goes on from there"
         )
+
+
+def _surroundings(folder: Path) -> dict[str, str]:
+    """Environment for Snakemake, also where the user has no name, or no home that can be written, as in a container."""
+    own, out = folder / ".snakemake", dict(os.environ)
+    if cache_folder("") is None:
+        out |= {"XDG_CACHE_HOME": str(own / "cache"), "XDG_CONFIG_HOME": str(own / "config")}
+    try:
+        getpass.getuser()
+    except (KeyError, OSError):
+        out["LOGNAME"] = "nobody"
+    return out
 
 
 def _why(folder: Path) -> str:

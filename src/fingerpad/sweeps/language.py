@@ -23,8 +23,9 @@ from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo
 
 from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
 from fingerpad.fields import filled, listed, number, whole
+from fingerpad.files import expanded
 from fingerpad.scenes.scene import LEVELS, Scene, load_scene
-from fingerpad.units import DIMENSIONS, QuantityError, parse_quantity, unit_of
+from fingerpad.units import DIMENSIONS, QuantityError, number_of, parse_quantity, unit_of
 
 MOST = 1_000_000
 """Scenes of a sweep."""
@@ -66,7 +67,9 @@ class Unit:
         if self.dimension == "dimensionless" and isinstance(value, (int, float)) and not isinstance(value, bool):
             return float(value)
         try:
-            return parse_quantity(value, self.dimension) / self.si
+            found = parse_quantity(value, self.dimension)
+            # a number in this unit as it is written, without a way through SI and back
+            return number_of(value) if unit_of(value) == self.text else float(f"{found / self.si:.12g}")
         except QuantityError as error:
             raise Problem(error.problem, error.allowed) from None
 
@@ -341,7 +344,7 @@ def _axis(value: Any, info: ValidationInfo) -> Axis:
         allowed = "a list of values, or one of range, uniform, normal, lognormal, words, folder"
         raise Problem(what, allowed, (str(wrong)[:60],) if wrong else (), HIDE if wrong else value)
     if kinds == ["folder"] and isinstance(value["folder"], str) and info.context is not None:
-        value = {**value, "folder": info.context.parent / Path(value["folder"]).expanduser()}
+        value = {**value, "folder": info.context.parent / expanded(value["folder"])}
     return _checked(_KINDS[kinds[0]], value, info.context)
 
 
@@ -471,7 +474,7 @@ def _base(scene: Any, path: Path) -> Scene:
         return load_scene(scene, str(path.with_suffix("")))
     if not isinstance(scene, str):
         raise SceneError(f"{path}: scene: is not a scene; allowed: the path of a scene relative to this file, or a scene")
-    return load_scene(path.parent / Path(scene).expanduser())
+    return load_scene(path.parent / expanded(scene))
 
 
 def _check(read: Read, shown: Any) -> None:
@@ -507,7 +510,7 @@ def resolved(key: str, value: Any, folder: Path) -> Any:
     if isinstance(value, Mapping):
         return {name: resolved(name, each, folder) for name, each in value.items()}
     if key.rpartition(".")[2] in _FILES and isinstance(value, str):
-        return str((folder / Path(value).expanduser()).absolute())
+        return str((folder / expanded(value)).absolute())
     return value
 
 

@@ -16,6 +16,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import HIDE, Problem
 from fingerpad.fields import quantity
+from fingerpad.files import expanded
 from fingerpad.stimuli.curve import Curve, share_of_height
 from fingerpad.stimuli.shapes.shape import CurvedShape
 from fingerpad.stimuli.smoothing import SKIN_EDGE, WAVE, cutoffs, is_rough, smoothed
@@ -58,7 +59,7 @@ class Sampled(CurvedShape):
                 raise Problem("is missing", "the path of a CSV file, or in Python x and y", ("csv",), HIDE)
             if not isinstance(data["csv"], (str, Path)):
                 raise Problem("is not a path", "the path of a CSV file", ("csv",))
-            data["csv"] = Path(data["csv"]).expanduser() if context is None else context.resolve(data["csv"])
+            data["csv"] = expanded(data["csv"]).absolute() if context is None else context.resolve(data["csv"])
             data["x"], data["y"], data["read_as"] = _read_profile(data["csv"])
         return data | {key: tuple(map(float, data[key])) for key in "xy" if isinstance(data.get(key), np.ndarray)}
 
