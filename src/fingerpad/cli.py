@@ -107,6 +107,8 @@ def _of_the_machine(error: Exception) -> str | None:
     """What to say of an error that is not the program's but of its surroundings: disk, rights, memory; None of others."""
     if isinstance(error, OSError) and error.errno in _SURROUNDINGS:
         return f"'{error.filename}' fails: {error.strerror}" if error.filename else f"output cannot be written: {error.strerror}"
+    if isinstance(error, ImportError) and "cannot be loaded" in str(error):
+        return str(error)
     if isinstance(error, ImportError) and any(words in str(error) for words in ("failed to map", "cannot allocate")):
         return f"not enough memory to load what a run needs: {error}; try a larger limit (ulimit -v)"
     return None

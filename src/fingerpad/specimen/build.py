@@ -9,10 +9,8 @@ meshed by `fingerpad.specimen.layered`.
 
 from __future__ import annotations
 
-import signal
 import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 from zipfile import BadZipFile
@@ -21,29 +19,14 @@ import numpy as np
 
 from fingerpad.files import cache_folder, write_atomically
 from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.gmsh_worker import ask
 from fingerpad.specimen.grid import columns_of, node_positions, rows_of
 from fingerpad.specimen.outline import OutlineLike, curve_of
-from fingerpad.specimen.pad import REGIONS, MeshError, MeshSize, PadMesh
+from fingerpad.specimen.pad import MeshError, MeshSize, PadMesh
 from fingerpad.specimen.quality import check_orientation, shortest_edge
 
 if TYPE_CHECKING:
     from fingerpad.specimen.ridges import RidgesLike
-
-
-@contextmanager
-def gmsh_session() -> Iterator[object]:
-    """A quiet pygmsh geometry (built-in kernel); gmsh is always finalised, and Ctrl-C handled as before."""
-    import gmsh
-    import pygmsh
-
-    try:
-        handler = signal.getsignal(signal.SIGINT)
-        with pygmsh.geo.Geometry(init_argv=["fingerpad", "-v", "0"]) as geometry:
-            gmsh.option.setNumber("General.Terminal", 0)
-            gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 0)
-            yield geometry
-    finally:
-        signal.signal(signal.SIGINT, handler)
 
 
 def _reference_quads(columns: int, bands: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -60,39 +43,17 @@ def _kept_quads(columns: int, bands: tuple[int, ...]) -> np.ndarray:
     """Nodes of the quads from the user's cache; else gmsh makes them, for which it takes a third of a second to be ready."""
     folder = cache_folder("quads")
     if folder is None:
-        return _meshed_quads(columns, bands)
+        return ask("rectangle", columns, bands)
     kept = folder / f"gmsh{version('gmsh')}-{columns}-{'-'.join(map(str, bands))}.npz"
     with suppress(OSError, ValueError, LookupError, EOFError, BadZipFile, zlib.error):  # cut short, or somebody else's
         with np.load(kept) as file:
             steps = file["steps"].astype(np.int64)
         if steps.shape == (columns * sum(bands), 9, 2) and steps.max(axis=(0, 1)).tolist() == [2 * columns, 2 * sum(bands)]:
             return steps
-    steps = _meshed_quads(columns, bands)
+    steps = ask("rectangle", columns, bands)
     with suppress(OSError):
         write_atomically(kept, lambda partial: np.savez_compressed(partial, steps=steps.astype(np.int32)))
     return steps
-
-
-def _meshed_quads(columns: int, bands: tuple[int, ...]) -> np.ndarray:
-    """Nodes of the quads as gmsh makes them."""
-    with gmsh_session() as geometry:
-        ends = np.concatenate(([0], np.cumsum(bands)))
-        corners = [(geometry.add_point((0.0, -float(y))), geometry.add_point((float(columns), -float(y)))) for y in ends]
-        across = [geometry.add_line(left, right) for left, right in corners]
-        for line in across:
-            geometry.set_transfinite_curve(line, columns + 1, "Progression", 1.0)
-        for band, count in enumerate(bands):
-            upper, lower = corners[band], corners[band + 1]
-            left, right = geometry.add_line(upper[0], lower[0]), geometry.add_line(lower[1], upper[1])
-            for line in (left, right):
-                geometry.set_transfinite_curve(line, count + 1, "Progression", 1.0)
-            surface = geometry.add_plane_surface(geometry.add_curve_loop([left, across[band + 1], right, -across[band]]))
-            geometry.set_transfinite_surface(surface, "Left", [upper[0], lower[0], lower[1], upper[1]])
-            geometry.set_recombined_surfaces([surface])
-            geometry.add_physical(surface, REGIONS[band])
-        grid = geometry.generate_mesh(dim=2, order=2)
-    (quads,) = [block.data for block in grid.cells if block.type == "quad9"]
-    return np.rint(2.0 * grid.points[:, :2] * (1.0, -1.0)).astype(np.int64)[quads]
 
 
 def build_pad_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False) -> PadMesh:

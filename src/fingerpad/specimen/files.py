@@ -10,9 +10,7 @@ from __future__ import annotations
 
 import errno
 import os
-import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -21,6 +19,7 @@ import numpy as np
 
 from fingerpad.files import is_file, read_input, write_atomically
 from fingerpad.specimen.element_kinds import KINDS, LINES
+from fingerpad.specimen.gmsh_worker import GmshError, ask
 from fingerpad.specimen.near import same_place, twins
 from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
 from fingerpad.specimen.quality import check_orientation
@@ -30,18 +29,6 @@ _SAME_PLACE = 1e-6  # of the pad's width: two nodes closer than this are mirror 
 MOST = {"Nodes": 1_000_000, "Elements": 500_000}
 """Of a file, lines and points included."""
 _WIDTHS = (0.1, 1000.0)  # mm, between which the width of a pad is believed
-
-
-@contextmanager
-def _quiet_gmsh() -> Iterator[object]:
-    import gmsh
-
-    gmsh.initialize(["fingerpad", "-v", "0"], readConfigFiles=False, interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        yield gmsh
-    finally:
-        gmsh.finalize()
 
 
 def write_pad(mesh: PadMesh, path: str | Path) -> None:
@@ -55,52 +42,15 @@ def write_pad(mesh: PadMesh, path: str | Path) -> None:
 
 
 def _write(mesh: PadMesh, partial: Path, path: str | Path) -> None:
-    with _quiet_gmsh() as gmsh:
-        gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
-        gmsh.option.setNumber("Mesh.Binary", 0)
-        for number, name in enumerate(mesh.curves, start=1):
-            gmsh.model.addDiscreteEntity(1, number)
-            gmsh.model.addPhysicalGroup(1, [number], number, name)
-        for number, name in enumerate(mesh.regions, start=1):
-            gmsh.model.addDiscreteEntity(2, number)
-            gmsh.model.addPhysicalGroup(2, [number], number, name)
-        tags = np.arange(1, len(mesh.points) + 1)
-        places = np.column_stack((mesh.points * 1e3, np.zeros(len(tags))))
-        gmsh.model.mesh.addNodes(2, 1, tags, places.ravel())
-        for number, facets in enumerate(mesh.curves.values(), start=1):
-            line = LINES[facets.shape[1]]
-            gmsh.model.mesh.addElementsByType(number, line, [], facets.ravel() + 1)
-        for number in range(1, len(mesh.regions) + 1):
-            cells = mesh.cells[mesh.region == number - 1]
-            gmsh.model.mesh.addElementsByType(number, KINDS[mesh.element].gmsh, [], cells.ravel() + 1)
-        gmsh.model.mesh.reclassifyNodes()
-        gmsh.write(str(partial))
+    curves = [(name, LINES[facets.shape[1]], facets.ravel() + 1) for name, facets in mesh.curves.items()]
+    kind, layers = KINDS[mesh.element].gmsh, range(len(mesh.regions))
+    surfaces = [(mesh.regions[layer], kind, mesh.cells[mesh.region == layer].ravel() + 1) for layer in layers]
+    try:
+        ask("write", str(partial.absolute()), mesh.points * 1e3, curves, surfaces)
+    except GmshError as error:
+        raise OSError(errno.EIO, f"gmsh cannot write it ({error})", str(path)) from None
     if not partial.read_bytes().rstrip().endswith(b"$EndElements"):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
-
-
-def _read_groups(path: Path) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
-    """What is in the file, nodes by their tags.
-
-    Node tags (n,), their places (n, 3) in mm, surfaces as {name: [(gmsh's type, element tags, node tags)]},
-    curves likewise, and the number of all surface elements, in a group or not. A group without a name has its number.
-    """
-    _require_mesh(path)
-    with _quiet_gmsh() as gmsh:
-        try:
-            _open_alone(gmsh, path)
-            tags, places, _ = gmsh.model.mesh.getNodes()
-            groups: tuple[dict, dict] = ({}, {})
-            for dimension in (1, 2):
-                for _, group in gmsh.model.getPhysicalGroups(dimension):
-                    name = gmsh.model.getPhysicalName(dimension, group) or str(group)
-                    for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
-                        blocks = zip(*gmsh.model.mesh.getElements(dimension, entity), strict=True)
-                        groups[dimension - 1].setdefault(name, []).extend(blocks)
-            count = sum(len(part) for part in gmsh.model.mesh.getElements(2)[1])
-        except Exception as error:  # gmsh raises nothing more specific
-            raise MeshError(f"{path}: gmsh cannot read it ({' '.join(str(error).split())})") from error
-    return tags, places.reshape(-1, 3), groups[1], groups[0], count
 
 
 def _require_mesh(path: Path) -> None:
@@ -115,14 +65,6 @@ def _require_mesh(path: Path) -> None:
         count = _count(content, section)
         if count > most:
             raise MeshError(f"{path}: has {count} {section.lower()}; up to {most} are allowed")
-
-
-def _open_alone(gmsh, path: Path) -> None:
-    """Lets gmsh open a mesh where nothing else is: it runs what stands in a .opt file beside it, or in a .geo file."""
-    with tempfile.TemporaryDirectory(prefix="fingerpad-") as folder:
-        link = Path(folder) / "alone.msh"
-        link.symlink_to(path.absolute())
-        gmsh.open(str(link))
 
 
 def _count(content: bytes, section: str) -> int:
@@ -352,7 +294,11 @@ def read_pad_mesh(path: str | Path, layers: Sequence[str] = (), fixed: Sequence[
 @lru_cache(maxsize=1)  # a plan looks at the mesh before it is solved on
 def _read(path: Path, state: tuple[int, ...], layers: tuple[str, ...], fixed: tuple[str, ...], free: tuple[str, ...]) -> PadMesh:
     """`read_pad_mesh` of a file in a `state`."""
-    tags, places, surfaces, lines, count = _read_groups(path)
+    _require_mesh(path)
+    try:
+        tags, places, surfaces, lines, count = ask("read", str(path))
+    except GmshError as error:
+        raise MeshError(f"{path}: gmsh cannot read it ({error})") from None
     regions = _layers(path, surfaces, layers)
     held = _held(path, lines, fixed, free)
     element, cell_tags, region = _gather_cells(path, surfaces, regions, count)

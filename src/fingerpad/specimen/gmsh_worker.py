@@ -1,0 +1,205 @@
+"""gmsh, in a process of its own.
+
+gmsh has one session in a process, reads the user's configuration files and wants the main thread for its signals. Here nothing
+of that reaches the caller: its own gmsh session, its threads and its settings stay as they are, and a mesh that crashes gmsh
+crashes only this process. The process is started when it is first needed and ends with the one that started it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+
+class GmshError(RuntimeError):
+    """gmsh could not do what it was asked; the message is its own, in one line."""
+
+
+class GmshMissing(ImportError):
+    """gmsh cannot be loaded here; the message is one line that says what is missing and how to install it."""
+
+
+# --- the caller's side --------------------------------------------------------------------------------------------------
+
+
+class _Worker:
+    """The process of gmsh, shared by the threads of this one."""
+
+    def __init__(self) -> None:
+        self._lock, self._process, self._owner = threading.Lock(), None, 0
+
+    def ask(self, task: str, *arguments: Any) -> Any:
+        """What a task of :data:`TASKS` gives for arguments.
+
+        Raises
+        ------
+        GmshError : gmsh raised an error, or ended. GmshMissing : it cannot be loaded.
+        """
+        with self._lock:
+            process = self._started()
+            try:
+                pickle.dump((task, arguments), process.stdin)
+                process.stdin.flush()
+                kind, answer = pickle.load(process.stdout)
+            except (EOFError, OSError, pickle.UnpicklingError):
+                self._end()
+                raise GmshError(f"it ended with code {process.returncode}") from None
+            except BaseException:  # an interrupt: what is still to come of the answer would be taken for another's
+                self._end()
+                raise
+        if kind != "done":
+            raise (GmshMissing if kind == "missing" else GmshError)(answer)
+        return answer
+
+    def _started(self) -> subprocess.Popen:
+        if self._process is None or self._owner != os.getpid() or self._process.poll() is not None:
+            self._owner = os.getpid()  # a forked child has pipes to a process that is not its own
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", __name__],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                start_new_session=True,  # Ctrl-C is for the caller
+                env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OMP_NUM_THREADS": "1"},
+            )
+        return self._process
+
+    def _end(self) -> None:
+        self._process.kill()
+        for pipe in (self._process.stdin, self._process.stdout):
+            with contextlib.suppress(OSError):
+                pipe.close()
+        self._process.wait()
+
+
+ask = _Worker().ask
+
+
+# --- the side of gmsh ---------------------------------------------------------------------------------------------------
+
+
+@contextlib.contextmanager
+def _session(gmsh):
+    """A quiet session that reads no configuration."""
+    gmsh.initialize(["fingerpad", "-v", "0"], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        yield gmsh
+    finally:
+        gmsh.finalize()
+
+
+def rectangle(gmsh, columns: int, bands: tuple[int, ...]) -> np.ndarray:
+    """Second-order quads of a rectangle: x counts columns, -y rows, in bands of so many.
+
+    Returns
+    -------
+    (elements, 9, 2) int, half steps (column, row) of each element's nodes, band after band.
+    """
+    import pygmsh
+
+    with tempfile.TemporaryDirectory(prefix="fingerpad-") as empty:
+        os.environ["GMSH_HOME"] = empty  # pygmsh lets gmsh read what is there
+        with pygmsh.geo.Geometry(init_argv=["fingerpad", "-v", "0"]) as geometry:
+            gmsh.option.setNumber("General.Terminal", 0)
+            gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 0)
+            ends = np.concatenate(([0], np.cumsum(bands)))
+            corners = [(geometry.add_point((0.0, -float(y))), geometry.add_point((float(columns), -float(y)))) for y in ends]
+            across = [geometry.add_line(left, right) for left, right in corners]
+            for line in across:
+                geometry.set_transfinite_curve(line, columns + 1, "Progression", 1.0)
+            for band, count in enumerate(bands):
+                upper, lower = corners[band], corners[band + 1]
+                left, right = geometry.add_line(upper[0], lower[0]), geometry.add_line(lower[1], upper[1])
+                for line in (left, right):
+                    geometry.set_transfinite_curve(line, count + 1, "Progression", 1.0)
+                surface = geometry.add_plane_surface(geometry.add_curve_loop([left, across[band + 1], right, -across[band]]))
+                geometry.set_transfinite_surface(surface, "Left", [upper[0], lower[0], lower[1], upper[1]])
+                geometry.set_recombined_surfaces([surface])
+                geometry.add_physical(surface, f"band {band}")
+            grid = geometry.generate_mesh(dim=2, order=2)
+    (quads,) = [block.data for block in grid.cells if block.type == "quad9"]
+    return np.rint(2.0 * grid.points[:, :2] * (1.0, -1.0)).astype(np.int64)[quads]
+
+
+def write(gmsh, path: str, points: np.ndarray, curves: list[tuple], surfaces: list[tuple]) -> None:
+    """Write a .msh file (version 4.1). `points` (n, 2) mm; of each group (name, gmsh's element type, node numbers from 1)."""
+    with _session(gmsh):
+        gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+        gmsh.option.setNumber("Mesh.Binary", 0)
+        for dimension, groups in ((1, curves), (2, surfaces)):
+            for number, (name, _, _) in enumerate(groups, start=1):
+                gmsh.model.addDiscreteEntity(dimension, number)
+                gmsh.model.addPhysicalGroup(dimension, [number], number, name)
+        tags = np.arange(1, len(points) + 1)
+        gmsh.model.mesh.addNodes(2, 1, tags, np.column_stack((points, np.zeros(len(tags)))).ravel())
+        for groups in (curves, surfaces):
+            for number, (_, kind, nodes) in enumerate(groups, start=1):
+                gmsh.model.mesh.addElementsByType(number, kind, [], nodes)
+        gmsh.model.mesh.reclassifyNodes()
+        gmsh.write(path)
+
+
+def read(gmsh, path: str) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
+    """What is in a .msh file, nodes by their tags.
+
+    Returns
+    -------
+    Node tags (n,), their places (n, 3), surfaces as {name: [(gmsh's type, element tags, node tags)]}, curves likewise, and the
+    number of all surface elements, in a group or not. A group without a name has its number.
+    """
+    with _session(gmsh), tempfile.TemporaryDirectory(prefix="fingerpad-") as folder:
+        # alone, for gmsh runs what stands in a .opt file beside a mesh
+        link = Path(folder) / "alone.msh"
+        link.symlink_to(Path(path).absolute())
+        gmsh.open(str(link))
+        tags, places, _ = gmsh.model.mesh.getNodes()
+        groups: tuple[dict, dict] = ({}, {})
+        for dimension in (1, 2):
+            for _, group in gmsh.model.getPhysicalGroups(dimension):
+                name = gmsh.model.getPhysicalName(dimension, group) or str(group)
+                for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
+                    blocks = zip(*gmsh.model.mesh.getElements(dimension, entity), strict=True)
+                    groups[dimension - 1].setdefault(name, []).extend(blocks)
+        count = sum(len(part) for part in gmsh.model.mesh.getElements(2)[1])
+    return tags, places.reshape(-1, 3), groups[1], groups[0], count
+
+
+TASKS: dict[str, Callable] = {"rectangle": rectangle, "write": write, "read": read}
+"""What the process can be asked for."""
+
+
+def _serve() -> None:
+    """Answer until nobody asks any more."""
+    questions, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what libraries print is no answer
+    missing = ""
+    try:
+        import gmsh
+    except (ImportError, OSError) as error:
+        missing = f"gmsh cannot be loaded: {error}; on Debian: sudo apt-get install -y libglu1-mesa libxcursor1 libxinerama1"
+    while True:
+        try:
+            task, arguments = pickle.load(questions)
+        except EOFError:
+            return
+        try:
+            answer = ("missing", missing) if missing else ("done", TASKS[task](gmsh, *arguments))
+        except Exception as error:  # noqa: BLE001 - gmsh raises nothing more specific
+            answer = "failed", " ".join(str(error).split()) or type(error).__name__
+        pickle.dump(answer, answers)
+        answers.flush()
+
+
+if __name__ == "__main__":
+    _serve()
