@@ -171,13 +171,13 @@ def test_steps_of_a_steady_stroke_count_as_those_of_a_timed_one():
 
 def test_peak_is_unbounded_under_a_true_edge_and_only_there():
     sharp, rounded = plan(scene(BAR)), plan(scene(ROUNDED))
-    assert sharp.unbounded_peak and "the peak at the edge is unbounded" in sharp.covers and "root mean" not in sharp.covers
+    assert sharp.unbounded and "pressure is unbounded at the edges" in sharp.covers and "root mean" not in sharp.covers
     stroked = plan(scene(BAR, [*PRESS, {"slide": "1 mm"}])).covers
     assert "unbounded" in stroked and "root mean square" in stroked
     assert sharp.estimated_error >= RULES.edge_floor
     for chosen in (rounded, plan(scene({"shape": "line"})), plan(scene()), plan(scene(cylinder(1e4)))):
-        assert not chosen.unbounded_peak and "unbounded" not in chosen.covers
-    assert plan(scene(BAR | {"fillet": "1 nm"}, accuracy=0.05)).unbounded_peak, "a rounding that no mesh resolves"
+        assert not chosen.unbounded and "unbounded" not in chosen.covers
+    assert plan(scene(BAR | {"fillet": "1 nm"}, accuracy=0.05)).unbounded, "a rounding that no mesh resolves"
 
 
 def test_run_under_a_true_edge_says_so_everywhere():

@@ -619,4 +619,4 @@ def _error_line(totals: dict[str, Any]) -> str:
         line += f", after {len(run['runs'])} runs"
     if run.get("tolerance_missed"):
         line += f" ({run['tolerance_missed']})"
-    return f"{line}; at the edge pressure is unbounded" if run["peak_pressure_singular"] else line
+    return f"{line}; pressure is unbounded at {run['peak_pressure_unbounded_at']}" if run["peak_pressure_singular"] else line

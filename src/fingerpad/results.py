@@ -274,7 +274,8 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
         )
     ]
     legs = []
-    for leg, error in zip(numbers, errors, strict=True):
+    places_of = json.loads(attributes.get("unbounded_at_of_legs", "[]")) or [""] * len(numbers)
+    for leg, error, unbounded in zip(numbers, errors, places_of, strict=True):
         end = int(np.flatnonzero(leg_of == leg)[-1])
 
         def at_end(name: str, end: int = end) -> float:
@@ -291,6 +292,7 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
             "tangential_force_N_per_m": at_end("tangential_force"),
             "contact_width_mm": at_end("contact_width") * 1e3,
             "peak_pressure_Pa": at_end("peak_pressure"),
+            "peak_pressure_unbounded_at": unbounded,
             "centre_pressure_Pa": at_end("centre_pressure"),
             "centre_lateral_displacement_mm": at_end("centre_lateral_displacement") * 1e3,
             "stroke_distance_mm": at_end("stroke_distance") * 1e3,
@@ -314,6 +316,7 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
         "largest_error": float(attributes.get("largest_error", attributes["estimated_error"])),
         "error_covers": attributes.get("error_covers", ""),
         "peak_pressure_singular": bool(attributes.get("singular")),
+        "peak_pressure_unbounded_at": attributes.get("unbounded_at", ""),
     } | cost
     asked = float(attributes.get("asked_error", np.nan))
     if np.isfinite(asked):

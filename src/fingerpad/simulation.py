@@ -28,12 +28,13 @@ from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import Plan, plan, refined
 from fingerpad.planning.rules import RULES
 from fingerpad.planning.schedule import schedule
+from fingerpad.planning.unbounded import OF_STROKES, Unbounded, ends_unbounded, in_words, seen_corners
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.results import FIELDS, Arrays, add_snapshots, arrays, peak_memory_MB, provenance, skin_arc
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
-from fingerpad.specimen.measures import below_outline, below_skin, touched_side
+from fingerpad.specimen.measures import below_outline, below_skin, skin_ends, touched_side
 from fingerpad.specimen.near import same_place
 from fingerpad.specimen.pad import PadMesh, skin_chain
 from fingerpad.stimuli.motion import among
@@ -152,6 +153,11 @@ class Simulation:
         self.body, instantaneous = self._body()
         self.receptors = self._receptors(instantaneous)
         self.skin = self._skin()
+        self.skin_ends, self.corners = skin_ends(self.mesh), self.profile.corners()
+        shear, bulk = (
+            modulus[np.isin(self.mesh.cells, self.skin.nodes).any(axis=1)] for modulus in (self.body.shear, self.body.bulk)
+        )
+        self.modulus = float((4 * shear * (3 * bulk + shear) / (3 * bulk + 4 * shear)).max())
         self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None) if fields else None
         friction = scene.friction if plan.effects["friction"].on else None
         observers = (self.receptors, self.fields) if fields else (self.receptors,)
@@ -331,6 +337,27 @@ class Simulation:
         )
         return max(found, plan.least_error) + plan.small_strain_error + plan.surface.error
 
+    def _unbounded(self, record: Record) -> Unbounded:
+        """Where in the contact of a state pressure has no bound."""
+        on = self.skin.nodes[record.nodal_force > 0]
+        if not len(on):
+            return Unbounded()
+        x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance
+        x = np.concatenate([x, -x]) if self.mesh.half else x
+        near = self.plan.contact_edge + self.profile.edge_radius
+        if self.plan.unresolved_edge:
+            corners = np.array(self.profile.edges)
+        else:
+            pressure, half_width = (record.nodal_force / record.length).max(), np.ptp(x) / 2
+            there = slice(*np.searchsorted(self.corners[:, 0], [x.min() - near, x.max() + near]))
+            corners = seen_corners(self.corners[there], self.modulus, pressure, self.skin.spacing, half_width)
+        corners = corners[[np.abs(x - corner).min() <= near for corner in corners]] if len(corners) else corners
+        places = list(in_words(self.profile, corners))
+        for node, angle in self.skin_ends:
+            if node in on and ends_unbounded(angle, self.stepper.friction is not None):
+                places.append(f"the end of the skin at x = {self.mesh.points[node, 0] * 1e3:.4g} mm")
+        return Unbounded(tuple(places), bool(np.any(np.abs(corners - record.distance) <= 2 * near)))
+
     def _lost_work(self, records) -> float:
         missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
         drift = [
@@ -350,7 +377,7 @@ class Simulation:
         if least < _SQUEEZED and not self.body.geometrically_linear:
             yield f"an element keeps {least:.1%} of its volume at one point: a finer mesh, or a fillet, will tell"
         uneven = max((board for each in pressures if np.isfinite(board := checkerboard(*each))), default=0.0)
-        if uneven > _UNEVEN and not self.plan.unbounded_peak:
+        if uneven > _UNEVEN and not any(self.unbounded):
             yield f"pressure goes up and down from node to node, by {uneven:.0%} of its peak (r.m.s.): a finer mesh will tell"
         if self.stepper.wavered:
             yield "states near to one another may be in equilibrium, and round-off choose between them: smaller steps will tell"
@@ -468,6 +495,8 @@ class Simulation:
             "skin_y": self.whole.points[chain, 1],
             "skin_arc": skin_arc(*self.whole.points[chain].T, apex),
         }
+        self.unbounded = [self._unbounded(record) for record in records]
+        worst = max(self.unbounded, key=lambda each: (each.centre, len(each.text)), default=Unbounded())
         once = compiling() - self.compiling  # for the first of all simulations on these elements
         cost = {
             "cpu_s": round(time.process_time() - self.cpu - once, 4),
@@ -489,8 +518,10 @@ class Simulation:
                 "plan": self.plan.to_dict(),
                 "cost": cost,
                 **self._errors(records, widths),
-                "error_covers": self.plan.covers,
-                "singular": int(self.plan.unbounded_peak),
+                "error_covers": worst.covers + self.plan.strokes * OF_STROKES,
+                "singular": int(bool(worst)),
+                "unbounded_at": worst.text,
+                "unbounded_at_of_legs": json.dumps([self.unbounded[k].text for k in _leg_ends(records)]),
                 "notes": self._notes(records, pressures),
                 "provenance": provenance(),
             },
@@ -514,9 +545,9 @@ class Simulation:
             from fingerpad.receptors.respond import respond  # here, for xarray is slow to import
 
             history = Arrays.of(history.labelled().merge(respond(history.labelled(), wanted)))
-        if self.plan.unbounded_peak:
-            for name in ("peak_pressure", "contact_pressure"):
-                history[name].attrs["comment"] = "at a true edge pressure is unbounded: its largest value is the mesh's"
+        if worst:
+            for name in ("peak_pressure", "contact_pressure", *(["centre_pressure"] if worst.centre else [])):
+                history[name].attrs["comment"] = f"pressure is unbounded at {worst.text}: its largest value is the mesh's"
         return history
 
 

@@ -23,6 +23,7 @@ from fingerpad.planning.contact import (
     inertia_ratio_of,
     least_half_width,
     moves_along,
+    pressing_force,
     rounding_of,
     way_of,
     worst_contact,
@@ -49,9 +50,10 @@ from fingerpad.planning.rules import RULES, Rules
 from fingerpad.planning.schedule import BETWEEN, NEWTON, expected_states, schedule
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.planning.surface import Surface, surface_of
+from fingerpad.planning.unbounded import OF_STROKES, Unbounded, ends_unbounded, in_words, seen_corners
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import counted, shortest_edge
-from fingerpad.specimen.measures import apex_edge
+from fingerpad.specimen.measures import apex_edge, skin_ends
 from fingerpad.specimen.pad import MeshSize, PadMesh
 
 if TYPE_CHECKING:
@@ -76,8 +78,9 @@ class Plan:
         contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
         part of it that small strain is to blame for; least_error: at least this because of the profile's edges or of the elements
         that receptors are in. error_from: what most of it comes from. asked_error: the tolerance, None where none is asked for;
-        once: whether it is tried for once only. unbounded_peak: whether the profile has a true edge, where pressure has no bound
-        and a peak is the mesh's. specimen: sentences on what is touched, and what of it the scene left out. surface: what the
+        once: whether it is tried for once only. unbounded: where contact is expected at which pressure has no bound, so that a
+        peak is the mesh's; the run says where it was. unresolved_edge: whether edges are rounded, but finer than the mesh can
+        tell. specimen: sentences on what is touched, and what of it the scene left out. surface: what the
         mesh makes of a measured profile. stride: so many steps are made one. strokes: does the pad move along the surface, so
         that errors are of a way? every: of so many outputs of presses and holds a state is found at one, for more are asked for
         than the accuracy needs.
@@ -103,21 +106,19 @@ class Plan:
     error_from: str = ""
     asked_error: float | None = None
     once: bool = False
-    unbounded_peak: bool = False
+    unbounded: Unbounded = Unbounded()
     specimen: tuple[str, ...] = ()
     surface: Surface = Surface()
     stride: int = 1
     strokes: bool = False
     outputs: int = 0
     every: int = 1
+    unresolved_edge: bool = False
 
     @property
     def covers(self) -> str:
         """The quantities that the error is of."""
-        said = "depth, width, pressure, strain energy"
-        if self.unbounded_peak:
-            said = "depth, width, centre pressure, strain energy; the peak at the edge is unbounded"
-        return said + self.strokes * "; of strokes root mean square, relative to the largest"
+        return self.unbounded.covers + self.strokes * OF_STROKES
 
     def missed(self, error: float | None = None) -> str | None:
         """What to say where ``error`` (default: the expected one) exceeds the tolerance; None where it does not."""
@@ -207,7 +208,10 @@ class Plan:
             "tolerance_met": None if self.asked_error is None else self.missed() is None,
             "once": self.once,
             "strokes": self.strokes,
-            "unbounded_peak": self.unbounded_peak,
+            "unbounded_peak": bool(self.unbounded),
+            "unbounded_at": list(self.unbounded.places),
+            "unbounded_at_centre": self.unbounded.centre,
+            "unresolved_edge": self.unresolved_edge,
         }
 
     @classmethod
@@ -216,15 +220,16 @@ class Plan:
         size = data["mesh_size_SI"]
         if size is not None:
             size = MeshSize(**size | {"focus": tuple(tuple(pair) for pair in size["focus"])})
-        known = data["discretisation"]
+        known, places = data["discretisation"], data.get("unbounded_at", ["an edge"] if data["unbounded_peak"] else [])
+        unbounded = Unbounded(tuple(places), data.get("unbounded_at_centre", False))
         return cls(
             {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
             ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
             data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
             data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["least_error"],
-            data["error_from"], data["asked_error"], data["once"], data["unbounded_peak"], tuple(data["specimen"]),
+            data["error_from"], data["asked_error"], data["once"], unbounded, tuple(data["specimen"]),
             Surface(**data["surface_SI"]), data["stride"], data.get("strokes", False), known.get("outputs", known["steps"]),
-            data.get("every", 1),
+            data.get("every", 1), data.get("unresolved_edge", False),
         )  # fmt: skip
 
     def write(self, path: str | Path) -> None:
@@ -336,12 +341,32 @@ def plan(
         "small strain": linear,
         "what the mesh cannot feel of the profile": surface.error,
     }
+    unresolved = not profile.unbounded and peak_is_unbounded(profile, at_edge, rounding, rules)
     return Plan(
         effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
         linear + mesh, _cost(nodes, steps, effects, rules), linear, max(at_edges, at_receptors),
-        max(sources, key=sources.get), scene.tolerance, scene.once, peak_is_unbounded(profile, at_edge, rounding, rules),
-        (*specimen_said(scene.specimen, external), *filter(None, [raised]), *measured.notes), surface, strokes=moves, outputs=outputs, every=every,
+        max(sources, key=sources.get), scene.tolerance, scene.once,
+        _unbounded(scene, measured.at(surface.smoothing, edge), external, pad, contact, edge, unresolved),
+        (*specimen_said(scene.specimen, external), *filter(None, [raised]), *measured.notes), surface, strokes=moves,
+        outputs=outputs, every=every, unresolved_edge=unresolved,
     )  # fmt: skip
+
+
+def _unbounded(scene, profile, external, pad, contact, edge: float, unresolved: bool) -> Unbounded:
+    """Where contact is expected at which pressure has no bound."""
+    half_width, (low, high) = contact.half_width, way_of(scene)
+    pressure = 2 / np.pi * pressing_force(scene, pad, contact) / half_width
+    corners = (
+        np.array(profile.edges) if unresolved else seen_corners(profile.corners(), pad.stiff, pressure, edge / 2, half_width)
+    )
+    corners = corners[(corners >= low - half_width) & (corners <= high + half_width)]
+    places, friction = list(in_words(profile, corners)), scene.friction > 0
+    for node, angle in skin_ends(external) if external is not None else ():
+        x = external.points[node, 0]
+        if abs(x) <= half_width and ends_unbounded(angle, friction):
+            places.append(f"the end of the skin at x = {x * 1e3:.4g} mm")
+    centre = np.any((corners >= low - 2 * edge) & (corners <= high + 2 * edge))
+    return Unbounded(tuple(places), bool(centre))
 
 
 def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: int = 1, rules: Rules | None = None) -> Plan | str:

@@ -16,6 +16,7 @@ from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.reference_solutions.layered import Layer, stack_compliance
 from fingerpad.roots import root
 from fingerpad.specimen import measures
+from fingerpad.specimen.judge import meeting_place
 from fingerpad.specimen.pad import REGIONS, SKIN, UNNAMED, PadMesh
 
 _NARROWEST = 1e-4  # half width of a contact, in thicknesses
@@ -34,6 +35,7 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
             f"a mesh of {external.element}, {wide:.3g} mm wide and {high:.3g} mm high: {', '.join(external.regions)}; "
             f"held: {', '.join(external.fixed)}; free: {', '.join([SKIN, *free])}"
         )
+        lines.append(_where_met(external))
     elif specimen.stack is not None:
         stack = specimen.stack
         layers = ", ".join(f"{name} {thick * 1e3:.3g} mm" for name, thick in zip(stack.names, stack.thicknesses, strict=True))
@@ -43,6 +45,17 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
             core = "" if stack.solid else f" and the core of radius {(stack.radius - stack.soft_thickness) * 1e3:.3g} mm"
             lines.append(f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; free: {SKIN}")
     return (*lines, *(f"not given: {left_out}" for left_out in specimen.assumed))
+
+
+def _where_met(external: PadMesh) -> str:
+    """Where the indenter comes down on a mesh, in words."""
+    skin = external.points[external.curves[SKIN][:, :2], 0] * 1e3
+    low, high = skin.min() + 0.0, skin.max() + 0.0
+    height, _ = meeting_place(external)
+    said = f"the indenter meets the skin at x = 0, y = {height * 1e3:.4g} mm; the skin goes from x = {low:.4g} to {high:.4g} mm"
+    if min(-low, high) < 0.05 * (high - low):
+        said += ", so this is the end of the skin: where friction acts or the body goes on beside it, peak pressure is unbounded"
+    return said
 
 
 def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> PadEstimate:

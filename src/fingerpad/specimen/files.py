@@ -20,6 +20,7 @@ import numpy as np
 from fingerpad.files import is_file, read_input, write_atomically
 from fingerpad.specimen.element_kinds import KINDS, LINES
 from fingerpad.specimen.gmsh_worker import GmshError, ask
+from fingerpad.specimen.judge import check_joined, check_skin
 from fingerpad.specimen.near import same_place, twins
 from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
 from fingerpad.specimen.quality import check_orientation
@@ -328,4 +329,6 @@ def _read(path: Path, state: tuple[int, ...], layers: tuple[str, ...], fixed: tu
     curves = _facets(path, mesh, pairs)
     curves[SKIN] = _in_order(path, curves[SKIN])
     mesh = replace(mesh, curves=curves)
+    check_joined(mesh, str(path))
+    check_skin(mesh, str(path))
     return replace(mesh, symmetric=_is_symmetric(mesh))

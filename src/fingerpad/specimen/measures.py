@@ -25,6 +25,23 @@ def touched_side(y: np.ndarray) -> np.ndarray:
     return y >= y.max() - 0.5 * np.ptp(y)
 
 
+def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
+    """Nodes at which the skin ends, and the angle (rad) between it and the boundary that goes on, through the material."""
+    skin = mesh.curves["skin"][:, :2]
+    others = np.concatenate([facets[:, :2] for name, facets in mesh.curves.items() if name != "skin"])
+    before, after = dict(others[:, ::-1].tolist()), dict(others.tolist())
+    found = []
+    for node, back, ahead in (
+        (int(skin[0, 0]), before.get(int(skin[0, 0])), int(skin[0, 1])),
+        (int(skin[-1, 1]), int(skin[-1, 0]), after.get(int(skin[-1, 1]))),
+    ):
+        if back is not None and ahead is not None and not (mesh.half and node == skin[0, 0]):
+            one, two = (mesh.points[each] - mesh.points[node] for each in (back, ahead))
+            angle = np.arctan2(one[0] * two[1] - one[1] * two[0], one @ two)  # material lies to the right of the way
+            found.append((node, float(angle % (2 * np.pi))))
+    return found
+
+
 def layers_below(mesh: PadMesh) -> list[tuple[str, float]]:
     """Names and thicknesses (m) of the layers straight below the skin at x = 0, down to the first gap or the base.
 

@@ -96,6 +96,11 @@ class Curve(Profile):
         corner = 2 * self._kink[self.own][1:] / (chord[:-1] + chord[1:]) * (line[:-1] & line[1:])
         return float(max(self.bend[self.own].max(), corner.max(initial=0.0)))
 
+    def corners(self):
+        chord = np.diff(self.x)
+        here = 1 + np.flatnonzero(self._kink[1:] > 0)
+        return np.column_stack([self.x[here], self._kink[here], np.minimum(chord[here - 1], chord[here])])
+
     def outline(self, x):
         return self._height(x)
 

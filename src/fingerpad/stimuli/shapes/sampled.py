@@ -200,6 +200,14 @@ class Points(Curve):
         steep = slope + 2 * turn
         return [*xs, last + length * np.cos(steep)], [*ys, height + length * np.sin(steep)], [*bends, 0.0]
 
+    def corners(self):
+        inner = super().corners()
+        if self.ends != "open":
+            return inner
+        first, last = self.known
+        inner = inner[(inner[:, 0] > first) & (inner[:, 0] < last)]
+        return np.vstack([(first, np.pi / 2, np.inf), inner, (last, np.pi / 2, np.inf)])
+
     def outline(self, x):
         height = self._height(x)
         return np.where((x >= self.reach[0]) & (x <= self.reach[1]), height, np.nan)

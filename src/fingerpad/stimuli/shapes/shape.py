@@ -59,6 +59,9 @@ class CurvedShape(Shape):
     def outline(self, x):
         return self.curve.outline(x)
 
+    def corners(self):
+        return self.curve.corners()
+
     def cutoffs(self, edge):
         return self.curve.cutoffs(edge)
 

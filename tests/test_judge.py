@@ -1,0 +1,200 @@
+"""A mesh is judged before it is used: one body whose parts share their nodes, with its skin up over x = 0."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fingerpad
+from fingerpad.cli import main
+from fingerpad.specimen import MeshError, PadMesh, read_pad_mesh, write_pad
+from own_meshes import SLAB, slab_mesh
+
+pytestmark = pytest.mark.unit
+
+EDGE = 1e-3
+
+
+def joined(*parts, names=("lower", "upper"), skin="upper"):
+    """Meshes side by side as one, without common nodes: base of the first, skin of the last."""
+    points, cells, region, shift = [], [], [], 0
+    curves = {}
+    for number, part in enumerate(parts):
+        points.append(part.points)
+        cells.append(part.cells + shift)
+        region.append(np.full(len(part.cells), number, np.int8))
+        curves |= {name: facets + shift for name, facets in part.curves.items() if (name == "skin") == (number == len(parts) - 1)}
+        shift += len(part.points)
+    return PadMesh(
+        np.concatenate(points), np.concatenate(cells), "quad4", np.concatenate(region), curves, False,
+        regions=names[: len(parts)], fixed=("base",),
+    )  # fmt: skip
+
+
+def merged(mesh, tolerance=1e-9):
+    """Nodes at one place made one."""
+    keys = np.round(mesh.points / tolerance).astype(np.int64)
+    _, first, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    number = number.reshape(-1).astype(np.int32)
+    curves = {name: number[facets] for name, facets in mesh.curves.items()}
+    return replace(mesh, points=mesh.points[first], cells=number[mesh.cells], curves=curves)
+
+
+def lifted(mesh, height):
+    return replace(mesh, points=mesh.points + [0.0, height])
+
+
+def layers(lower=EDGE, upper=EDGE, apart=0.0):
+    """Two layers of 3 and 2 mm, nodes so far apart."""
+    return joined(slab_mesh(lower, height=3e-3), lifted(slab_mesh(upper, height=2e-3), 3e-3 + apart))
+
+
+def stripped():
+    """Two layers that share every second node of the finer one: hanging nodes."""
+    return merged(layers(EDGE, EDGE / 2))
+
+
+def partly():
+    """A layer on another: its left half with the same nodes, its right half with twice as many."""
+    left = lifted(slab_mesh(EDGE, left=-10e-3, right=0.0, high=0.0, height=2e-3), 3e-3)
+    right = lifted(slab_mesh(EDGE / 2, left=0.0, right=10e-3, low=0.0, height=2e-3), 3e-3)
+    mesh = joined(slab_mesh(EDGE, height=3e-3), left, right, names=("lower", "upper", "right"))
+    skin = left.curves["skin"] + len(slab_mesh(EDGE, height=3e-3).points)
+    return merged(replace(mesh, curves=mesh.curves | {"skin": skin}))
+
+
+def by_one_node():
+    """A slab and a block on it that share a corner."""
+    block = lifted(slab_mesh(EDGE, low=-1, left=10e-3, right=14e-3, height=2e-3), 5e-3)
+    low = replace(slab_mesh(EDGE), regions=("lower",))
+    whole = merged(joined(low, block, names=("lower", "upper")))
+    top = low.curves["skin"]
+    skin = np.array([[_at(whole, low.points[a]), _at(whole, low.points[b])] for a, b in top], np.int32)
+    return replace(whole, curves={"skin": skin, "base": whole.curves["base"]})
+
+
+def _at(mesh, point):
+    return int(np.argmin(np.hypot(*(mesh.points - point).T)))
+
+
+def slit():
+    """Layers that are joined at both ends and part in between by a twentieth of an edge."""
+    mesh = layers()
+    points = mesh.points.copy()
+    inside = (np.abs(points[:, 1] - 3e-3) < 1e-9) & (np.abs(points[:, 0]) < 4.5e-3)
+    inside[: len(points) // 2] = False
+    upper = np.arange(len(points)) >= len(slab_mesh(EDGE, height=3e-3).points)
+    points[inside & upper, 1] += 0.02e-3
+    return merged(replace(mesh, points=points))
+
+
+def crossing():
+    """A body bent into itself: two arms on one base that overlap."""
+    mesh = slab_mesh(EDGE, height=5e-3)
+    kept = np.abs(mesh.points[mesh.cells, 0].mean(axis=1)) > 1e-3
+    low = mesh.points[mesh.cells, 1].mean(axis=1) < 1e-3
+    cells = mesh.cells[kept | low]
+    x, y = mesh.points.T
+    points = np.column_stack([np.where(y > 1e-3, x - np.sign(x) * 0.6 * (y - 1e-3), x), y])
+    skin = mesh.curves["skin"]
+    skin = skin[mesh.points[skin, 0].mean(axis=1) < -1e-3]
+    used = np.unique(cells)
+    number = np.full(len(points), -1, np.int32)
+    number[used] = np.arange(len(used))
+    curves = {"skin": number[skin], "base": number[mesh.curves["base"]]}
+    return replace(mesh, points=points[used], cells=number[cells], region=np.zeros(len(cells), np.int8), curves=curves)
+
+
+NOT_JOINED = {
+    "layers without common nodes": (layers, "lie twice at the same place"),
+    "layers of different edges": (lambda: layers(EDGE, EDGE * 0.8), "is in 2 pieces"),
+    "layers of different edges that share some nodes": (stripped, "by 21 single nodes"),
+    "layers that share nodes only in part": (partly, "lie on each other"),
+    "layers a hair apart": (lambda: layers(apart=1e-7), "is in 2 pieces"),
+    "layers far apart": (lambda: layers(apart=1e-3), "is in 2 pieces"),
+    "layers that overlap": (lambda: layers(apart=-0.4e-3), "is in 2 pieces"),
+    "one node in common": (by_one_node, "hangs on the rest by 1 single nodes"),
+    "a slit": (slit, "lie on each other"),
+    "a body that overlaps itself": (crossing, "lie on each other"),
+}
+
+
+@pytest.mark.parametrize("raised", [False, True])
+@pytest.mark.parametrize("name", NOT_JOINED)
+def test_parts_that_do_not_share_their_nodes_are_refused(tmp_path, name, raised):
+    make, words = NOT_JOINED[name]
+    mesh = make()
+    write_pad(mesh.raised() if raised else mesh, tmp_path / "m.msh")
+    with pytest.raises(MeshError) as caught:
+        read_pad_mesh(tmp_path / "m.msh")
+    said = str(caught.value)
+    assert words in said and " mm" in said and "\n" not in said and ("layers" in said)
+
+
+def test_layers_that_share_their_nodes_are_taken(tmp_path):
+    write_pad(merged(layers()), tmp_path / "m.msh")
+    assert read_pad_mesh(tmp_path / "m.msh").regions == ("lower", "upper")
+
+
+def turned(mesh, degrees):
+    angle = np.radians(degrees)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return replace(mesh, points=mesh.points @ turn.T)
+
+
+def covered():
+    """A slab with a slot: the skin is the slot's floor."""
+    mesh = slab_mesh(EDGE, height=5e-3)
+    x, y = mesh.points[mesh.cells].mean(axis=1).T
+    kept = ~((np.abs(x) < 3e-3) & (y > 2e-3) & (y < 4e-3))
+    number = np.arange(len(mesh.points)).reshape(21, 6)
+    skin = np.column_stack([number[7:13, 2], number[8:14, 2]]).astype(np.int32)
+    used = np.unique(mesh.cells[kept])
+    new = np.full(len(mesh.points), -1, np.int32)
+    new[used] = np.arange(len(used))
+    curves = {"skin": new[skin], "base": new[mesh.curves["base"]]}
+    return replace(mesh, points=mesh.points[used], cells=new[mesh.cells[kept]], region=mesh.region[kept], curves=curves)
+
+
+WRONG_SKIN = {
+    "right of x = 0": (lambda: slab_mesh(EDGE, left=2e-3, right=22e-3, low=2e-3, high=22e-3), "shifted by -12 mm"),
+    "left of x = 0": (lambda: slab_mesh(EDGE, left=-22e-3, right=-2e-3, low=-22e-3, high=-2e-3), "shifted by 12 mm"),
+    "turned by 180 degrees": (lambda: turned(slab_mesh(EDGE), 180), "faces down"),
+    "turned by 90 degrees": (lambda: turned(slab_mesh(EDGE), 90), "faces left"),
+    "turned by -90 degrees": (lambda: turned(slab_mesh(EDGE), -90), "faces right"),
+    "turned by 90 degrees, over x = 0": (
+        lambda: (lambda m: replace(m, points=m.points + [5e-3, 0]))(turned(slab_mesh(EDGE), 90)),
+        "faces left",
+    ),
+    "below another part": (covered, "is covered at x = 0 by curve unnamed"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG_SKIN)
+def test_a_skin_that_the_indenter_does_not_meet_is_refused(tmp_path, name):
+    make, words = WRONG_SKIN[name]
+    write_pad(make(), tmp_path / "m.msh")
+    with pytest.raises(MeshError) as caught:
+        read_pad_mesh(tmp_path / "m.msh")
+    said = str(caught.value)
+    assert words in said and "curve skin, from x = " in said and "allowed: " in said and "\n" not in said
+
+
+@pytest.mark.parametrize("degrees", [0, 10, -20])
+def test_a_tilted_skin_is_taken(tmp_path, degrees):
+    write_pad(turned(slab_mesh(EDGE), degrees), tmp_path / "m.msh")
+    read_pad_mesh(tmp_path / "m.msh")
+
+
+def test_the_command_line_says_it_in_one_line(tmp_path, capsys):
+    write_pad(layers(EDGE, EDGE * 0.8), tmp_path / "m.msh")
+    document = SLAB(tmp_path / "m.msh")
+    document["specimen"]["layers"] = {name: {"youngs_modulus": "50 kPa"} for name in ("lower", "upper")}
+    import yaml
+
+    (tmp_path / "scene.yaml").write_text(yaml.safe_dump(document))
+    assert main(["run", str(tmp_path / "scene.yaml"), "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "specimen.mesh" in said and "in 2 pieces" in said
+    with pytest.raises(MeshError):
+        fingerpad.simulate(document)
