@@ -123,7 +123,7 @@ def test_a_mesh_without_nail_and_with_eight_node_quads(tmp_path):
     path = write_rings(tmp_path / "rings.msh", "quad8", edit=lambda groups: [group for group in groups if group[2] != "nail"])
     scene = scene_of(tmp_path, {"mesh": path.name})
     assert plan(scene).specimen[0].endswith("held: bone; free: skin, 12 boundary edges in none of these curves")
-    assert plan(scene).specimen[1] == "not given: layers, prony, contact_length: thesis"
+    assert plan(scene).specimen[2] == "not given: layers, prony, contact_length: thesis"
     assert last_leg(scene)["force_N_per_m"] > 0
 
 

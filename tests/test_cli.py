@@ -434,35 +434,6 @@ def test_as_a_process(tmp_path):
     assert names(tmp_path) == []
 
 
-def loaded(*arguments):
-    """Packages that a command has loaded when it is done."""
-    words = [str(argument) for argument in arguments]
-    code = f"import sys; from fingerpad.cli import main; main({words}); print(*sys.modules, file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    return {name for name in done.stderr.split() if "." not in name}
-
-
-def test_importing_the_package_is_quick_because_it_imports_nothing():
-    slow = {"numpy", "pydantic", "pint", "numba", "rich"}
-    code = f"import sys, fingerpad, fingerpad.cli; print(sorted({slow} & set(sys.modules)))"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "[]\n"
-
-
-def test_a_plan_loads_no_solver_and_no_scipy(scene):
-    """Of what takes long to import, only what reads a scene."""
-    slow = {"scipy", "pint", "xarray", "pandas", "matplotlib", "gmsh", "pygmsh", "meshio", "skfem", "numba", "netCDF4"}
-    assert not loaded("plan", scene) & slow
-
-
-def test_a_run_loads_neither_labels_nor_a_compiler_nor_the_mesher_of_a_mesh_it_knows(scene, tmp_path, monkeypatch):
-    """What it writes it writes as arrays; the second time the reference mesh comes from the user's cache."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    run = ("run", scene, "--out", tmp_path / "out", "--force", "--quiet")
-    first, second = loaded(*run), loaded(*run)
-    assert "pygmsh" in first
-    assert not second & {"numba", "pint", "xarray", "pandas", "matplotlib", "gmsh", "pygmsh", "meshio", "rich", "scipy", "skfem"}
-
-
 @pytest.mark.parametrize("main", ["from fingerpad.cli import main; main(['plan', 'none.yaml'])", ""])
 def test_what_is_unreachable_at_the_end_is_not_looked_for(main):
     """Of a command: without it, the interpreter's last search finds what points at itself."""

@@ -23,7 +23,8 @@ def joined(*parts, names=("lower", "upper"), skin="upper"):
         points.append(part.points)
         cells.append(part.cells + shift)
         region.append(np.full(len(part.cells), number, np.int8))
-        curves |= {name: facets + shift for name, facets in part.curves.items() if (name == "skin") == (number == len(parts) - 1)}
+        wanted = ("base",) if number == 0 else ("skin",) if number == len(parts) - 1 else ()
+        curves |= {name: part.curves[name] + shift for name in wanted}
         shift += len(part.points)
     return PadMesh(
         np.concatenate(points), np.concatenate(cells), "quad4", np.concatenate(region), curves, False,
@@ -55,12 +56,13 @@ def stripped():
 
 
 def partly():
-    """A layer on another: its left half with the same nodes, its right half with twice as many."""
-    left = lifted(slab_mesh(EDGE, left=-10e-3, right=0.0, high=0.0, height=2e-3), 3e-3)
-    right = lifted(slab_mesh(EDGE / 2, left=0.0, right=10e-3, low=0.0, height=2e-3), 3e-3)
-    mesh = joined(slab_mesh(EDGE, height=3e-3), left, right, names=("lower", "upper", "right"))
-    skin = left.curves["skin"] + len(slab_mesh(EDGE, height=3e-3).points)
-    return merged(replace(mesh, curves=mesh.curves | {"skin": skin}))
+    """Two halves side by side: the lower rows are the same in both, the upper ones twice as many to the right."""
+    left = slab_mesh(EDGE, left=-10e-3, right=0.0, high=0.0)
+    right = slab_mesh(EDGE, left=0.0, right=10e-3, low=0.0, y=1e-3 * np.array([0, 1, 2, 2.5, 3, 3.5, 4, 4.5, 5]))
+    mesh = joined(left, right)
+    base = np.concatenate([left.curves["base"], right.curves["base"] + len(left.points)])
+    skin = np.concatenate([left.curves["skin"], right.curves["skin"] + len(left.points)])
+    return merged(replace(mesh, curves={"skin": skin, "base": base}))
 
 
 def by_one_node():

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 DONE, UNFORESEEN, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
 #: what a run may write into its folder; plan.json names what it did write, and nothing else is ever removed
 RESULTS = ("plan.json", "history.nc", "summary.json", "last_converged.nc")
+LEAST_BYTES = 0.9e9
+"""Of addresses that the libraries take before anything is solved."""
 FIELDS = ("vtu/*.vtu", "vtu/*.series", "vtu/*.pvd")
 
 # errors of wrong input: where they are defined, and the key they are about when they do not name it
@@ -82,6 +84,8 @@ def _guarded(arguments: list[str] | None, heard: list[warnings.WarningMessage] |
     try:
         try:
             options = _parser().parse_args(arguments)
+            if _too_little_memory():
+                return _say(f"not enough memory: a limit (ulimit -v) below {LEAST_BYTES / 1e9:.2g} GB", NOT_COMPLETED)
             return options.command(options)
         finally:
             sys.stdout.flush()
@@ -101,6 +105,14 @@ def _guarded(arguments: list[str] | None, heard: list[warnings.WarningMessage] |
                 _deaf()
             return _say(why, NOT_COMPLETED)
         return _unforeseen(error, heard)
+
+
+def _too_little_memory() -> bool:
+    """Whether a limit leaves less than the libraries take, which then do not fail but try for ever."""
+    import resource
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return limit != resource.RLIM_INFINITY and limit < LEAST_BYTES
 
 
 def _of_the_machine(error: Exception) -> str | None:

@@ -213,13 +213,23 @@ def test_a_workflow_killed_at_random_instants_ends_with_the_same_results(clone, 
 
 def test_a_failed_job_says_why_where_it_failed(clone):
     (clone.root / "forces").mkdir()
-    (clone.root / "forces" / "mine.csv").write_text("subject,depth\nme,1\n")
+    header = "subject,indenter,depth_mm,speed_mm_per_s,force_N,source,how_obtained"
+    (clone.root / "forces" / "mine.csv").write_text(f"{header}\nme,flat plate,1,0,0.2,me,scale\n")
     (clone.root / "mine.yaml").write_text("{name: mine, scenes: [calibration_plate], calibration_scenes: [calibration_plate], "
                                           "subjects: forces, accuracy: draft}")  # fmt: skip
     done = clone.snakemake("--configfile", "mine.yaml", "--", "calibration")
     assert done.returncode != 0
     said = [line for line in done.stderr.splitlines() if line.startswith("calibrate: ")]
-    assert len(said) == 1 and "forces/mine.csv: row 1: column indenter is missing; allowed: subject" in said[0]
+    assert len(said) == 1 and "subject 'me' has one steady force" in said[0]
+
+
+def test_measured_files_are_checked_before_anything_is_simulated(clone):
+    (clone.root / "forces").mkdir()
+    (clone.root / "forces" / "mine.csv").write_text("subject,depth\nme,1\n")
+    (clone.root / "mine.yaml").write_text("{name: mine, scenes: [calibration_plate], subjects: forces, accuracy: draft}")
+    done = clone.snakemake("--configfile", "mine.yaml", "--", "calibration")
+    assert done.returncode == 2 and "forces/mine.csv: has no column indenter, but subject, depth" in done.stderr
+    assert "Traceback" not in done.stderr and not (clone.root / "results").exists()
 
 
 # -- the report and the archive of a run ---------------------------------------------------------------------------------------

@@ -589,7 +589,7 @@ class Specimen(Strict):
                 raise Problem("is not a path", "the path of a .msh file", ("mesh",))
             # in Python a path may be one that a result remembers: whether it is there turns out when it is read
             in_document = context is not None or isinstance(data["mesh"], str)
-            data["mesh"] = source.resolve(data["mesh"])
+            data["mesh"] = source.resolve(data["mesh"]) if in_document else Path(data["mesh"])
             if in_document and not is_file(data["mesh"]):
                 raise Problem("is not an existing file", "the path of a .msh file, relative to the scene", ("mesh",))
             layers = data.get("layers")

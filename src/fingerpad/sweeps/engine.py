@@ -148,7 +148,7 @@ def lay_out(read: Read, folder: Path, cores: int, force: bool = False, again: bo
             "memory_MB": round(max(expected.memory_MB[n] for n in numbers)),
         }
         spec = {
-            "base": read.base.model_dump(mode="json"),
+            "base": _base(read.base),
             "keep": list(keep),
             "histories": histories,
             "scenes": [[n, keys[n], design.changes(n)] for n in numbers],
@@ -160,6 +160,14 @@ def lay_out(read: Read, folder: Path, cores: int, force: bool = False, again: bo
     said = {"name": read.name, "digest": digest, "batches": batches, "known": known, "scenes": len(keys), "missing": len(missing)}
     write_text(folder / "sweep.json", json.dumps(said, indent=1) + "\n")
     return Layout(folder, **said)
+
+
+def _base(scene: Scene) -> dict[str, Any]:
+    """The base scene as plain data; batches run in other folders, so paths in it are absolute."""
+    data = scene.model_dump(mode="json")
+    if scene.specimen.mesh is not None:
+        data["specimen"]["mesh"] = str(scene.specimen.mesh.absolute())
+    return data
 
 
 def _digest(content: Any) -> str:

@@ -17,6 +17,8 @@ from pathlib import Path
 from fingerpad.config import WorkflowConfig
 from fingerpad.documents import HIDE, Problem, SceneError, error_line, nearest
 from fingerpad.provenance import imported_sources
+from fingerpad.receptors.recordings import read_rates
+from fingerpad.reference_data import ReferenceDataError, read_force_depth
 from fingerpad.scenes.families import Written, moves_along, read_scene, rests_on
 from fingerpad.workflow.chapters import Figure, offered
 
@@ -158,6 +160,12 @@ class Products:
             self._wrong(("friction_coefficients",), HIDE, "lacks friction_scenes", "both or neither")
         if not self.forces and c.calibration_scenes:
             self._wrong(("subjects",), c.subjects, "holds no CSV file", "a folder of at least one")
+        try:  # what somebody has measured is read before anything is simulated
+            if c.calibration_scenes:
+                read_force_depth(self.forces)
+            read_rates(*self.rates)
+        except ReferenceDataError as error:
+            raise SceneError(str(error)) from None
 
     def _check_scene(self, key: tuple, name: str) -> None:
         try:
@@ -186,6 +194,11 @@ class Products:
     def forces(self) -> list[str]:
         """Files of measured forces."""
         return self._csv(self.config.subjects)
+
+    @cached_property
+    def rates(self) -> list[str]:
+        """Files of impulse rates, published and recorded."""
+        return self._csv("config/reference/impulse_rates", "config/reference/recordings")
 
     def _csv(self, *folders: str) -> list[str]:
         return [str(path) for folder in folders for path in sorted(Path(self.at(folder)).glob("*.csv"))]
@@ -414,7 +427,7 @@ class Products:
         if names := [name for name in RECEPTOR_TABLES if name in c.table_names]:
             felt = self._of([*c.scenes, *c.variants], "ramp40", "ramp150", "press10", "press15", "stroke", "stroke_sub")
             read = {
-                "rates": self._csv("config/reference/impulse_rates", "config/reference/recordings"),
+                "rates": self.rates,
                 "histories": self.histories(felt),
                 "coarse": self.companions(
                     s for s in self._of(c.scenes, "ramp40", "stroke") if s.startswith("ramp40_") or s == "stroke_10"
