@@ -107,7 +107,7 @@ def test_a_gmsh_that_crashes_is_said_and_started_anew():
     with pytest.raises(GmshError, match="ended with code -9"):
         worker.ask("rectangle", 900, (200, 200, 200))
     assert worker.ask("rectangle", 1, (1, 1, 1)).shape == (3, 9, 2)
-    worker._end()
+    worker.close()
 
 
 def test_gmsh_that_cannot_be_loaded_is_said_in_one_line(no_cache, tmp_path, monkeypatch, capsys):

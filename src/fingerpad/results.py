@@ -23,6 +23,7 @@ from fingerpad.provenance import digest, imported_sources
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
 from fingerpad.specimen.near import nearest
+from fingerpad.stimuli.motion import NO_TIME
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -283,7 +284,7 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
 
         force = at_end("force")
         entry = {
-            "time_s": at_end("time"),
+            "time_s": round(at_end("time"), 9),
             "estimated_error": error,
             "depth_mm": at_end("indentation_depth") * 1e3,
             "force_N_per_m": force,
@@ -460,7 +461,7 @@ def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]
     paths, parts = [], []
     for k, time in enumerate(times):
         now = history.isel(snapshot=k)
-        state = history.isel(time=int(np.flatnonzero(np.isclose(history.time.values, time, rtol=1e-9, atol=1e-12))[-1]))
+        state = history.isel(time=int(np.flatnonzero(np.isclose(history.time.values, time, rtol=1e-9, atol=NO_TIME / 2))[-1]))
         on_skin = {"contact pressure (kPa)": state.contact_pressure}
         if "tangential_traction" in state:
             on_skin["frictional traction (kPa)"] = state.tangential_traction

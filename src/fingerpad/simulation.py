@@ -37,7 +37,7 @@ from fingerpad.specimen.materials import Prony, moduli
 from fingerpad.specimen.measures import below_outline, below_skin, skin_ends, touched_side
 from fingerpad.specimen.near import same_place
 from fingerpad.specimen.pad import PadMesh, skin_chain
-from fingerpad.stimuli.motion import among
+from fingerpad.stimuli.motion import INSTANT, NO_TIME, among, apart
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -488,7 +488,7 @@ class Simulation:
         time_found = np.array([0.0] + [record.time for record in records])
         out, times = at_outputs(out, time_found, records, self.whole.points[chain, 0], apex, self.mesh.half)
         coordinates = {
-            "time": times,
+            "time": apart(times),
             "receptor_depth": self.depth,
             "receptor_offset": self.offset,
             "skin_x": self.whole.points[chain, 0],
@@ -526,6 +526,7 @@ class Simulation:
                 "provenance": provenance(),
             },
         )
+        history["time"].attrs["comment"] = f"states of a leg that takes no time stand {INSTANT:g} s apart"
         if snapshots:
             found = {name: [field[name] for field in snapshots.values()] for name in next(iter(snapshots.values()))}
             add_snapshots(
@@ -541,7 +542,7 @@ class Simulation:
                 {name: np.array([unfold.elements(values, name) for values in each]) for name, each in found.items()},
             )
         wanted = self.scene.outputs.responses
-        if wanted and out["leg"].size > 1 and coordinates["time"][-1] > 0:
+        if wanted and out["leg"].size > 1 and coordinates["time"][-1] > NO_TIME:
             from fingerpad.receptors.respond import respond  # here, for xarray is slow to import
 
             history = Arrays.of(history.labelled().merge(respond(history.labelled(), wanted)))

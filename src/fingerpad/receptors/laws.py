@@ -18,6 +18,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fingerpad.stimuli.motion import NO_TIME
+
 NODE_TERMS = {
     "4-1": ("inverse edge distance", "displacement", "constant"),
     "4-1 read without an exponent": ("edge distance", "displacement", "constant"),
@@ -164,7 +166,7 @@ def rate_by_leg(time, values, leg) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """
     time, values, leg = np.asarray(time, float), np.asarray(values, float), np.asarray(leg)
     ends = np.flatnonzero(np.diff(leg) > 0)
-    pieces = [slice(a, b + 1) for a, b in zip([0, *ends], [*ends, len(time) - 1], strict=True) if time[b] > time[a]]
+    pieces = [slice(a, b + 1) for a, b in zip([0, *ends], [*ends, len(time) - 1], strict=True) if time[b] - time[a] > NO_TIME]
     rates = [np.gradient(values[piece], time[piece], axis=0) for piece in pieces]
     return (
         np.concatenate([time[piece] for piece in pieces]),

@@ -10,6 +10,7 @@ import xarray as xr
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, rate_by_leg
 from fingerpad.receptors.rapidly_adapting import ASSUMED_RATE, RapidlyAdapting
 from fingerpad.receptors.spikes import impulses
+from fingerpad.stimuli.motion import NO_TIME, apart
 
 AFFERENTS: dict[str, ImpulseRate | RapidlyAdapting] = {"slowly_adapting": THESIS_RATE, "rapidly_adapting": ASSUMED_RATE}
 """Kinds of receptor and their laws: Eq 5-1 with the thesis's own constants; saturating in the rate, its constants assumed."""
@@ -30,14 +31,14 @@ def respond(
     Returns:
         ``impulse_rate`` (afferent, response_time, receptor), impulses/s; ``impulses`` (afferent, receptor), how many;
         ``impulse_time`` (afferent, receptor, impulse), s, NaN after the last. Rates are differences within a leg, so the time
-        of a kink between legs is there twice (see :func:`fingerpad.receptors.laws.rate_by_leg`).
+        of a kink between legs is there twice, 1e-12 s apart (see :func:`fingerpad.receptors.laws.rate_by_leg`).
 
     Raises:
         ValueError: nothing in the history takes time, there is no such afferent, or there is variability without a seed.
     """
     laws = dict(afferents) if isinstance(afferents, Mapping) else {name: _law(name) for name in afferents}
     time, leg = history["time"].values, history["leg"].values
-    if not time[-1] > time[0]:
+    if not time[-1] - time[0] > NO_TIME:
         raise ValueError("nothing in this history takes time, so it has no rates: give a leg a rate, a speed or a hold")
     at, energy, change = rate_by_leg(time, history["strain_energy_density"].values, leg)
     rates = np.array([law(energy, change) if isinstance(law, ImpulseRate) else law(change) for law in laws.values()])
@@ -58,7 +59,7 @@ def respond(
         },
         {
             "afferent": list(laws),
-            "response_time": ("response_time", at, _named("s", "time; twice where legs meet")),
+            "response_time": ("response_time", apart(at), _named("s", "time")),
             **{name: history.coords[name] for name in ("receptor_depth", "receptor_offset")},
         },
         {"laws": "; ".join(f"{name}: {law}" for name, law in laws.items())},

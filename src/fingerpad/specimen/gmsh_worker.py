@@ -7,6 +7,7 @@ crashes only this process. The process is started when it is first needed and en
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import os
 import pickle
@@ -74,6 +75,11 @@ class _Worker:
             )
         return self._process
 
+    def close(self) -> None:
+        """End the process, if there is one and it is this process's own."""
+        if self._process is not None and self._owner == os.getpid():
+            self._end()
+
     def _end(self) -> None:
         self._process.kill()
         for pipe in (self._process.stdin, self._process.stdout):
@@ -82,7 +88,9 @@ class _Worker:
         self._process.wait()
 
 
-ask = _Worker().ask
+_WORKER = _Worker()
+ask = _WORKER.ask
+atexit.register(_WORKER.close)
 
 
 # --- the side of gmsh ---------------------------------------------------------------------------------------------------

@@ -23,6 +23,9 @@ from fingerpad.units import format_quantity
 
 #: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed after it.
 STEADY = 1e9
+INSTANT, NO_TIME = 1e-12, 1e-6
+"""s: by so much stand the states of a history apart of which the later takes no time; a leg that takes less than the latter takes
+none."""
 MAXIMUM_STEPS = 100_000
 MAXIMUM_STROKE = 10.0
 
@@ -483,6 +486,15 @@ def programme(
             solved = bool(needed or among(wanted, time))
             yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh, solved=solved)
             at = goal
+
+
+def apart(times: np.ndarray) -> np.ndarray:
+    """Times (n,) s that do not fall, made to rise: states at the same time stand :data:`INSTANT` apart, in their order."""
+    out = np.array(times, float)
+    for k in range(1, len(out)):
+        least = out[k - 1] + max(INSTANT, 4 * np.spacing(out[k - 1]))
+        out[k] = max(out[k], least)
+    return out
 
 
 def among(times: Sequence[float], time: float) -> bool:

@@ -75,7 +75,7 @@ class Profile:
         return Walls(np.zeros(0, int), np.zeros(0, int), np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2)))
 
     def corners(self) -> np.ndarray:
-        """Corners that bulge at the skin, (k, 3): x (m), the angle by which the surface turns (rad), and the room beside it (m)."""
+        """Corners that bulge at the skin, (k, 3): x (m), the angle by which the surface turns (rad), the room beside it (m)."""
         edges = self.edges if self.unbounded else ()
         return np.array([(x, np.pi / 2, self.reach[1]) for x in edges]).reshape(-1, 3)
 

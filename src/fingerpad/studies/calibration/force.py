@@ -22,6 +22,7 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from fingerpad.files import write_text
+from fingerpad.stimuli.motion import NO_TIME
 from fingerpad.studies.calibration.least_squares import Fit, fit, group_interval
 
 PLATE = "flat plate"
@@ -203,7 +204,7 @@ def calibrate(histories: Mapping[str, xr.Dataset], coarse: Mapping[str, xr.Datas
 
 
 def _steady(history) -> bool:
-    return float(history.time[-1]) == 0.0
+    return float(history.time[-1]) < NO_TIME
 
 
 def _si(group):
