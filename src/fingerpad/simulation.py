@@ -531,7 +531,7 @@ class Simulation:
             found = {name: [field[name] for field in snapshots.values()] for name in next(iter(snapshots.values()))}
             add_snapshots(
                 history,
-                [when for _, when in snapshots],
+                [history["time"].values[_last(out["leg"], times, *key)] for key in snapshots],
                 self.whole.points,
                 self.whole.cells,
                 self.whole.region,
@@ -550,6 +550,11 @@ class Simulation:
             for name in ("peak_pressure", "contact_pressure", *(["centre_pressure"] if worst.centre else [])):
                 history[name].attrs["comment"] = f"pressure is unbounded at {worst.text}: its largest value is the mesh's"
         return history
+
+
+def _last(legs: np.ndarray, times: np.ndarray, leg: int, time: float) -> int:
+    """The last output of a leg at a time."""
+    return int(np.flatnonzero((legs == leg) & (np.abs(times - time) <= 1e-9 * time))[-1])
 
 
 def _leg_ends(records) -> list[int]:
