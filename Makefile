@@ -42,10 +42,10 @@ $(INSTALLED): requirements.lock pyproject.toml workflow/scripts/system_libraries
 	  { echo "fingerpad needs Python 3.11 or newer; name one with: make PYTHON=python3.12" >&2; exit 1; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
 	  { echo "$(PYTHON) cannot make a virtual environment; on Debian: sudo apt-get install -y python3-venv" >&2; exit 1; }
+	@sh workflow/scripts/system_libraries.sh $(PYTHON)
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --use-pep517 --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
-	sh workflow/scripts/system_libraries.sh $(BIN)/python
 # Python itself keeps what it compiles only where PYTHONDONTWRITEBYTECODE is not set.
 	$(BIN)/python -m compileall -q src
 	$(BIN)/python workflow/scripts/compile_kernels.py
@@ -53,12 +53,14 @@ $(INSTALLED): requirements.lock pyproject.toml workflow/scripts/system_libraries
 
 figures: $(INSTALLED)
 	$(SNAKEMAKE)
+	@echo "figures: figures/thesis, figures/studies; tables: figures/tables; all of them listed in figures/README.md"
 
 studies: $(INSTALLED)
 	$(SNAKEMAKE) accuracy stability effects peers reconstruction
 
 smoke: $(INSTALLED)
 	$(SNAKEMAKE) --configfile config/smoke.yaml
+	@echo "figures and tables of the coarse run: results/smoke"
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n $(WORKERS) --dist loadfile --durations 25
@@ -87,7 +89,7 @@ archive: figures
 	$(BIN)/python -m fingerpad.workflow.archive config/thesis.yaml results/archive
 
 docs: $(DOCS)
-	$(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going docs docs/_build/html
+	PYDEVD_DISABLE_FILE_VALIDATION=1 $(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going docs docs/_build/html
 	@echo "docs/_build/html/index.html"
 
 # What the documentation needs beside the workflow, into the same environment; the rules do not depend on it.

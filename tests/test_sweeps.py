@@ -446,3 +446,68 @@ def test_a_sweep_that_cannot_go_on_exits_3_with_one_line(file, tmp_path, monkeyp
     monkeypatch.setattr(engine, "run_layout", full)
     assert main(["sweep", str(file), "--out", str(tmp_path / "out")]) == 3
     assert capsys.readouterr().err.count("\n") == 1
+
+
+# -- a table of samples ---------------------------------------------------------------------------------------------------
+
+
+def tabled(folder, content, **more):
+    (folder / "samples.csv").write_text(content)
+    return Design(load_sweep({"scene": PRESS, "over": {"table": str(folder / "samples.csv"), **more}}))
+
+
+SAMPLES = "stimulus.curvature (1/m),motion[0].press_to_force (gf)\n100,5\n210.5,10\n420,20\n"
+
+
+def test_a_table_of_samples_is_a_design(tmp_path):
+    design = tabled(tmp_path, SAMPLES)
+    assert design.dimensions == {"scene": 3}
+    assert [scene.stimulus.curvature for scene in design] == [100.0, 210.5, 420.0]
+    assert [scene.motion[0].press_to_force for scene in design] == pytest.approx([5 * 9.80665e-3, 10 * 9.80665e-3, 20 * 9.80665e-3])
+    assert [p.column for p in design.parameters] == ["curvature (1/m)", "press_to_force (gf)"]
+
+
+def test_a_table_is_crossed_with_lists(tmp_path):
+    design = tabled(tmp_path, SAMPLES, **{FAT: ["10 kPa", "20 kPa"]})
+    assert design.dimensions == {"draw": 3, "youngs_modulus": 2} and len(design) == 6
+
+
+def test_a_table_may_have_words_and_numbers_without_units(tmp_path):
+    design = tabled(tmp_path, "friction;accuracy\n0,1;draft\n0,25;thesis\n")
+    assert [scene.friction for scene in design] == [0.1, 0.25] and [s.accuracy for s in design] == ["draft", "thesis"]
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("curvature (1/m)\n1\n", "curvature"),
+        ("stimulus.curvature (mm)\n1\n", "stimulus.curvature"),
+        ("stimulus.curvature (1/m)\nx\n", "has 'x' in row 2"),
+        ("stimulus.curvature (1/m),friction\n1,0,2\n", "has 3 cells in row 2"),
+        ("stimulus.curvature (1/m)\n", "has no rows"),
+        ("friction (1),friction\n1,2\n", "two columns of the key 'friction'"),
+    ],
+)
+def test_a_wrong_table_is_one_line(tmp_path, content, words):
+    with pytest.raises(SceneError) as caught:
+        tabled(tmp_path, content).check()
+    assert words in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_table_that_is_not_there_or_beside_draws(tmp_path):
+    with pytest.raises(SceneError, match="over.table: .* is not an existing file"):
+        load_sweep({"scene": PRESS, "over": {"table": str(tmp_path / "none.csv")}})
+    with pytest.raises(SceneError, match="drawn beside a table"):
+        (tmp_path / "samples.csv").write_text(SAMPLES)
+        drawn = {FAT: {"uniform": ["10 kPa", "20 kPa"]}}
+        over = {"table": str(tmp_path / "samples.csv")} | drawn
+        load_sweep({"scene": PRESS, "over": over, "design": "sobol", "samples": 4})
+
+
+def test_salibs_samples_go_in(tmp_path):
+    sample = pytest.importorskip("SALib.sample.sobol")
+    keys = ["stimulus.curvature (1/m)", "specimen.layers.fat.youngs_modulus (kPa)"]
+    points = sample.sample({"num_vars": 2, "names": keys, "bounds": [[50, 800], [10, 20]]}, 4)
+    np.savetxt(tmp_path / "samples.csv", points, delimiter=",", header=",".join(keys), comments="")
+    design = Design(load_sweep({"scene": PRESS, "over": {"table": str(tmp_path / "samples.csv")}}))
+    assert len(design) == len(points) and design.scene(1).stimulus.curvature == pytest.approx(points[1, 0], rel=1e-12)

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 DONE, UNFORESEEN, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
 #: what a run may write into its folder; plan.json names what it did write, and nothing else is ever removed
 RESULTS = ("plan.json", "history.nc", "summary.json", "last_converged.nc")
+_GAPS = 0.97
+"""Share of a contact's width that touches, below which it has gaps."""
 LEAST_BYTES = 0.9e9
 """Of addresses that the libraries take before anything is solved."""
 FIELDS = ("vtu/*.vtu", "vtu/*.series", "vtu/*.pvd")
@@ -299,7 +301,10 @@ def _mesh(options: argparse.Namespace) -> int:
 def _prepare(options: argparse.Namespace) -> tuple[Scene, Plan]:
     """The scene, at the accuracy asked for, and its plan."""
     from fingerpad.scenes.scene import SceneError, load_scene
+    from fingerpad.sweeps.command import is_sweep
 
+    if is_sweep(options.scene):
+        raise _Refusal(f"{options.scene}: is a sweep, not a scene; allowed: fingerpad sweep, or fingerpad plan")
     scene = load_scene(options.scene)
     if options.accuracy is not None:
         try:
@@ -536,6 +541,8 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from fingerpad.planning.bounds import percent
+
     console = Console(highlight=False)
     effects = Table("effect", "", "why", title=f"Plan of {scene.name}", title_justify="left")
     for name, effect in plan.effects.items():
@@ -548,7 +555,7 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     console.print(details)
     for line in plan.specimen:
         console.print(Text(f"specimen: {line}"), soft_wrap=True)
-    console.print(Text(f"expected error: {plan.estimated_error:.1%} ({plan.covers})"))
+    console.print(Text(f"expected error: {percent(plan.estimated_error)} ({plan.covers})"))
     if plan.missed():
         console.print(Text(plan.missed()))
     for note in plan.surface.notes:
@@ -613,9 +620,11 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
     force = last["force_N"] / parse_quantity(f"1 {unit}", "force")
     once = run.get("compiling_s", 0.0)
     compiled = f", {once:.2g} of them to compile, once" if once > 0.5 else ""
+    touching = last["touching_width_mm"]
+    gaps = f", {touching:.3g} mm of it touching" if touching < _GAPS * last["contact_width_mm"] else ""
     return (
         f"depth {last['depth_mm']:.3g} mm, force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "
-        f"contact {last['contact_width_mm']:.3g} mm wide; {run['steps']} steps, "
+        f"contact {last['contact_width_mm']:.3g} mm wide{gaps}; {run['steps']} steps, "
         f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s{compiled}; "
         f"{_error_line(totals)}; results in {directory}"
     )
@@ -623,10 +632,13 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
 
 def _error_line(totals: dict[str, Any]) -> str:
     """The error at the end and, where it is much larger, the largest on the way; what was asked for; and what it leaves out."""
-    run, end = totals["run"], totals["legs"][-1]["estimated_error"]
-    line = f"error about {end:.1%}"
+    from fingerpad.planning.bounds import percent
+
+    run = totals["run"]
+    end = run["estimated_error"]
+    line = f"error about {percent(end)}"
     if run["largest_error"] > 1.5 * end:
-        line += f", {run['largest_error']:.1%} at most"
+        line += f", {percent(run['largest_error'])} at most"
     if len(run.get("runs", [])) > 1:
         line += f", after {len(run['runs'])} runs"
     if run.get("tolerance_missed"):

@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.files import cache_folder, write_atomically
+from fingerpad.processes import waiting
 
 _FLAGS = 0x1 | 0x2 | 0x100 | 0x400
 """C and Fortran order, aligned, writeable: the bits of an array's flags that :func:`_kind` asks for."""
@@ -66,7 +67,8 @@ class Loop:
         global _spent
         start = time.process_time()
         try:
-            return self._compiled_by_numba(kinds, arguments)
+            with waiting("fingerpad: compiling loops for this machine, once; about a minute in all"):
+                return self._compiled_by_numba(kinds, arguments)
         finally:
             _spent += time.process_time() - start
 

@@ -35,6 +35,7 @@ VARIABLES = {
     "stroke_distance": (("time",), "m", "way of the pad's centre along the stimulus"),
     "indentation_depth": (("time",), "m", "indentation depth since first touch"),
     "contact_width": (("time",), "m", "contact width"),
+    "touching_width": (("time",), "m", "touching width, the contact's without its gaps"),
     "centre_pressure": (("time",), "Pa", "contact pressure at the skin node at x = 0"),
     "peak_pressure": (("time",), "Pa", "largest nodal contact pressure"),
     "centre_lateral_displacement": (("time",), "m", "lateral displacement of the skin node at x = 0"),
@@ -292,6 +293,7 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
             "force_gf": force * length / 9.80665e-3,
             "tangential_force_N_per_m": at_end("tangential_force"),
             "contact_width_mm": at_end("contact_width") * 1e3,
+            "touching_width_mm": at_end("touching_width") * 1e3,
             "peak_pressure_Pa": at_end("peak_pressure"),
             "peak_pressure_unbounded_at": unbounded,
             "centre_pressure_Pa": at_end("centre_pressure"),
@@ -437,7 +439,11 @@ def _loaded(path: str | Path) -> xr.Dataset:
 
 
 def read_history(path: str | Path) -> xr.Dataset:
-    """Read a history written by :func:`write_history`, into memory; raises as :func:`read_dataset`."""
+    """Read a history written by :func:`write_history`, or the one in the folder of a run, into memory.
+
+    Raises as :func:`read_dataset`.
+    """
+    path = Path(path) / "history.nc" if Path(path).is_dir() else path
     return _indexed(read_dataset(path, ("time", "leg", "force", "indentation_depth")))
 
 

@@ -426,16 +426,25 @@ class Simulation:
         return self.body.bulk * mean
 
     def _edges(self, record):
-        left, right = record.edges
-        return (max(left, 0.0), right) if self.mesh.half else record.edges  # of the half that is solved
+        """Of the contact, gaps within it included; of a half model from the middle on."""
+        return (0.0, record.edges[1]) if self.mesh.half else record.edges
+
+    def _gaps(self, record) -> float:
+        """Length (m) of skin within the contact that does not touch."""
+        on = np.flatnonzero(record.nodal_force > 0)
+        if not len(on):
+            return 0.0
+        inside = slice(0 if self.mesh.half else on[0], on[-1])
+        length = np.where(record.nodal_force[inside] > 0, 0.0, record.length[inside])
+        return float(length.sum())
 
     def _history(self, records: list[Record], states, snapshots, complete: bool):
         unfold = _Unfolding(self.whole, self.mesh, self.skin.nodes)
         count = len(records) + 1
         chain = skin_chain(self.whole)
         out = {name: np.zeros(count) for name in (
-            "force", "tangential_force", "indentation_depth", "contact_width", "centre_pressure", "peak_pressure",
-            "centre_lateral_displacement", "residual", "complementarity_error", "energy_balance_error", "external_work",
+            "force", "tangential_force", "indentation_depth", "contact_width", "touching_width", "centre_pressure",
+            "peak_pressure", "centre_lateral_displacement", "residual", "complementarity_error", "energy_balance_error", "external_work",
             "stored_energy", "dissipated_energy", "frictional_dissipation", "stroke_distance",
         )}  # fmt: skip
         out |= {name: np.zeros(count, np.int32) for name in ("leg", "newton_iterations", "cutbacks")}
@@ -456,6 +465,7 @@ class Simulation:
                 "tangential_force": 0.0 if self.mesh.half else record.tangential_force,
                 "indentation_depth": record.depth,
                 "contact_width": max(np.nan_to_num(edges[1] - edges[0]), 0.0) / self.share,
+                "touching_width": max(np.nan_to_num(edges[1] - edges[0] - self._gaps(record)), 0.0) / self.share,
                 "residual": record.residual,
                 "complementarity_error": record.complementarity,
                 "energy_balance_error": record.energy_error,

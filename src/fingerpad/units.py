@@ -137,7 +137,7 @@ def _unit(text: str) -> pint.Unit:
         name = factor["name"]
         if name != "1":
             try:
-                unit *= ureg.parse_units("percent" if name == "%" else name) ** (sign * int(factor["power"] or 1))
+                unit *= _named(ureg, name) ** (sign * int(factor["power"] or 1))
             except (pint.PintError, AssertionError, TypeError, ValueError, AttributeError) as error:
                 raise ValueError(name) from error
         position = factor.end()
@@ -148,6 +148,14 @@ def _unit(text: str) -> pint.Unit:
             raise ValueError(text)
         sign = -1 if separator["sign"] == "/" else 1
         position = separator.end()
+
+
+def _named(ureg: pint.UnitRegistry, name: str) -> pint.Unit:
+    """The unit of a name; words such as Newton may begin with a capital."""
+    if name == "%":
+        return ureg.parse_units("percent")
+    word = len(name) > 3 and name.lower() in ureg
+    return ureg.parse_units(name.lower() if word and name not in ureg else name)
 
 
 def _factor_to_si(unit_text: str, dimension: str) -> float:
@@ -229,6 +237,8 @@ def parse_quantity(text: Any, dimension: str) -> float:
     if not match:
         raise QuantityError("does not start with a finite number", allowed(dimension))
     unit = match["unit"].strip()
+    if re.match(r",\d", unit):
+        raise QuantityError("has a decimal comma", f"{allowed(dimension)}, with a decimal point")
     if not unit and dimension != "dimensionless":
         raise QuantityError("has no unit", allowed(dimension))
     if len(unit) > 40:

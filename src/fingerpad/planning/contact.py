@@ -15,6 +15,7 @@ from fingerpad.specimen.files import read_specimen_mesh
 from fingerpad.specimen.pad import PadMesh
 from fingerpad.stimuli.profile import Profile
 
+_USUAL_FORCE = 0.01  # N, with which a finger touches
 _FLATTER = 0.8  # pieces less than so much narrower than the contact are the contact
 
 
@@ -120,7 +121,8 @@ def check_width(scene: Scene, pad: PadEstimate, contact: ContactEstimate, rules:
     force = pressing_force(scene, pad, contact)
     least = rules.least_half_width * 1e9
     said = f"the contact would be {contact.half_width * 1e9:.2g} nm to either side; allowed: {least:g} nm or more"
-    if pad.pressed(force, 0.0).half_width < rules.least_half_width:
+    usual = max(force, _USUAL_FORCE / scene.specimen.contact_length)
+    if pad.pressed(usual, max(scene.stimulus.convexity, 0.0)).half_width >= rules.least_half_width:
         i, leg = next((i, leg) for i, leg in enumerate(scene.motion) if leg.presses)
         raise PlanError(f"motion[{i}].{leg.key}: so little that {said}")
     key = ".curvature" if hasattr(scene.stimulus, "curvature") else ""
@@ -134,6 +136,6 @@ def inertia_ratio_of(scene: Scene, contact: ContactEstimate) -> tuple[float, int
     speed = [0.0] * len(scene.motion)
     for i, (leg, duration) in enumerate(zip(scene.motion, leg_durations(scene), strict=True)):
         if leg.loads and (duration or leg.speed):
-            speed[i] = leg.speed or (leg.depth or contact.depth) / duration
+            speed[i] = leg.speed or (leg.depth or contact.depth) / (leg.quickest or duration)
     fastest = int(np.argmax(speed))
     return 1000.0 * speed[fastest] ** 2 / softest, fastest

@@ -20,6 +20,7 @@ from fingerpad.specimen.measures import apex_edge, touched_side
 from fingerpad.specimen.pad import MeshSize, PadMesh, all_over
 from fingerpad.stimuli.profile import Profile
 
+_THIN = 1e-3  # m, of layers altogether, below which presets are in their size
 _FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
 _NEAR = 0.15  # of the least error there is, by which a tolerance that cannot be met is missed further for less work
 _MOST_COLUMNS = 2000  # of refined elements to either side
@@ -34,7 +35,7 @@ def preset_for(
     accuracy = scene.accuracy
     by_hand = accuracy if isinstance(accuracy, Discretisation) else None
     if isinstance(accuracy, str):
-        return rules.presets[accuracy], None
+        return _in_size(rules.presets[accuracy], scene), None
     if scene.tolerance is not None:
         return _cheapest(scene, min(scene.tolerance, tolerance or 1.0), contact, rules, stroke), by_hand
     thesis = rules.presets["thesis"]
@@ -44,6 +45,14 @@ def preset_for(
     error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
     scale = edge / thesis.skin_edge
     return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), by_hand
+
+
+def _in_size(preset: Preset, scene: Scene) -> Preset:
+    """A preset in the size of its specimen: on layers far thinner than a finger's, edges and slides' steps are as much shorter."""
+    stack = scene.specimen.stack
+    share = 1.0 if stack is None else min(1.0, sum(stack.thicknesses) / _THIN)
+    step = preset.slide_step and share * preset.slide_step
+    return replace(preset, skin_edge=share * preset.skin_edge, layer_edge=share * preset.layer_edge, slide_step=step)
 
 
 def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules, stroke: Stroke | None) -> Preset:

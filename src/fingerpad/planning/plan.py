@@ -322,7 +322,8 @@ def plan(
         nodes = nodes // 2 + 1
     check_memory(scene, nodes, outputs, rules)
     may_change = rules.profile_share * tolerance
-    surface = surface_of(measured, edge, way_of(scene), pad, partial(worst_contact, scene, pad, profile), may_change)
+    pressed, force = partial(worst_contact, scene, pad, profile), pressing_force(scene, pad, contact)
+    surface = surface_of(measured, edge, way_of(scene), pad, pressed, force, may_change)
     around = None if size is None else size.skin_edge
     at_edge = edge if size is None else min(edge, at_focus)
     if size is not None and profile.edge_radius and scene.tolerance is None:

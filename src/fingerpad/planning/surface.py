@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import erf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fingerpad.planning.estimates import ContactEstimate, PadEstimate, layer_kernel
-from fingerpad.stimuli.smoothing import WAVE
+from fingerpad.planning.bounds import percent
+from fingerpad.planning.estimates import ContactEstimate, PadEstimate
+from fingerpad.stimuli.smoothing import WAVE, finer_than
 
 if TYPE_CHECKING:
     from fingerpad.stimuli.profile import Profile
 
 
-#: Share of the steepest slope near the cut-off that comes to bear on the pressure at a node.
-FELT = 0.5
+_FELT_BY_NOBODY = 0.05e-6  # m
+_ROUGH = 0.3
+_LESS_ROUGH = ": average several scans, or give a longer stimulus.smooth"
 
 
 @dataclass(frozen=True)
@@ -39,13 +42,21 @@ class Surface:
         """What a person should know of it."""
         out = []
         if self.smoothing:
-            out.append(
-                f"the profile was smoothed at {self.smoothing * 1e6:.3g} um, which moved it by up to {self.moved * 1e6:.2g} um; "
-                f"that may change depth and pressure by {self.error:.1%}"
+            moved = f"up to {self.moved * 1e6:.2g} um" if self.moved > _FELT_BY_NOBODY else "less than 0.05 um"
+            said = (
+                f"the profile was smoothed at {self.smoothing * 1e6:.3g} um, which moved it by {moved}; "
+                f"what is left of its roughness may change the pressure by {percent(self.error)}"
             )
+            out.append(said + (_LESS_ROUGH if self.error > _ROUGH else ""))
         if self.end is not None:
             out.append(f"contact is expected to reach the end of the profile's points at x = {self.end * 1e3:.3g} mm")
         return out
+
+
+def touching_share(pressure: float, modulus: float, slope: float) -> float:
+    """Share of a rough contact that touches, of a nominal pressure (Pa), a plane modulus (Pa) and the r.m.s. slope of its surface
+    (Persson 2001, J. Chem. Phys. 115, eq. 61)."""
+    return erf(np.sqrt(2) * pressure / (modulus * slope)) if slope else 1.0
 
 
 def surface_of(
@@ -54,18 +65,20 @@ def surface_of(
     way: tuple[float, float],
     pad: PadEstimate,
     pressed: Callable[[float], ContactEstimate],
+    force: float,
     allowed: float = 0.0,
 ) -> Surface:
     """How ``profile`` comes to skin with nodes ``edge`` m apart.
 
-    A wave of slope s in a stiff skin takes a pressure of E* s / 2 to flatten it (Johnson 1985, section 13.2): the slopes that one
-    more octave of smoothing would take away, against the mean pressure of the contact, are what noise may still change. Of the
+    A wave of slope s in a stiff skin takes a pressure of E* s / 2 to flatten it (Johnson 1985, section 13.2): the slopes of the
+    octave above the cut-off, against the pressure where it touches, and the heights of that octave, against the depth, are what
+    noise may still change. Of the
     cut-offs that come into question the shortest with an error that is allowed is taken, or else the one with the least: a finer
     mesh feels finer shapes, but where they are noise it would only find more of it.
 
     Args:
         way: m, least and largest x of the profile that comes over the pad's apex. pressed: the deepest contact with a surface of
-            a curvature (1/m). allowed: relative error that may be left to the profile.
+            a curvature (1/m). force: N/m, that presses at most. allowed: relative error that may be left to the profile.
     """
     if not np.isfinite(profile.known).all():
         return Surface()
@@ -73,24 +86,23 @@ def surface_of(
     for _ in range(3):
         contact = pressed(curvature)
         curvature = max(felt.bulge(way[0], contact.half_width), 0.0)
-    half, radius = contact.half_width, 1 / (1 / pad.apex_radius + curvature)
+    half = contact.half_width
     first, last = way[0] - 1.2 * half, way[1] + 1.2 * half
     ends = [end for end, over in zip(profile.known, (profile.known[0] - first, last - profile.known[1]), strict=True) if over > 0]
     end = min(ends, key=abs, default=None)
     cutoffs = profile.cutoffs(edge)
     if cutoffs == [0.0]:
         return Surface(end=end)
-    modulus = pad.stiff / layer_kernel(min(pad.soft / pad.stiff, 0.999), pad.epidermis_thickness / half + 0.65)
-    pressure = np.pi / 8 * modulus * half / radius
+    nominal = force / (2 * half)
 
     def smoothed(cutoff):
         felt, longer = profile.at(cutoff, edge), max(2 * cutoff, WAVE * edge)
-        x = np.linspace(first, last, int((last - first) / (longer / 2) * 16) + 33)
-        slope = np.gradient(felt.outline(x) - profile.at(longer, edge).outline(x), x)
-        slope = np.nanmax(np.abs(slope)) if np.isfinite(slope).any() else 0.0
-        moved = felt.moved(first, last)
-        error = FELT * slope * pad.stiff / 2 / pressure + moved / max(contact.depth, 1e-9)
-        return Surface(cutoff, moved, float(error), end)
+        x = np.linspace(*np.clip([first, last], *profile.known), int((last - first) / (longer / 2) * 16) + 33)
+        fine = finer_than(x, felt.outline(x), longer)
+        slope, steep = np.abs(np.gradient(fine, x)).max(), np.std(np.gradient(felt.outline(x), x))
+        pressure = nominal / touching_share(nominal, pad.stiff, float(steep))
+        error = slope * pad.stiff / 2 / pressure + np.ptp(fine) / 2 / max(contact.depth, 1e-9)
+        return Surface(cutoff, felt.moved(first, last), float(error), end)
 
     found = []
     for cutoff in cutoffs:

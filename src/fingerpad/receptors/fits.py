@@ -146,8 +146,8 @@ def gain_and_threshold(stimulus: np.ndarray, rate: np.ndarray) -> GainAndThresho
     """The gain and threshold closest to rates by least squares, the rectified law fitted exactly.
 
     With the k weakest stimuli below the threshold the rest is a straight line, so every k is tried. A stimulus that falls where
-    the
-    rate rises predicts the mean rate: gain 0 is not a law, so the smallest gain that a float carries stands for it.
+    the rate rises predicts the mean rate: gain 0 is not a law, so the smallest gain that a float carries stands for it. A
+    threshold below zero says that these rates do not fall to nothing with the stimulus.
     """
     stimulus, rate = np.asarray(stimulus, float), np.asarray(rate, float)
     scale = max(float(np.ptp(stimulus)), float(np.abs(stimulus).max()) * 1e-12, 1e-300)

@@ -16,16 +16,21 @@ AFFERENTS: dict[str, ImpulseRate | RapidlyAdapting] = {"slowly_adapting": THESIS
 """Kinds of receptor and their laws: Eq 5-1 with the thesis's own constants; saturating in the rate, its constants assumed."""
 
 
+NAMES = {"SA-I": "slowly_adapting", "SA1": "slowly_adapting", "RA": "rapidly_adapting", "FA-I": "rapidly_adapting"}
+"""Other names of these kinds, as physiologists and files of recordings have them."""
+
+
 def respond(
     history: xr.Dataset,
-    afferents: Iterable[str] | Mapping[str, ImpulseRate | RapidlyAdapting] = ("slowly_adapting",),
+    afferents: str | Iterable[str] | Mapping[str, ImpulseRate | RapidlyAdapting] = ("slowly_adapting",),
     variation: float = 0.0,
     seed: int | None = None,
 ) -> xr.Dataset:
     """Impulse rates and impulses of all receptors of a history, predicted from their strain energy density and its rate.
 
     Args:
-        history: as `fingerpad.simulate` returns it. afferents: keys of :data:`AFFERENTS`, or laws by a name of one's own.
+        history: as `fingerpad.simulate` or `fingerpad.read_history` returns it. afferents: one or more of :data:`AFFERENTS` or
+        :data:`NAMES`, or laws by a name of one's own.
         variation: coefficient of variation of the intervals (0: none). seed: of that variability.
 
     Returns:
@@ -34,9 +39,13 @@ def respond(
         of a kink between legs is there twice, 1e-12 s apart (see :func:`fingerpad.receptors.laws.rate_by_leg`).
 
     Raises:
-        ValueError: nothing in the history takes time, there is no such afferent, or there is variability without a seed.
+        TypeError: this is no history. ValueError: nothing in the history takes time, there is no such afferent, or there is
+        variability without a seed.
     """
-    laws = dict(afferents) if isinstance(afferents, Mapping) else {name: _law(name) for name in afferents}
+    if not isinstance(history, xr.Dataset):
+        raise TypeError(f"a history is what simulate or read_history returns, not {type(history).__name__} {str(history)[:60]!r}")
+    afferents = [afferents] if isinstance(afferents, str) else afferents
+    laws = dict(afferents) if isinstance(afferents, Mapping) else {NAMES.get(n, n): _law(NAMES.get(n, n)) for n in afferents}
     time, leg = history["time"].values, history["leg"].values
     if not time[-1] - time[0] > NO_TIME:
         raise ValueError("nothing in this history takes time, so it has no rates: give a leg a rate, a speed or a hold")
@@ -68,7 +77,7 @@ def respond(
 
 def _law(name: str) -> ImpulseRate | RapidlyAdapting:
     if name not in AFFERENTS:
-        raise ValueError(f"no afferent called {name!r}; known: {', '.join(AFFERENTS)}")
+        raise ValueError(f"no afferent called {name!r}; known: {', '.join([*AFFERENTS, *NAMES])}")
     return AFFERENTS[name]
 
 

@@ -86,7 +86,7 @@ def rests_on(path: str | Path) -> list[Path]:
     while todo:
         part = todo.pop()
         for key, value in part.items() if isinstance(part, Mapping) else ():
-            if key in ("mesh", "csv") and isinstance(value, str):
+            if key in ("mesh", "csv", "table") and isinstance(value, str):
                 files.append(source.resolve(value))
             elif isinstance(value, str):
                 named.add(value)

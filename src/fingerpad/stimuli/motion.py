@@ -11,14 +11,19 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import get_annotations
+from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Union
 
 import numpy as np
-from pydantic import BeforeValidator, Discriminator, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Tag, field_serializer, model_validator
+from pydantic.json_schema import SkipJsonSchema
 
 from fingerpad.documents import Problem, Strict, nearest
 from fingerpad.fields import Length, Time, listed, quantity
+from fingerpad.files import expanded
 from fingerpad.roots import root
+from fingerpad.stimuli.course import Course, read_course
+from fingerpad.tables import TableError
 from fingerpad.units import format_quantity
 
 #: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed after it.
@@ -106,7 +111,8 @@ class Leg(Strict):
         senseless when nothing is pressed? releases: is nothing pressed after it? loads: does it deform the skin? strokes: does it
         rub the skin? fresh: are its steps? early: share of its outputs, from the first, that need a state each.
         force, depth: N, m, which it presses to. along: m, its way along the surface. kept: "force" or "depth" on that way. speed:
-        m/s, None for a steady leg, or one that has none; every leg says it.
+        m/s, None for a steady leg, or one that has none; every leg says it. quickest: s, that its load would take at its fastest,
+        where that is not its duration. starts: what it starts at, N or m, where that is said: where the leg before has ended.
     """
 
     key: ClassVar[str]
@@ -121,6 +127,8 @@ class Leg(Strict):
     depth: ClassVar[float | None] = None
     along: ClassVar[float] = 0.0
     kept: ClassVar[str | None] = None
+    quickest: ClassVar[float | None] = None
+    starts: ClassVar[float | None] = None
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -275,6 +283,100 @@ class Lift(Leg):
         return None
 
 
+class Follow(Leg):
+    """Press as a table says: depth or force over time, as an instrument writes them."""
+
+    presses = True
+    internal: ClassVar = frozenset({"course"})
+    follows: ClassVar = {"table": ("course",)}
+
+    table: Path | None
+    """CSV file with the columns `time (s)` and `depth (mm)` or `force (gf)`, or other units in them."""
+    course: SkipJsonSchema[Course]
+
+    speed: ClassVar[None] = None
+    rate: ClassVar[None] = None
+
+    @classmethod
+    def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
+        """Reads the course from the file."""
+        if "course" not in data:
+            if not isinstance(data.get("table"), (str, Path)):
+                raise Problem("is not a path", "the path of a CSV file", ("table",))
+            path = expanded(data["table"]).absolute() if context is None else context.resolve(data["table"])
+            try:
+                data |= {"table": path, "course": read_course(path)}
+            except FileNotFoundError:
+                raise Problem("is not an existing file", "the path of a CSV file", ("table",)) from None
+            except TableError as error:
+                raise Problem(error.problem, error.allowed, ("table",)) from None
+            except (OSError, ValueError) as error:
+                reason = getattr(error, "strerror", None) or type(error).__name__
+                raise Problem(f"cannot be read ({reason})", "a CSV file", ("table",)) from None
+        return data
+
+    @field_serializer("table")
+    def _named(self, table: Path | None) -> str | None:
+        return table and table.name
+
+    @property
+    def force(self) -> float | None:
+        """Largest force, N, of a course of force."""
+        return max(self.course.values) if self.course.kept == "force" else None
+
+    @property
+    def depth(self) -> float | None:
+        """Largest depth, m, of a course of depth."""
+        return max(self.course.values) if self.course.kept == "depth" else None
+
+    @property
+    def starts(self) -> float:
+        """Its first value, N or m."""
+        return self.course.values[0]
+
+    @property
+    def quickest(self) -> float:
+        """How long (s) its whole load would take at its fastest."""
+        times, values = np.array(self.course.times), np.array(self.course.values)
+        return float(values.max() / np.max(np.abs(np.diff(values)) / np.diff(times)))
+
+    def path(self, at, last, reached, how):
+        times, values = np.array(self.course.times), np.array(self.course.values)
+        if self.course.kept == "force":  # under no force at all there is no depth
+            values = np.maximum(values, _LEAST_FORCE * values.max()) / how.contact_length
+        sizes: list[float] = []
+        ends: list[float] = []
+        before = reached.force if self.course.kept == "force" else reached.depth
+        for start, end, value in zip(times, times[1:], values[1:], strict=False):
+            share = abs(value - before) / values.max()
+            count = max(1, round(how.steps * share)) if how.timed else 1
+            first = sizes[-1] if sizes else (end - start) / count
+            if share < _HELD and how.timed:  # what is held relaxes ever more slowly
+                count = max(count, how.steps)
+                sizes += geometric(end - start, count, min(first, (end - start) / count)).tolist()
+            else:
+                sizes += [(end - start) / count] * count
+            ends += [before + (value - before) * k / count for k in range(1, count)] + [float(value)]
+            before = value
+        goals = [Goal(end, None, at.distance) if self.course.kept == "force" else Goal(None, end, at.distance) for end in ends]
+        return np.array(sizes), goals, sizes[-1]
+
+    def ahead(self, outlook):
+        known = {"force": math.nan, "depth": math.nan} | {self.course.kept: self.course.values[-1]}
+        return outlook._replace(time=outlook.time + self.course.times[-1], **known)
+
+    def leaves(self, target):
+        return f"press_to_{self.course.kept}", self.course.values[-1]
+
+
+_APART = 0.02
+"""Of the largest value of a course, by which it may start beside where the leg before ended."""
+_LEAST_FORCE = 1e-3
+"""Of the largest force of a course: less is taken for this."""
+_HELD = 0.01
+"""Of the largest value of a course: a piece that changes by less is held."""
+
+
 class Slide(Leg):
     """Stroke the skin: the pad moves along the surface while force or depth is kept."""
 
@@ -381,6 +483,8 @@ def _tag(value: Any) -> str | None:
 
 
 def _check_motion(legs: Any) -> Any:
+    if isinstance(legs, Mapping) and "table" in legs:  # a motion that is one table
+        legs = [legs]
     if not listed(legs):
         raise Problem("is empty", LEG_EXAMPLE)
     return legs
@@ -391,7 +495,8 @@ AnyLeg = Annotated[
     Discriminator(_tag),
     BeforeValidator(_check_leg),
 ]
-Motion = Annotated[tuple[AnyLeg, ...], BeforeValidator(_check_motion)]
+_Motion = tuple[AnyLeg, ...]
+Motion = Annotated[_Motion, BeforeValidator(_check_motion, json_schema_input_type=_Motion | Follow)]
 """Field type: legs, one after the other."""
 
 
@@ -412,6 +517,11 @@ def check_programme(legs: Sequence[Leg], length: float = math.inf) -> None:
             raise Problem("leads off the surface", f"to stay from 0 mm to {end} along it", (i, leg.key))
         if leg.presses and (leg.key, leg.target) == last:
             raise Problem("is where the leg before ended", "another target, or a hold", (i, leg.key))
+        if leg.starts is not None and (i == 0 or (last and last[0] == f"press_to_{leg.course.kept}")):
+            before, quantity = 0.0 if i == 0 else last[1], "length" if leg.course.kept == "depth" else "force"
+            if abs(leg.starts - before) > _APART * max(leg.course.values):
+                starts, there = format_quantity(leg.starts, quantity), format_quantity(before, quantity)
+                raise Problem(f"starts at {starts}, where the finger is at {there}", f"a first row at {there}", (i, leg.key))
         last = leg.leaves(last)
         pressed = leg.presses or (pressed and not leg.releases)
 

@@ -116,7 +116,10 @@ class _Out:
     def measure(self, quantity: str, condition: str, unit: str) -> str:
         """The variable of a measure."""
         if (quantity, condition) not in self._names:
-            name = re.sub(r"\W+", "_", f"{quantity} {condition}".strip())
+            signed = re.sub(r"-(?=[\d.])", "minus ", f"{quantity} {condition}".strip())
+            name = re.sub(r"\W+", "_", signed)
+            while name in self._file.variables:  # of a parameter, or of another measure: no table is lost for a name
+                name += "_"
             said = f"{quantity.replace('_', ' ')}{', ' if condition else ''}{condition}"
             self._make(name, "f8", {"units": unit, "long_name": said, "quantity": quantity, "condition": condition})
             self._names[quantity, condition] = name

@@ -33,6 +33,11 @@ def read(path: Path, accuracy: str | None) -> Read:
     """The sweep of a file, at the accuracy asked for. Raises SceneError."""
     from fingerpad.sweeps.language import load_sweep
 
+    document = read_yaml(path)
+    if isinstance(document, dict) and "scene" not in document and "stimulus" in document:
+        raise SceneError(
+            f"{path}: is a scene, not a sweep; allowed: fingerpad run, or a sweep, which has the keys scene and over"
+        )
     found = load_sweep(path)
     if accuracy is None:
         return found
@@ -85,7 +90,7 @@ def _print(design: Design, found: Forecast, cores: int) -> None:
             f"{v:.4g}" if isinstance(v, float) else str(v) for v in (sorted(p.values) if p.dimension != p.name else p.values)
         ]
         values = ", ".join(shown) if len(shown) <= 6 else f"{shown[0]} to {shown[-1]}"
-        table.add_row(Text(p.key), Text(f"{len(shown)}{' drawn' if p.dimension != p.name else ''}: {values}{unit}"))
+        table.add_row(Text(p.key), Text(f"{len(shown)}{' samples' if p.dimension != p.name else ''}: {values}{unit}"))
     console.print(table)
     effects = ", ".join(f"{name.replace('_', ' ')} in {n}" for name, n in found.effects.items()) or "none"
     console.print(Text(f"effects: {effects} of {len(design)}"), soft_wrap=True)

@@ -13,7 +13,7 @@ import numpy as np
 from fingerpad.documents import SceneError
 from fingerpad.files import is_file
 from fingerpad.scenes.scene import Scene
-from fingerpad.sweeps.language import Read, Unit, quantiles, resolved
+from fingerpad.sweeps.language import Column, Read, Unit, quantiles, resolved
 
 
 @dataclass(frozen=True)
@@ -48,36 +48,37 @@ class Design:
     def __init__(self, read: Read) -> None:
         self.read = read
         axes = read.sweep.over
-        self._drawn = [key for key, axis in axes.items() if axis.drawn]
+        self._drawn = [key for key, axis in axes.items() if axis.drawn or isinstance(axis, Column)]
         self._listed = [key for key in axes if key not in self._drawn]
         folder = read.file.absolute().parent
-        self._written = {key: [resolved(key, value, folder) for value in axes[key].written()] for key in self._listed}
-        self._values = {key: axes[key].labels() for key in self._listed} | self._draws()
+        said = [key for key in axes if not axes[key].drawn]
+        self._written = {key: [resolved(key, value, folder) for value in axes[key].written()] for key in said}
+        self._values = {key: axes[key].labels() for key in said} | self._draws()
 
     def _draws(self) -> dict[str, list[float]]:
         """Key -> values of what is drawn, to 12 digits, in its unit."""
-        if not self._drawn:
+        sweep = self.read.sweep
+        drawn = [key for key in self._drawn if sweep.over[key].drawn]
+        if not drawn:
             return {}
         from scipy.stats import qmc
 
-        sweep = self.read.sweep
         makers = {"latin_hypercube": qmc.LatinHypercube, "sobol": qmc.Sobol}
         with np.errstate(all="ignore"):
             import warnings
 
             with warnings.catch_warnings():  # of samples that are no power of two
                 warnings.simplefilter("ignore")
-                shares = makers[sweep.design](len(self._drawn), rng=np.random.default_rng(sweep.seed)).random(sweep.samples)
+                shares = makers[sweep.design](len(drawn), rng=np.random.default_rng(sweep.seed)).random(sweep.samples)
         return {
-            key: [float(f"{value:.12g}") for value in quantiles(sweep.over[key], shares[:, k])]
-            for k, key in enumerate(self._drawn)
+            key: [float(f"{value:.12g}") for value in quantiles(sweep.over[key], shares[:, k])] for k, key in enumerate(drawn)
         }
 
     @cached_property
     def dimensions(self) -> dict[str, int]:
         """Dimension of the result -> its length: of the draws ("scene", "draw" where they are crossed), then of each axis."""
         names = self.read.names
-        draws = {"draw" if self._listed else "scene": self.read.sweep.samples} if self._drawn else {}
+        draws = {"draw" if self._listed else "scene": len(self._values[self._drawn[0]])} if self._drawn else {}
         return draws | {names[key]: len(self._written[key]) for key in self._listed}
 
     @cached_property

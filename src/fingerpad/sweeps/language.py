@@ -7,7 +7,8 @@
       specimen.layers.fat.youngs_modulus: {lognormal: {median: "15 kPa", factor: 1.5}, within: ["5 kPa", "40 kPa"]}
 
 An axis is a list of values, a range, a distribution, words with a value each, or a folder of files. Distributions, and ranges
-without a count, are drawn together in a design of points; all else is crossed with every other axis.
+without a count, are drawn together in a design of points; all else is crossed with every other axis. ``table: samples.csv`` under
+``over`` is a design of one's own: its columns are keys with their units, such as ``stimulus.curvature (1/m)``, its rows scenes.
 """
 
 from __future__ import annotations
@@ -25,11 +26,12 @@ from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, near
 from fingerpad.fields import filled, listed, number, whole
 from fingerpad.files import expanded
 from fingerpad.scenes.scene import LEVELS, Scene, load_scene
+from fingerpad.tables import TableError, read_table
 from fingerpad.units import DIMENSIONS, QuantityError, number_of, parse_quantity, unit_of
 
 MOST = 1_000_000
 """Scenes of a sweep."""
-_FILES = ("csv", "mesh")
+_FILES = ("csv", "mesh", "table")
 """Keys whose values are paths."""
 
 
@@ -171,6 +173,10 @@ def _pattern(value: Any) -> Any:
     if not isinstance(value, str) or value in ("", ".", "..") or {"/", "\0"} & set(value) or "**" in value:
         raise Problem("is not the pattern of a file's name", "one such as *.csv, without folders")
     return value
+
+
+class Column(Values):
+    """A column of a table of samples: its values belong to those of the table's other columns, row by row."""
 
 
 class Folder(Axis):
@@ -369,8 +375,46 @@ def _over(value: Any, info: ValidationInfo) -> dict[str, Axis]:
         raise Problem("is not a mapping of keys", "keys of the scene such as stimulus.curvature, each with its values")
     axes = {}
     for key, given in value.items():
-        axes[str(key)] = _at(str(key), lambda each: _axis(each, info), given)
+        if key == "table":
+            axes |= _at("table", lambda each: _columns(each, info), given)
+        else:
+            axes[str(key)] = _at(str(key), lambda each: _axis(each, info), given)
     return axes
+
+
+def _columns(value: Any, info: ValidationInfo) -> dict[str, Column]:
+    """The axes of a table of samples: its columns are keys of the scene, with the unit of their values in brackets."""
+    if not isinstance(value, (str, Path)):
+        raise Problem("is not a path", "the path of a CSV file whose columns are keys of the scene")
+    path = expanded(value) if info.context is None else info.context.parent / expanded(value)
+    try:
+        table = read_table(path)
+        found = {}
+        for k, name in enumerate(table.header):
+            key, _, unit = name.removesuffix(")").partition(" (")
+            if unit or all(cell and _is_number(cell) for cell in (row[k] for row in table.rows)):
+                values = [f"{number!r} {unit}" if unit else number for number in table.numbers(k)]
+            else:
+                values = [row[k] for row in table.rows]
+            if key in found:
+                raise TableError(f"has two columns of the key '{key[:60]}'", "each key once")
+            found[key] = _checked(Column, {"values": values}, info.context) if values else None
+    except FileNotFoundError:
+        raise Problem("is not an existing file", "the path of a CSV file, relative to the sweep") from None
+    except TableError as error:
+        raise Problem(error.problem, error.allowed) from None
+    except OSError as error:
+        raise Problem(f"cannot be read ({error.strerror})", "a CSV file") from None
+    if not table.rows:
+        raise Problem("has no rows", "a row for each scene")
+    return found
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        return math.isfinite(float(cell.replace(",", ".", 1)))
+    except ValueError:
+        return False
 
 
 # --- the sweep ----------------------------------------------------------------------------------------------------------
@@ -400,7 +444,9 @@ class Sweep(Strict):
     scene: Any = Field(json_schema_extra={"anyOf": [{"type": "string"}, {"type": "object"}]})
     """The base scene: the path of a scene, relative to this file, or a scene."""
     over: Annotated[dict[str, Any], BeforeValidator(_over)]
-    """Key of the scene, such as motion[0].rate -> its values: a list, a range, a distribution, words, or a folder of files."""
+    """Key of the scene, such as motion[0].rate -> its values: a list, a range, a distribution, words, or a folder of files.
+
+    Or table: a CSV file with a column for each key, its unit in brackets, and a row for each scene."""
     design: Literal["grid", "latin_hypercube", "sobol"] = "grid"
     """How what is drawn is drawn; a grid draws nothing."""
     samples: whole(1, MOST) | None = None
@@ -500,7 +546,11 @@ def _check(read: Read, shown: Any) -> None:
             raise wrong(
                 "over", f"the name {name!r} is {'given twice' if names.count(name) > 1 else 'not one word'}", "a name each"
             )
-    count = (sweep.samples or 1) * math.prod(len(axis.labels()) for axis in axes.values() if not axis.drawn)
+    tabled = [len(axis.values) for axis in axes.values() if isinstance(axis, Column)]
+    if tabled and drawn:
+        raise wrong(f"over.{drawn[0]}", "is drawn beside a table of samples", "a list, or a column of the table")
+    listed = math.prod(len(axis.labels()) for axis in axes.values() if not axis.drawn and not isinstance(axis, Column))
+    count = (sweep.samples or 1) * listed * (tabled[0] if tabled else 1)
     if count > MOST:
         raise wrong("over", f"makes {count} scenes", f"up to {MOST}")
 
@@ -529,7 +579,12 @@ def sweep_json_schema() -> dict[str, Any]:
         defs |= kind.pop("$defs", {})
     defs |= kinds
     anyof = [{"type": "array", "minItems": 1}, *({"$ref": f"#/$defs/{name}"} for name in kinds)]
-    schema["properties"]["over"] |= {"additionalProperties": {"anyOf": anyof}, "minProperties": 1}
+    table = {"type": "string", "description": "CSV file: a column for each key, its unit in brackets, and a row for each scene."}
+    schema["properties"]["over"] |= {
+        "properties": {"table": table},
+        "additionalProperties": {"anyOf": anyof},
+        "minProperties": 1,
+    }
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_tidy(schema), "title": "A fingerpad sweep"}
 
 

@@ -54,7 +54,7 @@ def _decide(case: Case) -> tuple[Effect, str]:
                 continue  # a smooth plate sliding changes nothing
             # the narrowest contact is a new one, and the skin has stretched anew, after half its width
             duration = min(duration, case.contact.half_width / leg.speed)
-        loading.append(duration)
+        loading.append(leg.quickest or duration)
     limit = rules.lag_share * tolerance
     lag = max((float(np.sum(prony.beta * np.asarray(prony.tau)) / d) for d in loading), default=0.0)
     if lag < limit:
