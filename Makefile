@@ -20,7 +20,8 @@ help:
 	@echo "make figures            set up, then simulate and draw every figure and table of config/thesis.yaml"
 	@echo "make test               set up, then run the tests"
 	@echo "make smoke              set up, then the same workflow with config/smoke.yaml (coarse, under results/smoke)"
-	@echo "make soak               set up, then try random scenes: N=1000 at most, SEED=0, MINUTES=10 of process time at most"
+	@echo "make soak               set up, then try random scenes: N=1000 at most, SEED=0, MINUTES=10 of process time at most;"
+	@echo "                        FILES=1: files with parts dropped, nodes moved, names changed, tables cut"
 	@echo "make studies            set up, then run the studies of accuracy, stability, effects, peers and reconstruction anew"
 	@echo "make bench              set up, then measure and print the benchmark table"
 	@echo "make report             make figures, then pack figures, tables and the run's statistics into results/report.zip"
@@ -70,7 +71,7 @@ SEED ?= 0
 MINUTES ?= 10
 
 soak: $(INSTALLED)
-	$(BIN)/python tests/soak.py --scenes $(N) --seed $(SEED) --minutes $(MINUTES) $(if $(TABLE),--table $(TABLE))
+	$(BIN)/python tests/soak.py --scenes $(N) --seed $(SEED) --minutes $(MINUTES) $(if $(FILES),--files) $(if $(TABLE),--table $(TABLE))
 
 bench: $(INSTALLED)
 	$(BIN)/python -m fingerpad.studies.bench

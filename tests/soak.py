@@ -131,7 +131,7 @@ def judged(out: Path) -> None:
 
 
 def _presses(leg: dict) -> bool:
-    return "press_to_force" in leg or "press_to_depth" in leg
+    return "press_to_force" in leg or "press_to_depth" in leg or "table" in leg
 
 
 # -- many of them --------------------------------------------------------------------------------------------------------------
@@ -210,8 +210,16 @@ def soaked(words: list[str] | None = None) -> int:
     parser.add_argument("--scenes", type=int, default=1000, help="at most so many")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--minutes", type=float, default=10.0, help="of process time, at most")
+    parser.add_argument("--files", action="store_true", help="damaged files in place of random scenes (tests/soak_files.py)")
     parser.add_argument("--table", type=Path, help="where the counts are published, as CSV and Markdown")
     options = parser.parse_args(words)
+    if options.files:
+        from soak_files import soak_files
+
+        outcomes, failure = soak_files(options.scenes, options.seed, 60 * options.minutes)
+        print(f"{sum(outcomes.values())} damaged files:", *(f"{n:6d} {what}" for what, n in sorted(outcomes.items())), sep="\n")
+        print(f"failed: {failure}" if failure else "none failed")
+        return int(bool(failure))
     found = soak(options.scenes, options.seed, 60 * options.minutes)
     table = found.table()
     table.attrs["summary"] = (

@@ -463,7 +463,9 @@ def test_a_table_of_samples_is_a_design(tmp_path):
     design = tabled(tmp_path, SAMPLES)
     assert design.dimensions == {"scene": 3}
     assert [scene.stimulus.curvature for scene in design] == [100.0, 210.5, 420.0]
-    assert [scene.motion[0].press_to_force for scene in design] == pytest.approx([5 * 9.80665e-3, 10 * 9.80665e-3, 20 * 9.80665e-3])
+    assert [scene.motion[0].press_to_force for scene in design] == pytest.approx(
+        [5 * 9.80665e-3, 10 * 9.80665e-3, 20 * 9.80665e-3]
+    )
     assert [p.column for p in design.parameters] == ["curvature (1/m)", "press_to_force (gf)"]
 
 

@@ -128,6 +128,8 @@ def _gather_cells(path: Path, surfaces: dict, regions: tuple[str, ...], count: i
             cells.append(nodes.reshape(len(tags), -1))
             numbers.append(tags)
             region.append(np.full(len(tags), index, dtype=np.int8))
+    if not cells:
+        raise MeshError(f"{path}: no element is in {_listed(regions)}; each layer must be a physical surface with elements")
     if len(kinds) > 1:
         raise MeshError(f"{path}: mixes {' and '.join(sorted(kinds))}; one kind of element is allowed")
     tags = np.concatenate(numbers)
@@ -321,6 +323,8 @@ def _read(path: Path, state: tuple[int, ...], layers: tuple[str, ...], fixed: tu
     check_orientation(mesh, str(path))
     pairs = {}
     for name in dict.fromkeys((SKIN, *held, *free)):
+        if not lines[name]:
+            raise MeshError(f"{path}: curve {name} has no edges; a curve along the elements' edges must be there")
         ends = np.concatenate([nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]])
         stray = ~np.isin(ends, used)
         if stray.any():

@@ -76,6 +76,8 @@ def apex_radius(mesh: PadMesh) -> float:
     x, y = mesh.points[skin_chain(mesh)].T
     reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
     near = np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min())
+    if len(np.unique(x[near])) < 3:
+        return 1e3
     return float(1 / max(-2 * np.polyfit(x[near], y[near], 2)[0], 1e-3))
 
 

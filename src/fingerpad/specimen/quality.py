@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTri
 
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.pad import MeshError, PadMesh, element_edges
@@ -38,7 +40,10 @@ def _determinant(tangents: np.ndarray) -> np.ndarray:
 
 def check_orientation(mesh: PadMesh, name: str) -> None:
     """Raise `MeshError` naming the first element whose Jacobian is not positive at every Gauss point."""
-    determinant = _determinant(jacobians(mesh, sample_points(mesh.element)[1]))
+    points = sample_points(mesh.element)[1]
+    if mesh.element.startswith("tri"):  # at all points of the rule that they are solved with
+        points = np.concatenate([points, get_quadrature(RefTri, 5)[0].T])
+    determinant = _determinant(jacobians(mesh, points))
     bad = np.flatnonzero(determinant.min(axis=1) <= 0.0)
     if len(bad):
         what = "runs clockwise" if determinant[bad[0]].max() <= 0.0 else "is folded"

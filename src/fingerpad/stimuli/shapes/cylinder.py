@@ -58,4 +58,5 @@ class Cylinder(Shape):
 
     def outline(self, x):
         radius = 1 / self.curvature
-        return x**2 / (radius + np.sqrt(np.where(np.abs(x) <= radius, radius**2 - x**2, np.nan)))
+        share = x / radius
+        return x * share / (1 + np.sqrt(np.where(np.abs(share) <= 1, 1 - share**2, np.nan)))
