@@ -51,8 +51,38 @@ WRONG_PROFILES = {
     "short.csv": "x (mm),y (mm)\n0,0\n",
     "back.csv": "x (mm),y (mm)\n1,0\n0,0\n",
 }
+MOTIONS = {"depths.csv": ("time (s),depth (mm)", 0.3), "forces.csv": ("time (ms);force (gf)", 10.0)}
+"""Header and largest value of motions that tables say."""
 MESHES = ("quad9.msh", "quad4.msh", "tri6.msh", "aside.msh")
 WRONG_MESHES = ("cut.msh", "text.msh", "nan.msh", "missing.msh")
+FILES = {
+    "round.csv": lambda x: 200 * x**2,
+    "waves.csv": lambda x: 40 * x**2 + 5e-5 * np.cos(4000 * x),
+    "noise.csv": lambda x: 100 * x**2 + np.random.default_rng(1).normal(0, 2e-6, x.size),
+    "steps.csv": lambda x: np.round(150 * x**2, 5),
+    "ramp.csv": lambda x: np.abs(x) * 0.4,
+    "beside.csv": lambda x: 200 * (x - 3e-3) ** 2,
+}
+"""Heights (m) over places (m)."""
+WRONG_PROFILES = {
+    "nan.csv": "x (mm),y (mm)\n0,0\n1,nan\n",
+    "short.csv": "x (mm),y (mm)\n0,0\n",
+    "back.csv": "x (mm),y (mm)\n1,0\n0,0\n",
+}
+MOTIONS = {"depths.csv": ("time (s),depth (mm)", 0.3), "forces.csv": ("time (ms);force (gf)", 10.0)}
+"""Header and largest value of motions that tables say."""
+MESHES = ("quad9.msh", "quad4.msh", "tri6.msh", "aside.msh")
+WRONG_MOTIONS = {"depths.csv": ("time (s),depth (mm)", 0.3), "forces.csv": ("time (ms);force (gf)", 10.0)}
+"""Header and largest value of motions that tables say."""
+MESHES = ("cut.msh", "text.msh", "nan.msh", "missing.msh")
+
+
+FILES = {
+    "mesh": (MESHES, WRONG_MESHES),
+    "csv": (tuple(PROFILES), tuple(WRONG_PROFILES)),
+    "table": (tuple(MOTIONS), ("short.csv", "none.csv")),
+}
+"""Key of a scene that names a file -> good ones and bad ones."""
 
 
 def write_files(folder: Path) -> None:
@@ -61,6 +91,10 @@ def write_files(folder: Path) -> None:
     for name, height in PROFILES.items():
         rows = "\n".join(f"{a:.6g},{b:.6g}" for a, b in 1e3 * np.column_stack([x, height(x)]))
         (folder / name).write_text(f"x (mm),y (mm)\n{rows}\n")
+    for name, (header, most) in MOTIONS.items():
+        at = np.linspace(0, 1, 60) * (1e3 if "ms" in header else 1.0)
+        rows = np.column_stack([at, most * np.minimum(np.linspace(0, 2, 60), 1)])
+        np.savetxt(folder / name, rows, delimiter=";" if ";" in header else ",", header=header, comments="", fmt="%.5g")
     for name, text in WRONG_PROFILES.items():
         (folder / name).write_text(text)
     scene = load_scene({"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "5 gf"}], "accuracy": "draft"})
@@ -135,8 +169,8 @@ def values(schema, defs, key=""):
         return st.just(schema["const"])
     if "enum" in schema:
         return st.sampled_from(schema["enum"])
-    if key in ("mesh", "csv"):
-        good, bad = (MESHES, WRONG_MESHES) if key == "mesh" else (tuple(PROFILES), tuple(WRONG_PROFILES))
+    if key in FILES:
+        good, bad = FILES[key]
         return st.sampled_from(3 * good + bad)
     kind = schema.get("type")
     if kind == "object":
@@ -197,7 +231,8 @@ def scenes(draw):
     shapes = [name for name, model in defs.items() if "shape" in model.get("required", ())]
     scene = {"stimulus": draw(values(defs[draw(st.sampled_from(sorted(shapes)))], defs))}
     first = draw(values(defs[draw(st.sampled_from(["PressToForce", "PressToDepth"]))], defs))
-    later = values(parts["motion"]["items"] if "items" in parts["motion"] else parts["motion"], defs, "motion")
+    listed = next(each for each in parts["motion"]["anyOf"] if each.get("type") == "array")
+    later = values(listed["items"], defs, "motion")
     scene["motion"] = [first, *draw(st.lists(later, max_size=3))]
     for part in PARTS:
         if draw(st.integers(0, 3)) == 3:

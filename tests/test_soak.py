@@ -14,14 +14,14 @@ def test_random_scenes_are_refused_or_balance():
     drawn, why = found.failure or (None, "")
     assert drawn is None, f"{why}\n{drawn.text}"
     sums = found.table().set_index("what").loc["all"]
-    assert sums["drawn"] == 40 and sums["completed"] >= 8 and sums["refused in one line"] >= 8
+    assert sums["drawn"] == 40 and sums["completed"] >= 5 and sums["refused in one line"] >= 8
 
 
 def test_a_failure_is_shrunk_to_its_smallest_scene(monkeypatch):
     """With a command that trips over every hold: the scene that is left has little else in it."""
 
     def trips(drawn: Drawn, folder):
-        legs = drawn.document.get("motion", ()) if isinstance(drawn.document, dict) else ()
+        legs = (drawn.document.get("motion") or ()) if isinstance(drawn.document, dict) else ()
         assert not any("hold" in leg for leg in legs if isinstance(leg, dict)), "held"
         return "planned"
 

@@ -444,8 +444,8 @@ class Simulation:
         chain = skin_chain(self.whole)
         out = {name: np.zeros(count) for name in (
             "force", "tangential_force", "indentation_depth", "contact_width", "touching_width", "centre_pressure",
-            "peak_pressure", "centre_lateral_displacement", "residual", "complementarity_error", "energy_balance_error", "external_work",
-            "stored_energy", "dissipated_energy", "frictional_dissipation", "stroke_distance",
+            "peak_pressure", "centre_lateral_displacement", "residual", "complementarity_error", "energy_balance_error",
+            "external_work", "stored_energy", "dissipated_energy", "frictional_dissipation", "stroke_distance",
         )}  # fmt: skip
         out |= {name: np.zeros(count, np.int32) for name in ("leg", "newton_iterations", "cutbacks")}
         out["min_detF"] = np.ones(count)

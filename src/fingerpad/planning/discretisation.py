@@ -48,7 +48,7 @@ def preset_for(
 
 
 def _in_size(preset: Preset, scene: Scene) -> Preset:
-    """A preset in the size of its specimen: on layers far thinner than a finger's, edges and slides' steps are as much shorter."""
+    """A preset in the size of its specimen: on layers far thinner than a finger's, edges and steps are as much shorter."""
     stack = scene.specimen.stack
     share = 1.0 if stack is None else min(1.0, sum(stack.thicknesses) / _THIN)
     step = preset.slide_step and share * preset.slide_step
