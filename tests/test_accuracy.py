@@ -310,7 +310,7 @@ def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
 
 def test_drawn_scenes_are_of_every_class_and_drawn_the_same_again():
     scenes = list(drawn.drawn())
-    assert len(scenes) == drawn.SCENES + drawn.CORNERED and {kind for _, kind, _ in scenes} == set(drawn.CLASSES)
+    assert len(scenes) == drawn.SCENES + drawn.CORNERED + drawn.OWN and {kind for _, kind, _ in scenes} == set(drawn.CLASSES)
     assert repr(scenes) == repr(list(drawn.drawn())) != repr(list(drawn.drawn(seed=drawn.SEED + 1)))
 
 
@@ -426,11 +426,11 @@ def test_every_simulated_curve_has_its_errors(path):
 
 def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
     """In the published table of scenes drawn outside the cylinders, sixty of them."""
-    from fingerpad.studies.accuracy.drawn import CLASSES, SCENES
+    from fingerpad.studies.accuracy.drawn import CLASSES, CORNERED, OWN, SCENES
 
     table = pd.read_csv(ROOT / "figures" / "tables" / "accuracy_drawn.csv").dropna(subset="true error (%)")
     covered = (table["true error (%)"] <= table["believed error (%)"]).groupby(table["class"]).mean()
-    assert len(table) == SCENES and set(covered.index) == set(CLASSES)
+    assert len(table) == SCENES + CORNERED + OWN and set(covered.index) == set(CLASSES)
     assert (covered >= 0.9).all(), covered
 
 

@@ -194,7 +194,7 @@ def test_run_writes_three_files(tmp_path, scene, solver, capsys):
     with xr.open_dataset(out / "history.nc", engine="netcdf4") as history:
         assert history.force[-1] == 19.6
     stdout, stderr = capsys.readouterr()
-    assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout and "error about 4.3%" in stdout
+    assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout and "error about 4.3 %" in stdout
     assert "force 20.0 gf (19.6 N/m)" in stdout
 
 

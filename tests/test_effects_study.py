@@ -114,7 +114,7 @@ def test_steady_scene_does_no_time_stepping():
     chosen = plan(scene)
     assert not chosen.timed and chosen.steps <= 8
     history = simulate(scene, replace(chosen, steps_per_leg=3))
-    assert not history.time.values.any() and not history.dissipated_energy.values.any()
+    assert history.time.values.max() < 1e-9 and not history.dissipated_energy.values.any()
     press, held = (made(force(2), *more, accuracy="draft", effects={"viscoelasticity": "off"}) for more in ((), (hold(1e3),)))
     assert plan(held).steps == plan(press).steps + 1
 

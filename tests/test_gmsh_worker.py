@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 
 import gmsh
@@ -108,6 +109,33 @@ def test_a_gmsh_that_crashes_is_said_and_started_anew():
         worker.ask("rectangle", 900, (200, 200, 200))
     assert worker.ask("rectangle", 1, (1, 1, 1)).shape == (3, 9, 2)
     worker.close()
+
+
+def test_a_gmsh_that_does_not_end_is_stopped(monkeypatch):
+    monkeypatch.setattr("fingerpad.specimen.gmsh_worker.PATIENCE", 0.2)
+    worker = _Worker()
+    with pytest.raises(GmshError, match="not come to an end in 0.2 s"):
+        worker.ask("rectangle", 900, (200, 200, 200))
+    assert worker._process.returncode is not None
+
+
+def test_gmsh_ends_with_the_process_that_started_it(tmp_path):
+    """Killed in the middle of a task."""
+    script = (
+        "import fingerpad.specimen.gmsh_worker as w, threading, time, os\n"
+        "threading.Thread(target=w.ask, args=('rectangle', 3000, (900, 900, 900)), daemon=True).start()\n"
+        "time.sleep(1.5)\n"
+        "print(w._WORKER._process.pid, flush=True)\n"
+        "os.kill(os.getpid(), 9)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    pid = int(done.stdout)
+    for _ in range(50):
+        if not os.path.exists(f"/proc/{pid}"):
+            return
+        time.sleep(0.1)
+    os.kill(pid, 9)
+    pytest.fail("gmsh goes on")
 
 
 def test_gmsh_that_cannot_be_loaded_is_said_in_one_line(no_cache, tmp_path, monkeypatch, capsys):

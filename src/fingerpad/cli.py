@@ -556,6 +556,8 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     for line in plan.specimen:
         console.print(Text(f"specimen: {line}"), soft_wrap=True)
     console.print(Text(f"expected error: {percent(plan.estimated_error)} ({plan.covers})"))
+    if plan.errors:
+        console.print(Text("by quantity: " + ", ".join(f"{name} {percent(error)}" for name, error in plan.errors.items())))
     if plan.missed():
         console.print(Text(plan.missed()))
     for note in plan.surface.notes:
@@ -620,7 +622,7 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
     force = last["force_N"] / parse_quantity(f"1 {unit}", "force")
     once = run.get("compiling_s", 0.0)
     compiled = f", {once:.2g} of them to compile, once" if once > 0.5 else ""
-    touching = last["touching_width_mm"]
+    touching = last.get("touching_width_mm", last["contact_width_mm"])
     gaps = f", {touching:.3g} mm of it touching" if touching < _GAPS * last["contact_width_mm"] else ""
     return (
         f"depth {last['depth_mm']:.3g} mm, force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "

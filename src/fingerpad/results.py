@@ -293,7 +293,7 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
             "force_gf": force * length / 9.80665e-3,
             "tangential_force_N_per_m": at_end("tangential_force"),
             "contact_width_mm": at_end("contact_width") * 1e3,
-            "touching_width_mm": at_end("touching_width") * 1e3,
+            "touching_width_mm": at_end("touching_width" if "touching_width" in history else "contact_width") * 1e3,
             "peak_pressure_Pa": at_end("peak_pressure"),
             "peak_pressure_unbounded_at": unbounded,
             "centre_pressure_Pa": at_end("centre_pressure"),

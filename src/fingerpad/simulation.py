@@ -23,7 +23,7 @@ from fingerpad.mechanics.stepping import FOLDED, NewtonSettings, NonConvergence,
 from fingerpad.mechanics.strides import Between
 from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.effects import EFFECTS
-from fingerpad.planning.errors import estimated_error, stroke_of
+from fingerpad.planning.errors import estimated_error, own_errors, stroke_of
 from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import Plan, plan, refined
 from fingerpad.planning.rules import RULES
@@ -326,15 +326,12 @@ class Simulation:
         half_width = min(width / 2, plan.contact.narrowest or np.inf)
         around = plan.mesh_size and plan.mesh_size.skin_edge
         steps = plan.states_per_leg if plan.timed or plan.strokes else None
-        found = estimated_error(
-            plan.contact_edge,
-            half_width or _NO_CONTACT,
-            steps,
-            stroke,
-            around,
-            rules=RULES,
-            bumpy=self.scene.stimulus.irregular,
-        )
+        edge, half_width, bumpy = plan.contact_edge, half_width or _NO_CONTACT, self.scene.stimulus.irregular
+        if plan.mesh_size is None:
+            own = own_errors(plan.element, edge, half_width, plan.receptor_height, steps, stroke, rules=RULES, bumpy=bumpy)
+            found = max(own.values())
+        else:
+            found = estimated_error(edge, half_width, steps, stroke, around, rules=RULES, bumpy=bumpy)
         return max(found, plan.least_error) + plan.small_strain_error + plan.surface.error
 
     def _unbounded(self, record: Record) -> Unbounded:

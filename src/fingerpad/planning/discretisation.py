@@ -250,14 +250,12 @@ def peak_is_unbounded(profile: Profile, edge: float, rounding: float, rules: Rul
     return bool(profile.unbounded or (profile.edges and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1))
 
 
-def receptors_error(scene: Scene, external: PadMesh, rules: Rules) -> float:
-    """What linear quads make wrong of strain energy at receptors: in each it is nearly that of its middle, however fine the skin.
-
-    It changes with the depth, so that half an element's height is as much of it as that is of the depth.
-    """
-    if external.element != "quad4":
-        return 0.0
-    skin, receptors = external.points[np.unique(external.curves["skin"])], scene.outputs.receptors
+def height_at_receptors(scene: Scene, external: PadMesh) -> float | None:
+    """Largest height of the elements of a mesh that receptors are in, over their depth; None where there are no receptors."""
+    receptors = scene.outputs.receptors
+    if not receptors.depths or not receptors.offsets:
+        return None
+    skin = external.points[np.unique(external.curves["skin"])]
     upper = skin[touched_side(skin[:, 1])]
     upper = upper[np.argsort(upper[:, 0])]
     corners = external.points[external.cells]
@@ -269,9 +267,4 @@ def receptors_error(scene: Scene, external: PadMesh, rules: Rules) -> float:
             y = np.interp(x, *upper.T) - depth
             here = over[(low[over, 1] <= y) & (y <= high[over, 1])]
             worst = max(worst, float(height[here].max(initial=0.0)) / depth)
-    return rules.linear_quad_height * worst
-
-
-def coarseness(external: PadMesh, rules: Rules) -> float:
-    """By how much coarser the elements of an external mesh count than their edges."""
-    return {"quad4": rules.linear_quad, "tri6": rules.linear_triangle}.get(external.element, 1.0)
+    return worst

@@ -125,6 +125,82 @@ class MeasuredErrors:
     )
 
 
+@dataclass(frozen=True)
+class OwnErrors:
+    """Largest relative errors of presses on meshes of one's own, by the element they are solved with and by quantity.
+
+    Those of the inferred pad under a plate and cylinders of 20 to 630 1/m with 3.5 to 20 gram-weight, on meshes of edges of 30 to
+    450 um, each against a fine run (figures/tables/accuracy_own.csv).
+
+    Attributes:
+        shares: edge of the skin over half width of the contact. table: element -> quantity -> errors (shares). height: element ->
+        error of strain energy where the height of the elements that receptors are in is their depth; it goes with the power 1.5.
+    """
+
+    shares: tuple[float, ...] = (0.03, 0.06, 0.12, 0.25, 0.5, 1.0)
+    table: Mapping[str, Mapping[str, tuple[float, ...]]] = field(
+        default_factory=lambda: {
+            "Q1P0": {
+                "depth": (0.0016, 0.0031, 0.0031, 0.0031, 0.0031, 0.005),
+                "width": (0.0011, 0.002, 0.0124, 0.0279, 0.0586, 0.12),
+                "pressure": (0.0005, 0.001, 0.005, 0.0072, 0.0353, 0.1),
+                "strain energy": (0.0007, 0.0039, 0.0095, 0.0288, 0.0646, 0.13),
+            },
+            "Q2P1": {
+                "depth": (0.0002, 0.0004, 0.0007, 0.0008, 0.001, 0.0012),
+                "width": (0.0005, 0.0008, 0.0019, 0.0141, 0.0284, 0.0651),
+                "pressure": (0.0001, 0.0003, 0.001, 0.0124, 0.0211, 0.0312),
+                "strain energy": (0.0003, 0.0007, 0.0021, 0.0056, 0.0171, 0.0478),
+            },
+            "P2B": {
+                "depth": (0.002, 0.0027, 0.0045, 0.0045, 0.0045, 0.0045),
+                "width": (0.0011, 0.0015, 0.0034, 0.0177, 0.0419, 0.0845),
+                "pressure": (0.0005, 0.0022, 0.0051, 0.0484, 0.0634, 0.0991),
+                "strain energy": (0.0013, 0.0034, 0.0071, 0.0244, 0.0308, 0.0429),
+            },
+        }
+    )
+    height: Mapping[str, float] = field(default_factory=lambda: {"Q1P0": 0.2, "Q2P1": 0.06, "P2B": 0.08})
+
+
+def own_errors(
+    element: str,
+    edge: float,
+    half_width: float,
+    at_receptors: float | None,
+    steps: int | None = None,
+    stroke: Stroke | None = None,
+    *,
+    rules: Any,
+    bumpy: bool = False,
+) -> dict[str, float]:
+    """Expected relative error by quantity on a mesh of one's own, from :class:`OwnErrors`; of a stroke the law's, for all alike.
+
+    Args:
+        element: key of the element it is solved with. edge: m, skin edge in the contact. half_width: m, of the contact.
+        at_receptors: largest height of the elements that receptors are in, over their depth; None: no receptors, whose strain
+        energy is then not asked for. steps, stroke, bumpy: as in :func:`estimated_error`.
+    """
+    known, share = rules.own, edge / half_width
+    factor = rules.safety * (rules.bumps if bumpy else 1.0)
+    time = 0.0 if steps is None else factor * _at(half_width, rules.errors, steps, rules.errors.time, rules.time_order)
+    out = {}
+    for quantity, errors in known.table.get(element, known.table["Q1P0"]).items():
+        inside = np.clip(share, known.shares[0], known.shares[-1])
+        found = float(np.exp(np.interp(np.log(inside), np.log(known.shares), np.log(errors))))
+        out[quantity] = factor * found * max(share / inside, 1.0) ** rules.mesh_order + time
+    if at_receptors is None:
+        del out["strain energy"]
+    else:
+        high = factor * known.height.get(element, known.height["Q1P0"]) * at_receptors**1.5
+        out["strain energy"] = max(out["strain energy"], high + time)
+    if stroke is not None:
+        coarser = {"Q1P0": rules.linear_quad, "P2B": rules.linear_triangle}.get(element, 1.0)
+        along = estimated_error(coarser * edge, half_width, steps, stroke, rules=rules, bumpy=bumpy)
+        out = {quantity: max(error, along) for quantity, error in out.items()}
+    return out
+
+
 def estimated_error(
     edge: float,
     half_width: float,

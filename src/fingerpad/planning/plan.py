@@ -7,7 +7,7 @@ the scene. The thresholds and measured constants stand together in :class:`Rules
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,22 +29,21 @@ from fingerpad.planning.contact import (
     worst_contact,
 )
 from fingerpad.planning.discretisation import (
-    coarseness,
     edges_chosen,
     edges_error,
     element_for,
+    height_at_receptors,
     mesh_size_for,
     peak_is_unbounded,
     preset_for,
     raised_for,
-    receptors_error,
     usual_edge,
     wander_of,
 )
 from fingerpad.planning.effect import Case, Effect
 from fingerpad.planning.effects import EFFECTS, finite_strain, in_order, viscoelasticity
 from fingerpad.planning.effects import ridges as ridge_effect
-from fingerpad.planning.errors import COARSER, estimated_error, stroke_of
+from fingerpad.planning.errors import COARSER, estimated_error, own_errors, stroke_of
 from fingerpad.planning.estimates import ContactEstimate
 from fingerpad.planning.rules import RULES, Rules
 from fingerpad.planning.schedule import BETWEEN, NEWTON, expected_states, schedule
@@ -53,6 +52,7 @@ from fingerpad.planning.surface import Surface, surface_of
 from fingerpad.planning.unbounded import OF_STROKES, Unbounded, ends_unbounded, in_words, seen_corners
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import counted, shortest_edge
+from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import apex_edge, skin_ends
 from fingerpad.specimen.pad import MeshSize, PadMesh
 
@@ -80,7 +80,8 @@ class Plan:
         that receptors are in. error_from: what most of it comes from. asked_error: the tolerance, None where none is asked for;
         once: whether it is tried for once only. unbounded: where contact is expected at which pressure has no bound, so that a
         peak is the mesh's; the run says where it was. unresolved_edge: whether edges are rounded, but finer than the mesh can
-        tell. specimen: sentences on what is touched, and what of it the scene left out. surface: what the
+        tell. errors: on a mesh of one's own, by quantity; receptor_height: there the largest height of elements that receptors
+        are in, over their depth. specimen: sentences on what is touched, and what of it the scene left out. surface: what the
         mesh makes of a measured profile. stride: so many steps are made one. strokes: does the pad move along the surface, so
         that errors are of a way? every: of so many outputs of presses and holds a state is found at one, for more are asked for
         than the accuracy needs.
@@ -114,6 +115,8 @@ class Plan:
     outputs: int = 0
     every: int = 1
     unresolved_edge: bool = False
+    errors: dict[str, float] = field(default_factory=dict)
+    receptor_height: float | None = None
 
     @property
     def covers(self) -> str:
@@ -212,6 +215,8 @@ class Plan:
             "unbounded_at": list(self.unbounded.places),
             "unbounded_at_centre": self.unbounded.centre,
             "unresolved_edge": self.unresolved_edge,
+            "errors_by_quantity": self.errors,
+            "receptor_height": self.receptor_height,
         }
 
     @classmethod
@@ -229,7 +234,8 @@ class Plan:
             data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["least_error"],
             data["error_from"], data["asked_error"], data["once"], unbounded, tuple(data["specimen"]),
             Surface(**data["surface_SI"]), data["stride"], data.get("strokes", False), known.get("outputs", known["steps"]),
-            data.get("every", 1), data.get("unresolved_edge", False),
+            data.get("every", 1), data.get("unresolved_edge", False), data.get("errors_by_quantity", {}),
+            data.get("receptor_height"),
         )  # fmt: skip
 
     def write(self, path: str | Path) -> None:
@@ -290,15 +296,18 @@ def plan(
     scheduled = list(schedule(scene, steps_per_leg, timed, slide_step, every=every))
     outputs, steps = len(scheduled), expected_states(scheduled, slide_step)
     time, narrowest, raised = steps_per_leg / every if timed or moves else None, earliest_half_width(scene, contact, timed), ""
+    bumpy = scene.stimulus.irregular
     if external is not None:
+        own = partial(own_errors, rules=rules, bumpy=bumpy)
 
         def on_mesh(mesh: PadMesh) -> float:
-            edge = coarseness(mesh, rules) * apex_edge(mesh)
-            found = estimated_error(edge, narrowest, time, stroke, rules=rules, bumpy=scene.stimulus.irregular)
-            return max(found, edges_error(profile, edge, rounding, rules)[0], receptors_error(scene, mesh, rules))
+            edge = apex_edge(mesh)
+            found = own(KINDS[mesh.element].solved, edge, narrowest, height_at_receptors(scene, mesh), time, stroke)
+            return max(*found.values(), edges_error(profile, edge, rounding, rules)[0])
 
         external, raised = raised_for(by_hand, external, tolerance, on_mesh)
     element = element_for(by_hand, external)
+    errors, height = {}, None
     if external is None:
         at_receptors = 0.0
         # on its way over a surface the contact is also flat
@@ -316,8 +325,8 @@ def plan(
             layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
             effects["ridges"], edge = ridge_effect.resolved(effects["ridges"], layered, edge)
     else:
-        size, nodes, at_receptors = None, len(external.points), receptors_error(scene, external, rules)
-        smallest, edge = shortest_edge(external), coarseness(external, rules) * apex_edge(external)
+        size, nodes, at_receptors, height = None, len(external.points), 0.0, height_at_receptors(scene, external)
+        smallest, edge = shortest_edge(external), apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
     check_memory(scene, nodes, outputs, rules)
@@ -330,7 +339,11 @@ def plan(
         # presets are fine beside the face, not where it ends and the pressure is largest
         at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
     at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
-    in_contact = estimated_error(edge, narrowest, time, stroke, around, rules=rules, bumpy=scene.stimulus.irregular)
+    if external is None:
+        in_contact = estimated_error(edge, narrowest, time, stroke, around, rules=rules, bumpy=bumpy)
+    else:
+        errors = own(element, edge, narrowest, height, time, stroke)
+        in_contact = max(errors.values())
     mesh = surface.error + max(in_contact, at_edges, at_receptors)
     linear = 0.0 if effects["finite_strain"].on else finite_strain.small_strain_error(case)
     if linear and scene.tolerance is not None and "finite_strain" not in scene.effects and linear + mesh > scene.tolerance:
@@ -349,7 +362,7 @@ def plan(
         max(sources, key=sources.get), scene.tolerance, scene.once,
         _unbounded(scene, measured.at(surface.smoothing, edge), external, pad, contact, edge, unresolved),
         (*specimen_said(scene.specimen, external), *filter(None, [raised]), *measured.notes), surface, strokes=moves,
-        outputs=outputs, every=every, unresolved_edge=unresolved,
+        outputs=outputs, every=every, unresolved_edge=unresolved, errors=errors, receptor_height=height,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from fingerpad.planning.effects import EFFECTS
-from fingerpad.planning.errors import MeasuredErrors
+from fingerpad.planning.errors import MeasuredErrors, OwnErrors
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,9 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
             random, with a third more); edge_finest: the error that a mesh is at most made for there.
         bumps: factor on the error of measured profiles, whose bumps make contacts within the contact.
         profile_share: of a tolerance, that the smoothing of a measured profile may use up before a longer one is tried.
-        linear_triangle, linear_quad: by how much coarser P2B and Q1P0 elements of external meshes count than their edges.
-        linear_quad_height: error of strain energy in the latter, over their height by the receptor's depth.
+        own: what a mesh of one's own is believed to be wrong by.
+        linear_triangle, linear_quad: by how much coarser P2B and Q1P0 elements of external meshes count than their edges on a
+            stroke.
         least_edge: m, of an element; shorter ones are not made. least_half_width: m, of a contact; narrower ones are refused.
         most_nodes: of a mesh, and most_memory: share of the machine's, that a plan may ask for; bytes_node, bytes_step: needed
             for each node, and for each node and step.
@@ -79,6 +80,7 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
         }
     )
     errors: MeasuredErrors = field(default_factory=MeasuredErrors)
+    own: OwnErrors = field(default_factory=OwnErrors)
     mesh_order: float = 1.0
     time_order: float = 1.0
     edge_share: float = 0.14
@@ -93,7 +95,6 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     profile_share: float = 0.25
     linear_triangle: float = 1.6
     linear_quad: float = 2.0
-    linear_quad_height: float = 0.5
     least_edge: float = 1e-7
     least_half_width: float = 2e-7
     most_nodes: float = 2e6

@@ -131,6 +131,8 @@ def recovery(space, layers, points, mirrored):
     Raises:
         ReceptorError: a point lies in no element.
     """
+    if not len(points):
+        return Location(np.zeros(0, int), np.zeros((0, 2))), None
     found, owner, share = _mean_of_neighbours(space, layers, points)
     fits = _fits(space, layers, points, owner, found, mirrored) if space.element.name in FITTED else {}
     if not fits and len(owner) == len(points):

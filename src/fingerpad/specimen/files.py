@@ -23,7 +23,7 @@ from fingerpad.specimen.gmsh_worker import GmshError, ask
 from fingerpad.specimen.judge import check_joined, check_skin
 from fingerpad.specimen.near import same_place, twins
 from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
-from fingerpad.specimen.quality import check_orientation
+from fingerpad.specimen.quality import check_orientation, counter_clockwise
 
 _ELEMENTS = {KINDS[name].gmsh: name for name in ("tri3", "tri6", "quad4", "quad8", "quad9")}
 _SAME_PLACE = 1e-6  # of the pad's width: two nodes closer than this are mirror images of each other
@@ -319,7 +319,7 @@ def _read(path: Path, state: tuple[int, ...], layers: tuple[str, ...], fixed: tu
         points, cells = _with_centre(points, cells)
         element = "quad9"
 
-    mesh = PadMesh(points, cells, element, region, {}, symmetric=False, regions=regions, fixed=held)
+    mesh = counter_clockwise(PadMesh(points, cells, element, region, {}, symmetric=False, regions=regions, fixed=held))
     check_orientation(mesh, str(path))
     pairs = {}
     for name in dict.fromkeys((SKIN, *held, *free)):

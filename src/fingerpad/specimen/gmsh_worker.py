@@ -11,15 +11,20 @@ import atexit
 import contextlib
 import os
 import pickle
+import select
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+PATIENCE = 60.0
+"""s that gmsh is given for a task: damaged files may keep it busy for ever, a mesh of half a million elements takes five."""
 
 
 class GmshError(RuntimeError):
@@ -51,7 +56,12 @@ class _Worker:
             try:
                 pickle.dump((task, arguments), process.stdin)
                 process.stdin.flush()
+                if not select.select([process.stdout], [], [], PATIENCE)[0]:
+                    raise TimeoutError
                 kind, answer = pickle.load(process.stdout)
+            except TimeoutError:
+                self._end()
+                raise GmshError(f"it has not come to an end in {PATIENCE:g} s") from None
             except (EOFError, OSError, pickle.UnpicklingError):
                 self._end()
                 raise GmshError(f"it ended with code {process.returncode}") from None
@@ -187,11 +197,19 @@ TASKS: dict[str, Callable] = {"rectangle": rectangle, "write": write, "read": re
 """What the process can be asked for."""
 
 
+def _watch(parent: int) -> None:
+    """End this process where whoever started it has gone, however busy gmsh is."""
+    while os.getppid() == parent:
+        time.sleep(1.0)
+    os._exit(1)
+
+
 def _serve() -> None:
     """Answer until nobody asks any more."""
     questions, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what libraries print is no answer
     missing = ""
+    threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
     try:
         import gmsh
     except (ImportError, OSError) as error:

@@ -122,6 +122,8 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
         MeshError: no point of that depth exists at that offset.
     """
     depths, offsets = np.broadcast_arrays(np.atleast_1d(np.asarray(depths, float)), np.asarray(offsets, float))
+    if not depths.size:
+        return np.zeros((0, 2))
     skin = _fine_skin(mesh)
     order = np.argsort(skin[:, 0])
     upper = skin[order]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,6 +37,16 @@ def jacobians(mesh: PadMesh, at: np.ndarray) -> np.ndarray:
 
 def _determinant(tangents: np.ndarray) -> np.ndarray:
     return tangents[..., 0, 0] * tangents[..., 1, 1] - tangents[..., 0, 1] * tangents[..., 1, 0]
+
+
+def counter_clockwise(mesh: PadMesh) -> PadMesh:
+    """The same mesh with the nodes of elements that run clockwise in the other order."""
+    clockwise = _determinant(jacobians(mesh, sample_points(mesh.element)[1])).max(axis=1) <= 0.0
+    if not clockwise.any():
+        return mesh
+    cells = mesh.cells.copy()
+    cells[clockwise] = cells[clockwise][:, KINDS[mesh.element].mirrored]
+    return replace(mesh, cells=cells)
 
 
 def check_orientation(mesh: PadMesh, name: str) -> None:

@@ -534,6 +534,8 @@ class Products:
         edged = offered()["EDGED"].values()
         told = {"scenes": [self.scene(scene) for scene in edged], "written": self._written(*edged)}
         yield Job("accuracy_edges", self._read(*edged), {"table": self.tables(["accuracy_edges"])}, told, **long)
+        made = {"rows": [self.result("accuracy/own.csv")], "table": self.tables(["accuracy_own"])}
+        yield Job("accuracy_own", self._read(base), made, self._told(base), mem_mb=3000, runtime=60)
         pressed = [family[surface] for surface in offered()["RIDGED"]]
         told = {"scenes": [self.scene(scene) for scene in pressed], "written": self._written(*pressed)}
         yield Job("accuracy_ridges", self._read(*pressed), {"table": self.tables(["accuracy_ridges"])}, told, **long)
