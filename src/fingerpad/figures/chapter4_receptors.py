@@ -92,6 +92,8 @@ PRINTED = ("T083", "T084", "T085", "T086", "T087")
 """Mean rates of the hold that can be read beside the rasters of Fig 4-2."""
 
 RATES = "impulse_rates"
+SPREAD = "standard deviation (impulses/s)"
+"""Column of what is recorded: over repetitions, where it is given."""
 LAW_NOTE = "Eq 5-1 with the thesis's constants (0.081 (impulses/s)/Pa, 150 Pa; 0.0182 impulses/Pa, 100 Pa/s)"
 DEEP = f"{LAW_NOTE}, 915 µm under the centre."
 STEADY_NOTE = f"{DEEP} Steady: mean of the last half of the hold."
@@ -141,9 +143,10 @@ def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> pd.
         else f"measured ({row['recording']}; {row['source']})"
         for row in same.to_dict("records")
     ]
-    return pd.DataFrame(
-        {"source": sources, CURVATURE: same["curvature_per_m"], DOUBT: same["or_curvature_per_m"], column: same["rate_per_s"]}
-    )
+    shown = {CURVATURE: same["curvature_per_m"], DOUBT: same["or_curvature_per_m"], column: same["rate_per_s"]}
+    if same["sd_per_s"].notna().any():
+        shown[SPREAD] = same["sd_per_s"]
+    return pd.DataFrame({"source": sources} | shown)
 
 
 def published(data: Data, panel: str, window: str, model: bool, force: float | None = None) -> pd.DataFrame:
@@ -369,7 +372,10 @@ def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
             continue
         other = mine[DOUBT].where(mine[DOUBT].notna(), mine[CURVATURE])
         ax.hlines(mine[column], mine[CURVATURE], other, color=style.INK, lw=0.8)
-        ax.plot((mine[CURVATURE] + other) / 2, mine[column], ls="none", ms=5, zorder=4, label=label, **look)
+        middle = (mine[CURVATURE] + other) / 2
+        ax.plot(middle, mine[column], ls="none", ms=5, zorder=4, label=label, **look)
+        if SPREAD in mine:
+            ax.errorbar(middle, mine[column], mine[SPREAD], ls="none", capsize=2, color=style.INK, lw=0.8, zorder=3)
 
 
 def source_text(rows: pd.DataFrame) -> str:
