@@ -1,9 +1,9 @@
 """Scenes drawn at random outside the cylinders, by class of stimulus, to ask whether runs know their error there as well.
 
 The classes: bars with true edges, filleted bars, lines, sampled profiles, strokes over waves, pads with inner ridges,
-external meshes, very small and large forces, profiles with corners, and meshes of one's own as gmsh makes them. The truth is the same
-scene on the finest run's mesh made finer still; of a true edge, where nodes are held or are not, that of a rounding by a hundredth
-of the half width.
+external meshes, very small and large forces, profiles with corners, and meshes of one's own as gmsh makes them. The truth
+is the same scene on the finest run's mesh made finer still; of a true edge, where nodes are held or are not, that of a
+rounding by a hundredth of the half width.
 """
 
 from __future__ import annotations
