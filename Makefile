@@ -74,7 +74,7 @@ soak: $(INSTALLED)
 	$(BIN)/python tests/soak.py --scenes $(N) --seed $(SEED) --minutes $(MINUTES) $(if $(FILES),--files) $(if $(TABLE),--table $(TABLE))
 
 bench: $(INSTALLED)
-	$(BIN)/python -m fingerpad.studies.bench
+	$(BIN)/python -m cysyk1999.studies.bench
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check
@@ -87,7 +87,7 @@ report: figures
 	  --report-stylesheet workflow/report/report.css --report-metadata workflow/report/metadata.yaml
 
 archive: figures
-	$(BIN)/python -m fingerpad.workflow.archive config/thesis.yaml results/archive
+	$(BIN)/python -m cysyk1999.workflow.archive config/thesis.yaml results/archive
 
 docs: $(DOCS)
 	PYDEVD_DISABLE_FILE_VALIDATION=1 $(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going docs docs/_build/html
@@ -112,7 +112,7 @@ pad: $(INSTALLED)
 	cp results/thesis/reconstruction/bands.csv config/reference/reconstruction_bands.csv
 
 schemas: $(INSTALLED)
-	$(BIN)/python -m fingerpad.config schemas
+	$(BIN)/python -m cysyk1999.config schemas
 
 adopt: $(INSTALLED)
 	$(SNAKEMAKE) --touch

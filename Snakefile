@@ -11,8 +11,8 @@ Outputs: the figures, tables and results that the configuration names, in the fo
     .venv/bin/snakemake sweep --config sweep=mine.yaml [sweep_out=DIR]    a sweep of your own: config/sweeps/example.yaml
     .venv/bin/snakemake -s /path/to/fingerpad/Snakefile --configfile mine.yaml     from another folder
 
-What a target makes follows from the configuration in fingerpad.workflow.products, a rule a job (workflow/rules/jobs.smk), and
-what a job does is in fingerpad.workflow.jobs. The profile is found by itself, through the link `profiles` beside this file.
+What a target makes follows from the configuration in cysyk1999.workflow.products, a rule a job (workflow/rules/jobs.smk), and
+what a job does is in cysyk1999.workflow.jobs. The profile is found by itself, through the link `profiles` beside this file.
 """
 
 import os
@@ -23,10 +23,10 @@ os.environ["MPLBACKEND"] = "agg"  # a notebook from which the workflow is starte
 
 from snakemake.utils import min_version
 
-from fingerpad.config import read_config
+from cysyk1999.config import read_config
 from fingerpad.documents import SceneError
-from fingerpad.workflow.lock import take_over
-from fingerpad.workflow.products import Products
+from cysyk1999.workflow.lock import take_over
+from cysyk1999.workflow.products import Products
 
 min_version("9.3")
 

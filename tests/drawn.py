@@ -5,10 +5,10 @@ from functools import cache
 from pathlib import Path
 
 import synthetic
-from fingerpad.figures.registry import CHAPTERS, FIGURES
-from fingerpad.publishing.style import theme
-from fingerpad.publishing.write import read_frame, write_frame
-from fingerpad.reference_data import read_reference
+from cysyk1999.figures.registry import CHAPTERS, FIGURES
+from cysyk1999.publishing.style import theme
+from cysyk1999.publishing.write import read_frame, write_frame
+from cysyk1999.reference_data import read_reference
 
 REFERENCE = Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"
 LAWS = ("4-17", "4-22", "5-14")

@@ -19,9 +19,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from fingerpad.measures.errors import PARTS
-from fingerpad.measures.quantities import QUANTITIES
-from fingerpad.publishing.write import TEXT_COLUMNS
+from cysyk1999.measures.errors import PARTS
+from cysyk1999.measures.quantities import QUANTITIES
+from cysyk1999.publishing.write import TEXT_COLUMNS
 
 TOLERANCES = {name: q.tolerance for name, q in QUANTITIES.items() if q.tolerance} | {"element": 1e-5, "value": 1e-3}
 """Largest difference allowed in a column, relative to the largest value of the curve."""

@@ -24,9 +24,9 @@ import pandas as pd
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis.errors import Flaky
 
+from cysyk1999.publishing.write import publish_table
+from cysyk1999.studies.stability.run import Late, in_time
 from fingerpad.cli import main
-from fingerpad.publishing.write import publish_table
-from fingerpad.studies.stability.run import Late, in_time
 from random_scenes import Drawn, anything, write_files
 
 CHEAP = 2.0

@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from fingerpad.receptors.recordings import read_rates
-from fingerpad.reference_data import ReferenceDataError, read_force_depth
+from cysyk1999.receptors.recordings import read_rates
+from cysyk1999.reference_data import ReferenceDataError, read_force_depth
+from cysyk1999.studies.stability.run import Late, in_time
 from fingerpad.specimen import write_pad
-from fingerpad.studies.stability.run import Late, in_time
 from own_meshes import SLAB, slab_mesh
 
 SLOWEST = 30.0

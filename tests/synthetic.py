@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
-from fingerpad.measures.errors import Companion
+from cysyk1999.measures.errors import Companion
 from fingerpad.results import FRICTION_VARIABLES, VARIABLES, Arrays, add_snapshots, arrays, skin_arc
 from fingerpad.scenes.scene import Outline
 from fingerpad.specimen.build import build_pad_mesh

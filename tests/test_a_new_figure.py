@@ -6,15 +6,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from cysyk1999.figures.grammar import Figure, Lines, Panels
+from cysyk1999.measures.errors import MESH, PARTS, SAMPLING, STEPS
+from cysyk1999.measures.inputs import read_results
+from cysyk1999.measures.quantities import FORCE, TIME, Q
+from cysyk1999.measures.runs import Runs
+from cysyk1999.publishing.write import publish, read_frame
+from cysyk1999.reference_data import read_reference
 from drawn import REFERENCE
 from fingerpad import load_scene, simulate
-from fingerpad.figures.grammar import Figure, Lines, Panels
-from fingerpad.measures.errors import MESH, PARTS, SAMPLING, STEPS
-from fingerpad.measures.inputs import read_results
-from fingerpad.measures.quantities import FORCE, TIME, Q
-from fingerpad.measures.runs import Runs
-from fingerpad.publishing.write import publish, read_frame
-from fingerpad.reference_data import read_reference
 
 pytestmark = pytest.mark.slow
 

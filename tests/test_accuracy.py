@@ -8,21 +8,21 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+from cysyk1999.measures.errors import PARTS
+from cysyk1999.studies.accuracy import belief, drawn, ridges
+from cysyk1999.studies.accuracy import errors as found
+from cysyk1999.studies.accuracy import run as study
+from cysyk1999.studies.accuracy.convergence import fitted_order, limit, observed_order
+from cysyk1999.studies.accuracy.picture import STUDIES
+from cysyk1999.studies.accuracy.run import FAMILY, Point, points, split
+from cysyk1999.studies.accuracy.strokes import LARGEST, MEAN, discretised, strokes, strokes_table
 from fingerpad import load_scene, plan
-from fingerpad.measures.errors import PARTS
 from fingerpad.planning.errors import PLATES, WAVES, StrokeErrors
 from fingerpad.planning.plan import RULES
 from fingerpad.scenes.scene import Cylinder, Flat, Slide
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.pad import MeshSize, element_edges, skin_chain
 from fingerpad.specimen.quality import check_orientation
-from fingerpad.studies.accuracy import belief, drawn, ridges
-from fingerpad.studies.accuracy import errors as found
-from fingerpad.studies.accuracy import run as study
-from fingerpad.studies.accuracy.convergence import fitted_order, limit, observed_order
-from fingerpad.studies.accuracy.picture import STUDIES
-from fingerpad.studies.accuracy.run import FAMILY, Point, points, split
-from fingerpad.studies.accuracy.strokes import LARGEST, MEAN, discretised, strokes, strokes_table
 
 pytestmark = pytest.mark.unit
 
@@ -426,7 +426,7 @@ def test_every_simulated_curve_has_its_errors(path):
 
 def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
     """In the published table of scenes drawn outside the cylinders, sixty of them."""
-    from fingerpad.studies.accuracy.drawn import CLASSES, CORNERED, OWN, SCENES
+    from cysyk1999.studies.accuracy.drawn import CLASSES, CORNERED, OWN, SCENES
 
     table = pd.read_csv(ROOT / "figures" / "tables" / "accuracy_drawn.csv").dropna(subset="true error (%)")
     covered = (table["true error (%)"] <= table["believed error (%)"]).groupby(table["class"]).mean()
@@ -440,10 +440,10 @@ def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
 def test_stated_errors_stand_beside_those_of_the_curves():
     """Made-up companions 1 % away and finer runs 2 %: every curve states what is left of the one and errs by all of the other."""
     import synthetic
+    from cysyk1999.figures.registry import FIGURES
+    from cysyk1999.studies.accuracy.shown import FINER, MADE_FINER, STATED, STATED_MESH, TRUE, shown
     from drawn import REFERENCE, results
-    from fingerpad.figures.registry import FIGURES
     from fingerpad.planning.errors import COARSER, PROFILE_ORDER, remains
-    from fingerpad.studies.accuracy.shown import FINER, MADE_FINER, STATED, STATED_MESH, TRUE, shown
 
     histories, meshes, coarse, reference = results()
     finer = {name: history for name, history in synthetic.histories(1.02).items() if name.startswith(MADE_FINER)}
@@ -461,9 +461,9 @@ def test_stated_errors_stand_beside_those_of_the_curves():
 @pytest.mark.parametrize("order", [1.0, 1.5])
 def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
     """Own nodes at x^2 + c on every second of a finer run's at x^2, what they err by converges, chords between them do not."""
-    from fingerpad.measures.errors import Curve, norm
+    from cysyk1999.measures.errors import Curve, norm
+    from cysyk1999.studies.accuracy.shown import FINER, Finer
     from fingerpad.planning.errors import remains
-    from fingerpad.studies.accuracy.shown import FINER, Finer
 
     def profile(spacing: float, more: float = 0.0) -> xr.Dataset:
         x = np.arange(0, 1 + spacing / 2, spacing)

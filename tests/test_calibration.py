@@ -8,13 +8,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fingerpad import load_scene, plan, simulate
-from fingerpad.publishing.write import read_frame, write_frame, write_picture
-from fingerpad.reference_data import read_force_depth, read_relaxation
-from fingerpad.scenes.scene import Discretisation, Hold, Layer, Layers, PressToDepth
-from fingerpad.specimen.materials import Prony
-from fingerpad.stimuli.motion import geometric
-from fingerpad.studies.calibration.force import (
+from cysyk1999.publishing.write import read_frame, write_frame, write_picture
+from cysyk1999.reference_data import read_force_depth, read_relaxation
+from cysyk1999.studies.calibration.force import (
     LENGTHS,
     ElasticCurve,
     calibrate,
@@ -28,9 +24,9 @@ from fingerpad.studies.calibration.force import (
     specimen_names,
     write_specimens,
 )
-from fingerpad.studies.calibration.least_squares import fit, group_interval
-from fingerpad.studies.calibration.picture import STUDIES
-from fingerpad.studies.calibration.relaxation import (
+from cysyk1999.studies.calibration.least_squares import fit, group_interval
+from cysyk1999.studies.calibration.picture import STUDIES
+from cysyk1999.studies.calibration.relaxation import (
     WRONG_START,
     RampForce,
     amplitude_design,
@@ -43,6 +39,10 @@ from fingerpad.studies.calibration.relaxation import (
     volume_share,
     with_series,
 )
+from fingerpad import load_scene, plan, simulate
+from fingerpad.scenes.scene import Discretisation, Hold, Layer, Layers, PressToDepth
+from fingerpad.specimen.materials import Prony
+from fingerpad.stimuli.motion import geometric
 
 pytestmark = pytest.mark.unit
 

@@ -6,10 +6,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from fingerpad.claims.comparison import AGREES, holding
-from fingerpad.figures.catalogue import read_catalogue, readme
-from fingerpad.figures.registry import FIGURES
-from fingerpad.reference_data import ReferenceDataError
+from cysyk1999.claims.comparison import AGREES, holding
+from cysyk1999.figures.catalogue import read_catalogue, readme
+from cysyk1999.figures.registry import FIGURES
+from cysyk1999.reference_data import ReferenceDataError
 
 pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[1]

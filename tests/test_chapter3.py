@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import synthetic
+from cysyk1999.claims.comparison import thesis_comparison
+from cysyk1999.claims.rows import numbers
+from cysyk1999.figures.geometry import section, surface_deflection
+from cysyk1999.figures.registry import FIGURES
+from cysyk1999.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
+from cysyk1999.measures.table import Instead, Measures
+from cysyk1999.reference_data import empty_reference, read_reference
 from fingerpad import load_scene, plan, simulate
-from fingerpad.claims.comparison import thesis_comparison
-from fingerpad.claims.rows import numbers
-from fingerpad.figures.geometry import section, surface_deflection
-from fingerpad.figures.registry import FIGURES
-from fingerpad.measures.steady import DEPTH_SCENES, leg_end, pressed_depths, steady_force
-from fingerpad.measures.table import Instead, Measures
-from fingerpad.reference_data import empty_reference, read_reference
 from fingerpad.results import VARIABLES, summary
 from fingerpad.scenes.families import read_family
 from fingerpad.scenes.scene import Bar, Line

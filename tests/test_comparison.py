@@ -8,19 +8,19 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.claims.comparison import COLUMNS, GIVEN, PARTS, TRENDS, scores, summary, thesis_comparison
-from fingerpad.claims.reasons import REASONS, reason
-from fingerpad.claims.rows import SETS, Number, numbers
-from fingerpad.claims.sensitivity import BASE, NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
-from fingerpad.claims.tables import TABLES
-from fingerpad.claims.verdicts import judge
+from cysyk1999.claims.comparison import COLUMNS, GIVEN, PARTS, TRENDS, scores, summary, thesis_comparison
+from cysyk1999.claims.reasons import REASONS, reason
+from cysyk1999.claims.rows import SETS, Number, numbers
+from cysyk1999.claims.sensitivity import BASE, NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
+from cysyk1999.claims.tables import TABLES
+from cysyk1999.claims.verdicts import judge
+from cysyk1999.measures.table import COLUMNS as MEASURE_COLUMNS
+from cysyk1999.measures.table import MEASURES, Instead, Measures, measures_table, read_measures, write_measures
+from cysyk1999.publishing.write import markdown, publish_table
+from cysyk1999.reference_data import read_reference
 from fingerpad.measures.features import centre_node, scene_name
 from fingerpad.measures.measure import Measure
-from fingerpad.measures.table import COLUMNS as MEASURE_COLUMNS
-from fingerpad.measures.table import MEASURES, Instead, Measures, measures_table, read_measures, write_measures
 from fingerpad.planning.errors import REMAINS, STEPS_REMAIN
-from fingerpad.publishing.write import markdown, publish_table
-from fingerpad.reference_data import read_reference
 from fingerpad.scenes.scene import load_scene
 from fingerpad.specimen.quality import quality_table
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from fingerpad.claims.pages import CHAPTERS, chapter_of, pages
-from fingerpad.reference_data import read_reference
+from cysyk1999.claims.pages import CHAPTERS, chapter_of, pages
+from cysyk1999.reference_data import read_reference
 
 pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[1]

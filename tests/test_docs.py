@@ -12,8 +12,8 @@ import matplotlib
 import matplotlib.pyplot as plt
 import pytest
 
+from cysyk1999.figures.registry import FIGURES
 from fingerpad.cli import main
-from fingerpad.figures.registry import FIGURES
 
 pytestmark = pytest.mark.unit
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cysyk1999.studies.stability.hard_cases import scene_of
 from fingerpad.planning.estimates import PadEstimate, layer_kernel
 from fingerpad.planning.plan import RULES, PlanError, plan, read_plan
 from fingerpad.planning.schedule import schedule
@@ -27,7 +28,6 @@ from fingerpad.scenes.scene import (
     load_scene,
 )
 from fingerpad.specimen import quality_of
-from fingerpad.studies.stability.hard_cases import scene_of
 
 pytestmark = pytest.mark.unit
 

@@ -11,10 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fingerpad import plan, simulate
-from fingerpad.planning.plan import Rules
-from fingerpad.studies.effects.picture import LEAST, WARNING, assemble, effects, looks
-from fingerpad.studies.effects.run import (
+from cysyk1999.studies.effects.picture import LEAST, WARNING, assemble, effects, looks
+from cysyk1999.studies.effects.run import (
     DECIDES,
     alternatives,
     changes,
@@ -27,7 +25,9 @@ from fingerpad.studies.effects.run import (
     verdict,
     with_effects,
 )
-from fingerpad.studies.stability.hard_cases import FLAT, cylinder, depth, force, hold, scene_of, slide
+from cysyk1999.studies.stability.hard_cases import FLAT, cylinder, depth, force, hold, scene_of, slide
+from fingerpad import plan, simulate
+from fingerpad.planning.plan import Rules
 
 pytestmark = pytest.mark.unit
 COARSE = {"skin_edge": "0.6 mm", "steps": 4}

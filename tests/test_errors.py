@@ -10,11 +10,9 @@ import pytest
 import xarray as xr
 
 import synthetic
-from drawn import results
-from fingerpad import plan, simulate
-from fingerpad.figures import axes as axs
-from fingerpad.figures.registry import FIGURES
-from fingerpad.measures.errors import (
+from cysyk1999.figures import axes as axs
+from cysyk1999.figures.registry import FIGURES
+from cysyk1999.measures.errors import (
     PARTS,
     Companion,
     Curve,
@@ -29,6 +27,8 @@ from fingerpad.measures.errors import (
     thinned,
     total,
 )
+from drawn import results
+from fingerpad import plan, simulate
 from fingerpad.measures.features import centre_pressure, energy_rate, width
 from fingerpad.planning.errors import COARSER, ORDER, REMAINS, STEPS_REMAIN
 from fingerpad.planning.plan import companion

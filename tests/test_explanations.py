@@ -3,9 +3,7 @@
 import pandas as pd
 import pytest
 
-from fingerpad import load_scene
-from fingerpad.results import ENERGIES
-from fingerpad.studies.explanations.run import (
+from cysyk1999.studies.explanations.run import (
     CONTROL,
     PRESSED,
     PUBLISHED,
@@ -15,6 +13,8 @@ from fingerpad.studies.explanations.run import (
     explanations,
     turned,
 )
+from fingerpad import load_scene
+from fingerpad.results import ENERGIES
 
 pytestmark = pytest.mark.unit
 REFERENCE = "config/reference/thesis_numbers.csv"

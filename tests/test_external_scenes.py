@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from cysyk1999.figures.axes import error_text
+from cysyk1999.measures.errors import Companion, curve_errors, number_errors, over_time
+from cysyk1999.measures.table import measures_table
 from fingerpad import load_scene, plan, simulate
-from fingerpad.figures.axes import error_text
-from fingerpad.measures.errors import Companion, curve_errors, number_errors, over_time
 from fingerpad.measures.features import width
-from fingerpad.measures.table import measures_table
 from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.plan import companion
 from fingerpad.results import summary

@@ -305,7 +305,7 @@ def test_a_cut_or_foreign_result_is_named(tmp_path, histories):
     """Cut anywhere, empty, another program's, or another kind of result: one line that names it and says what to do."""
     import xarray as xr
 
-    from fingerpad.measures.inputs import read_results
+    from cysyk1999.measures.inputs import read_results
     from fingerpad.results import ResultError, read_history, write_history
 
     path = tmp_path / "simulations" / "mine" / "history.nc"
@@ -390,7 +390,7 @@ def test_a_full_and_a_read_only_disk(disk, run, tmp_path, capsys, monkeypatch):
 
 def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histories, monkeypatch):
     """After every fault there are whole files or none, and the next run makes the same bytes."""
-    from fingerpad.workflow.jobs import simulate
+    from cysyk1999.workflow.jobs import simulate
 
     scene, folder = write(tmp_path, changed(accuracy=COARSE)), tmp_path / "results"
     monkeypatch.setattr(simulate, "solve", lambda *_, **__: histories[0])

@@ -16,13 +16,13 @@ import pandas as pd
 import pytest
 
 import synthetic
+from cysyk1999.figures.registry import FIGURES
+from cysyk1999.measures.errors import PARTS
+from cysyk1999.measures.inputs import read_results
+from cysyk1999.publishing.write import read_frame, write_frame, write_picture
+from cysyk1999.reference_data import empty_reference, read_reference
 from drawn import frame as made_up
 from fingerpad import plan, simulate
-from fingerpad.figures.registry import FIGURES
-from fingerpad.measures.errors import PARTS
-from fingerpad.measures.inputs import read_results
-from fingerpad.publishing.write import read_frame, write_frame, write_picture
-from fingerpad.reference_data import empty_reference, read_reference
 from fingerpad.results import scene_of
 from fingerpad.scenes.scene import load_scene
 from fingerpad.specimen import mesh_for

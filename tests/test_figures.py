@@ -13,18 +13,18 @@ import pytest
 from scipy.optimize import isotonic_regression
 
 import synthetic
+from cysyk1999.figures.geometry import boundaries, inward, loops
+from cysyk1999.figures.grammar import Panels, edged_profile, upper_profile
+from cysyk1999.figures.registry import CHAPTERS, FIGURES
+from cysyk1999.measures.errors import MESH, PARTS, STEPS
+from cysyk1999.measures.quantities import CURVATURE, RADIUS
+from cysyk1999.measures.table import MEASURES, reading
+from cysyk1999.publishing.style import COLOURS, INK, finished, spread, theme
+from cysyk1999.publishing.write import publish, without_round_off, write_frame, write_picture
+from cysyk1999.reference_data import empty_reference, read_reference
 from drawn import RATES, REFERENCE, frame, picture, results, saved
-from fingerpad.figures.geometry import boundaries, inward, loops
-from fingerpad.figures.grammar import Panels, edged_profile, upper_profile
-from fingerpad.figures.registry import CHAPTERS, FIGURES
 from fingerpad.measures import features as ft
-from fingerpad.measures.errors import MESH, PARTS, STEPS
-from fingerpad.measures.quantities import CURVATURE, RADIUS
-from fingerpad.measures.table import MEASURES, reading
 from fingerpad.planning.errors import COARSER, PROFILE_ORDER, REMAINS, STEPS_REMAIN, remains
-from fingerpad.publishing.style import COLOURS, INK, finished, spread, theme
-from fingerpad.publishing.write import publish, without_round_off, write_frame, write_picture
-from fingerpad.reference_data import empty_reference, read_reference
 from regression import BASELINE_DPI, SIMILARITY, differences, similarity, summary, summary_differences, tolerance
 
 pytestmark = pytest.mark.unit
@@ -288,7 +288,7 @@ def test_an_unknown_option_of_a_layout_is_refused():
 
 def test_listing_the_figures_loads_neither_mechanics_nor_matplotlib():
     code = (
-        "import fingerpad.figures.registry, sys;"
+        "import cysyk1999.figures.registry, sys;"
         "print([m for m in sys.modules if m in ('numba', 'matplotlib') or 'fingerpad.mechanics' in m])"
     )
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -9,10 +9,8 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from fingerpad import load_scene
-from fingerpad.reference_data import ReferenceDataError, read_friction
-from fingerpad.scenes.families import read_family
-from fingerpad.studies.calibration.friction import (
+from cysyk1999.reference_data import ReferenceDataError, read_friction
+from cysyk1999.studies.calibration.friction import (
     AXIS,
     STRETCH,
     STROKE,
@@ -22,6 +20,8 @@ from fingerpad.studies.calibration.friction import (
     rounded,
     stretch,
 )
+from fingerpad import load_scene
+from fingerpad.scenes.families import read_family
 
 pytestmark = pytest.mark.unit
 

@@ -5,16 +5,16 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from cysyk1999.studies.effects.picture import assemble, looks
+from cysyk1999.studies.effects.picture import effects as picture
+from cysyk1999.studies.effects.run import DECIDES, pairs, study
+from cysyk1999.studies.stability.hard_cases import FLAT, scene_of
 from fingerpad.planning import effects
 from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown, rule
 from fingerpad.planning.effects import EFFECTS, in_order, registered
 from fingerpad.planning.plan import RULES, Plan, PlanError, plan
 from fingerpad.scenes.effects import EFFECTS as NAMES
 from fingerpad.simulation import simulate
-from fingerpad.studies.effects.picture import assemble, looks
-from fingerpad.studies.effects.picture import effects as picture
-from fingerpad.studies.effects.run import DECIDES, pairs, study
-from fingerpad.studies.stability.hard_cases import FLAT, scene_of
 
 pytestmark = pytest.mark.unit
 FIGURES = Path(__file__).parents[1] / "figures"
@@ -94,7 +94,7 @@ def test_a_tolerance_has_room_for_one_error_only():
 
 def test_committed_rules_are_those_of_the_planner():
     """Values, decisions and evidence, from the committed data of the study."""
-    from fingerpad.studies.effects.run import rules_table
+    from cysyk1999.studies.effects.run import rules_table
 
     data = pd.read_csv(FIGURES / "studies" / "effects.csv")
     changes, choices = (data[data["panel"] == panel] for panel in ("changes", "planner"))

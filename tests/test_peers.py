@@ -2,7 +2,7 @@
 
 import pytest
 
-from fingerpad.studies.peers.run import PEERS, own, peer, scenes
+from cysyk1999.studies.peers.run import PEERS, own, peer, scenes
 
 pytestmark = [pytest.mark.verification, pytest.mark.slow]
 

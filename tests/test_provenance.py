@@ -65,7 +65,7 @@ def test_names_a_module_that_does_not_exist(toy):
 
 
 def test_figures_do_not_rest_on_the_mechanics():
-    names = {path.relative_to(provenance.PACKAGE).as_posix() for path in imported_sources("fingerpad.figures.registry")}
+    names = {path.relative_to(provenance.PACKAGE).as_posix() for path in imported_sources("cysyk1999.figures.registry")}
     assert "figures/registry.py" in names and "receptors/laws.py" in names
     assert not [name for name in names if name.startswith(("mechanics/", "planning/plan.py", "receptors/material_points.py"))]
 

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.measures import quantities as q
+from cysyk1999.measures import quantities as q
+from cysyk1999.measures.runs import NINE, RIDGED, SPEEDS
 from fingerpad.measures.features import energy
-from fingerpad.measures.runs import NINE, RIDGED, SPEEDS
 from fingerpad.units import parse_quantity
 from regression import tolerance
 

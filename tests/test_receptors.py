@@ -10,21 +10,21 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 import synthetic
+from cysyk1999.measures import responses
+from cysyk1999.measures.quantities import DISTANCE, SED, TIME
+from cysyk1999.receptors.recordings import RATES, read_rates
+from cysyk1999.receptors.sensor import TactileSensor, taxel_pressure
+from cysyk1999.reference_data import ReferenceDataError
+from cysyk1999.studies.receptors import candidate_stimuli as candidates
+from cysyk1999.studies.receptors import impulse_rates, sensing
+from cysyk1999.studies.receptors import run as study
 from fingerpad import load_scene, simulate
-from fingerpad.measures import responses
 from fingerpad.measures.features import energy, ramp_end
-from fingerpad.measures.quantities import DISTANCE, SED, TIME
 from fingerpad.measures.strokes import convexities, place
 from fingerpad.receptors import fits, laws, spikes
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, kernel_weights
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
-from fingerpad.receptors.recordings import RATES, read_rates
-from fingerpad.receptors.sensor import TactileSensor, taxel_pressure
-from fingerpad.reference_data import ReferenceDataError
 from fingerpad.scenes.scene import Discretisation
-from fingerpad.studies.receptors import candidate_stimuli as candidates
-from fingerpad.studies.receptors import impulse_rates, sensing
-from fingerpad.studies.receptors import run as study
 
 pytestmark = pytest.mark.unit
 

@@ -7,18 +7,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from cysyk1999.reference_data import ReferenceDataError, read_bands, read_reference
+from cysyk1999.studies.reconstruction import pads
+from cysyk1999.studies.reconstruction.design import FITTED, run_design, table
+from cysyk1999.studies.reconstruction.epidermis import judged
+from cysyk1999.studies.reconstruction.evidence import Evidence, read_evidence, values_of
+from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT, Problem, infer, recovery, shares_of
+from cysyk1999.studies.reconstruction.specimen import most_probable, specimen_text
+from cysyk1999.studies.reconstruction.unknowns import LOAD, STIFFNESS, read_unknowns
 from fingerpad.documents import SceneError
 from fingerpad.planning.plan import plan
-from fingerpad.reference_data import ReferenceDataError, read_bands, read_reference
 from fingerpad.scenes.scene import load_scene
 from fingerpad.simulation import simulate
-from fingerpad.studies.reconstruction import pads
-from fingerpad.studies.reconstruction.design import FITTED, run_design, table
-from fingerpad.studies.reconstruction.epidermis import judged
-from fingerpad.studies.reconstruction.evidence import Evidence, read_evidence, values_of
-from fingerpad.studies.reconstruction.inference import EPIDERMIS, SOFT, Problem, infer, recovery, shares_of
-from fingerpad.studies.reconstruction.specimen import most_probable, specimen_text
-from fingerpad.studies.reconstruction.unknowns import LOAD, STIFFNESS, read_unknowns
 
 pytestmark = pytest.mark.unit
 CONFIG = Path(__file__).parents[1] / "config"
@@ -235,7 +235,7 @@ def _smooth(x):
 
 
 def test_the_emulator_states_the_error_that_it_makes():
-    from fingerpad.studies.reconstruction.emulator import Emulator
+    from cysyk1999.studies.reconstruction.emulator import Emulator
 
     rng = np.random.default_rng(5)
     x, new = rng.random((150, 4)), rng.random((500, 4))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fingerpad.reference_data import FORCE_DEPTH, ReferenceDataError, read_force_depth, read_relaxation, read_surface_profiles
+from cysyk1999.reference_data import FORCE_DEPTH, ReferenceDataError, read_force_depth, read_relaxation, read_surface_profiles
 
 pytestmark = pytest.mark.unit
 

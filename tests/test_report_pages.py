@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from fingerpad.publishing.html import of_markdown, page, picture
-from fingerpad.workflow.jobs.report_pages import run
+from cysyk1999.publishing.html import of_markdown, page, picture
+from cysyk1999.workflow.jobs.report_pages import run
 
 pytestmark = pytest.mark.unit
 FIGURES = Path(__file__).parents[1] / "figures"

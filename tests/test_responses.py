@@ -7,13 +7,12 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.claims.comparison import TRENDS
-from fingerpad.figures.chapter4_receptors import AVERAGED, PRINTED
-from fingerpad.figures.registry import FIGURES
-from fingerpad.measures import features
-from fingerpad.measures.errors import MESH, Companion
-from fingerpad.measures.quantities import GIVEN_RATE, IMPULSE, NODE, SED, TIME, P
-from fingerpad.measures.responses import (
+from cysyk1999.claims.comparison import TRENDS
+from cysyk1999.figures.chapter4_receptors import AVERAGED, PRINTED
+from cysyk1999.figures.registry import FIGURES
+from cysyk1999.measures.errors import MESH, Companion
+from cysyk1999.measures.quantities import GIVEN_RATE, IMPULSE, NODE, SED, TIME, P
+from cysyk1999.measures.responses import (
     IMPULSE_RATE,
     P_LAW,
     SED_LAW,
@@ -26,13 +25,14 @@ from fingerpad.measures.responses import (
     time_mean,
     windowed,
 )
-from fingerpad.measures.runs import FAST, NINE
-from fingerpad.measures.table import Measures
+from cysyk1999.measures.runs import FAST, NINE
+from cysyk1999.measures.table import Measures
+from cysyk1999.receptors.recordings import read_rates
+from cysyk1999.reference_data import read_reference
+from cysyk1999.studies.strain_energy_meanings import CHANGE, MEANINGS, fig_meanings, frame_meanings, titled
+from fingerpad.measures import features
 from fingerpad.planning.errors import REMAINS
 from fingerpad.receptors.laws import SpatialSum
-from fingerpad.receptors.recordings import read_rates
-from fingerpad.reference_data import read_reference
-from fingerpad.studies.strain_energy_meanings import CHANGE, MEANINGS, fig_meanings, frame_meanings, titled
 
 pytestmark = pytest.mark.unit
 CONFIG = Path(__file__).parents[1] / "config/reference"

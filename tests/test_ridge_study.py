@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 
 import synthetic
+from cysyk1999.claims.comparison import TRENDS
+from cysyk1999.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
+from cysyk1999.measures.table import Measures
+from cysyk1999.studies.ridges import frames as ridge_frames
+from cysyk1999.studies.ridges import picture as ridge_study
+from cysyk1999.studies.ridges import run as cases_of
+from cysyk1999.studies.ridges.run import AS_DRAWN, FLANK, GRID, Case, boundary, case_scene, ridges_drawn
 from fingerpad import load_scene, plan, simulate
-from fingerpad.claims.comparison import TRENDS
-from fingerpad.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
 from fingerpad.measures.features import energy
-from fingerpad.measures.table import Measures
 from fingerpad.scenes.scene import Receptors, Slide
 from fingerpad.scenes.specimen import Specimen
 from fingerpad.specimen import RidgedPad, mesh_for, quality_of
-from fingerpad.studies.ridges import frames as ridge_frames
-from fingerpad.studies.ridges import picture as ridge_study
-from fingerpad.studies.ridges import run as cases_of
-from fingerpad.studies.ridges.run import AS_DRAWN, FLANK, GRID, Case, boundary, case_scene, ridges_drawn
 
 pytestmark = pytest.mark.unit
 SCENES = Path(__file__).parents[1] / "config" / "scenes"

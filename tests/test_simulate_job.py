@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from cysyk1999.workflow.jobs.simulate import run
 from fingerpad.results import read_history
 from fingerpad.specimen import read_pad_mesh
-from fingerpad.workflow.jobs.simulate import run
 
 pytestmark = pytest.mark.workflow
 

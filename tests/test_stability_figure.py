@@ -5,9 +5,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fingerpad.publishing.style import PAGE_WIDTH, TALLEST
-from fingerpad.publishing.write import publish_table
-from fingerpad.studies.stability.picture import METHODS, assemble, heat_map, long, table, tally
+from cysyk1999.publishing.style import PAGE_WIDTH, TALLEST
+from cysyk1999.publishing.write import publish_table
+from cysyk1999.studies.stability.picture import METHODS, assemble, heat_map, long, table, tally
 
 pytestmark = pytest.mark.unit
 

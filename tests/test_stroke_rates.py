@@ -7,14 +7,12 @@ import pandas as pd
 import pytest
 
 import synthetic
-from fingerpad.claims.comparison import TRENDS
-from fingerpad.claims.rows import numbers
-from fingerpad.figures.chapter5_receptors import PREDICTED
-from fingerpad.figures.registry import FIGURES
-from fingerpad.measures import strokes as st
-from fingerpad.measures.features import SURFACES, is_simulated, scene_name
-from fingerpad.measures.quantities import TRIAL
-from fingerpad.measures.responses import (
+from cysyk1999.claims.comparison import TRENDS
+from cysyk1999.claims.rows import numbers
+from cysyk1999.figures.chapter5_receptors import PREDICTED
+from cysyk1999.figures.registry import FIGURES
+from cysyk1999.measures.quantities import TRIAL
+from cysyk1999.measures.responses import (
     BURST_RATE,
     BURST_WIDTH,
     IMPULSE_RATE,
@@ -26,11 +24,13 @@ from fingerpad.measures.responses import (
     skin_sample,
     stroke_law,
 )
-from fingerpad.measures.runs import NINE, WITHIN_350
-from fingerpad.measures.table import Measures
+from cysyk1999.measures.runs import NINE, WITHIN_350
+from cysyk1999.measures.table import Measures
+from cysyk1999.receptors.recordings import RATES
+from cysyk1999.reference_data import empty_reference, read_reference
+from fingerpad.measures import strokes as st
+from fingerpad.measures.features import SURFACES, is_simulated, scene_name
 from fingerpad.receptors.laws import THESIS_RATE, SpatialSum
-from fingerpad.receptors.recordings import RATES
-from fingerpad.reference_data import empty_reference, read_reference
 
 pytestmark = pytest.mark.unit
 NUMBERS = numbers(read_reference(Path(__file__).parents[1] / "config/reference/thesis_numbers.csv"))
@@ -94,7 +94,7 @@ def test_raster_is_seeded_and_counts_the_integral_of_the_rate(made, number, low,
 def test_another_seed_makes_other_impulses(made, monkeypatch):
     felt = _felt(made, lambda k: 400)
     before = _frame(felt, "5-22")
-    monkeypatch.setattr("fingerpad.measures.responses.SEED", SEED + 1)
+    monkeypatch.setattr("cysyk1999.measures.responses.SEED", SEED + 1)
     assert not _frame(felt, "5-22").equals(before)
 
 

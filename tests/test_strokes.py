@@ -5,17 +5,17 @@ import pytest
 from PIL import Image
 
 import synthetic
-from fingerpad.claims.comparison import TRENDS
-from fingerpad.figures.animation import _frames, animate
+from cysyk1999.claims.comparison import TRENDS
+from cysyk1999.figures.animation import _frames, animate
+from cysyk1999.measures.table import MEASURES, Measures
 from fingerpad.measures import strokes as st
 from fingerpad.measures.features import (
     centre_node,
     centre_pressure,
     energy,
 )
-from fingerpad.measures.inputs import Each
+from fingerpad.measures.kept import Each
 from fingerpad.measures.measure import Together
-from fingerpad.measures.table import MEASURES, Measures
 
 pytestmark = pytest.mark.unit
 

@@ -5,11 +5,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from cysyk1999.figures.axes import statement, statement_row
+from cysyk1999.figures.registry import FIGURES
+from cysyk1999.publishing import style
+from cysyk1999.publishing.write import in_few_colours, publish, write_vectors
 from drawn import picture, saved
-from fingerpad.figures.axes import statement, statement_row
-from fingerpad.figures.registry import FIGURES
-from fingerpad.publishing import style
-from fingerpad.publishing.write import in_few_colours, publish, write_vectors
 
 pytestmark = pytest.mark.unit
 

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cysyk1999.studies.accuracy.run import split
+from cysyk1999.studies.stability.hard_cases import FLAT, cylinder, scene_of
 from fingerpad import simulation
 from fingerpad.cli import _error_line, main
 from fingerpad.planning.estimates import PadEstimate
@@ -15,8 +17,6 @@ from fingerpad.simulation import simulate
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.build import build_pad_mesh
 from fingerpad.specimen.files import write_pad
-from fingerpad.studies.accuracy.run import split
-from fingerpad.studies.stability.hard_cases import FLAT, cylinder, scene_of
 
 pytestmark = pytest.mark.unit
 

@@ -9,16 +9,16 @@ import pandas as pd
 import pytest
 from PIL import Image
 
+from cysyk1999.config import read_config
+from cysyk1999.figures.animation import MOST_FRAMES, animate
+from cysyk1999.measures.quantities import DISTANCE, IMPULSE_RATE, SED, P, X, Y
+from cysyk1999.publishing import style
+from cysyk1999.publishing.write import read_frame, write_frame
+from cysyk1999.reference_data import read_reference
+from cysyk1999.studies.views import picture as views
+from cysyk1999.studies.views.frames import BOUND, CORNERS, FRAMES, SKIN_X, STATE, STICKING, TRACTION
 from fingerpad import load_scene, simulate
-from fingerpad.config import read_config
 from fingerpad.documents import read_yaml
-from fingerpad.figures.animation import MOST_FRAMES, animate
-from fingerpad.measures.quantities import DISTANCE, IMPULSE_RATE, SED, P, X, Y
-from fingerpad.publishing import style
-from fingerpad.publishing.write import read_frame, write_frame
-from fingerpad.reference_data import read_reference
-from fingerpad.studies.views import picture as views
-from fingerpad.studies.views.frames import BOUND, CORNERS, FRAMES, SKIN_X, STATE, STICKING, TRACTION
 
 pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[1]

@@ -14,9 +14,9 @@ import pytest
 import yaml
 
 import fingerpad
+from cysyk1999.reference_data import read_force_depth
+from cysyk1999.studies.calibration.force import ElasticCurve, fit_constant
 from fingerpad.cli import main
-from fingerpad.reference_data import read_force_depth
-from fingerpad.studies.calibration.force import ElasticCurve, fit_constant
 
 pytestmark = pytest.mark.workflow
 

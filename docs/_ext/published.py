@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from fingerpad.claims.comparison import AGREES, holding
+from cysyk1999.claims.comparison import AGREES, holding
 
 ROOT = Path(__file__).parents[2]
 MARKED = re.compile(r"<!-- (\w+) -->(.*?)<!-- / -->", re.S)

@@ -65,7 +65,7 @@ def shown() -> dict[str, dict[str, str]]:
 
 def gallery() -> Iterator[tuple[str, str]]:
     """A page a chapter and one of the studies: each picture with its question, verdict, command and data."""
-    from fingerpad.figures.registry import FIGURES
+    from cysyk1999.figures.registry import FIGURES
 
     known = shown()
     for name, (title, prefix) in CHAPTERS.items():
@@ -162,7 +162,7 @@ DOCUMENTS = {
 
 def language() -> Iterator[tuple[str, str]]:
     """A page a kind of YAML file, from the schemas that are made of the typed models."""
-    from fingerpad.config import schemas
+    from cysyk1999.config import schemas
 
     made, said = schemas(), set()
     for kind in sorted(made, key=lambda kind: kind != "scene"):  # what several kinds have is said where it is of a scene

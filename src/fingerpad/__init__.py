@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Scene", "load_scene", "plan", "respond", "simulate", "sweep"]
 
-_MODULES = {
+HOMES = {
     "Scene": "fingerpad.scenes.scene",
     "load_scene": "fingerpad.scenes.scene",
     "plan": "fingerpad.planning.plan",
@@ -37,9 +37,9 @@ _MODULES = {
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("fingerpad")
-    if name not in _MODULES:
+    if name not in HOMES:
         raise AttributeError(f"module 'fingerpad' has no attribute '{name}'")
-    return getattr(importlib.import_module(_MODULES[name]), name)
+    return getattr(importlib.import_module(HOMES[name]), name)
 
 
 def __dir__() -> list[str]:

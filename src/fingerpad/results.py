@@ -19,7 +19,7 @@ import numpy as np
 
 from fingerpad.files import disk_is_full, write_atomically, write_text
 from fingerpad.processes import threads
-from fingerpad.provenance import digest, imported_sources
+from fingerpad.provenance import code_digest
 from fingerpad.scenes.scene import Scene, recorded_scene
 from fingerpad.specimen.element_kinds import kind_of
 from fingerpad.specimen.near import nearest
@@ -207,7 +207,7 @@ def provenance() -> dict[str, Any]:
         except PackageNotFoundError:
             packages[name] = "absent"
     return {
-        "code_sha256": digest(imported_sources("fingerpad.simulation"))[:16],
+        "code_sha256": code_digest()[:16],
         "python": platform.python_version(),
         "packages": packages,
         "machine": f"{platform.system()} {platform.machine()}",

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from cysyk1999.studies.stability.catalogue import APART, CATALOGUE, COMBINED, FACTORS, allowed
+from cysyk1999.studies.stability.catalogue import combinations as rows_of_catalogue
+from cysyk1999.studies.stability.covering import covering
+from cysyk1999.studies.stability.hard_cases import FLAT, PICKED, Case, depth, force, slide
+from cysyk1999.studies.stability.invariants import Held, difference, mirrored
+from cysyk1999.studies.stability.relaxing import relaxed
+from cysyk1999.studies.stability.run import second_solver, simulation
 from fingerpad.mechanics.stepping import NonConvergence, hard_here
 from fingerpad.planning.hardness import hard_in
 from fingerpad.results import leg_ends
-from fingerpad.studies.stability.catalogue import APART, CATALOGUE, COMBINED, FACTORS, allowed
-from fingerpad.studies.stability.catalogue import combinations as rows_of_catalogue
-from fingerpad.studies.stability.covering import covering
-from fingerpad.studies.stability.hard_cases import FLAT, PICKED, Case, depth, force, slide
-from fingerpad.studies.stability.invariants import Held, difference, mirrored
-from fingerpad.studies.stability.relaxing import relaxed
-from fingerpad.studies.stability.run import second_solver, simulation
 
 pytestmark = pytest.mark.stability
 

@@ -8,16 +8,16 @@ import xarray as xr
 import yaml
 from test_hard_strokes import LOAD, kept_force, lost_and_found, sound_stroke, turned_round
 
+from cysyk1999.studies.stability import picture as figure
+from cysyk1999.studies.stability.catalogue import CATALOGUE, FAST
+from cysyk1999.studies.stability.hard_cases import PICKED, Limits
+from cysyk1999.studies.stability.invariants import excess
+from cysyk1999.studies.stability.run import ADMITS, CLEAN, LABOURS, METHODS, SILENT, STABLE, compared, cured, judged, run
 from fingerpad import simulation
 from fingerpad.cli import main
 from fingerpad.mechanics import stepping
 from fingerpad.mechanics.pressure import checkerboard
 from fingerpad.results import leg_ends, read_history
-from fingerpad.studies.stability import picture as figure
-from fingerpad.studies.stability.catalogue import CATALOGUE, FAST
-from fingerpad.studies.stability.hard_cases import PICKED, Limits
-from fingerpad.studies.stability.invariants import excess
-from fingerpad.studies.stability.run import ADMITS, CLEAN, LABOURS, METHODS, SILENT, STABLE, compared, cured, judged, run
 
 pytestmark = pytest.mark.stability
 

@@ -8,8 +8,8 @@ import pytest
 from test_hard_cases import MM, SCENES, force, scene
 from test_hard_strokes import LOAD, slide, sound_stroke
 
+from cysyk1999.measures.direction import islands
 from fingerpad import load_scene, simulate
-from fingerpad.measures.direction import islands
 from fingerpad.scenes.scene import Cylinder, Flat
 from fingerpad.scenes.specimen import Specimen
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from cysyk1999.studies.accuracy import edges
 from fingerpad import load_scene
 from fingerpad.scenes.scene import Cylinder
-from fingerpad.studies.accuracy import edges
 
 SCENE = {
     "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cysyk1999.studies.accuracy.edges import kinks
 from fingerpad import load_scene, plan, simulate
 from fingerpad.results import leg_ends, states_found
-from fingerpad.studies.accuracy.edges import kinks
 
 pytestmark = pytest.mark.verification
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 import yaml
 
+from cysyk1999.config import read_config
+from cysyk1999.workflow.chapters import offered
+from cysyk1999.workflow.products import Job, Products
 from fingerpad import load_scene, plan
-from fingerpad.config import read_config
 from fingerpad.documents import SceneError
 from fingerpad.planning.plan import companion
-from fingerpad.workflow.chapters import offered
-from fingerpad.workflow.products import Job, Products
 
 pytestmark = pytest.mark.workflow
 
@@ -248,16 +248,16 @@ def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
 
 
 def test_an_edited_figure_grammar_redraws_figures_only(thesis):
-    names = thesis.rerun("src/fingerpad/figures/grammar.py")
+    names = thesis.rerun("src/cysyk1999/figures/grammar.py")
     assert {thesis.jobs[name].run for name in names} == {"figures"}
     assert names == {name for name in thesis.default() if thesis.jobs[name].run == "figures"}
 
 
 def test_an_edited_claim_remakes_the_tables_and_the_figures_that_say_whether_it_holds(thesis):
     for module in ("comparison", "reasons"):
-        assert thesis.rerun(f"src/fingerpad/claims/{module}.py") == {"tables", "catalogue"}  # which counts verdicts
+        assert thesis.rerun(f"src/cysyk1999/claims/{module}.py") == {"tables", "catalogue"}  # which counts verdicts
     for module in ("trends_pressing", "said"):
-        runs = {thesis.jobs[name].run for name in thesis.rerun(f"src/fingerpad/claims/{module}.py")}
+        runs = {thesis.jobs[name].run for name in thesis.rerun(f"src/cysyk1999/claims/{module}.py")}
         assert runs == {"figures"} | ({"tables", "catalogue"} if module == "trends_pressing" else set())
 
 
@@ -278,8 +278,8 @@ def test_sources_are_found_from_wherever_they_are_asked_for(thesis, tmp_path, mo
 
 
 def test_an_edited_job_reruns_itself_only(thesis):
-    assert thesis.rerun("src/fingerpad/workflow/jobs/calibrate.py") == {"calibrate"}
-    assert not thesis.rerun("src/fingerpad/workflow/products.py") and not thesis.rerun("src/fingerpad/config.py")
+    assert thesis.rerun("src/cysyk1999/workflow/jobs/calibrate.py") == {"calibrate"}
+    assert not thesis.rerun("src/cysyk1999/workflow/products.py") and not thesis.rerun("src/cysyk1999/config.py")
 
 
 @pytest.fixture

@@ -20,9 +20,9 @@ import pandas as pd
 import pytest
 import yaml
 
-from fingerpad.config import read_config
+from cysyk1999.config import read_config
+from cysyk1999.workflow.products import Products
 from fingerpad.results import read_history
-from fingerpad.workflow.products import Products
 
 pytestmark = [pytest.mark.workflow, pytest.mark.slow]
 
@@ -32,7 +32,7 @@ COMPANIONS = {f"results/smoke/{kind}/homogeneous_flat/history.nc" for kind in ("
 
 
 TOUCHED = (
-    "src/fingerpad/mechanics/stepping.py", "src/fingerpad/publishing/style.py", "src/fingerpad/workflow/jobs/simulate.py",
+    "src/fingerpad/mechanics/stepping.py", "src/cysyk1999/publishing/style.py", "src/cysyk1999/workflow/jobs/simulate.py",
     "config/scenes/ramp40.yaml", "config/specimens/thesis.yaml", "config/reference/thesis_numbers.csv", "requirements.lock",
     HISTORY,
 )  # fmt: skip
@@ -95,7 +95,7 @@ def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
     results = {path for job in jobs for paths in (*job.outputs.values(), job.beside) for path in paths}
     traced = [json.loads(path.read_text()) for path in finished.traces.iterdir()]
     runs = set()
-    for process in (t for t in traced if t["argv"][:2] == ["-m", "fingerpad.workflow"]):
+    for process in (t for t in traced if t["argv"][:2] == ["-m", "cysyk1999.workflow"]):
         log = process["argv"][process["argv"].index("--log") + 1]
         job = declared[log]
         allowed = {path.replace(here, "src") for path in inputs[log]}
@@ -315,7 +315,7 @@ def test_the_report_opens_in_a_browser_and_shows_everything_whole(report):
 
 def test_the_archive_is_a_crate_in_which_everything_leads_somewhere(finished):
     """Every entity once, every reference to one, every file there, what each job and scene took."""
-    made = finished.python("fingerpad.workflow.archive", "config/smoke.yaml", "results/archive")
+    made = finished.python("cysyk1999.workflow.archive", "config/smoke.yaml", "results/archive")
     assert made.returncode == 0, made.stderr
     crate = finished.root / "results/archive"
     graph = json.loads((crate / "ro-crate-metadata.json").read_text(encoding="utf-8"))["@graph"]
@@ -347,7 +347,7 @@ def _references(value):
 
 
 def test_there_is_nothing_to_archive_where_nothing_has_run(fresh):
-    done = fresh.python("fingerpad.workflow.archive", "config/smoke.yaml", "results/archive")
+    done = fresh.python("cysyk1999.workflow.archive", "config/smoke.yaml", "results/archive")
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and "run the workflow first" in done.stderr
     assert not (fresh.root / "results/archive").exists()
 

@@ -1,4 +1,4 @@
-"""A rule for every job of the configuration: fingerpad.workflow.products says what each reads and writes, its module what it does.
+"""A rule for every job of the configuration: cysyk1999.workflow.products says what each reads and writes, its module what it does.
 
 Inputs beside those are a list of the package's files that the job imports, found by following imports, with their digests, and the
 environment as it was installed: by content, so that an edit reruns what it can change. One list in place of a hundred files, which
@@ -31,7 +31,7 @@ def command(job):
     def told(wildcards, input, output):
         given = {"input": input, "output": output}
         words = ["env", f"FINGERPAD_VECTORS={job.vectors}"] if job.vectors else []
-        words += [sys.executable, "-m", "fingerpad.workflow", job.run, "--log", log_of(job)]
+        words += [sys.executable, "-m", "cysyk1999.workflow", job.run, "--log", log_of(job)]
         for place, key in job.words:
             values = job.values[key] if place == "params" else given[place].get(key)
             words += [f"--{key}", *([values] if isinstance(values, str) else values)]

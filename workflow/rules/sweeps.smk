@@ -32,6 +32,8 @@ else:
     SWEEP = read_layout(config.get("sweep_out", f"results/sweeps/{stem}") if stem else ".")
 
 HERE = SWEEP.folder
+TELL = ">{log:q} 2>&1 || {{ echo \"{rule}: $(tail -n 1 {log:q})\" >&2; exit 1; }}"
+"""All output goes into the log; a failed job shows its last line."""
 
 
 def predicted(wildcards, attempt):
@@ -70,7 +72,7 @@ rule sweep_batch:
     params:
         python=shlex.quote(sys.executable),
     shell:
-        "{params.python} -m fingerpad.workflow sweep_batch --log {log:q} --todo {input:q} --records {output:q}"
+        "{params.python} -m fingerpad.sweeps batch {input:q} {output:q} " + TELL
 
 
 rule sweep_collect:
@@ -88,5 +90,4 @@ rule sweep_collect:
         folder=HERE,
         digest=SWEEP.digest,
     shell:
-        "{params.python} -m fingerpad.workflow sweep_collect --log {log:q} --folder {params.folder:q}"
-        " --dataset {output.dataset:q} --table {output.table:q}"
+        "{params.python} -m fingerpad.sweeps collect {params.folder:q} {output.dataset:q} {output.table:q} " + TELL

@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 import xarray as xr
 
-from fingerpad.measures.inputs import Each
+from fingerpad.measures.kept import Each
 from fingerpad.measures.strokes import loaded
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.pad import PadMesh

@@ -78,8 +78,8 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
 
     Measures are [quantity, condition, unit, value] each. `file`: where the history is kept.
     """
+    from fingerpad.measures.known import known
     from fingerpad.measures.measure import Together
-    from fingerpad.measures.table import KNOWN
     from fingerpad.planning.plan import plan
     from fingerpad.results import states_found, write_history
     from fingerpad.simulation import simulate
@@ -87,9 +87,9 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
     chosen = plan(scene)
     history = simulate(scene, plan=chosen)
     cost = json.loads(history.attrs["cost"])
-    values, runs = [], Together({scene.name: history})
+    values, runs, measures = [], Together({scene.name: history}), known(keep)
     for name in keep:
-        measure = KNOWN[name]
+        measure = measures[name]
         if measure.where(scene):
             try:
                 found = measure(scene) if measure.of == "scene" else measure(history, runs)

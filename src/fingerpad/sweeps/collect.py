@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.files import disk_is_full, write_atomically
+from fingerpad.sweeps.engine import read_layout
 from fingerpad.sweeps.records import read_records
 
 BLOCK = 500
@@ -44,6 +46,14 @@ def collect(design: Mapping[str, Any], records: Iterable[Path], dataset: Path, t
 
     write_atomically(dataset, write)
     write_atomically(table, lambda partial: _tabulate(design, dataset, partial))
+
+
+def collect_layout(folder: Path, dataset: Path, table: Path) -> None:
+    """Collect the sweep that is laid out in a folder."""
+    layout = read_layout(folder)
+    design = json.loads((folder / "design.json").read_text(encoding="utf-8"))
+    files = [*layout.known, *(f"batches/{name}.jsonl" for name in layout.batches)]
+    collect(design, [folder / name for name in files], dataset, table)
 
 
 def _write(design: Mapping[str, Any], records: Iterable[Path], path: Path) -> None:

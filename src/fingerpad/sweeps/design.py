@@ -137,11 +137,12 @@ class Design:
 
     def check(self) -> None:
         """SceneError, one line, unless every scene is valid and every measure that is kept is one of its first scene."""
-        from fingerpad.measures.table import KNOWN
+        from fingerpad.measures.known import known
 
         first = self.scene(0)
+        measures = known(self.read.sweep.keep)
         for i, name in enumerate(self.read.sweep.keep):
-            if not KNOWN[name].where(first):
+            if not measures[name].where(first):
                 raise SceneError(
                     f"{self.shown}: keep[{i}]: '{name}' is not a measure of such a scene; allowed: measures of any scene"
                 )

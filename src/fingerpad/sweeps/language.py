@@ -421,13 +421,14 @@ def _is_number(cell: str) -> bool:
 
 
 def _keep(value: Any) -> Any:
-    from fingerpad.measures.table import KNOWN, MEASURES
+    from fingerpad.measures.known import OF_ANY, known
 
-    usual = ", ".join(name for name in KNOWN if name not in MEASURES)
+    measures = known(filled(value))
     for i, name in enumerate(filled(value)):
-        if name not in KNOWN:
-            raise Problem(f"is not a measure{nearest(name, KNOWN)}", f"{usual}, and those of measures.csv", (i,))
-        if KNOWN[name].beside or KNOWN[name].of == "mesh":
+        if name not in measures:
+            allowed = f"{', '.join(OF_ANY)}, and those of measures.csv"
+            raise Problem(f"is not a measure{nearest(name, measures)}", allowed, (i,))
+        if measures[name].beside or measures[name].of == "mesh":
             raise Problem("is not a measure of one history", "measures of one history or of a scene", (i,))
     return tuple(dict.fromkeys(value))
 

@@ -18,11 +18,12 @@ UNFINISHED = ".part"
 
 @cache
 def code() -> str:
-    """Digest of all that makes the numbers of a scene: the package's files that a batch imports, and the libraries' versions."""
-    from fingerpad.provenance import digest, imported_sources
+    """Digest of all that makes the numbers of a scene: the files of this package and of those with measures, and the libraries' versions."""
+    from fingerpad.measures.known import plugins
+    from fingerpad.provenance import code_digest
     from fingerpad.results import provenance
 
-    files = digest(imported_sources("fingerpad.sweeps.batch", "fingerpad.measures.table"))
+    files = [code_digest(), *(code_digest(folder) for folder in plugins())]
     libraries = {name: version for name, version in provenance()["packages"].items() if name != "fingerpad"}
     return hashlib.sha256(json.dumps([files, libraries], sort_keys=True).encode()).hexdigest()[:16]
 

@@ -1,0 +1,77 @@
+"""How the number of a row of the reference table is made of measures: columns `measure`, `at` and `of` of `thesis_numbers.csv`.
+
+``of`` names scenes, or sets of them (`SETS`), and may begin with what is made of several numbers: ``largest of`` (left out: the
+same), ``least of``, ``mean of``, ``sum of`` or ``number of`` (how many were simulated). ``at`` is the measure's condition; left
+out, all of its conditions count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from cysyk1999.measures.runs import CYLINDERS, FAST, NINE, RIDGED_NINE, SPEEDS, SUB_SPEEDS, WITHIN_350, WITHIN_400
+from cysyk1999.measures.steady import DEPTH_SCENES, SPEED_SCENES
+from cysyk1999.measures.table import MEASURES, Measures
+
+SETS: dict[str, tuple[str, ...]] = {
+    "nine": tuple(NINE.scenes.values()),
+    "fast_nine": tuple(FAST.scenes.values()),
+    "ridged_nine": tuple(RIDGED_NINE.scenes.values()),
+    "cylinders": tuple(NINE[k] for k in CYLINDERS),
+    "within_350": tuple(NINE[k] for k in WITHIN_350),
+    "cylinders_within_400": tuple(NINE[k] for k in WITHIN_400 if k != "flat"),
+    "five_strokes": tuple(SPEEDS.scenes.values()),
+    "three_strokes": tuple(SUB_SPEEDS.scenes.values()),
+    "four_depths": tuple(DEPTH_SCENES.values()),
+    "three_speeds": tuple(SPEED_SCENES.values()),
+}
+"""Sets of scenes by the name they have in the column `of`."""
+
+MADE: dict[str, Callable[[list[float]], float]] = {"largest": max, "least": min, "mean": np.mean, "sum": sum, "number": len}
+
+
+@dataclass(frozen=True)
+class Number:
+    """The number of a row: ``number(measures)``, in the unit of its measure. Raises KeyError for what was not simulated."""
+
+    measure: str
+    at: str
+    made: str
+    scenes: tuple[str, ...]
+
+    @classmethod
+    def of(cls, row: Mapping) -> Number:
+        """Read a row of the reference table. Raises ValueError, naming the row, for an unknown measure or unit that differs."""
+        if row["measure"] not in MEASURES:
+            raise ValueError(f"{row.name}: measure '{row['measure']}' is not one of {', '.join(sorted(MEASURES))}")
+        unit = MEASURES[row["measure"]].unit
+        if unit != row["units"]:
+            raise ValueError(f"{row.name}: units '{row['units']}', its measure {row['measure']} has '{unit}'")
+        made, found, names = row["of"].partition(" of ")
+        if not found:
+            made, names = "largest", row["of"]
+        if made not in MADE:
+            raise ValueError(f"{row.name}: of '{row['of']}' begins with none of {', '.join(MADE)}")
+        return cls(row["measure"], row["at"], made, tuple(s for name in names.split() for s in SETS.get(name, (name,))))
+
+    def __call__(self, measures: Measures) -> float:
+        return float(MADE[self.made](list(self._values(measures))))
+
+    def _values(self, measures: Measures) -> Iterator[float]:
+        for scene in self.scenes:
+            try:
+                values = measures.find(self.measure, scene) if not self.at else {"": measures(self.measure, scene, self.at)}
+            except KeyError:
+                if self.made == "number":
+                    continue
+                raise
+            yield from values.values()
+
+
+def numbers(reference: pd.DataFrame) -> dict[str, Number]:
+    """The number of every row of the reference table that has one, by id. Raises ValueError as `Number.of` does."""
+    return {id_: Number.of(row) for id_, row in reference.iterrows() if row["role"] not in ("", "trend")}

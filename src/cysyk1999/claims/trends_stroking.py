@@ -1,0 +1,362 @@
+"""Trends that the thesis states of stroked pads: its chapter 5."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from cysyk1999.claims.trends import (
+    ALIKE,
+    FOLLOWS,
+    HARDLY,
+    NEGLIGIBLE,
+    Trend,
+    everywhere,
+    listed,
+    of_each,
+    spreads,
+    stepwise,
+    trend,
+)
+from cysyk1999.measures.direction import OFFSETS
+from cysyk1999.measures.responses import BIN
+from cysyk1999.measures.runs import NINE, PLAIN, RIDGED, SPEEDS, SUB_SPEEDS, WITHIN_350, WITHIN_400
+from fingerpad.measures.strokes import FULL, STEPPED, SUB
+
+TEN = FULL["10"]
+NONE_LEFT = 0.5
+"""Mean number of impulses below which a stroke has, as a rule, none."""
+PROPORTIONAL = 0.1
+"""Largest departure from 1 of the exponent of a quantity that is proportional to another."""
+FELT, UNFELT = 1 / 3, 0.05
+"""Least directional index of a receptor that feels direction (twice the energy one way), largest of one that does not."""
+OUTER = {"right": "ridged_outer_stroke_right", "left": "ridged_outer_stroke_left"}
+
+
+def by_speed(m, quantity, speeds=tuple(SPEEDS)):
+    """A measure of each convexity in the strokes at several velocities: velocity -> convexity -> value."""
+    return {speed: m.find(quantity, SPEEDS[speed]) for speed in speeds}
+
+
+# --- pressure and curvature ------------------------------------------------------------------------------
+
+
+@trend("TR24", scene=STEPPED)
+@trend("TR26", scene=TEN)
+def pressure_follows_curvature(m, scene):
+    likeness, slope = m("curvature_correlation", scene, "centre"), m("curvature_factor", scene)
+    offset, misfit = (m("curvature_fit", scene, k) for k in ("offset", "misfit"))
+    note = f"pressure = {slope:.1f} Pa m x curvature + {offset:.0f} Pa; root mean square misfit {misfit:.0f} Pa"
+    return Trend(likeness >= FOLLOWS, likeness, f"correlation {likeness:.3f}, {note}")
+
+
+@trend("TR25")
+def pressure_follows_curvature_at_nodes(m):
+    found = {k: v for k, v in m.find("curvature_correlation", SUB["10"]).items() if k != "centre"}
+    note = f"correlations {min(found.values()):.3f} to {max(found.values()):.3f}"
+    return everywhere({k: v >= FOLLOWS for k, v in found.items()}, note)
+
+
+@trend("TR27")
+def skin_has_the_curvature_of_the_surface(m):
+    """On every convexity, where what the curvature is fitted through touches it, within 5 % (median)."""
+    found = {f"{k} at {v}": miss for v, each in by_speed(m, "curvature_miss").items() for k, miss in each.items()}
+    note = f"largest median difference on a convexity {np.nanmax(list(found.values())):.1%}"
+    return everywhere({k: miss <= 0.05 for k, miss in found.items()}, note)
+
+
+@trend("TR28")
+def pressure_peaks_grow(m):
+    found = by_speed(m, "convexity_pressure")
+    return everywhere({v: _grow(each) for v, each in found.items()}, "10 mm/s: " + listed(found["10 mm/s"], "Pa"))
+
+
+def _grow(values) -> bool:
+    return all(b > a for a, b in pairwise(values.values()))
+
+
+# --- velocity --------------------------------------------------------------------------------------------
+
+
+@trend("TR29", quantity="convexity_pressure", trace="pressure")
+@trend("TR30", quantity="convexity_energy", trace="energy")
+def velocity_hardly_matters(m, quantity, trace):
+    found = list(by_speed(m, quantity).values())
+    spread, change = spreads(found), {k: 100 * (found[-1][k] / found[0][k] - 1) for k in found[0]}
+    worst, whole = max(spread, key=spread.get), m("spread_of_traces", FULL["1"], trace)
+    note = f"peaks change by up to {max(map(abs, change.values())):.0f} %; "
+    note += f"they spread by {np.mean(list(spread.values())):.1f} % on average, at most {spread[worst]:.1f} % (K = {worst}); "
+    note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + listed(change, "%", 2)
+    return Trend(max(map(abs, change.values())) <= NEGLIGIBLE, max(change.values(), key=abs), note)
+
+
+@trend("TR31")
+def velocity_hardly_matters_for_contact(m):
+    spread = spreads([m.find("contact_length", FULL[v]) for v in ("5", "10", "20", "40")])
+    worst = max(spread, key=spread.get)
+    note = f"spread at most {spread[worst]:.1f} %; over velocities " + listed(spread, "%", 2)
+    return Trend(spread[worst] <= HARDLY, spread[worst], note)
+
+
+@trend("TR32", quantity="contact_length")
+@trend("TR64", quantity="burst_width")
+def falls_from_convexity_to_convexity(m, quantity):
+    return stepwise(m.find(quantity, TEN), "mm", -1)
+
+
+@trend("TR69")
+def energy_rate_is_proportional(m):
+    found = list(by_speed(m, "convexity_energy_rate").values())
+    velocity = np.log([m("stroke_speed", scene) for scene in FULL.values()])
+    exponents = {k: float(np.polyfit(velocity, np.log([f[k] for f in found]), 1)[0]) for k in found[0]}
+    return everywhere({k: abs(v - 1) <= PROPORTIONAL for k, v in exponents.items()}, "exponents " + listed(exponents, ""))
+
+
+# --- stepped and stroked ---------------------------------------------------------------------------------
+
+
+@trend("TR33")
+def alike_stepped_and_stroked(m):
+    shift, likeness = m("lag_of_stepped", SUB["10"]), m("likeness_of_stepped", SUB["10"])
+    stroked, stepped = (m("centre_pressure", scene, "mean") for scene in (SUB["10"], STEPPED))
+    shifts = ", ".join(f"{s:.2f}" for s in m.find("profile_shift", SUB["10"]).values())
+    note = f"correlation {likeness:.3f} at a lag of {shift:.2f} mm; profiles at the three locations {shifts} mm to the left"
+    note += f"; mean pressure {stroked:.0f} Pa stroked, {stepped:.0f} Pa stepped"
+    return Trend(likeness >= FOLLOWS and abs(stroked / stepped - 1) <= ALIKE, likeness, note)
+
+
+@trend("TR34")
+def peaks_higher_stroked(m):
+    stroked, stepped = (m.find("start_pressure", scene) for scene in (SUB["10"], STEPPED))
+    note = ", ".join(f"K = {k}: {high:.0f} against {stepped[k]:.0f} Pa" for k, high in stroked.items())
+    return everywhere({f"K = {k}": high > stepped[k] for k, high in stroked.items()}, note)
+
+
+@trend("TR35")
+def contact_lost_at_the_corner(m):
+    pressure, length = m("corner_pressure", STEPPED), m("lost_contact", STEPPED, "corner")
+    return Trend(pressure == 0, length, f"centre pressure {pressure:.0f} Pa at the corner, zero over {length:.2f} mm")
+
+
+@trend("TR36")
+def contact_lost_later_stroked(m):
+    stepped, stroked = (m("lost_contact", scene, "at") for scene in (STEPPED, SUB["10"]))
+    return Trend(stroked > stepped, stroked - stepped, f"out of contact about {stepped:.1f} mm stepped, {stroked:.1f} mm stroked")
+
+
+def _lost(m, scene) -> tuple[tuple[float, float], str]:
+    corner, second = (m("lost_contact", scene, k) for k in ("corner", "second"))
+    return (corner, second), f"over {corner:.2f} mm at the corner and {second:.2f} mm before the second convexity"
+
+
+@trend("TR37")
+def contact_lost_before_both(m):
+    lengths, note = _lost(m, SUB["40"])
+    return Trend(min(lengths) > 0, sum(v > 0 for v in lengths), "out of contact " + note)
+
+
+@trend("TR38")
+def contact_kept_when_slow(m):
+    found = {v: _lost(m, SUB_SPEEDS[v]) for v in ("1 mm/s", "10 mm/s")}
+    return everywhere({k: v[0][1] == 0 for k, v in found.items()}, "; ".join(f"{k}: {v[1]}" for k, v in found.items()))
+
+
+# --- strain energy ---------------------------------------------------------------------------------------
+
+
+@trend("T263")
+def energy_falls_at_the_sharpest(m):
+    found = by_speed(m, "convexity_energy")
+    outcome = {v: [*each.values()][-3] > [*each.values()][-2] > [*each.values()][-1] for v, each in found.items()}
+    return everywhere(outcome, "10 mm/s: " + listed(found["10 mm/s"], "Pa"))
+
+
+def _stroked_over_pressed(m) -> dict[str, float]:
+    """Peak strain energy stroked over that pressed, at the cylinders' curvatures (stroked: interpolated)."""
+    found, exact = (list(m.find(q, TEN).values()) for q in ("convexity_energy", "convexity_curvature"))
+    pressed = {k: m("highest_energy", NINE[k], "915 um") for k in WITHIN_400 if k != "flat"}
+    return {k: float(np.interp(float(k), exact, found)) / v for k, v in pressed.items()}
+
+
+@trend("TR39")
+def as_high_stroked_as_pressed(m):
+    label, ratio = next(iter(_stroked_over_pressed(m).items()))
+    return Trend(abs(ratio - 1) <= ALIKE, ratio, f"stroked over pressed at K = {label}: {ratio:.2f}")
+
+
+@trend("TR40")
+def falls_below_pressed(m):
+    ratios = _stroked_over_pressed(m)
+    values = list(ratios.values())
+    below = values[next((i for i, v in enumerate(values) if v < 1), len(values)) :]
+    falls = len(below) > 1 and max(below) < 1 and bool((np.diff(below) < 0).all())
+    return Trend(falls, values[-1], "stroked over pressed " + listed(ratios, "", 2))
+
+
+@trend("TR41", quantity="energy_peaks_apart", speeds=tuple(SPEEDS), shown="10 mm/s")
+@trend("TR72", quantity="rate_peaks_apart", speeds=tuple(SPEEDS))
+@trend("T301", quantity="rate_peaks_apart", speeds=("10 mm/s",))
+def two_peaks_a_convexity(m, quantity, speeds, shown=""):
+    """Under 52 and 79 1/m; the distances shown are of all convexities at one velocity, or of these two at every one."""
+    found = by_speed(m, quantity, speeds)
+    apart = {f"{k} at {v}": found[v][k] for v in speeds for k in ("52", "79")}
+    given = {k: v for k, v in (found[shown] if shown else apart).items() if v > 0}
+    return everywhere(
+        {k: v > 0 for k, v in apart.items()}, f"apart {f'at {shown} ' if shown else ''}" + listed(given, "mm", 3 if shown else 2)
+    )
+
+
+@trend("TR42", quantity="energy_peaks_apart")
+@trend("TR73", quantity="rate_peaks_apart")
+def peaks_closer_when_sharp(m, quantity):
+    outcome, notes = {}, []
+    for speed, found in by_speed(m, quantity).items():
+        seen = [found[k] for k in ("52", "79", "105") if found[k] > 0]
+        outcome[speed] = len(seen) >= 2 and bool((np.diff(seen) < 0).all())
+        notes.append(f"{speed}: " + ", ".join(f"{v:.1f}" for v in seen))
+    return everywhere(outcome, "mm apart from K = 52 on, " + "; ".join(notes))
+
+
+@trend("TR60")
+def eq_4_4_agrees(m):
+    residual, share = (of_each(m, "departure_of_eq_4_4", SPEEDS.scenes, k) for k in ("residual", "R2"))
+    note = "residual over the energy " + listed({k: 100 * v for k, v in residual.items()}, "%") + "; R2 " + listed(share, "", 2)
+    return everywhere({k: v <= ALIKE for k, v in residual.items()}, note)
+
+
+@trend("TR61")
+def eq_4_4_departs_with_velocity(m):
+    residual = of_each(m, "departure_of_eq_4_4", SPEEDS.scenes, "residual")
+    return stepwise({k: 100 * v for k, v in residual.items()}, "%")
+
+
+# --- predicted impulses ----------------------------------------------------------------------------------
+
+
+@trend("TR62")
+def impulses_under_convexities_only(m):
+    found, dragged = m.find("impulses_in_hollows", TEN), m.find("impulses_under_hollows", TEN)
+    note = "mean number of impulses at the distances of a concavity " + listed(found, "", 2)
+    note += f"; under the centre of the skin, which is dragged back, up to {max(dragged.values()):.2g}"
+    return everywhere({k: v < NONE_LEFT for k, v in found.items()}, note)
+
+
+@trend("TR63")
+def burst_rate_grows(m):
+    found = stepwise(m.find("burst_rate", TEN), "impulses/s")
+    return Trend(found.holds, found.shown, f"{found.note}; largest rates " + listed(m.find("convexity_rate", TEN), "impulses/s"))
+
+
+@trend("TR65")
+def burst_rate_grows_with_velocity(m):
+    found = list(by_speed(m, "burst_rate").values())
+    note = "from 1 to 40 mm/s " + ", ".join(f"{k}: {found[0][k]:.3g} to {v:.3g}" for k, v in found[-1].items())
+    return everywhere({k: all(b[k] > a[k] for a, b in pairwise(found)) for k in found[0]}, note)
+
+
+@trend("TR66")
+def burst_width_hardly_varies(m):
+    spread = spreads(list(by_speed(m, "burst_width").values()))
+    return everywhere({k: v <= HARDLY for k, v in spread.items()}, "spread over velocities " + listed(spread, "%", 2))
+
+
+@trend("TR67")
+def stroked_rate_between_those_pressed(m):
+    low, rate, high = m("rate", NINE["79"], "end"), m("burst_rate", TEN, "79"), m("rate", NINE["79"], "peak")
+    return Trend(low < rate < high, rate, f"steady {low:.3g}, stroked {rate:.3g}, peak {high:.3g} impulses/s; K = 79 1/m")
+
+
+@trend("TR68")
+def stroked_rate_above_the_peak_pressed(m):
+    rate = m.find("burst_rate", TEN)
+    ratios = {k: rate["157" if k == "158" else k] / m("rate", NINE[k], "peak") for k in WITHIN_350 if k != "flat"}
+    return Trend(ratios["315"] > 1, ratios["315"], "stroked over peak pressed " + listed(ratios, "", 2))
+
+
+@trend("TR70")
+def rate_peaks_with_the_energy_rate(m):
+    apart = m.find("rate_after_energy_rate", TEN)
+    note = f"at most {max(map(abs, apart.values())):.2g} mm apart; " + listed(apart, "mm", 2)
+    return everywhere({k: abs(v) <= 1e3 * BIN + 1e-9 for k, v in apart.items()}, note)
+
+
+@trend("TR71")
+def sharpest_answered_to_the_rate(m):
+    found = m.find("dynamic_share", TEN)
+    note = "share of the impulses that comes from the rate " + listed(found, "%", 2)
+    return everywhere({k: found[k] > 50 for k in ("210", "315")}, note)
+
+
+# --- a plate, and ridges ---------------------------------------------------------------------------------
+
+
+@trend("TR47")
+def no_direction_without_ridges(m):
+    index, spread = m("direction", PLAIN["right"]), m("spread_of_three", PLAIN["right"])
+    note = f"directional index {index:.2g} at -46 um; the three receptors differ by {spread:.1f} % at most"
+    return Trend(abs(index) <= UNFELT, index, note)
+
+
+@trend("TR48")
+def receptors_differ(m):
+    """Largest over smallest of the three receptors; and at equal material."""
+    left, centre, right, tip = (
+        m("energy_at_end", RIDGED["right"], at) for at in ("915 um, -46 um", "915 um", "915 um, 46 um", "935 um")
+    )
+    values = dict(zip((k.replace("−", "-").replace("µ", "u") for k in OFFSETS), (left, centre, right), strict=True))
+    note = ", ".join(f"{v:.0f} Pa at {k}" for k, v in values.items())
+    note += f" at the end; the centre lies in the epidermis of the tip, 20 um deeper, in the dermis, it is {tip:.0f} Pa"
+    ratio = max(values.values()) / min(values.values())
+    return Trend(left / right >= 2, ratio, f"{note}; of the two in the dermis one has {left / right:.1f} times the other's")
+
+
+@trend("T321", strokes=RIDGED)
+@trend("TR50", strokes=OUTER)
+def direction_is_felt(m, strokes):
+    index = m("direction", strokes["right"])
+    try:
+        right, left = (m("energy_at_end", strokes[way], "915 um, -46 um") for way in ("right", "left"))
+        note = f"at -46 um {right:.0f} Pa at the end of the stroke to the right, {left:.0f} Pa to the left"
+    except KeyError:
+        note = "stroke to the left by mirror image"
+    return Trend(abs(index) >= FELT, index, f"directional index {index:.2f}; {note}")
+
+
+@trend("TR49")
+def responds_throughout_one_way_only(m):
+    """A receptor at -46 um: throughout one way, and only at the start the other way."""
+    threshold = m("energy_threshold", RIDGED["right"])
+    least, start, late = (
+        m("energy_beside", RIDGED[way], k) for way, k in (("right", "least late"), ("left", "start"), ("left", "highest late"))
+    )
+    through, ceases = least > threshold, start > threshold > late
+    note = (
+        f"at -46 um to the right {least:.0f} Pa at least after 2 mm; to the left {start:.0f} Pa at the start, "
+        f"{late:.0f} Pa at most after 2 mm; threshold {threshold:.0f} Pa (Eq 5-1)"
+    )
+    return Trend(through and ceases, float(through) + float(ceases), note)
+
+
+@trend("TR51")
+def islands_under_outer_ridges(m):
+    found = [m.find("islands_of_contact", scene) for scene in OUTER.values()]
+    fewest, most = min(f["fewest"] for f in found), max(f["most"] for f in found)
+    cuts = sum(m("steps_cut", scene) for scene in OUTER.values())
+    volume, plain = min(m("smallest_volume", scene) for scene in OUTER.values()), m("islands_of_contact", RIDGED["right"], "end")
+    note = (
+        f"{fewest:.0f} to {most:.0f} islands in the strokes ({plain:.0f} without outer ridges), "
+        f"{cuts:.0f} steps cut, smallest det F {volume:.3f}"
+    )
+    return Trend(fewest > plain and cuts == 0, float(np.mean([f["median"] for f in found])), note)
+
+
+@trend("TR74")
+def one_way_at_the_beginning(m):
+    """One way mostly at the beginning, the other throughout; a receptor beside the centre of a pad with inner ridges."""
+    found = {way: tuple(m.find("plate_impulses", RIDGED[way]).values()) for way in RIDGED}
+    (few, early), (many, first) = sorted(found.values())
+    holds = few >= NONE_LEFT and early > few / 2 and many > 2 * few and first < many / 2
+    note = f"{few:.2g} impulses one way, {many:.2g} the other; "
+    note += "; ".join(f"to the {way} {n:.2g}, {b:.2g} of them in the first 5 mm" for way, (n, b) in found.items())
+    return Trend(holds, many / max(few, 1e-9), f"{note}; mean numbers of a stroke, receptor 46 um to the right")

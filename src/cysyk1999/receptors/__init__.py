@@ -1,0 +1,1 @@
+"""Fits, recordings and sensors beside the laws of :mod:`fingerpad.receptors`."""

@@ -1,0 +1,151 @@
+"""Does the edge of the contact move continuously? Kinks of the curves of a ramp and hold, with other smoothing and meshes.
+
+Contact that begins node by node leaves a kink in every curve whenever one joins. Contact at points inside elements
+(:mod:`fingerpad.mechanics.contact_points`) leaves less than can be seen, if its pressures are smoothed enough to be those of one
+edge and not so much that the contact widens. How far the pressures across the contact are off is a matter of the nodes along the
+skin alone.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from cysyk1999.measures.errors import norm
+from cysyk1999.studies.accuracy.run import DEPTHS
+from fingerpad.mechanics import contact_points
+from fingerpad.planning.plan import plan
+from fingerpad.receptors.laws import rate_by_leg
+from fingerpad.simulation import simulate
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from fingerpad.scenes.scene import Scene
+    from fingerpad.specimen.pad import MeshSize
+
+OUTPUTS = 40
+"""Of the ramp, and as many of the hold."""
+ONSET = 5
+"""Outputs of the ramp that are left out: the contact begins with a root of time, which no parabola follows."""
+SHARES = (1.0, 0.1, 0.001, 10.0)
+"""Of the smoothing that is the method's own. The third is next to none: what points alone do, whose pressures alternate."""
+
+
+@contextmanager
+def smoothed(share: float) -> Iterator[None]:
+    """Contact with another smoothing of its pressures, this many times the method's own."""
+    own = contact_points.SMOOTHING
+    contact_points.SMOOTHING = share * own
+    try:
+        yield
+    finally:
+        contact_points.SMOOTHING = own
+
+
+def kink(time: np.ndarray, values: np.ndarray) -> float:
+    """Largest distance of one of ``values`` (n,) at ``time`` (n,) from the parabola fitted to two neighbours on either side."""
+    worst = 0.0
+    for k in range(2, len(time) - 2):
+        near = np.array([k - 2, k - 1, k + 1, k + 2])
+        way = (time[near] - time[k]) / (time[k + 2] - time[k - 2])
+        worst = max(worst, abs(values[k] - np.polyfit(way, values[near], 2)[-1]))
+    return worst
+
+
+def kinks(history: xr.Dataset) -> dict[str, float]:
+    """Largest kink (share of the range) of each curve of a ramp and hold, its onset and the corner between its legs left out."""
+    time, leg = history["time"].values, history["leg"].values
+    curves = {name: (time, history[name].values) for name in ("contact_width", "peak_pressure", "centre_pressure")}
+    for depth in DEPTHS:
+        which = int(np.argmin(np.abs(history["receptor_depth"].values - depth)))
+        when, _, rate = rate_by_leg(time, history["strain_energy_density"].values[:, which], leg)
+        curves[f"energy rate at {1e6 * depth:.0f} um"] = when, rate
+    top = float(time[leg == leg[1]].max())
+    found = {}
+    for name, (when, values) in curves.items():
+        corner = int(np.argmin(np.abs(when - top)))
+        again = corner + 1 if np.isclose(when[min(corner + 1, len(when) - 1)], top) else corner  # a rate has two values there
+        legs = (slice(ONSET, corner + 1), slice(again, None))
+        found[name] = max(kink(when[part], values[part]) for part in legs) / float(np.ptp(values))
+    return found
+
+
+def alternation(history: xr.Dataset) -> float:
+    """Largest distance (share of the peak) of a node's final pressure from its neighbours' cubic, of all but the last four."""
+    pressure = history["contact_pressure"].values[-1]
+    on = np.flatnonzero(pressure > 0)[6:-6]
+    near = (-pressure[on - 2] + 4 * pressure[on - 1] + 4 * pressure[on + 1] - pressure[on + 2]) / 6
+    return float(np.abs(pressure[on] - near).max(initial=0.0) / pressure.max())
+
+
+def pressed(scene: Scene, share: float = 1.0, sized: Callable[[MeshSize], MeshSize] = lambda size: size) -> xr.Dataset:
+    """The history of a ramp and hold with outputs that are close enough to see kinks, a state at each, for splines between states
+    would hide some; on its own mesh or one of another size."""
+    from fingerpad.scenes.scene import Receptors
+
+    receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
+    made = scene.with_accuracy("thesis").varied({"outputs.receptors": receptors, "outputs.per_leg": OUTPUTS})
+    chosen = plan(made)
+    with smoothed(share):
+        return simulate(made, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True, every=1))
+
+
+def everywhere(size: MeshSize) -> MeshSize:
+    """No finer in the contact than around it."""
+    return replace(size, focus=(), skin_radial_edge=None)
+
+
+def into_the_skin(size: MeshSize) -> MeshSize:
+    """As fine into the skin as along it."""
+    return replace(size, skin_radial_edge=min((edge for _, edge in size.focus), default=size.skin_edge))
+
+
+MESHES = {"own": lambda size: size, "not refined": everywhere, "refined into the skin too": into_the_skin}
+"""Meshes of a surface; of one that is not refined the first two are one."""
+FINER = 1 / 3
+"""Edges of the mesh whose pressures are compared with, over those of the own."""
+
+
+def pressure_off(history: xr.Dataset, truth: xr.Dataset) -> float:
+    """Largest error of the pressure profile at an output, its onset left out, as a norm over that of the truth."""
+
+    def profile(of: xr.Dataset, k: int) -> tuple[np.ndarray, np.ndarray]:
+        place = np.flatnonzero(of["skin_y"].values > 0)
+        place = place[np.argsort(of["skin_x"].values[place])]
+        return of["skin_x"].values[place], of["contact_pressure"].values[k, place]
+
+    def off(k: int) -> float:
+        (x, found), (at, true) = profile(history, k), profile(truth, k)
+        return norm(x, found - np.interp(x, at, true)) / norm(at, true)
+
+    return max(off(k) for k in range(ONSET, history.sizes["time"]))
+
+
+def rows(surface: str, scene: Scene) -> list[dict[str, object]]:
+    """Kinks, alternation and answers (per cent off the method's own) of a surface with each smoothing and on each mesh."""
+    out, own = [], None
+    truth = pressed(scene, sized=lambda size: size.coarser(FINER))
+    for mesh, share in (*(("own", share) for share in SHARES), *((mesh, 1.0) for mesh in list(MESHES)[1:])):
+        history = pressed(scene, share, MESHES[mesh])
+        own = history if own is None else own
+        row = {"surface": surface, "mesh": mesh, "smoothing (of the method's)": share}
+        row |= {"nodes": json.loads(history.attrs["cost"])["nodes"]}
+        row |= {f"kink of {name} (%)": 100 * value for name, value in kinks(history).items()}
+        row["alternation (%)"] = 100 * alternation(history)
+        row["pressure profile off (%)"] = 100 * pressure_off(history, truth)
+        for name in ("indentation_depth", "contact_width", "centre_pressure"):
+            row[f"{name} off (%)"] = 100 * (float(history[name][-1]) / float(own[name][-1]) - 1)
+        out.append(row)
+    return out
+
+
+def table(scenes: dict[str, Scene]) -> pd.DataFrame:
+    """All surfaces."""
+    return pd.DataFrame([row for surface, scene in scenes.items() for row in rows(surface, scene)])

@@ -1,0 +1,187 @@
+"""Meshes of one's own: what their elements make wrong of which quantity, and whether runs on unseen ones know it.
+
+The table is measured on the inferred pad, its mesh split into the elements that users bring; the unseen ones are drawn at random:
+slabs and half-rings of two layers, in triangles and quads as gmsh makes them, fine at the skin and coarser inside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import gmsh
+import numpy as np
+import pandas as pd
+
+from cysyk1999.studies.accuracy.belief import difference, finest
+from cysyk1999.studies.accuracy.run import split
+from cysyk1999.studies.stability.hard_cases import FLAT, cylinder, force
+from fingerpad.planning.plan import plan
+from fingerpad.scenes.scene import Scene
+from fingerpad.specimen.build import build_pad_mesh
+from fingerpad.specimen.element_kinds import KINDS
+from fingerpad.specimen.files import write_pad
+
+QUANTITIES = {
+    "depth": ("indentation_depth",),
+    "width": ("contact_width",),
+    "pressure": ("centre_pressure", "peak_pressure"),
+    "strain energy": ("strain_energy_density",),
+}
+"""What the errors are of, and the variables of a history that they are read from."""
+SURFACES = {"plate": FLAT, **{f"{k} 1/m": cylinder(k) for k in (20, 79, 210, 630)}}
+GRAMS = (3.5, 10, 20)
+EDGES = (60e-6, 100e-6, 170e-6, 300e-6, 450e-6)
+"""m, along the skin of the mesh that is split: linear quads have half of it."""
+DEPTHS = (0.56e-3, 0.7e-3, 0.915e-3)
+SHARES = (0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.1)
+"""Edge over half width of the contact: ends of the classes that errors are gathered in."""
+
+
+def measured(base: Scene, folder: Path) -> pd.DataFrame:
+    """Errors of presses on meshes of every kind of element: a row a surface, force, edge and element."""
+    from fingerpad.simulation import simulate
+
+    rows = []
+    for surface, stimulus in SURFACES.items():
+        for grams in GRAMS:
+            scene = _pressed(base, stimulus, grams)
+            truth = simulate(scene.with_accuracy("fine"), finest(scene.with_accuracy("fine")))
+            half_width = float(truth.contact_width[-1]) / 2
+            for edge in EDGES:
+                for kind in ("quad4", "tri6", "quad9"):
+                    run = _on_split(base, stimulus, grams, edge, kind, folder)
+                    own = edge / 2 if kind == "quad4" else edge
+                    errors = {name: 100 * difference(run, truth, read)[0] for name, read in QUANTITIES.items()}
+                    rows.append({"surface": surface, "force (gf)": grams, "element": KINDS[kind].solved,
+                                 "edge (um)": own * 1e6, "edge / half width": own / half_width}
+                                | {f"error of the {name} (%)": error for name, error in errors.items()})  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def _pressed(base: Scene, stimulus: Any, grams: float) -> Scene:
+    receptors = {"outputs.receptors.depths": DEPTHS, "outputs.receptors.offsets": (0.0,), "effects": {"finite_strain": True}}
+    return base.varied({"stimulus": stimulus, "motion": [force(grams)], **receptors})
+
+
+def _on_split(base: Scene, stimulus: Any, grams: float, edge: float, kind: str, folder: Path):
+    """History of a press on the pad's mesh split into elements of a kind, as a user's own mesh."""
+    from fingerpad.simulation import simulate
+
+    scene = _pressed(base, stimulus, grams)
+    size = replace(plan(scene.with_accuracy("thesis")).mesh_size, skin_edge=edge, layer_edge=0.9 * edge, focus=())
+    mesh = build_pad_mesh(scene.specimen.outline, replace(size, skin_radial_edge=None))
+    path = folder / f"{kind}.msh"
+    write_pad(mesh if kind == "quad9" else split(mesh, kind), path)
+    accuracy = {"element": KINDS[kind].solved, "tolerance": 0.5, "once": True}
+    return simulate(scene.varied({"specimen.outline": None, "specimen.mesh": path, "accuracy": accuracy}))
+
+
+def table(rows: pd.DataFrame) -> pd.DataFrame:
+    """The largest errors by element and quantity in classes of edge over half width."""
+    ends = pd.cut(rows["edge / half width"], SHARES, right=False)
+    columns = [f"error of the {name} (%)" for name in QUANTITIES]
+    found = rows.groupby([rows["element"], ends], observed=True)[columns].max().reset_index()
+    found["edge / half width"] = [f"{each.left:g} to {each.right:g}" for each in found["edge / half width"]]
+    return found
+
+
+# --- unseen ones ----------------------------------------------------------------------------------------------------------
+
+
+def drawn_own(draw: np.random.Generator) -> dict[str, Any]:
+    """A press on a mesh of one's own, in a document; how the mesh is made stands under ``own``."""
+    shape, kind, order = draw.choice(["slab", "ring"]), draw.choice(["tri", "tri", "quad"]), int(draw.integers(1, 3))
+    cover, foam = float(draw.uniform(0.5, 1.5)), float(draw.uniform(2, 4))
+    flat = shape == "ring" and draw.integers(3) == 0
+    layers = {
+        name: {"youngs_modulus": f"{draw.uniform(*moduli):.3g} kPa", "poisson_ratio": round(float(draw.uniform(0.3, 0.49)), 3)}
+        for name, moduli in (("cover", (30, 200)), ("foam", (15, 60)))
+    }
+    return {
+        "own": {
+            "shape": shape,
+            "kind": kind,
+            "order": order,
+            "edge": float(np.exp(draw.uniform(np.log(0.12), np.log(0.6)))),
+            "coarser": float(draw.choice([1, 2, 4])),
+            "thicknesses": (cover, foam),
+            "radius": float(draw.uniform(6, 12)),
+        },
+        "specimen": {"fixed": ["base"], "layers": layers, "contact_length": "10 mm"},
+        "stimulus": FLAT if flat else cylinder(float(f"{np.exp(draw.uniform(np.log(20), np.log(400))):.3g}")),
+        "motion": [force(float(f"{np.exp(draw.uniform(np.log(2), np.log(30))):.3g}"))],
+        "outputs": {"receptors": {"depths": [f"{cover / 2:.3g} mm", f"{cover + 0.3:.3g} mm"], "offsets": ["0 mm", "0.5 mm"]}},
+        "effects": {"finite_strain": "on"},
+        "accuracy": "draft",
+    }
+
+
+def finer_own(own: dict[str, Any]) -> dict[str, Any]:
+    """How the mesh of the truth is made: quadratic triangles a quarter as large at the skin."""
+    return own | {"kind": "tri", "order": 2, "edge": min(own["edge"] / 4, 0.06), "coarser": 3.0}
+
+
+def write_own(own: dict[str, Any], path: Path) -> None:
+    """Make a mesh with gmsh as a user would (lengths in mm), and write it."""
+    gmsh.initialize(["fingerpad", "-v", "0"], readConfigFiles=False, interruptible=False)
+    try:
+        surfaces, skin, base = (_slab if own["shape"] == "slab" else _ring)(own)
+        gmsh.model.geo.synchronize()
+        for dimension, tags, name in (
+            (1, skin, "skin"),
+            (1, base, "base"),
+            (2, surfaces[:1], "cover"),
+            (2, surfaces[1:], "foam"),
+        ):
+            gmsh.model.setPhysicalName(dimension, gmsh.model.addPhysicalGroup(dimension, tags), name)
+        if own["kind"] == "quad":  # a simple recombination and a smoothing of what is left of triangles
+            for option, value in (("RecombineAll", 1), ("RecombinationAlgorithm", 2), ("Algorithm", 8)):
+                gmsh.option.setNumber(f"Mesh.{option}", value)
+        gmsh.model.mesh.generate(2)
+        gmsh.model.mesh.setOrder(own["order"])
+        gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+        gmsh.write(str(path))
+    finally:
+        gmsh.finalize()
+
+
+def _edges(own: dict[str, Any]) -> tuple[float, float, float]:
+    """Edges at the skin, between the layers, and at the base."""
+    return own["edge"], own["edge"] * own["coarser"] ** 0.5, own["edge"] * own["coarser"]
+
+
+def _slab(own):
+    geo, (top, middle, bottom), (cover, foam), half = gmsh.model.geo, _edges(own), own["thicknesses"], 8.0
+    high = cover + foam
+    places = (
+        (-half, 0, bottom), (half, 0, bottom), (half, foam, middle), (half, high, top), (0, high, top), (-half, high, top),
+        (-half, foam, middle),
+    )  # fmt: skip
+    points = [geo.addPoint(x, y, 0, size) for x, y, size in places]
+    lines = [geo.addLine(a, b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
+    between = geo.addLine(points[2], points[6])
+    low = geo.addPlaneSurface([geo.addCurveLoop([*lines[:2], between, lines[6]])])
+    up = geo.addPlaneSurface([geo.addCurveLoop([-between, *lines[2:6]])])
+    return [up, low], lines[3:5], lines[:1]
+
+
+def _ring(own):
+    geo, (cover, foam), radius = gmsh.model.geo, own["thicknesses"], own["radius"]
+    centre, circles = geo.addPoint(0, 0, 0, 1.0), []
+    for r, size in zip((radius, radius - cover, radius - cover - foam), _edges(own), strict=True):
+        ends = [geo.addPoint(x, y, 0, size) for x, y in ((-r, 0), (0, r), (r, 0))]
+        circles.append((ends, [geo.addCircleArc(a, centre, b) for a, b in zip(ends, ends[1:], strict=False)]))
+    surfaces = []
+    for (outer, along), (inner, back) in zip(circles, circles[1:], strict=False):
+        left, right = geo.addLine(outer[0], inner[0]), geo.addLine(outer[2], inner[2])
+        surfaces.append(geo.addPlaneSurface([geo.addCurveLoop([*along, right, *(-arc for arc in reversed(back)), -left])]))
+    return surfaces, circles[0][1], circles[2][1]
+
+
+def unseen(seed: int, count: int) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    """Name, class and document of presses on meshes drawn at random."""
+    for number in range(count):
+        yield f"own_{number}", "own", drawn_own(np.random.default_rng((seed, 1000 + number)))

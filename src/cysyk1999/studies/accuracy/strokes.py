@@ -1,0 +1,81 @@
+"""What strokes are wrong by, on meshes and with steps of several lengths: over plates and over waves, drawn at random.
+
+Each run is held to one on the finest mesh with steps half as long, as :func:`~cysyk1999.studies.accuracy.belief.difference` has
+it, at the end of the press before, on which friction leaves its mark, and over the way. It does not fall evenly: where a corner
+of the waves comes to lie between nodes, and at which output the contact leaves the centre, is as it happens. So the largest
+error of the strokes counts, and the root of the mean square of all, to which a longer stroke, with as much in it as in many of
+these, comes nearer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import cycle
+
+import numpy as np
+import pandas as pd
+
+from cysyk1999.studies.accuracy.belief import difference
+from cysyk1999.studies.accuracy.drawn import drawn
+from cysyk1999.studies.accuracy.run import DEFAULT_ROWS, DEFAULT_STEPS
+from cysyk1999.studies.stability import hard_cases
+from fingerpad.planning.errors import PLATES, WAVES
+from fingerpad.planning.plan import Plan, plan
+from fingerpad.planning.rules import RULES
+from fingerpad.scenes.scene import Scene
+
+MESHES, STEPS = (2, 4, 7, 10, 14), (10, 20, 40)
+"""Elements across the epidermis, with the default's steps of a leg; and steps of a leg, on the default's mesh."""
+FINEST = 22, 40
+"""Elements and steps of what the others are held to."""
+STROKED_OVER = PLATES, WAVES
+SEEDS, COUNT = (22, 23), 60
+"""Of the scenes drawn, and how many of each, of which the strokes over waves are taken: as they are, and over a plate instead."""
+RATE, SPEEDS = "40 gf/s", ("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s")
+"""With which the same are pressed and, one after the other, stroked, where the skin relaxes."""
+LARGEST, MEAN = "largest", "root mean square"
+"""Of the errors of all strokes."""
+
+
+def strokes(over: str, seeds: tuple[int, ...] = SEEDS) -> dict[str, Scene]:
+    """The strokes over plates or over waves, by name: all as they are drawn, steady ones, and then all in time."""
+    drawn_ones = {f"{seed}_{name}": each for seed in seeds for name, kind, each in drawn(seed, COUNT) if kind == "wavy"}
+    change = {"stimulus": hard_cases.FLAT} if over == PLATES else {}
+    found = {name: document | change for name, document in drawn_ones.items()}
+    for (name, document), speed in zip(list(found.items()), cycle(SPEEDS), strict=False):
+        press, slide = document["motion"]
+        found[f"{name}_timed"] = document | {"motion": [press | {"rate": RATE}, slide | {"speed": speed, "keep": "force"}]}
+    return {name: hard_cases.scene_of(document, name) for name, document in found.items()}
+
+
+def discretised(scene: Scene, rows: int, steps: int) -> Plan:
+    """The plan of a scene with so many elements across the epidermis and steps a leg, elsewhere as tolerances are met."""
+    known = RULES.errors
+    these = replace(known, mesh={rows: known.mesh[rows]}, time={steps: known.time[steps]})
+    only = replace(RULES, errors=these, least_steps_stroked=steps)
+    return replace(plan(scene.with_accuracy({"tolerance": 0.05, "once": True}), only), asked_error=None)
+
+
+def stroke_errors(over: str, name: str, scene: Scene) -> Iterator[dict[str, object]]:
+    """A row a mesh and a length of steps: relative error, and the quantity that has it."""
+    from fingerpad.simulation import simulate
+
+    truth = simulate(scene, discretised(scene, *FINEST))
+    for rows, steps in dict.fromkeys([*((n, DEFAULT_STEPS) for n in MESHES), *((DEFAULT_ROWS, n) for n in STEPS)]):
+        off, worst = difference(simulate(scene, discretised(scene, rows, steps)), truth)
+        yield {"over": over, "scene": name, "rows": rows, "steps": steps, "error": off, "worst quantity": worst}
+
+
+def strokes_table(found: pd.DataFrame) -> pd.DataFrame:
+    """Relative errors by mesh, and what fewer or more steps than the default's add to them; none below one that is finer.
+
+    found: of all scenes, as of :func:`stroke_errors`.
+    """
+    errors = found.groupby(["over", "rows", "steps"])["error"]
+    of_all = pd.DataFrame({LARGEST: errors.max(), MEAN: errors.agg(lambda each: np.sqrt(np.mean(each**2)))}).unstack("over")
+    mesh = of_all.xs(DEFAULT_STEPS, level="steps").rename_axis("count")
+    steps = (of_all.xs(DEFAULT_ROWS, level="rows") - mesh.loc[DEFAULT_ROWS]).clip(lower=0.0).rename_axis("count")
+    both = pd.concat({"mesh": mesh[::-1].cummax()[::-1], "steps": steps[::-1].cummax()[::-1]}, names=["kind"])
+    both.columns = [f"{over}, {which}" for which, over in both.columns]
+    return both.map(lambda error: float(f"{error:.2g}")).reset_index()

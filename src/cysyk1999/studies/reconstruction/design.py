@@ -1,0 +1,67 @@
+"""The design run: every pad under every surface that is fitted, one process, a record each as soon as it is done.
+
+    python -m cysyk1999.studies.reconstruction.design RECORDS [SECONDS]
+
+goes on where it was stopped and ends after so many seconds of the process, at the end of a pad.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import pandas as pd
+
+from cysyk1999.studies.reconstruction import pads
+from cysyk1999.studies.reconstruction.unknowns import Unknowns, read_unknowns
+from fingerpad.sweeps.records import Writer, read_records
+
+FITTED = ("flat", "158", "420", "1260", pads.PLATE)
+"""Surfaces that the posterior is made of: every second cylinder but one, so that the others are left to judge it by."""
+UNKNOWNS = Path("config/reconstruction/unknowns.yaml")
+
+
+def run_design(known: Unknowns, records: Path, seconds: float = float("inf"), surfaces: Sequence[str] = FITTED) -> None:
+    """Simulate the pads that `records` does not know yet, until so much time of the process has gone."""
+    started, drawn = time.process_time(), pd.DataFrame(known.draw())
+    write = Writer(records)
+    try:
+        for number, row in drawn.iterrows():
+            if time.process_time() - started > seconds:
+                break
+            pad = {k: float(f"{v:.6g}") for k, v in row.items()}
+            key = f"{number} {json.dumps(pad)}"
+            if key in write.known:
+                continue
+            write({"key": key, "number": number, "pad": pad} | simulated(pad, surfaces))
+            print(number, f"{time.process_time() - started:.0f} s", flush=True)
+    finally:
+        write.close()
+
+
+def simulated(pad: Mapping[str, float], surfaces: Sequence[str]) -> dict[str, object]:
+    """Of a pad: values by "surface: measure", what went wrong, and the process time."""
+    started, values, diagnosis = time.process_time(), {}, ""
+    for surface in surfaces:
+        try:
+            values |= {f"{surface}: {k}": v for k, v in pads.read(pad, surface).items()}
+        except Exception as error:  # noqa: BLE001 - one bad pad never stops the design
+            diagnosis = " ".join(f"{surface}: {type(error).__name__}: {error}".split())[:300]
+            break
+    return {"values": values, "diagnosis": diagnosis, "cpu_s": round(time.process_time() - started, 3)}
+
+
+def table(records: Path) -> pd.DataFrame:
+    """A row a pad: values of the axes, of what was read (NaN where it failed), diagnosis, process time."""
+    rows = [
+        {"pad": r["number"], **r["pad"], **r["values"], "diagnosis": r["diagnosis"], "cpu_s": r["cpu_s"]}
+        for r in read_records(records)
+    ]
+    return pd.DataFrame(rows).sort_values("pad", ignore_index=True)
+
+
+if __name__ == "__main__":
+    run_design(read_unknowns(UNKNOWNS), Path(sys.argv[1]), *map(float, sys.argv[2:3]))

@@ -1,0 +1,46 @@
+"""Do one job of the workflow: ``python -m cysyk1999.workflow JOB --log FILE --key VALUE ... --key VALUE ...``
+
+JOB is a module of :mod:`cysyk1999.workflow.jobs`, a key the name of some of its files or parameters. Everything printed goes into
+the log; if the job fails, its last line is also shown where the workflow was started.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+import traceback
+from types import SimpleNamespace
+
+from fingerpad.processes import collect_seldom
+
+
+def main(words: list[str]) -> int:
+    """Run a job and return its exit code."""
+    collect_seldom()
+    name, *words = words
+    keys: dict[str, list[str]] = {}
+    for word in words:
+        if word.startswith("--"):
+            values = keys.setdefault(word[2:], [])
+        else:
+            values.append(word)
+    (log,) = keys.pop("log")
+    terminal = os.fdopen(os.dup(2), "w")
+    with open(log, "w", encoding="utf-8") as stream:
+        os.dup2(stream.fileno(), 1)
+        os.dup2(stream.fileno(), 2)
+    try:
+        importlib.import_module(f"cysyk1999.workflow.jobs.{name}").run(SimpleNamespace(**keys))
+    except KeyboardInterrupt:
+        return 130
+    except Exception as error:  # noqa: BLE001 - whatever it is, it is shown
+        cause = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+        traceback.print_exc()
+        print(f"{name}: {' '.join(cause.split())} (all of it: {log})", file=terminal, flush=True)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,64 @@
+"""The source files that a job rests on, found by following its imports.
+
+The workflow names them as inputs of its rules: an edit reruns what it can change and nothing else.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+import grimp
+
+import fingerpad
+
+PACKAGES = ("fingerpad", "cysyk1999")
+
+
+@cache
+def _imports() -> grimp.ImportGraph:
+    return grimp.build_graph(*PACKAGES, exclude_type_checking_imports=True, cache_dir=".snakemake/grimp")
+
+
+@cache
+def _upstream(module: str) -> frozenset[str]:
+    return frozenset(_imports().find_upstream_modules(module) | {module})
+
+
+def imported_sources(*modules: str) -> list[Path]:
+    """Files of the two packages that some modules import, directly or not, and their own.
+
+    Parameters
+    ----------
+    modules : str
+        Dotted names, such as ``"fingerpad.mechanics.stepping"``.
+
+    Returns
+    -------
+    list of Path
+        Sorted, each once.
+
+    Raises
+    ------
+    grimp.exceptions.ModuleNotPresent
+        There is no such module.
+
+    Notes
+    -----
+    Imports inside functions count; those under ``TYPE_CHECKING`` do not. Who imports a verb from ``fingerpad`` rests
+    on the modules of all verbs.
+    """
+    found = set().union(*map(_upstream, modules))
+    if "fingerpad" in found:
+        found = found.union(*map(_upstream, fingerpad.HOMES.values()))
+    parents = {name.rpartition(".")[0] for name in found}
+    parents |= {name.rpartition(".")[0] for name in parents}
+    return sorted(map(_file, (found | parents) - {""}))
+
+
+@cache
+def _file(module: str) -> Path:
+    package, _, rest = module.partition(".")
+    base = Path(find_spec(package).origin).parent.joinpath(*rest.split(".") if rest else ())
+    return base / "__init__.py" if base.is_dir() else base.with_suffix(".py")
