@@ -17,7 +17,13 @@ from published import fill_pages  # noqa: E402 (beside this file)
 fill_pages()
 
 project, author, language = "fingerpad", "The fingerpad developers", "en"
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode", "sphinx_design"]
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx_design",
+]
 extensions += ["docstrings", "mathml", "streams", "written"]  # of docs/_ext
 exclude_patterns = ["_build", "_ext", "requirements.*"]
 templates_path, html_static_path, html_css_files = [], ["_static"], ["pages.css"]

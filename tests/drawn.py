@@ -44,5 +44,11 @@ def picture(number):
     return fig
 
 
-RATES = tuple(s.number for name, specs in CHAPTERS.items() if name.endswith("_receptors") for s in specs if s.number not in LAWS)
+RATES = tuple(
+    s.number
+    for name, specs in CHAPTERS.items()
+    if name.endswith("_receptors")
+    for s in specs
+    if s.number not in LAWS
+)
 """Figures of rates: a threshold makes more or less than 1 % of what is 1 % away."""

@@ -18,7 +18,13 @@ class Faults:
     """
 
     def __init__(self, folder, at=None, how=errno.EIO):
-        self.folder, self.at, self.how, self.calls, self.met = str(Path(folder).absolute()), at, how, 0, None
+        self.folder, self.at, self.how, self.calls, self.met = (
+            str(Path(folder).absolute()),
+            at,
+            how,
+            0,
+            None,
+        )
         self._kept = contextlib.ExitStack()
 
     def __enter__(self):
@@ -65,12 +71,20 @@ class Faults:
 
 def files(folder):
     """Relative name -> bytes of every file below a folder, temporary ones too."""
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(Path(folder).rglob("*")) if path.is_file()}
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in sorted(Path(folder).rglob("*"))
+        if path.is_file()
+    }
 
 
 def results(folder):
     """The same without scratch folders, which may stay until the next run where tidying up is what goes wrong."""
-    return {name: content for name, content in files(folder).items() if not name.startswith(".fingerpad-")}
+    return {
+        name: content
+        for name, content in files(folder).items()
+        if not name.startswith(".fingerpad-")
+    }
 
 
 def in_child(do, *args):

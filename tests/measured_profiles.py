@@ -36,7 +36,9 @@ def dots(height, diameter, *places):
 
 def texture(amplitude, wavelength, radius=None):
     def shape(x):
-        return amplitude * np.cos(2 * np.pi * x / wavelength) + (x**2 / 2 / radius if radius else 0.0)
+        return amplitude * np.cos(2 * np.pi * x / wavelength) + (
+            x**2 / 2 / radius if radius else 0.0
+        )
 
     return shape, 5.0
 
@@ -67,18 +69,37 @@ def spectrum(rng, count, spacing, slope, longest):
 
 #: name of the shape, spacing mm, rms of the noise mm, slope of its spectrum, digits after the point of a millimetre
 INSTRUMENTS = [
-    ("cylinder 1.5", 0.005, 0.0005, 0, 6), ("cylinder 2.5", 0.005, 0.0005, 0, 6), ("cylinder 2.5", 0.024, 0.0005, 0, 6),
-    ("cylinder 2.5", 0.005, 0.0, 0, 3), ("cylinder 2.5", 0.0048, 0.002, 0, 6), ("cylinder 2.5", 0.005, 0.001, 1, 4),
-    ("cylinder 2.5", 0.005, 0.001, 2, 5), ("cylinder 5", 0.001, 0.0005, 0, 6), ("cylinder 5", 0.002, 0.0, 0, 3),
-    ("cylinder 5", 0.01, 0.001, 1, 6), ("cylinder 20", 0.005, 0.0005, 0, 4), ("cylinder 20", 0.005, 0.0005, 2, 4),
-    ("plate", 0.005, 0.0005, 0, 6), ("plate", 0.001, 0.0005, 1, 5), ("plate", 0.01, 0.001, 2, 3),
-    ("coin's edge", 0.005, 0.0005, 0, 6), ("coin's edge", 0.004, 0.0, 0, 3), ("coin's edge", 0.01, 0.001, 1, 6),
-    ("bar", 0.005, 0.0005, 0, 6), ("bar", 0.02, 0.0005, 2, 4), ("tilted bar", 0.005, 0.0005, 0, 6),
-    ("dot", 0.005, 0.0005, 0, 6), ("dot", 0.005, 0.0, 0, 3), ("dot", 0.002, 0.001, 1, 4),
-    ("two dots", 0.005, 0.0005, 0, 6), ("two dots", 0.01, 0.001, 2, 5),
-    ("texture", 0.005, 0.0005, 0, 6), ("texture", 0.005, 0.0, 0, 3),
-    ("textured cylinder", 0.005, 0.0005, 0, 6), ("textured cylinder", 0.01, 0.001, 1, 5),
-]  # fmt: skip
+    ("cylinder 1.5", 0.005, 0.0005, 0, 6),
+    ("cylinder 2.5", 0.005, 0.0005, 0, 6),
+    ("cylinder 2.5", 0.024, 0.0005, 0, 6),
+    ("cylinder 2.5", 0.005, 0.0, 0, 3),
+    ("cylinder 2.5", 0.0048, 0.002, 0, 6),
+    ("cylinder 2.5", 0.005, 0.001, 1, 4),
+    ("cylinder 2.5", 0.005, 0.001, 2, 5),
+    ("cylinder 5", 0.001, 0.0005, 0, 6),
+    ("cylinder 5", 0.002, 0.0, 0, 3),
+    ("cylinder 5", 0.01, 0.001, 1, 6),
+    ("cylinder 20", 0.005, 0.0005, 0, 4),
+    ("cylinder 20", 0.005, 0.0005, 2, 4),
+    ("plate", 0.005, 0.0005, 0, 6),
+    ("plate", 0.001, 0.0005, 1, 5),
+    ("plate", 0.01, 0.001, 2, 3),
+    ("coin's edge", 0.005, 0.0005, 0, 6),
+    ("coin's edge", 0.004, 0.0, 0, 3),
+    ("coin's edge", 0.01, 0.001, 1, 6),
+    ("bar", 0.005, 0.0005, 0, 6),
+    ("bar", 0.02, 0.0005, 2, 4),
+    ("tilted bar", 0.005, 0.0005, 0, 6),
+    ("dot", 0.005, 0.0005, 0, 6),
+    ("dot", 0.005, 0.0, 0, 3),
+    ("dot", 0.002, 0.001, 1, 4),
+    ("two dots", 0.005, 0.0005, 0, 6),
+    ("two dots", 0.01, 0.001, 2, 5),
+    ("texture", 0.005, 0.0005, 0, 6),
+    ("texture", 0.005, 0.0, 0, 3),
+    ("textured cylinder", 0.005, 0.0005, 0, 6),
+    ("textured cylinder", 0.01, 0.001, 1, 5),
+]
 
 
 def measured(number):

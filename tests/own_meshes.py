@@ -17,7 +17,9 @@ def slab_mesh(edge, low=-10e-3, high=10e-3, left=-10e-3, right=10e-3, height=5e-
     skin = np.column_stack([number[:-1, -1], number[1:, -1]])[inside].astype(np.int32)
     base = np.column_stack([number[1:, 0], number[:-1, 0]]).astype(np.int32)
     curves, regions = {"skin": skin, "base": base}, np.zeros(len(cells), np.int8)
-    return PadMesh(points, cells, "quad4", regions, curves, symmetric=False, regions=("foam",), fixed=("base",))
+    return PadMesh(
+        points, cells, "quad4", regions, curves, symmetric=False, regions=("foam",), fixed=("base",)
+    )
 
 
 def slab(path, edge, low=-10e-3, high=10e-3, left=-10e-3, right=10e-3):

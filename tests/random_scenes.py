@@ -72,7 +72,10 @@ WRONG_PROFILES = {
 MOTIONS = {"depths.csv": ("time (s),depth (mm)", 0.3), "forces.csv": ("time (ms);force (gf)", 10.0)}
 """Header and largest value of motions that tables say."""
 MESHES = ("quad9.msh", "quad4.msh", "tri6.msh", "aside.msh")
-WRONG_MOTIONS = {"depths.csv": ("time (s),depth (mm)", 0.3), "forces.csv": ("time (ms);force (gf)", 10.0)}
+WRONG_MOTIONS = {
+    "depths.csv": ("time (s),depth (mm)", 0.3),
+    "forces.csv": ("time (ms);force (gf)", 10.0),
+}
 """Header and largest value of motions that tables say."""
 MESHES = ("cut.msh", "text.msh", "nan.msh", "missing.msh")
 
@@ -94,15 +97,28 @@ def write_files(folder: Path) -> None:
     for name, (header, most) in MOTIONS.items():
         at = np.linspace(0, 1, 60) * (1e3 if "ms" in header else 1.0)
         rows = np.column_stack([at, most * np.minimum(np.linspace(0, 2, 60), 1)])
-        np.savetxt(folder / name, rows, delimiter=";" if ";" in header else ",", header=header, comments="", fmt="%.5g")
+        np.savetxt(
+            folder / name,
+            rows,
+            delimiter=";" if ";" in header else ",",
+            header=header,
+            comments="",
+            fmt="%.5g",
+        )
     for name, text in WRONG_PROFILES.items():
         (folder / name).write_text(text)
-    scene = load_scene({"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "5 gf"}], "accuracy": "draft"})
-    mesh = build_pad_mesh(scene.specimen.outline, replace(plan(scene).mesh_size, skin_edge=4e-4, layer_edge=4e-4))
+    scene = load_scene(
+        {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "5 gf"}], "accuracy": "draft"}
+    )
+    mesh = build_pad_mesh(
+        scene.specimen.outline, replace(plan(scene).mesh_size, skin_edge=4e-4, layer_edge=4e-4)
+    )
     write_pad(mesh, folder / "quad9.msh")
     for kind in ("quad4", "tri6"):
         write_pad(split(mesh, kind), folder / f"{kind}.msh")
-    write_pad(replace(mesh, points=mesh.points + [3e-4, 0.0], symmetric=False), folder / "aside.msh")
+    write_pad(
+        replace(mesh, points=mesh.points + [3e-4, 0.0], symmetric=False), folder / "aside.msh"
+    )
     whole = (folder / "quad9.msh").read_text()
     (folder / "cut.msh").write_text(whole[: len(whole) // 2])
     (folder / "text.msh").write_text("not a mesh\n")
@@ -126,7 +142,11 @@ def usual():
     """Key -> a value it is likely to have."""
     found = {}
     for file in ("scenes/examples/every_key.yaml", "specimens/thesis.yaml"):
-        found |= {key: value for key, value in _leaves(yaml.safe_load((CONFIG / file).read_text())) if isinstance(value, str)}
+        found |= {
+            key: value
+            for key, value in _leaves(yaml.safe_load((CONFIG / file).read_text()))
+            if isinstance(value, str)
+        }
     return found | {
         "thickness": "1.5 mm",
         "width": "2 mm",
@@ -204,7 +224,11 @@ def _objects(draw, schema, defs):
     one_of = [key for each in schema.get("oneOf", ()) for key in each.get("required", ())]
     taken = draw(st.sampled_from(one_of)) if one_of else None
     for key, inner in schema.get("properties", {}).items():
-        if key == taken or key in schema.get("required", ()) or (key not in one_of and draw(st.integers(0, 3)) == 3):
+        if (
+            key == taken
+            or key in schema.get("required", ())
+            or (key not in one_of and draw(st.integers(0, 3)) == 3)
+        ):
             found[key] = draw(values(inner, defs, key))
     more = schema.get("additionalProperties")
     if isinstance(more, dict) and not found:
@@ -241,15 +265,40 @@ def scenes(draw):
 
 
 JUNK = st.one_of(
-    st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8), st.just([]), st.just({}), st.just(10**400),
-    st.sampled_from(["1 mm", "-20 gf", "0 s", "1e400 mm", "nan mm", "../../x", "/dev/zero", "a\nb", "\0", "5 parsecs", "thesis"]),
-)  # fmt: skip
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=8),
+    st.just([]),
+    st.just({}),
+    st.just(10**400),
+    st.sampled_from(
+        [
+            "1 mm",
+            "-20 gf",
+            "0 s",
+            "1e400 mm",
+            "nan mm",
+            "../../x",
+            "/dev/zero",
+            "a\nb",
+            "\0",
+            "5 parsecs",
+            "thesis",
+        ]
+    ),
+)
 
 
 def places(document, path=()):
     """The paths to everything in a document."""
     for key, value in (
-        document.items() if isinstance(document, dict) else enumerate(document) if isinstance(document, list) else ()
+        document.items()
+        if isinstance(document, dict)
+        else enumerate(document)
+        if isinstance(document, list)
+        else ()
     ):
         yield (*path, key)
         yield from places(value, (*path, key))
@@ -287,21 +336,34 @@ def broken(draw):
 def sweeps(draw):
     """A sweep over one or two quantities of a scene, in few values."""
     scene = draw(scenes()).document
-    known = [path for path in places(scene) if isinstance(at(scene, path), str) and _unit(at(scene, path))]
+    known = [
+        path
+        for path in places(scene)
+        if isinstance(at(scene, path), str) and _unit(at(scene, path))
+    ]
     defs = sweep_json_schema()["$defs"]
     over = {}
-    for path in draw(st.lists(st.sampled_from(known), min_size=1, max_size=2, unique=True)) if known else ():
+    for path in (
+        draw(st.lists(st.sampled_from(known), min_size=1, max_size=2, unique=True)) if known else ()
+    ):
         like = at(scene, path)
         key = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)[1:]
         kind = draw(st.sampled_from(["values", "range", "Distribution"]))
         if kind == "values":
             over[key] = draw(st.lists(quantities(like), min_size=1, max_size=3))
         elif kind == "range":
-            over[key] = {"range": draw(st.lists(quantities(like), min_size=2, max_size=2)), "count": draw(st.integers(2, 3))}
+            over[key] = {
+                "range": draw(st.lists(quantities(like), min_size=2, max_size=2)),
+                "count": draw(st.integers(2, 3)),
+            }
         else:
             over[key] = _in_units(draw(values(defs["Distribution"], defs)), like)
     document = {"scene": scene, "over": over}
-    if any("values" not in axis and "range" not in axis for axis in over.values() if isinstance(axis, dict)):
+    if any(
+        "values" not in axis and "range" not in axis
+        for axis in over.values()
+        if isinstance(axis, dict)
+    ):
         document |= {"design": "sobol", "samples": 2}
     return Drawn("sweep", document)
 
@@ -310,7 +372,10 @@ def _in_units(part, like):
     """A drawn distribution with means and medians of another quantity's size."""
     if not isinstance(part, dict):
         return part
-    return {key: like if key in ("mean", "median", "sd") else _in_units(inner, like) for key, inner in part.items()}
+    return {
+        key: like if key in ("mean", "median", "sd") else _in_units(inner, like)
+        for key, inner in part.items()
+    }
 
 
 def _unit(text):
@@ -322,4 +387,6 @@ def _unit(text):
 
 def anything():
     """A scene in four of six, a sweep, or something broken."""
-    return st.integers(0, 5).flatmap(lambda n: scenes() if n < 4 else sweeps() if n == 4 else broken())
+    return st.integers(0, 5).flatmap(
+        lambda n: scenes() if n < 4 else sweeps() if n == 4 else broken()
+    )

@@ -23,7 +23,10 @@ from cysyk1999.measures.errors import PARTS
 from cysyk1999.measures.quantities import QUANTITIES
 from cysyk1999.publishing.write import TEXT_COLUMNS
 
-TOLERANCES = {name: q.tolerance for name, q in QUANTITIES.items() if q.tolerance} | {"element": 1e-5, "value": 1e-3}
+TOLERANCES = {name: q.tolerance for name, q in QUANTITIES.items() if q.tolerance} | {
+    "element": 1e-5,
+    "value": 1e-3,
+}
 """Largest difference allowed in a column, relative to the largest value of the curve."""
 
 ERROR_TOLERANCE = 0.2
@@ -47,7 +50,10 @@ def split_curves(frame: pd.DataFrame) -> Iterable[tuple[str, pd.DataFrame]]:
     keys = [c for c in TEXT_COLUMNS if c in frame]
     keys += [c for c in ("receptor_depth (um)", "node_x (mm)") if c in frame]
     for names, rows in frame.groupby(keys, dropna=False, sort=False):
-        yield ", ".join(f"{n:g}" if isinstance(n, float) else str(n) for n in names if n == n), rows.drop(columns=keys)
+        yield (
+            ", ".join(f"{n:g}" if isinstance(n, float) else str(n) for n in names if n == n),
+            rows.drop(columns=keys),
+        )
 
 
 def differences(frame: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:
@@ -110,15 +116,21 @@ def summary_differences(new: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:
     for row in both.to_dict("records"):
         name = f"Fig. {row['figure']}, {row['curve']}, {row['column']}"
         if row["_merge"] != "both":
-            found.append(f"{name}: only in the {'new data' if row['_merge'] == 'left_only' else 'baseline'}")
+            found.append(
+                f"{name}: only in the {'new data' if row['_merge'] == 'left_only' else 'baseline'}"
+            )
         elif row["count"] != row["count_old"]:
             found.append(f"{name}: {row['count']:.0f} points, baseline {row['count_old']:.0f}")
         else:
             # the summary has six digits
-            allowed = (tolerance(row["column"]) + 5e-6) * max(abs(row["least_old"]), abs(row["largest_old"])) + 1e-12
+            allowed = (tolerance(row["column"]) + 5e-6) * max(
+                abs(row["least_old"]), abs(row["largest_old"])
+            ) + 1e-12
             for what in ("least", "largest", "mean", "rms"):
                 if abs(row[what] - row[f"{what}_old"]) > allowed:
-                    found.append(f"{name}: {what} {row[what]:.6g}, baseline {row[f'{what}_old']:.6g}")
+                    found.append(
+                        f"{name}: {what} {row[what]:.6g}, baseline {row[f'{what}_old']:.6g}"
+                    )
     return found
 
 
@@ -145,4 +157,6 @@ def _grey(path: Path, shrink: int) -> np.ndarray:
     with Image.open(path) as picture:
         grey = np.asarray(picture.convert("L"), float) / 255
     high, wide = (n // shrink * shrink for n in grey.shape)
-    return grey[:high, :wide].reshape(high // shrink, shrink, wide // shrink, shrink).mean(axis=(1, 3))
+    return (
+        grey[:high, :wide].reshape(high // shrink, shrink, wide // shrink, shrink).mean(axis=(1, 3))
+    )

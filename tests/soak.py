@@ -36,7 +36,16 @@ SLOWEST = 60.0
 SHRINKING = 60.0
 """s of process time spent on making a failure smaller."""
 LATE = "not done in a minute"
-COLUMNS = ("drawn", "refused in one line", "planned", "run", "completed", "stopped with its diagnosis", LATE, "failed")
+COLUMNS = (
+    "drawn",
+    "refused in one line",
+    "planned",
+    "run",
+    "completed",
+    "stopped with its diagnosis",
+    LATE,
+    "failed",
+)
 
 
 class Failed(AssertionError):
@@ -63,7 +72,10 @@ def said(words: tuple, code: int, err: str) -> None:
     """Is what a command said of a failure one line, with an exit code of the interface?"""
     require(code in (0, 2, 3), f"{words[0]}: exit code {code}: {err.strip()}")
     lines = 0 if code == 0 else 1
-    require(len(err.splitlines()) == lines, f"{words[0]}: exit code {code} with {len(err.splitlines())} lines: {err[:300]}")
+    require(
+        len(err.splitlines()) == lines,
+        f"{words[0]}: exit code {code} with {len(err.splitlines())} lines: {err[:300]}",
+    )
 
 
 def tried(drawn: Drawn, folder: Path) -> str:
@@ -78,7 +90,10 @@ def tried(drawn: Drawn, folder: Path) -> str:
     if code:
         return "refused in one line"
     plan = json.loads(text)
-    require(np.isfinite(plan["predicted_cost_s"]) and plan["predicted_cost_s"] > 0, f"predicted cost {plan['predicted_cost_s']}")
+    require(
+        np.isfinite(plan["predicted_cost_s"]) and plan["predicted_cost_s"] > 0,
+        f"predicted cost {plan['predicted_cost_s']}",
+    )
     if "sweep" in plan or plan["predicted_cost_s"] > CHEAP:
         return "planned"
     words = ("run", file, "--out", out, "--quiet", "--force", "--accuracy", "draft")
@@ -107,16 +122,29 @@ def judged(out: Path) -> None:
         error = run["estimated_error"]
         require(error >= 0, f"estimated error {error}")
         require(run["min_detF"] > 0, f"det F {run['min_detF']:.3g}")
-        require(run["complementarity_error"] < 1e-3, f"complementarity {run['complementarity_error']:.3g}")
+        require(
+            run["complementarity_error"] < 1e-3,
+            f"complementarity {run['complementarity_error']:.3g}",
+        )
         work = np.abs(history.external_work.values).max()
         kept = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
         lost = float(np.abs(history.external_work - kept).max()) / max(work, 1e-300)
-        fewest = min(np.count_nonzero(history.leg.values[1:] == k) for k, leg in enumerate(scene["motion"]) if _presses(leg))
+        fewest = min(
+            np.count_nonzero(history.leg.values[1:] == k)
+            for k, leg in enumerate(scene["motion"])
+            if _presses(leg)
+        )
         # work is summed by trapezoids, which are wrong by less than 1/n^2 of it in n increments of a stiffening pad
         allowed = max(0.03, error) + 1 / fewest**2
-        require(work == 0 or lost < allowed, f"energy out of balance by {lost:.2g} of {allowed:.2g}, in {fewest} steps")
+        require(
+            work == 0 or lost < allowed,
+            f"energy out of balance by {lost:.2g} of {allowed:.2g}, in {fewest} steps",
+        )
         pressure, force = history.contact_pressure.values, history.force.values
-        require(pressure.min() >= -1e-9 * max(pressure.max(), 1), f"the contact pulls: {pressure.min():.3g} Pa")
+        require(
+            pressure.min() >= -1e-9 * max(pressure.max(), 1),
+            f"the contact pulls: {pressure.min():.3g} Pa",
+        )
         if scene["stimulus"]["shape"] == "flat":
             rubbed = np.abs(history.tangential_force.values) - scene["friction"] * force
             require((rubbed <= 1e-6 * max(force.max(), 1e-9)).all(), "more friction than there is")
@@ -124,10 +152,16 @@ def judged(out: Path) -> None:
     for leg, end in zip(scene["motion"], summary["legs"], strict=True):
         if leg.get("press_to_force"):
             asked = leg["press_to_force"] / length
-            require(abs(end["force_N_per_m"] / asked - 1) < 1e-4, f"force {end['force_N_per_m']:.6g} N/m for {asked:.6g}")
+            require(
+                abs(end["force_N_per_m"] / asked - 1) < 1e-4,
+                f"force {end['force_N_per_m']:.6g} N/m for {asked:.6g}",
+            )
         if leg.get("press_to_depth"):
             asked = leg["press_to_depth"] * 1e3
-            require(abs(end["depth_mm"] / asked - 1) < 1e-4, f"depth {end['depth_mm']:.6g} mm for {asked:.6g}")
+            require(
+                abs(end["depth_mm"] / asked - 1) < 1e-4,
+                f"depth {end['depth_mm']:.6g} mm for {asked:.6g}",
+            )
 
 
 def _presses(leg: dict) -> bool:
@@ -156,7 +190,10 @@ class Soak:
 
     def table(self) -> pd.DataFrame:
         """A row a kind, and their sum."""
-        rows = [{"what": kind} | {name: self.counts[kind][name] for name in COLUMNS} for kind in sorted(self.counts)]
+        rows = [
+            {"what": kind} | {name: self.counts[kind][name] for name in COLUMNS}
+            for kind in sorted(self.counts)
+        ]
         whole = {"what": "all"} | {name: sum(row[name] for row in rows) for name in COLUMNS}
         return pd.DataFrame([*rows, whole])
 
@@ -210,14 +247,24 @@ def soaked(words: list[str] | None = None) -> int:
     parser.add_argument("--scenes", type=int, default=1000, help="at most so many")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--minutes", type=float, default=10.0, help="of process time, at most")
-    parser.add_argument("--files", action="store_true", help="damaged files in place of random scenes (tests/soak_files.py)")
-    parser.add_argument("--table", type=Path, help="where the counts are published, as CSV and Markdown")
+    parser.add_argument(
+        "--files",
+        action="store_true",
+        help="damaged files in place of random scenes (tests/soak_files.py)",
+    )
+    parser.add_argument(
+        "--table", type=Path, help="where the counts are published, as CSV and Markdown"
+    )
     options = parser.parse_args(words)
     if options.files:
         from soak_files import soak_files
 
         outcomes, failure = soak_files(options.scenes, options.seed, 60 * options.minutes)
-        print(f"{sum(outcomes.values())} damaged files:", *(f"{n:6d} {what}" for what, n in sorted(outcomes.items())), sep="\n")
+        print(
+            f"{sum(outcomes.values())} damaged files:",
+            *(f"{n:6d} {what}" for what, n in sorted(outcomes.items())),
+            sep="\n",
+        )
         print(f"failed: {failure}" if failure else "none failed")
         return int(bool(failure))
     found = soak(options.scenes, options.seed, 60 * options.minutes)

@@ -27,10 +27,30 @@ from own_meshes import SLAB, slab_mesh
 SLOWEST = 30.0
 """s of process time after which a run is let go."""
 REFERENCE = Path(__file__).parents[1] / "config" / "reference"
-READERS = {"force_depth/dandekar_2003.csv": read_force_depth, "impulse_rates/cysyk_1999.csv": read_rates}
+READERS = {
+    "force_depth/dandekar_2003.csv": read_force_depth,
+    "impulse_rates/cysyk_1999.csv": read_rates,
+}
 """Published files of measured data, and what reads files like them."""
 WORDS = ("skin", "base", "foam", "", "Skin", "fat", "bone", "3", "a b", "\u00b5", '"', "0")
-CELLS = ("", "nan", "inf", "1e999", "-1", "0", "1e-300", "abc", "1,5", "1.5.2", "999999999999", "--", '"', "\u00b5m", "#", "1;2")
+CELLS = (
+    "",
+    "nan",
+    "inf",
+    "1e999",
+    "-1",
+    "0",
+    "1e-300",
+    "abc",
+    "1,5",
+    "1.5.2",
+    "999999999999",
+    "--",
+    '"',
+    "\u00b5m",
+    "#",
+    "1;2",
+)
 
 
 def meshes(folder: Path) -> list[str]:
@@ -38,7 +58,11 @@ def meshes(folder: Path) -> list[str]:
     import gmsh
 
     base = slab_mesh(1e-3, left=-6e-3, right=6e-3, low=-6e-3, high=6e-3, height=3e-3)
-    flat = replace(base, element="tri3", cells=np.concatenate([base.cells[:, [0, 1, 2]], base.cells[:, [0, 2, 3]]]))
+    flat = replace(
+        base,
+        element="tri3",
+        cells=np.concatenate([base.cells[:, [0, 1, 2]], base.cells[:, [0, 2, 3]]]),
+    )
     flat = replace(flat, region=np.tile(base.region, 2))
     made = {"quad4": base, "quad9": base.raised(), "tri3": flat, "tri6": flat.raised()}
     for name, mesh in made.items():
@@ -60,13 +84,27 @@ def tables(folder: Path) -> dict[str, str]:
     made = {
         "profile.csv": ("x (mm),y (mm)", np.column_stack([x, 0.1 * x**2]), ","),
         "scan.csv": ("# x (um);y (um);z (um)", np.column_stack([1e3 * x, 0 * x, 100 * x**2]), ";"),
-        "motion.csv": ("time (s),depth (mm)", np.column_stack([time_s, np.minimum(time_s, 0.3)]), ","),
+        "motion.csv": (
+            "time (s),depth (mm)",
+            np.column_stack([time_s, np.minimum(time_s, 0.3)]),
+            ",",
+        ),
         "force.csv": ("time (ms)\tforce (gf)", np.column_stack([1e3 * time_s, 10 * time_s]), "\t"),
-        "samples.csv": ("stimulus.curvature (1/m),friction", np.column_stack([[50.0, 100.0], [0.0, 0.1]]), ","),
+        "samples.csv": (
+            "stimulus.curvature (1/m),friction",
+            np.column_stack([[50.0, 100.0], [0.0, 0.1]]),
+            ",",
+        ),
     }
     for name, (header, rows, delimiter) in made.items():
         np.savetxt(folder / name, rows, delimiter=delimiter, header=header, comments="", fmt="%.6g")
-    return {"profile": "profile.csv", "scan": "scan.csv", "motion": "motion.csv", "force": "force.csv", "samples": "samples.csv"}
+    return {
+        "profile": "profile.csv",
+        "scan": "scan.csv",
+        "motion": "motion.csv",
+        "force": "force.csv",
+        "samples": "samples.csv",
+    }
 
 
 def documents(folder: Path) -> list[tuple[str, str, dict]]:
@@ -79,12 +117,17 @@ def documents(folder: Path) -> list[tuple[str, str, dict]]:
     found = [(name, "run", SLAB(name) | {"accuracy": "draft"}) for name in meshes(folder)]
     names = tables(folder)
     for what in ("profile", "scan"):
-        found.append((names[what], "run", plain | {"stimulus": {"shape": "sampled", "csv": names[what]}}))
+        found.append(
+            (names[what], "run", plain | {"stimulus": {"shape": "sampled", "csv": names[what]}})
+        )
     for what in ("motion", "force"):
         found.append((names[what], "run", plain | {"motion": {"table": names[what]}}))
     found.append((names["samples"], "plan", {"scene": plain, "over": {"table": names["samples"]}}))
     found.append(("scene.yaml", "run", plain))
-    for name, reader in READERS.items():  # what the workflow reads of measured data, without the workflow
+    for (
+        name,
+        reader,
+    ) in READERS.items():  # what the workflow reads of measured data, without the workflow
         shutil.copy(REFERENCE / name, folder / Path(name).name)
         found.append((Path(name).name, reader, {}))
     return found
@@ -102,7 +145,9 @@ def damaged(content: bytes, draw: np.random.Generator) -> bytes:
     if kind == 0:
         return b"\n".join(lines[:at] + lines[at + more :])  # a part is dropped
     if kind == 1:
-        return b"\n".join(lines[:at] + lines[at : at + more] * 2 + lines[at + more :])  # or there twice
+        return b"\n".join(
+            lines[:at] + lines[at : at + more] * 2 + lines[at + more :]
+        )  # or there twice
     if kind == 2:
         order = lines[at : at + more]
         draw.shuffle(order)
@@ -111,7 +156,11 @@ def damaged(content: bytes, draw: np.random.Generator) -> bytes:
         return content[: int(draw.integers(len(content) + 1))]  # cut
     if kind == 4:
         where = int(draw.integers(len(content) + 1))
-        return content[:where] + bytes(draw.integers(0, 256, int(draw.integers(1, 9))).astype(np.uint8)) + content[where:]
+        return (
+            content[:where]
+            + bytes(draw.integers(0, 256, int(draw.integers(1, 9))).astype(np.uint8))
+            + content[where:]
+        )
     if kind == 5 and content:
         where = int(draw.integers(len(content)))
         return content[:where] + bytes([int(draw.integers(256))]) + content[where + 1 :]
@@ -156,7 +205,9 @@ def moved(content: bytes, draw: np.random.Generator) -> bytes:
         coordinates = parts[-3:] if len(parts) in (3, 4) and any(b"." in p for p in parts) else None
         if coordinates and draw.random() < share:
             with contextlib.suppress(ValueError):  # damaged before
-                new = [f"{float(p) + draw.normal() * far:.6g}".encode() for p in coordinates[:2]] + [coordinates[2]]
+                new = [
+                    f"{float(p) + draw.normal() * far:.6g}".encode() for p in coordinates[:2]
+                ] + [coordinates[2]]
                 lines[k] = b" ".join([*parts[:-3], *new])
     return content[:start] + b"\n".join(lines) + content[end:]
 
@@ -184,7 +235,11 @@ def soak_files(count: int, start: int, seconds: float) -> tuple[Counter, str]:
             shutil.copytree(good, folder)
             content = (folder / file).read_bytes()
             for _ in range(int(draw.integers(1, 4))):
-                content = moved(content, draw) if file.endswith(".msh") and draw.random() < 0.4 else damaged(content, draw)
+                content = (
+                    moved(content, draw)
+                    if file.endswith(".msh") and draw.random() < 0.4
+                    else damaged(content, draw)
+                )
             (folder / file).write_bytes(content)
             path = folder / "scene.yaml"
             if file != "scene.yaml":
@@ -199,7 +254,9 @@ def soak_files(count: int, start: int, seconds: float) -> tuple[Counter, str]:
                     outcomes[f"{file}: refused"] += 1
                 continue
             out = folder / "out"
-            words = (verb, path) if verb == "plan" else (verb, path, "--out", out, "--quiet", "--force")
+            words = (
+                (verb, path) if verb == "plan" else (verb, path, "--out", out, "--quiet", "--force")
+            )
             try:
                 with in_time(SLOWEST):
                     code, _, err = command(*words)
@@ -212,5 +269,8 @@ def soak_files(count: int, start: int, seconds: float) -> tuple[Counter, str]:
             except (Failed, Exception) as error:  # noqa: BLE001 - whatever it is, it is shown
                 kept = Path(tempfile.mkdtemp(prefix="soak-failed-"))
                 shutil.copytree(folder, kept, dirs_exist_ok=True)
-                return outcomes, f"number {number} of seed {start}, {file} in {kept}: {type(error).__name__}: {error}"
+                return (
+                    outcomes,
+                    f"number {number} of seed {start}, {file} in {kept}: {type(error).__name__}: {error}",
+                )
     return outcomes, ""

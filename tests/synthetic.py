@@ -16,12 +16,22 @@ from fingerpad.specimen.pad import MeshSize, PadMesh
 from fingerpad.stimuli.shapes import shape_from
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
-CURVATURE = dict(zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True))
+CURVATURE = dict(
+    zip(SURFACES, (0, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84), strict=True)
+)
 OUTLINE = {
-    "apex_height": 6e-3, "apex_radius": 7.9e-3, "half_width": 8.5e-3, "depth_below": 6.2e-3, "epidermis_thickness": 0.85e-3,
-    "dermis_thickness": 0.85e-3, "stratum_corneum_thickness": 0.35e-3, "bone_centre_height": -1.5e-3, "bone_half_width": 4e-3,
-    "bone_half_height": 2.5e-3, "nail_half_width": 5e-3,
-}  # fmt: skip
+    "apex_height": 6e-3,
+    "apex_radius": 7.9e-3,
+    "half_width": 8.5e-3,
+    "depth_below": 6.2e-3,
+    "epidermis_thickness": 0.85e-3,
+    "dermis_thickness": 0.85e-3,
+    "stratum_corneum_thickness": 0.35e-3,
+    "bone_centre_height": -1.5e-3,
+    "bone_half_width": 4e-3,
+    "bone_half_height": 2.5e-3,
+    "nail_half_width": 5e-3,
+}
 DEPTHS = np.array([560, 600, 640, 765, 800, 845, 870, 915, 960]) * 1e-6
 LOAD = 19.6133  # N/m
 KNOWN = (0, 79, 210, 420, 1260)  # 1/m, surfaces with measured values (below: end of hold)
@@ -34,7 +44,9 @@ ENERGY_915 = (108, 197, 319, 426, 536)
 @cache
 def mesh(edge: float = 0.5e-3) -> PadMesh:
     """A coarse mesh of the thesis's section."""
-    return build_pad_mesh(Outline(**OUTLINE), MeshSize(skin_edge=edge, fine_half_width=2e-3, layer_edge=edge))
+    return build_pad_mesh(
+        Outline(**OUTLINE), MeshSize(skin_edge=edge, fine_half_width=2e-3, layer_edge=edge)
+    )
 
 
 def meshes(names) -> dict[str, PadMesh]:
@@ -44,8 +56,14 @@ def meshes(names) -> dict[str, PadMesh]:
 
 def all_scenes() -> list[str]:
     """Names of the scenes of ramps and holds."""
-    names = [f"{p}_{'flat' if k == 'flat' else 'k' + k}" for p in ("ramp40", "ramp150") for k in SURFACES]
-    lower = [f"press{f}_{'flat' if k == 'flat' else 'k' + k}" for f in (10, 15) for k in ("flat", "79", "158", "315", "630")]
+    names = [
+        f"{p}_{'flat' if k == 'flat' else 'k' + k}" for p in ("ramp40", "ramp150") for k in SURFACES
+    ]
+    lower = [
+        f"press{f}_{'flat' if k == 'flat' else 'k' + k}"
+        for f in (10, 15)
+        for k in ("flat", "79", "158", "315", "630")
+    ]
     return [*names, *lower, "homogeneous_flat"]
 
 
@@ -53,7 +71,9 @@ def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
     """Every scene's made-up history; `scale` multiplies every result (a stand-in for a companion)."""
     made = {name: history(name, scale, edge) for name in all_scenes()}
     made |= {name: pressed(name, scale, edge) for name in PRESSED}
-    made |= {name: ridged(name, scale, edge) for name in RIDGED} | {name: plate_stroke(name, scale, edge) for name in PLATES}
+    made |= {name: ridged(name, scale, edge) for name in RIDGED} | {
+        name: plate_stroke(name, scale, edge) for name in PLATES
+    }
     return made | {name: stroke(name, scale, edge) for name in STROKES}
 
 
@@ -65,23 +85,37 @@ def companions(mesh: float = 1.01, both: float = 1.0125) -> dict[str, Companion]
 
 def _of(variables: dict[str, np.ndarray]) -> dict:
     """Variables of a history by their values alone: dimensions and units are those of simulated ones."""
-    said = {name: dict(zip(("units", "long_name"), VARIABLES[name][1:], strict=True)) for name in variables}
+    said = {
+        name: dict(zip(("units", "long_name"), VARIABLES[name][1:], strict=True))
+        for name in variables
+    }
     return {name: (VARIABLES[name][0], values, said[name]) for name, values in variables.items()}
 
 
 def _filled(data: xr.Dataset) -> xr.Dataset:
     """The history with every variable that simulated ones have: what is not made up is zero."""
     rubbed = bool(json.loads(data.attrs["scene"])["friction"])
-    missing = [name for name in VARIABLES if name not in data and (rubbed or name not in FRICTION_VARIABLES)]
+    missing = [
+        name
+        for name in VARIABLES
+        if name not in data and (rubbed or name not in FRICTION_VARIABLES)
+    ]
     sizes = {name: [data.sizes[dim] for dim in VARIABLES[name][0]] for name in missing}
-    return data.assign(_of({name: np.full(sizes[name], float(name == "min_detF")) for name in missing}))
+    return data.assign(
+        _of({name: np.full(sizes[name], float(name == "min_detF")) for name in missing})
+    )
 
 
-def _made(scene: dict, variables: dict[str, np.ndarray], time, skin, receptors=((), ())) -> xr.Dataset:
+def _made(
+    scene: dict, variables: dict[str, np.ndarray], time, skin, receptors=((), ())
+) -> xr.Dataset:
     """A history of its values: times (nt,), skin nodes and receptors (depths, offsets) where they are."""
     x, y = skin
     places = {"skin_x": x, "skin_y": y, "skin_arc": skin_arc(x, y, _apex(x, y))}
-    at = {"receptor_depth": np.array(receptors[0], float), "receptor_offset": np.array(receptors[1], float)}
+    at = {
+        "receptor_depth": np.array(receptors[0], float),
+        "receptor_offset": np.array(receptors[1], float),
+    }
     attributes = {"title": f"made up: {scene['name']}", "scene": scene}
     return _filled(arrays(variables, {"time": time, **places, **at}, attributes).labelled())
 
@@ -106,14 +140,19 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     width = at(WIDTH) * load**0.55 * (0.9 + 0.1 * crept)
     skin_x, skin_y = _skin(edge)
     pressure = np.array(
-        [_pressure(skin_x, skin_y, LOAD * f, w, programme != "homogeneous") for f, w in zip(load, width, strict=True)]
+        [
+            _pressure(skin_x, skin_y, LOAD * f, w, programme != "homogeneous")
+            for f, w in zip(load, width, strict=True)
+        ]
     )
     offsets = np.round(np.arange(-5e-3, 5.01e-3, 0.25e-3), 9)
     points = [(z, 0.0) for z in DEPTHS]
     if programme == "ramp150":
         points += [(z, o) for z in (800e-6, 915e-6) for o in offsets if o != 0]
     receptor_depth, receptor_offset = np.array(points).T
-    surface_energy = np.interp(receptor_depth, (560e-6, 600e-6, 849e-6, 851e-6, 960e-6), (0.8, 1.0, 3.0, 1.1, 0.95))
+    surface_energy = np.interp(
+        receptor_depth, (560e-6, 600e-6, 849e-6, 851e-6, 960e-6), (0.8, 1.0, 3.0, 1.1, 0.95)
+    )
     peak = np.where(receptor_depth < 850e-6, at(ENERGY_600) * 0.5, at(ENERGY_915)) * surface_energy
     peak = peak * np.exp(-((receptor_offset / (0.5 * at(WIDTH) + 0.8e-3)) ** 2))
     energy = np.outer(load**1.2 * (1 - 0.18 * crept), peak)
@@ -135,22 +174,41 @@ def history(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         "strain_energy_long_term_moduli": energy * 1.5,
         "strain_energy_half_stress_strain": (energy + network) / 2,
     }
-    data = {"force": LOAD * load, "leg": leg} | {variable: scale * values for variable, values in scaled.items()}
-    return _made(_scene(name, label, rate), data, time, (skin_x, skin_y), (receptor_depth, receptor_offset))
+    data = {"force": LOAD * load, "leg": leg} | {
+        variable: scale * values for variable, values in scaled.items()
+    }
+    return _made(
+        _scene(name, label, rate), data, time, (skin_x, skin_y), (receptor_depth, receptor_offset)
+    )
 
 
 MM, INCH = 1e-3, 25.4e-3
-STEPS = {"flat": {"shape": "flat"}, "line": {"shape": "line"}, "bar": {"shape": "bar", "width": INCH / 16, "fillet": 0.1 * MM}}
+STEPS = {
+    "flat": {"shape": "flat"},
+    "line": {"shape": "line"},
+    "bar": {"shape": "bar", "width": INCH / 16, "fillet": 0.1 * MM},
+}
 PRESSED = {
     "steady_line": (STEPS["line"], (0.5, 1.0, 1.5, 2.0), None),
     "steady_bar_1_16_inch": (STEPS["bar"], (1.0, 2.0), None),
-    "steady_cylinder_1_8_inch": ({"shape": "cylinder", "curvature": 16 / INCH}, (0.5, 1.0, 1.6, 2.5), None),
+    "steady_cylinder_1_8_inch": (
+        {"shape": "cylinder", "curvature": 16 / INCH},
+        (0.5, 1.0, 1.6, 2.5),
+        None,
+    ),
     "steady_cylinder_1_4_inch": ({"shape": "cylinder", "curvature": 8 / INCH}, (1.0,), None),
-    "steady_cylinder_3_8_inch": ({"shape": "cylinder", "curvature": 16 / 3 / INCH}, (0.6, 1.25, 1.8, 2.5), None),
+    "steady_cylinder_3_8_inch": (
+        {"shape": "cylinder", "curvature": 16 / 3 / INCH},
+        (0.6, 1.25, 1.8, 2.5),
+        None,
+    ),
     "steady_cylinder_1_inch": ({"shape": "cylinder", "curvature": 2 / INCH}, (1.0,), None),
     "calibration_plate": (STEPS["flat"], (0.5, 1.0, 1.5, 2.0, 2.5), None),
     "calibration_ramp_hold": (STEPS["flat"], (1.0,), (2.0, 10.0)),
-    **{f"ramp_hold_{d:.1f}_mm".replace(".", "_"): (STEPS["flat"], (d,), (2.0, 10.0)) for d in (0.5, 1.5, 2.0)},
+    **{
+        f"ramp_hold_{d:.1f}_mm".replace(".", "_"): (STEPS["flat"], (d,), (2.0, 10.0))
+        for d in (0.5, 1.5, 2.0)
+    },
     **{f"ramp_hold_{v}_mm_per_s": (STEPS["flat"], (1.0,), (v, 1.5)) for v in (8, 32)},
 }
 """Presses to depths: stimulus, depths in mm leg by leg, and speed in mm/s and end in s of a ramp and hold (None: steady)."""
@@ -160,8 +218,17 @@ def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     """A made-up press to depths: force as the square of depth, half of it relaxing, a smooth dent of the skin."""
     stimulus, targets, timed = PRESSED[name]
     if timed is None:
-        depth = np.concatenate([[0.0], *(np.linspace(a, b, 5)[1:] for a, b in zip((0, *targets), targets, strict=False))])
-        time, leg, overstress = np.zeros(len(depth)), np.repeat(np.arange(len(targets)), 4), np.zeros(len(depth))
+        depth = np.concatenate(
+            [
+                [0.0],
+                *(np.linspace(a, b, 5)[1:] for a, b in zip((0, *targets), targets, strict=False)),
+            ]
+        )
+        time, leg, overstress = (
+            np.zeros(len(depth)),
+            np.repeat(np.arange(len(targets)), 4),
+            np.zeros(len(depth)),
+        )
         leg = np.concatenate(([0], leg))
         motion = [{"press_to_depth": d * MM, "speed": None} for d in targets]
     else:
@@ -187,7 +254,12 @@ def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
         "skin_displacement_y": -scale * np.outer(depth, dent(skin_x, skin_y)),
         "leg": leg,
     }
-    made = _made(_scene(name, "flat", 40) | {"stimulus": stimulus, "motion": motion}, data, time, (skin_x, skin_y))
+    made = _made(
+        _scene(name, "flat", 40) | {"stimulus": stimulus, "motion": motion},
+        data,
+        time,
+        (skin_x, skin_y),
+    )
     return _with_fields(made, time[last], fields, np.zeros((len(last), len(mesh().cells))))
 
 
@@ -228,9 +300,15 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     lost = abs(under - WAVY["lead_in"]) < 0.4 * MM  # the sharp corner
     touches = upper & (skin_y > surface) & ~lost
     y = np.where(touches, surface, skin_y)
-    bend = sum(np.where((under >= p.start) & (under < p.end), p.curvature, 0.0) for p in shape.segments)
+    bend = sum(
+        np.where((under >= p.start) & (under < p.end), p.curvature, 0.0) for p in shape.segments
+    )
     pressure = (
-        scale * touches * load[:, None] * np.maximum(3000 + 30 * bend, 300) * np.sqrt(np.clip(1 - (x / (4 * MM)) ** 2, 0.01, 1))
+        scale
+        * touches
+        * load[:, None]
+        * np.maximum(3000 + 30 * bend, 300)
+        * np.sqrt(np.clip(1 - (x / (4 * MM)) ** 2, 0.01, 1))
     )
     felt = np.convolve(np.pad(pressure[:, centre], 8, mode="edge"), np.ones(17) / 17, "valid")
     data = {
@@ -248,14 +326,28 @@ def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
     }
     scene = _scene(name, "flat", 40)
     press = {"press_to_force": scene["motion"][0]["press_to_force"], "rate": None}
-    on = {"step": way * MM, "every": MM} if speed is None else {"slide": way * MM, "speed": speed * MM, "keep": "force"}
-    scene |= {"stimulus": stimulus, "motion": [press, on], "friction": 0.0 if speed is None else 0.7}
+    on = (
+        {"step": way * MM, "every": MM}
+        if speed is None
+        else {"slide": way * MM, "speed": speed * MM, "keep": "force"}
+    )
+    scene |= {
+        "stimulus": stimulus,
+        "motion": [press, on],
+        "friction": 0.0 if speed is None else 0.7,
+    }
     made = _made(scene, data, time, (skin_x, skin_y), ((560e-6, 915e-6), (0.0, 0.0)))
     return _dragged(made, time[start::40]) if name == "stroke_10" else made
 
 
 RIDGES = {
-    "inner": {"pitch": 0.48e-3, "height": 0.15e-3, "shape": "smooth", "phase": "tip", "limiting": 0.0},
+    "inner": {
+        "pitch": 0.48e-3,
+        "height": 0.15e-3,
+        "shape": "smooth",
+        "phase": "tip",
+        "limiting": 0.0,
+    },
     "outer": None,
     "half_width": 3.4e-3,
 }
@@ -273,7 +365,9 @@ def _receptors(data: xr.Dataset, depths, offsets, values) -> xr.Dataset:
     """The dataset with other receptors; values (time, receptor)."""
     grid = [each.ravel() for each in np.meshgrid(depths, offsets, indexing="ij")]
     old = {name: data[name].attrs for name in ("receptor_depth", "receptor_offset")}
-    data = data.drop_vars([n for n in (*data.data_vars, *data.coords) if "receptor" in data[n].dims])
+    data = data.drop_vars(
+        [n for n in (*data.data_vars, *data.coords) if "receptor" in data[n].dims]
+    )
     places = {name: ("receptor", where, old[name]) for name, where in zip(old, grid, strict=True)}
     return _filled(data.assign_coords(places).assign(_of({"strain_energy_density": values(*grid)})))
 
@@ -300,7 +394,11 @@ def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Datas
     base = history("ramp40_flat", scale, edge).isel(time=np.minimum(np.arange(len(way)), 20))
     time = np.minimum(np.arange(len(way)) * 0.125, 0.5) + way / (10 * MM)
     base = base.assign_coords(time=("time", time, base.time.attrs))
-    own = {"stroke_distance": -sign * way, "leg": (way > 0).astype(int), "min_detF": np.full(len(way), 0.95)}
+    own = {
+        "stroke_distance": -sign * way,
+        "leg": (way > 0).astype(int),
+        "min_detF": np.full(len(way), 0.95),
+    }
     base = base.assign(_of(own | {"force": np.minimum(np.arange(len(way)) / 4, 1.0) * LOAD}))
 
     slid = np.minimum(way / MM, 1.0)[:, None]
@@ -320,13 +418,29 @@ def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Datas
         "ridged_outer": RIDGES | {"outer": {"period": None, "height": 60e-6, "shape": "smooth"}},
     }
     slide = {"slide": -sign * 50 * MM, "speed": 10 * MM, "keep": "force"}
-    return _with_ridges(made, name, ridges[pad], motion=[json.loads(made.attrs["scene"])["motion"][0], slide], friction=0.65)
+    return _with_ridges(
+        made,
+        name,
+        ridges[pad],
+        motion=[json.loads(made.attrs["scene"])["motion"][0], slide],
+        friction=0.65,
+    )
 
 
 def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
     """The history with full fields: displacements (n, nodes, 2) m and mean stresses (n, elements) Pa at n times."""
     whole, body, indenter = Arrays.of(data), mesh(), np.zeros((len(times), 2, 2))
-    add_snapshots(whole, times, body.points, body.cells, body.region, displacement, pressure, body.regions, indenter)
+    add_snapshots(
+        whole,
+        times,
+        body.points,
+        body.cells,
+        body.region,
+        displacement,
+        pressure,
+        body.regions,
+        indenter,
+    )
     return whole.labelled()
 
 
@@ -357,9 +471,13 @@ def _pressure(x: np.ndarray, y: np.ndarray, load: float, width: float, layered: 
     inside = np.clip(1 - (x / half) ** 2, 0, None) ** 0.5 * (y > 0)
     excess = max(half - 0.5e-3, 0.0)
     if layered:
-        inside = inside * (1 + 0.5 * min(1.0, excess / 1e-3) * np.exp(-(((abs(x) - excess) / 0.35e-3) ** 2)))
+        inside = inside * (
+            1 + 0.5 * min(1.0, excess / 1e-3) * np.exp(-(((abs(x) - excess) / 0.35e-3) ** 2))
+        )
     total = np.trapezoid(inside, x)
-    return load * inside / total if total > 0 else np.where(abs(x) == 0, load / 67e-6, 0.0) * (y > 0)
+    return (
+        load * inside / total if total > 0 else np.where(abs(x) == 0, load / 67e-6, 0.0) * (y > 0)
+    )
 
 
 def _scene(name: str, label: str, rate: float) -> dict:
@@ -368,7 +486,11 @@ def _scene(name: str, label: str, rate: float) -> dict:
         layer: {"youngs_modulus": e, "poisson_ratio": 0.48}
         for layer, e in zip(("epidermis", "dermis", "fat"), moduli, strict=True)
     }
-    stimulus = {"shape": "flat"} if label == "flat" else {"shape": "cylinder", "curvature": CURVATURE[label]}
+    stimulus = (
+        {"shape": "flat"}
+        if label == "flat"
+        else {"shape": "cylinder", "curvature": CURVATURE[label]}
+    )
     force = 9.80665e-3
     return {
         "name": name,

@@ -18,7 +18,13 @@ from fingerpad import load_scene, simulate
 
 pytestmark = pytest.mark.slow
 
-SUNK = Q("sunk", "mm", "skin sunk by (mm)", lambda h: -1e3 * h["skin_displacement_y"].values.min(axis=1), tolerance=1e-3)
+SUNK = Q(
+    "sunk",
+    "mm",
+    "skin sunk by (mm)",
+    lambda h: -1e3 * h["skin_displacement_y"].values.min(axis=1),
+    tolerance=1e-3,
+)
 TWO = Runs("series", {"flat plate": "flat", "2.5 mm cylinder": "round"})
 NEW = Figure(
     "6-1",
@@ -27,7 +33,12 @@ NEW = Figure(
     TIME,
     (SUNK, FORCE),
     {TIME: "T103"},
-    Panels(height=3.6, fill=Lines(looks={FORCE: {"ls": ":"}}), ylabel="sunk (mm), force (gf)", legend={"loc": "upper left"}),
+    Panels(
+        height=3.6,
+        fill=Lines(looks={FORCE: {"ls": ":"}}),
+        ylabel="sunk (mm), force (gf)",
+        legend={"loc": "upper left"},
+    ),
 )
 
 
@@ -44,7 +55,11 @@ def test_a_figure_is_one_spec_from_runs_to_picture(tmp_path):
     stimuli = {"flat": {"shape": "flat"}, "round": {"shape": "cylinder", "curvature": "400 1/m"}}
     paths = [
         _simulated(tmp_path / kind, name, stimulus, edge, steps)
-        for kind, edge, steps in (("simulations", "0.5 mm", 8), ("coarse_mesh", "1 mm", 8), ("coarse", "1 mm", 4))
+        for kind, edge, steps in (
+            ("simulations", "0.5 mm", 8),
+            ("coarse_mesh", "1 mm", 8),
+            ("coarse", "1 mm", 4),
+        )
         for name, stimulus in stimuli.items()
     ]
     assert NEW.needs == NEW.read_companions == ("flat", "round")
@@ -57,11 +72,15 @@ def test_a_figure_is_one_spec_from_runs_to_picture(tmp_path):
     ends = saved.dropna(subset="sunk (mm)").groupby("series", sort=False).last()
     assert ends["force (gf)"].tolist() == pytest.approx([5, 5], rel=1e-3)
     assert 0 < ends.loc["flat plate", "sunk (mm)"] < ends.loc["2.5 mm cylinder", "sunk (mm)"] < 2
-    assert (ends[list(PARTS)] > 0).all(axis=None) and (ends[MESH] < 30).all()  # of SUNK: FORCE is prescribed
+    assert (ends[list(PARTS)] > 0).all(axis=None) and (
+        ends[MESH] < 30
+    ).all()  # of SUNK: FORCE is prescribed
     assert (ends[[STEPS, SAMPLING]] < 3).all(axis=None)
     assert saved["source"].tolist()[-2:] == ["thesis axis range (T103)"] * 2
 
     (ax,) = NEW.draw(saved).axes
     assert [line.get_label() for line in ax.lines] == [SUNK, FORCE] * 2 and ax.get_xlim() == (0, 3)
-    assert np.asarray(pd.Series([t.get_text() for t in ax.get_legend().get_texts()]).unique()).tolist() == [SUNK, FORCE]
+    assert np.asarray(
+        pd.Series([t.get_text() for t in ax.get_legend().get_texts()]).unique()
+    ).tolist() == [SUNK, FORCE]
     assert (tmp_path / "fig_6-1.png").read_bytes()[:4] == b"\x89PNG"

@@ -53,13 +53,19 @@ def test_order_and_limit_of_a_power_law_are_found(order):
 def test_values_that_swing_about_a_limit_have_no_order_and_a_wide_uncertainty():
     sizes, values = np.array([1.0, 0.5, 0.25]), np.array([1.0, 1.2, 1.15])
     assert np.isnan(observed_order(sizes, values))
-    assert limit(sizes, values).value == pytest.approx(1.1) and limit(sizes, values).uncertainty == pytest.approx(0.1)
+    assert limit(sizes, values).value == pytest.approx(1.1) and limit(
+        sizes, values
+    ).uncertainty == pytest.approx(0.1)
 
 
 def test_an_order_that_is_not_believed_is_reported_but_not_extrapolated_with():
     sizes = np.array([1.0, 0.5, 0.25])
     slow, fast = limit(sizes, sizes**0.4), limit(sizes, sizes**6)
-    assert slow.order == pytest.approx(0.4) and slow.value == 0.25**0.4 and slow.uncertainty == pytest.approx(1 - 0.25**0.4)
+    assert (
+        slow.order == pytest.approx(0.4)
+        and slow.value == 0.25**0.4
+        and slow.uncertainty == pytest.approx(1 - 0.25**0.4)
+    )
     step = (0.25**6 - 0.5**6) / 3
     assert fast.order == pytest.approx(6) and fast.value == pytest.approx(0.25**6 + step)
     assert fast.uncertainty == pytest.approx(3 * abs(step))
@@ -73,12 +79,16 @@ def test_split_mesh_has_the_same_nodes_area_and_skin(scenes, kind, parts):
     """No node is lost or new, elements meet along whole edges, and halves are mirror images."""
     mesh = build_pad_mesh(scenes["flat"].specimen.outline, MeshSize(0.5e-3, 3e-3, 0.425e-3, 1.5))
     new = split(mesh, kind)
-    assert len(new.cells) == parts * len(mesh.cells) and set(new.cells.ravel()) == set(mesh.cells.ravel())
+    assert len(new.cells) == parts * len(mesh.cells) and set(new.cells.ravel()) == set(
+        mesh.cells.ravel()
+    )
     check_orientation(new, "split")
     np.testing.assert_array_equal(skin_chain(new), skin_chain(mesh))
     edges = np.sort(element_edges(new.cells, kind)[:, :2], axis=1)
     _, count = np.unique(edges, axis=0, return_counts=True)
-    assert count.max() == 2 and (count == 1).sum() == sum(len(facets) for facets in new.curves.values())
+    assert count.max() == 2 and (count == 1).sum() == sum(
+        len(facets) for facets in new.curves.values()
+    )
     half = new.right_half()
     assert len(half.cells) == len(new.cells) / 2 and half.points[half.cells].mean(1)[:, 0].min() > 0
 
@@ -96,7 +106,11 @@ def test_the_plane_is_complete_and_names_tell_points_apart():
         for element in study.ELEMENTS:
             rows = {p.rows for p in known.values() if p == Point(family, element, p.rows)}
             assert rows == set(study.ROWS) and len(rows) >= 5
-    assert {Point("210", finite=False), Point("stroke", steps=5), Point("1260", preset="fine")} <= set(known.values())
+    assert {
+        Point("210", finite=False),
+        Point("stroke", steps=5),
+        Point("1260", preset="fine"),
+    } <= set(known.values())
     swept = [point for sweep in study.sweeps().values() for point in sweep]
     assert len(swept) == len(known) and set(swept) == set(known.values())
 
@@ -105,12 +119,18 @@ def test_sizes_span_what_they_should(scenes):
     """From about 500 to 100,000 nodes; the default's row is the thesis's preset where that is not refined for a contact."""
     from fingerpad.specimen.build import count_nodes
 
-    sizes = [study.discretised(Point("flat", rows=rows), scenes["flat"])[1].mesh_size for rows in study.ROWS]
+    sizes = [
+        study.discretised(Point("flat", rows=rows), scenes["flat"])[1].mesh_size
+        for rows in study.ROWS
+    ]
     nodes = [count_nodes(scenes["flat"].specimen.outline, size) for size in sizes]
     assert nodes == sorted(nodes) and nodes[0] < 600 and 90_000 < nodes[-1] < 110_000
     default = plan(scenes["flat"].model_copy(update={"accuracy": "thesis"})).mesh_size
     default = replace(default, focus=(), skin_radial_edge=None)
-    assert count_nodes(scenes["flat"].specimen.outline, default) == nodes[study.ROWS.index(study.DEFAULT_ROWS)]
+    assert (
+        count_nodes(scenes["flat"].specimen.outline, default)
+        == nodes[study.ROWS.index(study.DEFAULT_ROWS)]
+    )
 
 
 @pytest.mark.parametrize("element", ["Q1P0", "Q2R"])
@@ -120,9 +140,15 @@ def test_a_point_is_measured(scenes, element):
     assert not record["failure"] and all(np.all(np.array(v) > 0) for v in record["values"].values())
     assert set(record["values"]) == set(found.QUANTITIES) and len(record["values"]["depth"]) == 2
     cost = record["cost"]
-    assert cost["nodes"] == 396 and cost["steps"] == 10 and len(cost["cpu_s"]) == len(cost["yardstick_s"]) == 3
+    assert (
+        cost["nodes"] == 396
+        and cost["steps"] == 10
+        and len(cost["cpu_s"]) == len(cost["yardstick_s"]) == 3
+    )
     ratios = sorted(a / b for a, b in zip(cost["cpu_s"], cost["yardstick_s"], strict=True))
-    assert record["made_by"]["processor"] and study.seconds(record, 2.0) == pytest.approx(2 * ratios[1])
+    assert record["made_by"]["processor"] and study.seconds(record, 2.0) == pytest.approx(
+        2 * ratios[1]
+    )
 
 
 # -- errors of made-up runs --------------------------------------------------------------------------------------------------
@@ -137,14 +163,29 @@ def records():
         size, step = 7 / preset[0], 20 / preset[1]
         value = 1e-3 * (2 + 0.1 * size**2 + 0.02 * step) * (1 if point.finite else 1.1)
         moments = 5 if point.family == "stroke" else 2
-        values = {quantity: [value] * moments for quantity in found.HEADLINE} | {"peak energy rate": [value] * 2}
+        values = {quantity: [value] * moments for quantity in found.HEADLINE} | {
+            "peak energy rate": [value] * 2
+        }
         cost = {
-            "cpu_s": [preset[0] ** 2 * preset[1] / 1000] * 3, "yardstick_s": [0.2] * 3, "memory_MB": 100.0, "steps": preset[1],
-            "nodes": 220 * preset[0] ** 2, "unknowns": 1, "iterations": 1, "cutbacks": 0,
-        }  # fmt: skip
+            "cpu_s": [preset[0] ** 2 * preset[1] / 1000] * 3,
+            "yardstick_s": [0.2] * 3,
+            "memory_MB": 100.0,
+            "steps": preset[1],
+            "nodes": 220 * preset[0] ** 2,
+            "unknowns": 1,
+            "iterations": 1,
+            "cutbacks": 0,
+        }
         packages = dict.fromkeys(("numpy", "numba", "mkl", "gmsh"), "1.0")
         made = {"processor": "abacus", "python": "3", "packages": packages}
-        record = {"point": vars(point), "name": name, "failure": "", "values": values, "cost": cost, "load": 0.0}
+        record = {
+            "point": vars(point),
+            "name": name,
+            "failure": "",
+            "values": values,
+            "cost": cost,
+            "load": 0.0,
+        }
         out[name] = record | {"made_by": made, "believed_error": 0.01}
     return out
 
@@ -162,13 +203,17 @@ def test_reference_is_the_limit_in_mesh_and_steps(records):
 
 def test_errors_are_those_to_the_limit(table):
     default = table[(table["scene"] == "210") & (table["preset"] == "thesis")].iloc[0]
-    assert default["error (%)"] == pytest.approx(100 * 0.12 / 2) and default["cost (1 = default)"] == pytest.approx(1)
+    assert default["error (%)"] == pytest.approx(100 * 0.12 / 2) and default[
+        "cost (1 = default)"
+    ] == pytest.approx(1)
     small = table[(table["scene"] == "210") & (table["strain"] == "small")].iloc[0]
     assert small["width (%)"] == pytest.approx(100 * (2.12 * 1.1 / 2 - 1))
 
 
 def test_orders_are_found_again(records):
-    orders = found.orders_table(records).set_index(["scene", "refined", "element", "quantity"])["order, three finest"]
+    orders = found.orders_table(records).set_index(["scene", "refined", "element", "quantity"])[
+        "order, three finest"
+    ]
     assert orders["210", "mesh", "Q2P1", "depth"] == pytest.approx(2) and orders[
         "210", "steps", "Q2P1", "depth"
     ] == pytest.approx(1)
@@ -210,7 +255,10 @@ def test_figures_are_drawn_from_the_table_read_back(table, name, tmp_path):
     if name == "accuracy_growth":
         assert frame["exponent"].dropna().to_numpy() == pytest.approx(1.0, rel=0.05)
     else:
-        assert set(frame["quantity"]) == set(found.QUANTITIES) and frame.groupby("quantity")["pareto"].any().all()
+        assert (
+            set(frame["quantity"]) == set(found.QUANTITIES)
+            and frame.groupby("quantity")["pareto"].any().all()
+        )
 
 
 def test_presets_have_error_and_cost(table):
@@ -230,7 +278,9 @@ def test_planner_believes_at_least_the_committed_errors():
     known, own = RULES.errors, []
     for kind, pressed in (("mesh", known.mesh), ("energy", known.energy), ("steps", known.time)):
         rows = kept.loc[kind].loc[list(pressed)]
-        for measured, believed in zip(rows[["1260", "210", "flat"]].to_numpy(), pressed.values(), strict=True):
+        for measured, believed in zip(
+            rows[["1260", "210", "flat"]].to_numpy(), pressed.values(), strict=True
+        ):
             own += [b / m for m, b in zip(measured, believed, strict=True)]
         assert list(pressed) == list(kept.loc[kind].index)[: len(pressed)]
     assert min(own) == 1 and max(own) < 9 and np.median(own) < 2.5
@@ -250,11 +300,21 @@ def test_a_light_press_is_believed_no_nearer_than_the_coarse_elements_under_it(t
 
 
 def test_strokes_errors_are_the_largest_and_the_mean_square_of_all_none_below_a_finer_one():
-    rows = [("waves", name, *how, error) for name, errors in (("a", (0.09, 0.04, 0.01, 0.03)), ("b", (0.03, 0.02, 0.02, 0.02)))
-            for how, error in zip(((2, 20), (7, 20), (14, 20), (7, 10)), errors, strict=True)]  # fmt: skip
-    made = strokes_table(pd.DataFrame(rows, columns=["over", "scene", "rows", "steps", "error"])).set_index(["kind", "count"])
+    rows = [
+        ("waves", name, *how, error)
+        for name, errors in (("a", (0.09, 0.04, 0.01, 0.03)), ("b", (0.03, 0.02, 0.02, 0.02)))
+        for how, error in zip(((2, 20), (7, 20), (14, 20), (7, 10)), errors, strict=True)
+    ]
+    made = strokes_table(
+        pd.DataFrame(rows, columns=["over", "scene", "rows", "steps", "error"])
+    ).set_index(["kind", "count"])
     assert made[f"waves, {LARGEST}"].to_dict() == {
-        ("mesh", 2): 0.09, ("mesh", 7): 0.04, ("mesh", 14): 0.02, ("steps", 10): 0.0, ("steps", 20): 0.0}  # fmt: skip
+        ("mesh", 2): 0.09,
+        ("mesh", 7): 0.04,
+        ("mesh", 14): 0.02,
+        ("steps", 10): 0.0,
+        ("steps", 20): 0.0,
+    }
     assert made.loc[("mesh", 7), f"waves, {MEAN}"] == pytest.approx(0.032)
 
 
@@ -271,7 +331,9 @@ def test_a_stroke_over_waves_is_believed_to_be_wronger_than_one_over_a_plate(sce
     waves, first, _ = load_scene(SCENES / "stroke_10.yaml").stimulus, *scenes["stroke"].motion
     errors, nodes = [], []
     for over, way in ((Flat(), 2e-3), (waves, 60e-3), (waves, 2e-3)):
-        scene = scenes["stroke"].varied({"stimulus": over, "motion": (first, Slide(slide=way, speed=0.01))})
+        scene = scenes["stroke"].varied(
+            {"stimulus": over, "motion": (first, Slide(slide=way, speed=0.01))}
+        )
         errors.append(plan(scene).estimated_error)
         nodes.append(plan(scene.with_accuracy(0.02)).nodes)
     assert max(errors[:2]) < errors[2] and max(nodes[:2]) < 30000 < nodes[2]
@@ -289,7 +351,9 @@ def test_drawn_strokes_are_discretised_as_asked():
 def test_tolerance_is_met_by_the_cheapest(scenes, curvature):
     """Tighter costs more; what is chosen is believed to meet what was asked, and the next cheaper mesh is not."""
     scene = scenes["210"].model_copy(update={"stimulus": Cylinder(curvature=curvature)})
-    plans = [plan(scene.model_copy(update={"accuracy": tolerance})) for tolerance in (0.1, 0.05, 0.02)]
+    plans = [
+        plan(scene.model_copy(update={"accuracy": tolerance})) for tolerance in (0.1, 0.05, 0.02)
+    ]
     for chosen, tolerance in zip(plans, (0.1, 0.05, 0.02), strict=True):
         assert chosen.estimated_error <= tolerance
     work = [chosen.nodes * chosen.steps for chosen in plans]
@@ -310,7 +374,9 @@ def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
 
 def test_drawn_scenes_are_of_every_class_and_drawn_the_same_again():
     scenes = list(drawn.drawn())
-    assert len(scenes) == drawn.SCENES + drawn.CORNERED + drawn.OWN and {kind for _, kind, _ in scenes} == set(drawn.CLASSES)
+    assert len(scenes) == drawn.SCENES + drawn.CORNERED + drawn.OWN and {
+        kind for _, kind, _ in scenes
+    } == set(drawn.CLASSES)
     assert repr(scenes) == repr(list(drawn.drawn())) != repr(list(drawn.drawn(seed=drawn.SEED + 1)))
 
 
@@ -318,7 +384,9 @@ def test_truth_is_on_shorter_edges_and_asks_no_tolerance():
     chosen = plan(load_scene(SCENES / "steady_bar_1_16_inch.yaml").with_accuracy(0.05))
     truth = belief.finer(chosen, 2.0)
     assert truth.mesh_size.skin_edge == chosen.mesh_size.skin_edge / 2 and truth.missed(9.0) is None
-    assert [edge for _, edge in truth.mesh_size.focus] == [edge / 2 for _, edge in chosen.mesh_size.focus]
+    assert [edge for _, edge in truth.mesh_size.focus] == [
+        edge / 2 for _, edge in chosen.mesh_size.focus
+    ]
 
 
 def test_committed_beliefs_cover_the_truth():
@@ -332,14 +400,18 @@ def test_committed_errors_beside_ridges_are_those_expected():
     rows = pd.read_csv(TABLES / "accuracy_ridges.csv")
     expected = [
         100 * ridges.RULES.ridge_error * height / pitch * elements**-ridges.RULES.ridge_order
-        for height, pitch, elements in rows[["height (mm)", "pitch (mm)", "elements from ridge to ridge"]].to_numpy()
+        for height, pitch, elements in rows[
+            ["height (mm)", "pitch (mm)", "elements from ridge to ridge"]
+        ].to_numpy()
     ]
     np.testing.assert_allclose(rows["expected error (%)"], expected, rtol=1e-4)
     assert (rows["error of 19 places in 20 (%)"] <= 0.5 * np.array(expected)).all()
     assert (rows["largest error (%)"] <= 2.1 * rows["expected error (%)"]).all()
     own = rows[(rows["height (mm)"] == 0.15) & (rows["pitch (mm)"] == 0.48)]
     for _, part in own.groupby("surface"):
-        assert part["error of 19 places in 20 (%)"].max() < 0.7 and len(part) == len(ridges.ELEMENTS)
+        assert part["error of 19 places in 20 (%)"].max() < 0.7 and len(part) == len(
+            ridges.ELEMENTS
+        )
     assert len(STUDIES["accuracy_ridges"](rows).axes) == rows["surface"].nunique()
 
 
@@ -351,12 +423,16 @@ def test_elements_among_ridges_are_what_changes_strain_energy_beside_them(monkey
     scene = ridges.ridged(load_scene(SCENES / "ramp40_k210.yaml"), 0.15, 0.48)
     few, more, truth = (ridges.pressed(scene, elements) for elements in (8, 18, 30))
     on = ridges.beside(scene)
-    assert 0.5 < on.mean() < 1 and truth["contact_width"].values[-1] == pytest.approx(few["contact_width"].values[-1], rel=5e-3)
+    assert 0.5 < on.mean() < 1 and truth["contact_width"].values[-1] == pytest.approx(
+        few["contact_width"].values[-1], rel=5e-3
+    )
     energy = [run["strain_energy_density"].values[-1][on] for run in (few, more, truth)]
     off = [np.percentile(np.abs(each / energy[-1] - 1), 95) for each in energy[:-1]]
     inner = scene.specimen.ridges.inner
     assert off[1] < 0.8 * off[0] and off[0] < 0.01
-    assert off[0] < ridges.error_beside(inner, 8, RULES) and off[1] < ridges.error_beside(inner, 18, RULES)
+    assert off[0] < ridges.error_beside(inner, 8, RULES) and off[1] < ridges.error_beside(
+        inner, 18, RULES
+    )
     monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     alone = ridges.pressed(scene, 8)["strain_energy_density"].values[-1][on]
     assert np.percentile(np.abs(alone / energy[-1] - 1), 95) > 0.02
@@ -366,7 +442,10 @@ def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Data
     """Depth ``press`` and the same pressure at the end of a press, then pressures at places (mm) of a stroke."""
     count = len(way)
     columns = {"leg": [0, 0, *[1] * count], "stroke_distance": [0.0, 0.0, *(1e-3 * np.array(way))]}
-    columns |= {"indentation_depth": [0.0, press, *[press] * count], "centre_pressure": [0.0, 1.0, *pressures]}
+    columns |= {
+        "indentation_depth": [0.0, press, *[press] * count],
+        "centre_pressure": [0.0, 1.0, *pressures],
+    }
     return xr.Dataset({name: ("time", np.array(values)) for name, values in columns.items()})
 
 
@@ -381,11 +460,15 @@ def test_difference_of_a_stroke_is_root_mean_square_of_the_largest():
     fine, coarse = np.linspace(0.01, 2, 400), np.linspace(0.1, 2, 20)
     truth = a_history(1.0, fine, 4 - fine**2)
     for sign in (1, -1):  # a way back counts as a way
-        error, worst = belief.difference(a_history(1.0, sign * coarse, 4.2 - coarse**2), truth, ("centre_pressure",))
+        error, worst = belief.difference(
+            a_history(1.0, sign * coarse, 4.2 - coarse**2), truth, ("centre_pressure",)
+        )
         assert worst == "centre_pressure" and error == pytest.approx(0.05, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", ["curvature_840_steady_10_gf", "curvature_210_thin_epidermis", "curvature_2500"])
+@pytest.mark.parametrize(
+    "name", ["curvature_840_steady_10_gf", "curvature_210_thin_epidermis", "curvature_2500"]
+)
 def test_beliefs_cover_the_truth(scenes, name):
     """Of runs made now, held to a finer run of their own: a few of the study's scenes, its table has all of them."""
     scene = belief.prepared(name, scenes["210"]).model_copy(update={"accuracy": "thesis"})
@@ -403,13 +486,19 @@ DERIVED = "shape of the stimulus|least-squares|Eq 4-4 and"
 """Sources of what is drawn through or from the simulated curves of the same picture, whose errors stand there."""
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "figures" / "thesis").glob("fig_*.csv")), ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "figures" / "thesis").glob("fig_*.csv")), ids=lambda path: path.stem
+)
 def test_every_simulated_curve_has_its_errors(path):
     frame = pd.read_csv(path, dtype=str)
     # what was measured or printed has none
-    solved = frame[frame["source"].str.startswith("simulated") & ~frame["source"].str.contains(DERIVED)]
+    solved = frame[
+        frame["source"].str.startswith("simulated") & ~frame["source"].str.contains(DERIVED)
+    ]
     solved = solved[solved["series"] != "surface"] if "series" in solved else solved
-    solved = solved[solved["phase"] != "before contact"] if "phase" in solved else solved  # the scene's, not solved for
+    solved = (
+        solved[solved["phase"] != "before contact"] if "phase" in solved else solved
+    )  # the scene's, not solved for
     # a burst or a rate of nothing has no error relative to itself
     for column in ("burst_width (mm)", "burst_duration (s)", "predicted_rate (impulses/s)"):
         solved = solved[solved[column] != "0"] if column in solved else solved
@@ -421,15 +510,21 @@ def test_every_simulated_curve_has_its_errors(path):
         assert known.any()
     else:
         rows = solved[~known]
-        assert rows.empty, f"{len(rows)} rows without an error, such as {rows.iloc[0].dropna().to_dict()}"
+        assert rows.empty, (
+            f"{len(rows)} rows without an error, such as {rows.iloc[0].dropna().to_dict()}"
+        )
 
 
 def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
     """In the published table of scenes drawn outside the cylinders, sixty of them."""
     from cysyk1999.studies.accuracy.drawn import CLASSES, CORNERED, OWN, SCENES
 
-    table = pd.read_csv(ROOT / "figures" / "tables" / "accuracy_drawn.csv").dropna(subset="true error (%)")
-    covered = (table["true error (%)"] <= table["believed error (%)"]).groupby(table["class"]).mean()
+    table = pd.read_csv(ROOT / "figures" / "tables" / "accuracy_drawn.csv").dropna(
+        subset="true error (%)"
+    )
+    covered = (
+        (table["true error (%)"] <= table["believed error (%)"]).groupby(table["class"]).mean()
+    )
     assert len(table) == SCENES + CORNERED + OWN and set(covered.index) == set(CLASSES)
     assert (covered >= 0.9).all(), covered
 
@@ -446,13 +541,22 @@ def test_stated_errors_stand_beside_those_of_the_curves():
     from fingerpad.planning.errors import COARSER, PROFILE_ORDER, remains
 
     histories, meshes, coarse, reference = results()
-    finer = {name: history for name, history in synthetic.histories(1.02).items() if name.startswith(MADE_FINER)}
-    figures = [(FIGURES[number], FIGURES[number].measurements(REFERENCE.parent)) for number in ("4-14", "5-6", "3-8")]
+    finer = {
+        name: history
+        for name, history in synthetic.histories(1.02).items()
+        if name.startswith(MADE_FINER)
+    }
+    figures = [
+        (FIGURES[number], FIGURES[number].measurements(REFERENCE.parent))
+        for number in ("4-14", "5-6", "3-8")
+    ]
     table = shown(figures, (histories, meshes, coarse), finer, reference)
     assert set(table["figure"]) == {"4-14", "5-6"}  # no finer runs of chapter 3
     mesh = table[table["curve"].str.contains("10 mm/s|simulated|79") | (table["figure"] == "4-14")]
     left, remaining = (remains(edges, PROFILE_ORDER) for edges in (FINER, COARSER))
-    assert (mesh[TRUE] / mesh[STATED_MESH]).to_numpy() == pytest.approx(2 * left / remaining, rel=0.3)
+    assert (mesh[TRUE] / mesh[STATED_MESH]).to_numpy() == pytest.approx(
+        2 * left / remaining, rel=0.3
+    )
     assert (table[STATED] >= table[STATED_MESH]).all()
     frame = found.FRAMES["accuracy_shown"](table)
     assert len(STUDIES["accuracy_shown"](frame).axes) == 2 and len(frame) <= len(table)

@@ -31,7 +31,13 @@ PLATE, CYLINDER = {"shape": "flat"}, {"shape": "cylinder", "curvature": "30 1/m"
 
 
 def scene_of(folder, specimen, stimulus=CYLINDER, motion=({"press_to_depth": "0.2 mm"},), **keys):
-    document = {"specimen": specimen, "stimulus": stimulus, "motion": list(motion), "accuracy": COARSE, **keys}
+    document = {
+        "specimen": specimen,
+        "stimulus": stimulus,
+        "motion": list(motion),
+        "accuracy": COARSE,
+        **keys,
+    }
     (folder / "scene.yaml").write_text(yaml.safe_dump(document))
     return load_scene(folder / "scene.yaml")
 
@@ -40,8 +46,12 @@ def last_leg(scene):
     return summary(simulate(scene))["legs"][-1]
 
 
-def stack(names=("cover", "foam"), thicknesses=(1e-3, 4e-3), half_width=10e-3, radius=None, solid=False):
-    return SimpleNamespace(names=names, thicknesses=thicknesses, half_width=half_width, radius=radius, solid=solid)
+def stack(
+    names=("cover", "foam"), thicknesses=(1e-3, 4e-3), half_width=10e-3, radius=None, solid=False
+):
+    return SimpleNamespace(
+        names=names, thicknesses=thicknesses, half_width=half_width, radius=radius, solid=solid
+    )
 
 
 # -- meshes of one's own -----------------------------------------------------------------------------------------------
@@ -53,7 +63,10 @@ def own(change=None, names=("cover", "foam"), shift=0.0, grade=None, **kwargs):
     mesh = build_stack_mesh(stack(names, **kwargs), SIZE)
     if grade:
         x = mesh.points[:, 0]
-        mesh = replace(mesh, points=np.column_stack((x + grade * np.sin(np.pi * x / x.max()), mesh.points[:, 1])))
+        mesh = replace(
+            mesh,
+            points=np.column_stack((x + grade * np.sin(np.pi * x / x.max()), mesh.points[:, 1])),
+        )
     made = change(mesh) if change else mesh
     points = made.points + [shift, 0.0]
     return replace(made, points=points, regions=mesh.regions, fixed=mesh.fixed, symmetric=False)
@@ -79,12 +92,18 @@ VARIANTS = {
     "off by 0.3 mm, quad4": lambda: own(linear, shift=3e-4),
     "one layer of one's own": lambda: own(names=("cover",), thicknesses=(5e-3,)),
     "five layers": five,
-    "five layers, tri6": lambda: (lambda mesh: replace(triangles(mesh), regions=mesh.regions, fixed=mesh.fixed))(five()),
-    "half-round, quad9": lambda: own(radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3), solid=True),
-    "half-round, tri3": lambda: own(linear_triangles, radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 3e-3)),
-    "part of the top is skin": lambda: (lambda mesh: replace(mesh, curves=mesh.curves | {"skin": mesh.curves["skin"][3:-3]}))(
-        own()
+    "five layers, tri6": lambda: (
+        lambda mesh: replace(triangles(mesh), regions=mesh.regions, fixed=mesh.fixed)
+    )(five()),
+    "half-round, quad9": lambda: own(
+        radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3), solid=True
     ),
+    "half-round, tri3": lambda: own(
+        linear_triangles, radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 3e-3)
+    ),
+    "part of the top is skin": lambda: (
+        lambda mesh: replace(mesh, curves=mesh.curves | {"skin": mesh.curves["skin"][3:-3]})
+    )(own()),
     "skin goes round the corners": lambda: around(own()),
 }
 
@@ -96,7 +115,9 @@ def around(mesh):
 
 
 def material(name):
-    return {key: (FOAM if name == "foam" else COVER)[key] for key in ("youngs_modulus", "poisson_ratio")}
+    return {
+        key: (FOAM if name == "foam" else COVER)[key] for key in ("youngs_modulus", "poisson_ratio")
+    }
 
 
 @pytest.mark.parametrize("name", VARIANTS)
@@ -105,13 +126,16 @@ def test_meshes_of_one_s_own(name, tmp_path):
     mesh = VARIANTS[name]()
     write_pad(mesh, tmp_path / "own.msh")
     layers = {region: material(region) for region in mesh.regions}
-    scene = scene_of(tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base"], "contact_length": "10 mm"})
+    scene = scene_of(
+        tmp_path,
+        {"mesh": "own.msh", "layers": layers, "fixed": ["base"], "contact_length": "10 mm"},
+    )
     chosen = plan(scene)
     assert scene.specimen.assumed == ("prony: none, elastic",)
     assert chosen.specimen[0].startswith(f"a mesh of {mesh.element.replace('tri3', 'tri6')}, ")
-    assert "; held: base; free: skin" in chosen.specimen[0] and ("boundary edges" in chosen.specimen[0]) == (
-        "sides" in mesh.curves
-    )
+    assert "; held: base; free: skin" in chosen.specimen[0] and (
+        "boundary edges" in chosen.specimen[0]
+    ) == ("sides" in mesh.curves)
     leg = last_leg(scene)
     assert leg["depth_mm"] == pytest.approx(0.2) and leg["force_N_per_m"] > 0
     assert 0.4 < chosen.contact.half_width / (leg["contact_width_mm"] / 2e3) < 2.5
@@ -120,21 +144,38 @@ def test_meshes_of_one_s_own(name, tmp_path):
 
 
 def test_a_mesh_without_nail_and_with_eight_node_quads(tmp_path):
-    path = write_rings(tmp_path / "rings.msh", "quad8", edit=lambda groups: [group for group in groups if group[2] != "nail"])
+    path = write_rings(
+        tmp_path / "rings.msh",
+        "quad8",
+        edit=lambda groups: [group for group in groups if group[2] != "nail"],
+    )
     scene = scene_of(tmp_path, {"mesh": path.name})
-    assert plan(scene).specimen[0].endswith("held: bone; free: skin, 12 boundary edges in none of these curves")
+    assert (
+        plan(scene)
+        .specimen[0]
+        .endswith("held: bone; free: skin, 12 boundary edges in none of these curves")
+    )
     assert plan(scene).specimen[2] == "not given: layers, prony, contact_length: thesis"
     assert last_leg(scene)["force_N_per_m"] > 0
 
 
 WRONG = {
-    "surface without a material": ({"layers": {"cover": material("cover")}, "fixed": ["base"]}, "26"),
+    "surface without a material": (
+        {"layers": {"cover": material("cover")}, "fixed": ["base"]},
+        "26",
+    ),
     "layer that is no surface": (
         {"layers": {"cover": material("cover"), "gel": material("foam")}, "fixed": ["base"]},
         "layer gel is no surface of the mesh; its physical surfaces are cover, foam",
     ),
-    "no materials at all": ({"fixed": ["base"]}, "no material for cover, foam; specimen.layers must name each surface"),
-    "nothing held": ({"layers": {"cover": material("cover"), "foam": material("foam")}, "free": ["base"]}, "no curve is held"),
+    "no materials at all": (
+        {"fixed": ["base"]},
+        "no material for cover, foam; specimen.layers must name each surface",
+    ),
+    "nothing held": (
+        {"layers": {"cover": material("cover"), "foam": material("foam")}, "free": ["base"]},
+        "no curve is held",
+    ),
     "no such curve": (
         {"layers": {"cover": material("cover"), "foam": material("foam")}, "fixed": ["bas"]},
         "physical curves are",
@@ -147,7 +188,9 @@ def test_names_are_checked_both_ways(name, tmp_path):
     write_pad(own(), tmp_path / "own.msh")
     specimen, words = WRONG[name]
     if name == "surface without a material":
-        words = "surface elements are in none of cover; each must be in one (the mesh also has foam)"
+        words = (
+            "surface elements are in none of cover; each must be in one (the mesh also has foam)"
+        )
     with pytest.raises(MeshError) as caught:
         plan(scene_of(tmp_path, {"mesh": "own.msh", **specimen}))
     assert words in str(caught.value) and "\n" not in str(caught.value)
@@ -155,7 +198,9 @@ def test_names_are_checked_both_ways(name, tmp_path):
 
 def test_a_finger_s_layer_that_the_mesh_has_not(tmp_path):
     path = write_rings(tmp_path / "rings.msh", "tri3")
-    scene = scene_of(tmp_path, {"mesh": path.name, "layers": {"stratum_corneum": {"youngs_modulus": "1 MPa"}}})
+    scene = scene_of(
+        tmp_path, {"mesh": path.name, "layers": {"stratum_corneum": {"youngs_modulus": "1 MPa"}}}
+    )
     with pytest.raises(MeshError, match="layer stratum_corneum is no surface of the mesh"):
         plan(scene)
 
@@ -185,14 +230,23 @@ NO_SLAB = {
         {"slab": {"width": "9 mm", "layers": [{"name": "a", "youngs_modulus": "1 Pa"}]}},
         "layers[0].thickness: is miss",
     ),
-    "twice one name": ({"slab": {"width": "9 mm", "layers": [COVER, COVER]}}, "is the name of two layers"),
+    "twice one name": (
+        {"slab": {"width": "9 mm", "layers": [COVER, COVER]}},
+        "is the name of two layers",
+    ),
     "layers beside it": ({**SLAB, "layers": "thesis"}, "specimen.layers: is given beside a slab"),
-    "too thick": ({"half_round": {"radius": "4 mm", "layers": [COVER, FOAM]}}, "up to the radius, 4 mm"),
+    "too thick": (
+        {"half_round": {"radius": "4 mm", "layers": [COVER, FOAM]}},
+        "up to the radius, 4 mm",
+    ),
     "two shapes": ({**SLAB, "outline": "thesis"}, "one of outline and slab"),
     "curves of no mesh": ({**SLAB, "fixed": ["base"]}, "names curves of no mesh"),
     "ridges": ({**SLAB, "ridges": "inner"}, "specimen.ridges: is given beside a slab"),
     "no layers": ({"slab": {"width": "9 mm", "layers": []}}, "is empty"),
-    "deeper than it is thick": ({"slab": {"width": "9 mm", "layers": [{**COVER, "thickness": "0.2 mm"}]}}, "presses to the base"),
+    "deeper than it is thick": (
+        {"slab": {"width": "9 mm", "layers": [{**COVER, "thickness": "0.2 mm"}]}},
+        "presses to the base",
+    ),
 }
 
 
@@ -206,33 +260,50 @@ def test_wrong_slabs_are_one_line(name, tmp_path):
 
 @pytest.mark.parametrize("solid", [True, False])
 def test_a_half_round_is_a_half_round(solid):
-    made = stack(radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3 if solid else 3e-3), solid=solid)
+    made = stack(
+        radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3 if solid else 3e-3), solid=solid
+    )
     mesh = build_stack_mesh(made, SIZE)
-    assert quality_of(mesh)["worst_scaled_jacobian"] > 0.5 and mesh.symmetric and mesh.fixed == ("base",)
+    assert (
+        quality_of(mesh)["worst_scaled_jacobian"] > 0.5
+        and mesh.symmetric
+        and mesh.fixed == ("base",)
+    )
     radius = np.hypot(*mesh.points[np.unique(mesh.curves["skin"])].T)
     np.testing.assert_allclose(radius, 8e-3, rtol=1e-12)
     base = mesh.points[np.unique(mesh.curves["base"])]
     on_base = np.isclose(base[:, 1], 0.0, atol=1e-12) | np.isclose(np.hypot(*base.T), 4e-3)
     assert on_base.all() and len({tuple(point) for point in mesh.points}) == len(mesh.points)
-    assert layers_below(mesh) == [("cover", pytest.approx(1e-3)), ("foam", pytest.approx(7e-3 if solid else 3e-3))]
+    assert layers_below(mesh) == [
+        ("cover", pytest.approx(1e-3)),
+        ("foam", pytest.approx(7e-3 if solid else 3e-3)),
+    ]
 
 
 def test_receptors_below_a_steep_skin_are_as_deep_along_its_normal():
     """On a half-round their distance from its middle is known; the skin that is nearest to them is well aside."""
-    mesh = build_stack_mesh(stack(radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3), solid=True), SIZE)
+    mesh = build_stack_mesh(
+        stack(radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3), solid=True), SIZE
+    )
     depth, offset = np.array([0.3e-3, 1e-3, 1e-3, 2e-3]), np.array([5e-3, -5e-3, 0.0, 4e-3])
     found = below_skin(mesh, depth, offset)
     np.testing.assert_array_equal(found[:, 0], offset)
-    np.testing.assert_allclose(np.hypot(*found.T), 8e-3 - depth, rtol=0, atol=4e-6)  # between points of the skin
+    np.testing.assert_allclose(
+        np.hypot(*found.T), 8e-3 - depth, rtol=0, atol=4e-6
+    )  # between points of the skin
 
 
 def test_receptors_below_a_flat_and_a_partial_skin():
     mesh = own()
     depth, offset = np.array([0.3e-3, 2e-3]), np.array([4e-3, -6e-3])
-    np.testing.assert_allclose(below_skin(mesh, depth, offset), np.column_stack((offset, -depth)), rtol=0.02, atol=1e-9)
+    np.testing.assert_allclose(
+        below_skin(mesh, depth, offset), np.column_stack((offset, -depth)), rtol=0.02, atol=1e-9
+    )
     partial = replace(mesh, curves=mesh.curves | {"skin": mesh.curves["skin"][8:-8]})
     end = np.abs(partial.points[partial.curves["skin"], 0]).max()
-    with pytest.raises(MeshError, match=r"there is no skin over x = 9.8 mm; allowed: offsets from -.* mm to .* mm"):
+    with pytest.raises(
+        MeshError, match=r"there is no skin over x = 9.8 mm; allowed: offsets from -.* mm to .* mm"
+    ):
         below_skin(partial, 1e-3, [9.8e-3])
     assert below_skin(partial, 1e-3, [0.9 * end])[0, 1] == pytest.approx(-1e-3, rel=1e-3)
 
@@ -240,10 +311,19 @@ def test_receptors_below_a_flat_and_a_partial_skin():
 def test_a_plate_on_held_ends_is_refused(tmp_path):
     write_pad(own(), tmp_path / "own.msh")
     layers = {name: material(name) for name in ("cover", "foam")}
-    scene = scene_of(tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base", "sides"]}, PLATE)
-    with pytest.raises(PlanError, match="comes down on the end of the skin at x = .*10 mm, which is held"):
+    scene = scene_of(
+        tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base", "sides"]}, PLATE
+    )
+    with pytest.raises(
+        PlanError, match="comes down on the end of the skin at x = .*10 mm, which is held"
+    ):
         simulate(scene)
-    assert last_leg(scene_of(tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base", "sides"]}))["force_N_per_m"] > 0
+    assert (
+        last_leg(
+            scene_of(tmp_path, {"mesh": "own.msh", "layers": layers, "fixed": ["base", "sides"]})
+        )["force_N_per_m"]
+        > 0
+    )
 
 
 # -- against truth -----------------------------------------------------------------------------------------------------
@@ -262,7 +342,9 @@ def test_a_plate_on_a_bonded_stack(control, tmp_path):
     motion = [{"press_to_depth": "0.1 mm"}] if control == "depth" else [{"press_to_force": "60 gf"}]
     scene = scene_of(tmp_path, wide, PLATE, motion, effects=SMALL)
     leg = last_leg(scene)
-    confined = layered.stack_compliance(0.0, [layered.Layer(1e-3, 0.5e6 / 2.9, 0.45), layered.Layer(4e-3, 50e3 / 2.6, 0.3)])
+    confined = layered.stack_compliance(
+        0.0, [layered.Layer(1e-3, 0.5e6 / 2.9, 0.45), layered.Layer(4e-3, 50e3 / 2.6, 0.3)]
+    )
     assert leg["centre_pressure_Pa"] == pytest.approx(leg["depth_mm"] * 1e-3 / confined, rel=2e-3)
     assert leg["contact_width_mm"] == pytest.approx(120.0, rel=2e-3)
     if control == "force":
@@ -278,22 +360,35 @@ def test_a_cylinder_on_a_bonded_stack(tmp_path):
     truth = layered_contact.press(lambda x: x**2 / (2 * radius), layers, 15e-3, force, 512)
     specimen = {**SLAB, "slab": {"width": "30 mm", "layers": [COVER, FOAM]}}
     stimulus, motion = {"shape": "cylinder", "curvature": "50 1/m"}, [{"press_to_force": "20 gf"}]
-    scene = scene_of(tmp_path, specimen, stimulus, motion, effects=SMALL, accuracy={"skin_edge": "0.2 mm", "steps": 2})
+    scene = scene_of(
+        tmp_path,
+        specimen,
+        stimulus,
+        motion,
+        effects=SMALL,
+        accuracy={"skin_edge": "0.2 mm", "steps": 2},
+    )
     leg, estimate = last_leg(scene), plan(scene).contact
     assert leg["depth_mm"] == pytest.approx(truth.depth * 1e3, rel=0.01)
     assert leg["centre_pressure_Pa"] == pytest.approx(truth.pressure[0], rel=0.02)
     assert leg["contact_width_mm"] == pytest.approx(2e3 * truth.half_width, rel=0.03)
-    assert estimate.depth == pytest.approx(truth.depth, rel=0.05) and estimate.half_width == pytest.approx(
-        truth.half_width, rel=0.2
-    )
+    assert estimate.depth == pytest.approx(
+        truth.depth, rel=0.05
+    ) and estimate.half_width == pytest.approx(truth.half_width, rel=0.2)
 
 
 def test_a_plate_slides_over_a_slab_with_friction(tmp_path):
     """Once all of it slips the lateral force is the coefficient times the normal one."""
     motion = [{"press_to_force": "20 gf"}, {"slide": "2 mm"}]
-    history = simulate(scene_of(tmp_path, SLAB, PLATE, motion, friction=0.3, accuracy={"skin_edge": "1 mm", "steps": 8}))
+    history = simulate(
+        scene_of(
+            tmp_path, SLAB, PLATE, motion, friction=0.3, accuracy={"skin_edge": "1 mm", "steps": 8}
+        )
+    )
     assert (history.contact_state[-1].values == 2).all()
-    assert abs(float(history.tangential_force[-1])) == pytest.approx(0.3 * float(history.force[-1]), rel=1e-3)
+    assert abs(float(history.tangential_force[-1])) == pytest.approx(
+        0.3 * float(history.force[-1]), rel=1e-3
+    )
 
 
 @pytest.mark.parametrize("thicknesses", [(5e-3,), (1e-3, 4e-3), (0.2e-3, 5e-3)])
@@ -307,9 +402,15 @@ def test_the_estimate_of_a_stack(thicknesses, radius):
     found = estimate.pressed(10.0, 1 / radius)
     assert found.depth == pytest.approx(truth.depth, rel=0.05)
     assert found.half_width == pytest.approx(truth.half_width, rel=0.33)
-    assert estimate.pressed_to(found.depth, 1 / radius).half_width == pytest.approx(found.half_width, rel=1e-3)
+    assert estimate.pressed_to(found.depth, 1 / radius).half_width == pytest.approx(
+        found.half_width, rel=1e-3
+    )
     plate = estimate.pressed(10.0, 0.0)
-    assert plate.half_width == 20e-3 and 0 < plate.depth < found.depth and estimate.pressed_to(1e-3, 0.0).half_width == 20e-3
+    assert (
+        plate.half_width == 20e-3
+        and 0 < plate.depth < found.depth
+        and estimate.pressed_to(1e-3, 0.0).half_width == 20e-3
+    )
 
 
 def test_the_robot_s_skin_runs():
@@ -329,5 +430,8 @@ def test_a_written_slab_is_read_again(tmp_path):
 def test_a_thin_epidermis_needs_no_stratum_corneum(tmp_path):
     """The thesis's stratum corneum is thicker, and no layer of this pad."""
     scene = scene_of(tmp_path, {"outline": {"epidermis_thickness": "0.3 mm"}})
-    assert scene.specimen.outline.stratum_corneum_thickness > scene.specimen.outline.epidermis_thickness
+    assert (
+        scene.specimen.outline.stratum_corneum_thickness
+        > scene.specimen.outline.epidermis_thickness
+    )
     assert plan(scene).nodes > 0

@@ -91,12 +91,23 @@ def test_what_is_huge_is_refused_in_little_memory(tmp_path, name):
     before = sorted(path.name for path in tmp_path.iterdir())
     # measured by a small process between: a child's peak begins with the memory of whoever started it
     process = subprocess.run(
-        [sys.executable, "-c", MEASURED, sys.executable, "-m", "fingerpad", "plan", "my_scene.yaml"],
+        [
+            sys.executable,
+            "-c",
+            MEASURED,
+            sys.executable,
+            "-m",
+            "fingerpad",
+            "plan",
+            "my_scene.yaml",
+        ],
         cwd=tmp_path,
         capture_output=True,
         text=True,
     )
-    assert process.returncode == 2 and process.stderr.count("\n") == 1 and said in process.stderr, process.stderr
+    assert process.returncode == 2 and process.stderr.count("\n") == 1 and said in process.stderr, (
+        process.stderr
+    )
     peak_kb, seconds = (float(word) for word in process.stdout.split()[-2:])
     assert peak_kb / 1024 < MOST_MB and seconds < 30
     assert sorted(path.name for path in tmp_path.iterdir()) == before
@@ -149,10 +160,22 @@ HARM = {
     "a profile that is a folder": (sampled("."), None, "directory"),
     "a profile of no path": (sampled("\0"), None, "stimulus.csv"),
     "a profile called on two lines": (sampled("a\nb.csv"), None, "not an existing file"),
-    "a link to a device": (sampled("p.csv"), lambda f: (f / "p.csv").symlink_to("/dev/zero"), "a device"),
-    "a link in a circle": (sampled("p.csv"), lambda f: (f / "p.csv").symlink_to("p.csv"), "cannot be read"),
+    "a link to a device": (
+        sampled("p.csv"),
+        lambda f: (f / "p.csv").symlink_to("/dev/zero"),
+        "a device",
+    ),
+    "a link in a circle": (
+        sampled("p.csv"),
+        lambda f: (f / "p.csv").symlink_to("p.csv"),
+        "cannot be read",
+    ),
     "infinity in a profile": (sampled("p.csv"), infinite, "no finite number"),
-    "one endless line in a profile": (sampled("p.csv"), lambda f: (f / "p.csv").write_text("x (mm)" * 200_000), "stimulus.csv"),
+    "one endless line in a profile": (
+        sampled("p.csv"),
+        lambda f: (f / "p.csv").write_text("x (mm)" * 200_000),
+        "stimulus.csv",
+    ),
     "a mesh from a device": (specimen(mesh="/dev/zero"), None, "specimen.mesh"),
     "a mesh from a pipe": (specimen(mesh="m.msh"), fifo("m.msh"), "specimen.mesh"),
     "a mesh with a script beside it": (specimen(mesh="m.msh"), opt, "specimen.mesh"),
@@ -167,18 +190,38 @@ HARM = {
     "a thousand brackets": ("[" * 1000, None, "nested too deeply"),
     "a number of very many digits": ("friction: 1" + "0" * 300_000, None, "digits"),
     "a unit of very many letters": (changed(friction="1 " + "m" * 300_000), None, "friction"),
-    "a power tower": (changed(stimulus={"shape": "cylinder", "curvature": "1 m^9^9^9"}), None, "stimulus.curvature"),
+    "a power tower": (
+        changed(stimulus={"shape": "cylinder", "curvature": "1 m^9^9^9"}),
+        None,
+        "stimulus.curvature",
+    ),
     "code": ("!!python/object/apply:os.system ['touch run']", None, "not valid YAML"),
-    "a family out of the folder": ({"over": {"../../x": {"../y": {}}}}, None, "cannot be part of the name of a file"),
-    "a family of a million": ({"over": {k: {str(n): {} for n in range(100)} for k in "abc"}}, None, "makes 1000000 scenes"),
-    "a sweep of a million million": (sweep(**{"friction": LONG, "motion[1].hold": LONG}), None, "makes 10000000000 scenes"),
+    "a family out of the folder": (
+        {"over": {"../../x": {"../y": {}}}},
+        None,
+        "cannot be part of the name of a file",
+    ),
+    "a family of a million": (
+        {"over": {k: {str(n): {} for n in range(100)} for k in "abc"}},
+        None,
+        "makes 1000000 scenes",
+    ),
+    "a sweep of a million million": (
+        sweep(**{"friction": LONG, "motion[1].hold": LONG}),
+        None,
+        "makes 10000000000 scenes",
+    ),
     "a sweep over the whole disk": (sweep_of_files("**/*", "/"), None, PATTERN),
     "a sweep out of its folder": (sweep_of_files("../*"), None, PATTERN),
     "a sweep over all that is absolute": (sweep_of_files("/*"), None, PATTERN),
     "a sweep over nothing": (sweep_of_files(""), None, PATTERN),
-    "a sweep of a name out of its folder": (sweep(friction={"values": [0.1], "name": "../x"}), None, "not one word"),
+    "a sweep of a name out of its folder": (
+        sweep(friction={"values": [0.1], "name": "../x"}),
+        None,
+        "not one word",
+    ),
     "a sweep of a device": ({"scene": "/dev/zero", "over": {"friction": [0.1]}}, None, "a device"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", HARM)
@@ -200,7 +243,9 @@ def test_harm_is_refused_in_one_line_and_does_nothing(tmp_path, capsys, monkeypa
     before = sorted(str(each) for each in tmp_path.rglob("*"))
     assert main([str(word) for word in words]) == 2
     out, err = capsys.readouterr()
-    assert out == "" and err.count("\n") == 1 and said in err and len(err) < 1000 + len(str(path)), err
+    assert (
+        out == "" and err.count("\n") == 1 and said in err and len(err) < 1000 + len(str(path))
+    ), err
     assert sorted(str(each) for each in tmp_path.rglob("*")) == before
 
 
@@ -225,7 +270,11 @@ def test_names_of_scenes_stay_names(tmp_path, capsys, monkeypatch):
     inner = tmp_path / "a" / "b"
     inner.mkdir(parents=True)
     for name in ("..yaml", "x\ny.yaml", " .yaml", "-.yaml"):
-        write(inner, yaml.safe_dump(changed(stimulus={"shape": "sampled", "csv": "none.csv"})), name)
+        write(
+            inner, yaml.safe_dump(changed(stimulus={"shape": "sampled", "csv": "none.csv"})), name
+        )
         assert main(["run", str(inner / name)]) == 2
         assert capsys.readouterr().err.count("\n") == 1
-    assert set(files(tmp_path)) == {f"a/b/{name}" for name in ("..yaml", "x\ny.yaml", " .yaml", "-.yaml")}
+    assert set(files(tmp_path)) == {
+        f"a/b/{name}" for name in ("..yaml", "x\ny.yaml", " .yaml", "-.yaml")
+    }

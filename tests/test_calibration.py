@@ -58,7 +58,9 @@ def scene(name):
 
 
 def drafted(name, **changes):
-    rough = scene(name).model_copy(update={"accuracy": Discretisation(skin_edge=268.8e-6, steps=40), **changes})
+    rough = scene(name).model_copy(
+        update={"accuracy": Discretisation(skin_edge=268.8e-6, steps=40), **changes}
+    )
     return simulate(rough)
 
 
@@ -93,11 +95,18 @@ def data():
 def scaled(factors):
     base = scene("calibration_plate")
     layers = base.specimen.layers
-    changed = Layers(**{
-        name: Layer(youngs_modulus=factor * (old := getattr(layers, name)).youngs_modulus, poisson_ratio=old.poisson_ratio)
-        for name, factor in factors.items()
-    })  # fmt: skip
-    return drafted("calibration_plate", specimen=base.specimen.model_copy(update={"layers": changed}))
+    changed = Layers(
+        **{
+            name: Layer(
+                youngs_modulus=factor * (old := getattr(layers, name)).youngs_modulus,
+                poisson_ratio=old.poisson_ratio,
+            )
+            for name, factor in factors.items()
+        }
+    )
+    return drafted(
+        "calibration_plate", specimen=base.specimen.model_copy(update={"layers": changed})
+    )
 
 
 def test_force_is_proportional_to_a_factor_common_to_all_moduli_at_finite_strain(plate):
@@ -105,15 +114,23 @@ def test_force_is_proportional_to_a_factor_common_to_all_moduli_at_finite_strain
     softer = scaled({"epidermis": 0.4, "dermis": 0.4, "fat": 0.4})
     np.testing.assert_allclose(softer.force, 0.4 * plate.force, rtol=1e-6)
     np.testing.assert_allclose(softer.contact_width, plate.contact_width, rtol=1e-6)
-    one_layer = scaled({"epidermis": 1.0, "dermis": 0.4, "fat": 0.4})  # the ratio not kept: another curve, not only lower
+    one_layer = scaled(
+        {"epidermis": 1.0, "dermis": 0.4, "fat": 0.4}
+    )  # the ratio not kept: another curve, not only lower
     assert np.ptp((one_layer.force / plate.force).values[1:]) > 0.005
     assert abs(one_layer.contact_width / plate.contact_width - 1).values[1:].max() > 0.01
 
 
 def test_a_steady_scene_needs_no_time_and_equals_a_long_hold():
-    steady = scene("calibration_plate").model_copy(update={"motion": (PressToDepth(press_to_depth=1e-3),), "accuracy": "draft"})
+    steady = scene("calibration_plate").model_copy(
+        update={"motion": (PressToDepth(press_to_depth=1e-3),), "accuracy": "draft"}
+    )
     decided = plan(steady)
-    assert not decided.timed and not decided.effects["viscoelasticity"].on and decided.state == "long_term"
+    assert (
+        not decided.timed
+        and not decided.effects["viscoelasticity"].on
+        and decided.state == "long_term"
+    )
     assert "steady" in decided.effects["viscoelasticity"].why
     press = PressToDepth(press_to_depth=1e-3, speed=2e-3)
     held = steady.model_copy(update={"motion": (press, Hold(hold=1000.0))})
@@ -129,7 +146,9 @@ def test_a_steady_scene_needs_no_time_and_equals_a_long_hold():
 def test_curve_passes_through_its_points_and_ends_where_the_simulation_ends(curve):
     np.testing.assert_allclose(curve.force_at(curve.depth), curve.force)
     assert (np.diff(curve.force_at(np.linspace(0, 2.5e-3, 400))) > 0).all()
-    with pytest.raises(ValueError, match="a depth of 3 mm is beyond the elastic curve, 0 to 2.5 mm"):
+    with pytest.raises(
+        ValueError, match="a depth of 3 mm is beyond the elastic curve, 0 to 2.5 mm"
+    ):
         curve.force_at(3e-3)
 
 
@@ -149,7 +168,9 @@ def test_constant_is_given_back_inside_its_interval_from_any_start(curve, start)
     low, high = found.intervals()[0]
     assert low < 0.4 < high and high / low < 1.05
     stiffer = ElasticCurve(curve.depth, 1.2 * curve.force, curve.width)
-    low, high = fit_constant(stiffer, DEPTHS, force, LENGTH, start=start, sigma=sigma).intervals()[0]
+    low, high = fit_constant(stiffer, DEPTHS, force, LENGTH, start=start, sigma=sigma).intervals()[
+        0
+    ]
     assert not low < 0.4 < high
 
 
@@ -158,7 +179,9 @@ def test_intervals_of_the_constant_cover_what_they_promise(curve, known):
     hits = 0
     for seed in range(300):
         force, sigma = synthetic(curve, 0.4, seed)
-        low, high = fit_constant(curve, DEPTHS, force, LENGTH, sigma=sigma if known else None).intervals()[0]
+        low, high = fit_constant(
+            curve, DEPTHS, force, LENGTH, sigma=sigma if known else None
+        ).intervals()[0]
         hits += low < 0.4 < high
     assert 0.92 <= hits / 300 <= 0.98
 
@@ -166,16 +189,23 @@ def test_intervals_of_the_constant_cover_what_they_promise(curve, known):
 def test_force_tells_the_product_of_constant_and_length_and_nothing_of_either(curve):
     force, sigma = synthetic(curve, 0.4, seed=5)
     fits = [
-        fit_constant_and_length(curve, DEPTHS, force, {"s": s, "length": length}, sigma) for s, length in ((1, 0.01), (0.1, 0.2))
+        fit_constant_and_length(curve, DEPTHS, force, {"s": s, "length": length}, sigma)
+        for s, length in ((1, 0.01), (0.1, 0.2))
     ]
     products = [float(np.prod(found.values)) for found in fits]
-    assert products[0] == pytest.approx(products[1], rel=1e-6) == pytest.approx(0.4 * LENGTH, rel=0.05)
-    assert abs(np.log(fits[0].values[0] / fits[1].values[0])) > 0.5, "the start decides where on the ridge a fit ends"
+    assert (
+        products[0] == pytest.approx(products[1], rel=1e-6) == pytest.approx(0.4 * LENGTH, rel=0.05)
+    )
+    assert abs(np.log(fits[0].values[0] / fits[1].values[0])) > 0.5, (
+        "the start decides where on the ridge a fit ends"
+    )
     for found in fits:
         assert ridge_correlation(found) < -0.999
         assert np.linalg.matrix_rank(found.jacobian, tol=1e-9 * abs(found.jacobian).max()) == 1
 
-    def with_width(p):  # were the length known to grow with the width by a part of its own, the two would part
+    def with_width(
+        p,
+    ):  # were the length known to grow with the width by a part of its own, the two would part
         constant, patch = curve.force_at(DEPTHS), curve.force_at(DEPTHS) * curve.width_at(DEPTHS)
         return p[0] * constant + p[1] * patch, np.column_stack([constant, patch])
 
@@ -225,7 +255,11 @@ def result(plate, long_term, data):
 
 def estimate(result, study_name, quantity, subject="mean"):
     table = result.estimates
-    rows = table[(table["study"] == study_name) & (table["quantity"] == quantity) & (table["subject"] == subject)]
+    rows = table[
+        (table["study"] == study_name)
+        & (table["quantity"] == quantity)
+        & (table["subject"] == subject)
+    ]
     assert len(rows) == 1
     return float(rows["estimate"].iloc[0])
 
@@ -234,24 +268,37 @@ def test_study_fits_every_subject_and_the_mean(result):
     assert list(result.constants) == ["1", "2", "3", "4", "mean"]
     assert all(0.4 < found.values[0] < 1.3 for found in result.constants.values())
     assert estimate(result, "stated in the thesis", "modulus constant") == 1.0
-    assert estimate(result, "cost", "finite element simulations for all fits of the constant", "") == 1
+    assert (
+        estimate(result, "cost", "finite element simulations for all fits of the constant", "") == 1
+    )
     assert max(found.evaluations for found in result.constants.values()) <= 60
 
 
 def test_moduli_read_as_long_term_are_smaller_by_less_than_all_that_relaxes(result):
-    ratio = estimate(result, "moduli read as long-term", "constant over that of the instantaneous reading")
+    ratio = estimate(
+        result, "moduli read as long-term", "constant over that of the instantaneous reading"
+    )
     assert THESIS.g_infinity < ratio < 1 / 1.4
 
 
 def test_a_further_subject_joins(plate, data, tmp_path):
     forces = 0.5 * LENGTH * ElasticCurve.from_history(plate).force_at(DEPTHS)
-    rows = "\n".join(f"me,flat plate,{1e3 * d:g},0,{f},x,y" for d, f in zip(DEPTHS, forces, strict=True))
-    (tmp_path / "mine.csv").write_text(f"subject,indenter,depth_mm,speed_mm_per_s,force_N,source,how_obtained\n{rows}\n")
+    rows = "\n".join(
+        f"me,flat plate,{1e3 * d:g},0,{f},x,y" for d, f in zip(DEPTHS, forces, strict=True)
+    )
+    (tmp_path / "mine.csv").write_text(
+        f"subject,indenter,depth_mm,speed_mm_per_s,force_N,source,how_obtained\n{rows}\n"
+    )
     mine = calibrate({"calibration_plate": plate}, {}, read_force_depth(tmp_path))
     assert mine.constants["me"].values[0] == pytest.approx(0.5, rel=1e-6)
     for name in ("fit", "identifiability", "residuals"):  # one subject, no mean
         assert STUDIES[f"calibration_{name}"](getattr(mine, name)).axes
-    assert "me" in calibrate({"calibration_plate": plate}, {}, pd.concat([data, read_force_depth(tmp_path)])).constants
+    assert (
+        "me"
+        in calibrate(
+            {"calibration_plate": plate}, {}, pd.concat([data, read_force_depth(tmp_path)])
+        ).constants
+    )
 
 
 def test_data_without_plate_forces_are_refused(data):
@@ -268,7 +315,9 @@ def test_pictures_are_functions_of_the_saved_data_and_say_where_they_are_from(na
     drawn = STUDIES[name](frame)
     words = " ".join(text.get_text() for text in drawn.texts).lower()
     assert "simulated" in words
-    assert ("measured" in words) == (name != "calibration_prony") or "no measured time courses" in words
+    assert ("measured" in words) == (
+        name != "calibration_prony"
+    ) or "no measured time courses" in words
     write_picture(drawn, tmp_path / "a.png", dpi=60)
     write_frame(frame, tmp_path / "b.csv")
     write_picture(STUDIES[name](read_frame(tmp_path / "b.csv")), tmp_path / "b.png", dpi=60)
@@ -282,7 +331,10 @@ def test_a_scene_names_a_calibrated_specimen(result, plate, data, tmp_path):
     folder = tmp_path / "config" / "specimens"
     specimen = json.loads(plate.attrs["scene"])["specimen"]
     paths = write_specimens(folder, result, specimen, data)
-    assert [path.stem for path in paths] == [*(f"calibrated_subject_{n}" for n in "1234"), "calibrated_mean"]
+    assert [path.stem for path in paths] == [
+        *(f"calibrated_subject_{n}" for n in "1234"),
+        "calibrated_mean",
+    ]
     (tmp_path / "mine.yaml").write_text(
         "specimen: {layers: calibrated_subject_2}\nstimulus: {shape: flat}\nmotion: [{press_to_depth: '1 mm'}]\n"
     )
@@ -296,15 +348,21 @@ def test_a_scene_names_a_calibrated_specimen(result, plate, data, tmp_path):
 
 def test_committed_specimens_are_those_of_the_committed_table(tmp_path):
     table = pd.read_csv(ROOT / "figures" / "tables" / "calibration.csv", dtype={"subject": str})
-    chosen = table[(table["study"] == "constant") & (table["quantity"] == "Young's modulus of the epidermis")]
+    chosen = table[
+        (table["study"] == "constant") & (table["quantity"] == "Young's modulus of the epidermis")
+    ]
     assert len(chosen) == 5
-    for row, name in zip(chosen.itertuples(), specimen_names(chosen["subject"]).values(), strict=True):
+    for row, name in zip(
+        chosen.itertuples(), specimen_names(chosen["subject"]).values(), strict=True
+    ):
         (tmp_path / "mine.yaml").write_text(
             f"specimen: {{layers: {name}}}\nstimulus: {{shape: flat}}\nmotion: [{{press_to_depth: '1 mm'}}]\n"
         )
         layers = load_scene(tmp_path / "mine.yaml").specimen.layers
         assert layers.epidermis.youngs_modulus == pytest.approx(1e6 * row.estimate, rel=2e-5)
-        assert layers.epidermis.youngs_modulus == pytest.approx(10 * layers.dermis.youngs_modulus, rel=1e-5)
+        assert layers.epidermis.youngs_modulus == pytest.approx(
+            10 * layers.dermis.youngs_modulus, rel=1e-5
+        )
 
 
 def test_names_of_subjects_stay_readable_and_apart():
@@ -320,7 +378,9 @@ def test_names_of_subjects_stay_readable_and_apart():
 
 
 def test_counts_that_differ_by_machine_are_not_published(result):
-    assert not any("evaluation" in text for text in (*result.estimates.columns, *result.estimates["quantity"]))
+    assert not any(
+        "evaluation" in text for text in (*result.estimates.columns, *result.estimates["quantity"])
+    )
     committed = (ROOT / "figures" / "tables" / "calibration.csv").read_text()
     assert "evaluation" not in committed
 
@@ -328,7 +388,11 @@ def test_counts_that_differ_by_machine_are_not_published(result):
 def test_the_default_specimen_stays_the_thesis():
     specimen = scene("calibration_plate").specimen
     layers = specimen.layers
-    assert [layer.youngs_modulus for layer in (layers.epidermis, layers.dermis, layers.fat)] == [150e3, 15e3, 15e3]
+    assert [layer.youngs_modulus for layer in (layers.epidermis, layers.dermis, layers.fat)] == [
+        150e3,
+        15e3,
+        15e3,
+    ]
     assert specimen.contact_length == LENGTH
 
 
@@ -340,7 +404,10 @@ def test_relaxing_part_is_exact_for_a_steady_rise_and_knows_its_derivative():
     value, change = relaxing_part(time, 5 * time, tau)
     np.testing.assert_allclose(value, 5 * tau * -np.expm1(-time / tau), rtol=1e-12)
     step = 1e-6
-    slope = (relaxing_part(time, 5 * time**2, tau + step)[0] - relaxing_part(time, 5 * time**2, tau - step)[0]) / (2 * step)
+    slope = (
+        relaxing_part(time, 5 * time**2, tau + step)[0]
+        - relaxing_part(time, 5 * time**2, tau - step)[0]
+    ) / (2 * step)
     np.testing.assert_allclose(relaxing_part(time, 5 * time**2, tau)[1], slope, rtol=1e-6)
 
 
@@ -350,9 +417,13 @@ def test_terms_of_the_force_are_those_of_shear_in_series_with_volume(share):
     b, theta = force_terms(beta, tau, share)
     for p in (0.01, 1.0, 30.0, 1e6):
         shear = 1 + np.sum(beta * p / (p + 1 / tau))
-        assert 1 + np.sum(b * p / (p + 1 / theta)) == pytest.approx((1 + share) * shear / (1 + share * shear), rel=1e-9)
+        assert 1 + np.sum(b * p / (p + 1 / theta)) == pytest.approx(
+            (1 + share) * shear / (1 + share * shear), rel=1e-9
+        )
     if share == 0:
-        assert sorted(b) == pytest.approx(sorted(beta)) and sorted(theta) == pytest.approx(sorted(tau))
+        assert sorted(b) == pytest.approx(sorted(beta)) and sorted(theta) == pytest.approx(
+            sorted(tau)
+        )
     else:
         assert sum(b) < sum(beta) and (np.sort(theta) > np.sort(tau)).all()
 
@@ -372,24 +443,34 @@ def test_hereditary_force_is_within_four_per_cent_of_the_simulation(hereditary, 
 
 def test_sensitivities_are_the_derivatives(hereditary):
     p = np.array([0.8, 0.1, 3.0, 0.6, 0.3])
-    slope = np.column_stack([
-        (hereditary.model(p + h)[0] - hereditary.model(p - h)[0]) / (2 * h.sum()) for h in 1e-5 * np.diag(p)
-    ])  # fmt: skip
+    slope = np.column_stack(
+        [
+            (hereditary.model(p + h)[0] - hereditary.model(p - h)[0]) / (2 * h.sum())
+            for h in 1e-5 * np.diag(p)
+        ]
+    )
     np.testing.assert_allclose(hereditary.model(p)[1], slope, rtol=1e-4, atol=1e-8)
 
 
 def noisy(force, seed, noise=0.005):
     sigma = noise * force.max()
-    return force + np.concatenate([[0.0], np.random.default_rng(seed).normal(0, sigma, len(force) - 1)]), sigma
+    return force + np.concatenate(
+        [[0.0], np.random.default_rng(seed).normal(0, sigma, len(force) - 1)]
+    ), sigma
 
 
 def inside(found):
     truth = {"modulus constant": 1.0, "g_1": 0.055, "tau_1": 3.25, "g_2": 0.3691, "tau_2": 0.3414}
-    return {name: low < truth[name] < high for name, (_, low, high) in series_estimates(found).items()}
+    return {
+        name: low < truth[name] < high for name, (_, low, high) in series_estimates(found).items()
+    }
 
 
 def test_series_is_given_back_from_a_wrong_start_by_one_simulation(hereditary, ramp):
-    rough, calls = scene("calibration_ramp_hold").with_accuracy(Discretisation(skin_edge=268.8e-6, steps=40)), []
+    rough, calls = (
+        scene("calibration_ramp_hold").with_accuracy(Discretisation(skin_edge=268.8e-6, steps=40)),
+        [],
+    )
 
     def full(prony):
         calls.append(prony)
@@ -400,33 +481,45 @@ def test_series_is_given_back_from_a_wrong_start_by_one_simulation(hereditary, r
     assert len(calls) == found.simulations == 1
     assert all(inside(found.corrected).values())
     series = series_of(found.corrected)
-    assert series.g[1] == pytest.approx(0.3691, rel=0.1) and series.tau[1] == pytest.approx(0.3414, rel=0.15)
+    assert series.g[1] == pytest.approx(0.3691, rel=0.1) and series.tau[1] == pytest.approx(
+        0.3414, rel=0.15
+    )
     clean = ramp.force.values * LENGTH
     errors = [
         abs(model.model(part.values)[0] - clean).max()
         for model, part in ((hereditary, found.hereditary), (found.model, found.corrected))
     ]
-    assert errors[1] < errors[0], "the correction brings the fitted force nearer to the simulated one"
+    assert errors[1] < errors[0], (
+        "the correction brings the fitted force nearer to the simulated one"
+    )
 
 
 def test_intervals_of_the_series_cover_what_they_promise(hereditary):
     """Started at the truth, which is quicker; every tenth also far from it, and the same is found."""
     clean, hits = hereditary.force(THESIS), []
-    truth = dict(zip(WRONG_START, (1.0, *np.column_stack([THESIS.beta, THESIS.tau]).ravel()), strict=True))
+    truth = dict(
+        zip(WRONG_START, (1.0, *np.column_stack([THESIS.beta, THESIS.tau]).ravel()), strict=True)
+    )
     for seed in range(60):
         force, sigma = noisy(clean, seed, noise=0.002)
         found = fit_series(hereditary, force, hereditary.force, start=truth, sigma=sigma)
         hits.append(inside(found.corrected))
         if seed % 10 == 0:
             far = fit_series(hereditary, force, hereditary.force, start=WRONG_START, sigma=sigma)
-            assert series_estimates(far.corrected)["g_1"] == pytest.approx(series_estimates(found.corrected)["g_1"], rel=1e-4)
+            assert series_estimates(far.corrected)["g_1"] == pytest.approx(
+                series_estimates(found.corrected)["g_1"], rel=1e-4
+            )
             assert inside(far.corrected) == hits[-1]
     for name, share in pd.DataFrame(hits).mean().items():
         assert 0.86 <= share <= 1.0, name
 
 
 def test_fast_ramps_tell_fast_amplitudes_and_slow_ones_do_not(curve):
-    taus = read_relaxation(REFERENCE / "relaxation.csv").query("series == 'pawluk_howe'")["tau_s"].tolist()
+    taus = (
+        read_relaxation(REFERENCE / "relaxation.csv")
+        .query("series == 'pawluk_howe'")["tau_s"]
+        .tolist()
+    )
 
     def half_widths(speed):
         design = amplitude_design(curve, 1e-3, speed, taus)
@@ -441,7 +534,9 @@ def test_amplitude_design_is_the_derivative_of_the_force_by_amplitude(curve):
     time = np.concatenate([np.linspace(0, 0.5, 31), 0.5 + np.cumsum(geometric(9.5, 30, 0.5 / 30))])
     model = RampForce(curve, time, np.minimum(2e-3 * time, 1e-3), LENGTH)
     design = amplitude_design(curve, 1e-3, 2e-3, [0.07])
-    rise = (model.model(np.array([1.0, 0.2, 0.07]))[0] - model.model(np.array([1.0, 0.1, 0.07]))[0]) / 0.1
+    rise = (
+        model.model(np.array([1.0, 0.2, 0.07]))[0] - model.model(np.array([1.0, 0.1, 0.07]))[0]
+    ) / 0.1
     np.testing.assert_allclose(design[:, 1], rise[1:] / model.base()[-1], rtol=1e-4, atol=1e-12)
 
 

@@ -27,7 +27,9 @@ def catalogue():
 
 
 def test_every_figure_of_the_thesis_is_listed_in_order(catalogue):
-    assert catalogue["number"].tolist() == [f"{c}-{k}" for c, count in COUNTS.items() for k in range(1, count + 1)]
+    assert catalogue["number"].tolist() == [
+        f"{c}-{k}" for c, count in COUNTS.items() for k in range(1, count + 1)
+    ]
 
 
 def test_every_figure_drawn_is_one_of_the_thesiss_and_listed_once_in_order():
@@ -37,7 +39,9 @@ def test_every_figure_drawn_is_one_of_the_thesiss_and_listed_once_in_order():
 
 def test_committed_list_is_what_the_workflow_writes(catalogue):
     committed = (ROOT / "figures/README.md").read_text(encoding="utf-8")
-    assert committed == readme(catalogue, MADE, JUDGED), "run `snakemake catalogue` and commit figures/README.md"
+    assert committed == readme(catalogue, MADE, JUDGED), (
+        "run `snakemake catalogue` and commit figures/README.md"
+    )
 
 
 def test_every_figure_is_in_one_list(catalogue):
@@ -49,14 +53,21 @@ def test_every_figure_is_in_one_list(catalogue):
 
 
 def test_a_figure_taken_out_is_named_as_missing(catalogue):
-    assert "## Not drawn yet" in readme(catalogue, {n: title for n, title in MADE.items() if n != "5-12"}, JUDGED)
+    assert "## Not drawn yet" in readme(
+        catalogue, {n: title for n, title in MADE.items() if n != "5-12"}, JUDGED
+    )
     without = readme(catalogue, {n: title for n, title in MADE.items() if n != "5-1"}, JUDGED)
-    assert "| 5-1 | impulses of ten strokes and their histogram | recording |\n" in without.split("## Not drawn yet")[1]
+    assert (
+        "| 5-1 | impulses of ten strokes and their histogram | recording |\n"
+        in without.split("## Not drawn yet")[1]
+    )
 
 
 def test_holds_counts_the_rows_of_the_comparison_that_speak_for_the_model(catalogue):
     text, seen = readme(catalogue, MADE, JUDGED), 0
-    speaking = TABLE[TABLE["role"].isin(["result", "trend"]) & (TABLE["verdict"] != "not_comparable")]
+    speaking = TABLE[
+        TABLE["role"].isin(["result", "trend"]) & (TABLE["verdict"] != "not_comparable")
+    ]
     for line in (line for line in text.splitlines() if "thesis_comparison_chapter" in line):
         number, good, count = re.match(r"\| \[([\d-]+)\].*\[(\d+) of (\d+)\]", line).groups()
         found = speaking.loc[speaking["figure"] == number, "verdict"]

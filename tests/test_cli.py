@@ -20,7 +20,15 @@ pytestmark = pytest.mark.unit
 
 CONFIG = Path(__file__).parents[1] / "config"
 SUMMARY = {
-    "legs": [{"depth_mm": 0.5, "force_N_per_m": 19.6133, "force_N": 0.196133, "contact_width_mm": 4.7, "estimated_error": 0.043}],
+    "legs": [
+        {
+            "depth_mm": 0.5,
+            "force_N_per_m": 19.6133,
+            "force_N": 0.196133,
+            "contact_width_mm": 4.7,
+            "estimated_error": 0.043,
+        }
+    ],
     "run": {
         "steps": 2,
         "newton_iterations": 5,
@@ -56,11 +64,16 @@ def solver(monkeypatch):
             progress(dict(zip(keys, (0.5, 2.5, 4.7, 3, 0), strict=True)))
         return dataset
 
-    simulation, results = types.ModuleType("fingerpad.simulation"), types.ModuleType("fingerpad.results")
+    simulation, results = (
+        types.ModuleType("fingerpad.simulation"),
+        types.ModuleType("fingerpad.results"),
+    )
     simulation.solve = simulate
     results.summary = lambda dataset: SUMMARY
     results.write_history = lambda dataset, path: dataset.to_netcdf(path, engine="netcdf4")
-    results.write_vtu = lambda dataset, directory: write_text(directory / "snapshot_0.vtu", "<VTKFile/>")
+    results.write_vtu = lambda dataset, directory: write_text(
+        directory / "snapshot_0.vtu", "<VTKFile/>"
+    )
     monkeypatch.setitem(sys.modules, "fingerpad.simulation", simulation)
     monkeypatch.setitem(sys.modules, "fingerpad.results", results)
     monkeypatch.setattr(fingerpad.specimen, "mesh_for", lambda scene, plan: object())
@@ -84,7 +97,13 @@ def refused(capsys, arguments):
 
 
 # all of them are refused in test_scene; these show that each kind of refusal reaches the command line
-REFUSED = ("unknown key in a leg", "a list", "layers thicker than the pad", "profile missing", "slide after a lift")
+REFUSED = (
+    "unknown key in a leg",
+    "a list",
+    "layers thicker than the pad",
+    "profile missing",
+    "slide after a lift",
+)
 
 
 @pytest.mark.parametrize("name", REFUSED)
@@ -102,7 +121,9 @@ def test_files_that_are_no_scene(tmp_path, capsys, command, content):
     path = tmp_path / "none.yaml"
     if content is not None:
         path.write_bytes(content)
-    out = {"plan": [], "run": ["--out", tmp_path / "out"], "mesh": ["--out", tmp_path / "out.msh"]}[command]
+    out = {"plan": [], "run": ["--out", tmp_path / "out"], "mesh": ["--out", tmp_path / "out.msh"]}[
+        command
+    ]
     assert str(path) in refused(capsys, [command, path, *out])
     assert names(tmp_path) == ([] if content is None else ["none.yaml"])
 
@@ -120,7 +141,10 @@ def test_an_output_that_is_a_file(tmp_path, scene, capsys):
         assert "--out" in refused(capsys, ["run", scene, "--out", tmp_path / out])
     assert "--out" in refused(capsys, ["mesh", scene, "--out", tmp_path / "file" / "a.msh"])
     assert "ending in .msh" in refused(capsys, ["mesh", scene, "--out", tmp_path / "mesh.txt"])
-    assert (tmp_path / "file").read_text() == "kept" and names(tmp_path) == ["file", "my_scene.yaml"]
+    assert (tmp_path / "file").read_text() == "kept" and names(tmp_path) == [
+        "file",
+        "my_scene.yaml",
+    ]
 
 
 def test_a_directory_that_cannot_be_written(tmp_path, scene, capsys, monkeypatch):
@@ -144,7 +168,9 @@ def test_a_plan_that_cannot_be_made_names_the_key(tmp_path, capsys):
     assert refused(capsys, ["plan", path]).startswith(f"{path}: effects.ridges: ")
 
 
-@pytest.mark.parametrize("arguments", [[], ["fly"], ["mesh", "a.yaml"], ["plan"], ["plan", "a.yaml", "--fast"]])
+@pytest.mark.parametrize(
+    "arguments", [[], ["fly"], ["mesh", "a.yaml"], ["plan"], ["plan", "a.yaml", "--fast"]]
+)
 def test_usage_errors_exit_2(arguments, capsys):
     with pytest.raises(SystemExit) as caught:
         main(arguments)
@@ -165,13 +191,26 @@ def test_version(capsys):
 def test_plan_as_json_and_as_a_table(scene, capsys):
     assert main(["plan", str(scene), "--json"]) == 0
     plan = json.loads(capsys.readouterr().out)
-    assert set(plan["effects"]) == {"friction", "viscoelasticity", "finite_strain", "symmetry", "ridges"}
+    assert set(plan["effects"]) == {
+        "friction",
+        "viscoelasticity",
+        "finite_strain",
+        "symmetry",
+        "ridges",
+    }
     assert all(set(effect) == {"on", "why"} for effect in plan["effects"].values())
     assert {"element", "nodes", "steps"} <= set(plan["discretisation"])
 
     assert main(["plan", str(scene)]) == 0
     table = capsys.readouterr().out
-    for words in ("Plan of my_scene", "finite strain", "friction", "nodes", "expected error", "predicted cost"):
+    for words in (
+        "Plan of my_scene",
+        "finite strain",
+        "friction",
+        "nodes",
+        "expected error",
+        "predicted cost",
+    ):
         assert words in table
 
 
@@ -194,7 +233,12 @@ def test_run_writes_three_files(tmp_path, scene, solver, capsys):
     with xr.open_dataset(out / "history.nc", engine="netcdf4") as history:
         assert history.force[-1] == 19.6
     stdout, stderr = capsys.readouterr()
-    assert stderr == "" and stdout.count("\n") == 1 and str(out) in stdout and "error about 4.3 %" in stdout
+    assert (
+        stderr == ""
+        and stdout.count("\n") == 1
+        and str(out) in stdout
+        and "error about 4.3 %" in stdout
+    )
     assert "force 20.0 gf (19.6 N/m)" in stdout
 
 
@@ -204,7 +248,9 @@ def test_force_is_said_in_the_unit_it_came_in(tmp_path, solver, capsys):
     assert "force 196. mN (19.6 N/m)" in capsys.readouterr().out
 
 
-def test_results_without_out_go_to_a_folder_of_the_scene_s_name(tmp_path, scene, solver, monkeypatch, capsys):
+def test_results_without_out_go_to_a_folder_of_the_scene_s_name(
+    tmp_path, scene, solver, monkeypatch, capsys
+):
     monkeypatch.chdir(tmp_path)
     assert main(["run", scene.name]) == 0
     assert names("results/my_scene") == ["history.nc", "plan.json", "summary.json"]
@@ -212,13 +258,16 @@ def test_results_without_out_go_to_a_folder_of_the_scene_s_name(tmp_path, scene,
 
 
 @pytest.mark.parametrize(
-    ("seconds", "said"), [(None, "1.5 s; "), (0.2, "1.5 s; "), (1.2, "1.5 s, 1.2 of them to compile, once;")]
+    ("seconds", "said"),
+    [(None, "1.5 s; "), (0.2, "1.5 s; "), (1.2, "1.5 s, 1.2 of them to compile, once;")],
 )
 def test_a_run_says_what_it_took_to_compile(seconds, said):
     from fingerpad.cli import _closing_line
 
     once = {} if seconds is None else {"compiling_s": seconds}
-    assert f"5 iterations, {said}" in _closing_line(SUMMARY | {"run": SUMMARY["run"] | once}, Path("results"), "gf")
+    assert f"5 iterations, {said}" in _closing_line(
+        SUMMARY | {"run": SUMMARY["run"] | once}, Path("results"), "gf"
+    )
 
 
 def test_quiet_says_nothing_and_vtu_adds_fields(tmp_path, solver, capsys):
@@ -244,13 +293,19 @@ def test_results_of_two_runs_do_not_mix(tmp_path, solver):
     assert names(out) == ["history.nc", "notes.txt", "plan.json", "summary.json"]
 
 
-def test_files_of_a_user_s_under_the_names_of_results_are_replaced_by_force_only(tmp_path, scene, solver, capsys):
+def test_files_of_a_user_s_under_the_names_of_results_are_replaced_by_force_only(
+    tmp_path, scene, solver, capsys
+):
     out = tmp_path / "out"
     out.mkdir()
     (out / "summary.json").write_text("a user's own")
     (out / "plan.json").write_text('{"files": ["../../my_scene.yaml", "summary.json.bak", 5]}')
     line = refused(capsys, ["run", scene, "--out", out])
-    assert str(out / "plan.json") in line and "--force" in line and (out / "summary.json").read_text() == "a user's own"
+    assert (
+        str(out / "plan.json") in line
+        and "--force" in line
+        and (out / "summary.json").read_text() == "a user's own"
+    )
     assert main(["run", str(scene), "--out", str(out), "--force", "--quiet"]) == 0
     assert json.loads((out / "summary.json").read_text()) == SUMMARY and scene.exists()
 
@@ -265,7 +320,9 @@ def test_results_of_another_scene_are_replaced_by_force_only(tmp_path, scene, so
     assert json.loads((out / "plan.json").read_text())["scene"] == "other"
 
 
-def test_a_second_run_into_one_folder_is_refused_while_the_first_lives(tmp_path, scene, solver, capsys):
+def test_a_second_run_into_one_folder_is_refused_while_the_first_lives(
+    tmp_path, scene, solver, capsys
+):
     """The lock is a process's: it goes when that is killed, and leaves nothing."""
     out = tmp_path / "out"
     out.mkdir()
@@ -301,7 +358,9 @@ def _non_convergence(dataset):
     return error
 
 
-def test_non_convergence_exits_3_and_saves_the_last_converged_state(tmp_path, scene, solver, capsys):
+def test_non_convergence_exits_3_and_saves_the_last_converged_state(
+    tmp_path, scene, solver, capsys
+):
     out = tmp_path / "out"
     assert main(["run", str(scene), "--out", str(out), "--quiet"]) == 0
     solver.fails = _non_convergence(xr.Dataset({"force": ("time", [0.0, 9.8])}))
@@ -327,7 +386,9 @@ def test_interrupt_before_anything_has_converged_leaves_nothing(tmp_path, scene,
     assert capsys.readouterr().err == "fingerpad: interrupted\n"
 
 
-def test_interrupt_keeps_what_had_converged_beside_the_results_there_are(tmp_path, scene, solver, capsys):
+def test_interrupt_keeps_what_had_converged_beside_the_results_there_are(
+    tmp_path, scene, solver, capsys
+):
     out, stop = tmp_path / "out", KeyboardInterrupt()
     stop.dataset = xr.Dataset({"force": ("time", [0.0, 9.8])}, {"time": [0.0, 0.25]})
     arguments = ["run", str(scene), "--out", str(out), "--quiet"]
@@ -336,7 +397,11 @@ def test_interrupt_keeps_what_had_converged_beside_the_results_there_are(tmp_pat
     solver.fails = stop
     assert main(arguments) == 130
     err = capsys.readouterr().err
-    assert "interrupted after t = 0.25 s" in err and str(out / "last_converged.nc") in err and err.count("\n") == 1
+    assert (
+        "interrupted after t = 0.25 s" in err
+        and str(out / "last_converged.nc") in err
+        and err.count("\n") == 1
+    )
     assert names(out) == ["history.nc", "last_converged.nc", "plan.json", "summary.json"]
     assert (out / "history.nc").read_bytes() == before
     solver.fails = None
@@ -345,10 +410,17 @@ def test_interrupt_keeps_what_had_converged_beside_the_results_there_are(tmp_pat
 
 
 @pytest.mark.parametrize(
-    ("error", "code"), [(KeyboardInterrupt(), 130), (OSError(28, "No space left on device"), 3), (RuntimeError("NetCDF"), 1)]
+    ("error", "code"),
+    [
+        (KeyboardInterrupt(), 130),
+        (OSError(28, "No space left on device"), 3),
+        (RuntimeError("NetCDF"), 1),
+    ],
 )
 @pytest.mark.parametrize("writer", ["write_history", "write_vtu"])
-def test_a_run_stopped_while_writing_leaves_the_old_results(tmp_path, scene, solver, monkeypatch, capsys, error, code, writer):
+def test_a_run_stopped_while_writing_leaves_the_old_results(
+    tmp_path, scene, solver, monkeypatch, capsys, error, code, writer
+):
     out = tmp_path / "out"
     arguments = ["run", str(scene), "--out", str(out), "--quiet", "--vtu"]
     assert main(arguments) == 0
@@ -377,7 +449,11 @@ def test_an_unforeseen_error_is_one_line_and_a_file(tmp_path, scene, solver, mon
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 1
     out, err = capsys.readouterr()
-    assert out == "" and err.count("\n") == 1 and "internal error, ZeroDivisionError: nobody has thought of this" in err
+    assert (
+        out == ""
+        and err.count("\n") == 1
+        and "internal error, ZeroDivisionError: nobody has thought of this" in err
+    )
     (report,) = tmp_path.glob("fingerpad-error-*.txt")
     assert str(report) in err and not (tmp_path / "out").exists()
     for words in ("Traceback", "in broken", "a library's warning", "Python 3"):
@@ -387,7 +463,9 @@ def test_an_unforeseen_error_is_one_line_and_a_file(tmp_path, scene, solver, mon
 def test_no_memory_is_one_line(tmp_path, scene, solver, capsys):
     solver.fails = MemoryError("Unable to allocate 30.7 GiB")
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 3
-    assert capsys.readouterr().err.startswith("fingerpad: not enough memory: Unable to allocate 30.7 GiB; try ")
+    assert capsys.readouterr().err.startswith(
+        "fingerpad: not enough memory: Unable to allocate 30.7 GiB; try "
+    )
 
 
 def test_an_output_that_is_no_path(tmp_path, scene, capsys):
@@ -415,7 +493,12 @@ def test_run_for_real(tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["run", str(path), "--out", str(out), "--vtu", "--quiet"]) == 0
     assert names(out) == ["history.nc", "plan.json", "summary.json", "vtu"]
-    assert names(out / "vtu") == ["indenter_0.vtu", "snapshot_0.vtu", "snapshots.pvd", "snapshots.vtu.series"]
+    assert names(out / "vtu") == [
+        "indenter_0.vtu",
+        "snapshot_0.vtu",
+        "snapshots.pvd",
+        "snapshots.vtu.series",
+    ]
     ramp, hold = json.loads((out / "summary.json").read_text())["legs"]
     for leg in (ramp, hold):
         assert leg["force_N_per_m"] == pytest.approx(20 * 9.80665e-3 / 0.0114, rel=1e-6)
@@ -426,15 +509,23 @@ def test_run_for_real(tmp_path, capsys):
 
 def test_as_a_process(tmp_path):
     def fingerpad(*arguments):
-        return subprocess.run([sys.executable, "-m", "fingerpad", *arguments], capture_output=True, text=True)
+        return subprocess.run(
+            [sys.executable, "-m", "fingerpad", *arguments], capture_output=True, text=True
+        )
 
     assert fingerpad("--version").returncode == 0
     wrong = fingerpad("run", "no.yaml", "--out", str(tmp_path / "out"))
-    assert (wrong.returncode, wrong.stdout, wrong.stderr) == (2, "", "fingerpad: no.yaml: there is no such file\n")
+    assert (wrong.returncode, wrong.stdout, wrong.stderr) == (
+        2,
+        "",
+        "fingerpad: no.yaml: there is no such file\n",
+    )
     assert names(tmp_path) == []
 
 
-@pytest.mark.parametrize("main", ["from fingerpad.cli import main; main(['plan', 'none.yaml'])", ""])
+@pytest.mark.parametrize(
+    "main", ["from fingerpad.cli import main; main(['plan', 'none.yaml'])", ""]
+)
 def test_what_is_unreachable_at_the_end_is_not_looked_for(main):
     """Of a command: without it, the interpreter's last search finds what points at itself."""
     said = (

@@ -8,14 +8,29 @@ import pandas as pd
 import pytest
 
 import synthetic
-from cysyk1999.claims.comparison import COLUMNS, GIVEN, PARTS, TRENDS, scores, summary, thesis_comparison
+from cysyk1999.claims.comparison import (
+    COLUMNS,
+    GIVEN,
+    PARTS,
+    TRENDS,
+    scores,
+    summary,
+    thesis_comparison,
+)
 from cysyk1999.claims.reasons import REASONS, reason
 from cysyk1999.claims.rows import SETS, Number, numbers
 from cysyk1999.claims.sensitivity import BASE, NEAREST, QUANTITIES, SHAPES, VARIANTS, variant_scene
 from cysyk1999.claims.tables import TABLES
 from cysyk1999.claims.verdicts import judge
 from cysyk1999.measures.table import COLUMNS as MEASURE_COLUMNS
-from cysyk1999.measures.table import MEASURES, Instead, Measures, measures_table, read_measures, write_measures
+from cysyk1999.measures.table import (
+    MEASURES,
+    Instead,
+    Measures,
+    measures_table,
+    read_measures,
+    write_measures,
+)
 from cysyk1999.publishing.write import markdown, publish_table
 from cysyk1999.reference_data import read_reference
 from fingerpad.measures.features import centre_node, scene_name
@@ -36,11 +51,15 @@ def made():
 
 
 def _compared(histories, coarse, meshes):
-    return thesis_comparison(Measures.of(histories, meshes), Instead.of(histories, coarse), REFERENCE).set_index("id")
+    return thesis_comparison(
+        Measures.of(histories, meshes), Instead.of(histories, coarse), REFERENCE
+    ).set_index("id")
 
 
 def _sensitivity(histories, coarse, meshes):
-    return TABLES["sensitivity"](Measures.of(histories, meshes), Instead.of(histories, coarse), REFERENCE)
+    return TABLES["sensitivity"](
+        Measures.of(histories, meshes), Instead.of(histories, coarse), REFERENCE
+    )
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +107,9 @@ def test_an_input_is_what_a_scene_alone_tells():
             if MEASURES[number.measure].of == "scene" and id_ != "T061":
                 assert MEASURES[number.measure].where(scene), id_
                 found += MEASURES[number.measure](scene).values()
-        assert (reference.loc[id_, "role"] == "input") == bool(found) or id_ in ("T061", "T323"), id_
+        assert (reference.loc[id_, "role"] == "input") == bool(found) or id_ in ("T061", "T323"), (
+            id_
+        )
         assert np.isfinite(found).all(), id_
 
 
@@ -111,9 +132,16 @@ def test_numbers_are_made_of_the_scenes_and_conditions_that_a_row_names():
     m = Measures(lambda quantity, scene: values[quantity, scene])
 
     def number(of, at=""):
-        return Number.of(pd.Series({"measure": "width", "at": at, "of": of, "units": "mm"}, name="T1"))(m)
+        return Number.of(
+            pd.Series({"measure": "width", "at": at, "of": of, "units": "mm"}, name="T1")
+        )(m)
 
-    assert (number("a b"), number("a b", "top"), number("least of a b"), number("mean of a b", "end")) == (6, 3, 1, 4)
+    assert (
+        number("a b"),
+        number("a b", "top"),
+        number("least of a b"),
+        number("mean of a b", "end"),
+    ) == (6, 3, 1, 4)
     assert number("sum of a b", "end") == 8 and number("number of a b c", "end") == 2
     with pytest.raises(KeyError):
         number("a c")
@@ -124,17 +152,31 @@ def test_the_table_says_what_the_histories_do(made, tmp_path):
     names = ["ramp40_flat", "stroke_sub_10", "step_sub", "steady_line", "ramp150_k79"]
     few = {name: histories[name] for name in names}
     rough = {name: coarse[name] for name in names[:2]}
-    write_measures(measures_table(few, rough, {"ramp40_flat": meshes["ramp40_flat"]}), tmp_path / "measures.csv")
+    write_measures(
+        measures_table(few, rough, {"ramp40_flat": meshes["ramp40_flat"]}),
+        tmp_path / "measures.csv",
+    )
     rows = read_measures(tmp_path / "measures.csv")
-    assert list(rows.columns) == list(MEASURE_COLUMNS) and rows["unit"].eq(rows["quantity"].map(lambda q: MEASURES[q].unit)).all()
+    assert (
+        list(rows.columns) == list(MEASURE_COLUMNS)
+        and rows["unit"].eq(rows["quantity"].map(lambda q: MEASURES[q].unit)).all()
+    )
     assert not rows.duplicated(["scene", "quantity", "condition"]).any()
     instead = Instead.of(few, rough)
-    columns = {"value": Measures.of(few, meshes), "mesh_companion": instead.mesh, "companion": instead.both}
+    columns = {
+        "value": Measures.of(few, meshes),
+        "mesh_companion": instead.mesh,
+        "companion": instead.both,
+    }
     columns |= {"sparse_mesh_companion": instead.sparse_mesh, "sparse": instead.sparse}
     for column, live in columns.items():
         kept = Measures.in_table(rows, column)
-        for quantity, scene in {(r.quantity, r.scene) for r in rows.itertuples() if np.isfinite(getattr(r, column))}:
-            assert kept.find(quantity, scene) == pytest.approx(live.find(quantity, scene), rel=0, abs=0, nan_ok=True)
+        for quantity, scene in {
+            (r.quantity, r.scene) for r in rows.itertuples() if np.isfinite(getattr(r, column))
+        }:
+            assert kept.find(quantity, scene) == pytest.approx(
+                live.find(quantity, scene), rel=0, abs=0, nan_ok=True
+            )
     kept = Measures.in_table(rows, "companion")
     with pytest.raises(KeyError, match="ramp40_k79"):
         kept("width", "ramp40_k79", "end")
@@ -158,10 +200,16 @@ def test_columns_kinds_and_verdicts_are_those_asked_for(table):
 
 def test_an_axis_is_never_more_than_plausible(table):
     axis = read_reference(REFERENCE)["form"].eq("axis").reindex(table.index)
-    assert not table.loc[axis, "verdict"].eq("inside").any() and not table.loc[~axis, "verdict"].eq("plausible").any()
+    assert (
+        not table.loc[axis, "verdict"].eq("inside").any()
+        and not table.loc[~axis, "verdict"].eq("plausible").any()
+    )
 
 
-@pytest.mark.parametrize("row, role", [("T123", ""), ("T123", "trend"), ("TR01", "result"), ("T124", "input"), ("T026", "given")])
+@pytest.mark.parametrize(
+    "row, role",
+    [("T123", ""), ("T123", "trend"), ("TR01", "result"), ("T124", "input"), ("T026", "given")],
+)
 def test_a_role_that_does_not_go_with_its_row_is_refused(tmp_path, row, role):
     lines = REFERENCE.read_text().splitlines(keepends=True)
     at = lines[0].split(",").index("role")
@@ -191,18 +239,28 @@ def scored():
         ("k", "trend", "", "", "trend", "trend_fails"),
         ("l", "trend", "none", "", "trend", "trend_holds"),
     ]
-    reference = pd.DataFrame(given, columns=["id", "role", "score", "same_as", "form", "verdict"]).set_index("id")
+    reference = pd.DataFrame(
+        given, columns=["id", "role", "score", "same_as", "form", "verdict"]
+    ).set_index("id")
     return reference.reset_index()[["id", "role", "verdict"]], reference
 
 
 def test_scores_tell_what_was_held_out_from_what_was_fitted_and_count_nothing_twice(scored):
     found = scores(*scored).set_index(["kind", "score"])
-    told = {key: tuple(map(int, row)) for key, row in zip(found.index, found.to_numpy(), strict=True)}
+    told = {
+        key: tuple(map(int, row)) for key, row in zip(found.index, found.to_numpy(), strict=True)
+    }
     assert told == {
-        ("value or range", "fitted"): (1, 2), ("value or range", "held out"): (1, 1), ("value or range", "all"): (2, 3),
-        ("axis", "fitted"): (0, 0), ("axis", "held out"): (1, 2), ("axis", "all"): (1, 2),
-        ("trend", "fitted"): (0, 0), ("trend", "held out"): (1, 2), ("trend", "all"): (1, 2),
-    }  # fmt: skip
+        ("value or range", "fitted"): (1, 2),
+        ("value or range", "held out"): (1, 1),
+        ("value or range", "all"): (2, 3),
+        ("axis", "fitted"): (0, 0),
+        ("axis", "held out"): (1, 2),
+        ("axis", "all"): (1, 2),
+        ("trend", "fitted"): (0, 0),
+        ("trend", "held out"): (1, 2),
+        ("trend", "all"): (1, 2),
+    }
 
 
 def test_the_summary_begins_with_what_was_held_out(scored):
@@ -211,7 +269,11 @@ def test_the_summary_begins_with_what_was_held_out(scored):
         text.startswith("**Held out: 1 of 1 (fitted 1 of 2, all 2 of 3) values")
         and "1 of 2 (fitted 0 of 0, all 1 of 2) axes" in text
     )
-    assert "2 of 2 inputs and counts" in text and "1 rows repeat" in text and "1 trends hold by construction" in text
+    assert (
+        "2 of 2 inputs and counts" in text
+        and "1 rows repeat" in text
+        and "1 trends hold by construction" in text
+    )
 
 
 def test_every_row_that_is_scored_none_or_not_comparable_says_why(table):
@@ -232,14 +294,21 @@ def test_a_row_that_repeats_another_has_its_measure_and_a_bound_on_its_curve():
             {"sunk", "depth"},
             {"highest_pressure", "centre_pressure"},
         )
-        assert alike and {"ramp40_k1260", "nine"} & {row["of"], other["of"]} or row["of"] == other["of"], id_
+        assert (
+            alike
+            and {"ramp40_k1260", "nine"} & {row["of"], other["of"]}
+            or row["of"] == other["of"]
+        ), id_
 
 
 def test_a_tick_is_below_the_end_of_its_axis():
     reference = read_reference(REFERENCE)
     ticks = reference[reference["tick"].notna()]
     assert (
-        len(ticks) > 60 and ticks["form"].eq("axis").all() and (ticks["tick"] < ticks["high"]).all() and (ticks["tick"] > 0).all()
+        len(ticks) > 60
+        and ticks["form"].eq("axis").all()
+        and (ticks["tick"] < ticks["high"]).all()
+        and (ticks["tick"] > 0).all()
     )
 
 
@@ -251,7 +320,9 @@ def test_outside_rows_say_by_how_much(table):
 def test_the_error_is_what_the_companion_leaves_of_it_in_the_rows_units(table):
     row = table.loc["T123"]
     assert row["mesh_error"] == pytest.approx(REMAINS * 0.0125 * row["simulated"], rel=0.05)
-    assert row["time_step_error"] == pytest.approx(STEPS_REMAIN * 0.0025 * row["simulated"], rel=0.05)
+    assert row["time_step_error"] == pytest.approx(
+        STEPS_REMAIN * 0.0025 * row["simulated"], rel=0.05
+    )
     assert row["sampling_error"] >= 0
 
 
@@ -262,7 +333,9 @@ def test_only_results_have_errors(table):
 
 def test_every_published_result_states_its_error():
     published = pd.read_csv(CONFIG.parent / "figures/tables/thesis_comparison.csv")
-    results = published[published["role"].isin(("result", "calibrated")) & published["simulated"].notna()]
+    results = published[
+        published["role"].isin(("result", "calibrated")) & published["simulated"].notna()
+    ]
     assert len(results) > 150 and results[list(PARTS)].notna().all(axis=None)
 
 
@@ -303,7 +376,13 @@ def test_rules_of_judgement(form, low, high, tolerance, value, error, verdict):
 
 
 @pytest.mark.parametrize(
-    "value, error, verdict", [(7900, 0, "outside"), (7900, 150, "plausible"), (7000, 900, "outside"), (8100, 0, "plausible")]
+    "value, error, verdict",
+    [
+        (7900, 0, "outside"),
+        (7900, 150, "plausible"),
+        (7000, 900, "outside"),
+        (8100, 0, "plausible"),
+    ],
 )
 def test_an_axis_ends_at_the_tick_after_its_largest_curve(value, error, verdict):
     entry = {"form": "axis", "low": 0, "high": 10000, "tolerance": np.nan, "tick": 8000.0}
@@ -324,21 +403,35 @@ def test_what_was_not_simulated_is_not_comparable(made):
 def with_variants(made):
     """The made-up results with variants: fat and radius change nothing, long-term moduli scale every result by 1.3."""
     histories, coarse, meshes = made
-    runs = {variant_scene(v, k): coarse[scene_name("ramp40", k)].both for v in (BASE, *VARIANTS) for k in SHAPES}
-    scaled = {variant_scene("long_term", k): synthetic.history(scene_name("ramp40", k), 1.3) for k in SHAPES}
+    runs = {
+        variant_scene(v, k): coarse[scene_name("ramp40", k)].both
+        for v in (BASE, *VARIANTS)
+        for k in SHAPES
+    }
+    scaled = {
+        variant_scene("long_term", k): synthetic.history(scene_name("ramp40", k), 1.3)
+        for k in SHAPES
+    }
     return histories | runs | scaled, coarse, meshes
 
 
 def test_outside_rows_quote_the_variants_and_whether_they_bring_the_number_inside(with_variants):
     rows = _compared(*with_variants)
     assert (
-        "variants: fat 0.837, long_term 1.08 (inside, widths outside), radius 0.837; thesis reading" in rows.loc["T102a", "note"]
+        "variants: fat 0.837, long_term 1.08 (inside, widths outside), radius 0.837; thesis reading"
+        in rows.loc["T102a", "note"]
     )
     note = rows.loc["T126", "note"]
     assert rows.loc["T126", "verdict"] == "outside"
     assert "variants (flat, 40 gf/s): fat +0%, long_term +29%, radius +0%; none inside" in note
-    pressed = {id_ for id_, number in numbers(read_reference(REFERENCE)).items() if set(number.scenes) <= set(NEAREST)}
-    outside = rows[rows["verdict"].eq("outside") & ~rows["role"].isin(GIVEN) & rows.index.isin(pressed)]
+    pressed = {
+        id_
+        for id_, number in numbers(read_reference(REFERENCE)).items()
+        if set(number.scenes) <= set(NEAREST)
+    }
+    outside = rows[
+        rows["verdict"].eq("outside") & ~rows["role"].isin(GIVEN) & rows.index.isin(pressed)
+    ]
     assert outside["note"].str.contains("variants").all()
 
 
@@ -346,10 +439,14 @@ def test_sensitivity_table(with_variants):
     rows = _sensitivity(*with_variants).set_index(["quantity", "surface"])
     assert len(rows) == len(QUANTITIES) * len(SHAPES)
     depth = rows.loc[("indentation depth at the end of the hold", "1260")]
-    assert depth[["base", "fat", "long_term"]].tolist() == pytest.approx([0.829, 0.838, 1.078], abs=1e-3)
+    assert depth[["base", "fat", "long_term"]].tolist() == pytest.approx(
+        [0.829, 0.838, 1.078], abs=1e-3
+    )
     assert depth["inside"] == "long_term"
     width = rows.loc[("contact width at the end of the hold", "flat")]
-    assert (width["thesis_low"], width["thesis_high"]) == pytest.approx((1 / 0.22, 1 / 0.19), rel=1e-3)
+    assert (width["thesis_low"], width["thesis_high"]) == pytest.approx(
+        (1 / 0.22, 1 / 0.19), rel=1e-3
+    )
     assert width["inside"] == "base, fat, radius"
     unknown = rows.loc[("strain energy density at 600 um at the end of the ramp", "flat")]
     assert unknown["thesis_ids"] == "" and pd.isna(unknown["inside"])
@@ -369,7 +466,11 @@ def _set_centre(history, values):
     pressure = history["contact_pressure"].values.copy()
     pressure[:, centre_node(history)] = values
     changed = _set(history, "contact_pressure", pressure)
-    return _set(_set(changed, "centre_pressure", pressure[:, centre_node(history)]), "peak_pressure", pressure.max(axis=1))
+    return _set(
+        _set(changed, "centre_pressure", pressure[:, centre_node(history)]),
+        "peak_pressure",
+        pressure.max(axis=1),
+    )
 
 
 def _trend(made, id_, changes):
@@ -427,7 +528,9 @@ def test_symmetry_of_pressure(made):
     history = made[0]["ramp40_k210"]
     lopsided = history["contact_pressure"].values * (1 + 0.01 * (history["skin_x"].values > 0))
     assert _trend(made, "TR11", {}).holds
-    assert not _trend(made, "TR11", {"ramp40_k210": _set(history, "contact_pressure", lopsided)}).holds
+    assert not _trend(
+        made, "TR11", {"ramp40_k210": _set(history, "contact_pressure", lopsided)}
+    ).holds
 
 
 def test_strain_energy_trends_tell_the_definitions_apart(table):
@@ -439,7 +542,9 @@ def test_strain_energy_trends_tell_the_definitions_apart(table):
 
 def test_pressure_decay_fails_when_pressure_rises_in_the_hold(made):
     history = made[0]["ramp40_k420"]
-    rising = np.maximum.accumulate(history["contact_pressure"].values.max(axis=1)) * np.linspace(1, 1.1, history.sizes["time"])
+    rising = np.maximum.accumulate(history["contact_pressure"].values.max(axis=1)) * np.linspace(
+        1, 1.1, history.sizes["time"]
+    )
     assert _trend(made, "TR09", {}).holds
     assert not _trend(made, "TR09", {"ramp40_k420": _set_centre(history, rising)}).holds
 
@@ -460,7 +565,9 @@ def test_tables_are_written_as_csv_and_markdown(table, tmp_path):
     assert len(back) == len(frame) and list(back.columns) == list(COLUMNS)
     lines = (tmp_path / "thesis_comparison.md").read_text().splitlines()
     assert lines[0] == table.attrs["summary"] and lines[1] == ""
-    assert len(lines) == len(frame) + 4 and all(line.count("|") == len(COLUMNS) + 1 for line in lines[2:])
+    assert len(lines) == len(frame) + 4 and all(
+        line.count("|") == len(COLUMNS) + 1 for line in lines[2:]
+    )
 
 
 def test_markdown_escapes_nothing_it_should_not():

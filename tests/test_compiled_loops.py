@@ -46,7 +46,9 @@ def never():
 
 
 @pytest.mark.parametrize("extra", [None, np.array([1.0, 2.0, 4.0])])
-@pytest.mark.parametrize("weights", [np.array([1, 2, 3], dtype=np.int32), np.array([1, 2, 3]), np.arange(6.0)[::2]])
+@pytest.mark.parametrize(
+    "weights", [np.array([1, 2, 3], dtype=np.int32), np.array([1, 2, 3]), np.arange(6.0)[::2]]
+)
 def test_a_kept_loop_gives_what_the_compiled_one_gives(folder, extra, weights):
     values = np.array([0.3, 0.7, 1.9])
     answers = []
@@ -76,7 +78,12 @@ def test_other_types_sources_or_makers_are_compiled_anew(folder, monkeypatch):
     never_again = Loop("weighted", never, "sources")
     read_only = values.copy()
     read_only.flags.writeable = False
-    for weights in (values.astype(np.float32), values.astype(np.int64), np.arange(6.0)[::2], read_only):
+    for weights in (
+        values.astype(np.float32),
+        values.astype(np.int64),
+        np.arange(6.0)[::2],
+        read_only,
+    ):
         with pytest.raises(AssertionError, match="compiled anew"):
             never_again(values, (weights, 0.25), 2.0, None, out)
     with pytest.raises(AssertionError, match="compiled anew"):
@@ -99,7 +106,9 @@ def test_rows_of_fortran_are_not_taken_for_rows_of_c(folder):
     assert len(list(folder.iterdir())) == 3
 
 
-@pytest.mark.parametrize("spoil", [lambda c: c[:40], lambda c: b"", lambda c: c[:-100] + bytes(100)])
+@pytest.mark.parametrize(
+    "spoil", [lambda c: c[:40], lambda c: b"", lambda c: c[:-100] + bytes(100)]
+)
 def test_code_that_is_cut_off_or_damaged_is_not_run(folder, spoil):
     values, out = np.array([0.3, 0.7, 1.9]), np.zeros(3)
     first = Loop("weighted", weighted, "sources")(values, (values, 0.25), 2.0, None, out)
@@ -125,7 +134,9 @@ def test_where_nothing_can_be_kept_loops_are_compiled(monkeypatch, tmp_path):
     (tmp_path / "file").write_text("no folder")
     monkeypatch.setattr(machine_code, "_folders", lambda: (tmp_path / "file",))
     answer = Loop("weighted", weighted, "sources")(values, (values, 0.25), 2.0, None, out)
-    monkeypatch.setattr(machine_code, "_linker", lambda: None)  # another numba, whose libraries are not where they were
+    monkeypatch.setattr(
+        machine_code, "_linker", lambda: None
+    )  # another numba, whose libraries are not where they were
     monkeypatch.setattr(machine_code, "_folders", lambda: (tmp_path,))
     assert Loop("weighted", weighted, "sources")(values, (values, 0.25), 2.0, None, out) == answer
 
@@ -135,14 +146,19 @@ def _at_once(folder, number, barrier, answers):
     values, out = np.arange(4.0) + number % 3, np.zeros(4)
     weights = values.astype([np.float64, np.float32, np.int32][number % 3])
     barrier.wait()
-    answers.put((number, Loop("weighted", weighted, "sources")(values, (weights, 0.25), 2.0, None, out)))
+    answers.put(
+        (number, Loop("weighted", weighted, "sources")(values, (weights, 0.25), 2.0, None, out))
+    )
 
 
 def test_processes_that_compile_at_once_do_not_take_each_others(tmp_path):
     """Linear quads once ran the machine code of triangles, compiled in another process in the same moment, and crashed."""
     context = multiprocessing.get_context("fork")
     barrier, answers = context.Barrier(PROCESSES), context.Queue()
-    workers = [context.Process(target=_at_once, args=(tmp_path, n, barrier, answers)) for n in range(PROCESSES)]
+    workers = [
+        context.Process(target=_at_once, args=(tmp_path, n, barrier, answers))
+        for n in range(PROCESSES)
+    ]
     for worker in workers:
         worker.start()
     got = dict(answers.get(timeout=120) for _ in workers)
@@ -160,8 +176,13 @@ def test_an_edited_law_is_compiled_anew():
     """All loops of a law know its file, and those of a law from elsewhere are kept by nobody."""
     for law in (NEO_HOOKE, LAWS["yeoh"]):
         for loop in (*vars(compiled.loops(law, 9, 9, 3)).values(), compiled.stress_loop(law)):
-            assert law.source in loop._sources and machine_code.sources(kernels.__file__) in loop._sources
-    foreign = type(NEO_HOOKE)("mine", NEO_HOOKE.energy, lambda i1, jac, mu, constants: (mu, 1.0), NEO_HOOKE.tangent)
+            assert (
+                law.source in loop._sources
+                and machine_code.sources(kernels.__file__) in loop._sources
+            )
+    foreign = type(NEO_HOOKE)(
+        "mine", NEO_HOOKE.energy, lambda i1, jac, mu, constants: (mu, 1.0), NEO_HOOKE.tangent
+    )
     assert compiled.loops(foreign, 9, 9, 3).commit._sources is None
 
 

@@ -22,7 +22,9 @@ YAML_FILES = sorted((ROOT / "config").rglob("*.yaml"))
 
 def test_committed_schemas_are_those_of_the_models(tmp_path):
     for fresh in write_schemas(tmp_path):
-        assert (SCHEMAS / fresh.name).read_text() == fresh.read_text(), "run `make schemas` and commit the result"
+        assert (SCHEMAS / fresh.name).read_text() == fresh.read_text(), (
+            "run `make schemas` and commit the result"
+        )
     assert {path.name for path in SCHEMAS.iterdir()} == {path.name for path in tmp_path.iterdir()}
 
 
@@ -43,7 +45,9 @@ def test_yaml_names_its_schema_and_fulfils_it(path):
 
 
 def configured(name):
-    return read_config(yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text()), f"config/{name}.yaml")
+    return read_config(
+        yaml.safe_load((ROOT / "config" / f"{name}.yaml").read_text()), f"config/{name}.yaml"
+    )
 
 
 @pytest.mark.parametrize("name", ["thesis", "smoke"])
@@ -57,14 +61,24 @@ def test_workflow_configurations_fulfil_the_model(name):
 def test_everything_of_smoke_is_under_its_results():
     config = configured("smoke")
     assert config.results == "results/smoke"
-    assert all(getattr(config, folder).startswith("results/smoke/") for folder in ("figures", "tables", "studies"))
+    assert all(
+        getattr(config, folder).startswith("results/smoke/")
+        for folder in ("figures", "tables", "studies")
+    )
 
 
 def test_name_and_scenes_suffice():
     config = read_config({"name": "mine", "scenes": ["press"]}, "mine.yaml")
     assert (config.results, config.figures) == ("results/mine", "results/mine/figures")
-    assert (config.table_names, config.calibration_scenes, config.companions) == (("summary",), (), False)
-    moved = read_config({"name": "mine", "scenes": ["press"], "results": "elsewhere", "subjects": "forces"}, "mine.yaml")
+    assert (config.table_names, config.calibration_scenes, config.companions) == (
+        ("summary",),
+        (),
+        False,
+    )
+    moved = read_config(
+        {"name": "mine", "scenes": ["press"], "results": "elsewhere", "subjects": "forces"},
+        "mine.yaml",
+    )
     assert moved.studies == "elsewhere/studies" and "calibration_plate" in moved.calibration_scenes
 
 
@@ -73,18 +87,28 @@ WRONG = {
     "scenes: [] is empty; allowed: a list of one or more": {"scenes": []},
     "scenes: 'a' is not a list": {"scenes": "a"},
     "scenes[1]: 'b/c' is not allowed here; allowed: letters, digits": {"scenes": ["a", "b/c"]},
-    "accuracy: 'rough' is not a known accuracy; allowed: draft, thesis, fine, or a tolerance": {"accuracy": "rough"},
+    "accuracy: 'rough' is not a known accuracy; allowed: draft, thesis, fine, or a tolerance": {
+        "accuracy": "rough"
+    },
     "accuracy: 1.5 is not a known accuracy": {"accuracy": 1.5},
     "results: '/abs' is not allowed here; allowed: a folder, relative": {"results": "/abs"},
     "figure: is not a known key, the nearest is 'figures'": {"figure": "4-10"},
-    "figure_numbers[0]: -6 is not allowed here; allowed: a figure of the thesis in quotes": {"figure_numbers": [-6]},
-    "ridge_heights[1]: -1 is not allowed here; allowed: a number from 0": {"ridge_heights": [0, -1]},
+    "figure_numbers[0]: -6 is not allowed here; allowed: a figure of the thesis in quotes": {
+        "figure_numbers": [-6]
+    },
+    "ridge_heights[1]: -1 is not allowed here; allowed: a number from 0": {
+        "ridge_heights": [0, -1]
+    },
 }
 
 
 @pytest.mark.parametrize("message", WRONG, ids=str)
 def test_wrong_configurations_are_refused_in_one_line_and_by_the_schema(message):
-    config = WRONG[message] if "name" in message.split(":")[0] else {"name": "mine"} | {"scenes": ["a"]} | WRONG[message]
+    config = (
+        WRONG[message]
+        if "name" in message.split(":")[0]
+        else {"name": "mine"} | {"scenes": ["a"]} | WRONG[message]
+    )
     with pytest.raises(SceneError) as caught:
         read_config(config, "mine.yaml")
     assert str(caught.value).startswith(f"mine.yaml: {message}") and "\n" not in str(caught.value)

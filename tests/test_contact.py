@@ -5,7 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fingerpad.mechanics.contact import ContactError, Flexibility, Zone, respond, solve_contact, stable, until_stable
+from fingerpad.mechanics.contact import (
+    ContactError,
+    Flexibility,
+    Zone,
+    respond,
+    solve_contact,
+    stable,
+    until_stable,
+)
 from fingerpad.mechanics.contact_points import ContactPoints
 from fingerpad.mechanics.linear_solver import (
     FactorisationError,
@@ -42,9 +50,16 @@ def solve(parts, active=None, curvature=None, previous=None, **control):
     n = len(gap)
     zero = np.zeros(n)
     return solve_contact(
-        zone, schur, right, gap, gradient, zero if curvature is None else curvature,
-        zero if previous is None else previous, np.zeros(n, bool) if active is None else active, **control,
-    )  # fmt: skip
+        zone,
+        schur,
+        right,
+        gap,
+        gradient,
+        zero if curvature is None else curvature,
+        zero if previous is None else previous,
+        np.zeros(n, bool) if active is None else active,
+        **control,
+    )
 
 
 @settings(max_examples=60, deadline=None)
@@ -54,11 +69,17 @@ def test_force_control_satisfies_every_condition(seed, force):
     parts = problem(seed)
     zone, schur, right, gap, gradient = parts
     step = solve(parts, force=force)
-    opening = gap + zone.gather(gradient) @ step.condensed_displacement + gradient[:, 1] * step.depth_change
+    opening = (
+        gap
+        + zone.gather(gradient) @ step.condensed_displacement
+        + gradient[:, 1] * step.depth_change
+    )
     assert step.force.min() >= 0 and step.force.sum() == pytest.approx(force, rel=1e-9)
     assert np.abs(opening[step.active]).max() < 1e-10 and opening.min() > -1e-10
     assert np.all(step.force[~step.active] == 0)
-    np.testing.assert_allclose(schur @ step.condensed_displacement, zone.gather(gradient).T @ step.force, atol=1e-9 * force)
+    np.testing.assert_allclose(
+        schur @ step.condensed_displacement, zone.gather(gradient).T @ step.force, atol=1e-9 * force
+    )
 
 
 @settings(max_examples=30, deadline=None)
@@ -94,7 +115,9 @@ def test_a_node_that_yields_to_nothing_carries_the_force():
     zone = Zone(np.arange(len(gap)), equation)
     gap[1:] += 1.0
     step = solve((zone, schur[2:, 2:], right[2:], gap, gradient), force=3.0)
-    assert step.force[0] == pytest.approx(3.0) and not step.force[1:].any() and step.stiffness is None
+    assert (
+        step.force[0] == pytest.approx(3.0) and not step.force[1:].any() and step.stiffness is None
+    )
 
 
 def test_nothing_can_carry_a_force_sideways():
@@ -127,17 +150,37 @@ def test_response_is_that_of_the_bent_matrix(definite):
     equation[2] = -1
     equation[3:] -= 2
     soft = rng.normal(size=(9, 9))
-    zone = Zone(np.arange(6), equation, rng.normal(size=(9, 6)) * (rng.random((9, 6)) < 0.5), soft + soft.T, soft @ soft.T)
-    angle, bent, right = rng.uniform(-1, 1, 9), rng.uniform(0, 0.5, 9) * (rng.random(9) < 0.5), rng.normal(size=10)
-    normal, tangent = np.column_stack([np.sin(angle), -np.cos(angle)]), np.column_stack([np.cos(angle), np.sin(angle)])
+    zone = Zone(
+        np.arange(6),
+        equation,
+        rng.normal(size=(9, 6)) * (rng.random((9, 6)) < 0.5),
+        soft + soft.T,
+        soft @ soft.T,
+    )
+    angle, bent, right = (
+        rng.uniform(-1, 1, 9),
+        rng.uniform(0, 0.5, 9) * (rng.random(9) < 0.5),
+        rng.normal(size=10),
+    )
+    normal, tangent = (
+        np.column_stack([np.sin(angle), -np.cos(angle)]),
+        np.column_stack([np.cos(angle), np.sin(angle)]),
+    )
     free = np.delete(np.arange(12), [4, 5])
-    rows = [(zone.shape[:, :, None] * direction[:, None]).reshape(9, 12)[:, free] for direction in (normal, tangent)]
+    rows = [
+        (zone.shape[:, :, None] * direction[:, None]).reshape(9, 12)[:, free]
+        for direction in (normal, tangent)
+    ]
     root = rng.normal(size=(10, 10))
     schur = root @ root.T + (20.0 if definite else -2.0) * np.eye(10)
     flexible = Flexibility.of(zone, schur, normal, bent, np.ones(9))
     answer = respond(zone, flexible, right, [normal, tangent])
     matrix = schur - rows[1].T @ (bent[:, None] * rows[1])
-    border, stacked, inverse = -rows[1].T @ (bent * tangent[:, 1]), np.concatenate(rows), np.linalg.inv(matrix)
+    border, stacked, inverse = (
+        -rows[1].T @ (bent * tangent[:, 1]),
+        np.concatenate(rows),
+        np.linalg.inv(matrix),
+    )
     compliance = stacked @ inverse @ stacked.T
     compliance[:9, :9] += zone.softness
     compliance[9:, 9:] += zone.softness_along
@@ -167,7 +210,11 @@ def test_a_flexibility_of_before_is_used_as_long_as_it_leads_to_a_solution():
         return until_stable(attempt, *now, before)
 
     assert not found(0).softened and tried == [before]
-    assert not found(1).softened and tried[0] is before and np.array_equal(tried[1].matrix, Flexibility.of(*now).matrix)
+    assert (
+        not found(1).softened
+        and tried[0] is before
+        and np.array_equal(tried[1].matrix, Flexibility.of(*now).matrix)
+    )
     assert found(2).softened and not np.array_equal(tried[1].matrix, tried[2].matrix)
 
 
@@ -226,11 +273,15 @@ def test_condensation_equals_dense_algebra(kind, definite, condensed):
     right = rng.normal(size=pattern.size)
     solver = kind(pattern, c)
     schur = solver.factor(data)
-    expected = dense[np.ix_(c, c)] - dense[np.ix_(c, i)] @ np.linalg.solve(dense[np.ix_(i, i)], dense[np.ix_(i, c)])
+    expected = dense[np.ix_(c, c)] - dense[np.ix_(c, i)] @ np.linalg.solve(
+        dense[np.ix_(i, i)], dense[np.ix_(i, c)]
+    )
     np.testing.assert_allclose(schur, expected, atol=1e-8 * (1 + np.abs(expected).max(initial=0)))
     reduced = solver.forward(right)
     values = np.linalg.solve(schur, reduced) if condensed else np.zeros(0)
-    np.testing.assert_allclose(solver.backward(values), np.linalg.solve(dense, right), rtol=1e-6, atol=1e-7)
+    np.testing.assert_allclose(
+        solver.backward(values), np.linalg.solve(dense, right), rtol=1e-6, atol=1e-7
+    )
 
 
 @pytest.mark.parametrize("kept", [1, 7, 20])
@@ -245,9 +296,13 @@ def test_a_condensation_taken_further_equals_dense_algebra(kept):
     narrowed = Narrowed(solver, some)
     assert narrowed.take(solver.factor(data))
     inner = np.linalg.solve(dense[np.ix_(rest, rest)], dense[np.ix_(rest, some)])
-    np.testing.assert_allclose(narrowed.schur, dense[np.ix_(some, some)] - dense[np.ix_(some, rest)] @ inner, rtol=1e-8)
+    np.testing.assert_allclose(
+        narrowed.schur, dense[np.ix_(some, some)] - dense[np.ix_(some, rest)] @ inner, rtol=1e-8
+    )
     values = np.linalg.solve(narrowed.schur, narrowed.forward(right))
-    np.testing.assert_allclose(narrowed.backward(values), np.linalg.solve(dense, right), rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(
+        narrowed.backward(values), np.linalg.solve(dense, right), rtol=1e-6, atol=1e-9
+    )
 
 
 def test_what_is_not_stable_by_itself_is_not_eliminated():
@@ -268,8 +323,15 @@ def test_part_of_a_zone_is_the_zone_of_its_points():
     equation = np.array([[0, 1], [-1, 2], [3, 4], [5, 6]])
     soft = np.arange(36.0).reshape(6, 6)
     whole = Zone(np.array([0, 1, 2, 3]), equation, shape, soft, 2 * soft)
-    part, alone = whole.part(slice(2, 4)), Zone(np.array([1, 2]), equation, values, soft[2:4, 2:4], 2 * soft[2:4, 2:4])
-    assert len(part) == 2 and part.nodes.tolist() == [1, 2] and part.condensed.tolist() == alone.condensed.tolist() == [2, 3, 4]
+    part, alone = (
+        whole.part(slice(2, 4)),
+        Zone(np.array([1, 2]), equation, values, soft[2:4, 2:4], 2 * soft[2:4, 2:4]),
+    )
+    assert (
+        len(part) == 2
+        and part.nodes.tolist() == [1, 2]
+        and part.condensed.tolist() == alone.condensed.tolist() == [2, 3, 4]
+    )
     np.testing.assert_array_equal(part.shape, alone.shape)
     np.testing.assert_array_equal(part.softness_along, alone.softness_along)
     directions = np.array([[0.6, -0.8], [0.0, -1.0]])
@@ -297,8 +359,12 @@ def test_entries_of_elements_go_where_their_equations_meet():
         dense[np.ix_(at[known], at[known])] += (k + k.T)[np.ix_(known, known)]
     np.testing.assert_allclose(pattern.matrix(data).toarray(), dense, atol=1e-12)
     rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
-    assert (np.diff(rows * pattern.size + pattern.indices) > 0).all() and (pattern.indices >= rows).all()
-    assert pattern.scatter.flags.c_contiguous and pattern.scatter.dtype == np.int32  # what the loops are compiled for
+    assert (np.diff(rows * pattern.size + pattern.indices) > 0).all() and (
+        pattern.indices >= rows
+    ).all()
+    assert (
+        pattern.scatter.flags.c_contiguous and pattern.scatter.dtype == np.int32
+    )  # what the loops are compiled for
 
 
 def test_node_without_element_is_named():
@@ -342,7 +408,9 @@ def test_unit_pressure_loads_balance_the_chord(order):
 
 def points_on_arc(order, shear=1.0):
     points, edges = arc(order)
-    return points, ContactPoints.on(points, np.arange(len(points)), edges, np.full(len(edges), shear))
+    return points, ContactPoints.on(
+        points, np.arange(len(points)), edges, np.full(len(edges), shear)
+    )
 
 
 @pytest.mark.parametrize("order", [1, 2])
@@ -354,7 +422,11 @@ def test_points_carry_what_nodes_do(order):
         np.add.at(load, places.nodes, (places.weight * weight)[:, None] * places.values)
         straight = np.zeros(len(points))
         edges = arc(order)[1]
-        np.add.at(straight, edges.ravel(), np.tile([1.0, 1.0] if order == 1 else [1 / 3, 1 / 3, 4 / 3], len(edges)))
+        np.add.at(
+            straight,
+            edges.ravel(),
+            np.tile([1.0, 1.0] if order == 1 else [1 / 3, 1 / 3, 4 / 3], len(edges)),
+        )
         np.testing.assert_allclose(load, straight, rtol=1e-12)
 
     points, places = points_on_arc(order)
@@ -387,7 +459,9 @@ def test_softness_minds_differences_of_pressure_only():
     check(soft)
     with pytest.raises(AssertionError):
         check(soft + np.diag(np.diag(soft)))
-    assert np.allclose(soft, soft.T) and np.linalg.eigvalsh(soft).min() > -1e-12 * np.abs(soft).max()
+    assert (
+        np.allclose(soft, soft.T) and np.linalg.eigvalsh(soft).min() > -1e-12 * np.abs(soft).max()
+    )
     np.testing.assert_allclose(2 * places.softness, points_on_arc(2)[1].softness)
     np.testing.assert_allclose(places.softness, 0.01 * (4 * places.spacing) ** 3 / 6)
 
@@ -401,7 +475,9 @@ def test_pressure_of_a_wave_is_softened_as_said():
     length = places.weight * 2 * places.spacing
     found = places.soft(slice(None)) @ (np.cos(k * s) * length)
     mean = found.reshape(-1, 4)[1:-1] @ places.weight[:4] / 2
-    expected = k**2 * places.softness[0] * np.cos(k * s).reshape(-1, 4)[1:-1] @ places.weight[:4] / 2
+    expected = (
+        k**2 * places.softness[0] * np.cos(k * s).reshape(-1, 4)[1:-1] @ places.weight[:4] / 2
+    )
     np.testing.assert_allclose(mean, expected, atol=0.01 * np.abs(expected).max())
 
 
@@ -425,7 +501,9 @@ def test_smoothing_keeps_a_uniform_pressure_and_removes_alternation():
     half_force, half_length = 3.0 * length[6:].copy(), length[6:].copy()
     half_force[0] /= 2
     half_length[0] /= 2
-    np.testing.assert_allclose(smoothed_pressure(half_force, half_length, True)[:4], 3.0, rtol=1e-12)
+    np.testing.assert_allclose(
+        smoothed_pressure(half_force, half_length, True)[:4], 3.0, rtol=1e-12
+    )
 
 
 def hertz(half_width, spacing=0.025):
@@ -437,7 +515,9 @@ def hertz(half_width, spacing=0.025):
 def test_contact_edge_lies_between_points(half_width):
     """The edge of a Hertz contact is found: the squares of its pressure are a parabola."""
     left, right = contact_edges(*hertz(half_width))
-    assert right == pytest.approx(half_width, abs=1e-9) and left == pytest.approx(-half_width, abs=1e-9)
+    assert right == pytest.approx(half_width, abs=1e-9) and left == pytest.approx(
+        -half_width, abs=1e-9
+    )
 
 
 def test_contact_edge_moves_evenly():
@@ -463,7 +543,9 @@ def test_contact_under_an_edge_ends_beyond_the_last_point():
     inside = np.abs(x) < 0.51
     pressure = np.where(inside, 1 / np.sqrt(np.where(inside, 0.52**2 - x**2, 1)), 0)
     assert contact_edges(x, pressure, np.full(81, 0.025))[1] == pytest.approx(0.5125)
-    assert contact_edges(x, np.where(np.abs(x) < 0.03, 1.0, 0.0), np.full(81, 0.025)) == pytest.approx((-0.0375, 0.0375))
+    assert contact_edges(
+        x, np.where(np.abs(x) < 0.03, 1.0, 0.0), np.full(81, 0.025)
+    ) == pytest.approx((-0.0375, 0.0375))
 
 
 def test_edges_of_two_contacts_are_the_outermost():
@@ -472,7 +554,10 @@ def test_edges_of_two_contacts_are_the_outermost():
     two = np.roll(one, -20) + np.roll(one, 20)
     assert contact_edges(x, two, spacing) == pytest.approx((-0.7, 0.7), abs=1e-9)
     right = x > -1e-9
-    assert contact_edges(x[right] + 0.0125, hertz(0.4)[1][right], spacing[right], mirrored=True)[0] < -0.35
+    assert (
+        contact_edges(x[right] + 0.0125, hertz(0.4)[1][right], spacing[right], mirrored=True)[0]
+        < -0.35
+    )
 
 
 def test_no_contact_has_no_edges():

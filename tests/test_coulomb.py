@@ -16,7 +16,9 @@ pytestmark = pytest.mark.unit
 COUNT = 12
 
 
-def solve(parts, coefficient, motion=None, state=None, law=None, curvature=None, previous=None, **control):
+def solve(
+    parts, coefficient, motion=None, state=None, law=None, curvature=None, previous=None, **control
+):
     """Solution of the whole zone, from no contact unless a law with states is given."""
     zone, schur, right, gap, gradient = parts
     n = len(gap)
@@ -26,9 +28,18 @@ def solve(parts, coefficient, motion=None, state=None, law=None, curvature=None,
     zero = np.zeros(n)
     motion = np.zeros((n, 2)) if motion is None else motion
     return law.solve(
-        zone, slice(0, n), schur, right, gap, gradient, zero if curvature is None else curvature,
-        zero if previous is None else previous, np.zeros(n, bool) if state is None else np.ones(n, bool), motion, **control,
-    )  # fmt: skip
+        zone,
+        slice(0, n),
+        schur,
+        right,
+        gap,
+        gradient,
+        zero if curvature is None else curvature,
+        zero if previous is None else previous,
+        np.zeros(n, bool) if state is None else np.ones(n, bool),
+        motion,
+        **control,
+    )
 
 
 def tilted(parts, seed):
@@ -43,7 +54,11 @@ def check_laws(parts, step, coefficient, motion, total):
     tangent, du = tangents(gradient), step.condensed_displacement
     f, tau = step.force, step.tangential
     opening = gap + zone.gather(gradient) @ du + gradient[:, 1] * step.depth_change
-    slip = np.einsum("ni,ni->n", motion, tangent) + zone.gather(tangent) @ du + tangent[:, 1] * step.depth_change
+    slip = (
+        np.einsum("ni,ni->n", motion, tangent)
+        + zone.gather(tangent) @ du
+        + tangent[:, 1] * step.depth_change
+    )
     forces = zone.gather(gradient).T @ f + zone.gather(tangent).T @ tau
     scale = f.sum()
     np.testing.assert_allclose(schur @ du - right, forces, atol=1e-9 * scale)
@@ -52,7 +67,9 @@ def check_laws(parts, step, coefficient, motion, total):
     assert np.all(f[~step.active] == 0) and np.all(tau[~step.active] == 0)
     assert np.all(np.abs(tau) <= coefficient * f * (1 + 1e-8) + 1e-10 * scale)
     slides = step.active & (step.state != 0)
-    np.testing.assert_allclose(tau[slides], coefficient * f[slides] * step.state[slides], atol=1e-10 * scale)
+    np.testing.assert_allclose(
+        tau[slides], coefficient * f[slides] * step.state[slides], atol=1e-10 * scale
+    )
     assert np.all(tau * slip <= 1e-10 * scale), "friction drives"
     assert np.abs(slip[step.active & (step.state == 0)]).max(initial=0.0) < 1e-10
     return f, tau, slip
@@ -60,15 +77,24 @@ def check_laws(parts, step, coefficient, motion, total):
 
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10**6), st.floats(0.01, 1.0), st.floats(-1.0, 1.0), st.floats(0.01, 100))
-def test_stiffness_is_that_of_the_force_while_all_nodes_stay_as_they_are(seed, coefficient, shift, force):
+def test_stiffness_is_that_of_the_force_while_all_nodes_stay_as_they_are(
+    seed, coefficient, shift, force
+):
     """Against two solutions a little higher and lower, where no node changes its state."""
     parts = tilted(problem(seed, COUNT), seed)
     motion = np.tile([shift, 0.0], (COUNT, 1))
     step, gradient = solve(parts, coefficient, motion, force=force), parts[4]
     h = 1e-7 * max(abs(step.depth_change), 1e-6)
-    sides = [solve(parts, coefficient, motion, depth_change=step.depth_change + way) for way in (-h, h)]
-    if all((side.active == step.active).all() and (side.state == step.state).all() for side in sides):
-        low, high = (-np.sum(s.force * gradient[:, 1] + s.tangential * tangents(gradient)[:, 1]) for s in sides)
+    sides = [
+        solve(parts, coefficient, motion, depth_change=step.depth_change + way) for way in (-h, h)
+    ]
+    if all(
+        (side.active == step.active).all() and (side.state == step.state).all() for side in sides
+    ):
+        low, high = (
+            -np.sum(s.force * gradient[:, 1] + s.tangential * tangents(gradient)[:, 1])
+            for s in sides
+        )
         assert step.stiffness == pytest.approx((high - low) / (2 * h), rel=1e-4)
 
 
@@ -89,7 +115,9 @@ def test_solution_does_not_depend_on_the_first_guess(seed, guess, coefficient):
     parts = problem(seed, COUNT)
     motion = np.tile([1e-2, 0.0], (COUNT, 1))
     state = np.array([guess // 3**i % 3 - 1 for i in range(COUNT)], np.int8)
-    reference, other = (solve(parts, coefficient, motion, state=start, force=1.0) for start in (None, state))
+    reference, other = (
+        solve(parts, coefficient, motion, state=start, force=1.0) for start in (None, state)
+    )
     np.testing.assert_allclose(other.force, reference.force, atol=1e-8)
     np.testing.assert_allclose(other.tangential, reference.tangential, atol=1e-8)
 
@@ -103,7 +131,9 @@ def test_without_friction_it_is_the_frictionless_problem(seed, control):
     step = solve(parts, 0.0, np.full((COUNT, 2), 0.1), **{control: value})
     zone, schur, right, gap, gradient = parts
     zero = np.zeros(COUNT)
-    plain = solve_contact(zone, schur, right, gap, gradient, zero, zero, np.zeros(COUNT, bool), **{control: value})
+    plain = solve_contact(
+        zone, schur, right, gap, gradient, zero, zero, np.zeros(COUNT, bool), **{control: value}
+    )
     np.testing.assert_allclose(step.force, plain.force, atol=1e-9)
     np.testing.assert_allclose(step.condensed_displacement, plain.condensed_displacement, atol=1e-9)
     assert not step.tangential.any() and step.depth_change == pytest.approx(plain.depth_change)
@@ -187,5 +217,16 @@ PRESS, SLIDE = {"press_to_force": "5 gf"}, {"slide": "0.5 mm", "speed": "10 mm/s
 def test_a_history_without_friction_has_none_of_its_arrays(motion, friction, wanted):
     """That its code is not executed either is seen in test_effects_study."""
     accuracy = {"skin_edge": "0.5 mm", "steps": 4}
-    history = simulate(load_scene({"stimulus": {"shape": "flat"}, "motion": motion, "friction": friction, "accuracy": accuracy}))
-    assert {"tangential_traction", "slip", "contact_state"} & set(history) == (set(FRICTION_VARIABLES) if wanted else set())
+    history = simulate(
+        load_scene(
+            {
+                "stimulus": {"shape": "flat"},
+                "motion": motion,
+                "friction": friction,
+                "accuracy": accuracy,
+            }
+        )
+    )
+    assert {"tangential_traction", "slip", "contact_state"} & set(history) == (
+        set(FRICTION_VARIABLES) if wanted else set()
+    )

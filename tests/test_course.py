@@ -17,7 +17,9 @@ RAMP_AND_HOLD = np.interp(TIME, [0, 0.5, 2.5], [0, 20, 20])
 
 
 def written(folder, *columns, header="time (s),force (gf)", name="motion.csv", delimiter=","):
-    np.savetxt(folder / name, np.column_stack(columns), delimiter=delimiter, header=header, comments="")
+    np.savetxt(
+        folder / name, np.column_stack(columns), delimiter=delimiter, header=header, comments=""
+    )
     return {"table": str(folder / name)}
 
 
@@ -32,7 +34,9 @@ def test_a_recorded_ramp_and_hold_is_the_ramp_and_hold(tmp_path, noise):
     recorded = scene(written(tmp_path, TIME, values))
     assert len(recorded.motion[0].course.times) == 3
     history = fingerpad.simulate(recorded)
-    legs = fingerpad.simulate(scene([{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]))
+    legs = fingerpad.simulate(
+        scene([{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}])
+    )
     at = np.linspace(0.1, 2.4, 24)
     depth, expected = (each.indentation_depth.interp(time=at).values for each in (history, legs))
     np.testing.assert_allclose(depth, expected, rtol=5e-3)
@@ -41,7 +45,9 @@ def test_a_recorded_ramp_and_hold_is_the_ramp_and_hold(tmp_path, noise):
 
 def test_depth_in_other_units_and_back(tmp_path):
     depth = np.interp(TIME, [0, 0.3, 1.0, 1.2, 2.5], [0, 1, 1, 0, 0])
-    motion = written(tmp_path, TIME * 1e3, depth * 1e3, header="time (ms);depth (um)", delimiter=";")
+    motion = written(
+        tmp_path, TIME * 1e3, depth * 1e3, header="time (ms);depth (um)", delimiter=";"
+    )
     history = fingerpad.simulate(scene(motion))
     assert float(history.indentation_depth.max()) == pytest.approx(1e-3, rel=5e-3)
     assert float(history.force[-1]) == pytest.approx(0, abs=1e-9) and history.attrs["complete"]
@@ -81,9 +87,15 @@ WRONG = {
     "one row": ("time (s),depth (mm)\n0,0\n", "fewer than two rows"),
     "nothing pressed": ("time (s),depth (mm)\n0,0\n1,0\n", "no depth above zero"),
     "upside down": ("time (s),force (N)\n0,0\n1,-1\n2,0.5\n", "far below zero in row 3"),
-    "another dimension": ("time (s),depth (N)\n0,0\n1,1\n", "'depth (N)', which has the wrong dimension"),
+    "another dimension": (
+        "time (s),depth (N)\n0,0\n1,1\n",
+        "'depth (N)', which has the wrong dimension",
+    ),
     "no number": ("time (s),depth (mm)\n0,0\n1,x\n", "has 'x' in row 3"),
-    "a start of its own": ("time (s),depth (mm)\n0,0.5\n1,1\n", "starts at 0.5 mm, where the finger is at 0 mm"),
+    "a start of its own": (
+        "time (s),depth (mm)\n0,0.5\n1,1\n",
+        "starts at 0.5 mm, where the finger is at 0 mm",
+    ),
 }
 
 
@@ -93,7 +105,11 @@ def test_what_is_no_motion_is_refused_in_one_line(tmp_path, name):
     (tmp_path / "motion.csv").write_text(content)
     with pytest.raises(SceneError) as caught:
         scene({"table": str(tmp_path / "motion.csv")})
-    assert words in str(caught.value) and "motion[0].table" in str(caught.value) and "\n" not in str(caught.value)
+    assert (
+        words in str(caught.value)
+        and "motion[0].table" in str(caught.value)
+        and "\n" not in str(caught.value)
+    )
 
 
 def test_files_that_are_not_there(tmp_path):

@@ -30,9 +30,18 @@ def test_cholesky_solves_and_inverts_and_leaves_its_matrix_alone(size, order):
     kept = matrix.copy()
     factor = dense.cholesky(matrix)
     right = np.random.default_rng(4).normal(size=(size, 3))
-    np.testing.assert_allclose(dense.solved(factor, right), np.linalg.solve(matrix, right), rtol=1e-6, atol=1e-9)
-    np.testing.assert_allclose(dense.solved(factor, right[:, 0]), np.linalg.solve(matrix, right[:, 0]), rtol=1e-6, atol=1e-9)
-    np.testing.assert_allclose(np.tril(dense.inverse(factor)), np.tril(np.linalg.inv(matrix)), rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(
+        dense.solved(factor, right), np.linalg.solve(matrix, right), rtol=1e-6, atol=1e-9
+    )
+    np.testing.assert_allclose(
+        dense.solved(factor, right[:, 0]),
+        np.linalg.solve(matrix, right[:, 0]),
+        rtol=1e-6,
+        atol=1e-9,
+    )
+    np.testing.assert_allclose(
+        np.tril(dense.inverse(factor)), np.tril(np.linalg.inv(matrix)), rtol=1e-6, atol=1e-9
+    )
     np.testing.assert_array_equal(matrix, kept)
 
 

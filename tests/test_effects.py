@@ -51,7 +51,11 @@ def specimen(scene, **update):
 def test_ramp_and_hold_calls_for_what_the_thesis_needs(ramp):
     """A loaded, timed, symmetric, frictionless press: finite strain, viscosity and half the pad; no friction, no ridges."""
     effects = plan(ramp).effects
-    assert {name for name, effect in effects.items() if effect.on} == {"viscoelasticity", "finite_strain", "symmetry"}
+    assert {name for name, effect in effects.items() if effect.on} == {
+        "viscoelasticity",
+        "finite_strain",
+        "symmetry",
+    }
     assert all(effect.why for effect in effects.values())
     assert "%" in effects["finite_strain"].why and "%" in effects["viscoelasticity"].why
 
@@ -66,14 +70,22 @@ def test_light_touch_needs_small_strain_only(ramp):
 def test_steady_press_needs_no_time(ramp):
     """Without a rate the relaxed moduli answer."""
     steady = plan(changed(ramp, motion=(PressToDepth(press_to_depth=1e-3),)))
-    assert not steady.effects["viscoelasticity"].on and steady.state == "long_term" and not steady.timed
+    assert (
+        not steady.effects["viscoelasticity"].on
+        and steady.state == "long_term"
+        and not steady.timed
+    )
 
 
 def test_very_fast_and_very_slow_need_no_viscosity(ramp):
     """A press over before anything relaxes has instantaneous moduli, one much slower than every branch long-term ones."""
     fast = plan(changed(ramp, motion=(PressToForce(press_to_force=2 * GF, rate=2e3 * GF),)))
     assert not fast.effects["viscoelasticity"].on and fast.state == "instantaneous"
-    slow = plan(changed(ramp, motion=(PressToForce(press_to_force=20 * GF, rate=20 * GF / 1e4), Hold(hold=10.0))))
+    slow = plan(
+        changed(
+            ramp, motion=(PressToForce(press_to_force=20 * GF, rate=20 * GF / 1e4), Hold(hold=10.0))
+        )
+    )
     assert not slow.effects["viscoelasticity"].on and slow.state == "long_term"
     assert plan(ramp).effects["viscoelasticity"].on
 
@@ -97,7 +109,10 @@ def test_lopsided_stimulus_keeps_the_whole_pad(ramp, tmp_path):
 
 def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):
     """Skin that sticks presses otherwise by up to a sixth; what a small coefficient changes is left out."""
-    rough, slippery = (plan(changed(ramp, friction=coefficient)).effects["friction"] for coefficient in (0.6, 0.008))
+    rough, slippery = (
+        plan(changed(ramp, friction=coefficient)).effects["friction"]
+        for coefficient in (0.6, 0.008)
+    )
     assert rough.on and not slippery.on
     assert "nothing slides" in slippery.why and "1.6%" in slippery.why and "20.0%" in rough.why
 
@@ -121,11 +136,16 @@ def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):
 def test_low_inner_ridges_are_left_out_of_presses(height, accuracy, more, on):
     """What they change grows with height over pitch; whatever else they could do they are carried for."""
     more = dict(more)
-    specimen = {"ridges": {"inner": {"height": height}} | ({"outer": more.pop("outer")} if "outer" in more else {})}
+    specimen = {
+        "ridges": {"inner": {"height": height}}
+        | ({"outer": more.pop("outer")} if "outer" in more else {})
+    }
     if "stiff" in more:
         specimen["layers"] = {"epidermis": {"youngs_modulus": more.pop("stiff")}}
     document = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}
-    chosen = plan(scene_of(document | {"specimen": specimen, "accuracy": accuracy} | more, "ridged"))
+    chosen = plan(
+        scene_of(document | {"specimen": specimen, "accuracy": accuracy} | more, "ridged")
+    )
     assert chosen.effects["ridges"].on == on
     if not on and not more:
         assert "1.9% of a press, 6.0% is allowed" in chosen.effects["ridges"].why
@@ -144,7 +164,11 @@ def slid(scene, **slide):
 def test_stroke_calls_for_friction_and_the_whole_pad(stroke):
     """Sliding with a coefficient is frictional, without one or only step by step it is not; neither is symmetric."""
     full = plan(stroke).effects
-    assert {name for name, effect in full.items() if effect.on} == {"friction", "viscoelasticity", "finite_strain"}
+    assert {name for name, effect in full.items() if effect.on} == {
+        "friction",
+        "viscoelasticity",
+        "finite_strain",
+    }
     assert f"stroked with a coefficient of {stroke.friction:g}" in full["friction"].why
     smooth = plan(changed(stroke, friction=0.0)).effects
     assert (
@@ -152,9 +176,18 @@ def test_stroke_calls_for_friction_and_the_whole_pad(stroke):
         and not smooth["symmetry"].on
         and "motion" in plan(changed(stroke, stimulus=Flat())).effects["symmetry"].why
     )
-    lifted = changed(stroke, friction=0.008, stimulus=Flat(), motion=(stroke.motion[0], StepAndRepeat(step=3e-3, every=1e-3)))
+    lifted = changed(
+        stroke,
+        friction=0.008,
+        stimulus=Flat(),
+        motion=(stroke.motion[0], StepAndRepeat(step=3e-3, every=1e-3)),
+    )
     effects = plan(lifted).effects
-    assert not effects["friction"].on and not effects["symmetry"].on and "nothing slides" in effects["friction"].why
+    assert (
+        not effects["friction"].on
+        and not effects["symmetry"].on
+        and "nothing slides" in effects["friction"].why
+    )
 
 
 def test_friction_may_be_asked_for_where_there_is_a_coefficient(ramp, stroke):
@@ -165,30 +198,48 @@ def test_friction_may_be_asked_for_where_there_is_a_coefficient(ramp, stroke):
         plan(changed(stroke, friction=0.0, effects={"friction": True}))
 
 
-@pytest.mark.parametrize(("accuracy", "slide_step"), [("draft", 0.5e-3), ("thesis", 0.25e-3), ("fine", 0.125e-3)])
+@pytest.mark.parametrize(
+    ("accuracy", "slide_step"), [("draft", 0.5e-3), ("thesis", 0.25e-3), ("fine", 0.125e-3)]
+)
 def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
     """Outputs of a slide follow the preset and the surface, not the speed; the cost follows the states that are expected."""
     chosen = plan(
-        changed(slid(stroke, speed=40e-3), accuracy=accuracy, outputs=stroke.outputs.model_copy(update={"snapshots": ()}))
+        changed(
+            slid(stroke, speed=40e-3),
+            accuracy=accuracy,
+            outputs=stroke.outputs.model_copy(update={"snapshots": ()}),
+        )
     )
     ramp, outputs = {"draft": (10, 888), "thesis": (20, 1626), "fine": (40, 3200)}[accuracy]
     assert chosen.slide_step == slide_step and chosen.outputs == ramp + outputs
     assert 2 < (chosen.steps - ramp) / (80e-3 / slide_step) < 2.5
     ends = np.array([step.distance for step in schedule(stroke, *chosen.stepping) if step.leg == 1])
-    assert np.diff(ends).max() <= slide_step / 5 * (1 + 1e-9) and np.isin(np.arange(1, 161), np.round(ends / 0.5e-3, 9)).all()
+    assert (
+        np.diff(ends).max() <= slide_step / 5 * (1 + 1e-9)
+        and np.isin(np.arange(1, 161), np.round(ends / 0.5e-3, 9)).all()
+    )
     for arc in stroke.stimulus.segments:
         if arc.curvature > 0:  # dragged along, the skin meets an arc later than its place says
             passing = np.count_nonzero((ends > arc.start + 0.5e-3) & (ends < arc.end + 0.5e-3))
             assert passing >= (16 if accuracy == "draft" else 23)
-    half = plan(changed(stroke, accuracy=accuracy, motion=(stroke.motion[0], Slide(slide=40e-3, speed=10e-3))))
+    half = plan(
+        changed(
+            stroke, accuracy=accuracy, motion=(stroke.motion[0], Slide(slide=40e-3, speed=10e-3))
+        )
+    )
     cost, half_cost = (p.predicted_cost_s - RULES.seconds_start for p in (chosen, half))
     assert half_cost / cost == pytest.approx(half.steps / chosen.steps)
 
 
 def test_steps_of_a_stroke_follow_preset_or_hand(stroke):
     """Those of a tolerance are as long as the thesis preset's: friction remembers longer ones, and shorter ones buy nothing."""
-    assert {plan(changed(stroke, accuracy=accuracy)).slide_step for accuracy in (0.1, 0.02, "thesis")} == {0.25e-3}
-    assert plan(changed(stroke, accuracy="draft")).slide_step == 2 * plan(changed(stroke, accuracy="thesis")).slide_step
+    assert {
+        plan(changed(stroke, accuracy=accuracy)).slide_step for accuracy in (0.1, 0.02, "thesis")
+    } == {0.25e-3}
+    assert (
+        plan(changed(stroke, accuracy="draft")).slide_step
+        == 2 * plan(changed(stroke, accuracy="thesis")).slide_step
+    )
     own = plan(changed(slid(stroke, speed=10e-3), accuracy=Discretisation(steps=100)))
     assert own.slide_step is None and own.steps == pytest.approx(100, abs=85)
     assert plan(changed(stroke, accuracy=Discretisation(skin_edge=0.2e-3))).slide_step == 0.25e-3
@@ -197,7 +248,10 @@ def test_steps_of_a_stroke_follow_preset_or_hand(stroke):
 def test_friction_costs(stroke):
     """A frictional step costs somewhat more than one without on the same mesh."""
     rough, smooth = plan(stroke), plan(changed(stroke, effects={"friction": False}))
-    per_node = [(chosen.predicted_cost_s - RULES.seconds_start) / chosen.nodes / chosen.steps for chosen in (rough, smooth)]
+    per_node = [
+        (chosen.predicted_cost_s - RULES.seconds_start) / chosen.nodes / chosen.steps
+        for chosen in (rough, smooth)
+    ]
     assert per_node[0] / per_node[1] == pytest.approx(1.2, abs=0.01)
 
 
@@ -213,7 +267,9 @@ def test_mesh_is_fine_wherever_a_stroke_takes_the_contact(stroke, ramp):
     assert smooth > still
     assert extent(stroke) == pytest.approx(smooth + RULES.skin_stretch)
     steeper = stroke.varied({"friction": 0.0, "stimulus.half_angle": math.radians(12)})
-    rise = (math.tan(math.radians(12)) - math.tan(math.radians(9))) * stroke.specimen.outline.apex_radius
+    rise = (
+        math.tan(math.radians(12)) - math.tan(math.radians(9))
+    ) * stroke.specimen.outline.apex_radius
     assert extent(steeper) == pytest.approx(smooth + rise, abs=0.15e-3)
     few = changed(stroke, friction=0.0, motion=(stroke.motion[0], Slide(slide=0.1e-3, speed=10e-3)))
     assert extent(few) < smooth - 0.4e-3
@@ -223,11 +279,21 @@ def test_stroke_is_planned_for_its_sharpest_convexity(stroke):
     """The narrowest contact on the way decides on strain and error; pressed in place the surface is flat."""
     there = plan(stroke).contact
     assert there == plan(changed(stroke, stimulus=Cylinder(curvature=1 / 3.175e-3))).contact
-    pressed = plan(changed(stroke, motion=stroke.motion[:1], outputs=stroke.outputs.model_copy(update={"snapshots": ()})))
+    pressed = plan(
+        changed(
+            stroke,
+            motion=stroke.motion[:1],
+            outputs=stroke.outputs.model_copy(update={"snapshots": ()}),
+        )
+    )
     assert pressed.contact == plan(changed(stroke, stimulus=Flat())).contact
     assert pressed.estimated_error < plan(stroke).estimated_error
     deep = changed(
-        stroke, motion=(PressToDepth(press_to_depth=0.5e-3, speed=1e-3), Slide(slide=80e-3, speed=10e-3, keep="depth"))
+        stroke,
+        motion=(
+            PressToDepth(press_to_depth=0.5e-3, speed=1e-3),
+            Slide(slide=80e-3, speed=10e-3, keep="depth"),
+        ),
     )
     assert plan(deep).contact.depth == pytest.approx(0.5e-3 + 0.469e-3, abs=2e-6)
 
@@ -237,7 +303,9 @@ def test_viscosity_follows_how_fast_the_contact_passes(stroke):
     pressed = PressToForce(press_to_force=20 * GF)
 
     def effect(scene, **slide):
-        return plan(changed(scene, motion=(pressed, Slide(slide=80e-3, **slide)), outputs=bare)).effects["viscoelasticity"]
+        return plan(
+            changed(scene, motion=(pressed, Slide(slide=80e-3, **slide)), outputs=bare)
+        ).effects["viscoelasticity"]
 
     bare = stroke.outputs.model_copy(update={"snapshots": ()})
     assert effect(stroke, speed=0.4e-3).on
@@ -256,8 +324,12 @@ def test_stroke_so_fast_that_inertia_matters_is_refused(stroke):
 
 def test_overrides_are_obeyed_and_said(ramp):
     """The user may switch effects; the reason then names the user."""
-    off = plan(changed(ramp, effects={"finite_strain": False, "viscoelasticity": False, "symmetry": False}))
-    assert not any(off.effects[name].on for name in ("finite_strain", "viscoelasticity", "symmetry"))
+    off = plan(
+        changed(ramp, effects={"finite_strain": False, "viscoelasticity": False, "symmetry": False})
+    )
+    assert not any(
+        off.effects[name].on for name in ("finite_strain", "viscoelasticity", "symmetry")
+    )
     assert "asked for" in off.effects["finite_strain"].why
 
 
@@ -276,13 +348,21 @@ def test_motion_so_fast_that_inertia_matters_is_refused(ramp):
     """A quasi-static answer is not given where rho v^2 / mu is not small; a 40 mm/s press is far below the limit."""
     with pytest.raises(PlanError, match="inertia"):
         plan(changed(ramp, motion=(PressToDepth(press_to_depth=1e-3, speed=2.0),)))
-    assert plan(changed(ramp, motion=(PressToDepth(press_to_depth=1e-3, speed=0.04),))).inertia_ratio < 1e-3
+    assert (
+        plan(changed(ramp, motion=(PressToDepth(press_to_depth=1e-3, speed=0.04),))).inertia_ratio
+        < 1e-3
+    )
 
 
 def test_presets_and_tolerances_order_cost_and_error(ramp):
     """Finer asks for more nodes, steps and time and promises less error; a tolerance gets the cheapest that meets it."""
-    draft, thesis, fine = (plan(changed(ramp, accuracy=level)) for level in ("draft", "thesis", "fine"))
-    assert draft.nodes < thesis.nodes < fine.nodes and draft.predicted_cost_s < thesis.predicted_cost_s < fine.predicted_cost_s
+    draft, thesis, fine = (
+        plan(changed(ramp, accuracy=level)) for level in ("draft", "thesis", "fine")
+    )
+    assert (
+        draft.nodes < thesis.nodes < fine.nodes
+        and draft.predicted_cost_s < thesis.predicted_cost_s < fine.predicted_cost_s
+    )
     assert draft.estimated_error > thesis.estimated_error > fine.estimated_error
     for tolerance in (0.05, 0.02, 0.005):
         assert plan(changed(ramp, accuracy=tolerance)).estimated_error <= tolerance * 1.01
@@ -292,13 +372,20 @@ def test_presets_and_tolerances_order_cost_and_error(ramp):
 def test_mesh_follows_edges_and_needles(ramp):
     """Edges of the profile and contacts narrower than the mesh get finer skin there; broad ones do not."""
     flat = plan(changed(ramp, stimulus=Flat()))
-    assert flat.mesh_size.focus == () and flat.contact.half_width < 20 * flat.contact_edge, "they would hardly be finer"
+    assert flat.mesh_size.focus == () and flat.contact.half_width < 20 * flat.contact_edge, (
+        "they would hardly be finer"
+    )
     sharp = plan(changed(ramp, stimulus=Cylinder(curvature=1259.84)))
-    assert 2**-0.25 <= 20 * sharp.contact_edge / sharp.contact.half_width <= 1 and sharp.estimated_error < 0.03
+    assert (
+        2**-0.25 <= 20 * sharp.contact_edge / sharp.contact.half_width <= 1
+        and sharp.estimated_error < 0.03
+    )
     deep = 3 * sharp.mesh_size.skin_radial_edge / sharp.contact.half_width
     assert 2**-0.25 <= deep <= 1, "into the skin a seventh as fine as along it"
     rough = plan(changed(ramp, stimulus=Cylinder(curvature=1259.84), accuracy="draft"))
-    assert rough.mesh_size.skin_radial_edge == rough.contact_edge, "a draft's grow so fast that it needs as many rows as columns"
+    assert rough.mesh_size.skin_radial_edge == rough.contact_edge, (
+        "a draft's grow so fast that it needs as many rows as columns"
+    )
     bar = plan(changed(ramp, stimulus=Bar(width=1.5875e-3, fillet=0.1e-3))).mesh_size
     assert bar.focus[0][0] == pytest.approx(0.79375e-3) and bar.focus[0][1] <= 0.05e-3
     assert plan(changed(ramp, stimulus=Line())).mesh_size.focus
@@ -308,7 +395,10 @@ def test_mesh_follows_edges_and_needles(ramp):
 
 def test_a_presets_stroke_is_finer_in_the_middle_and_coarser_away_from_it(ramp):
     """Its curves are those of the mesh along its way; what was measured with some growth, and what is given by hand, keeps it."""
-    slide = (PressToForce(press_to_force=0.2, rate=0.4), Slide(slide=5e-3, speed=10e-3, keep="force"))
+    slide = (
+        PressToForce(press_to_force=0.2, rate=0.4),
+        Slide(slide=5e-3, speed=10e-3, keep="force"),
+    )
     press, stroke = (plan(changed(ramp, motion=motion)).mesh_size for motion in (slide[:1], slide))
     assert stroke.growth == pytest.approx(press.growth**2) and stroke.skin_edge == press.skin_edge
     places, edges = zip(*stroke.focus, strict=True)
@@ -317,7 +407,10 @@ def test_a_presets_stroke_is_finer_in_the_middle_and_coarser_away_from_it(ramp):
     moved = plan(changed(ramp, motion=slide))
     assert moved.contact_edge == stroke.skin_edge, "the contact leaves the middle"
     for accuracy in (0.02, Discretisation(element="Q2P1", skin_edge=134.4e-6, steps=30)):
-        one, other = (plan(changed(ramp, motion=motion, accuracy=accuracy)).mesh_size for motion in (slide[:1], slide))
+        one, other = (
+            plan(changed(ramp, motion=motion, accuracy=accuracy)).mesh_size
+            for motion in (slide[:1], slide)
+        )
         assert other.growth <= max(one.growth, press.growth) and other.focus == ()
 
 
@@ -335,23 +428,37 @@ def test_plan_survives_its_file(name, tmp_path):
     written = plan(load_scene(SCENES / f"{name}.yaml"))
     written.write(tmp_path / "plan.json")
     read = read_plan(tmp_path / "plan.json")
-    assert replace(read, predicted_cost_s=written.predicted_cost_s) == written and read.to_dict() == written.to_dict()
+    assert (
+        replace(read, predicted_cost_s=written.predicted_cost_s) == written
+        and read.to_dict() == written.to_dict()
+    )
     keys = json.loads((tmp_path / "plan.json").read_text())
-    assert set(keys["effects"]) == {"friction", "viscoelasticity", "finite_strain", "symmetry", "ridges"}
-    assert {"element", "nodes", "smallest_edge_um", "steps"} <= set(keys["discretisation"]) and keys["predicted_cost_s"] > 0
+    assert set(keys["effects"]) == {
+        "friction",
+        "viscoelasticity",
+        "finite_strain",
+        "symmetry",
+        "ridges",
+    }
+    assert {"element", "nodes", "smallest_edge_um", "steps"} <= set(
+        keys["discretisation"]
+    ) and keys["predicted_cost_s"] > 0
 
 
 # -- the estimates behind the choices -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("wavenumber", "kernel"), [(0.1, 9.9673), (0.5, 8.0556), (1.0, 4.1124), (2.0, 1.5328)])
+@pytest.mark.parametrize(
+    ("wavenumber", "kernel"), [(0.1, 9.9673), (0.5, 8.0556), (1.0, 4.1124), (2.0, 1.5328)]
+)
 def test_layer_kernel(wavenumber, kernel):
     """Surface compliance of an incompressible layer on a ten times softer half-plane."""
     assert layer_kernel(0.1, wavenumber) == pytest.approx(kernel, rel=1e-4)
 
 
 @pytest.mark.parametrize(
-    ("curvature", "width", "depth"), [(0, 4.96, 0.560), (78.74, 3.3, 0.67), (209.97, 2.2, 0.75), (1259.84, 0.73, 0.881)]
+    ("curvature", "width", "depth"),
+    [(0, 4.96, 0.560), (78.74, 3.3, 0.67), (209.97, 2.2, 0.75), (1259.84, 0.73, 0.881)],
 )
 def test_estimates_are_good_enough_to_plan_with(curvature, width, depth):
     """Estimated widths within 20 % and depths within 25 % of simulated long-term values (mm) at 20 gram-weight."""
@@ -360,7 +467,9 @@ def test_estimates_are_good_enough_to_plan_with(curvature, width, depth):
     found = pad.pressed(19.6133, curvature)
     assert 2e3 * found.half_width == pytest.approx(width, rel=0.2)
     assert 1e3 * found.depth == pytest.approx(depth, rel=0.25)
-    assert pad.pressed_to(found.depth, curvature).half_width == pytest.approx(found.half_width, rel=1e-6)
+    assert pad.pressed_to(found.depth, curvature).half_width == pytest.approx(
+        found.half_width, rel=1e-6
+    )
 
 
 @pytest.mark.parametrize("accuracy", ["draft", "thesis"])

@@ -25,7 +25,15 @@ from cysyk1999.studies.effects.run import (
     verdict,
     with_effects,
 )
-from cysyk1999.studies.stability.hard_cases import FLAT, cylinder, depth, force, hold, scene_of, slide
+from cysyk1999.studies.stability.hard_cases import (
+    FLAT,
+    cylinder,
+    depth,
+    force,
+    hold,
+    scene_of,
+    slide,
+)
 from fingerpad import plan, simulate
 from fingerpad.planning.plan import Rules
 
@@ -34,7 +42,9 @@ COARSE = {"skin_edge": "0.6 mm", "steps": 4}
 
 
 def made(*motion, stimulus=FLAT, **more):
-    return scene_of({"stimulus": stimulus, "motion": list(motion), "accuracy": COARSE} | more, "made")
+    return scene_of(
+        {"stimulus": stimulus, "motion": list(motion), "accuracy": COARSE} | more, "made"
+    )
 
 
 # -- what is left out costs nothing -------------------------------------------------------------------------------------------
@@ -47,7 +57,12 @@ def executed(scene):
     def note(frame, event, _):
         code = frame.f_code
         path = Path(code.co_filename)
-        if event == "call" and "fingerpad" in path.parts and "planning" not in path.parts and code.co_name != "<module>":
+        if (
+            event == "call"
+            and "fingerpad" in path.parts
+            and "planning" not in path.parts
+            and code.co_name != "<module>"
+        ):
             called.add((path.stem, code.co_name))
 
     before = sys.getprofile()
@@ -72,7 +87,10 @@ OWN = {
 ON = {"finite_strain": "on", "viscoelasticity": "off"}
 SCENES = {
     "plain press": (made(force(2), effects=ON), {"finite_strain", "symmetry"}),
-    "small strain": (made(force(2), effects={"finite_strain": "off"}), {"small_strain", "symmetry"}),
+    "small strain": (
+        made(force(2), effects={"finite_strain": "off"}),
+        {"small_strain", "symmetry"},
+    ),
     "ramp": (
         made(force(2, 4), hold(1), effects={"finite_strain": "off", "viscoelasticity": "on"}),
         {"small_strain", "symmetry", "viscoelasticity"},
@@ -80,12 +98,14 @@ SCENES = {
     "stroke": (made(force(2), slide(0.5), friction=0.5, effects=ON), {"finite_strain", "friction"}),
     "smooth stroke": (made(force(2), slide(0.5), effects=ON), {"finite_strain"}),
     "full fields": (
-        made(force(2, 4), effects=ON, outputs={"snapshots": ["0.25 s"]}), {"finite_strain", "symmetry", "full-field output"},
+        made(force(2, 4), effects=ON, outputs={"snapshots": ["0.25 s"]}),
+        {"finite_strain", "symmetry", "full-field output"},
     ),
     "ridges": (
-        made(force(2), effects=ON, specimen={"ridges": "inner"}, accuracy="draft"), {"finite_strain", "symmetry", "ridges"},
+        made(force(2), effects=ON, specimen={"ridges": "inner"}, accuracy="draft"),
+        {"finite_strain", "symmetry", "ridges"},
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -95,7 +115,9 @@ def test_code_of_what_is_left_out_is_not_executed(name):
     called = executed(scene)
     modules = {module for module, _ in called}
     ran = {
-        effect for effect, own in OWN.items() if any(part in called or (part[1] is None and part[0] in modules) for part in own)
+        effect
+        for effect, own in OWN.items()
+        if any(part in called or (part[1] is None and part[0] in modules) for part in own)
     }
     assert ran == on
 
@@ -115,7 +137,10 @@ def test_steady_scene_does_no_time_stepping():
     assert not chosen.timed and chosen.steps <= 8
     history = simulate(scene, replace(chosen, steps_per_leg=3))
     assert history.time.values.max() < 1e-9 and not history.dissipated_energy.values.any()
-    press, held = (made(force(2), *more, accuracy="draft", effects={"viscoelasticity": "off"}) for more in ((), (hold(1e3),)))
+    press, held = (
+        made(force(2), *more, accuracy="draft", effects={"viscoelasticity": "off"})
+        for more in ((), (hold(1e3),))
+    )
     assert plan(held).steps == plan(press).steps + 1
 
 
@@ -129,7 +154,9 @@ def test_changes_are_nothing_between_alike_and_something_between_others():
     other = history.copy(deep=True)
     other["tangential_force"] = other.tangential_force * 0.9
     found = changes(history, other)
-    assert found["tangential force"] == pytest.approx(0.1 * float(np.abs(history.tangential_force).max() / history.force.max()))
+    assert found["tangential force"] == pytest.approx(
+        0.1 * float(np.abs(history.tangential_force).max() / history.force.max())
+    )
     assert sum(value > 0 for value in found.values()) == 1
 
 
@@ -143,16 +170,20 @@ def test_legs_of_other_numbers_of_steps_are_compared_at_their_ends():
 @pytest.mark.parametrize(
     ("dropped", "share", "said"),
     [
-        (True, 0.9, "rightly left out"), (True, 1.1, "wrongly left out"), (False, 0.2, "rightly carried"),
+        (True, 0.9, "rightly left out"),
+        (True, 1.1, "wrongly left out"),
+        (False, 0.2, "rightly carried"),
         (False, 0.05, "carried for nothing"),
     ],
-)  # fmt: skip
+)
 def test_verdicts(dropped, share, said):
     assert verdict(dropped, share) == said
 
 
 def test_generated_scenes_are_the_same_each_time_and_can_be_planned():
-    first, second = ([scene.canonical() for scene in islice(generated(seed=3), 6)] for _ in range(2))
+    first, second = (
+        [scene.canonical() for scene in islice(generated(seed=3), 6)] for _ in range(2)
+    )
     assert first == second
     assert first != [scene.canonical() for scene in islice(generated(seed=4), 6)]
     kinds = {scene.name.split()[0] for scene in generated(16)}
@@ -164,7 +195,9 @@ def test_alternatives_flip_one_effect_each():
     draft = plan(scene)
     for effect, ways in alternatives(scene, draft).items():
         for way in ways:
-            flipped = [name for name in draft.effects if way.effects[name].on != draft.effects[name].on]
+            flipped = [
+                name for name in draft.effects if way.effects[name].on != draft.effects[name].on
+            ]
             assert flipped == [effect]
             assert way.timed == way.effects["viscoelasticity"].on
     assert len(alternatives(scene, draft)["viscoelasticity"]) == 2
@@ -187,13 +220,38 @@ def test_every_rule_says_what_it_decides():
 def test_a_small_study_is_drawn_and_tabulated():
     """Symmetry alone, and made-up choices: markers right and left, a wrong choice in red, rules with evidence."""
     one = study(pairs()[1:2], repeats=1)
-    assert one["cost ratio"].item() == pytest.approx(one["with (s)"].item() / one["without (s)"].item())  # of one turn
-    assert one["change"].item() < 1e-3 and one["unknowns with"].item() < 0.6 * one["unknowns without"].item()
-    choice = {"seed": 1, "scene": "s", "stimulus": "flat", "accuracy": 0.02, "worth": 0.1, "of": "depth", "why": ""}
+    assert one["cost ratio"].item() == pytest.approx(
+        one["with (s)"].item() / one["without (s)"].item()
+    )  # of one turn
+    assert (
+        one["change"].item() < 1e-3
+        and one["unknowns with"].item() < 0.6 * one["unknowns without"].item()
+    )
+    choice = {
+        "seed": 1,
+        "scene": "s",
+        "stimulus": "flat",
+        "accuracy": 0.02,
+        "worth": 0.1,
+        "of": "depth",
+        "why": "",
+    }
     found = pd.DataFrame(
         [
-            choice | {"effect": "finite_strain", "planned": "on", "share": 5.0, "verdict": "rightly carried"},
-            choice | {"effect": "finite_strain", "planned": "off", "share": 5.0, "verdict": "wrongly left out"},
+            choice
+            | {
+                "effect": "finite_strain",
+                "planned": "on",
+                "share": 5.0,
+                "verdict": "rightly carried",
+            },
+            choice
+            | {
+                "effect": "finite_strain",
+                "planned": "off",
+                "share": 5.0,
+                "verdict": "wrongly left out",
+            },
         ]
     )
     table = evidence(one, found)

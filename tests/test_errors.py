@@ -81,20 +81,30 @@ def test_profile_of_a_contact_of_a_few_nodes_is_drawn_with_the_error_it_has(node
     for shift in np.linspace(0, 1, 12, endpoint=False):
         x = (np.arange(-2 * nodes, 2 * nodes) + shift) / (nodes / 2)
         x = x[abs(x) <= 2]
-        profile = Curve(lambda history: (history["time"].values, history["value"].values), outputs=False)
+        profile = Curve(
+            lambda history: (history["time"].values, history["value"].values), outputs=False
+        )
         found.append(sampling(outputs(pressure(x), x), profile))
         true.append(norm(fine, pressure(fine) - np.interp(fine, x, pressure(x))))
     ratio = np.array(found) / np.array(true)
-    assert 0.7 < np.sqrt(np.mean(np.square(found)) / np.mean(np.square(true))) < 1.6 and ratio.max() < 3, ratio
+    assert (
+        0.7 < np.sqrt(np.mean(np.square(found)) / np.mean(np.square(true))) < 1.6
+        and ratio.max() < 3
+    ), ratio
 
 
 def test_sampling_error_falls_by_the_order_of_the_curve():
     def errors(shape):
-        return [sampling(outputs(SHAPES[shape](t, 0.43), t), VALUE) for t in (np.linspace(0, 1, n) for n in (41, 81, 161))]
+        return [
+            sampling(outputs(SHAPES[shape](t, 0.43), t), VALUE)
+            for t in (np.linspace(0, 1, n) for n in (41, 81, 161))
+        ]
 
     smooth = np.array(errors("smooth"))
     assert smooth[:-1] / smooth[1:] == pytest.approx(4, rel=0.05)
-    assert sampling(outputs(np.linspace(0, 3, 21), np.linspace(0, 1, 21)), VALUE) == 0  # a straight line
+    assert (
+        sampling(outputs(np.linspace(0, 3, 21), np.linspace(0, 1, 21)), VALUE) == 0
+    )  # a straight line
     assert sampling(outputs(np.ones(9), np.linspace(0, 1, 9)), VALUE) == 0
 
 
@@ -116,7 +126,9 @@ def test_rates_made_of_differences_of_outputs_are_wrong_at_the_outputs_too():
     """A curve of central differences: the truth is within what is found, which lines alone (mutant) would leave out."""
 
     def rates(history):
-        t, _, rate = rate_by_leg(history["time"].values, history["value"].values, history["leg"].values)
+        t, _, rate = rate_by_leg(
+            history["time"].values, history["value"].values, history["leg"].values
+        )
         return t, rate
 
     time, fine = np.linspace(0, 1, 41), np.linspace(0, 1, 4001)
@@ -140,19 +152,33 @@ def solved(h, dt, mesh=0.3, steps=0.2, curved=1.0):
 def test_each_part_is_found_alone(alone):
     size = {"mesh": 0.3 * (alone == "mesh"), "steps": 0.2 * (alone == "steps")}
     rough = 0.1 * COARSER
-    run, coarse, both = solved(0.1, 0.02, **size), solved(rough, 0.02, **size), solved(rough, 0.04, **size)
+    run, coarse, both = (
+        solved(0.1, 0.02, **size),
+        solved(rough, 0.02, **size),
+        solved(rough, 0.04, **size),
+    )
     found = curve_errors(run, Companion(coarse, both), VALUE)
     x = run["time"].values
     share = 100 / norm(x, run["value"].values)
     true = norm(x, 0.3 * 0.1**2 * np.cos(x)) * share, norm(x, 0.2 * 0.02 * x) * share
     # of order 2, where 3/2 is taken: half as much again as is left; order 1: half
-    assert found.mesh == pytest.approx(REMAINS * (COARSER**2 - 1) * true[0] if alone == "mesh" else 0, abs=1e-9)
-    assert found.steps == pytest.approx(STEPS_REMAIN * true[1] if alone == "steps" else 0, rel=0.02, abs=1e-9)
-    assert 0 < found.sampling < 1 and found.total == pytest.approx(found.mesh + found.steps + found.sampling)
+    assert found.mesh == pytest.approx(
+        REMAINS * (COARSER**2 - 1) * true[0] if alone == "mesh" else 0, abs=1e-9
+    )
+    assert found.steps == pytest.approx(
+        STEPS_REMAIN * true[1] if alone == "steps" else 0, rel=0.02, abs=1e-9
+    )
+    assert 0 < found.sampling < 1 and found.total == pytest.approx(
+        found.mesh + found.steps + found.sampling
+    )
     first = curve_errors(run, Companion(coarse, both), replace(VALUE, order=1.0)).mesh
-    assert first == pytest.approx(found.mesh * 2 / REMAINS), "of first order as much is left as half as long edges change"
+    assert first == pytest.approx(found.mesh * 2 / REMAINS), (
+        "of first order as much is left as half as long edges change"
+    )
     rate = Curve(lambda h: (h["time"].values, np.gradient(h["value"].values, h["time"].values)))
-    assert curve_errors(run, Companion(coarse, thinned(coarse)), rate).steps < 1e-9  # fewer outputs are not fewer steps
+    assert (
+        curve_errors(run, Companion(coarse, thinned(coarse)), rate).steps < 1e-9
+    )  # fewer outputs are not fewer steps
     if alone != "neither":  # mutant: one companion for both parts tells them apart no longer
         mixed = curve_errors(run, Companion(both, both), VALUE)
         assert (mixed.mesh > 0.1) and mixed.steps == 0
@@ -178,20 +204,34 @@ def test_of_several_curves_the_one_furthest_off_counts_and_numbers_are_compared_
     found = number_errors(run, Companion(coarse, both), last, lambda history: 1.0)
     own = abs(last(run))
     assert found.mesh == pytest.approx(REMAINS * 100 * abs(last(run) - last(coarse)) / own)
-    assert found.steps == pytest.approx(STEPS_REMAIN * 100 * abs(last(both) - last(coarse)) / own) and found.sampling == 0
+    assert (
+        found.steps == pytest.approx(STEPS_REMAIN * 100 * abs(last(both) - last(coarse)) / own)
+        and found.sampling == 0
+    )
     peak = lambda history: float(history["value"].max())  # noqa: E731
     assert number_errors(run, None, peak).sampling >= 0
     assert curve_errors(run, Companion(run, run), VALUE, VALUE).mesh == 0
 
 
-@pytest.mark.parametrize("name, over, trace", [("ramp40_k210", over_time, width), ("stroke_10", over_stroke, centre_pressure)])
+@pytest.mark.parametrize(
+    "name, over, trace",
+    [("ramp40_k210", over_time, width), ("stroke_10", over_stroke, centre_pressure)],
+)
 def test_a_companion_one_per_cent_away_is_that_far(name, over, trace):
     make = synthetic.stroke if name.startswith("stroke") else synthetic.history
-    found = curve_errors(make(name), Companion(make(name, 1.01), thinned(make(name, 1.02))), over(trace))
-    assert found.mesh == pytest.approx(REMAINS, rel=1e-6) and found.steps == pytest.approx(STEPS_REMAIN, rel=0.01)
+    found = curve_errors(
+        make(name), Companion(make(name, 1.01), thinned(make(name, 1.02))), over(trace)
+    )
+    assert found.mesh == pytest.approx(REMAINS, rel=1e-6) and found.steps == pytest.approx(
+        STEPS_REMAIN, rel=0.01
+    )
     if over is over_stroke:  # the other way too
-        run, other = (h.assign(stroke_distance=-h["stroke_distance"]) for h in (make(name), make(name, 1.01)))
-        assert curve_errors(run, Companion(other, other), over(trace)).mesh == pytest.approx(REMAINS, rel=1e-6)
+        run, other = (
+            h.assign(stroke_distance=-h["stroke_distance"]) for h in (make(name), make(name, 1.01))
+        )
+        assert curve_errors(run, Companion(other, other), over(trace)).mesh == pytest.approx(
+            REMAINS, rel=1e-6
+        )
 
 
 @pytest.mark.parametrize("number, low, high", [("5-1", 0, 70), ("5-22", 40, 80), ("5-23", 40, 80)])
@@ -202,11 +242,15 @@ def test_errors_of_impulses_are_those_of_the_part_of_the_stroke_that_is_shown(nu
     def off(first, last):
         def changed(history):
             x, energy = 1e3 * history["stroke_distance"], history["strain_energy_density"]
-            return history.assign(strain_energy_density=energy.where((x < first) | (x > last), 1.2 * energy))
+            return history.assign(
+                strain_energy_density=energy.where((x < first) | (x > last), 1.2 * energy)
+            )
 
         names = ("stroke_1", "stroke_5", "stroke_10", "stroke_20", "stroke_40")
         others = {name: changed(histories[name]) for name in names}
-        frame = FIGURES[number].frame(histories, meshes, coarse | {n: Companion(h, h) for n, h in others.items()}, reference)
+        frame = FIGURES[number].frame(
+            histories, meshes, coarse | {n: Companion(h, h) for n, h in others.items()}, reference
+        )
         return frame[PARTS[0]].max()
 
     outside = off(0.5, low - 1) if low else off(high + 1, 79.5)
@@ -216,7 +260,9 @@ def test_errors_of_impulses_are_those_of_the_part_of_the_stroke_that_is_shown(nu
 def test_rate_curve_with_a_jump_is_compared_on_either_side_of_it():
     history, other = synthetic.history("ramp40_k210"), synthetic.history("ramp40_k210", 1.01)
     rate = Curve(lambda h: energy_rate(h, 915e-6).to_numpy().T)
-    assert curve_errors(history, Companion(other, other), rate).mesh == pytest.approx(REMAINS, rel=1e-4)
+    assert curve_errors(history, Companion(other, other), rate).mesh == pytest.approx(
+        REMAINS, rel=1e-4
+    )
 
 
 @pytest.mark.parametrize("nodes, order", [(10000, 1.5), (7000, 1.0), (6900, 1.5)])
@@ -226,7 +272,11 @@ def test_less_coarse_a_companion_more_is_left_of_what_a_curve_changes_by(nodes, 
     def made(h, nodes):
         run = solved(h, 0.02, 0.3, 0.0)
         size = {"skin_edge": h}
-        return run.assign_attrs(plan=json.dumps({"discretisation": {"nodes": nodes, "element": "Q2P1"}, "mesh_size_SI": size}))
+        return run.assign_attrs(
+            plan=json.dumps(
+                {"discretisation": {"nodes": nodes, "element": "Q2P1"}, "mesh_size_SI": size}
+            )
+        )
 
     run, other = made(0.1, 10000), made(0.11, nodes)
     pair, value = Companion(other, thinned(other)), replace(VALUE, order=order)
@@ -239,15 +289,21 @@ def test_less_coarse_a_companion_more_is_left_of_what_a_curve_changes_by(nodes, 
     left = 1 / ((10000 / nodes) ** (order / 2) - 1)
     assert found == pytest.approx(left * change)
     number = 100 * abs(first(run) - first(other)) / abs(first(run))
-    assert number_errors(run, pair, first).mesh == pytest.approx(number / ((10000 / nodes) ** (ORDER / 2) - 1))
+    assert number_errors(run, pair, first).mesh == pytest.approx(
+        number / ((10000 / nodes) ** (ORDER / 2) - 1)
+    )
     fewer = Companion(made(0.1, 100 * nodes), other)  # a finer run in its place
-    assert fewer.remains(run, order) == pytest.approx(1 / (1 - (10000 / (100 * nodes)) ** (order / 2)))
+    assert fewer.remains(run, order) == pytest.approx(
+        1 / (1 - (10000 / (100 * nodes)) ** (order / 2))
+    )
 
 
 # --- companions ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["ramp40_k210", "stroke_sub_10", "step_sub", "steady_line", "ramp_hold_1_5_mm"])
+@pytest.mark.parametrize(
+    "name", ["ramp40_k210", "stroke_sub_10", "step_sub", "steady_line", "ramp_hold_1_5_mm"]
+)
 def test_companions_have_the_steps_of_the_run_all_or_every_second(name):
     """And outputs of the one are every second of the other's, as `thinned` takes them."""
     scene = load_scene(SCENES / f"{name}.yaml")
@@ -255,17 +311,32 @@ def test_companions_have_the_steps_of_the_run_all_or_every_second(name):
     mesh, both = companion(scene, own), companion(scene, own, 2)
     assert mesh.mesh_size == both.mesh_size and mesh.effects == both.effects == own.effects
     assert mesh.mesh_size.skin_edge == COARSER * own.mesh_size.skin_edge
-    assert [edge for _, edge in mesh.mesh_size.focus] == [COARSER * edge for _, edge in own.mesh_size.focus]
+    assert [edge for _, edge in mesh.mesh_size.focus] == [
+        COARSER * edge for _, edge in own.mesh_size.focus
+    ]
     every, second = (list(schedule(scene, *each.stepping)) for each in (mesh, both))
-    assert every == list(schedule(scene, *own.stepping)) and (mesh.outputs, both.outputs) == (len(every), len(second))
+    assert every == list(schedule(scene, *own.stepping)) and (mesh.outputs, both.outputs) == (
+        len(every),
+        len(second),
+    )
     pressed_anew = any(leg.fresh for leg in scene.motion)
-    told = xr.Dataset({"leg": ("time", [0, *(step.leg for step in every)])}, {"time": np.arange(len(every) + 1)})
+    told = xr.Dataset(
+        {"leg": ("time", [0, *(step.leg for step in every)])}, {"time": np.arange(len(every) + 1)}
+    )
     kept = thinned(told)["time"].values[1:] - 1
-    expected = [every[k] for k in kept] if not pressed_anew else [step for step in every if step.fresh or step.leg == 0]
-    assert [(s.leg, s.distance, s.force, s.depth) for s in second] == [(s.leg, s.distance, s.force, s.depth) for s in expected]
+    expected = (
+        [every[k] for k in kept]
+        if not pressed_anew
+        else [step for step in every if step.fresh or step.leg == 0]
+    )
+    assert [(s.leg, s.distance, s.force, s.depth) for s in second] == [
+        (s.leg, s.distance, s.force, s.depth) for s in expected
+    ]
     assert [s.time for s in second] == pytest.approx([s.time for s in expected])
     steady = 1e8
-    assert sum(s.dt for s in second if s.dt < steady) == pytest.approx(sum(s.dt for s in every if s.dt < steady))
+    assert sum(s.dt for s in second if s.dt < steady) == pytest.approx(
+        sum(s.dt for s in every if s.dt < steady)
+    )
 
 
 def test_a_companion_passes_twice_the_way_and_no_coarser_events():
@@ -274,20 +345,32 @@ def test_a_companion_passes_twice_the_way_and_no_coarser_events():
     own = plan(scene)
     mesh, both = companion(scene, own), companion(scene, own, 2)
     (longest, tolerance), *others = own.between, mesh.between, both.between
-    np.testing.assert_allclose(others, [(longest, COARSER * tolerance), (2 * longest, COARSER * tolerance)])
+    np.testing.assert_allclose(
+        others, [(longest, COARSER * tolerance), (2 * longest, COARSER * tolerance)]
+    )
 
 
 def test_companions_of_a_press_find_its_errors():
     """Simulated: a press on an intermediate mesh, with its companions and with the truth on a finer one."""
     scene = load_scene(
-        {"stimulus": {"shape": "cylinder", "curvature": "400 1/m"},
-         "motion": [{"press_to_force": "10 gf", "rate": "40 gf/s"}, {"hold": "1 s"}],
-         "accuracy": {"skin_edge": "0.25 mm", "steps": 16}}, "press")  # fmt: skip
+        {
+            "stimulus": {"shape": "cylinder", "curvature": "400 1/m"},
+            "motion": [{"press_to_force": "10 gf", "rate": "40 gf/s"}, {"hold": "1 s"}],
+            "accuracy": {"skin_edge": "0.25 mm", "steps": 16},
+        },
+        "press",
+    )
     own = plan(scene)
-    run, mesh, both = (simulate(scene, how) for how in (own, companion(scene, own), companion(scene, own, 2)))
+    run, mesh, both = (
+        simulate(scene, how) for how in (own, companion(scene, own), companion(scene, own, 2))
+    )
     found = curve_errors(run, Companion(mesh, both), over_time(width))
     truth = simulate(scene, companion(scene, own, coarser=0.4))
-    true = norm(run["time"].values, width(run) - width(truth)) / norm(run["time"].values, width(run)) * 100
+    true = (
+        norm(run["time"].values, width(run) - width(truth))
+        / norm(run["time"].values, width(run))
+        * 100
+    )
     assert 0.7 * true < found.mesh < 2.5 * true and found.mesh > found.steps
     assert both.sizes["time"] == 1 + 8 and set(both["time"].values) <= set(run["time"].values)
 
@@ -296,7 +379,9 @@ def test_companions_of_a_press_find_its_errors():
 
 
 def _rows(mesh=1.0, steps=0.5, sampled=0.1):
-    rows = pd.DataFrame({"source": "simulated", "x (mm)": np.linspace(0, 1, 11), "y (Pa)": np.full(11, 200.0)})
+    rows = pd.DataFrame(
+        {"source": "simulated", "x (mm)": np.linspace(0, 1, 11), "y (Pa)": np.full(11, 200.0)}
+    )
     return rows.assign(**Errors(mesh, steps, sampled).columns)
 
 
@@ -309,9 +394,19 @@ def test_errors_above_two_per_cent_are_drawn_as_a_band_as_high_as_they_are():
     axs.curve(ax, _rows(mesh=3.4), "x (mm)", "y (Pa)", color="C3")
     (band,) = ax.collections
     high = band.get_paths()[0].vertices[:, 1]
-    assert (high.min(), high.max()) == pytest.approx((192, 208)) and band.get_facecolor()[0, 3] < 0.3
-    assert line.get_color() == "C3" and (band.get_facecolor()[0, :3] == pytest.approx((0.839, 0.153, 0.157), abs=0.01))
-    part = axs.curve(ax, _rows(mesh=3.4)[:4], "x (mm)", "y (Pa)", whole=_rows(mesh=3.4).assign(**{"y (Pa)": 400.0}))
+    assert (high.min(), high.max()) == pytest.approx((192, 208)) and band.get_facecolor()[
+        0, 3
+    ] < 0.3
+    assert line.get_color() == "C3" and (
+        band.get_facecolor()[0, :3] == pytest.approx((0.839, 0.153, 0.157), abs=0.01)
+    )
+    part = axs.curve(
+        ax,
+        _rows(mesh=3.4)[:4],
+        "x (mm)",
+        "y (Pa)",
+        whole=_rows(mesh=3.4).assign(**{"y (Pa)": 400.0}),
+    )
     assert part and ax.collections[-1].get_paths()[0].vertices[:, 1].max() == pytest.approx(216)
 
 
@@ -327,9 +422,18 @@ def test_points_have_bars_where_their_own_errors_are_above_two_per_cent():
 
 def test_note_says_the_parts_of_the_curve_that_is_furthest_off():
     assert axs.error_text(_rows()) == "Largest error: mesh 1.0 %, steps 0.5 %, sampling 0.1 %"
-    frame = pd.concat([_rows().assign(surface="79"), _rows(5.0, 0.01, 0.0).assign(surface="1260")], ignore_index=True)
-    assert axs.error_text(frame) == "Largest error of K = 1260 1/m: mesh 5.0 %, steps <0.1 %, sampling 0.0 %"
-    assert axs.error_text(frame.assign(**dict.fromkeys(PARTS[:2], np.nan))) == "Largest error: sampling 0.1 %"
+    frame = pd.concat(
+        [_rows().assign(surface="79"), _rows(5.0, 0.01, 0.0).assign(surface="1260")],
+        ignore_index=True,
+    )
+    assert (
+        axs.error_text(frame)
+        == "Largest error of K = 1260 1/m: mesh 5.0 %, steps <0.1 %, sampling 0.0 %"
+    )
+    assert (
+        axs.error_text(frame.assign(**dict.fromkeys(PARTS[:2], np.nan)))
+        == "Largest error: sampling 0.1 %"
+    )
     assert axs.error_text(frame.assign(**dict.fromkeys(PARTS, np.nan))) == ""
     assert total(frame).tolist() == pytest.approx([1.6] * 11 + [5.01] * 11)
 
@@ -339,17 +443,26 @@ def test_lines_of_one_family_share_one_error_and_one_that_hardly_rises_does_not_
     size = 1000.0
 
     def line(share):
-        return over_time(lambda history: share * history["value"].values + (1 - share) * history["beside"].values)
+        return over_time(
+            lambda history: share * history["value"].values + (1 - share) * history["beside"].values
+        )
 
     def two(h, dt):
         return solved(h, dt, 0.3, 0.0).assign(beside=solved(h, dt, size * 0.3, 0.0)["value"] / size)
 
     run, other = two(0.1, 0.02), Companion(two(0.1 * COARSER, 0.02), two(0.1 * COARSER, 0.04))
     strong, weak = line(1.0), line(0.0)
-    alone, family = (curve_errors(run, other, strong).mesh, family_errors(run, other, [strong, weak]).mesh)
+    alone, family = (
+        curve_errors(run, other, strong).mesh,
+        family_errors(run, other, [strong, weak]).mesh,
+    )
     sizes = [norm(*strong(run)), norm(*weak(run))]
-    truth = np.linalg.norm([alone * sizes[0], curve_errors(run, other, weak).mesh * sizes[1]]) / np.linalg.norm(sizes)
-    assert family == pytest.approx(truth) and family_errors(run, other, [strong]).mesh == pytest.approx(alone)
+    truth = np.linalg.norm(
+        [alone * sizes[0], curve_errors(run, other, weak).mesh * sizes[1]]
+    ) / np.linalg.norm(sizes)
+    assert family == pytest.approx(truth) and family_errors(
+        run, other, [strong]
+    ).mesh == pytest.approx(alone)
     flat = over_time(lambda history: 1e-9 * history["beside"].values)
     assert family_errors(run, other, [strong, flat]).mesh == pytest.approx(alone, rel=1e-6)
     assert np.isnan(family_errors(run, None, [strong]).mesh)
@@ -358,13 +471,28 @@ def test_lines_of_one_family_share_one_error_and_one_that_hardly_rises_does_not_
 def test_the_error_stated_of_points_that_are_joined_is_that_of_their_line():
     """Relative to a point that is next to nothing an error tells nothing of the line through it."""
     rows = pd.DataFrame(
-        {"line": ["a", "a", "b"], "shown": [0.01, 1.0, 2.0], PARTS[0]: [50.0, 1.0, 2.0], PARTS[1]: 0.0, PARTS[2]: 0.0}
+        {
+            "line": ["a", "a", "b"],
+            "shown": [0.01, 1.0, 2.0],
+            PARTS[0]: [50.0, 1.0, 2.0],
+            PARTS[1]: 0.0,
+            PARTS[2]: 0.0,
+        }
     )
-    frame = pd.concat([rows, pd.DataFrame({"line": ["a"], "shown": [7.0]})], ignore_index=True)  # not simulated
+    frame = pd.concat(
+        [rows, pd.DataFrame({"line": ["a"], "shown": [7.0]})], ignore_index=True
+    )  # not simulated
     found = axs.of_lines(frame, [("line", "shown")])
-    assert found[PARTS[0]].tolist() == pytest.approx([np.hypot(0.5, 1.0) / np.hypot(0.01, 1.0), 2.0])
+    assert found[PARTS[0]].tolist() == pytest.approx(
+        [np.hypot(0.5, 1.0) / np.hypot(0.01, 1.0), 2.0]
+    )
     assert axs.error_text(frame) == "Largest error: mesh 50.0 %, steps 0.0 %, sampling 0.0 %"
-    assert axs.error_text(frame, [("line", "shown")]) == "Largest error of a line: mesh 2.0 %, steps 0.0 %, sampling 0.0 %"
+    assert (
+        axs.error_text(frame, [("line", "shown")])
+        == "Largest error of a line: mesh 2.0 %, steps 0.0 %, sampling 0.0 %"
+    )
     assert axs.error_text(rows.assign(**dict.fromkeys(PARTS, np.nan)), [("line", "shown")]) == ""
-    own = axs.error_text(rows.assign(**{PARTS[0]: np.nan, PARTS[1]: 1.0}), [("line", "shown")])  # on a mesh of the user's own
+    own = axs.error_text(
+        rows.assign(**{PARTS[0]: np.nan, PARTS[1]: 1.0}), [("line", "shown")]
+    )  # on a mesh of the user's own
     assert own == "Largest error of a line: mesh not known, steps 1.0 %, sampling 0.0 %"

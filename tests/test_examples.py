@@ -14,7 +14,9 @@ EXAMPLES = sorted((CONFIG / "scenes" / "examples").glob("*.yaml"))
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_example_runs(path, tmp_path, capsys):
     """Exit code 0, a depth for every leg, and a closing line."""
-    assert main(["run", str(path), "--accuracy", "draft", "--out", str(tmp_path / "out")]) == 0, capsys.readouterr().err
+    assert main(["run", str(path), "--accuracy", "draft", "--out", str(tmp_path / "out")]) == 0, (
+        capsys.readouterr().err
+    )
     legs = json.loads((tmp_path / "out" / "summary.json").read_text())["legs"]
     depths = [leg["depth_mm"] for leg in legs]
     assert depths[0] > 0.1 and all(0 <= depth < 3 for depth in depths)  # the last may let go

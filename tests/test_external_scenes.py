@@ -40,7 +40,9 @@ def compact(mesh):
     number = np.full(len(mesh.points), -1, np.int32)
     number[used] = np.arange(len(used))
     curves = {name: number[facets] for name, facets in mesh.curves.items()}
-    return PadMesh(mesh.points[used], number[mesh.cells], mesh.element, mesh.region, curves, mesh.symmetric)
+    return PadMesh(
+        mesh.points[used], number[mesh.cells], mesh.element, mesh.region, curves, mesh.symmetric
+    )
 
 
 def triangles(mesh):
@@ -76,15 +78,20 @@ def reference(built, tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    ("change", "element", "tolerance"), [(linear, "Q2P1", 0.01), (triangles, "P2B", 0.01), (linear_triangles, "P2B", 0.03)]
+    ("change", "element", "tolerance"),
+    [(linear, "Q2P1", 0.01), (triangles, "P2B", 0.01), (linear_triangles, "P2B", 0.03)],
 )
-def test_every_element_gives_the_same_answer(change, element, tolerance, built, reference, tmp_path):
+def test_every_element_gives_the_same_answer(
+    change, element, tolerance, built, reference, tmp_path
+):
     """Linear and quadratic quads and triangles on the same nodes agree in depth, width, pressure and strain energy."""
     chosen, leg = run(change(built), tmp_path)
     assert chosen.element == element
     expected = reference[1]
     for key in ("depth_mm", "contact_width_mm", "centre_pressure_Pa"):
-        assert leg[key] == pytest.approx(expected[key], rel=tolerance if key == "depth_mm" else 2 * tolerance), key
+        assert leg[key] == pytest.approx(
+            expected[key], rel=tolerance if key == "depth_mm" else 2 * tolerance
+        ), key
     for key in ("strain_energy_Pa", "strain_energy_network_Pa"):
         assert leg[key] == pytest.approx(expected[key], rel=2 * tolerance), key
 
@@ -92,7 +99,9 @@ def test_every_element_gives_the_same_answer(change, element, tolerance, built, 
 def test_symmetric_external_mesh_is_halved(built, reference, tmp_path):
     """A mirror-symmetric external mesh costs half, and answers as the whole does."""
     chosen, leg = reference
-    assert chosen.effects["symmetry"].on and chosen.nodes == pytest.approx(len(built.points) / 2, rel=0.02)
+    assert chosen.effects["symmetry"].on and chosen.nodes == pytest.approx(
+        len(built.points) / 2, rel=0.02
+    )
     whole, full = run(built, tmp_path, effects={"symmetry": False})
     assert whole.nodes == len(built.points)
     assert full["depth_mm"] == pytest.approx(leg["depth_mm"], rel=1e-4)
@@ -108,21 +117,29 @@ LIGHT = {"shape": "flat"}, [{"press_to_force": "2 gf"}], {"finite_strain": False
     [(*BAR, 0.015, 0.002), (*LIGHT, 0.12, 0.015)],
     ids=["filleted bar", "small strain"],
 )
-def test_linear_quads_are_raised_where_the_accuracy_needs_it(stimulus, motion, effects, linear_off, raised_off, tmp_path):
+def test_linear_quads_are_raised_where_the_accuracy_needs_it(
+    stimulus, motion, effects, linear_off, raised_off, tmp_path
+):
     """As they are they miss a converged strain energy by 1.6 and 13 %, raised by 0.1 and 1.2; the plan says why."""
     document = {"stimulus": stimulus, "motion": motion, "effects": effects}
     truth = summary(simulate(load_scene({**document, "accuracy": "fine"})))["legs"][-1]
     built = load_scene({**document, "accuracy": "draft"})
-    write_pad(linear(build_pad_mesh(built.specimen.outline, plan(built).mesh_size)), tmp_path / "my.msh")
+    write_pad(
+        linear(build_pad_mesh(built.specimen.outline, plan(built).mesh_size)), tmp_path / "my.msh"
+    )
     found = {}
     for element in ("Q1P0", None):
         accuracy = {"tolerance": 0.06, "once": True} | ({"element": element} if element else {})
-        scene = load_scene({**document, "accuracy": accuracy, "specimen": {"mesh": str(tmp_path / "my.msh")}})
+        scene = load_scene(
+            {**document, "accuracy": accuracy, "specimen": {"mesh": str(tmp_path / "my.msh")}}
+        )
         chosen = plan(scene)
         assert chosen.element == (element or "Q2P1")
         assert ("linear quads raised" in chosen.specimen[-1]) is not bool(element)
         leg = summary(simulate(scene, chosen))["legs"][-1]
-        found[element] = np.abs(np.array(leg["strain_energy_Pa"]) / truth["strain_energy_Pa"] - 1).max()
+        found[element] = np.abs(
+            np.array(leg["strain_energy_Pa"]) / truth["strain_energy_Pa"] - 1
+        ).max()
         assert leg["centre_pressure_Pa"] == pytest.approx(truth["centre_pressure_Pa"], rel=0.05)
     assert found["Q1P0"] > linear_off and found[None] < raised_off
 
@@ -133,10 +150,14 @@ def test_linear_quads_stay_where_they_do_or_are_asked_for(built, tmp_path):
     (tmp_path / "scene.yaml").write_text(TEXT.format(mesh="my.msh"))
     scene = load_scene(tmp_path / "scene.yaml")
     expected = {0.5: "Q1P0", 0.01: "Q2P1", "fine": "Q2P1"}
-    assert {accuracy: plan(scene.with_accuracy(accuracy)).element for accuracy in expected} == expected
+    assert {
+        accuracy: plan(scene.with_accuracy(accuracy)).element for accuracy in expected
+    } == expected
     for element in ("Q1P0", "Q2P1"):
         assert plan(scene.with_accuracy({"element": element})).element == element
-    with pytest.raises(PlanError, match="P2B does not fit the mesh of quad4; allowed: Q1P0 or Q2P1"):
+    with pytest.raises(
+        PlanError, match="P2B does not fit the mesh of quad4; allowed: Q1P0 or Q2P1"
+    ):
         plan(scene.with_accuracy({"element": "P2B"}))
 
 
@@ -149,33 +170,55 @@ def test_a_raised_skin_bends_as_its_nodes_do(built):
     near = np.abs(true[:, 0]) < 3e-3
     assert off[near].max() < 0.02 * before[near].max()
     square = PadMesh(
-        np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]), np.array([[0, 1, 2, 3]]), "quad4", np.zeros(1, int),
-        {"skin": np.array([[0, 3], [3, 2], [2, 1]])}, False,
-    ).raised()  # fmt: skip
-    np.testing.assert_array_equal(square.points[square.cells[0, 4:]], [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]])
+        np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]]),
+        np.array([[0, 1, 2, 3]]),
+        "quad4",
+        np.zeros(1, int),
+        {"skin": np.array([[0, 3], [3, 2], [2, 1]])},
+        False,
+    ).raised()
+    np.testing.assert_array_equal(
+        square.points[square.cells[0, 4:]], [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]]
+    )
 
 
 @pytest.mark.parametrize(
     ("change", "element", "others"),
-    [(linear, "Q1P0", "Q2P1"), (linear, "Q2P1", "Q1P0"), (triangles, "P2B", "P2B"), (lambda mesh: mesh, "Q2P1", "Q2P1")],
+    [
+        (linear, "Q1P0", "Q2P1"),
+        (linear, "Q2P1", "Q1P0"),
+        (triangles, "P2B", "P2B"),
+        (lambda mesh: mesh, "Q2P1", "Q2P1"),
+    ],
 )
-def test_what_the_mesh_makes_wrong_is_told_by_other_elements_on_it_or_not_at_all(change, element, others, tmp_path):
+def test_what_the_mesh_makes_wrong_is_told_by_other_elements_on_it_or_not_at_all(
+    change, element, others, tmp_path
+):
     """Linear quads by quadratic ones and the other way round, no less than it is; of all others it is not known, and not zero."""
     motion = [{"press_to_force": "10 gf", "rate": "40 gf/s"}]
     document = {"stimulus": {"shape": "cylinder", "curvature": "210 1/m"}, "motion": motion}
     coarse, fine = (load_scene({**document, "accuracy": each}) for each in ("draft", "fine"))
-    write_pad(change(build_pad_mesh(coarse.specimen.outline, plan(coarse).mesh_size)), tmp_path / "my.msh")
+    write_pad(
+        change(build_pad_mesh(coarse.specimen.outline, plan(coarse).mesh_size)), tmp_path / "my.msh"
+    )
     scene = load_scene({**document, "specimen": {"mesh": str(tmp_path / "my.msh")}})
     scene = scene.with_accuracy({"element": element, "steps": plan(fine).steps_per_leg})
     own = plan(scene)
     hows = own, companion(scene, own), companion(scene, own, 2)
     assert [how.element for how in hows] == [element, others, others]
     run, mesh, both = (simulate(scene, how) for how in hows)
-    assert [json.loads(h.attrs["cost"])["nodes"] for h in (mesh, both)] == pytest.approx([hows[1].nodes] * 2, rel=0.04)
+    assert [json.loads(h.attrs["cost"])["nodes"] for h in (mesh, both)] == pytest.approx(
+        [hows[1].nodes] * 2, rel=0.04
+    )
     pair = Companion(mesh, both)
-    errors = curve_errors(run, pair, over_time(width)), number_errors(run, pair, lambda h: float(h["indentation_depth"][-1]))
+    errors = (
+        curve_errors(run, pair, over_time(width)),
+        number_errors(run, pair, lambda h: float(h["indentation_depth"][-1])),
+    )
     rows = measures_table({"press": run}, {"press": pair}, {}).set_index(["quantity", "condition"])
-    said = error_text(pd.DataFrame({"source": ["simulated"], **{k: [v] for k, v in errors[0].columns.items()}}))
+    said = error_text(
+        pd.DataFrame({"source": ["simulated"], **{k: [v] for k, v in errors[0].columns.items()}})
+    )
     if element == others:  # mutant: the difference, which is nothing
         assert all(np.isnan(each.mesh) and each.steps > 0 for each in errors)
         assert rows["mesh_companion"].isna().all() and rows["companion"].notna().any()

@@ -17,7 +17,10 @@ PRESS = {"press_to_force": "20 gf", "rate": "40 gf/s"}
 CASES = {
     "pressed": {"motion": [PRESS, {"hold": "0.5 s"}]},
     "small strain": {"motion": [PRESS], "effects": {"finite_strain": "off"}},
-    "stroked": {"motion": [PRESS, {"slide": "0.5 mm", "speed": "10 mm/s", "keep": "force"}], "friction": 0.5},
+    "stroked": {
+        "motion": [PRESS, {"slide": "0.5 mm", "speed": "10 mm/s", "keep": "force"}],
+        "friction": 0.5,
+    },
 }
 
 
@@ -35,11 +38,20 @@ def test_fallback_gives_the_same_answers(case, tmp_path, monkeypatch):
     accuracy = {"skin_edge": "0.5 mm", "steps": 8}
     scene = load_scene(write(tmp_path, {"stimulus": stimulus, "accuracy": accuracy, **CASES[case]}))
     found, truth = by("superlu", scene, monkeypatch), by("pardiso", scene, monkeypatch)
-    for name in ("indentation_depth", "force", "tangential_force", "stored_energy", "contact_pressure", "strain_energy_density"):
+    for name in (
+        "indentation_depth",
+        "force",
+        "tangential_force",
+        "stored_energy",
+        "contact_pressure",
+        "strain_energy_density",
+    ):
         scale = max(np.abs(truth[name].values).max(), 1e-12)
         # factored in single precision, they end where less than their tolerance is left out of balance, of strokes the larger
         within = 1e-5 if case != "stroked" else 1e-4
-        np.testing.assert_allclose(found[name].values, truth[name].values, atol=within * scale, rtol=0, err_msg=name)
+        np.testing.assert_allclose(
+            found[name].values, truth[name].values, atol=within * scale, rtol=0, err_msg=name
+        )
     assert int(found.newton_iterations.sum()) == int(truth.newton_iterations.sum())
 
 
@@ -58,10 +70,18 @@ print(solver._library.MKL_Get_Max_Threads())
 
 
 @pytest.mark.skipif(not linear_solver.pardiso_available(), reason="PARDISO is not installed here")
-@pytest.mark.parametrize(("given", "taken"), [(None, 1), ("", 1), ("2", 2), ("1,4", 1), ("many", 1)])
+@pytest.mark.parametrize(
+    ("given", "taken"), [(None, 1), ("", 1), ("2", 2), ("1,4", 1), ("many", 1)]
+)
 def test_mkl_takes_the_threads_that_the_process_was_given(given, taken):
     """One unless told otherwise, whatever is set: two threads on one matrix take twice the time."""
-    kept = {name: value for name, value in os.environ.items() if name not in ("OMP_NUM_THREADS", "MKL_NUM_THREADS")}
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ("OMP_NUM_THREADS", "MKL_NUM_THREADS")
+    }
     told = kept if given is None else kept | {"OMP_NUM_THREADS": given}
-    done = subprocess.run([sys.executable, "-c", _THREADS_OF_MKL], env=told, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", _THREADS_OF_MKL], env=told, capture_output=True, text=True
+    )
     assert done.stdout.strip() == str(taken), done.stderr

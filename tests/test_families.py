@@ -28,21 +28,33 @@ def folder(tmp_path):
 def test_members_are_scenes_of_their_own_with_tags(folder):
     flat, sharp = load_scene(folder / "press_flat.yaml"), load_scene(folder / "press_3.yaml")
     assert (flat.name, flat.stimulus.shape, flat.friction) == ("press_flat", "flat", 0.3)
-    assert (sharp.name, sharp.stimulus.curvature, sharp.outputs.snapshots) == ("press_3", 3.0, (0.0,))
+    assert (sharp.name, sharp.stimulus.curvature, sharp.outputs.snapshots) == (
+        "press_3",
+        3.0,
+        (0.0,),
+    )
     assert flat.tags == {"family": "press", "surface": "flat"} and sharp.tags["surface"] == "3"
     assert recorded_scene(flat.canonical()).tags == flat.tags
     assert load_scene(folder / "press_flat.yaml").varied({"friction": 0.1}).tags == flat.tags
 
 
 def test_a_member_means_what_it_would_in_a_file_of_its_own(folder):
-    (folder / "alone.yaml").write_text("friction: 0.3\nmotion: [{press_to_force: 20 gf}]\nstimulus: {shape: flat}\n")
-    alone, member = (load_scene(folder / f"{name}.yaml").model_dump() for name in ("alone", "press_flat"))
+    (folder / "alone.yaml").write_text(
+        "friction: 0.3\nmotion: [{press_to_force: 20 gf}]\nstimulus: {shape: flat}\n"
+    )
+    alone, member = (
+        load_scene(folder / f"{name}.yaml").model_dump() for name in ("alone", "press_flat")
+    )
     own = {"name", "tags"}
-    assert {k: v for k, v in alone.items() if k not in own} == {k: v for k, v in member.items() if k not in own}
+    assert {k: v for k, v in alone.items() if k not in own} == {
+        k: v for k, v in member.items() if k not in own
+    }
 
 
 def test_a_file_of_the_members_name_comes_first(folder):
-    (folder / "press_flat.yaml").write_text("stimulus: {shape: line}\nmotion: [{press_to_force: 1 gf}]\n")
+    (folder / "press_flat.yaml").write_text(
+        "stimulus: {shape: line}\nmotion: [{press_to_force: 1 gf}]\n"
+    )
     assert load_scene(folder / "press_flat.yaml").stimulus.shape == "line"
 
 
@@ -61,8 +73,11 @@ def test_an_extending_family_takes_changes_and_adds(folder):
     assert scene.friction == 0.5 and scene.stimulus.curvature == 3.0 and scene.specimen.ridges
     assert scene.tags == {"family": "more", "pad": "ridged", "surface": "3"}
     assert [path.name for path in rests_on(folder / "more_soft_3.yaml")] == [
-        "more.yaml", "press.yaml", "calibrated_mean.yaml", "thesis.yaml",
-    ]  # fmt: skip
+        "more.yaml",
+        "press.yaml",
+        "calibrated_mean.yaml",
+        "thesis.yaml",
+    ]
     (folder / "changed.yaml").write_text(
         "extends: press.yaml\nover: {surface: {3: {friction: 0.9}, line: {stimulus: {shape: line}}}}"
     )
@@ -73,10 +88,18 @@ def test_an_extending_family_takes_changes_and_adds(folder):
 
 
 def test_a_scene_extends_a_scene(folder):
-    (folder / "base.yaml").write_text("stimulus: {shape: flat}\nmotion: [{press_to_force: 20 gf}]\nspecimen: {ridges: inner}\n")
-    (folder / "own.yaml").write_text("extends: base.yaml\nmotion: [{press_to_force: 5 gf}, {slide: 1 mm}]\nfriction: 0.2\n")
+    (folder / "base.yaml").write_text(
+        "stimulus: {shape: flat}\nmotion: [{press_to_force: 20 gf}]\nspecimen: {ridges: inner}\n"
+    )
+    (folder / "own.yaml").write_text(
+        "extends: base.yaml\nmotion: [{press_to_force: 5 gf}, {slide: 1 mm}]\nfriction: 0.2\n"
+    )
     scene = load_scene(folder / "own.yaml")
-    assert scene.motion[0].press_to_force == pytest.approx(5 * 9.80665e-3) and scene.specimen.ridges and scene.tags == {}
+    assert (
+        scene.motion[0].press_to_force == pytest.approx(5 * 9.80665e-3)
+        and scene.specimen.ridges
+        and scene.tags == {}
+    )
     assert moves_along(folder / "own.yaml") and not moves_along(folder / "base.yaml")
 
 
@@ -90,11 +113,23 @@ def test_lists_and_values_are_replaced_and_mappings_merged():
 @pytest.mark.parametrize(
     "name, text, message",
     [
-        ("press", FAMILY, "press.yaml: is a family of 2 scenes; allowed: one of press_flat, press_3, as in"),
-        ("press_round", "", "press_round.yaml: is not a scene of press.yaml; allowed: one of press_flat, press_3"),
+        (
+            "press",
+            FAMILY,
+            "press.yaml: is a family of 2 scenes; allowed: one of press_flat, press_3, as in",
+        ),
+        (
+            "press_round",
+            "",
+            "press_round.yaml: is not a scene of press.yaml; allowed: one of press_flat, press_3",
+        ),
         ("none_such", "", "none_such.yaml: there is no such file"),
         ("x", "extends: 3", "x.yaml: extends: 3 is not a path; allowed:"),
-        ("x", "extends: nowhere.yaml", "x.yaml: extends: 'nowhere.yaml' is not an existing file; allowed:"),
+        (
+            "x",
+            "extends: nowhere.yaml",
+            "x.yaml: extends: 'nowhere.yaml' is not an existing file; allowed:",
+        ),
         ("x", "extends: x.yaml", "x.yaml: extends: 'x.yaml' extends itself; allowed:"),
         (
             "x",
@@ -104,8 +139,16 @@ def test_lists_and_values_are_replaced_and_mappings_merged():
         ("x", "over: 3", "x.yaml: over: 3 is not a mapping of keys; allowed:"),
         ("x", "over: {}", "x.yaml: over: {} is not a mapping of keys; allowed:"),
         ("x", "over: {a: [1]}", "x.yaml: over.a: [1] is not a mapping of words; allowed:"),
-        ("x", "over: {a: {b: 1}}", "x.yaml: over.a.b: 1 is not a mapping; allowed: keys of a scene"),
-        ("x", "extends: press.yaml\nfricton: 1\nover: {surface: [flat]}", "is a family of 1 scenes"),
+        (
+            "x",
+            "over: {a: {b: 1}}",
+            "x.yaml: over.a.b: 1 is not a mapping; allowed: keys of a scene",
+        ),
+        (
+            "x",
+            "extends: press.yaml\nfricton: 1\nover: {surface: [flat]}",
+            "is a family of 1 scenes",
+        ),
     ],
 )
 def test_what_is_wrong_is_one_line(folder, name, text, message):

@@ -33,7 +33,10 @@ def histories():
     """Two results of one scene that differ: what was there, and what comes."""
     from fingerpad.simulation import solve
 
-    scenes = [changed(motion=[{"press_to_force": force, "rate": "40 gf/s"}], accuracy=COARSE) for force in ("5 gf", "10 gf")]
+    scenes = [
+        changed(motion=[{"press_to_force": force, "rate": "40 gf/s"}], accuracy=COARSE)
+        for force in ("5 gf", "10 gf")
+    ]
     return [solve(fingerpad.load_scene(scene), fields=True) for scene in scenes]
 
 
@@ -120,7 +123,9 @@ def test_any_call_may_be_the_last(run):
 
         assert in_child(killed) == 9, fault.at
         there = results(run.out)
-        assert all(content in (run.before[name], run.after[name]) for name, content in there.items()), fault.at
+        assert all(
+            content in (run.before[name], run.after[name]) for name, content in there.items()
+        ), fault.at
         assert there.keys() == run.before.keys(), fault.at
         assert run() == 0 and files(run.out) == run.after, fault.at
 
@@ -131,7 +136,12 @@ def test_results_that_fit_nowhere_are_lost_in_one_line(run, capsys, tmp_path):
     with Faults(run.out, 12, errno.ENOSPC):
         assert run() == 3
     err = capsys.readouterr().err
-    assert err.count("\n") == 1 and "nor can a temporary place" in err and "lost" in err and files(run.out) == run.before
+    assert (
+        err.count("\n") == 1
+        and "nor can a temporary place" in err
+        and "lost" in err
+        and files(run.out) == run.before
+    )
 
 
 def test_a_file_that_appears_while_a_run_goes_on_stays(run, capsys, monkeypatch):
@@ -159,7 +169,10 @@ def test_a_folder_without_room_is_refused_before_anything_is_solved(run, capsys,
 
 def test_the_room_that_is_asked_for_is_enough_and_not_much_too_much(run, histories):
     scene = fingerpad.load_scene(changed(accuracy=COARSE))
-    needed, taken = fingerpad.plan(scene).result_bytes(scene, True), sum(map(len, run.after.values()))
+    needed, taken = (
+        fingerpad.plan(scene).result_bytes(scene, True),
+        sum(map(len, run.after.values())),
+    )
     assert taken < needed < 10 * taken
 
 
@@ -178,7 +191,9 @@ def test_links_in_the_folder_lead_nothing_out_of_it(run, capsys, tmp_path):
     os.unlink(run.out / "history.nc")
     (run.out / "history.nc").symlink_to(tmp_path / "theirs" / "mine.nc")
     assert run() == 0
-    assert (tmp_path / "theirs" / "mine.nc").read_text() == "theirs" and not (run.out / "history.nc").is_symlink()
+    assert (tmp_path / "theirs" / "mine.nc").read_text() == "theirs" and not (
+        run.out / "history.nc"
+    ).is_symlink()
 
 
 def test_a_plan_in_the_folder_may_be_anything(run, capsys):
@@ -197,7 +212,9 @@ def test_what_a_killed_writer_left_goes_with_the_next(tmp_path):
     """Of this machine's dead processes only."""
 
     def half():
-        write_atomically(tmp_path / "a.csv", lambda partial: (partial.write_text("half"), os._exit(9)))
+        write_atomically(
+            tmp_path / "a.csv", lambda partial: (partial.write_text("half"), os._exit(9))
+        )
 
     assert in_child(half) == 9
     (left,) = tmp_path.iterdir()
@@ -205,7 +222,11 @@ def test_what_a_killed_writer_left_goes_with_the_next(tmp_path):
     living.write_text("another process's")
     (tmp_path / ".a.csv.elsewhere-1.x.csv").write_text("another machine's")
     write_text(tmp_path / "a.csv", "whole")
-    assert {path.name for path in tmp_path.iterdir()} == {"a.csv", living.name, ".a.csv.elsewhere-1.x.csv"}
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "a.csv",
+        living.name,
+        ".a.csv.elsewhere-1.x.csv",
+    }
 
 
 @pytest.mark.parametrize("how", [errno.EIO, "interrupt"])
@@ -254,7 +275,11 @@ def test_a_directory_under_the_name_of_a_result_stays(tmp_path):
 def test_inputs_are_read_without_waiting_and_up_to_a_size(tmp_path):
     os.mkfifo(tmp_path / "silent")
     started = time.monotonic()
-    for path, words in {"/dev/zero": "a device", tmp_path: "directory", tmp_path / "silent": "nobody writes"}.items():
+    for path, words in {
+        "/dev/zero": "a device",
+        tmp_path: "directory",
+        tmp_path / "silent": "nobody writes",
+    }.items():
         with pytest.raises(OSError, match=words):
             read_input(path, "text")
     assert time.monotonic() - started < 10
@@ -274,19 +299,24 @@ def test_inputs_are_read_without_waiting_and_up_to_a_size(tmp_path):
 
 def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
     """Meshes, imports and units that are kept in the user's cache: cut short, empty, or somebody else's."""
-    code = "\n".join([
-        "import fingerpad, hashlib, json",
-        "from fingerpad.provenance import imported_sources",
-        "from fingerpad.specimen.build import _reference_quads",
-        "from fingerpad.units import parse_quantity",
-        "steps, band = _reference_quads(6, (1, 2, 3))",
-        "print(len(imported_sources('fingerpad.cli')), parse_quantity('1 inch', 'length'))",
-        "print(hashlib.sha256(steps.tobytes()).hexdigest())",
-    ])  # fmt: skip
+    code = "\n".join(
+        [
+            "import fingerpad, hashlib, json",
+            "from fingerpad.provenance import imported_sources",
+            "from fingerpad.specimen.build import _reference_quads",
+            "from fingerpad.units import parse_quantity",
+            "steps, band = _reference_quads(6, (1, 2, 3))",
+            "print(len(imported_sources('fingerpad.cli')), parse_quantity('1 inch', 'length'))",
+            "print(hashlib.sha256(steps.tobytes()).hexdigest())",
+        ]
+    )
 
     def told():
         done = subprocess.run(
-            [sys.executable, "-c", code], capture_output=True, text=True, env=os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
+            [sys.executable, "-c", code],
+            capture_output=True,
+            text=True,
+            env=os.environ | {"XDG_CACHE_HOME": str(tmp_path)},
         )
         assert done.returncode == 0, done.stderr
         return done.stdout
@@ -294,7 +324,10 @@ def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
     first = told()
     kept = [path for path in tmp_path.rglob("*") if path.is_file()]
     assert {path.suffix for path in kept} == {".json", ".npz", ".pickle"}
-    for spoil in (lambda content: content[: len(content) // 2], lambda _: b'{"state": [], "files": []}'):
+    for spoil in (
+        lambda content: content[: len(content) // 2],
+        lambda _: b'{"state": [], "files": []}',
+    ):
         for path in kept:
             if path.exists():
                 path.write_bytes(spoil(path.read_bytes()))
@@ -313,10 +346,20 @@ def test_a_cut_or_foreign_result_is_named(tmp_path, histories):
     write_history(histories[0], path)
     whole = path.read_bytes()
     read_history(path)
-    for content in (b"", b"CDF", whole[:100], whole[: len(whole) // 2], whole[:-4096], b"time,force\n0,0\n"):
+    for content in (
+        b"",
+        b"CDF",
+        whole[:100],
+        whole[: len(whole) // 2],
+        whole[:-4096],
+        b"time,force\n0,0\n",
+    ):
         path.write_bytes(content)
         for read in (read_history, lambda file: read_results([file])[0]["mine"]):
-            with pytest.raises(ResultError, match=r"history\.nc: cut off, or no NetCDF file; remove it and run again"):
+            with pytest.raises(
+                ResultError,
+                match=r"history\.nc: cut off, or no NetCDF file; remove it and run again",
+            ):
                 read(path)
     xr.Dataset({"temperature": ("time", [1.0])}).to_netcdf(path)
     with pytest.raises(ResultError, match=r"history\.nc: holds no time|holds no leg"):
@@ -330,24 +373,50 @@ def limited(limit, most, *words, cwd):
     """Run the command as a process with a limit of the system set."""
     return subprocess.run(
         [sys.executable, "-m", "fingerpad", *map(str, words)],
-        capture_output=True, text=True, cwd=cwd, env=os.environ | {"TMPDIR": str(cwd), "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        env=os.environ | {"TMPDIR": str(cwd), "OMP_NUM_THREADS": "1"},
         preexec_fn=lambda: resource.setrlimit(limit, (most, most)),
-    )  # fmt: skip
+    )
 
 
 def test_files_may_not_grow(tmp_path):
     """A real limit, met by netCDF itself."""
     scene = write(tmp_path, changed(accuracy=COARSE))
-    done = limited(resource.RLIMIT_FSIZE, 20_000, "run", scene, "--out", tmp_path / "out", "--quiet", cwd=tmp_path)
-    assert done.returncode == 3 and done.stderr.count("\n") == 1 and "lost" in done.stderr, done.stderr
+    done = limited(
+        resource.RLIMIT_FSIZE,
+        20_000,
+        "run",
+        scene,
+        "--out",
+        tmp_path / "out",
+        "--quiet",
+        cwd=tmp_path,
+    )
+    assert done.returncode == 3 and done.stderr.count("\n") == 1 and "lost" in done.stderr, (
+        done.stderr
+    )
     assert files(tmp_path).keys() == {"my_scene.yaml"}
 
 
 @pytest.mark.parametrize("most", [0.2e9, 0.7e9])
 def test_memory_may_be_limited(tmp_path, most):
     scene = write(tmp_path, changed(accuracy=COARSE))
-    done = limited(resource.RLIMIT_AS, int(most), "run", scene, "--out", tmp_path / "out", "--quiet", cwd=tmp_path)
-    assert done.returncode in (2, 3) and done.stderr.count("\n") == 1 and "memory" in done.stderr, (done.returncode, done.stderr)
+    done = limited(
+        resource.RLIMIT_AS,
+        int(most),
+        "run",
+        scene,
+        "--out",
+        tmp_path / "out",
+        "--quiet",
+        cwd=tmp_path,
+    )
+    assert done.returncode in (2, 3) and done.stderr.count("\n") == 1 and "memory" in done.stderr, (
+        done.returncode,
+        done.stderr,
+    )
     assert files(tmp_path).keys() == {"my_scene.yaml"}
 
 
@@ -380,7 +449,9 @@ def test_a_full_and_a_read_only_disk(disk, run, tmp_path, capsys, monkeypatch):
     assert main(words) == 0 and files(disk / "out") == run.after
     libc = ctypes.CDLL(None)
     libc.umount2(str(disk).encode(), 2)
-    assert not libc.mount(b"none", str(disk).encode(), b"tmpfs", 1, b"size=2m")  # a new one, read-only
+    assert not libc.mount(
+        b"none", str(disk).encode(), b"tmpfs", 1, b"size=2m"
+    )  # a new one, read-only
     assert main(words) == 2
     assert "cannot be written" in capsys.readouterr().err and not files(disk)
 
@@ -400,7 +471,9 @@ def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histo
     with Faults(folder) as counted:
         simulate.run(job)
     whole = files(folder)
-    assert set(whole) == {"history.nc", "mesh.msh", "plan.json", "summary.json"} and counted.calls > 10
+    assert (
+        set(whole) == {"history.nc", "mesh.msh", "plan.json", "summary.json"} and counted.calls > 10
+    )
     assert json.loads(whole["plan.json"])
     for at in range(0, counted.calls, 2):
         shutil.rmtree(folder)
@@ -408,6 +481,8 @@ def test_a_job_of_the_workflow_writes_whole_files_whatever_fails(tmp_path, histo
             try:
                 simulate.run(job)
             except OSError:
-                assert all(content == whole[name] for name, content in files(folder).items()), fault.met
+                assert all(content == whole[name] for name, content in files(folder).items()), (
+                    fault.met
+                )
         simulate.run(job)
         assert files(folder) == whole, fault.met

@@ -25,18 +25,30 @@ from cysyk1999.reference_data import empty_reference, read_reference
 from drawn import RATES, REFERENCE, frame, picture, results, saved
 from fingerpad.measures import features as ft
 from fingerpad.planning.errors import COARSER, PROFILE_ORDER, REMAINS, STEPS_REMAIN, remains
-from regression import BASELINE_DPI, SIMILARITY, differences, similarity, summary, summary_differences, tolerance
+from regression import (
+    BASELINE_DPI,
+    SIMILARITY,
+    differences,
+    similarity,
+    summary,
+    summary_differences,
+    tolerance,
+)
 
 pytestmark = pytest.mark.unit
 TABLE = Path(__file__).parent / "baselines" / "figures.csv"
 UPDATE = os.environ.get("FINGERPAD_UPDATE_BASELINES") == "1"
-MODULE_OF = {spec.number: name.rpartition(".")[2] for name, specs in CHAPTERS.items() for spec in specs}
+MODULE_OF = {
+    spec.number: name.rpartition(".")[2] for name, specs in CHAPTERS.items() for spec in specs
+}
 WITHOUT_ERROR = ("5-4", "5-25")  # the surface's own lengths; the specimen itself
 EDGED = ("4-11", "4-12", "4-13", "4-14", "4-20")
 """Figures of profiles up to the edge of the contact, which is a per cent further away as well: up to three times the error."""
 FIRST = ("4-11", "4-12", "4-13", "4-14", "4-16", "4-17", "5-5", "5-6")
 """Of pressures alone over which the edge of the contact passes: of first order."""
-CHECKED = [number for number in FIGURES if number[0] in "45" and number not in (*WITHOUT_ERROR, *RATES)]
+CHECKED = [
+    number for number in FIGURES if number[0] in "45" and number not in (*WITHOUT_ERROR, *RATES)
+]
 
 
 def _row(number):
@@ -65,7 +77,10 @@ def test_frame_has_units_an_error_and_a_source_for_every_row(number):
     assert set(PARTS) <= set(made) and all(c.endswith(")") and " (" in c for c in numeric), numeric
     assert all(tolerance(c) > 0 for c in made.select_dtypes("number").columns)
     measured = made["source"].str.startswith(("measured (", "other model ("))
-    if spec.measured in ("force_depth", "surface_profiles"):  # no rate may be recorded under a figure's protocol
+    if spec.measured in (
+        "force_depth",
+        "surface_profiles",
+    ):  # no rate may be recorded under a figure's protocol
         assert measured.any()
     assert spec.measured or not measured.any()
     thesis = made[~ft.is_simulated(made) & ~measured]
@@ -79,13 +94,19 @@ def test_frame_needs_only_the_scenes_it_names_and_neither_companions_nor_the_ref
     spec = FIGURES[number]
     companions = {name: coarse[name] for name in spec.read_companions}
     assert set(companions) <= set(spec.needs)
-    only = {name: histories[name] for name in spec.needs}, {name: meshes[name] for name in spec.needs if spec.meshes}
+    only = (
+        {name: histories[name] for name in spec.needs},
+        {name: meshes[name] for name in spec.needs if spec.meshes},
+    )
     spec.frame(*only, companions, reference)
     bare = spec.frame(*only, {}, empty_reference())
     assert ft.is_simulated(bare).all() and bare[[MESH, STEPS]].isna().all(axis=None)
 
 
-@pytest.mark.parametrize("number", ["3-6", "3-8", "4-6", "4-8", "4-10", "4-14", "4-20", "4-29", "5-5", "5-12", "5-16", "5-26"])
+@pytest.mark.parametrize(
+    "number",
+    ["3-6", "3-8", "4-6", "4-8", "4-10", "4-14", "4-20", "4-29", "5-5", "5-12", "5-16", "5-26"],
+)
 def test_picture_works_without_the_reference(number):
     histories, meshes, _, _ = results()
     FIGURES[number].draw(FIGURES[number].frame(histories, meshes, {}, empty_reference()))
@@ -136,20 +157,29 @@ def test_saved_data_are_those_of_the_frame(number):
 def test_picture_says_what_it_is_and_no_text_leaves_it(number):
     fig = picture(number)
     notes = " ".join(t.get_text() for t in fig.texts)
-    assert notes.replace("\n", " ").startswith(f"after Cysyk 1999, Fig. {number} {FIGURES[number].title}")
+    assert notes.replace("\n", " ").startswith(
+        f"after Cysyk 1999, Fig. {number} {FIGURES[number].title}"
+    )
     if number in RATES:
         assert "Predicted" in notes and "error" in notes.lower() and "not measured" in notes
     elif number in CHECKED:
         assert "Simulated" in notes and "sampling" in notes
-        assert re.search(r"mesh [1-6]\.\d %" if number in EDGED else rf"mesh {left_on_meshes(number):.1f} %", notes)
+        assert re.search(
+            r"mesh [1-6]\.\d %" if number in EDGED else rf"mesh {left_on_meshes(number):.1f} %",
+            notes,
+        )
     else:
         assert "not measured" in notes
     width, height = fig.get_size_inches() * fig.dpi
-    ticks = {label for ax in fig.axes for axis in (ax.xaxis, ax.yaxis) for label in axis.get_ticklabels()}
+    ticks = {
+        label for ax in fig.axes for axis in (ax.xaxis, ax.yaxis) for label in axis.get_ticklabels()
+    }
     for text in set(fig.findobj(mpl.text.Text)) - ticks:
         if text.get_visible() and text.get_text():
             box = text.get_window_extent()
-            assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, text.get_text()
+            assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, (
+                text.get_text()
+            )
 
 
 def test_picture_does_not_depend_on_the_callers_matplotlib_settings(tmp_path):
@@ -167,12 +197,16 @@ def test_axes_are_the_thesiss_where_the_data_fit():
     assert picture("4-7").axes[0].get_ylim() == (0, 1.5)
     assert picture("4-28").axes[0].get_ylim() == (0, 2500)
     panels = picture("4-6").axes
-    assert {ax.get_xlim() for ax in panels} == {(-10, 10)} and {ax.get_ylim() for ax in panels} == {(3, 6)}
+    assert {ax.get_xlim() for ax in panels} == {(-10, 10)} and {ax.get_ylim() for ax in panels} == {
+        (3, 6)
+    }
 
 
 def test_surface_is_drawn_above_with_the_curvatures_of_its_convexities():
     top, *panels = picture("5-12").axes
-    assert [t.get_text() for t in top.texts if t.get_text()[:1].isdigit()] == "26 1/m,39,52,79,105,157,210,315".split(",")
+    assert [
+        t.get_text() for t in top.texts if t.get_text()[:1].isdigit()
+    ] == "26 1/m,39,52,79,105,157,210,315".split(",")
     assert len(panels) == 5 and {ax.get_xlim() for ax in (top, *panels)} == {(0, 80)}
 
 
@@ -185,9 +219,18 @@ def test_axis_is_extended_and_marked_where_the_data_leave_the_thesiss():
 
 def test_phases_of_a_pressure_figure_have_their_line_styles():
     lines = picture("4-11").axes[-1].lines
-    thick, thin = max(lines, key=lambda line: line.get_linewidth()), [line.get_color() for line in lines]
-    assert thick.get_color() == COLOURS["1260"] and thin.count(INK) == 1 and thin.count("0.57") == len(lines) - 2
-    assert {line.get_linestyle() for line in lines} == {"-"}  # dashes on a dozen nodes look like an asymmetry
+    thick, thin = (
+        max(lines, key=lambda line: line.get_linewidth()),
+        [line.get_color() for line in lines],
+    )
+    assert (
+        thick.get_color() == COLOURS["1260"]
+        and thin.count(INK) == 1
+        and thin.count("0.57") == len(lines) - 2
+    )
+    assert {line.get_linestyle() for line in lines} == {
+        "-"
+    }  # dashes on a dozen nodes look like an asymmetry
 
 
 def test_scaled_pressure_is_the_centre_pressure_times_four_hundredths():
@@ -222,7 +265,9 @@ def test_phases_end_with_the_top_of_the_ramp_and_the_steady_state():
 @pytest.mark.parametrize("values", [[1.0, 1.01, 1.02, 5.0], [0.0, 0.0, 0.0], [9.9, 9.95, 10.0]])
 def test_labels_keep_their_order_and_distance(values):
     placed = spread(values, 0.5, 0, 10)
-    assert (np.diff(placed) >= 0.5 - 1e-12).all() and placed.min() >= 0 and placed.max() <= 10 + 1e-12
+    assert (
+        (np.diff(placed) >= 0.5 - 1e-12).all() and placed.min() >= 0 and placed.max() <= 10 + 1e-12
+    )
 
 
 def test_powers_of_ten_are_mathematics_and_ticks_are_text(tmp_path):
@@ -266,7 +311,9 @@ def test_boundaries_of_a_half_mesh_are_refused():
 
 
 def test_loops_joins_edges_of_any_direction():
-    closed, line = sorted(loops(np.array([[0, 1], [2, 1], [2, 0], [5, 4], [5, 6]])), key=len, reverse=True)
+    closed, line = sorted(
+        loops(np.array([[0, 1], [2, 1], [2, 0], [5, 4], [5, 6]])), key=len, reverse=True
+    )
     assert closed[0] == closed[-1] and set(closed) == {0, 1, 2}
     assert line.tolist() in ([4, 5, 6], [6, 5, 4])
 
@@ -275,7 +322,9 @@ def test_mesh_figure_shows_every_element_once_in_five_shades():
     made, mesh = frame("3-5"), synthetic.mesh()
     assert made["element"].nunique() == len(mesh.cells)
     assert set(made["layer"].dropna()) == {"stratum corneum", "epidermis", "dermis", "fat", "bone"}
-    assert made.dropna(subset="value").set_index("quantity").loc["nodes (1)", "value"] == len(mesh.points)
+    assert made.dropna(subset="value").set_index("quantity").loc["nodes (1)", "value"] == len(
+        mesh.points
+    )
 
 
 # --- specs, files and tables ---------------------------------------------------------------------------
@@ -322,17 +371,27 @@ def test_reference_table_is_checked(tmp_path):
 # --- what the regression tests notice ------------------------------------------------------------------
 
 
-LENGTHS = ("indentation_depth (mm)", "contact_width (mm)", "y (mm)", "lateral_displacement (mm)", "contact_length (mm)")
+LENGTHS = (
+    "indentation_depth (mm)",
+    "contact_width (mm)",
+    "y (mm)",
+    "lateral_displacement (mm)",
+    "contact_length (mm)",
+)
 
 
 @pytest.mark.parametrize("number", [n for n in FIGURES if n[0] in "45"])
 def test_a_change_of_two_per_cent_in_one_curve_is_noticed(number):
     made = frame(number)
-    columns = [c for c in made if "(Pa" in c or "(impulses/s)" in c or c in (*LENGTHS, "burst_duration (s)")] or [
-        "stroke_distance (mm)"
-    ]
+    columns = [
+        c
+        for c in made
+        if "(Pa" in c or "(impulses/s)" in c or c in (*LENGTHS, "burst_duration (s)")
+    ] or ["stroke_distance (mm)"]
     column = columns[-1]
-    label = next(c for c in ("surface", "node_x (mm)", "pad", "phase", "series", "source") if c in made)
+    label = next(
+        c for c in ("surface", "node_x (mm)", "pad", "phase", "series", "source") if c in made
+    )
     rows = ft.is_simulated(made) & (made[column].gt(0) if number in RATES else made[column].notna())
     rows &= made[label] == made.loc[rows, label].dropna().iloc[0]
     changed = made.copy()
@@ -351,7 +410,10 @@ def test_a_missing_curve_or_column_is_noticed():
 
 @pytest.mark.parametrize(
     "number, label, curve",
-    [*((n, "surface", "158") for n in ("4-11", "4-20", "4-24")), *((n, "series", "10 mm/s") for n in ("5-9", "5-12", "5-18"))],
+    [
+        *((n, "surface", "158") for n in ("4-11", "4-20", "4-24")),
+        *((n, "series", "10 mm/s") for n in ("5-9", "5-12", "5-18")),
+    ],
 )
 def test_a_missing_curve_is_noticed_in_the_picture(number, label, curve, tmp_path):
     made = saved(number)
@@ -380,19 +442,30 @@ def test_panels_of_pairs_have_axes_of_their_own():
 
 def test_a_reading_is_the_measure_of_its_name():
     history = synthetic.history("ramp40_k210")
-    assert reading("rate", "peak")(history) == MEASURES["rate"](history)["peak"] > reading("rate", "end")(history)
+    assert (
+        reading("rate", "peak")(history)
+        == MEASURES["rate"](history)["peak"]
+        > reading("rate", "end")(history)
+    )
 
 
 def test_round_off_is_published_as_zero():
     """What is 1e-11 of a column's largest differs between machines; what is more, and text, stays."""
-    frame = pd.DataFrame({"of": ["a", "b", "c"], "x (mm)": [2.0, -1e-12, 3e-11], "y": [np.nan, 1e-30, -1e-42]})
+    frame = pd.DataFrame(
+        {"of": ["a", "b", "c"], "x (mm)": [2.0, -1e-12, 3e-11], "y": [np.nan, 1e-30, -1e-42]}
+    )
     found = without_round_off(frame.copy())
     assert list(found["x (mm)"]) == [2.0, 0.0, 3e-11] and list(found["of"]) == ["a", "b", "c"]
-    assert found["y"].isna().tolist() == [True, False, False] and list(found["y"][1:]) == [1e-30, 0.0]
+    assert found["y"].isna().tolist() == [True, False, False] and list(found["y"][1:]) == [
+        1e-30,
+        0.0,
+    ]
 
 
 def test_a_picture_does_not_depend_on_the_last_digits_of_its_layout(tmp_path):
     fig = picture("4-8")
     write_picture(fig, tmp_path / "a.png", BASELINE_DPI)
-    edges = np.concatenate([axes.get_position(original).bounds for axes in fig.axes for original in (True, False)])
+    edges = np.concatenate(
+        [axes.get_position(original).bounds for axes in fig.axes for original in (True, False)]
+    )
     assert len(edges) and (edges == edges.round(12)).all()

@@ -28,14 +28,20 @@ def test_cylinders_touch_where_two_circles_do(curvature, along):
     off = along / (radius + ROUND)
     # R cos a - R without the cancellation
     expected = ROUND * (np.sqrt(1 - off**2) - 1) - radius * off**2 / (1 + np.sqrt(1 - off**2))
-    assert first_touch(skin() + [along, 0.0], Cylinder(curvature=curvature)) == pytest.approx(expected, abs=2e-8)
+    assert first_touch(skin() + [along, 0.0], Cylinder(curvature=curvature)) == pytest.approx(
+        expected, abs=2e-8
+    )
 
 
 @pytest.mark.unit
 def test_a_profile_touches_between_nodes_if_it_fits_there():
     """A blade narrower than the spacing touches the line between two nodes; beside the pad it touches nothing."""
     coarse = skin(0.5e-3, 0.25e-3)[2:-2]
-    for profile in (Bar(width=0.1e-3), Bar(width=0.1e-3, fillet=0.05e-3), Points([-5e-5, 5e-5], [0.0, 0.0])):
+    for profile in (
+        Bar(width=0.1e-3),
+        Bar(width=0.1e-3, fillet=0.05e-3),
+        Points([-5e-5, 5e-5], [0.0, 0.0]),
+    ):
         assert first_touch(coarse, profile) == pytest.approx(np.interp(0.0, *coarse.T), abs=1e-7)
         assert np.isnan(first_touch(coarse + [9e-3, 0.0], profile))
     assert first_touch(coarse, Flat()) == coarse[:, 1].max()
@@ -56,7 +62,9 @@ def test_an_external_mesh_need_not_have_its_apex_in_the_middle(shift, tmp_path):
     built = _draft_mesh()
     depths = []
     for x in (0.0, shift):
-        moved = PadMesh(built.points + [x, 0.0], built.cells, built.element, built.region, built.curves, False)
+        moved = PadMesh(
+            built.points + [x, 0.0], built.cells, built.element, built.region, built.curves, False
+        )
         write_pad(moved, tmp_path / "my.msh")
         (tmp_path / "scene.yaml").write_text(TEXT.format(curvature=120))
         depths.append(float(simulate(load_scene(tmp_path / "scene.yaml")).indentation_depth[-1]))
@@ -83,7 +91,9 @@ accuracy: draft
     (tmp_path / "scene.yaml").write_text(text)
     history = simulate(load_scene(tmp_path / "scene.yaml"))
     depth = history.indentation_depth.values[[-3, -1]]
-    assert float(history.stroke_distance[-1]) == pytest.approx(1e-3) and depth[1] == pytest.approx(depth[0], rel=0.1)
+    assert float(history.stroke_distance[-1]) == pytest.approx(1e-3) and depth[1] == pytest.approx(
+        depth[0], rel=0.1
+    )
 
 
 @pytest.mark.unit
@@ -120,7 +130,10 @@ motion: [{{press_to_force: "20 gf", rate: "40 gf/s"}}, {{slide: "{way} mm", spee
 accuracy: {{skin_edge: "400 um", steps: {steps}}}
 """
     (tmp_path / "scene.yaml").write_text(text.format(way=30, steps=60))
-    with pytest.raises(NonConvergence, match=r"the stimulus left the pad at 1\d(\.\d)? mm; try a way of less than 1") as caught:
+    with pytest.raises(
+        NonConvergence,
+        match=r"the stimulus left the pad at 1\d(\.\d)? mm; try a way of less than 1",
+    ) as caught:
         simulate(load_scene(tmp_path / "scene.yaml"))
     left = 1e3 * caught.value.dataset.stroke_distance.values[-1]
     (tmp_path / "scene.yaml").write_text(text.format(way=round(left - 1), steps=24))

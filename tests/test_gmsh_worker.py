@@ -42,7 +42,11 @@ def test_an_open_session_of_the_caller_stays_as_it_is(no_cache, tmp_path):
         mesh = pad()
         write_pad(mesh, tmp_path / "pad.msh")
         again = read_pad_mesh(tmp_path / "pad.msh")
-        assert gmsh.isInitialized() and gmsh.model.getCurrent() == "mine" and "mine" in gmsh.model.list()
+        assert (
+            gmsh.isInitialized()
+            and gmsh.model.getCurrent() == "mine"
+            and "mine" in gmsh.model.list()
+        )
         assert gmsh.option.getNumber("Mesh.SubdivisionAlgorithm") == 1
         gmsh.model.geo.synchronize()
         assert gmsh.model.getEntities(0) == [(0, point)]
@@ -87,7 +91,13 @@ def test_a_users_configuration_is_not_read(file, tmp_path):
         "assert ask('rectangle', 3, (2, 1, 1)).shape == (12, 9, 2)\n"
     )
     environment = os.environ | {"HOME": str(tmp_path), "GMSH_HOME": str(tmp_path)}
-    done = subprocess.run([sys.executable, "-c", script], env=environment, cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env=environment,
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -140,10 +150,18 @@ def test_gmsh_ends_with_the_process_that_started_it(tmp_path):
 
 def test_gmsh_that_cannot_be_loaded_is_said_in_one_line(no_cache, tmp_path, monkeypatch, capsys):
     """As where the system libraries of its wheel are missing."""
-    (tmp_path / "gmsh.py").write_text("raise OSError('libGLU.so.1: cannot open shared object file')\n")
-    (tmp_path / "scene.yaml").write_text('stimulus: {shape: flat}\nmotion: [{press_to_force: "1 gf"}]\naccuracy: draft\n')
+    (tmp_path / "gmsh.py").write_text(
+        "raise OSError('libGLU.so.1: cannot open shared object file')\n"
+    )
+    (tmp_path / "scene.yaml").write_text(
+        'stimulus: {shape: flat}\nmotion: [{press_to_force: "1 gf"}]\naccuracy: draft\n'
+    )
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr("fingerpad.specimen.build.ask", _Worker().ask)
     assert main(["mesh", str(tmp_path / "scene.yaml"), "--out", str(tmp_path / "m.msh")]) == 3
     said = capsys.readouterr().err
-    assert "gmsh cannot be loaded: libGLU.so.1" in said and "apt-get install" in said and said.count("\n") == 1
+    assert (
+        "gmsh cannot be loaded: libGLU.so.1" in said
+        and "apt-get install" in said
+        and said.count("\n") == 1
+    )

@@ -26,7 +26,9 @@ def test_narrow_strip_is_a_line_load():
     x, z, force = 3e-3, 4e-3, 2.0
     sigma_x, sigma_z, tau = phillips_johnson.strip_stresses(x, z, [-1e-6, 1e-6], [force / 2e-6])
     radial = -2 * force * z / (np.pi * (x * x + z * z))
-    np.testing.assert_allclose([sigma_x, sigma_z, tau], radial * np.array([0.36, 0.64, 0.48]), rtol=1e-5)
+    np.testing.assert_allclose(
+        [sigma_x, sigma_z, tau], radial * np.array([0.36, 0.64, 0.48]), rtol=1e-5
+    )
 
 
 def test_strain_energy_and_strains_are_those_of_a_known_state():
@@ -63,7 +65,9 @@ def test_membrane_work_is_its_new_length(curvature):
 def test_plate_carries_the_fluids_pressure():
     """Under a plate the membrane is flat: force is pressure times width, and pressure exceeds that at rest."""
     state = waterbed.press(20.0, 30.0, 11e-3, 9.5e-3)
-    assert state.force == pytest.approx(20.0) and state.pressure * 2 * state.half_width == pytest.approx(20.0)
+    assert state.force == pytest.approx(
+        20.0
+    ) and state.pressure * 2 * state.half_width == pytest.approx(20.0)
     assert state.pressure > 30.0 / 11e-3
 
 
@@ -74,4 +78,6 @@ def test_shallow_membrane_under_a_line_load_is_parabolic():
     assert state.depth == pytest.approx(force * length / 8 / tension, rel=0.01)
     x = np.linspace(-length, length, 20001)
     profile = waterbed.line_load_profile(x, 1.0, length)
-    assert np.trapezoid(profile, x) == pytest.approx(0, abs=1e-10) and profile.min() == pytest.approx(-1 / 3)
+    assert np.trapezoid(profile, x) == pytest.approx(
+        0, abs=1e-10
+    ) and profile.min() == pytest.approx(-1 / 3)

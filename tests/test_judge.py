@@ -27,9 +27,15 @@ def joined(*parts, names=("lower", "upper"), skin="upper"):
         curves |= {name: part.curves[name] + shift for name in wanted}
         shift += len(part.points)
     return PadMesh(
-        np.concatenate(points), np.concatenate(cells), "quad4", np.concatenate(region), curves, False,
-        regions=names[: len(parts)], fixed=("base",),
-    )  # fmt: skip
+        np.concatenate(points),
+        np.concatenate(cells),
+        "quad4",
+        np.concatenate(region),
+        curves,
+        False,
+        regions=names[: len(parts)],
+        fixed=("base",),
+    )
 
 
 def merged(mesh, tolerance=1e-9):
@@ -47,7 +53,9 @@ def lifted(mesh, height):
 
 def layers(lower=EDGE, upper=EDGE, apart=0.0):
     """Two layers of 3 and 2 mm, nodes so far apart."""
-    return joined(slab_mesh(lower, height=3e-3), lifted(slab_mesh(upper, height=2e-3), 3e-3 + apart))
+    return joined(
+        slab_mesh(lower, height=3e-3), lifted(slab_mesh(upper, height=2e-3), 3e-3 + apart)
+    )
 
 
 def stripped():
@@ -58,7 +66,9 @@ def stripped():
 def partly():
     """Two halves side by side: the lower rows are the same in both, the upper ones twice as many to the right."""
     left = slab_mesh(EDGE, left=-10e-3, right=0.0, high=0.0)
-    right = slab_mesh(EDGE, left=0.0, right=10e-3, low=0.0, y=1e-3 * np.array([0, 1, 2, 2.5, 3, 3.5, 4, 4.5, 5]))
+    right = slab_mesh(
+        EDGE, left=0.0, right=10e-3, low=0.0, y=1e-3 * np.array([0, 1, 2, 2.5, 3, 3.5, 4, 4.5, 5])
+    )
     mesh = joined(left, right)
     base = np.concatenate([left.curves["base"], right.curves["base"] + len(left.points)])
     skin = np.concatenate([left.curves["skin"], right.curves["skin"] + len(left.points)])
@@ -71,7 +81,9 @@ def by_one_node():
     low = replace(slab_mesh(EDGE), regions=("lower",))
     whole = merged(joined(low, block, names=("lower", "upper")))
     top = low.curves["skin"]
-    skin = np.array([[_at(whole, low.points[a]), _at(whole, low.points[b])] for a, b in top], np.int32)
+    skin = np.array(
+        [[_at(whole, low.points[a]), _at(whole, low.points[b])] for a, b in top], np.int32
+    )
     return replace(whole, curves={"skin": skin, "base": whole.curves["base"]})
 
 
@@ -104,7 +116,13 @@ def crossing():
     number = np.full(len(points), -1, np.int32)
     number[used] = np.arange(len(used))
     curves = {"skin": number[skin], "base": number[mesh.curves["base"]]}
-    return replace(mesh, points=points[used], cells=number[cells], region=np.zeros(len(cells), np.int8), curves=curves)
+    return replace(
+        mesh,
+        points=points[used],
+        cells=number[cells],
+        region=np.zeros(len(cells), np.int8),
+        curves=curves,
+    )
 
 
 NOT_JOINED = {
@@ -155,12 +173,24 @@ def covered():
     new = np.full(len(mesh.points), -1, np.int32)
     new[used] = np.arange(len(used))
     curves = {"skin": new[skin], "base": new[mesh.curves["base"]]}
-    return replace(mesh, points=mesh.points[used], cells=new[mesh.cells[kept]], region=mesh.region[kept], curves=curves)
+    return replace(
+        mesh,
+        points=mesh.points[used],
+        cells=new[mesh.cells[kept]],
+        region=mesh.region[kept],
+        curves=curves,
+    )
 
 
 WRONG_SKIN = {
-    "right of x = 0": (lambda: slab_mesh(EDGE, left=2e-3, right=22e-3, low=2e-3, high=22e-3), "shifted by -12 mm"),
-    "left of x = 0": (lambda: slab_mesh(EDGE, left=-22e-3, right=-2e-3, low=-22e-3, high=-2e-3), "shifted by 12 mm"),
+    "right of x = 0": (
+        lambda: slab_mesh(EDGE, left=2e-3, right=22e-3, low=2e-3, high=22e-3),
+        "shifted by -12 mm",
+    ),
+    "left of x = 0": (
+        lambda: slab_mesh(EDGE, left=-22e-3, right=-2e-3, low=-22e-3, high=-2e-3),
+        "shifted by 12 mm",
+    ),
     "turned by 180 degrees": (lambda: turned(slab_mesh(EDGE), 180), "faces down"),
     "turned by 90 degrees": (lambda: turned(slab_mesh(EDGE), 90), "faces left"),
     "turned by -90 degrees": (lambda: turned(slab_mesh(EDGE), -90), "faces right"),
@@ -179,7 +209,12 @@ def test_a_skin_that_the_indenter_does_not_meet_is_refused(tmp_path, name):
     with pytest.raises(MeshError) as caught:
         read_pad_mesh(tmp_path / "m.msh")
     said = str(caught.value)
-    assert words in said and "curve skin, from x = " in said and "allowed: " in said and "\n" not in said
+    assert (
+        words in said
+        and "curve skin, from x = " in said
+        and "allowed: " in said
+        and "\n" not in said
+    )
 
 
 @pytest.mark.parametrize("degrees", [0, 10, -20])
@@ -191,7 +226,9 @@ def test_a_tilted_skin_is_taken(tmp_path, degrees):
 def test_the_command_line_says_it_in_one_line(tmp_path, capsys):
     write_pad(layers(EDGE, EDGE * 0.8), tmp_path / "m.msh")
     document = SLAB(tmp_path / "m.msh")
-    document["specimen"]["layers"] = {name: {"youngs_modulus": "50 kPa"} for name in ("lower", "upper")}
+    document["specimen"]["layers"] = {
+        name: {"youngs_modulus": "50 kPa"} for name in ("lower", "upper")
+    }
     import yaml
 
     (tmp_path / "scene.yaml").write_text(yaml.safe_dump(document))

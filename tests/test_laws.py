@@ -26,15 +26,35 @@ def _tangent(i1, jac, mu, constants):
     s, j, i2 = constants[0], jac ** (-2.0 / 3.0), i1 - 1.0 + jac * jac
     m, t = _stress(i1, jac, mu, constants)
     mixed = -mu * (2.0 * (1.0 - s) * j + 4.0 * s * j * j) / (3.0 * jac)
-    return m, t, 0.0, mixed, mu * (5.0 * (1.0 - s) * j * i1 + s * j * j * (14.0 * i2 - 15.0 * jac * jac)) / (9.0 * jac * jac)
+    return (
+        m,
+        t,
+        0.0,
+        mixed,
+        mu
+        * (5.0 * (1.0 - s) * j * i1 + s * j * j * (14.0 * i2 - 15.0 * jac * jac))
+        / (9.0 * jac * jac),
+    )
 
 
 #: A law that only this test knows, of both invariants (Mooney 1940; Rivlin 1948).
 MOONEY_RIVLIN = Law(
-    "mooney_rivlin", _energy, _stress, _tangent, {"share": Constant("Of the second invariant", 0.3, high=1.0)}, bilinear=True
+    "mooney_rivlin",
+    _energy,
+    _stress,
+    _tangent,
+    {"share": Constant("Of the second invariant", 0.3, high=1.0)},
+    bilinear=True,
 )
-CASES = [(NEO_HOOKE, ()), (LAWS["yeoh"], (0.4, 0.15)), (LAWS["yeoh"], (0.0, 0.0)), (MOONEY_RIVLIN, (0.35,))]
-EACH = pytest.mark.parametrize("law, constants", CASES, ids=lambda value: getattr(value, "name", None))
+CASES = [
+    (NEO_HOOKE, ()),
+    (LAWS["yeoh"], (0.4, 0.15)),
+    (LAWS["yeoh"], (0.0, 0.0)),
+    (MOONEY_RIVLIN, (0.35,)),
+]
+EACH = pytest.mark.parametrize(
+    "law, constants", CASES, ids=lambda value: getattr(value, "name", None)
+)
 
 
 def test_every_law_is_checked_here():
@@ -74,11 +94,15 @@ def test_a_wrong_formula_is_seen(law, constants, formula):
 
     def wrong(*args):
         found = getattr(law, formula)(*args)
-        return 1.001 * found if formula == "energy" else tuple(1.001 * value + 1e-3 for value in found)
+        return (
+            1.001 * found if formula == "energy" else tuple(1.001 * value + 1e-3 for value in found)
+        )
 
     parts = {"energy": law.energy, "stress": law.stress, "tangent": law.tangent} | {formula: wrong}
     with pytest.raises(AssertionError, match="truth"):
-        check_derivatives(Law("wrong", **parts, constants=law.constants, bilinear=law.bilinear), constants)
+        check_derivatives(
+            Law("wrong", **parts, constants=law.constants, bilinear=law.bilinear), constants
+        )
 
 
 @EACH
@@ -86,19 +110,29 @@ def test_undeformed_every_law_is_the_linear_solid(law, constants):
     """Without stress at rest, with energy mu dev(e):dev(e) for small strains in the plane, and proportional to mu."""
     m, t = law.stress(3.0, 1.0, 2.5, constants)
     assert (m, t) == pytest.approx((2.5, 3.0))
-    for xx, yy, xy in ((1e-4, 0, 0), (0, 1e-4, 0), (1e-4, 1e-4, 0), (0, 0, 1e-4), (2e-4, -1e-4, 5e-5)):
+    for xx, yy, xy in (
+        (1e-4, 0, 0),
+        (0, 1e-4, 0),
+        (1e-4, 1e-4, 0),
+        (0, 0, 1e-4),
+        (2e-4, -1e-4, 5e-5),
+    ):
         f = np.array([[1 + xx, xy], [xy, 1 + yy]])
         energy = law.energy(np.sum(f * f) + 1, np.linalg.det(f), 2.5, constants)
         mean = (xx + yy) / 3
         linear = 2.5 * ((xx - mean) ** 2 + (yy - mean) ** 2 + mean**2 + 2 * xy**2)
         assert energy == pytest.approx(linear, rel=2e-3)
-    assert law.energy(4.0, 0.9, 5.0, constants) == pytest.approx(2 * law.energy(4.0, 0.9, 2.5, constants))
+    assert law.energy(4.0, 0.9, 5.0, constants) == pytest.approx(
+        2 * law.energy(4.0, 0.9, 2.5, constants)
+    )
 
 
 def test_laws_without_their_constants_are_neo_hooke():
     yeoh = LAWS["yeoh"].tangent(3.7, 0.95, 2.0, (0.0, 0.0))
     np.testing.assert_allclose(yeoh, NEO_HOOKE.tangent(3.7, 0.95, 2.0, ()), rtol=1e-15)
-    np.testing.assert_allclose(_tangent(3.7, 0.95, 2.0, (0.0,)), NEO_HOOKE.tangent(3.7, 0.95, 2.0, ()), rtol=1e-14)
+    np.testing.assert_allclose(
+        _tangent(3.7, 0.95, 2.0, (0.0,)), NEO_HOOKE.tangent(3.7, 0.95, 2.0, ()), rtol=1e-14
+    )
 
 
 def test_elements_are_given_to_the_laws_of_their_regions():
@@ -106,15 +140,21 @@ def test_elements_are_given_to_the_laws_of_their_regions():
     region = np.array([0, 2, 1, 1, 0])
     first, second = assign([(yeoh, (0.1, 0.2)), (NEO_HOOKE, ()), (yeoh, (0.3, 0.4))], region)
     assert (first.law, second.law) == (yeoh, NEO_HOOKE)
-    assert first.elements.tolist() == [True, True, False, False, True] and second.elements.tolist() == (~first.elements).tolist()
+    assert (
+        first.elements.tolist() == [True, True, False, False, True]
+        and second.elements.tolist() == (~first.elements).tolist()
+    )
     assert first.constants[first.elements].tolist() == [[0.1, 0.2], [0.3, 0.4], [0.1, 0.2]]
-    assert [part.law for part in assign([(NEO_HOOKE, ()), (yeoh, (0.0, 0.0))], np.zeros(4, int))] == [NEO_HOOKE]
+    assert [
+        part.law for part in assign([(NEO_HOOKE, ()), (yeoh, (0.0, 0.0))], np.zeros(4, int))
+    ] == [NEO_HOOKE]
 
 
 LIGHT = {
-    "stimulus": {"shape": "cylinder", "curvature": "210 1/m"}, "motion": [{"press_to_force": "20 gf"}],
+    "stimulus": {"shape": "cylinder", "curvature": "210 1/m"},
+    "motion": [{"press_to_force": "20 gf"}],
     "accuracy": {"skin_edge": "0.8 mm", "steps": 2},
-}  # fmt: skip
+}
 
 
 def scene_with(tmp_path, law):
@@ -139,6 +179,7 @@ def test_a_law_defined_here_goes_from_the_scene_to_the_answer(tmp_path, monkeypa
 
 def test_planner_counts_a_law_in_what_small_strain_would_cost(tmp_path):
     reasons = [
-        plan(scene_with(tmp_path, law)).effects["finite_strain"].why for law in ("neo_hooke", {"name": "yeoh", "second": 2})
+        plan(scene_with(tmp_path, law)).effects["finite_strain"].why
+        for law in ("neo_hooke", {"name": "yeoh", "second": 2})
     ]
     assert "laws" not in reasons[0] and "laws" in reasons[1]

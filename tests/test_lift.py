@@ -13,7 +13,9 @@ PLATE, ROUND = {"shape": "flat"}, {"shape": "cylinder", "curvature": "210 1/m"}
 
 
 def history(*motion, stimulus=ROUND, accuracy=COARSE, **keys):
-    return simulate(load_scene({"stimulus": stimulus, "motion": list(motion), "accuracy": accuracy, **keys}))
+    return simulate(
+        load_scene({"stimulus": stimulus, "motion": list(motion), "accuracy": accuracy, **keys})
+    )
 
 
 @pytest.mark.parametrize("press", [{"press_to_force": "20 gf"}, {"press_to_depth": "0.5 mm"}])
@@ -25,7 +27,9 @@ def test_an_elastic_pad_comes_back_to_rest_the_way_it_went(press):
     assert float(end.indentation_depth) == 0.0
     assert abs(float(end.force)) < 1e-6 * float(top.force)
     assert float(abs(end.skin_displacement_y).max()) < 1e-6 * float(top.indentation_depth)
-    assert float(abs(end.strain_energy_density).max()) < 1e-9 * float(top.strain_energy_density.max())
+    assert float(abs(end.strain_energy_density).max()) < 1e-9 * float(
+        top.strain_energy_density.max()
+    )
     assert abs(float(end.stored_energy)) < 1e-9 * float(top.stored_energy)
     force, depth, leg = (down_and_up[name].values for name in ("force", "indentation_depth", "leg"))
     np.testing.assert_allclose(
@@ -36,8 +40,12 @@ def test_an_elastic_pad_comes_back_to_rest_the_way_it_went(press):
     )
     assert force[-1] == pytest.approx(float(top.force), rel=1e-6)
     assert depth[-1] == pytest.approx(float(top.indentation_depth), rel=1e-6)
-    assert float(abs(end.external_work)) < 0.02 * float(top.external_work), "what was put in is given back"
-    assert float(down_and_up.attrs["estimated_error"]) < 0.6, "a finger let go has no contact to be unsure of"
+    assert float(abs(end.external_work)) < 0.02 * float(top.external_work), (
+        "what was put in is given back"
+    )
+    assert float(down_and_up.attrs["estimated_error"]) < 0.6, (
+        "a finger let go has no contact to be unsure of"
+    )
 
 
 def test_a_viscous_pad_recovers_with_its_prony_series():
@@ -58,7 +66,11 @@ def test_a_viscous_pad_recovers_with_its_prony_series():
         effects={"finite_strain": False, "viscoelasticity": True},
     )
     held = made.isel(time=made.leg.values == 2)
-    assert not held.force.any() and not held.contact_width.any() and float(abs(held.indentation_depth).max()) == 0.0
+    assert (
+        not held.force.any()
+        and not held.contact_width.any()
+        and float(abs(held.indentation_depth).max()) == 0.0
+    )
     dent = -held.skin_displacement_y.sel(skin_arc=0, method="nearest").values
     start, way = held.time.values[0], held.time.values - held.time.values[0]
     assert start > 1.0 and dent[0] > 1e-6
@@ -82,7 +94,9 @@ def test_loops_dissipate_what_they_enclose():
     assert float(abs(rest).max()) < 0.05 * most and float(made.energy_balance_error[-1]) < 0.2
     assert np.all(np.diff(made.dissipated_energy) > -1e-3 * most)
     assert float(made.force[-1]) == float(made.contact_width[-1]) == 0.0
-    assert float(abs(made.skin_displacement_y[-1]).max()) < 0.01 * float(made.indentation_depth.max())
+    assert float(abs(made.skin_displacement_y[-1]).max()) < 0.01 * float(
+        made.indentation_depth.max()
+    )
 
 
 def test_a_stroke_ends_where_the_surface_no_more_touches():
@@ -96,7 +110,9 @@ def test_a_stroke_ends_where_the_surface_no_more_touches():
         }
     )
     made = simulate(scene, plan(scene))
-    assert float(made.force[-1]) < 1e-6 * float(made.force.max()) and float(made.stroke_distance[-1]) == pytest.approx(5e-3)
+    assert float(made.force[-1]) < 1e-6 * float(made.force.max()) and float(
+        made.stroke_distance[-1]
+    ) == pytest.approx(5e-3)
     assert abs(float(made.indentation_depth[-1])) > 20e-6
     assert float(abs(made.skin_displacement_y[-1]).max()) < 1e-6
 
@@ -104,14 +120,32 @@ def test_a_stroke_ends_where_the_surface_no_more_touches():
 def test_steps_of_a_lift():
     """From the depth that was reached to touch, at the speed; a steady one takes no time; a hold stays there."""
     scene = load_scene(
-        {"stimulus": ROUND, "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"lift": "1 mm/s"}, {"hold": "1 s"}]}
+        {
+            "stimulus": ROUND,
+            "motion": [
+                {"press_to_force": "20 gf", "rate": "40 gf/s"},
+                {"lift": "1 mm/s"},
+                {"hold": "1 s"},
+            ],
+        }
     )
     steps = list(schedule(scene, 4, True, present=lambda: (19.6, 0.8e-3, 0.1e-3)))
     lift, hold = ([step for step in steps if step.leg == leg] for leg in (1, 2))
-    assert [step.depth for step in lift] == pytest.approx([0.625e-3, 0.45e-3, 0.275e-3, 0.1e-3]) and lift[0].force is None
-    assert lift[-1].time - lift[0].time == pytest.approx(0.525) and {step.depth for step in hold} == {0.1e-3}
+    assert [step.depth for step in lift] == pytest.approx(
+        [0.625e-3, 0.45e-3, 0.275e-3, 0.1e-3]
+    ) and lift[0].force is None
+    assert lift[-1].time - lift[0].time == pytest.approx(0.525) and {
+        step.depth for step in hold
+    } == {0.1e-3}
     assert scene.end_time is None
     deep = load_scene(
-        {"stimulus": ROUND, "motion": [{"press_to_depth": "1 mm", "speed": "1 mm/s"}, {"lift": "2 mm/s"}, {"hold": "1 s"}]}
+        {
+            "stimulus": ROUND,
+            "motion": [
+                {"press_to_depth": "1 mm", "speed": "1 mm/s"},
+                {"lift": "2 mm/s"},
+                {"hold": "1 s"},
+            ],
+        }
     )
     assert deep.end_time == pytest.approx(2.5)

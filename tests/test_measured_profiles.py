@@ -44,14 +44,21 @@ def test_the_filter_keeps_lines_to_their_ends_and_lifts_parabolas():
     fine = np.linspace(-1e-3, 1e-3, 4001)
     even, y = smoothed(fine, fine**2 / 2 * 400, 100e-6)
     inside = abs(even) < 0.8e-3
-    np.testing.assert_allclose((y - even**2 / 2 * 400)[inside], (SIGMA * 100e-6) ** 2 / 2 * 400, rtol=2e-3)
+    np.testing.assert_allclose(
+        (y - even**2 / 2 * 400)[inside], (SIGMA * 100e-6) ** 2 / 2 * 400, rtol=2e-3
+    )
 
 
 @pytest.mark.unit
 def test_turning_to_and_fro_is_noise_and_turning_one_way_is_shape():
     x = np.linspace(-2e-3, 2e-3, 801)
     assert turning(x, Cylinder(curvature=400.0).outline(x), 100e-6).max() < 1e-8
-    assert turning(np.array([-1.0, 0.0, 1e-6, 2e-6, 1.0]), np.array([1.0, 0.0, 0.0, 0.0, 1.0]), 1.0).max() == 0
+    assert (
+        turning(
+            np.array([-1.0, 0.0, 1e-6, 2e-6, 1.0]), np.array([1.0, 0.0, 0.0, 0.0, 1.0]), 1.0
+        ).max()
+        == 0
+    )
     zigzag = np.where(np.arange(801) % 2, 1e-6, 0.0)
     angle = np.arctan(1e-6 / (x[1] - x[0]))
     # of 20 kinks of twice that angle, half go one way and half the other
@@ -104,7 +111,9 @@ def test_noise_is_smoothed_away_and_shape_is_kept(folder):
     x, y, _ = measured(2)
     assert surface_at(folder, x, y, 0.02).smoothing == pytest.approx(268.8e-6)
     x = np.linspace(-3e-3, 3e-3, 1201)
-    waves = surface_at(folder, x, x**2 / 2 / 2.5e-3 + 10e-6 * np.cos(2 * np.pi * x / 300e-6), "fine")
+    waves = surface_at(
+        folder, x, x**2 / 2 / 2.5e-3 + 10e-6 * np.cos(2 * np.pi * x / 300e-6), "fine"
+    )
     assert waves.smoothing <= 134.5e-6 and waves.moved < 2e-6
 
 
@@ -123,7 +132,11 @@ def test_ends():
         found = profile.evaluate(far)[0]
         assert found == pytest.approx([distance] * 2, rel=1e-9 if ends != "open" else 0.06), ends
         outside = profile.outline(np.array([2e-3]))[0]
-        assert np.isnan(outside) if ends == "open" else outside == pytest.approx(2e-4 if ends == "slope" else 1e-4)
+        assert (
+            np.isnan(outside)
+            if ends == "open"
+            else outside == pytest.approx(2e-4 if ends == "slope" else 1e-4)
+        )
     assert (
         profile.symmetric
         and profile.steepness == pytest.approx(0.1)
@@ -167,10 +180,16 @@ def test_one_more_point_is_no_endless_wedge(tmp_path):
     """A falling last segment changes nothing where contact does not come; extended for ever it goes 0.3 mm deeper."""
     plain, more, extended = (
         simulate(load_scene(scene(tmp_path, rows, ends)))
-        for rows, ends in ((WEDGE, ""), (WEDGE + "2.1,0.9\n", ""), (WEDGE + "2.1,0.9\n", ", ends: slope"))
+        for rows, ends in (
+            (WEDGE, ""),
+            (WEDGE + "2.1,0.9\n", ""),
+            (WEDGE + "2.1,0.9\n", ", ends: slope"),
+        )
     )
     depth = [float(history.indentation_depth[-1]) * 1e3 for history in (plain, more, extended)]
-    assert depth[0] == pytest.approx(1.261, abs=2e-3) and depth[1] == pytest.approx(depth[0], rel=1e-4)
+    assert depth[0] == pytest.approx(1.261, abs=2e-3) and depth[1] == pytest.approx(
+        depth[0], rel=1e-4
+    )
     assert depth[2] == pytest.approx(1.559, abs=0.01)
     assert "contact_reached_profile_end" not in summary(plain)["run"]
     assert summary(extended)["run"]["contact_reached_profile_end"]
@@ -181,7 +200,10 @@ def test_contact_at_the_end_of_the_points_is_said(tmp_path, capsys):
     """On the command line of plan and run, and in the summary."""
     path = str(scene(tmp_path, "-0.5,0\n0.5,0\n"))
     assert main(["plan", path]) == 0
-    assert "contact is expected to reach the end of the profile's points at x =" in capsys.readouterr().out
+    assert (
+        "contact is expected to reach the end of the profile's points at x ="
+        in capsys.readouterr().out
+    )
     assert main(["run", path, "--out", str(tmp_path / "out")]) == 0
     assert "note: contact reached the end of the profile's points at x =" in capsys.readouterr().out
 
@@ -193,7 +215,10 @@ def test_points_beside_the_finger_are_refused(tmp_path, capsys):
         plan(load_scene(path))
     assert main(["plan", str(path)]) == 2
     line = capsys.readouterr().err
-    assert len(line.splitlines()) == 1 and "stimulus.csv: 'p.csv' has points from x = 10 mm to 20 mm" in line
+    assert (
+        len(line.splitlines()) == 1
+        and "stimulus.csv: 'p.csv' has points from x = 10 mm to 20 mm" in line
+    )
 
 
 # -- reading ------------------------------------------------------------------------------------------------------------------
@@ -210,7 +235,9 @@ def test_points_beside_the_finger_are_refused(tmp_path, capsys):
 )
 def test_columns_in_any_unit_of_length(content, tmp_path):
     (tmp_path / "profile.csv").write_text(content)
-    found = load_scene(write(tmp_path, changed(stimulus={"shape": "sampled", "csv": "profile.csv"}))).stimulus
+    found = load_scene(
+        write(tmp_path, changed(stimulus={"shape": "sampled", "csv": "profile.csv"}))
+    ).stimulus
     assert found.x == pytest.approx((-1e-3, 0, 1e-3)) and found.y == pytest.approx((5e-4, 0, 5e-4))
 
 
@@ -218,11 +245,17 @@ def test_columns_in_any_unit_of_length(content, tmp_path):
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("x (km),y (km)\n-1,0\n1,1\n", "is 2e+03 m wide by its column 'x (km)'; allowed: 10 um to 10 m"),
+        (
+            "x (km),y (km)\n-1,0\n1,1\n",
+            "is 2e+03 m wide by its column 'x (km)'; allowed: 10 um to 10 m",
+        ),
         ("x (m),y (m)\n-1,0\n10,1\n", "is 11 m wide"),
         ("x (nm),y (nm)\n-1,0\n1,1\n", "is 0.002 um wide by its column 'x (nm)'"),
         ("x (s),y (mm)\n-1,0\n1,1\n", "has the column 'x (s)', which has the wrong dimension"),
-        ("x (mmm),y (mm)\n-1,0\n1,1\n", "has the column 'x (mmm)', which has the unknown unit 'mmm'"),
+        (
+            "x (mmm),y (mm)\n-1,0\n1,1\n",
+            "has the column 'x (mmm)', which has the unknown unit 'mmm'",
+        ),
         ("x (mm),h (mm)\n-1,0\n1,1\n", "has no column 'y (mm)'"),
         ("# nothing\n", "holds no rows"),
         ("# one\n\nx (mm),y (mm)\n-1,0\n#\n1,nan\n", "has 'nan' in row 6"),
@@ -244,15 +277,31 @@ def folder(tmp_path_factory):
 
 
 def pressed(folder, x, y, smooth, motion=PRESS):
-    np.savetxt(folder / "p.csv", 1e3 * np.column_stack([x, y]), "%.9f", ",", header="x (mm),y (mm)", comments="")
+    np.savetxt(
+        folder / "p.csv",
+        1e3 * np.column_stack([x, y]),
+        "%.9f",
+        ",",
+        header="x (mm),y (mm)",
+        comments="",
+    )
     (folder / "scene.yaml").write_text(SCENE.format(more=f", smooth: {smooth}", motion=motion))
     loaded = load_scene(folder / "scene.yaml")
     return plan(loaded), simulate(loaded)
 
 
 def surface_at(folder, x, y, accuracy):
-    np.savetxt(folder / "p.csv", 1e3 * np.column_stack([x, y]), "%.9f", ",", header="x (mm),y (mm)", comments="")
-    text = SCENE.format(more="", motion='[{press_to_depth: "0.8 mm"}]').replace("draft", str(accuracy))
+    np.savetxt(
+        folder / "p.csv",
+        1e3 * np.column_stack([x, y]),
+        "%.9f",
+        ",",
+        header="x (mm),y (mm)",
+        comments="",
+    )
+    text = SCENE.format(more="", motion='[{press_to_depth: "0.8 mm"}]').replace(
+        "draft", str(accuracy)
+    )
     (folder / "scene.yaml").write_text(text)
     return plan(load_scene(folder / "scene.yaml")).surface
 
@@ -268,7 +317,9 @@ def check_one(folder, number, exact):
     end, error = history.isel(time=-1), history.attrs["estimated_error"]
     for quantity in NAMES:
         truth = exact[name][quantity].values
-        np.testing.assert_allclose(end[quantity].values, truth, rtol=error, atol=1e-9, err_msg=f"{name}: {quantity}")
+        np.testing.assert_allclose(
+            end[quantity].values, truth, rtol=error, atol=1e-9, err_msg=f"{name}: {quantity}"
+        )
 
 
 @pytest.mark.unit
@@ -290,7 +341,10 @@ def test_thirty_measured_profiles(folder):
 def test_noise_can_be_kept(folder):
     """A thousand valleys, each narrower than the nodes are apart: the skin lies on what stands out, nearly as on the shape."""
     x, y, shape = measured(1)
-    depths = [pressed(folder, x, heights, "none")[1].indentation_depth.values[-1] for heights in (shape + 8 * (y - shape), shape)]
+    depths = [
+        pressed(folder, x, heights, "none")[1].indentation_depth.values[-1]
+        for heights in (shape + 8 * (y - shape), shape)
+    ]
     assert depths[0] == pytest.approx(depths[1], rel=1e-2)
 
 
@@ -299,11 +353,18 @@ def test_the_advice_works(folder, monkeypatch):
     """Noise of micrometres every micrometre takes long as it is; the message names it and a smoothing with which it does not."""
     x, y, shape = measured(7)
     y = shape + 20 * (y - shape)
-    monkeypatch.setattr(simulation, "NewtonSettings", partial(simulation.NewtonSettings, most_iterations=20))
-    with pytest.raises(NonConvergence, match='corners are 1 um apart, the nodes 134 um: stimulus.smooth: "269 um"') as caught:
+    monkeypatch.setattr(
+        simulation, "NewtonSettings", partial(simulation.NewtonSettings, most_iterations=20)
+    )
+    with pytest.raises(
+        NonConvergence, match='corners are 1 um apart, the nodes 134 um: stimulus.smooth: "269 um"'
+    ) as caught:
         pressed(folder, x, y, "none")
     advised = str(caught.value).split("stimulus.smooth: ")[1].split(" or more")[0]
-    depths = [pressed(folder, x, *given)[1].indentation_depth.values[-1] for given in ((y, advised), (shape, "none"))]
+    depths = [
+        pressed(folder, x, *given)[1].indentation_depth.values[-1]
+        for given in ((y, advised), (shape, "none"))
+    ]
     assert depths[0] == pytest.approx(depths[1], rel=1e-2)
 
 
@@ -330,6 +391,9 @@ def test_noisy_profiles_are_stroked_and_stepped(motion, folder):
 def test_the_smoothing_of_a_plan_is_kept(folder, tmp_path):
     x, y, _ = measured(1)
     chosen, _ = pressed(folder, x, y, '"0.1 mm"')
-    assert chosen.surface.smoothing == pytest.approx(1e-4) and chosen.discretisation["profile_smoothed_um"] == 100
+    assert (
+        chosen.surface.smoothing == pytest.approx(1e-4)
+        and chosen.discretisation["profile_smoothed_um"] == 100
+    )
     chosen.write(tmp_path / "plan.json")
     assert read_plan(tmp_path / "plan.json").surface == chosen.surface

@@ -77,7 +77,11 @@ def test_thesis_mesh_has_about_ten_thousand_good_elements(mesh):
     assert 8500 <= len(mesh.points) <= 11500
     assert mesh.element == "quad9" and mesh.symmetric and not mesh.half
     assert quality_of(mesh)["worst_scaled_jacobian"] > 0.3
-    assert mesh.points.dtype == np.float64 and mesh.cells.dtype == np.int32 and mesh.region.dtype == np.int8
+    assert (
+        mesh.points.dtype == np.float64
+        and mesh.cells.dtype == np.int32
+        and mesh.region.dtype == np.int8
+    )
     check_orientation(mesh, "thesis")
     np.testing.assert_array_equal(np.unique(mesh.cells), np.arange(len(mesh.points)))
 
@@ -124,7 +128,9 @@ def test_nodes_lie_on_the_outline_and_its_offset_curves(mesh):
     x, upper = np.minimum(np.abs(skin[:, 0]), OUTLINE.half_width), skin[:, 1] > 0.0
     theta = np.where(upper, CURVE.theta_at_x(x), CURVE.theta_at_x(x, lower=True))
     steep = np.abs(skin[:, 0]) > 8.4e-3  # where x hardly fixes the angle
-    drawn = CURVE.point(theta) * np.column_stack((np.where(skin[:, 0] < 0.0, -1.0, 1.0), np.ones(len(x))))
+    drawn = CURVE.point(theta) * np.column_stack(
+        (np.where(skin[:, 0] < 0.0, -1.0, 1.0), np.ones(len(x)))
+    )
     np.testing.assert_allclose(skin[~steep], drawn[~steep], atol=1e-12)
     for upper_layer, depth in enumerate(CURVE.layer_depths):
         above = np.unique(mesh.cells[mesh.region == upper_layer])
@@ -150,7 +156,9 @@ def test_layer_areas_are_those_of_offset_curves(mesh):
     section = 2.0 * np.trapezoid(x, -y)
     bone = np.pi * OUTLINE.bone_half_width * OUTLINE.bone_half_height
     middle, inner = map(outside, CURVE.layer_depths)
-    np.testing.assert_allclose(areas(mesh), [middle, inner - middle, section - inner - bone], rtol=1e-4)
+    np.testing.assert_allclose(
+        areas(mesh), [middle, inner - middle, section - inner - bone], rtol=1e-4
+    )
 
 
 def test_curves_are_the_whole_boundary(mesh):
@@ -169,7 +177,9 @@ def test_nail_ends_where_the_outline_says(mesh, draft):
         assert (nail[:, 1] < 0.0).all()
         assert nail[:, 0].max() == pytest.approx(OUTLINE.nail_half_width, rel=1e-12)
         outer = each.points[np.unique(each.curves["skin"])]
-        assert (np.abs(outer[outer[:, 1] < 0.0, 0]) >= OUTLINE.nail_half_width * (1.0 - 1e-12)).all()
+        assert (
+            np.abs(outer[outer[:, 1] < 0.0, 0]) >= OUTLINE.nail_half_width * (1.0 - 1e-12)
+        ).all()
 
 
 def test_skin_chain_runs_from_left_to_right(mesh):
@@ -325,7 +335,14 @@ def test_curved_edges_count():
 
 def test_quality_table(mesh, draft):
     table = quality_table({"thesis": mesh, "draft": draft})
-    assert list(table.columns) == ["mesh", "element", "nodes", "elements", "smallest edge (um)", "worst scaled Jacobian (1)"]
+    assert list(table.columns) == [
+        "mesh",
+        "element",
+        "nodes",
+        "elements",
+        "smallest edge (um)",
+        "worst scaled Jacobian (1)",
+    ]
     assert table["nodes"].tolist() == [len(mesh.points), len(draft.points)]
     edges = element_edges(mesh.cells[:, :4], "quad4")
     lengths = np.hypot(*(mesh.points[edges[:, 1]] - mesh.points[edges[:, 0]]).T)
@@ -389,8 +406,13 @@ def write_rings(path, kind="quad9", structured=True, order=None, version=4.1, ed
         centre = geo.addPoint(0, 0, 0, 1.0)
         rings = []
         for radius in (8.0, 7.0, 6.0, 3.0):
-            points = [geo.addPoint(radius * x, radius * y, 0, 1.0) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
-            rings.append([geo.addCircleArc(points[i], centre, points[(i + 1) % 4]) for i in range(4)])
+            points = [
+                geo.addPoint(radius * x, radius * y, 0, 1.0)
+                for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))
+            ]
+            rings.append(
+                [geo.addCircleArc(points[i], centre, points[(i + 1) % 4]) for i in range(4)]
+            )
             rings[-1].append(points)
         surfaces = []
         for outer, inner in zip(rings, rings[1:], strict=False):
@@ -408,9 +430,15 @@ def write_rings(path, kind="quad9", structured=True, order=None, version=4.1, ed
                     geo.mesh.setRecombine(2, surfaces[-1])
         geo.synchronize()
         groups = [(2, surfaces[4 * i : 4 * i + 4], name) for i, name in enumerate(REGIONS)]
-        groups += [(1, rings[0][0:2], "skin"), (1, rings[0][2:4], "nail"), (1, rings[3][0:4], "bone")]
+        groups += [
+            (1, rings[0][0:2], "skin"),
+            (1, rings[0][2:4], "nail"),
+            (1, rings[3][0:4], "bone"),
+        ]
         for dimension, tags, name in edit(groups) if edit else groups:
-            gmsh.model.setPhysicalName(dimension, gmsh.model.addPhysicalGroup(dimension, tags), name)
+            gmsh.model.setPhysicalName(
+                dimension, gmsh.model.addPhysicalGroup(dimension, tags), name
+            )
         gmsh.option.setNumber("Mesh.SecondOrderIncomplete", kind == "quad8")
         gmsh.model.mesh.generate(2)
         gmsh.model.mesh.setOrder(order or (2 if kind in ("tri6", "quad8", "quad9") else 1))
@@ -429,7 +457,11 @@ def test_external_meshes_of_every_kind(kind, version, tmp_path):
     assert np.abs(mesh.points).max() == pytest.approx(8e-3)
     np.testing.assert_array_equal(np.unique(mesh.cells), np.arange(len(mesh.points)))
     assert np.bincount(mesh.region).tolist() == [48 * (2 if kind.startswith("tri") else 1)] * 3
-    assert {name: len(facets) for name, facets in mesh.curves.items()} == {"skin": 12, "bone": 24, "nail": 12}
+    assert {name: len(facets) for name, facets in mesh.curves.items()} == {
+        "skin": 12,
+        "bone": 24,
+        "nail": 12,
+    }
     for facets in mesh.curves.values():
         assert facets.shape[1] == (2 if kind in ("tri3", "quad4") else 3)
     chain = mesh.points[skin_chain(mesh)]
@@ -450,7 +482,9 @@ def test_centre_of_an_eight_node_quad_is_that_of_its_own_map(tmp_path):
     nodes = mesh.points[mesh.cells]
     shape = np.array([-0.25] * 4 + [0.5] * 4)  # the serendipity functions at the centre
     np.testing.assert_allclose(nodes[:, 8], np.einsum("n,enx->ex", shape, nodes[:, :8]), atol=1e-15)
-    assert np.abs(nodes[:, 8] - nodes[:, :4].mean(axis=1)).max() > 1e-5  # curved elements, or nothing is shown
+    assert (
+        np.abs(nodes[:, 8] - nodes[:, :4].mean(axis=1)).max() > 1e-5
+    )  # curved elements, or nothing is shown
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -494,14 +528,22 @@ def test_linear_triangles_can_be_elevated(tmp_path):
     assert len(raised.points) == len(places(raised.points))
     middle = raised.points[raised.cells[:, 3:]]
     corners = raised.points[raised.cells[:, :3]]
-    bent = np.isin(raised.cells[:, 3:], raised.curves["skin"][:, 2])  # the skin's sides bend as it does
-    np.testing.assert_allclose(middle[~bent], (0.5 * (corners + corners[:, [1, 2, 0]]))[~bent], atol=1e-18)
+    bent = np.isin(
+        raised.cells[:, 3:], raised.curves["skin"][:, 2]
+    )  # the skin's sides bend as it does
+    np.testing.assert_allclose(
+        middle[~bent], (0.5 * (corners + corners[:, [1, 2, 0]]))[~bent], atol=1e-18
+    )
     ends = raised.points[raised.curves["skin"][:, :2]]
-    np.testing.assert_allclose(np.hypot(*middle[bent].T), np.hypot(*ends[0, 0]), rtol=1e-3)  # their chords: 8.6e-3
+    np.testing.assert_allclose(
+        np.hypot(*middle[bent].T), np.hypot(*ends[0, 0]), rtol=1e-3
+    )  # their chords: 8.6e-3
     for name, facets in raised.curves.items():
         np.testing.assert_array_equal(facets[:, :2], mesh.curves[name])
         if name != "skin":
-            np.testing.assert_allclose(raised.points[facets[:, 2]], raised.points[facets[:, :2]].mean(axis=1), atol=1e-18)
+            np.testing.assert_allclose(
+                raised.points[facets[:, 2]], raised.points[facets[:, :2]].mean(axis=1), atol=1e-18
+            )
     assert len(skin_chain(raised)) == 25
     raised.right_half()
 
@@ -550,41 +592,73 @@ def test_skin_must_be_there(tmp_path):
     def edit(groups):
         return [(d, tags, "other" if label == "skin" else label) for d, tags, label in groups]
 
-    refused(write_rings(tmp_path / "pad.msh", edit=edit), "curve skin is missing", "among other, nail, bone")
+    refused(
+        write_rings(tmp_path / "pad.msh", edit=edit),
+        "curve skin is missing",
+        "among other, nail, bone",
+    )
 
 
 def test_something_must_be_held(tmp_path):
     def edit(groups):
-        return [(d, tags, {"bone": "hole", "nail": "rest"}.get(label, label)) for d, tags, label in groups]
+        return [
+            (d, tags, {"bone": "hole", "nail": "rest"}.get(label, label))
+            for d, tags, label in groups
+        ]
 
     path = write_rings(tmp_path / "pad.msh", edit=edit)
     refused(path, "no curve is held", "bone, nail, base", "specimen.fixed", "among rest, hole")
     mesh = read_pad_mesh(path, fixed=("hole",))
-    assert mesh.fixed == ("hole",) and {name: len(facets) for name, facets in mesh.curves.items()} == {
-        "skin": 12, "hole": 24, "unnamed": 12,
-    }  # fmt: skip
-    with pytest.raises(MeshError, match="fixed: core is no curve of the mesh; its physical curves are skin, rest, hole"):
+    assert mesh.fixed == ("hole",) and {
+        name: len(facets) for name, facets in mesh.curves.items()
+    } == {
+        "skin": 12,
+        "hole": 24,
+        "unnamed": 12,
+    }
+    with pytest.raises(
+        MeshError,
+        match="fixed: core is no curve of the mesh; its physical curves are skin, rest, hole",
+    ):
         read_pad_mesh(path, fixed=("core",))
 
 
 @pytest.mark.parametrize("name", ["bone", "nail"])
 def test_one_of_bone_and_nail_is_enough(name, tmp_path):
-    path = write_rings(tmp_path / "pad.msh", edit=lambda groups: [group for group in groups if group[2] != name])
+    path = write_rings(
+        tmp_path / "pad.msh", edit=lambda groups: [group for group in groups if group[2] != name]
+    )
     mesh = read_pad_mesh(path)
-    assert mesh.fixed == tuple({"bone", "nail"} - {name}) and len(mesh.curves["unnamed"]) in (12, 24)
+    assert mesh.fixed == tuple({"bone", "nail"} - {name}) and len(mesh.curves["unnamed"]) in (
+        12,
+        24,
+    )
     assert read_pad_mesh(write_rings(tmp_path / "both.msh"), free=("nail",)).fixed == ("bone",)
 
 
 def test_surfaces_have_names_of_their_own(tmp_path):
     def edit(groups):
-        return [(d, tags, {"epidermis": "cover", "dermis": "foam", "fat": "core"}.get(label, label)) for d, tags, label in groups]
+        return [
+            (d, tags, {"epidermis": "cover", "dermis": "foam", "fat": "core"}.get(label, label))
+            for d, tags, label in groups
+        ]
 
     path = write_rings(tmp_path / "pad.msh", edit=edit)
     assert read_pad_mesh(path).regions == ("cover", "foam", "core")
-    assert read_pad_mesh(path, layers=("core", "foam", "cover")).regions == ("core", "foam", "cover")
-    with pytest.raises(MeshError, match="layer gel is no surface of the mesh; its physical surfaces are cover, foam, core"):
+    assert read_pad_mesh(path, layers=("core", "foam", "cover")).regions == (
+        "core",
+        "foam",
+        "cover",
+    )
+    with pytest.raises(
+        MeshError,
+        match="layer gel is no surface of the mesh; its physical surfaces are cover, foam, core",
+    ):
         read_pad_mesh(path, layers=("cover", "gel"))
-    with pytest.raises(MeshError, match=r"48 surface elements are in none of cover, foam; each must be in one .*also has core"):
+    with pytest.raises(
+        MeshError,
+        match=r"48 surface elements are in none of cover, foam; each must be in one .*also has core",
+    ):
         read_pad_mesh(path, layers=("cover", "foam"))
 
 
@@ -592,7 +666,10 @@ def test_no_groups_at_all(tmp_path):
     refused(write_rings(tmp_path / "pad.msh", edit=lambda groups: []), "no surface is named")
 
 
-@pytest.mark.parametrize(("factor", "words"), [(1e-3, "0.016 mm wide: coordinates must be mm; metres?"), (1e3, "micrometres?")])
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [(1e-3, "0.016 mm wide: coordinates must be mm; metres?"), (1e3, "micrometres?")],
+)
 def test_units_are_guessed(factor, words, tmp_path):
     mesh = read_pad_mesh(write_rings(tmp_path / "mm.msh", "tri3"))
     write_pad(replace(mesh, points=mesh.points * factor), tmp_path / "pad.msh")
@@ -616,7 +693,10 @@ def test_mixed_elements(tmp_path):
 
 def test_element_in_two_layers(tmp_path):
     refused(
-        write_rings(tmp_path / "pad.msh", edit=lambda groups: [*groups[1:], (2, [1, 5], "epidermis"), (2, [1], "fat")]),
+        write_rings(
+            tmp_path / "pad.msh",
+            edit=lambda groups: [*groups[1:], (2, [1, 5], "epidermis"), (2, [1], "fat")],
+        ),
         "in two of",
     )
 
@@ -647,25 +727,41 @@ def apart(mesh):
 
 def with_curves(mesh, **more):
     """The mesh with edges added to some of its curves."""
-    return replace(mesh, curves=mesh.curves | {name: np.concatenate((mesh.curves[name], edges)) for name, edges in more.items()})
+    return replace(
+        mesh,
+        curves=mesh.curves
+        | {name: np.concatenate((mesh.curves[name], edges)) for name, edges in more.items()},
+    )
 
 
 def in_pieces(mesh):
     middle = len(mesh.curves["skin"]) // 2
     changed = with_curves(mesh, nail=mesh.curves["skin"][middle : middle + 1])
-    return replace(changed, curves=changed.curves | {"skin": np.delete(mesh.curves["skin"], middle, axis=0)})
+    return replace(
+        changed, curves=changed.curves | {"skin": np.delete(mesh.curves["skin"], middle, axis=0)}
+    )
 
 
 WRONG = {
-    "folded element": (lambda m: moved(m, m.cells[11, 8], m.points[m.cells[11, 0]] * 1.05), "element 11", "is folded"),
+    "folded element": (
+        lambda m: moved(m, m.cells[11, 8], m.points[m.cells[11, 0]] * 1.05),
+        "element 11",
+        "is folded",
+    ),
     "not a number": (lambda m: moved(m, 3, np.nan),),
     "layers not joined": (apart, "are the layers joined?"),
     "curve inside the pad": (
-        lambda m: with_curves(m, bone=element_edges(m.cells[:1], "quad9")[:, :3]), "curve bone", "not on the boundary",
+        lambda m: with_curves(m, bone=element_edges(m.cells[:1], "quad9")[:, :3]),
+        "curve bone",
+        "not on the boundary",
     ),
-    "edge in two curves": (lambda m: with_curves(m, nail=m.curves["skin"][:1]), "curve nail", "two curves"),
+    "edge in two curves": (
+        lambda m: with_curves(m, nail=m.curves["skin"][:1]),
+        "curve nail",
+        "two curves",
+    ),
     "skin in pieces": (in_pieces, "curve skin must be one line"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("which", [[7], slice(None)])
@@ -699,7 +795,9 @@ def test_boundary_without_a_name_is_free(draft, tmp_path):
     write_pad(replace(draft, curves=curves), tmp_path / "pad.msh")
     mesh = read_pad_mesh(tmp_path / "pad.msh")
     assert mesh.fixed == ("bone", "nail")
-    np.testing.assert_allclose(mesh.points[mesh.curves["unnamed"]], draft.points[draft.curves["nail"][:1]], atol=1e-12)
+    np.testing.assert_allclose(
+        mesh.points[mesh.curves["unnamed"]], draft.points[draft.curves["nail"][:1]], atol=1e-12
+    )
 
 
 # -- the mesh of a scene ---------------------------------------------------------------------------
@@ -712,9 +810,18 @@ def test_mesh_for_a_scene(draft, tmp_path):
 
     plan = Named(mesh_size=DRAFT, effects={"ridges": Named(on=False)})
     layers = Named(stratum_corneum=None)
-    built = mesh_for(Named(specimen=Named(outline=OUTLINE, mesh=None, stack=None, layers=layers)), plan)
+    built = mesh_for(
+        Named(specimen=Named(outline=OUTLINE, mesh=None, stack=None, layers=layers)), plan
+    )
     np.testing.assert_array_equal(built.points, draft.points)
     path = write_rings(tmp_path / "rings.msh", "quad4")
     materials = {name: None for name in REGIONS}
-    read = mesh_for(Named(specimen=Named(outline=None, mesh=path, materials=materials, stated=(), fixed=(), free=())), plan)
+    read = mesh_for(
+        Named(
+            specimen=Named(
+                outline=None, mesh=path, materials=materials, stated=(), fixed=(), free=()
+            )
+        ),
+        plan,
+    )
     assert read.element == "quad4"

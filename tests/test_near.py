@@ -11,15 +11,21 @@ pytestmark = pytest.mark.unit
 
 def grid(columns, rows):
     """Points of a grid, many of them in line."""
-    return np.stack(np.meshgrid(np.linspace(-1, 1, columns), np.linspace(0, 1, rows)), axis=-1).reshape(-1, 2)
+    return np.stack(
+        np.meshgrid(np.linspace(-1, 1, columns), np.linspace(0, 1, rows)), axis=-1
+    ).reshape(-1, 2)
 
 
 def test_twins_are_the_pairs_of_a_tree():
     base = np.random.default_rng(0).uniform(size=(300, 2))
     points = np.concatenate([base, base[:20] + 4e-4, base[5:9]])
     found = near.twins(points, 1e-3)
-    np.testing.assert_array_equal(found[np.lexsort(found.T[::-1])], sorted(cKDTree(points).query_pairs(1e-3)))
-    assert near.twins(grid(9, 5), 1e-6).shape == (0, 2) and near.twins(np.zeros((1, 2)), 1.0).shape == (0, 2)
+    np.testing.assert_array_equal(
+        found[np.lexsort(found.T[::-1])], sorted(cKDTree(points).query_pairs(1e-3))
+    )
+    assert near.twins(grid(9, 5), 1e-6).shape == (0, 2) and near.twins(
+        np.zeros((1, 2)), 1.0
+    ).shape == (0, 2)
 
 
 def test_a_mirror_image_is_found_node_for_node_and_what_is_not_there_is_not():

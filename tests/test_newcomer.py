@@ -28,7 +28,10 @@ def folder(tmp_path, monkeypatch):
     ("words", "said"),
     [
         (["run", "sweep.yaml"], "sweep.yaml: is a sweep, not a scene; allowed: fingerpad sweep"),
-        (["mesh", "sweep.yaml", "--out", "m.msh"], "sweep.yaml: is a sweep, not a scene; allowed: fingerpad sweep"),
+        (
+            ["mesh", "sweep.yaml", "--out", "m.msh"],
+            "sweep.yaml: is a sweep, not a scene; allowed: fingerpad sweep",
+        ),
         (["sweep", "scene.yaml"], "scene.yaml: is a scene, not a sweep; allowed: fingerpad run"),
     ],
 )
@@ -58,11 +61,15 @@ def test_one_number_for_the_error(folder, capsys):
 def test_kinds_of_receptor_by_any_of_their_names(folder):
     history = fingerpad.simulate("scene.yaml")
     one = fingerpad.respond(history, "SA-I")
-    assert one.equals(fingerpad.respond(history)) and one.afferent.values.tolist() == ["slowly_adapting"]
+    assert one.equals(fingerpad.respond(history)) and one.afferent.values.tolist() == [
+        "slowly_adapting"
+    ]
     assert fingerpad.respond(history, ["RA"]).equals(fingerpad.respond(history, "rapidly_adapting"))
     with pytest.raises(ValueError, match="no afferent called 'PC'; known: slowly_adapting"):
         fingerpad.respond(history, "PC")
-    with pytest.raises(TypeError, match="a history is what simulate or read_history returns, not str 'scene.yaml'"):
+    with pytest.raises(
+        TypeError, match="a history is what simulate or read_history returns, not str 'scene.yaml'"
+    ):
         fingerpad.respond("scene.yaml")
 
 
@@ -71,13 +78,18 @@ def test_width_of_the_contact_and_of_what_touches(tmp_path):
     x = np.arange(-12, 12.001, 0.01)
     profile = np.column_stack([x, 0.075 * (1 - np.cos(2 * np.pi * x / 1.6))])
     np.savetxt(tmp_path / "p.csv", profile, delimiter=",", header="x (mm),y (mm)", comments="")
-    scene = {"stimulus": {"shape": "sampled", "csv": str(tmp_path / "p.csv")}, "motion": [{"press_to_force": "10 gf"}]}
+    scene = {
+        "stimulus": {"shape": "sampled", "csv": str(tmp_path / "p.csv")},
+        "motion": [{"press_to_force": "10 gf"}],
+    }
     for symmetry in ("on", "off"):
         history = fingerpad.simulate(scene | {"effects": {"symmetry": symmetry}})
         end = summary(history)["legs"][-1]
         assert end["contact_width_mm"] == pytest.approx(3.41, abs=0.05)
         assert end["touching_width_mm"] == pytest.approx(1.12, abs=0.05)
-    smooth = fingerpad.simulate({"stimulus": {"shape": "cylinder", "curvature": "100 1/m"}, "motion": scene["motion"]})
+    smooth = fingerpad.simulate(
+        {"stimulus": {"shape": "cylinder", "curvature": "100 1/m"}, "motion": scene["motion"]}
+    )
     np.testing.assert_allclose(smooth.touching_width, smooth.contact_width)
     write_history(history, tmp_path / "h.nc")
     assert "touching_width" in read_history(tmp_path / "h.nc")

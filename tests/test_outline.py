@@ -72,7 +72,9 @@ def test_left_half_is_the_mirror_image():
     curve = OutlineCurve(outline())
     theta = np.linspace(0.0, np.pi, 257)
     for depth in (0.0, 0.85e-3):
-        np.testing.assert_array_equal(curve.point(-theta, depth), curve.point(theta, depth) * (-1.0, 1.0))
+        np.testing.assert_array_equal(
+            curve.point(-theta, depth), curve.point(theta, depth) * (-1.0, 1.0)
+        )
 
 
 def test_bone_foot_is_the_nearest_point():
@@ -93,8 +95,14 @@ def test_bone_foot_is_the_nearest_point():
         ({"nail_half_width": 8.5e-3}, ["nail_half_width", "half_width"]),
         ({"nail_half_width": 0.0}, ["nail_half_width", "above 0"]),
         ({"dermis_thickness": -1e-3}, ["dermis_thickness", "above 0"]),
-        ({"dermis_thickness": 2.3e-3}, ["epidermis_thickness + dermis_thickness", "3.15 mm", "3.069 mm"]),
-        ({"dermis_thickness": 1.4e-3}, ["epidermis_thickness + dermis_thickness", "bone", "2.182 mm"]),
+        (
+            {"dermis_thickness": 2.3e-3},
+            ["epidermis_thickness + dermis_thickness", "3.15 mm", "3.069 mm"],
+        ),
+        (
+            {"dermis_thickness": 1.4e-3},
+            ["epidermis_thickness + dermis_thickness", "bone", "2.182 mm"],
+        ),
         ({"bone_centre_height": -4e-3}, ["bone_centre_height", "inside"]),
         ({"bone_centre_height": 30e-3}, ["bone_centre_height", "inside"]),
         ({"bone_half_width": 9e-3}, ["bone_half_width", "inside"]),

@@ -22,32 +22,53 @@ FIGURES = Path(__file__).parents[1] / "figures"
 
 def decide(case: Case) -> Effect:
     light = case.contact.depth < 0.3e-3
-    return Effect(light and not case.decided["ridges"].on, f"the finger sinks in by {case.contact.depth * 1e3:.2g} mm")
+    return Effect(
+        light and not case.decided["ridges"].on,
+        f"the finger sinks in by {case.contact.depth * 1e3:.2g} mm",
+    )
 
 
 EFFECT = PlannedEffect(
-    name="cold", question="is the finger cold?", decide=decide, possible=lambda case: case.scene.specimen.ridges is None,
-    after=("ridges",), dearer=lambda rules: 3.0,
+    name="cold",
+    question="is the finger cold?",
+    decide=decide,
+    possible=lambda case: case.scene.specimen.ridges is None,
+    after=("ridges",),
+    dearer=lambda rules: 3.0,
     shown=(Shown("light", True, {"stimulus": FLAT, "motion": [{"press_to_force": "1 gf"}]}),),
     title="cold fingers",
-)  # fmt: skip
+)
 
 
 def scene(force="1 gf", **more):
-    return scene_of({"stimulus": FLAT, "motion": [{"press_to_force": force}], "accuracy": "draft", **more}, "own")
+    return scene_of(
+        {"stimulus": FLAT, "motion": [{"press_to_force": force}], "accuracy": "draft", **more},
+        "own",
+    )
 
 
 def test_an_own_effect_goes_from_scene_to_run(monkeypatch):
     """Decided with its reason, switched by a scene, paid for in the cost, carried out in the run and told by its history."""
     done = []
-    effect = PlannedEffect(**{**EFFECT.__dict__, "compose": lambda simulation: done.append(simulation.scene.name)})
+    effect = PlannedEffect(
+        **{**EFFECT.__dict__, "compose": lambda simulation: done.append(simulation.scene.name)}
+    )
     plain = plan(scene())
     with registered(effect):
         light, deep = plan(scene()), plan(scene("20 gf"))
-        assert light.effects["cold"].on and "the finger sinks in by" in light.effects["cold"].why and not deep.effects["cold"].on
-        assert light.predicted_cost_s - RULES.seconds_start == pytest.approx(3 * (plain.predicted_cost_s - RULES.seconds_start))
+        assert (
+            light.effects["cold"].on
+            and "the finger sinks in by" in light.effects["cold"].why
+            and not deep.effects["cold"].on
+        )
+        assert light.predicted_cost_s - RULES.seconds_start == pytest.approx(
+            3 * (plain.predicted_cost_s - RULES.seconds_start)
+        )
         off = plan(scene(effects={"cold": "off"}))
-        assert not off.effects["cold"].on and "asked for in the scene (the planner: on" in off.effects["cold"].why
+        assert (
+            not off.effects["cold"].on
+            and "asked for in the scene (the planner: on" in off.effects["cold"].why
+        )
         with pytest.raises(PlanError, match="effects.cold: on, but .*; allowed: off or auto"):
             plan(scene("20 gf", specimen={"ridges": "inner"}, effects={"cold": "on"}))
         history = simulate(scene())
@@ -64,7 +85,9 @@ def test_an_own_effect_goes_into_the_picture_of_the_study():
     """Its scene is run with and without it, and a point with its name stands beside those of the choices published."""
     choices = pd.read_csv(FIGURES / "studies" / "effects.csv").query("panel == 'planner'")
     with registered(EFFECT):
-        frame = assemble(study([pair for pair in pairs() if pair.effect == "cold"], repeats=1), choices)
+        frame = assemble(
+            study([pair for pair in pairs() if pair.effect == "cold"], repeats=1), choices
+        )
         figure = picture(frame)
         assert looks()["cold"].title == "cold fingers"
     assert frame["change"].iloc[0] == 0, "nothing in a run knows of it"
@@ -76,11 +99,21 @@ def test_an_own_effect_goes_into_the_picture_of_the_study():
 def test_the_register_is_the_files_and_the_scene_language():
     files = {path.stem for path in Path(effects.__file__).parent.glob("*.py")} - {"__init__"}
     assert files == set(EFFECTS) == set(NAMES) == set(plan(scene()).effects)
-    assert all(effect.name == name and effect.question and effect.shown and effect.title for name, effect in EFFECTS.items())
+    assert all(
+        effect.name == name and effect.question and effect.shown and effect.title
+        for name, effect in EFFECTS.items()
+    )
     order = [effect.name for effect in in_order()]
-    assert all(order.index(first) < order.index(name) for name, effect in EFFECTS.items() for first in effect.after)
+    assert all(
+        order.index(first) < order.index(name)
+        for name, effect in EFFECTS.items()
+        for first in effect.after
+    )
     assert {pair.effect for pair in pairs()} >= set(EFFECTS)
-    assert DECIDES["pressing_friction"].startswith("friction of a press") and rule(1.0, "x").metadata["decides"] == "x"
+    assert (
+        DECIDES["pressing_friction"].startswith("friction of a press")
+        and rule(1.0, "x").metadata["decides"] == "x"
+    )
 
 
 def test_a_tolerance_has_room_for_one_error_only():
@@ -98,5 +131,9 @@ def test_committed_rules_are_those_of_the_planner():
 
     data = pd.read_csv(FIGURES / "studies" / "effects.csv")
     changes, choices = (data[data["panel"] == panel] for panel in ("changes", "planner"))
-    committed = pd.read_csv(FIGURES / "tables" / "planner_rules.csv", dtype=str, keep_default_na=False)
-    assert rules_table(changes, choices).astype(str).to_dict("records") == committed.to_dict("records")
+    committed = pd.read_csv(
+        FIGURES / "tables" / "planner_rules.csv", dtype=str, keep_default_na=False
+    )
+    assert rules_table(changes, choices).astype(str).to_dict("records") == committed.to_dict(
+        "records"
+    )

@@ -42,14 +42,20 @@ def roller():
 
         def outline(self, x):
             inside = np.abs(x - self.beside) <= self.radius
-            return self.radius - np.sqrt(np.where(inside, self.radius**2 - (x - self.beside) ** 2, np.nan))
+            return self.radius - np.sqrt(
+                np.where(inside, self.radius**2 - (x - self.beside) ** 2, np.nan)
+            )
 
     yield Roller
     del SHAPES["roller"]
 
 
 def scene(folder, **stimulus):
-    document = changed(stimulus={"shape": "roller", **stimulus}, motion=[{"press_to_force": "20 gf"}], accuracy="draft")
+    document = changed(
+        stimulus={"shape": "roller", **stimulus},
+        motion=[{"press_to_force": "20 gf"}],
+        accuracy="draft",
+    )
     return load_scene(write(folder, document))
 
 
@@ -58,7 +64,10 @@ def test_it_is_read_checked_and_recorded(tmp_path, roller):
     assert read.stimulus == roller(radius=5e-3, beside=-5e-4)
     assert recorded_scene(json.loads(json.dumps(read.canonical()))).stimulus == read.stimulus
     assert "Roller" in scene_json_schema()["$defs"]
-    for wrong, words in (({"radius": "-1 mm"}, "stimulus.radius: '-1 mm' is negative"), ({}, "stimulus.radius: is missing")):
+    for wrong, words in (
+        ({"radius": "-1 mm"}, "stimulus.radius: '-1 mm' is negative"),
+        ({}, "stimulus.radius: is missing"),
+    ):
         with pytest.raises(SceneError, match=words):
             scene(tmp_path, **wrong)
 

@@ -22,7 +22,13 @@ PROFILES = {
     "line": Line(),
     "sampled": Points(WAVE, -1e-3 * np.cos(300 * WAVE)),
     "wavy": Wavy(curvatures=[400.0, 700.0], half_angle=np.radians(30), lead_in=1e-3, run_out=1e-3),
-    "wavy with fillets": Wavy(curvatures=[400.0, 700.0], half_angle=np.radians(30), lead_in=1e-3, run_out=1e-3, fillet=0.5e-3),
+    "wavy with fillets": Wavy(
+        curvatures=[400.0, 700.0],
+        half_angle=np.radians(30),
+        lead_in=1e-3,
+        run_out=1e-3,
+        fillet=0.5e-3,
+    ),
 }
 STANDARD = Wavy()
 INCH_RADII = 25.4e-3 * np.array([1.5, 1, 0.75, 0.5, 0.375, 0.25, 0.1875, 0.125])
@@ -38,8 +44,20 @@ def test_gradient_is_the_derivative_of_the_distance(name, where):
     step = 1e-8
     distance, gradient, _ = profile.evaluate(x)
     assert np.hypot(*gradient[0]) == pytest.approx(1.0, abs=1e-9)
-    around = [profile.evaluate(x + step * np.array(d))[0][0] for d in ([1, 0], [-1, 0], [0, 1], [0, -1])]
-    slopes = np.array([around[0] - distance[0], distance[0] - around[1], around[2] - distance[0], distance[0] - around[3]]) / step
+    around = [
+        profile.evaluate(x + step * np.array(d))[0][0] for d in ([1, 0], [-1, 0], [0, 1], [0, -1])
+    ]
+    slopes = (
+        np.array(
+            [
+                around[0] - distance[0],
+                distance[0] - around[1],
+                around[2] - distance[0],
+                distance[0] - around[3],
+            ]
+        )
+        / step
+    )
     if abs(slopes[0] - slopes[1]) < 1e-3 and abs(slopes[2] - slopes[3]) < 1e-3:  # not on a ridge
         np.testing.assert_allclose(gradient[0], [slopes[:2].mean(), slopes[2:].mean()], atol=2e-3)
 
@@ -113,12 +131,21 @@ def test_profile_must_be_single_valued(x):
 
 def drawn(radii, half_angle, lead_in, run_out, spacing=1e-6):
     """Points (n, 2) of the wavy surface, drawn as a compass would: flat, arcs, flat."""
-    x, parts = lead_in, [np.column_stack([np.arange(0, lead_in, spacing), np.zeros(len(np.arange(0, lead_in, spacing)))])]
+    x, parts = (
+        lead_in,
+        [
+            np.column_stack(
+                [np.arange(0, lead_in, spacing), np.zeros(len(np.arange(0, lead_in, spacing)))]
+            )
+        ],
+    )
     arcs = [(radii[0], 1)] + [arc for radius in radii[1:] for arc in ((radius, -1), (radius, 1))]
     for radius, convex in arcs:
         angle = np.arange(-half_angle, half_angle, spacing / radius)
         sagging = radius * (np.cos(angle) - np.cos(half_angle))
-        parts.append(np.column_stack([x + radius * (np.sin(half_angle) + np.sin(angle)), -convex * sagging]))
+        parts.append(
+            np.column_stack([x + radius * (np.sin(half_angle) + np.sin(angle)), -convex * sagging])
+        )
         x += 2 * radius * np.sin(half_angle)
     end = np.arange(x, x + run_out, spacing)
     return np.vstack([*parts, np.column_stack([end, np.zeros(len(end))])])
@@ -129,9 +156,9 @@ def test_wavy_surface_is_the_one_drawn():
     points = drawn(INCH_RADII, np.radians(9), 8e-3, 10e-3)
     np.testing.assert_allclose(STANDARD.outline(points[:, 0]), points[:, 1], atol=1e-12)
     np.testing.assert_allclose(STANDARD.evaluate(points)[0], 0, atol=1e-12)
-    assert 1e3 * points[:, 1].min() == pytest.approx(-0.469, abs=5e-4) and 1e3 * points[:, 1].max() == pytest.approx(
-        0.313, abs=5e-4
-    )
+    assert 1e3 * points[:, 1].min() == pytest.approx(-0.469, abs=5e-4) and 1e3 * points[
+        :, 1
+    ].max() == pytest.approx(0.313, abs=5e-4)
     flat = STANDARD.evaluate(np.array([[-5e-3, -1e-3], [0.2, -2e-3]]))[0]
     np.testing.assert_allclose(flat, [1e-3, 2e-3], rtol=1e-12)  # the flats go on for ever
     assert not STANDARD.symmetric
@@ -163,7 +190,9 @@ def test_arcs_share_their_tangents_and_only_the_flats_meet_them_sharply():
         if k in (0, len(STANDARD.curve.x) - 3):
             assert after - before == pytest.approx(-9, abs=1e-3)
         else:
-            assert after == pytest.approx(before, abs=1e-3) and abs(before) == pytest.approx(9, abs=1e-3)
+            assert after == pytest.approx(before, abs=1e-3) and abs(before) == pytest.approx(
+                9, abs=1e-3
+            )
 
 
 def test_fillet_is_tangent_to_flat_and_arc():
@@ -214,7 +243,10 @@ def test_distance_to_steep_lines_is_the_closest_of_all(pieces, place):
     steps = np.array(pieces)
     profile = Points(np.cumsum(steps[:, 0]), np.cumsum(steps[:, 1]))
     at = np.array([profile.x[0] + place[0] * np.ptp(profile.x), place[1]])
-    start, way = np.column_stack([profile.x, profile.y])[:-1], np.column_stack([np.diff(profile.x), np.diff(profile.y)])
+    start, way = (
+        np.column_stack([profile.x, profile.y])[:-1],
+        np.column_stack([np.diff(profile.x), np.diff(profile.y)]),
+    )
     share = np.einsum("ij,ij->i", at - start, way) / np.sum(way**2, axis=1)
     low, high = np.zeros(len(way)), np.ones(len(way))
     low[0], high[-1] = -np.inf, np.inf
@@ -237,11 +269,19 @@ def test_reentrant_corner_has_its_fan_of_normals_in_the_solid():
     """On the corner the bisector of both normals, above it the distance to it, below it that to the closer of the two sides."""
     corner, half = np.array([STANDARD.curve.x[1], 0.0]), np.radians(4.5)
     up = np.array([np.sin(half), np.cos(half)])
-    distance, gradient, curvature = STANDARD.evaluate(np.array([corner, corner + 10e-6 * up, corner - 10e-6 * up]))
+    distance, gradient, curvature = STANDARD.evaluate(
+        np.array([corner, corner + 10e-6 * up, corner - 10e-6 * up])
+    )
     np.testing.assert_allclose(distance, [0, -10e-6, 10e-6 * np.cos(half)], atol=1e-10)
     np.testing.assert_allclose(gradient[:2], [-up, -up], atol=1e-9)
     np.testing.assert_allclose(curvature[:2], [0, -1e5], rtol=1e-6)
-    assert min(np.abs(gradient[2] - normal).max() for normal in ([0, -1], [-np.sin(2 * half), -np.cos(2 * half)])) < 1e-3
+    assert (
+        min(
+            np.abs(gradient[2] - normal).max()
+            for normal in ([0, -1], [-np.sin(2 * half), -np.cos(2 * half)])
+        )
+        < 1e-3
+    )
 
 
 def test_level_sets_of_arcs_and_corners():
@@ -253,7 +293,9 @@ def test_level_sets_of_arcs_and_corners():
     np.testing.assert_allclose(gradient, [[0, -1], [0, -1]], atol=1e-9)
     np.testing.assert_allclose(curvature, [1 / (38.1e-3 + 2e-3), -1 / (25.4e-3 - 2e-3)], rtol=1e-9)
     tip = Points([-1e-3, 0, 1e-3], [1e-3, 0, 1e-3])
-    assert tip.evaluate(np.array([[0.1e-3, -0.5e-3]]))[2][0] == pytest.approx(1 / np.hypot(0.1e-3, 0.5e-3))
+    assert tip.evaluate(np.array([[0.1e-3, -0.5e-3]]))[2][0] == pytest.approx(
+        1 / np.hypot(0.1e-3, 0.5e-3)
+    )
     assert np.all(tip.evaluate(np.zeros((1, 2)))[1][0] == [0, -1])
 
 
@@ -269,16 +311,22 @@ def test_arcs_on_a_smooth_join_are_not_corners():
 
 def test_what_planning_asks_of_a_surface():
     """Largest slope and curvature, and how far the surface reaches below its start."""
-    assert STANDARD.steepness == pytest.approx(np.tan(np.radians(9))) and STANDARD.convexity == pytest.approx(1 / 3.175e-3)
+    assert STANDARD.steepness == pytest.approx(
+        np.tan(np.radians(9))
+    ) and STANDARD.convexity == pytest.approx(1 / 3.175e-3)
     assert STANDARD.dip == pytest.approx(38.1e-3 * (1 - np.cos(np.radians(9))))
     assert (Flat().steepness, Flat().convexity, Flat().dip) == (0, 0, 0)
     assert (
-        Cylinder(curvature=210.0).convexity == 210 and Line().convexity == pytest.approx(1e4) and Bar(width=1e-3).convexity == 0
+        Cylinder(curvature=210.0).convexity == 210
+        and Line().convexity == pytest.approx(1e4)
+        and Bar(width=1e-3).convexity == 0
     )
     x = np.linspace(-3e-3, 3e-3, 601)
     assert Points(x, Cylinder(curvature=210.0).outline(x)).convexity == pytest.approx(210, rel=0.5)
     groove = Points([-2e-3, -1e-3, 0, 1e-3, 2e-3], [0, 0, 1e-3, 0, 0])
-    assert (groove.dip, groove.steepness, groove.convexity) == pytest.approx((1e-3, 1.0, np.pi / 4 / 1e-3))
+    assert (groove.dip, groove.steepness, groove.convexity) == pytest.approx(
+        (1e-3, 1.0, np.pi / 4 / 1e-3)
+    )
 
 
 def test_symmetry_of_arcs_is_seen():
@@ -289,7 +337,9 @@ def test_symmetry_of_arcs_is_seen():
 
 
 @pytest.mark.parametrize(
-    "bend", [[100, 0, 0], [0, 0, 100], [0, 2000, 0]], ids=["arc at the start", "arc at the end", "arc smaller than its chord"]
+    "bend",
+    [[100, 0, 0], [0, 0, 100], [0, 2000, 0]],
+    ids=["arc at the start", "arc at the end", "arc smaller than its chord"],
 )
 def test_surface_must_be_single_valued_between_lines(bend):
     with pytest.raises(ValueError, match="single-valued"):
@@ -309,10 +359,14 @@ def test_nearly_flat_cylinders_are_exact(curvature):
     distance, gradient, _ = Cylinder(curvature=curvature).evaluate(at)
     np.testing.assert_allclose(distance, -at[:, 1] + curvature * at[:, 0] ** 2 / 2, rtol=1e-9)
     np.testing.assert_allclose(gradient, np.tile([0.0, -1.0], (200, 1)), atol=1e-9)
-    np.testing.assert_allclose(Cylinder(curvature=curvature).outline(at[:, 0]), curvature * at[:, 0] ** 2 / 2, rtol=1e-9)
+    np.testing.assert_allclose(
+        Cylinder(curvature=curvature).outline(at[:, 0]), curvature * at[:, 0] ** 2 / 2, rtol=1e-9
+    )
 
 
 @pytest.mark.parametrize("deep", [False, True])
 def test_a_changed_copy_has_its_own_curve(deep):
     steep = STANDARD.model_copy(update={"half_angle": np.radians(12)}, deep=deep)
-    assert STANDARD.curve is STANDARD.curve and steep.steepness == pytest.approx(np.tan(np.radians(12)))
+    assert STANDARD.curve is STANDARD.curve and steep.steepness == pytest.approx(
+        np.tan(np.radians(12))
+    )

@@ -21,7 +21,9 @@ def toy(tmp_path, monkeypatch):
             path.write_text(text)
         entry = tmp_path / "script.py"
         entry.write_text(script)
-        return {path.relative_to(tmp_path).as_posix() for path in imported_sources(entry)} - {"script.py"}
+        return {path.relative_to(tmp_path).as_posix() for path in imported_sources(entry)} - {
+            "script.py"
+        }
 
     return closure
 
@@ -39,7 +41,11 @@ def test_follows_imports_direct_indirect_relative_and_inside_functions(toy):
 
 
 def test_leaves_out_imports_for_type_checking(toy):
-    found = toy("import toy.a", a="from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import toy.b", b="")
+    found = toy(
+        "import toy.a",
+        a="from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import toy.b",
+        b="",
+    )
     assert found == {"toy/__init__.py", "toy/a.py"}
 
 
@@ -65,9 +71,16 @@ def test_names_a_module_that_does_not_exist(toy):
 
 
 def test_figures_do_not_rest_on_the_mechanics():
-    names = {path.relative_to(provenance.PACKAGE).as_posix() for path in imported_sources("cysyk1999.figures.registry")}
+    names = {
+        path.relative_to(provenance.PACKAGE).as_posix()
+        for path in imported_sources("cysyk1999.figures.registry")
+    }
     assert "figures/registry.py" in names and "receptors/laws.py" in names
-    assert not [name for name in names if name.startswith(("mechanics/", "planning/plan.py", "receptors/material_points.py"))]
+    assert not [
+        name
+        for name in names
+        if name.startswith(("mechanics/", "planning/plan.py", "receptors/material_points.py"))
+    ]
 
 
 def test_digest_follows_content_not_time_or_order(tmp_path):
@@ -88,7 +101,10 @@ def test_what_was_followed_is_kept_until_a_file_changes(toy, tmp_path, monkeypat
     first = toy("import toy.a", **files)
     entry = tmp_path / "script.py"
     monkeypatch.setattr(provenance, "_followed", lambda entries: 1 / 0)
-    assert {path.name for path in imported_sources(entry)} == {"script.py", *(name.rpartition("/")[2] for name in first)}
+    assert {path.name for path in imported_sources(entry)} == {
+        "script.py",
+        *(name.rpartition("/")[2] for name in first),
+    }
     (tmp_path / "toy" / "b.py").write_text("import toy.c")
     with pytest.raises(ZeroDivisionError):
         imported_sources(entry)

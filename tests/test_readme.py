@@ -56,7 +56,9 @@ def ran(tmp_path_factory):
 def test_the_scene_gives_its_frozen_depth_and_its_picture(ran):
     history = ran["names"]["history"]
     assert float(history.indentation_depth[-1]) * 1e3 == pytest.approx(FROZEN_DEPTH_MM, rel=1e-4)
-    assert (ran["folder"] / "first_scene.png").stat().st_size > 20_000 and (ROOT / "docs/_static/first_scene.png").exists()
+    assert (ran["folder"] / "first_scene.png").stat().st_size > 20_000 and (
+        ROOT / "docs/_static/first_scene.png"
+    ).exists()
     legs = json.loads((ran["folder"] / "result/summary.json").read_text())["legs"]
     assert legs[-1]["depth_mm"] == pytest.approx(FROZEN_DEPTH_MM, rel=1e-4)
 
@@ -68,9 +70,13 @@ def test_the_line_shown_is_the_line_printed(tmp_path, monkeypatch, capsys):
     Path("my_scene.yaml").write_text(scene, encoding="utf-8")
     assert main(["run", "my_scene.yaml", "--out", "result"]) == 0
     printed = capsys.readouterr().out
-    numbers = [re.findall(r"(?:depth|force|contact|about) ([\d.]+)", text) for text in (shown, printed)]
+    numbers = [
+        re.findall(r"(?:depth|force|contact|about) ([\d.]+)", text) for text in (shown, printed)
+    ]
     assert len(numbers[0]) == 4
-    assert [float(n) for n in numbers[0]] == pytest.approx([float(n) for n in numbers[1]], rel=0.02), printed
+    assert [float(n) for n in numbers[0]] == pytest.approx(
+        [float(n) for n in numbers[1]], rel=0.02
+    ), printed
 
 
 def test_there_are_two_hundred(tmp_path, capsys):
@@ -101,7 +107,14 @@ def test_commands_that_are_named_exist(ran):
 
 def test_its_verdicts_are_read_from_the_tables():
     """What they say is compared by tests/test_docs.py, as of every page."""
-    for name in ("hard_cases_stable", "hard_cases", "ranges_held_out", "axes_held_out", "trends_held_out", "beliefs_covered"):
+    for name in (
+        "hard_cases_stable",
+        "hard_cases",
+        "ranges_held_out",
+        "axes_held_out",
+        "trends_held_out",
+        "beliefs_covered",
+    ):
         assert f"<!-- {name} -->" in README, name
 
 
@@ -110,7 +123,9 @@ def test_the_citation_is_the_same_for_people_machines_and_zenodo(ran):
     zenodo = json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
     for key in ("title", "version", "license", "keywords"):
         assert zenodo[key] == cff[key], key
-    assert [each["name"] for each in zenodo["creators"]] == [each["name"] for each in cff["authors"]]
+    assert [each["name"] for each in zenodo["creators"]] == [
+        each["name"] for each in cff["authors"]
+    ]
     assert zenodo["description"] == cff["abstract"].strip()
     (thesis,) = cff["references"]
     (cited,), (listed,) = ran["cited"], zenodo["references"]

@@ -43,7 +43,13 @@ def test_kernel_weights_integrate_a_broken_line_exactly(reference, r):
     x = np.sort(random.uniform(-2e-3, 2e-3, 17))
     pressure = random.uniform(0, 1e4, 17)
     points = [p for p in (*x, reference) if x[0] < p < x[-1]]
-    exact = quad(lambda s: np.interp(s, x, pressure) * np.exp(-abs(s - reference) / r), x[0], x[-1], points=points, limit=200)[0]
+    exact = quad(
+        lambda s: np.interp(s, x, pressure) * np.exp(-abs(s - reference) / r),
+        x[0],
+        x[-1],
+        points=points,
+        limit=200,
+    )[0]
     assert kernel_weights(x, reference, r) @ pressure == pytest.approx(exact, rel=1e-9)
 
 
@@ -58,11 +64,16 @@ def test_a_place_more_or_less_does_not_change_the_sum(places, between, r):
     finer = np.unique(np.concatenate([x, (x[1:] + x[:-1]) / 2, np.clip([between], x[0], x[-1])]))
     finer = finer[np.concatenate([[True], np.diff(finer) > 1e-9])]
     finer[-1] = x[-1]
-    coarse, fine = kernel_weights(x, 0.0, r) @ pressure, kernel_weights(finer, 0.0, r) @ np.interp(finer, x, pressure)
+    coarse, fine = (
+        kernel_weights(x, 0.0, r) @ pressure,
+        kernel_weights(finer, 0.0, r) @ np.interp(finer, x, pressure),
+    )
     assert fine == pytest.approx(coarse, rel=1e-6)
 
 
-@pytest.mark.parametrize("touched", [slice(0, 0), slice(0, 1), slice(4, 5), slice(3, 9), slice(16, 17), slice(0, 17)])
+@pytest.mark.parametrize(
+    "touched", [slice(0, 0), slice(0, 1), slice(4, 5), slice(3, 9), slice(16, 17), slice(0, 17)]
+)
 def test_pressure_is_weighed_where_there_is_some_as_it_is_on_all_of_the_skin(touched):
     random = np.random.default_rng(3)
     x, reference = np.sort(random.uniform(-2e-3, 2e-3, (5, 17))), random.uniform(-1e-3, 1e-3, 5)
@@ -99,10 +110,21 @@ def test_without_the_depth_scaling_its_energy_is_not_reproduced():
     made = samples(LAW)
     found = fits.spatial_sum(made, with_depth=False)
     assert found.per_depth == 0.0
-    left = [fits.r_squared(s.energy, found.strain_energy(s.x, s.pressure, s.indentation)) for s in made]
+    left = [
+        fits.r_squared(s.energy, found.strain_energy(s.x, s.pressure, s.indentation)) for s in made
+    ]
     assert min(left) < 0.98
     misfit = [
-        sum(((s.energy - SpatialSum(found.r, 0.0, k * found.constant).strain_energy(s.x, s.pressure)) ** 2).sum() for s in made)
+        sum(
+            (
+                (
+                    s.energy
+                    - SpatialSum(found.r, 0.0, k * found.constant).strain_energy(s.x, s.pressure)
+                )
+                ** 2
+            ).sum()
+            for s in made
+        )
         for k in (0.98, 1.0, 1.02)
     ]
     assert misfit[1] == min(misfit)
@@ -113,8 +135,15 @@ def test_without_the_depth_scaling_its_energy_is_not_reproduced():
 def test_energy_grows_with_the_depth_of_indentation_and_falls_with_distance():
     x, pressure, _ = pressure_field(0)
     last = x[-1], pressure[-1]
-    assert LAW.strain_energy(*last, 1e-3) > LAW.strain_energy(*last, 0.5e-3) > LAW.strain_energy(*last, 0.5e-3, 3e-3) > 0
-    assert LAW.strain_energy(*last, 0.0) == pytest.approx(LAW.constant * LAW.weighted_pressure(*last))
+    assert (
+        LAW.strain_energy(*last, 1e-3)
+        > LAW.strain_energy(*last, 0.5e-3)
+        > LAW.strain_energy(*last, 0.5e-3, 3e-3)
+        > 0
+    )
+    assert LAW.strain_energy(*last, 0.0) == pytest.approx(
+        LAW.constant * LAW.weighted_pressure(*last)
+    )
 
 
 @pytest.mark.parametrize("shift", [-0.43e-3, 0.0, 1.1e-3])
@@ -128,7 +157,9 @@ def test_a_shift_may_follow_the_skin_frame_by_frame():
     shift = np.linspace(-1e-3, 0.5e-3, len(x))
     together = LAW.strain_energy(x, pressure, depth, shift)
     for k in (0, 12, 24):
-        assert together[k] == pytest.approx(LAW.strain_energy(x[k], pressure[k], depth[k], shift[k]))
+        assert together[k] == pytest.approx(
+            LAW.strain_energy(x[k], pressure[k], depth[k], shift[k])
+        )
 
 
 # -- Eqs 4-1 to 4-3 ---------------------------------------------------------------------------------------------------------
@@ -136,20 +167,34 @@ def test_a_shift_may_follow_the_skin_frame_by_frame():
 
 def test_pressure_terms_are_what_the_constants_multiply():
     at = {"edge_distance": 0.5e-3, "displacement": 0.2e-3, "speed": 1e-3, "curvature": 210.0}
-    constants = {"4-1": (2.0, 1e7, 500.0), "4-2": (1e7, 1e6, 20.0, 500.0), "4-3": (2.0, 1e7, 20.0, 500.0)}
-    by_hand = {"4-1": 4000 + 2000 + 500, "4-2": 2000 + 1000 + 4200 + 500, "4-3": 4000 + 2000 + 4200 + 500}
+    constants = {
+        "4-1": (2.0, 1e7, 500.0),
+        "4-2": (1e7, 1e6, 20.0, 500.0),
+        "4-3": (2.0, 1e7, 20.0, 500.0),
+    }
+    by_hand = {
+        "4-1": 4000 + 2000 + 500,
+        "4-2": 2000 + 1000 + 4200 + 500,
+        "4-3": 4000 + 2000 + 4200 + 500,
+    }
     for law, expected in by_hand.items():
         assert laws.pressure_terms(law, **at) @ constants[law] == pytest.approx(expected)
-    assert laws.pressure_terms("4-1 read without an exponent", **at) @ [1e6, 1e7, 500.0] == pytest.approx(500 + 2000 + 500)
+    assert laws.pressure_terms("4-1 read without an exponent", **at) @ [
+        1e6,
+        1e7,
+        500.0,
+    ] == pytest.approx(500 + 2000 + 500)
 
 
 @pytest.mark.parametrize("law", laws.NODE_TERMS)
 def test_constants_of_nodal_pressure_are_given_back(law):
     random = np.random.default_rng(2)
     at = {
-        "edge_distance": random.uniform(1e-4, 2e-3, 200), "displacement": random.uniform(0, 5e-4, 200),
-        "speed": random.uniform(0, 2e-3, 200), "curvature": random.choice([0.0, 79.0, 210.0, 1260.0], 200),
-    }  # fmt: skip
+        "edge_distance": random.uniform(1e-4, 2e-3, 200),
+        "displacement": random.uniform(0, 5e-4, 200),
+        "speed": random.uniform(0, 2e-3, 200),
+        "curvature": random.choice([0.0, 79.0, 210.0, 1260.0], 200),
+    }
     terms = laws.pressure_terms(law, **at)
     true = 1000.0 / np.abs(terms).mean(axis=0) * random.choice([-1, 1], terms.shape[1])
     np.testing.assert_allclose(fits.linear(terms, terms @ true), true, rtol=1e-6)
@@ -168,7 +213,9 @@ def test_jackknife_of_a_mean_is_the_standard_error_of_the_mean():
 
 def test_rate_law_has_the_thesis_constants_and_rectifies_each_term():
     assert THESIS_RATE(250.0, 600.0) == pytest.approx(0.081 * 100 + 0.0182 * 500)
-    assert THESIS_RATE(100.0, 600.0) == pytest.approx(0.0182 * 500), "energy below its threshold takes nothing away"
+    assert THESIS_RATE(100.0, 600.0) == pytest.approx(0.0182 * 500), (
+        "energy below its threshold takes nothing away"
+    )
     assert THESIS_RATE(250.0, -5000.0) == pytest.approx(0.081 * 100), "nor does a falling energy"
     assert THESIS_RATE([0.0, 150.0], [0.0, 100.0]).tolist() == [0.0, 0.0]
     assert ImpulseRate(0.081, 0.0182, 150.0, 100.0, spontaneous=3.0)(0.0, 0.0) == 3.0
@@ -178,7 +225,11 @@ def test_rate_law_has_the_thesis_constants_and_rectifies_each_term():
 @given(st.floats(0, 2e3), st.floats(-1e4, 1e4), st.floats(0, 500), st.floats(0, 5e3))
 def test_rate_never_falls_with_either_stimulus(value, rate, more, faster):
     assert THESIS_RATE(value, rate) >= 0
-    assert THESIS_RATE(value + more, rate) >= THESIS_RATE(value, rate) <= THESIS_RATE(value, rate + faster)
+    assert (
+        THESIS_RATE(value + more, rate)
+        >= THESIS_RATE(value, rate)
+        <= THESIS_RATE(value, rate + faster)
+    )
 
 
 def test_a_kink_between_legs_stays_a_jump_of_the_rate():
@@ -197,20 +248,27 @@ def test_time_above_a_threshold_is_found_between_samples():
     assert laws.time_above(*triangle, 150.0) == pytest.approx(1.5)
     assert laws.time_above(*triangle, 0.0) == pytest.approx(3.0)
     assert laws.time_above(*triangle, 300.0) == 0.0
-    assert laws.time_above([0, 1, 1, 2], [0, 0, 5, 5], 1.0) == pytest.approx(1.0), "a jump takes no time"
+    assert laws.time_above([0, 1, 1, 2], [0, 0, 5, 5], 1.0) == pytest.approx(1.0), (
+        "a jump takes no time"
+    )
 
 
 # -- impulses ------------------------------------------------------------------------------------------------------------------
 
 
-@given(st.lists(st.tuples(st.floats(0.001, 1.0), st.floats(0, 200.0)), min_size=2, max_size=20), st.floats(0, 100.0))
+@given(
+    st.lists(st.tuples(st.floats(0.001, 1.0), st.floats(0, 200.0)), min_size=2, max_size=20),
+    st.floats(0, 100.0),
+)
 def test_impulses_number_the_integral_of_the_rate(steps, first):
     time = np.concatenate([[0.0], np.cumsum([dt for dt, _ in steps])])
     rate = np.array([first, *(value for _, value in steps)])
     train = spikes.impulses(time, rate)
     total = spikes.integrated(time, rate)[-1]
     assert abs(len(train) - total) < 1 + 1e-6 and len(train) <= total * (1 + 1e-9)
-    assert (np.diff(train) >= 0).all() and (len(train) == 0 or time[0] <= train[0] <= train[-1] <= time[-1])
+    assert (np.diff(train) >= 0).all() and (
+        len(train) == 0 or time[0] <= train[0] <= train[-1] <= time[-1]
+    )
     at = np.searchsorted(time, train, side="right").clip(1, len(time) - 1) - 1
     dt = train - time[at]
     slope = (rate[at + 1] - rate[at]) / np.diff(time)[at]
@@ -232,7 +290,9 @@ def test_variability_is_seeded_and_has_the_variation_asked_for():
     intervals = np.diff(one)
     assert intervals.std() / intervals.mean() == pytest.approx(0.3, rel=0.05)
     assert len(one) == pytest.approx(8000, rel=0.02)
-    assert np.allclose(np.diff(spikes.impulses(time, rate)), 0.05), "without it the intervals are equal"
+    assert np.allclose(np.diff(spikes.impulses(time, rate)), 0.05), (
+        "without it the intervals are equal"
+    )
     with pytest.raises(ValueError, match="seed"):
         spikes.impulses(time, rate, 0.3)
 
@@ -243,7 +303,9 @@ def test_repetitions_differ_and_the_first_ones_do_not_depend_on_how_many():
     assert all(np.array_equal(a, b) for a, b in zip(four, twelve, strict=False))
     assert len({train.tobytes() for train in twelve}) == 12
     many = spikes.trains(time, rate, 200, seed=2)
-    assert np.mean([len(train) for train in many]) == pytest.approx(spikes.integrated(time, rate)[-1], abs=0.6)
+    assert np.mean([len(train) for train in many]) == pytest.approx(
+        spikes.integrated(time, rate)[-1], abs=0.6
+    )
     histogram = spikes.binned_rate(many, np.linspace(0, 8, 41))
     middle = (np.arange(40) + 0.5) * 0.2
     assert abs(histogram - np.interp(middle, time, rate)).max() < 5
@@ -285,7 +347,9 @@ def test_sensor_step_by_step_is_the_whole_recording_at_once():
     time = np.cumsum(np.random.default_rng(0).uniform(0.01, 0.05, len(x)))
     for receptors in (0.0, [-1e-3, 0.0, 0.7e-3]):
         sensor = TactileSensor(x[0], LAW, receptors=receptors)
-        stepped = np.array([sensor.step(t, p, d) for t, p, d in zip(time, pressure, depth, strict=True)])
+        stepped = np.array(
+            [sensor.step(t, p, d) for t, p, d in zip(time, pressure, depth, strict=True)]
+        )
         np.testing.assert_allclose(stepped, sensor.rates(time, pressure, depth))
         sensor.reset()
         assert np.array_equal(sensor.step(time[0], pressure[0], depth[0]), stepped[0])
@@ -301,9 +365,13 @@ def test_constants_hold_for_arrays_of_other_spacing():
     for pitch in (0.1e-3, 0.3e-3):
         edges = np.arange(-4e-3, 4e-3 + pitch / 2, pitch)
         faces = taxel_pressure(x, pressure, edges)
-        np.testing.assert_allclose((faces * np.diff(edges)).sum(1), np.trapezoid(pressure, x, axis=1), rtol=5e-3)
+        np.testing.assert_allclose(
+            (faces * np.diff(edges)).sum(1), np.trapezoid(pressure, x, axis=1), rtol=5e-3
+        )
         centres = (edges[1:] + edges[:-1]) / 2
-        np.testing.assert_allclose(LAW.strain_energy(centres, faces, depth), fine, rtol=0.03, atol=0.01 * fine.max())
+        np.testing.assert_allclose(
+            LAW.strain_energy(centres, faces, depth), fine, rtol=0.03, atol=0.01 * fine.max()
+        )
         assert TactileSensor(centres, LAW).rates(time, faces, depth).max() > 0
 
 
@@ -327,7 +395,9 @@ def test_gain_and_threshold_are_given_back_whatever_is_below(threshold):
 
 def test_a_stimulus_that_falls_predicts_the_mean():
     stimulus, rate = np.array([4.0, 3.0, 2.0, 1.0]), np.array([1.0, 2.0, 3.0, 5.0])
-    np.testing.assert_allclose(fits.gain_and_threshold(stimulus, rate)(stimulus), rate.mean(), rtol=1e-6)
+    np.testing.assert_allclose(
+        fits.gain_and_threshold(stimulus, rate)(stimulus), rate.mean(), rtol=1e-6
+    )
 
 
 def test_leaving_one_out_does_not_see_what_it_predicts():
@@ -337,8 +407,12 @@ def test_leaving_one_out_does_not_see_what_it_predicts():
     groups = np.arange(4)
     assert fits.leave_one_out(stimulus, spoiled, groups)[2] == pytest.approx(6.0)
     assert fits.leave_one_out(stimulus, rate, groups) == pytest.approx(rate)
-    together = fits.leave_one_out(np.repeat(stimulus, 2), np.repeat(spoiled, 2), np.repeat(groups, 2))
-    assert together[4:6] == pytest.approx([6.0, 6.0]), "all rates of a curvature are left out together"
+    together = fits.leave_one_out(
+        np.repeat(stimulus, 2), np.repeat(spoiled, 2), np.repeat(groups, 2)
+    )
+    assert together[4:6] == pytest.approx([6.0, 6.0]), (
+        "all rates of a curvature are left out together"
+    )
 
 
 def test_mean_over_time_respects_jumps_and_uneven_samples():
@@ -356,10 +430,16 @@ def test_committed_rates_are_those_published():
     rates = read_rates(PUBLISHED, ROOT / "config" / "reference" / "recordings")
     goodwin = rates[rates["source"].str.startswith("Goodwin")]
     assert len(goodwin) == 21 and set(goodwin["force_gf"]) == {10, 15, 20}
-    assert (goodwin.groupby("recording")["rate_per_s"].diff().dropna() > 0).all(), "they rise with curvature"
-    thesis = rates[rates["source"].str.startswith("Cysyk")].set_index("curvature_per_m")["rate_per_s"]
+    assert (goodwin.groupby("recording")["rate_per_s"].diff().dropna() > 0).all(), (
+        "they rise with curvature"
+    )
+    thesis = rates[rates["source"].str.startswith("Cysyk")].set_index("curvature_per_m")[
+        "rate_per_s"
+    ]
     assert thesis[1259.84] == 25.3 and thesis[629.92] == 23.7
-    assert set(rates.loc[rates["species"] == "model", "recording"].str.split(",").str[0]) == {"TouchSim"}
+    assert set(rates.loc[rates["species"] == "model", "recording"].str.split(",").str[0]) == {
+        "TouchSim"
+    }
     assert (rates["how_obtained"] != "").all() and (rates["source"] != "").all()
 
 
@@ -373,16 +453,31 @@ def test_a_users_recording_joins(tmp_path):
     assert len(both) == len(read_rates(PUBLISHED)) + 1
     assert both.iloc[-1]["recording"] == "mine" and both.iloc[-1]["file"] == "mine.csv"
     (tmp_path / "none").mkdir()
-    assert read_rates(tmp_path / "none").empty and list(read_rates(tmp_path / "none")) == [*RATES, "file"]
+    assert read_rates(tmp_path / "none").empty and list(read_rates(tmp_path / "none")) == [
+        *RATES,
+        "file",
+    ]
 
 
 WRONG = {
-    "no unit of window": (ROW.replace(",hold,", ",whole,"), "column window: 'whole'; allowed: peak, hold, "),
-    "negative rate": (ROW.replace("12.5", "-1"), "column rate_per_s: '-1'; allowed: a number from 0"),
+    "no unit of window": (
+        ROW.replace(",hold,", ",whole,"),
+        "column window: 'whole'; allowed: peak, hold, ",
+    ),
+    "negative rate": (
+        ROW.replace("12.5", "-1"),
+        "column rate_per_s: '-1'; allowed: a number from 0",
+    ),
     "no source": (ROW.replace("my notebook", ""), "column source: ''; allowed: text"),
-    "burst of a press": (ROW.replace(",hold,", ",burst,"), "column window: 'burst'; allowed: peak, hold"),
+    "burst of a press": (
+        ROW.replace(",hold,", ",burst,"),
+        "column window: 'burst'; allowed: peak, hold",
+    ),
     "hold of a stroke": (ROW.replace(",40,0,", ",,10,"), "column window: 'hold'; allowed: burst"),
-    "twice": (f"{ROW}\n{ROW}", "the hold of mine at 210 1/m, 20 gf is given twice; allowed: each once"),
+    "twice": (
+        f"{ROW}\n{ROW}",
+        "the hold of mine at 210 1/m, 20 gf is given twice; allowed: each once",
+    ),
 }
 
 
@@ -391,7 +486,11 @@ def test_a_wrong_recording_is_refused_in_one_line(tmp_path, row, message):
     (tmp_path / "mine.csv").write_text(f"{HEADER}\n{row}\n")
     with pytest.raises(ReferenceDataError) as error:
         read_rates(tmp_path)
-    assert message in str(error.value) and "\n" not in str(error.value) and "mine.csv" in str(error.value)
+    assert (
+        message in str(error.value)
+        and "\n" not in str(error.value)
+        and "mine.csv" in str(error.value)
+    )
 
 
 # -- histories -------------------------------------------------------------------------------------------------------------------
@@ -410,7 +509,9 @@ def test_a_kernel_without_decay_sums_the_pressure_to_the_force(histories):
     for name, history in histories.items():
         sample = responses.skin_sample(history, 915e-6)
         total = SpatialSum(1e3, 0.0, 1.0).weighted_pressure(sample.x, sample.pressure)
-        late = history.force.values > 0.3 * history.force.values.max()  # contact wider than a few nodes
+        late = (
+            history.force.values > 0.3 * history.force.values.max()
+        )  # contact wider than a few nodes
         np.testing.assert_allclose(total[late], history.force.values[late], rtol=0.05, err_msg=name)
 
 
@@ -419,13 +520,22 @@ def test_pressure_predicts_the_energy_under_it(histories):
     law = fits.spatial_sum(chosen)
     assert 0.3e-3 < law.r < 0.7e-3 and law.constant > 0
     for sample in chosen:
-        assert fits.r_squared(sample.energy, law.strain_energy(sample.x, sample.pressure, sample.indentation)) > 0.75
-    shallow = fits.spatial_sum([responses.skin_sample(histories[name], 600e-6) for name in PRESSED[:3]])
+        assert (
+            fits.r_squared(
+                sample.energy, law.strain_energy(sample.x, sample.pressure, sample.indentation)
+            )
+            > 0.75
+        )
+    shallow = fits.spatial_sum(
+        [responses.skin_sample(histories[name], 600e-6) for name in PRESSED[:3]]
+    )
     assert shallow.r < 0.7 * law.r, "the deeper, the wider"
     frame = responses.energy_from_pressure(histories["ramp40_k210"], 915e-6, law)
     assert fits.r_squared(frame[SED], frame[responses.SED_LAW]) > 0.8
     far = responses.energy_from_pressure(histories["ramp40_k210"], 915e-6, law, shift=2e-3)
-    assert far[responses.SED_LAW].max() < 0.2 * frame[SED].max(), "a receptor that moved away is left alone"
+    assert far[responses.SED_LAW].max() < 0.2 * frame[SED].max(), (
+        "a receptor that moved away is left alone"
+    )
 
 
 def test_thesis_constants_predict_the_legible_rates(histories):
@@ -439,33 +549,52 @@ def test_rates_peak_at_the_top_of_the_ramp_and_rise_with_curvature(histories):
     for name in PRESSED[:3]:
         frame = responses.predicted_rate(histories[name])
         top = float(histories[name].time[ramp_end(histories[name])])
-        peak, hold, first = (responses.rate_in(histories[name], window) for window in ("peak", "hold", "first second"))
+        peak, hold, first = (
+            responses.rate_in(histories[name], window)
+            for window in ("peak", "hold", "first second")
+        )
         if name != "ramp40_flat":
-            assert frame[TIME][frame[responses.IMPULSE_RATE].idxmax()] == pytest.approx(top, abs=0.05)
+            assert frame[TIME][frame[responses.IMPULSE_RATE].idxmax()] == pytest.approx(
+                top, abs=0.05
+            )
             assert peak > hold > frame[responses.IMPULSE_RATE].iloc[-1] > 0, "it adapts"
         early = spikes.impulses(frame[TIME], frame[responses.IMPULSE_RATE])
         assert (early <= 1.0).sum() == pytest.approx(first, abs=1)
-        assert (frame[responses.STATIC] + frame[responses.DYNAMIC]).equals(frame[responses.IMPULSE_RATE])
+        assert (frame[responses.STATIC] + frame[responses.DYNAMIC]).equals(
+            frame[responses.IMPULSE_RATE]
+        )
         peaks.append(peak)
         holds.append(hold)
     assert peaks == sorted(peaks) and holds == sorted(holds)
 
 
-def test_rapidly_adapting_receptors_fire_at_the_ramps_beginning_if_the_skins_curvature_drives_them(histories):
+def test_rapidly_adapting_receptors_fire_at_the_ramps_beginning_if_the_skins_curvature_drives_them(
+    histories,
+):
     """Thesis section 4.2: at the beginning of the ramp or not at all, whatever the curvature. Of the two, the first holds."""
     table = sensing.rapidly_adapting({name: histories[name] for name in PRESSED[:3]})
-    curvature, strain = (table[table["responds to the rate of"] == name] for name in sensing.RAPIDLY_ADAPTING)
-    assert (curvature["response ends (share of the ramp)"] <= 0.6).all() and (curvature["impulses in the hold"] == 0).all()
+    curvature, strain = (
+        table[table["responds to the rate of"] == name] for name in sensing.RAPIDLY_ADAPTING
+    )
+    assert (curvature["response ends (share of the ramp)"] <= 0.6).all() and (
+        curvature["impulses in the hold"] == 0
+    ).all()
     assert (curvature["impulses in the ramp"] > 1).all()
     largest = curvature["largest rate (impulses/s)"]
     assert largest.max() < 1.05 * largest.min(), "how fast does not tell the surface"
-    assert (strain["response ends (share of the ramp)"] >= 1).all(), "strain energy drives them all through the ramp"
+    assert (strain["response ends (share of the ramp)"] >= 1).all(), (
+        "strain energy drives them all through the ramp"
+    )
 
 
 def test_sensor_knows_less_from_pressure_alone(histories):
     table = sensing.sensor_accuracy({name: histories[name] for name in PRESSED[:3]})
-    at_nodes = table[table["spacing (mm)"] < 0.3].set_index(["knows", "scene"])["rms_error (impulses/s)"]
-    assert len(at_nodes) == 6 and (at_nodes["pressure and indentation"] < at_nodes["pressure"]).all()
+    at_nodes = table[table["spacing (mm)"] < 0.3].set_index(["knows", "scene"])[
+        "rms_error (impulses/s)"
+    ]
+    assert (
+        len(at_nodes) == 6 and (at_nodes["pressure and indentation"] < at_nodes["pressure"]).all()
+    )
     assert at_nodes["pressure and indentation"].max() < 6
     assert set(table["spacing (mm)"]) >= {0.5, 1.0}
 
@@ -474,11 +603,18 @@ def test_contact_nodes_are_rows_in_contact_off_the_edge(histories):
     nodes = responses.contact_nodes(histories["ramp40_k210"])
     assert (nodes[responses.P] > 0).all() and (nodes[responses.EDGE_DISTANCE] > 0.05).all()
     places = nodes[responses.NODE].unique() * 1e-3 / responses.NODE_SPACING
-    np.testing.assert_allclose(places, np.arange(len(places)), atol=1e-9, err_msg="the thesis's places, whatever the mesh")
-    assert (nodes[responses.BELOW_EDGE] > 0).all(), "skin under a cylinder is deeper than at its edge"
+    np.testing.assert_allclose(
+        places, np.arange(len(places)), atol=1e-9, err_msg="the thesis's places, whatever the mesh"
+    )
+    assert (nodes[responses.BELOW_EDGE] > 0).all(), (
+        "skin under a cylinder is deeper than at its edge"
+    )
     assert (nodes.loc[nodes["ramp"], responses.NODE_SPEED] > 0).mean() > 0.95
     fitted = responses.pressure_by_law("4-1", nodes, responses.fit_nodes("4-1", nodes))
-    assert len(fitted) < len(nodes) and fits.r_squared(fitted[responses.P], fitted[responses.P_LAW]) > 0.3
+    assert (
+        len(fitted) < len(nodes)
+        and fits.r_squared(fitted[responses.P], fitted[responses.P_LAW]) > 0.3
+    )
 
 
 # -- strokes (made up) --------------------------------------------------------------------------------------------------------
@@ -497,27 +633,40 @@ def test_burst_of_a_convexity_is_as_wide_as_its_energy_is_high(stroke):
         half[label] = 0.3 * (arc.end - arc.start)
         value = np.maximum(value, 200 - 50 * abs(under - (arc.start + arc.end) / 2) / half[label])
     made = stroke.copy()
-    made["strain_energy_density"] = stroke["strain_energy_density"].copy(data=np.column_stack([value, value]))
+    made["strain_energy_density"] = stroke["strain_energy_density"].copy(
+        data=np.column_stack([value, value])
+    )
     bursts = responses.bursts(made).set_index("convexity")
     assert list(bursts.index) == list(convexities(stroke))
     for label, width in half.items():
-        assert bursts.loc[label, responses.BURST_WIDTH] == pytest.approx(2e3 * width, rel=0.15, abs=0.15)
-        assert bursts.loc[label, responses.BURST_TIME] == pytest.approx(bursts.loc[label, responses.BURST_WIDTH] / 10, rel=0.05)
+        assert bursts.loc[label, responses.BURST_WIDTH] == pytest.approx(
+            2e3 * width, rel=0.15, abs=0.15
+        )
+        assert bursts.loc[label, responses.BURST_TIME] == pytest.approx(
+            bursts.loc[label, responses.BURST_WIDTH] / 10, rel=0.05
+        )
         assert bursts.loc[label, responses.BURST_RATE] > 0
     wide, narrow = responses.bursts(made, threshold=120.0), responses.bursts(made, threshold=190.0)
     assert (wide[responses.BURST_WIDTH] > narrow[responses.BURST_WIDTH]).all()
-    assert (responses.bursts(made, threshold=250.0)[[responses.BURST_WIDTH, responses.BURST_RATE]] == 0).all(axis=None)
+    assert (
+        responses.bursts(made, threshold=250.0)[[responses.BURST_WIDTH, responses.BURST_RATE]] == 0
+    ).all(axis=None)
 
 
 def test_raster_of_a_stroke_and_its_histogram_count_the_same(stroke):
     frame = responses.predicted_rate(stroke, law=ImpulseRate(0.3, 0.0, 0.0, 0.0))
     impulses = responses.raster(frame, repetitions=12, seed=3)
     assert impulses.equals(responses.raster(frame, repetitions=12, seed=3))
-    assert set(impulses["trial"]) == set(range(1, 13)) and impulses[DISTANCE].is_monotonic_increasing is False
+    assert (
+        set(impulses["trial"]) == set(range(1, 13))
+        and impulses[DISTANCE].is_monotonic_increasing is False
+    )
     histogram = responses.stroke_histogram(frame, impulses, 12)
     assert np.allclose(np.diff(histogram[DISTANCE]), 0.5)
     sliding = impulses[impulses[DISTANCE] > 0]
-    assert histogram[responses.IMPULSE_RATE].sum() * 0.05 * 12 == pytest.approx(len(sliding), rel=0.02)
+    assert histogram[responses.IMPULSE_RATE].sum() * 0.05 * 12 == pytest.approx(
+        len(sliding), rel=0.02
+    )
     mean = spikes.integrated(frame[TIME], frame[responses.IMPULSE_RATE])[-1]
     assert len(impulses) / 12 == pytest.approx(mean, rel=0.03)
     at = np.linspace(1, 8, 50)
@@ -529,10 +678,18 @@ def test_raster_of_a_stroke_and_its_histogram_count_the_same(stroke):
 
 
 def test_trials_without_an_impulse_count_as_trials():
-    frame = pd.DataFrame({TIME: [0.0, 1.0, 2.0], DISTANCE: [0.0, 10.0, 20.0], responses.IMPULSE_RATE: [0.2, 0.2, 0.2]})
+    frame = pd.DataFrame(
+        {
+            TIME: [0.0, 1.0, 2.0],
+            DISTANCE: [0.0, 10.0, 20.0],
+            responses.IMPULSE_RATE: [0.2, 0.2, 0.2],
+        }
+    )
     impulses = responses.raster(frame, 300, seed=1)
     assert impulses["trial"].nunique() < 150
-    assert responses.stroke_histogram(frame, impulses, 300)[responses.IMPULSE_RATE].mean() == pytest.approx(0.2, rel=0.15)
+    assert responses.stroke_histogram(frame, impulses, 300)[
+        responses.IMPULSE_RATE
+    ].mean() == pytest.approx(0.2, rel=0.15)
 
 
 # -- the study on made-up histories ------------------------------------------------------------------------------------------
@@ -554,12 +711,18 @@ def test_the_law_behind_the_energies_is_what_the_study_finds(made_up):
             sample = responses.skin_sample(history, depth)
             law = SpatialSum(0.5 * depth, 3e4, 10.0)
             columns.append(law.strain_energy(sample.x, sample.pressure, sample.indentation))
-        made[name] = history.assign(strain_energy_density=(("time", "receptor"), np.column_stack(columns)))
+        made[name] = history.assign(
+            strain_energy_density=(("time", "receptor"), np.column_stack(columns))
+        )
     table = study.receptor_fits(made, {}, read_rates(PUBLISHED))
     assert list(table.columns) == list(study.FIT_COLUMNS)
     r = table[(table["law"] == "4-4") & (table["quantity"] == "r")]
     np.testing.assert_allclose(r["estimate"], 0.5e-3 * r["receptor_depth (um)"], rtol=1e-3)
-    assert (r["r_squared"] > 0.999999).all() and (r["low_95"] <= r["estimate"]).all() and (r["estimate"] <= r["high_95"]).all()
+    assert (
+        (r["r_squared"] > 0.999999).all()
+        and (r["low_95"] <= r["estimate"]).all()
+        and (r["estimate"] <= r["high_95"]).all()
+    )
     assert (table.loc[table["law"] == "4-1, a set for each node", "low_95"].notna()).all()
     assert "not compared" not in set(table.loc[table["scenes"].str.contains("20 gf"), "quantity"])
 
@@ -568,18 +731,24 @@ def test_a_candidate_that_made_the_rates_wins(made_up):
     histories = {name: h for name, h in made_up.items() if name.startswith("ramp40_")}
     for name, history in histories.items():
         worse = 0.5 * history["strain_energy_density"] ** 0.5
-        deep = {variable for variable, _, at_depth in responses.CANDIDATES.values() if at_depth} - {"strain_energy_density"}
+        deep = {variable for variable, _, at_depth in responses.CANDIDATES.values() if at_depth} - {
+            "strain_energy_density"
+        }
         histories[name] = history.assign(dict.fromkeys(deep, worse))
     rows = []
     for label in ("79", "158", "315", "630", "1260"):
         history = histories[f"ramp40_k{label}"]
         mean = impulse_rates.windowed(history, history.time.values, energy(history, 915e-6), "hold")
         k = responses.curvature_of(history)
-        rows.append(f"made up,SA-I,monkey,cylinder,{k},,20,40,0,hold,{max(0.1 * (mean - 50), 0)},,,none,none")
+        rows.append(
+            f"made up,SA-I,monkey,cylinder,{k},,20,40,0,hold,{max(0.1 * (mean - 50), 0)},,,none,none"
+        )
     table = candidates.candidate_stimuli(histories, _read(rows))
     best = table.iloc[0]
     assert best["candidate"] == "strain energy, instantaneous elastic" and best["rank"] == 1
-    assert best["gain (impulses/s per unit)"] == pytest.approx(0.1, rel=1e-3) and best["threshold"] == pytest.approx(50, abs=1)
+    assert best["gain (impulses/s per unit)"] == pytest.approx(0.1, rel=1e-3) and best[
+        "threshold"
+    ] == pytest.approx(50, abs=1)
     assert (
         best["left_out_rms (impulses/s)"]
         < 0.05 * table.loc[table["candidate"] == "curvature", "left_out_rms (impulses/s)"].iloc[0]
@@ -606,7 +775,13 @@ def test_uncertain_surfaces_are_read_in_every_way_that_rises():
 def test_without_pressed_surfaces_nothing_is_made_up(stroke):
     rates = read_rates(PUBLISHED)
     table = study.receptor_fits({"stroke_10": stroke}, {}, rates)
-    assert set(table["quantity"]) <= {"A1", "A2", "threshold of the energy", "threshold of the rate", "not compared"}
+    assert set(table["quantity"]) <= {
+        "A1",
+        "A2",
+        "threshold of the energy",
+        "threshold of the rate",
+        "not compared",
+    }
     assert candidates.candidate_stimuli({"stroke_10": stroke}, rates).empty
     with pytest.raises(ValueError, match="ramp40_"):
         sensing.sensor_accuracy({"stroke_10": stroke})

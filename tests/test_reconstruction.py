@@ -12,7 +12,14 @@ from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.design import FITTED, run_design, table
 from cysyk1999.studies.reconstruction.epidermis import judged
 from cysyk1999.studies.reconstruction.evidence import Evidence, read_evidence, values_of
-from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT, Problem, infer, recovery, shares_of
+from cysyk1999.studies.reconstruction.inference import (
+    EPIDERMIS,
+    SOFT,
+    Problem,
+    infer,
+    recovery,
+    shares_of,
+)
 from cysyk1999.studies.reconstruction.specimen import most_probable, specimen_text
 from cysyk1999.studies.reconstruction.unknowns import LOAD, STIFFNESS, read_unknowns
 from fingerpad.documents import SceneError
@@ -22,7 +29,10 @@ from fingerpad.simulation import simulate
 
 pytestmark = pytest.mark.unit
 CONFIG = Path(__file__).parents[1] / "config"
-EVIDENCE, UNKNOWNS = CONFIG / "reference/reconstruction_evidence.csv", CONFIG / "reconstruction/unknowns.yaml"
+EVIDENCE, UNKNOWNS = (
+    CONFIG / "reference/reconstruction_evidence.csv",
+    CONFIG / "reconstruction/unknowns.yaml",
+)
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +88,9 @@ def test_what_is_inside_is_as_good_and_what_is_outside_counts_by_tolerances(evid
     assert evidence.departure(high + 2 * tolerance) == pytest.approx(2)
     assert evidence.departure(low - 3 * tolerance) == pytest.approx(3)
     assert evidence.distance(high + tolerance) == pytest.approx(len(high))
-    assert evidence.departure(high + 5 * tolerance, more=np.sqrt(24) * tolerance) == pytest.approx(1)
+    assert evidence.departure(high + 5 * tolerance, more=np.sqrt(24) * tolerance) == pytest.approx(
+        1
+    )
     assert sum(evidence.by_family(high + tolerance).values()) == pytest.approx(len(high))
 
 
@@ -86,7 +98,11 @@ def test_a_factor_on_all_moduli_multiplies_pressures_and_not_lengths(evidence):
     values = np.ones(len(evidence.rows))
     one, half = (evidence.shown(values, np.array(s), np.array(10.0)) for s in (1.0, 0.5))
     same = evidence.rows["unit"].isin(("mm", "1")).to_numpy()
-    assert (half[same] == one[same]).all() and (half[~same] == 0.5 * one[~same]).all() and 20 < same.sum() < 60
+    assert (
+        (half[same] == one[same]).all()
+        and (half[~same] == 0.5 * one[~same]).all()
+        and 20 < same.sum() < 60
+    )
     force = evidence.rows["unit"].eq("N").to_numpy()
     assert (evidence.shown(values, np.array(1.0), np.array(20.0))[force] == 2 * one[force]).all()
 
@@ -98,7 +114,9 @@ def test_a_pad_is_inside_the_evidence_that_it_would_have_left(evidence):
         shown = low + (high - low) * rng.uniform(-1.5, 2.5, len(low))
         ratio = evidence.rows["measure"].str.contains("over")
         least = np.where(evidence.rows["measure"] == "late_change", -0.9, np.where(ratio, 0.5, 0.0))
-        most = np.where(evidence.rows["measure"] == "late_change", 0.9, np.where(ratio, 1.9, np.inf))
+        most = np.where(
+            evidence.rows["measure"] == "late_change", 0.9, np.where(ratio, 1.9, np.inf)
+        )
         left = evidence.as_thesis(shown := np.clip(shown, least, most))
         assert left.distance(shown) == pytest.approx(0)
         assert (left.rows["high"] > left.rows["low"]).all()
@@ -120,7 +138,11 @@ def test_priors_have_the_quantiles_that_they_state(known):
 def test_shares_and_values_of_the_design_are_each_others_inverse_and_even(known):
     drawn = known.draw()
     shares = known.to_unit(drawn)
-    assert shares.shape == (known.design.pads, len(known.axes)) and shares.min() >= 0 and shares.max() <= 1
+    assert (
+        shares.shape == (known.design.pads, len(known.axes))
+        and shares.min() >= 0
+        and shares.max() <= 1
+    )
     back = known.from_unit(shares)
     assert all(back[name] == pytest.approx(drawn[name]) for name in known.axes)
     assert np.abs(shares[:64].mean(axis=0) - 0.5).max() < 0.02  # of any power of two of the first
@@ -129,8 +151,14 @@ def test_shares_and_values_of_the_design_are_each_others_inverse_and_even(known)
 @pytest.mark.parametrize(
     "change, wrong",
     [
-        ({"apex_radius": {"range": ["12 mm", "7 mm"], "prior": "uniform", "source": "x"}}, "is not rising"),
-        ({"apex_radius": {"range": ["7 in", "12 in"], "prior": "uniform", "source": "x"}}, "not a number with a known unit"),
+        (
+            {"apex_radius": {"range": ["12 mm", "7 mm"], "prior": "uniform", "source": "x"}},
+            "is not rising",
+        ),
+        (
+            {"apex_radius": {"range": ["7 in", "12 in"], "prior": "uniform", "source": "x"}},
+            "not a number with a known unit",
+        ),
         ({"apex_radius": {"range": ["7 mm", "12 mm"], "source": "x"}}, "says not one prior"),
     ],
 )
@@ -153,7 +181,9 @@ def test_the_pad_chosen_before_is_on_the_axes_of_the_design():
         assert getattr(found.outline, name) == pytest.approx(getattr(thesis.outline, name)), name
     for layer in ("epidermis", "dermis", "fat"):
         for key in ("youngs_modulus", "poisson_ratio"):
-            assert getattr(getattr(found.layers, layer), key) == pytest.approx(getattr(getattr(thesis.layers, layer), key))
+            assert getattr(getattr(found.layers, layer), key) == pytest.approx(
+                getattr(getattr(thesis.layers, layer), key)
+            )
     assert found.contact_length == pytest.approx(10e-3)
     assert found.prony == thesis.prony and not pads.scene(pads.CHOSEN, "158").friction
 
@@ -164,7 +194,9 @@ def test_the_bulk_modulus_changes_and_the_shear_modulus_stays():
         ratio = 2 * (1 + nu) / (3 * (1 - 2 * nu))
         assert ratio == pytest.approx(factor * 2 * 1.48 / (3 * 0.04))
         layer = pads.scene(pads.CHOSEN | {"bulk_modulus": factor}, "flat").specimen.layers.dermis
-        assert layer.youngs_modulus / (2 * (1 + nu)) == pytest.approx(0.015e6 / 2.96) and layer.poisson_ratio == pytest.approx(nu)
+        assert layer.youngs_modulus / (2 * (1 + nu)) == pytest.approx(
+            0.015e6 / 2.96
+        ) and layer.poisson_ratio == pytest.approx(nu)
 
 
 def test_a_pad_without_fat_beside_its_bone_cannot_be():
@@ -183,10 +215,12 @@ def test_pads_that_cannot_be_have_no_posterior(known):
         def __call__(self, shares):
             return 8.5 - known.from_unit(np.asarray(shares))["apex_radius"][:, None]
 
-    found = infer(replace(_problem(known, "long_term", pressure=(0.0, 1e6)), room=Room()), draws=2**13)
-    assert found.problem.pad(found.samples)["apex_radius"].max() < 8.5 and found.log_evidence == pytest.approx(
-        np.log(0.1), abs=0.1
+    found = infer(
+        replace(_problem(known, "long_term", pressure=(0.0, 1e6)), room=Room()), draws=2**13
     )
+    assert found.problem.pad(found.samples)[
+        "apex_radius"
+    ].max() < 8.5 and found.log_evidence == pytest.approx(np.log(0.1), abs=0.1)
 
 
 @pytest.mark.verification
@@ -200,7 +234,9 @@ def test_moduli_read_as_instantaneous_are_a_factor_on_load_and_bulk_modulus():
     for name, unit in pads.MEASURES.items():
         factor = 1 if unit in pads.SCALE_FREE else left
         assert factor * scaled[name] == pytest.approx(direct[name], rel=1e-5), name
-    assert left * other["energy_915"] > 1.1 * direct["energy_915"]  # so the bulk modulus is an unknown of its own
+    assert (
+        left * other["energy_915"] > 1.1 * direct["energy_915"]
+    )  # so the bulk modulus is an unknown of its own
 
 
 def test_a_design_goes_on_where_it_was_stopped(tmp_path, known, monkeypatch):
@@ -220,7 +256,10 @@ def test_a_design_goes_on_where_it_was_stopped(tmp_path, known, monkeypatch):
     assert len({pad for pad, _ in done}) == 16 and len(done) > first
     run_design(few, tmp_path / "design.jsonl")
     found = table(tmp_path / "design.jsonl")
-    assert len(found) == 16 == found["pad"].nunique() and found["diagnosis"].str.contains("too rough").any()
+    assert (
+        len(found) == 16 == found["pad"].nunique()
+        and found["diagnosis"].str.contains("too rough").any()
+    )
 
 
 # --- emulator ----------------------------------------------------------------------------------------------
@@ -230,7 +269,11 @@ def _smooth(x):
     """Three measures of pads at shares (n, 4): an exact quadratic in the logarithm, a wavy one, and one with a sign."""
     a, b, c, _ = x.T
     return pd.DataFrame(
-        {"flat: peak": np.exp(1 + a + a * b), "flat: width_end": 2 + np.sin(3 * a) * c, "flat: late_change": a - b**2}
+        {
+            "flat: peak": np.exp(1 + a + a * b),
+            "flat: width_end": 2 + np.sin(3 * a) * c,
+            "flat: late_change": a - b**2,
+        }
     )
 
 
@@ -242,11 +285,15 @@ def test_the_emulator_states_the_error_that_it_makes():
     made = Emulator.fit(x, _smooth(x))
     truth, found = _smooth(new).to_numpy(), made(new)
     assert list(made.logarithmic) == [True, True, False] and made.q2.min() > 0.99
-    assert found[:, 0] == pytest.approx(truth[:, 0], rel=1e-3) and found[:, 2] == pytest.approx(truth[:, 2], abs=1e-3)
+    assert found[:, 0] == pytest.approx(truth[:, 0], rel=1e-3) and found[:, 2] == pytest.approx(
+        truth[:, 2], abs=1e-3
+    )
     really = np.sqrt(np.mean(np.log(found[:, 1] / truth[:, 1]) ** 2))
     assert 0.3 * made.error[1] < really < 2 * made.error[1] < 0.05
     one = made.only(["flat: late_change", "flat: peak"])
-    assert one(new) == pytest.approx(found[:, [2, 0]]) and one.error == pytest.approx(made.error[[2, 0]])
+    assert one(new) == pytest.approx(found[:, [2, 0]]) and one.error == pytest.approx(
+        made.error[[2, 0]]
+    )
     noisy = Emulator.fit(x, _smooth(x) * np.exp(0.1 * rng.normal(size=(150, 3))))
     assert noisy.error[0] == pytest.approx(0.1, rel=0.35)
 
@@ -268,18 +315,30 @@ class _Known:
 
 
 def _problem(known, reading, radius=(8.0, 9.0), pressure=(1600.0, 1800.0), tolerance=(0.01, 1.0)):
-    rows = pd.DataFrame({
-        "surface": "flat", "measure": ["width_end", "peak"], "factor": 1.0,
-        "low": [radius[0], pressure[0]], "high": [radius[1], pressure[1]],
-        "unit": ["mm", "Pa"], "tolerance": tolerance, "family": ["width", "pressure"], "role": "fitted",
-    })  # fmt: skip
+    rows = pd.DataFrame(
+        {
+            "surface": "flat",
+            "measure": ["width_end", "peak"],
+            "factor": 1.0,
+            "low": [radius[0], pressure[0]],
+            "high": [radius[1], pressure[1]],
+            "unit": ["mm", "Pa"],
+            "tolerance": tolerance,
+            "family": ["width", "pressure"],
+            "role": "fitted",
+        }
+    )
     return Problem(known, reading, _Known(known), Evidence(rows))
 
 
-def test_the_posterior_of_an_interval_is_the_interval_and_its_evidence_its_share_of_the_prior(known):
+def test_the_posterior_of_an_interval_is_the_interval_and_its_evidence_its_share_of_the_prior(
+    known,
+):
     found = infer(_problem(known, "long_term", pressure=(0.0, 1e6)), draws=2**13)
     radius = found.problem.pad(found.samples)["apex_radius"]
-    assert 7.9 < radius.min() and radius.max() < 9.1 and radius.mean() == pytest.approx(8.5, abs=0.06)
+    assert (
+        7.9 < radius.min() and radius.max() < 9.1 and radius.mean() == pytest.approx(8.5, abs=0.06)
+    )
     assert found.log_evidence == pytest.approx(np.log(1 / 5), abs=2 * found.error)
     assert found.least_distance == pytest.approx(0, abs=1e-6)
     fat = found.problem.pad(found.samples)["fat_thickness"]  # of which nothing is told
@@ -292,10 +351,15 @@ def test_readings_compare_by_their_evidence(known):
     fits = infer(_problem(known, "instantaneous", pressure=(1600.0, 1800.0), **wide), draws=2**13)
     not_ = infer(_problem(known, "long_term", pressure=(2400.0, 2600.0), **wide), draws=2**13)
     share = shares_of([fits, not_]).set_index("reading")["probability (1)"]
-    assert share["instantaneous"] > 0.999 and fits.table().set_index("quantity").loc[SOFT, "median"] == 0.5759
+    assert (
+        share["instantaneous"] > 0.999
+        and fits.table().set_index("quantity").loc[SOFT, "median"] == 0.5759
+    )
     pad = fits.problem.pad(fits.samples)
     assert pad[EPIDERMIS] == pytest.approx(0.5759) and pad["bulk_modulus"] == pytest.approx(1.7364)
-    assert pad[STIFFNESS] == pytest.approx(1) and pad[LOAD] == pytest.approx(pad["line_load"] / 0.5759)
+    assert pad[STIFFNESS] == pytest.approx(1) and pad[LOAD] == pytest.approx(
+        pad["line_load"] / 0.5759
+    )
 
 
 def test_known_pads_are_found_again(known):
@@ -310,7 +374,9 @@ def test_known_pads_are_found_again(known):
 
 def test_a_reading_of_the_epidermal_energies_is_the_cause_only_if_all_depths_are_inside(evidence):
     depths = (560, 600, 640, 765, 800, 845)
-    low = {f"{z} um (Pa)": v for z, v in zip(depths, (700, 900, 800, 1500, 1500, 2500), strict=True)} | {"915 um (Pa)": 500.0}
+    low = {
+        f"{z} um (Pa)": v for z, v in zip(depths, (700, 900, 800, 1500, 1500, 2500), strict=True)
+    } | {"915 um (Pa)": 500.0}
     high = {k: 2 * v for k, v in low.items()}
     found = judged(pd.DataFrame([{"tried": "a"} | high, {"tried": "b"} | low]), evidence)
     assert (
@@ -331,7 +397,9 @@ TABLES = CONFIG.parent / "figures/tables"
 
 
 def test_the_default_specimen_is_that_of_the_committed_tables():
-    posterior, readings = (pd.read_csv(TABLES / f"reconstruction_{name}.csv") for name in ("posterior", "readings"))
+    posterior, readings = (
+        pd.read_csv(TABLES / f"reconstruction_{name}.csv") for name in ("posterior", "readings")
+    )
     text = specimen_text(posterior, readings)
     assert (CONFIG / "specimens/thesis.yaml").read_text(encoding="utf-8") == text
     document = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}
@@ -348,7 +416,9 @@ def test_the_default_specimen_is_that_of_the_committed_tables():
         assert 1e3 * size == pytest.approx(rows.loc[name, "best pad"], rel=0.02)
         assert rows.loc[name, "low 5 %"] < 1e3 * size < rows.loc[name, "high 95 %"]
     assert rows.loc["fat_thickness", "low 5 %"] < 1e3 * fat < rows.loc["fat_thickness", "high 95 %"]
-    assert pads.FORCE / specimen.contact_length == pytest.approx(rows.loc["line_load", "best pad"], rel=0.01)
+    assert pads.FORCE / specimen.contact_length == pytest.approx(
+        rows.loc["line_load", "best pad"], rel=0.01
+    )
     assert specimen.moduli == "instantaneous"
 
 
@@ -362,13 +432,18 @@ def test_bands_of_other_pads_hold_the_default_pads_neighbours():
 def test_published_results_meet_what_was_asked_of_them(evidence):
     """The control: the pad chosen before is far off; known pads are found again 9 times in 10; the emulator says its error."""
     families, recovered, emulator, readings = (
-        pd.read_csv(TABLES / f"reconstruction_{name}.csv") for name in ("families", "recovery", "emulator", "readings")
+        pd.read_csv(TABLES / f"reconstruction_{name}.csv")
+        for name in ("families", "recovery", "emulator", "readings")
     )
     distance = families.set_index("pad")["distance, fitted (1)"]
     assert distance["chosen one at a time"] > 20 * distance.drop("chosen one at a time").min()
     whole = recovered.set_index("quantity").loc["all"]
     assert whole["covered"] >= 0.9 * whole["trials"]
-    assert set(emulator["surface"] + ": " + emulator["measure"]) > set(evidence.of_role("fitted").keys)
+    assert set(emulator["surface"] + ": " + emulator["measure"]) > set(
+        evidence.of_role("fitted").keys
+    )
     assert emulator["error of pads left out (%)"].median() < 3
-    log = readings[readings["strain energy"] == "instantaneous elastic"].set_index("reading")["log evidence (1)"]
+    log = readings[readings["strain energy"] == "instantaneous elastic"].set_index("reading")[
+        "log evidence (1)"
+    ]
     assert log["instantaneous"] - log["long_term"] > 5

@@ -49,7 +49,8 @@ def test_hertz_load_is_the_integral_of_the_pressure():
 
 
 @pytest.mark.parametrize(
-    "poisson, shear, shear_depth, mises, mises_depth", [(0.3, 0.3003, 0.786, 0.5575, 0.704), (0.5, 0.3003, 0.786, 0.5201, 0.786)]
+    "poisson, shear, shear_depth, mises, mises_depth",
+    [(0.3, 0.3003, 0.786, 0.5575, 0.704), (0.5, 0.3003, 0.786, 0.5201, 0.786)],
 )
 def test_hertz_largest_stresses_below_the_surface(poisson, shear, shear_depth, mises, mises_depth):
     z = np.linspace(0, 3, 6001)
@@ -88,11 +89,15 @@ def test_hertz_approach_is_the_integral_of_the_strain_on_the_axis():
         return -((1 - poisson) * s["sigma_z"] - poisson * s["sigma_x"]) / (2 * shear)
 
     sinking, _ = quad(strain, 0, depth, points=[a, 5 * a], limit=200)
-    assert hertz.approach_to_depth(force, a, modulus, poisson, depth) == pytest.approx(sinking, rel=1e-4)
+    assert hertz.approach_to_depth(force, a, modulus, poisson, depth) == pytest.approx(
+        sinking, rel=1e-4
+    )
 
 
 # --- Westergaard, Cattaneo-Mindlin, punch ---------------------------------------------------------
-@pytest.mark.parametrize("ratio, share", [(0.05, 0.02447), (0.1, 0.09549), (0.25, 0.5), (0.4, 0.9045)])
+@pytest.mark.parametrize(
+    "ratio, share", [(0.05, 0.02447), (0.1, 0.09549), (0.25, 0.5), (0.4, 0.9045)]
+)
 def test_westergaard_mean_pressures(ratio, share):
     h, wavelength, modulus = 0.01, 2.0, 5.0
     full = westergaard.full_contact_pressure(h, wavelength, modulus)
@@ -118,7 +123,12 @@ def test_westergaard_small_contacts_are_hertzian():
 
 @pytest.mark.parametrize(
     "load, ratio, peak, centre",
-    [(0.25, 0.8660, 0.5, 0.1340), (0.5, 0.7071, 0.7071, 0.2929), (0.75, 0.5, 0.8660, 0.5), (0.9, 0.3162, 0.9487, 0.6838)],
+    [
+        (0.25, 0.8660, 0.5, 0.1340),
+        (0.5, 0.7071, 0.7071, 0.2929),
+        (0.75, 0.5, 0.8660, 0.5),
+        (0.9, 0.3162, 0.9487, 0.6838),
+    ],
 )
 def test_cattaneo_mindlin_table(load, ratio, peak, centre):
     c = cattaneo_mindlin.stick_ratio(load, 2.0, 0.5)
@@ -146,17 +156,26 @@ def test_cattaneo_mindlin_return():
         total, _ = quad(q, -1, 1, points=[*-kinks, *kinks], limit=200)
         assert total == pytest.approx(force, abs=1e-7)
         assert np.all(np.abs(q(x)) <= mu * hertz.pressure(x, 1.0, 1.0) + 1e-12)
-    np.testing.assert_allclose(q(x), -cattaneo_mindlin.returned_traction(x, 1.0, 1.0, mu, turn, turn, load), atol=1e-12)
+    np.testing.assert_allclose(
+        q(x), -cattaneo_mindlin.returned_traction(x, 1.0, 1.0, mu, turn, turn, load), atol=1e-12
+    )
     with pytest.raises(ValueError, match="opposite"):
         cattaneo_mindlin.returned_traction(x, 1.0, 1.0, mu, turn, -1.1 * turn, load)
 
 
-@pytest.mark.parametrize("friction, ratio", [(0.0, 0.1), (0.1, 0.20202), (0.2, 0.306122), (0.3, 0.412371)])
+@pytest.mark.parametrize(
+    "friction, ratio", [(0.0, 0.1), (0.1, 0.20202), (0.2, 0.306122), (0.3, 0.412371)]
+)
 def test_incline_table_of_cgs4(friction, ratio):
     """NAFEMS CGS-4 at tan(alpha) = 0.1; downhill is uphill on the mirrored slope; balance of both forces on the plane."""
     assert incline.limit_ratio(0.1, friction) == pytest.approx(ratio, abs=5e-7)
-    assert incline.limit_ratio(-0.1, friction) == pytest.approx((friction - 0.1) / (1 + 0.1 * friction))
-    along, across = np.array([1, 0.1]), np.array([-0.1, 1])  # uphill and out of the plane, both times sqrt(1.01)
+    assert incline.limit_ratio(-0.1, friction) == pytest.approx(
+        (friction - 0.1) / (1 + 0.1 * friction)
+    )
+    along, across = (
+        np.array([1, 0.1]),
+        np.array([-0.1, 1]),
+    )  # uphill and out of the plane, both times sqrt(1.01)
     push = np.array([ratio, -1.0])
     assert push @ along == pytest.approx(-friction * (push @ across), abs=1e-6)
     for wrong in ((0.1, -0.1), (2.0, 0.5)):
@@ -167,9 +186,15 @@ def test_incline_table_of_cgs4(friction, ratio):
 def test_friction_plate_numbers_agree_with_each_other():
     """The recomputed displacements lie within the 5 % of the codes, fall inwards and are less than without friction."""
     np.testing.assert_allclose(friction_plate.CONVERGED, friction_plate.MEAN_OF_CODES, rtol=0.05)
-    strain = (1 - friction_plate.POISSON_RATIO**2) * friction_plate.SIDE_PRESSURE / friction_plate.YOUNGS_MODULUS
+    strain = (
+        (1 - friction_plate.POISSON_RATIO**2)
+        * friction_plate.SIDE_PRESSURE
+        / friction_plate.YOUNGS_MODULUS
+    )
     left, *others = friction_plate.CONVERGED
-    assert strain * friction_plate.SIDE > left > max(others) and others == sorted(others, reverse=True)
+    assert strain * friction_plate.SIDE > left > max(others) and others == sorted(
+        others, reverse=True
+    )
 
 
 def test_punch_pressure_load_and_exponent():
@@ -185,7 +210,13 @@ def test_punch_pressure_load_and_exponent():
 def test_sticking_punch(poisson):
     """The tractions carry both forces; at nu = 0.5 they are the frictionless pressure, scaled; shear points outwards before."""
     normal, sideways = (
-        quad(lambda s, k=k: punch.sticking_tractions(np.sin(s), 1.0, 3.0, 2.0, poisson)[k] * np.cos(s), -1.5707, 1.5707)[0]
+        quad(
+            lambda s, k=k: (
+                punch.sticking_tractions(np.sin(s), 1.0, 3.0, 2.0, poisson)[k] * np.cos(s)
+            ),
+            -1.5707,
+            1.5707,
+        )[0]
         for k in (0, 1)
     )
     assert (normal, sideways) == (pytest.approx(3, rel=2e-3), pytest.approx(2, rel=2e-3))
@@ -201,7 +232,11 @@ def test_sticking_punch(poisson):
 
 
 # --- layers ---------------------------------------------------------------------------------------
-KERNEL = {0.1: (9.9673, 8.0556, 4.1124, 1.5328), 0.5: (1.9985, 1.9010, 1.6113, 1.1782), 5.0: (0.2006, 0.2502, 0.4072, 0.7395)}
+KERNEL = {
+    0.1: (9.9673, 8.0556, 4.1124, 1.5328),
+    0.5: (1.9985, 1.9010, 1.6113, 1.1782),
+    5.0: (0.2006, 0.2502, 0.4072, 0.7395),
+}
 
 
 @pytest.mark.parametrize("ratio", KERNEL)
@@ -223,7 +258,9 @@ def test_stack_limits():
     thick = layered.stack_compliance(k, [layered.Layer(8.0, mu, nu)])
     assert thick == pytest.approx(half_plane, rel=1e-12)
     thin = [layered.Layer(0.01, mu, nu), layered.Layer(0.02, 3 * mu, 0.45)]
-    assert layered.stack_compliance(1e-3, thin) == pytest.approx(layered.stack_compliance(0, thin), rel=1e-6)
+    assert layered.stack_compliance(1e-3, thin) == pytest.approx(
+        layered.stack_compliance(0, thin), rel=1e-6
+    )
     incompressible = [layered.Layer(1.0, mu, 0.5)]
     assert layered.stack_compliance(0, incompressible) == 0
     lubrication = (1e-2) ** 2 * 1.0 / (3 * mu)  # p'' h^3/(3 mu): Johnson 5.8
@@ -234,23 +271,31 @@ def test_thin_layer_laws_fit_together():
     a, radius, thickness, modulus = 12.0, 400.0, 1.0, 3.0
     load, _ = quad(lambda x: layered.thin_layer_pressure(x, a, radius, thickness, modulus), -a, a)
     assert layered.thin_layer_force(a, radius, thickness, modulus) == pytest.approx(load, rel=1e-10)
-    assert layered.thin_layer_half_width(load, radius, thickness, modulus) == pytest.approx(a, rel=1e-10)
+    assert layered.thin_layer_half_width(load, radius, thickness, modulus) == pytest.approx(
+        a, rel=1e-10
+    )
     assert layered.thin_layer_depth(a, radius) == pytest.approx(a**2 / (6 * radius))
 
 
 def test_layered_contact_reaches_hertz_and_the_thin_layer():
     shear, radius, load = 1.0, 20.0, 0.05
     a = hertz.half_width(load, radius, 4 * shear)
-    thick = layered_contact.press(lambda x: x**2 / (2 * radius), [layered.Layer(20.0, shear, 0.5)], 20.0, load, 1024)
+    thick = layered_contact.press(
+        lambda x: x**2 / (2 * radius), [layered.Layer(20.0, shear, 0.5)], 20.0, load, 1024
+    )
     assert thick.pressure[0] == pytest.approx(hertz.peak_pressure(load, a), rel=2e-3)
     assert thick.half_width == pytest.approx(a, rel=0.02)
     assert thick.pressure.sum() * 2 * 20.0 / 1024 == pytest.approx(load, rel=1e-12)
 
     radius, a = 1000.0, 20.0
     load = layered.thin_layer_force(a, radius, 1.0, 3 * shear)
-    thin = layered_contact.press(lambda x: x**2 / (2 * radius), [layered.Layer(1.0, shear, 0.5)], 80.0, load, 1024)
+    thin = layered_contact.press(
+        lambda x: x**2 / (2 * radius), [layered.Layer(1.0, shear, 0.5)], 80.0, load, 1024
+    )
     assert thin.depth == pytest.approx(layered.thin_layer_depth(a, radius), rel=0.15)
-    assert thin.pressure[0] == pytest.approx(layered.thin_layer_pressure(0.0, a, radius, 1.0, 3 * shear), rel=0.02)
+    assert thin.pressure[0] == pytest.approx(
+        layered.thin_layer_pressure(0.0, a, radius, 1.0, 3 * shear), rel=0.02
+    )
 
 
 def test_layered_contact_reproduces_westergaard():
@@ -258,7 +303,11 @@ def test_layered_contact_reproduces_westergaard():
     modulus = 2 * shear / (1 - nu)
     load = westergaard.mean_pressure(0.5, h, 2.0, modulus) * 2.0
     solution = layered_contact.press(
-        lambda x: 2 * h * np.sin(np.pi * x / 2) ** 2, [layered.Layer(6.0, shear, nu)], half, load, 512
+        lambda x: 2 * h * np.sin(np.pi * x / 2) ** 2,
+        [layered.Layer(6.0, shear, nu)],
+        half,
+        load,
+        512,
     )
     expected = westergaard.pressure(solution.x, 0.5, h, 2.0, modulus)
     inside = solution.x < 0.45
@@ -267,10 +316,19 @@ def test_layered_contact_reproduces_westergaard():
 
 # --- thick cylinder, Cook -------------------------------------------------------------------------
 @pytest.mark.parametrize(
-    "poisson, displacement", [(0.3, 4.5825e-3), (0.49, 5.03993e-3), (0.499, 5.06025e-3), (0.4999, 5.06227e-3), (0.5, 5.0625e-3)]
+    "poisson, displacement",
+    [
+        (0.3, 4.5825e-3),
+        (0.49, 5.03993e-3),
+        (0.499, 5.06025e-3),
+        (0.4999, 5.06227e-3),
+        (0.5, 5.0625e-3),
+    ],
 )
 def test_thick_cylinder_of_macneal_and_harder(poisson, displacement):
-    assert lame.radial_displacement(3.0, 3, 9, 1000, poisson, internal=1) == pytest.approx(displacement, rel=2e-6)
+    assert lame.radial_displacement(3.0, 3, 9, 1000, poisson, internal=1) == pytest.approx(
+        displacement, rel=2e-6
+    )
 
 
 def test_thick_cylinder_of_ssnv130():
@@ -321,10 +379,14 @@ def test_point_histories_do_not_depend_on_the_step_and_invert():
     fine_t = np.concatenate([[0.0], np.linspace(0, 0.5, 41), np.linspace(0.5, 2.5, 31)])
     fine = np.concatenate([[0.0], np.interp(fine_t[1:], [0, 0.5, 2.5], [0.1, 0.6, 0.6])])
     for function in (prony_point.stress_from_strain, prony_point.strain_from_stress):
-        assert function(fine_t, fine, *PRONY)[-1] == pytest.approx(function(coarse_t, coarse, *PRONY)[-1], rel=1e-12)
+        assert function(fine_t, fine, *PRONY)[-1] == pytest.approx(
+            function(coarse_t, coarse, *PRONY)[-1], rel=1e-12
+        )
     fine_t = np.linspace(0, 2, 4001)
     strain = np.sin(fine_t)
-    back = prony_point.strain_from_stress(fine_t, prony_point.stress_from_strain(fine_t, strain, *PRONY, 3.0), *PRONY, 3.0)
+    back = prony_point.strain_from_stress(
+        fine_t, prony_point.stress_from_strain(fine_t, strain, *PRONY, 3.0), *PRONY, 3.0
+    )
     np.testing.assert_allclose(back, strain, atol=1e-6)
 
 
@@ -347,13 +409,17 @@ def test_dissipation_is_the_area_of_the_loop():
     stress = prony_point.stress_from_strain(t, strain, *PRONY)
     last = t >= t[-1] - 2 * np.pi / omega - 1e-9
     area = np.trapezoid(stress[last], strain[last])
-    assert area == pytest.approx(prony_point.dissipation_per_cycle(amplitude, omega, *PRONY), rel=1e-3)
+    assert area == pytest.approx(
+        prony_point.dissipation_per_cycle(amplitude, omega, *PRONY), rel=1e-3
+    )
 
 
 def test_lee_radok_table():
     t = np.array([0, 1, 2, 5, 10, 50])
     width = lee_radok.step_creep_width(t, 1, 1, 1, *ONE_TERM)
-    np.testing.assert_allclose(width / width[0], [1, 1.3134, 1.5227, 1.8784, 2.1116, 2.2360], atol=5e-5)
+    np.testing.assert_allclose(
+        width / width[0], [1, 1.3134, 1.5227, 1.8784, 2.1116, 2.2360], atol=5e-5
+    )
     force = lee_radok.held_width_force(np.array([0, 1, 2, 5]), 1, 1, 1, *ONE_TERM)
     np.testing.assert_allclose(force / force[0], [1, 0.4943, 0.3083, 0.2054], atol=5e-5)
     assert hertz.half_width(1.0, 1.0, 4.0) == pytest.approx(width[0])
@@ -363,7 +429,9 @@ def test_lee_radok_routes_agree():
     t = np.linspace(0, 3, 301)
     rate, radius, shear = 0.2, 5.0, 2.0
     ramp = lee_radok.ramp_force(t, rate, radius, shear, *PRONY)
-    np.testing.assert_allclose(lee_radok.force_from_width(t, np.sqrt(rate * t), radius, shear, *PRONY), ramp, rtol=1e-11)
+    np.testing.assert_allclose(
+        lee_radok.force_from_width(t, np.sqrt(rate * t), radius, shear, *PRONY), ramp, rtol=1e-11
+    )
     by_quadrature = lee_radok.force_by_quadrature(
         3.0, lambda s: rate, radius, lambda s: shear * prony_point.relaxation(s, *PRONY)
     )
@@ -384,7 +452,9 @@ def test_ting_contains_lee_radok():
         ting.force_under_depth_control(t, elastic, *PRONY),
         lee_radok.force_from_width(t, np.sqrt(elastic / np.pi), 1.0, 1.0, *PRONY),
     )
-    depth = ting.depth_under_force_control([0, 0.5, 2.5], [0, 1.0, 1.0], *PRONY, np.linspace(0, 2, 41), np.linspace(0, 2, 41))
+    depth = ting.depth_under_force_control(
+        [0, 0.5, 2.5], [0, 1.0, 1.0], *PRONY, np.linspace(0, 2, 41), np.linspace(0, 2, 41)
+    )
     expected = prony_point.strain_from_stress([0, 0.5, 2.5], [0, 1.0, 1.0], *PRONY)
     np.testing.assert_allclose(depth, expected)
 
@@ -396,7 +466,10 @@ FIELDS = {
     "divergence_free": manufactured.divergence_free(0.05, 2.0),
     "shears": manufactured.isochoric_shears(0.08, 2.5),
     "pressurised": manufactured.nearly_incompressible(
-        manufactured.isochoric_shears(0.08, 2.5), manufactured.gradient_of_potential(0.05, 2.0), 50.0, 2.0
+        manufactured.isochoric_shears(0.08, 2.5),
+        manufactured.gradient_of_potential(0.05, 2.0),
+        50.0,
+        2.0,
     ),
 }
 POINTS = np.random.default_rng(3).uniform(-1, 1, (5, 2))
@@ -411,8 +484,12 @@ def _numerical(function, points, h=1e-5):
 @pytest.mark.parametrize("name", FIELDS)
 def test_gradients_of_the_fields(name):
     field = FIELDS[name]
-    np.testing.assert_allclose(field.gradient(POINTS), _numerical(field.displacement, POINTS), atol=1e-9)
-    np.testing.assert_allclose(field.second_gradient(POINTS), _numerical(field.gradient, POINTS), atol=1e-8)
+    np.testing.assert_allclose(
+        field.gradient(POINTS), _numerical(field.displacement, POINTS), atol=1e-9
+    )
+    np.testing.assert_allclose(
+        field.second_gradient(POINTS), _numerical(field.gradient, POINTS), atol=1e-8
+    )
 
 
 @pytest.mark.parametrize("name", FIELDS)
@@ -423,7 +500,9 @@ def test_body_forces_balance_the_stress(name, bulk):
         (manufactured.small_strain_stress, manufactured.small_strain_body_force),
         (manufactured.first_piola_stress, manufactured.finite_strain_body_force),
     ):
-        divergence = np.einsum("...iJJ->...i", _numerical(lambda x, s=stress: s(field, x, mu, bulk), POINTS))
+        divergence = np.einsum(
+            "...iJJ->...i", _numerical(lambda x, s=stress: s(field, x, mu, bulk), POINTS)
+        )
         np.testing.assert_allclose(force(field, POINTS, mu, bulk), -divergence, atol=1e-7 * bulk)
 
 
@@ -436,7 +515,10 @@ def test_piola_stress_is_the_derivative_of_the_energy():
             step = np.zeros((2, 2))
             step[i, j] = h
             energies = [
-                manufactured.finite_strain_energy(manufactured.affine(base + s * step), POINTS[:1], 1.3, 20.0)[0] for s in (1, -1)
+                manufactured.finite_strain_energy(
+                    manufactured.affine(base + s * step), POINTS[:1], 1.3, 20.0
+                )[0]
+                for s in (1, -1)
             ]
             assert stress[i, j] == pytest.approx((energies[0] - energies[1]) / (2 * h), abs=1e-7)
 
@@ -474,7 +556,9 @@ def test_isochoric_fields_are_isochoric():
         lambda: ting.force_under_depth_control([0, 1], [1, 0], [0.1], [1]),
         lambda: ting.elastic_force_under_force_control([0, 1], [1, 0], [0.1], [1]),
         lambda: ting.depth_under_force_control([0, 1], [0, 9], [0.1], [1], [0, 1], [0, 1]),
-        lambda: manufactured.first_piola_stress(manufactured.affine([[-2, 0], [0, 0]]), POINTS, 1, 1),
+        lambda: manufactured.first_piola_stress(
+            manufactured.affine([[-2, 0], [0, 0]]), POINTS, 1, 1
+        ),
     ],
 )
 def test_impossible_arguments_are_refused(call):

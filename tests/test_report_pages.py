@@ -16,7 +16,12 @@ FIGURES = Path(__file__).parents[1] / "figures"
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pages")
-    shown = ["thesis/fig_4-11.png", "studies/animation_stroke_10.gif", "tables/peers.csv", "tables/thesis_comparison.csv"]
+    shown = [
+        "thesis/fig_4-11.png",
+        "studies/animation_stroke_10.gif",
+        "tables/peers.csv",
+        "tables/thesis_comparison.csv",
+    ]
     job = SimpleNamespace(
         shown=[FIGURES / path for path in shown[:2]],
         published=[str(FIGURES / path) for path in shown[2:]],
@@ -52,5 +57,7 @@ def test_all_of_them_can_be_cited(pages):
 def test_wide_tables_scroll_by_themselves_and_a_film_is_played(tmp_path):
     assert of_markdown("| a |\n|---|\n| 1 |").startswith('<div class="table"><table>')
     (tmp_path / "film.webm").write_bytes(b"x")
-    assert picture(tmp_path / "film.webm", "film").startswith('<video controls loop src="data:video/webm;base64,eA=="')
+    assert picture(tmp_path / "film.webm", "film").startswith(
+        '<video controls loop src="data:video/webm;base64,eA=="'
+    )
     assert page("t", "", "<p>x</p>").count("<p>") == 1

@@ -15,7 +15,10 @@ from wrong_scenes import changed, write
 
 pytestmark = pytest.mark.unit
 
-SCENE = changed(motion=[{"press_to_force": "10 gf", "rate": "40 gf/s"}], accuracy={"skin_edge": "0.5 mm", "steps": 4})
+SCENE = changed(
+    motion=[{"press_to_force": "10 gf", "rate": "40 gf/s"}],
+    accuracy={"skin_edge": "0.5 mm", "steps": 4},
+)
 COSTS = ("cpu_s", "compiling_s", "wall_s", "peak_rss_MB")
 """Of a summary and of the attribute `cost`: what differs between two runs of one scene."""
 
@@ -24,7 +27,10 @@ def told(folder):
     """What a run has written: plan.json, summary.json without costs, arrays and attributes of the history without costs."""
     summary = json.loads((folder / "summary.json").read_text())
     with netCDF4.Dataset(folder / "history.nc") as file:
-        arrays = {name: (np.asarray(file[name][:]).tobytes(), file[name].__dict__) for name in file.variables}
+        arrays = {
+            name: (np.asarray(file[name][:]).tobytes(), file[name].__dict__)
+            for name in file.variables
+        }
         about = {name: file.getncattr(name) for name in file.ncattrs()}
     cost = json.loads(about.pop("cost"))
     for part in (summary["run"], cost):
@@ -58,4 +64,6 @@ def test_one_and_two_threads_agree(monkeypatch):
     two, one = with_threads(2), with_threads(1)
     for name in ("indentation_depth", "force", "stored_energy", "strain_energy_density"):
         scale = np.abs(one[name].values).max()
-        np.testing.assert_allclose(two[name].values, one[name].values, rtol=0, atol=1e-9 * scale, err_msg=name)
+        np.testing.assert_allclose(
+            two[name].values, one[name].values, rtol=0, atol=1e-9 * scale, err_msg=name
+        )

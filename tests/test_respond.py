@@ -17,10 +17,20 @@ def made_up(steady_start: bool = False) -> xr.Dataset:
     time = np.concatenate([np.linspace(0, 0.5, 21), np.linspace(0.55, 1.5, 20)])
     energy, leg = np.minimum(time / 0.5, 1) * 1000, (time > 0.5).astype(int)
     if steady_start:
-        time, energy, leg = np.insert(time, 1, [0.0, 0.0]), np.insert(energy, 0, [0.0, 200.0]), np.insert(leg + 1, 0, [0, 0])
+        time, energy, leg = (
+            np.insert(time, 1, [0.0, 0.0]),
+            np.insert(energy, 0, [0.0, 200.0]),
+            np.insert(leg + 1, 0, [0, 0]),
+        )
         leg[2] = 0
-    places = {"receptor_depth": ("receptor", [6e-4, 9e-4]), "receptor_offset": ("receptor", [0.0, 1e-4])}
-    data = {"leg": ("time", leg), "strain_energy_density": (("time", "receptor"), energy[:, None] * [1.0, 0.5])}
+    places = {
+        "receptor_depth": ("receptor", [6e-4, 9e-4]),
+        "receptor_offset": ("receptor", [0.0, 1e-4]),
+    }
+    data = {
+        "leg": ("time", leg),
+        "strain_energy_density": (("time", "receptor"), energy[:, None] * [1.0, 0.5]),
+    }
     return xr.Dataset(data, {"time": time, **places})
 
 
@@ -30,8 +40,13 @@ def test_rates_are_those_of_eq_5_1_and_impulses_their_integral():
     rate = sent.impulse_rate.sel(afferent="slowly_adapting")
     assert rate.dims == ("response_time", "receptor") and rate.attrs["units"] == "1/s"
     law = THESIS_RATE
-    held, moving = law.per_energy * (1000 - law.threshold), law.per_rate * (2000 - law.rate_threshold)
-    np.testing.assert_allclose(rate.sel(response_time=slice(0.5 - 1e-9, 0.5 + 1e-9))[:, 0], [held + moving, held])
+    held, moving = (
+        law.per_energy * (1000 - law.threshold),
+        law.per_rate * (2000 - law.rate_threshold),
+    )
+    np.testing.assert_allclose(
+        rate.sel(response_time=slice(0.5 - 1e-9, 0.5 + 1e-9))[:, 0], [held + moving, held]
+    )
     assert float(rate[-1, 1]) == pytest.approx(law.per_energy * (500 - law.threshold))
     for receptor in (0, 1):
         one = sent.isel(afferent=0, receptor=receptor)
@@ -49,7 +64,9 @@ def test_kinds_of_receptor_and_laws_of_one_s_own():
     assert int(both.impulses.sel(afferent="rapidly_adapting")[0]) > 10
     assert (both.impulse_time.sel(afferent="rapidly_adapting").max() <= 0.5).all()
     own = fingerpad.respond(made_up(), laws)
-    assert own.afferent.values.tolist() == ["double"] and float(own.impulse_rate[0, -1, 0]) == pytest.approx(2 * 0.081 * 850)
+    assert own.afferent.values.tolist() == ["double"] and float(
+        own.impulse_rate[0, -1, 0]
+    ) == pytest.approx(2 * 0.081 * 850)
 
 
 def test_variability_needs_a_seed_and_receptors_vary_apart():
@@ -92,6 +109,10 @@ def test_one_key_of_a_scene_writes_responses_into_history_and_summary(tmp_path):
     for name in again.data_vars:
         np.testing.assert_array_equal(history[name], again[name])
     upper, lower = summary(history)["responses"]
-    assert (upper["afferent"], upper["depth_mm"], lower["depth_mm"]) == ("slowly_adapting", 0.6, 0.915)
+    assert (upper["afferent"], upper["depth_mm"], lower["depth_mm"]) == (
+        "slowly_adapting",
+        0.6,
+        0.915,
+    )
     assert upper["impulses"] == int(history.impulses[0, 0]) > lower["impulses"]
     assert 0 < upper["first_impulse_s"] < 0.5 and upper["peak_rate_per_s"] > 50

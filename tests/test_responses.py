@@ -29,7 +29,13 @@ from cysyk1999.measures.runs import FAST, NINE
 from cysyk1999.measures.table import Measures
 from cysyk1999.receptors.recordings import read_rates
 from cysyk1999.reference_data import read_reference
-from cysyk1999.studies.strain_energy_meanings import CHANGE, MEANINGS, fig_meanings, frame_meanings, titled
+from cysyk1999.studies.strain_energy_meanings import (
+    CHANGE,
+    MEANINGS,
+    fig_meanings,
+    frame_meanings,
+    titled,
+)
 from fingerpad.measures import features
 from fingerpad.planning.errors import REMAINS
 from fingerpad.receptors.laws import SpatialSum
@@ -60,7 +66,9 @@ def _frame(number, made, reference, rates=None, coarse=None):
 
 
 def _with(history, **values):
-    return history.assign({name: (history[name].dims, v, history[name].attrs) for name, v in values.items()})
+    return history.assign(
+        {name: (history[name].dims, v, history[name].attrs) for name, v in values.items()}
+    )
 
 
 def _scaled(history, factor, depth=None):
@@ -98,21 +106,35 @@ def test_mean_frequency_of_many_trains_follows_the_rate(made, reference):
 
 
 @pytest.mark.parametrize(
-    "number", [n for n in FIGURES if n in ("4-2", "4-3", "4-4", "4-5", "4-9", "4-18", "4-19", "4-25", "4-29")]
+    "number",
+    [
+        n
+        for n in FIGURES
+        if n in ("4-2", "4-3", "4-4", "4-5", "4-9", "4-18", "4-19", "4-25", "4-29")
+    ],
 )
 def test_pictures_say_predicted_inside_the_axes(made, reference, rates, number):
     own = rates if FIGURES[number].measured == "impulse_rates" else None
     fig = FIGURES[number].draw(_frame(number, made, reference, own))
-    words = [t.get_text() for ax in fig.axes for t in ax.texts] + [ax.get_ylabel() for ax in fig.axes]
-    words += [t.get_text() for ax in fig.axes if ax.get_legend() for t in ax.get_legend().get_texts()]
+    words = [t.get_text() for ax in fig.axes for t in ax.texts] + [
+        ax.get_ylabel() for ax in fig.axes
+    ]
+    words += [
+        t.get_text() for ax in fig.axes if ax.get_legend() for t in ax.get_legend().get_texts()
+    ]
     assert any("predicted" in text for text in words)
 
 
 def test_error_is_relative_to_the_largest_rate(made, reference):
     rough = {name: _scaled(history, 1.01) for name, history in made.items()}
-    coarse = {name: Companion(rough[name], _scaled(history, 1.02)) for name, history in made.items()}
+    coarse = {
+        name: Companion(rough[name], _scaled(history, 1.02)) for name, history in made.items()
+    }
     frame = _frame("4-25", made, reference, coarse=coarse).set_index("surface")
-    fine, rough = ({k: rate_in(h, "hold") for k, h in FAST.histories(histories).items()} for histories in (made, rough))
+    fine, rough = (
+        {k: rate_in(h, "hold") for k, h in FAST.histories(histories).items()}
+        for histories in (made, rough)
+    )
     for label in ("flat", "210", "1260"):
         expected = REMAINS * 100 * abs(rough[label] - fine[label]) / max(fine.values())
         assert frame.loc[label, MESH] == pytest.approx(expected, nan_ok=True)
@@ -120,19 +142,41 @@ def test_error_is_relative_to_the_largest_rate(made, reference):
 
 def _recording(**other):
     entry = {
-        "recording": "mine", "receptor": "SA-I", "species": "monkey", "stimulus": "cylinder", "curvature_per_m": 315.0,
-        "or_curvature_per_m": np.nan, "force_gf": 20.0, "ramp_gf_per_s": 40.0, "speed_mm_per_s": 0.0, "window": "hold",
-        "rate_per_s": 12.0, "sd_per_s": np.nan, "burst_width_mm": np.nan, "source": "a laboratory", "how_obtained": "measured",
+        "recording": "mine",
+        "receptor": "SA-I",
+        "species": "monkey",
+        "stimulus": "cylinder",
+        "curvature_per_m": 315.0,
+        "or_curvature_per_m": np.nan,
+        "force_gf": 20.0,
+        "ramp_gf_per_s": 40.0,
+        "speed_mm_per_s": 0.0,
+        "window": "hold",
+        "rate_per_s": 12.0,
+        "sd_per_s": np.nan,
+        "burst_width_mm": np.nan,
+        "source": "a laboratory",
+        "how_obtained": "measured",
         "file": "mine.csv",
-    }  # fmt: skip
+    }
     return pd.DataFrame([entry | other])
 
 
 @pytest.mark.parametrize(
-    "number, other", [("4-26", {}), ("4-27", {}), ("4-19", {}), ("4-25", {"ramp_gf_per_s": 150.0}),
-                      ("4-5", {"window": "peak"}), ("4-18", {"window": "peak"}), ("4-29", {"window": "peak"})]
-)  # fmt: skip
-def test_a_recording_of_the_users_is_laid_over_where_its_protocol_is_the_figures(made, reference, rates, number, other):
+    "number, other",
+    [
+        ("4-26", {}),
+        ("4-27", {}),
+        ("4-19", {}),
+        ("4-25", {"ramp_gf_per_s": 150.0}),
+        ("4-5", {"window": "peak"}),
+        ("4-18", {"window": "peak"}),
+        ("4-29", {"window": "peak"}),
+    ],
+)
+def test_a_recording_of_the_users_is_laid_over_where_its_protocol_is_the_figures(
+    made, reference, rates, number, other
+):
     def found(**change):
         frame = _frame(number, made, reference, pd.concat([rates, _recording(**other | change)]))
         return frame, frame["source"].str.contains("mine; a laboratory")
@@ -140,10 +184,22 @@ def test_a_recording_of_the_users_is_laid_over_where_its_protocol_is_the_figures
     frame, mine = found()
     assert (frame.loc[mine, GIVEN_RATE] == 12).all() and mine.any()
     fig = FIGURES[number].draw(frame)
-    labels = [t.get_text() for ax in fig.axes if ax.get_legend() for t in ax.get_legend().get_texts()]
-    drawn = [line for ax in fig.axes for line in ax.lines if line.get_marker() == "D" and 12 in line.get_ydata()]
+    labels = [
+        t.get_text() for ax in fig.axes if ax.get_legend() for t in ax.get_legend().get_texts()
+    ]
+    drawn = [
+        line
+        for ax in fig.axes
+        for line in ax.lines
+        if line.get_marker() == "D" and 12 in line.get_ydata()
+    ]
     assert drawn and (number == "4-29" or "recorded" in labels)
-    for change in ({"receptor": "RA"}, {"ramp_gf_per_s": 80.0}, {"force_gf": 10.0}, {"stimulus": "sphere"}):
+    for change in (
+        {"receptor": "RA"},
+        {"ramp_gf_per_s": 80.0},
+        {"force_gf": 10.0},
+        {"stimulus": "sphere"},
+    ):
         assert not found(**change)[1].any()
 
 
@@ -157,7 +213,10 @@ def test_printed_rates_are_marked_as_read_from_a_scan_over_both_surfaces(made, r
 
 def test_published_and_other_models_rates_have_panels_of_their_own(made, reference, rates):
     frame = _frame("4-26", made, reference, rates)
-    goodwin, touchsim = frame[frame["source"].str.contains("Goodwin")], frame[frame["source"].str.startswith("other model")]
+    goodwin, touchsim = (
+        frame[frame["source"].str.contains("Goodwin")],
+        frame[frame["source"].str.startswith("other model")],
+    )
     assert set(goodwin["panel"]) == {"published"} and len(goodwin) == 21
     assert set(touchsim["panel"]) == {"TouchSim"} and len(touchsim) == 9
     titles = [ax.get_title(loc="left") for ax in FIGURES["4-26"].draw(frame).axes]
@@ -185,7 +244,11 @@ def _obeying(history):
 
 
 def test_line_of_eq_4_4_goes_through_the_points_of_a_pad_that_obeys_it(made, reference):
-    frame = _frame("4-22", {name: _obeying(h) for name, h in made.items() if name.startswith("ramp40")}, reference)
+    frame = _frame(
+        "4-22",
+        {name: _obeying(h) for name, h in made.items() if name.startswith("ramp40")},
+        reference,
+    )
     rows = frame[features.is_simulated(frame)]
     assert rows[SED_LAW].to_numpy() == pytest.approx(rows[SED].to_numpy(), rel=1e-3, abs=1e-3)
 
@@ -195,18 +258,29 @@ def test_energies_at_600_um_are_scaled_to_the_mean_of_those_at_915_um(made):
     law, factor = shallow_law(surfaces)
 
     def mean(depth):
-        return np.mean([windowed(h, h["time"].values, features.energy(h, depth), "hold") for h in surfaces.values()])
+        return np.mean(
+            [
+                windowed(h, h["time"].values, features.energy(h, depth), "hold")
+                for h in surfaces.values()
+            ]
+        )
 
     assert factor * mean(SHALLOW_DEPTH) == pytest.approx(mean(915e-6))
-    assert law(1000.0, 500.0) == pytest.approx(0.081 * (1000 * factor - 150) + 0.0182 * max(500 * factor - 100, 0))
+    assert law(1000.0, 500.0) == pytest.approx(
+        0.081 * (1000 * factor - 150) + 0.0182 * max(500 * factor - 100, 0)
+    )
 
 
 def test_meanings_of_strain_energy_are_told_apart_by_their_change_in_the_hold(made):
-    frame = frame_meanings(made, {name: Companion(_scaled(h, 1.01), _scaled(h, 1.01)) for name, h in made.items()})
+    frame = frame_meanings(
+        made, {name: Companion(_scaled(h, 1.01), _scaled(h, 1.01)) for name, h in made.items()}
+    )
     change = frame.groupby(["panel", "series", "surface"])[CHANGE].last()
     assert (change["instantaneous elastic"] < 0).all() and (change["long-term network"] > 0).all()
     assert frame.groupby("panel")[MESH].max()["instantaneous elastic"] == pytest.approx(REMAINS)
-    assert [ax.get_title(loc="left") for ax in fig_meanings(frame).axes[:5]] == [titled(name) for name in MEANINGS]
+    assert [ax.get_title(loc="left") for ax in fig_meanings(frame).axes[:5]] == [
+        titled(name) for name in MEANINGS
+    ]
 
 
 # --- trends ----------------------------------------------------------------------------------------------
@@ -227,7 +301,9 @@ def test_rates_grow_with_curvature(made, id_, programme):
 
 
 def test_silence_under_every_surface_is_no_growth(made):
-    assert not _holds(made, "TR80", **{name: _scaled(h, 0.0) for name, h in made.items() if "ramp150" in name})
+    assert not _holds(
+        made, "TR80", **{name: _scaled(h, 0.0) for name, h in made.items() if "ramp150" in name}
+    )
 
 
 def test_impulses_begin_late(made):
@@ -240,7 +316,11 @@ def test_impulses_begin_late(made):
 def test_rate_peaks_at_the_top_of_the_ramp_and_decays(made):
     history = made["ramp40_k420"]
     assert _holds(made, "TR82")
-    assert not _holds(made, "TR82", ramp40_k420=_with(history, strain_energy_density=history["strain_energy_network"].values))
+    assert not _holds(
+        made,
+        "TR82",
+        ramp40_k420=_with(history, strain_energy_density=history["strain_energy_network"].values),
+    )
 
 
 def test_steady_rate_is_linear_in_the_peak_rate(made):
@@ -271,7 +351,9 @@ def test_peak_rate_is_linear_in_peak_pressure_and_energy_rate(made, id_):
     if id_ == "TR86":
         stray["ramp40_k1260"] = _with(odd, peak_pressure=0.05 * odd["peak_pressure"].values)
     else:
-        stray["ramp40_flat"] = _with(flat, strain_energy_density=flat["strain_energy_density"].values + 500)
+        stray["ramp40_flat"] = _with(
+            flat, strain_energy_density=flat["strain_energy_density"].values + 500
+        )
     assert _holds(made, id_, **follow) and not _holds(made, id_, **follow | stray)
 
 

@@ -24,7 +24,15 @@ from fingerpad.files import write_atomically
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.receptors.material_points import MaterialPoints
 from fingerpad.receptors.respond import respond
-from fingerpad.results import COORDINATES, FRICTION_VARIABLES, VARIABLES, read_history, summary, write_history, write_vtu
+from fingerpad.results import (
+    COORDINATES,
+    FRICTION_VARIABLES,
+    VARIABLES,
+    read_history,
+    summary,
+    write_history,
+    write_vtu,
+)
 from fingerpad.scenes.scene import Discretisation
 from fingerpad.simulation import Simulation
 from fingerpad.specimen import mesh_for
@@ -39,7 +47,9 @@ FIELDS = ("snapshot_", "node_", "element_")
 @pytest.fixture(scope="module")
 def run():
     scene = load_scene(SCENES / "ramp40_k420.yaml").with_accuracy("draft")
-    receptors = scene.outputs.receptors.model_copy(update={"depths": (6e-4, 9.15e-4), "offsets": (-5e-4, 0.0, 5e-4)})
+    receptors = scene.outputs.receptors.model_copy(
+        update={"depths": (6e-4, 9.15e-4), "offsets": (-5e-4, 0.0, 5e-4)}
+    )
     outputs = scene.outputs.model_copy(update={"receptors": receptors, "snapshots": (0.5, 2.5)})
     scene = scene.model_copy(update={"outputs": outputs})
     chosen = plan(scene)
@@ -51,10 +61,15 @@ def run():
 def test_every_variable_has_its_unit_and_name(run):
     """Nothing in a history is a bare number."""
     history = run[3]
-    assert set(history.data_vars) == set(VARIABLES) - set(FRICTION_VARIABLES) | {n for n in history if n.startswith(FIELDS)}
+    assert set(history.data_vars) == set(VARIABLES) - set(FRICTION_VARIABLES) | {
+        n for n in history if n.startswith(FIELDS)
+    }
     for name in set(VARIABLES) - set(FRICTION_VARIABLES):
         dims, units, long_name = VARIABLES[name]
-        assert history[name].dims == dims and history[name].attrs == {"units": units, "long_name": long_name}
+        assert history[name].dims == dims and history[name].attrs == {
+            "units": units,
+            "long_name": long_name,
+        }
     for name, (dim, units, _) in COORDINATES.items():
         assert history[name].dims == (dim,) and history[name].attrs["units"] == units
 
@@ -64,7 +79,9 @@ def test_provenance_and_cost_are_in_the_file(run):
     attrs = run[3].attrs
     made, cost = json.loads(attrs["provenance"]), json.loads(attrs["cost"])
     assert len(made["code_sha256"]) == 16 and made["packages"]["numpy"] == np.__version__
-    assert {"cpu_s", "wall_s", "peak_rss_MB", "nodes", "unknowns", "factorisations"} <= set(cost) and cost["cpu_s"] > 0
+    assert {"cpu_s", "wall_s", "peak_rss_MB", "nodes", "unknowns", "factorisations"} <= set(
+        cost
+    ) and cost["cpu_s"] > 0
     assert json.loads(attrs["scene"])["stimulus"]["curvature"] == pytest.approx(419.95)
     assert json.loads(attrs["plan"])["effects"]["symmetry"]["on"]
 
@@ -76,7 +93,11 @@ def test_compiling_is_no_cost_of_a_simulation(monkeypatch):
     told = iter([100.0, 107.0])
     monkeypatch.setattr(simulation, "compiling", lambda: next(told))
     monkeypatch.setattr(simulation.time, "process_time", lambda: 50.0)
-    scene = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_depth": "0.1 mm"}], "accuracy": "draft"}
+    scene = {
+        "stimulus": {"shape": "flat"},
+        "motion": [{"press_to_depth": "0.1 mm"}],
+        "accuracy": "draft",
+    }
     cost = json.loads(simulate(scene).attrs["cost"])
     assert cost["compiling_s"] == 7.0 and cost["cpu_s"] == -7.0
 
@@ -120,7 +141,9 @@ def test_summary_is_the_history_at_the_legs_ends(run):
     history, totals = run[3], summary(run[3])
     assert [leg["time_s"] for leg in totals["legs"]] == pytest.approx([0.5, 2.5])
     assert totals["legs"][1]["depth_mm"] == float(history.indentation_depth[-1]) * 1e3
-    assert totals["legs"][1]["strain_energy_Pa"] == history.strain_energy_density[-1].values.tolist()
+    assert (
+        totals["legs"][1]["strain_energy_Pa"] == history.strain_energy_density[-1].values.tolist()
+    )
     assert totals["run"]["newton_iterations"] == int(history.newton_iterations.sum())
     assert totals["run"]["steps"] == history.sizes["time"] - 1
     json.dumps(totals)
@@ -149,7 +172,10 @@ def test_only_what_is_mostly_zero_is_packed(run, tmp_path):
     history["contact_pressure"] = history["contact_pressure"] * (history["skin_x"] > 2e-3)
     write_history(history, path)
     with netCDF4.Dataset(path) as file:
-        packed = {name: file[name].filters()["zlib"] for name in ("contact_pressure", "skin_displacement_y")}
+        packed = {
+            name: file[name].filters()["zlib"]
+            for name in ("contact_pressure", "skin_displacement_y")
+        }
     assert packed == {"contact_pressure": True, "skin_displacement_y": False}
     np.testing.assert_array_equal(read_history(path).contact_pressure, history.contact_pressure)
 
@@ -164,39 +190,58 @@ def test_snapshots_become_vtu(run, tmp_path):
         (path.name, time) for path, time in zip(paths, history.snapshot_time.values, strict=True)
     ]
     field = meshio.read(paths[1])
-    assert len(field.points) == len(mesh.points) and set(np.unique(field.cell_data["layer"][0])) == {0, 1, 2}
+    assert len(field.points) == len(mesh.points) and set(
+        np.unique(field.cell_data["layer"][0])
+    ) == {0, 1, 2}
     apex = np.argmin(np.hypot(mesh.points[:, 0], mesh.points[:, 1] - mesh.points[:, 1].max()))
-    assert field.point_data["displacement (mm)"][apex, 1] == pytest.approx(-float(history.indentation_depth[-1]) * 1e3, rel=1e-3)
+    assert field.point_data["displacement (mm)"][apex, 1] == pytest.approx(
+        -float(history.indentation_depth[-1]) * 1e3, rel=1e-3
+    )
     pressure = field.point_data["contact pressure (kPa)"]
     assert pressure[apex] == pytest.approx(float(history.centre_pressure[-1]) * 1e-3)
     assert np.count_nonzero(pressure) == np.count_nonzero(history.contact_pressure[-1])
     assert "layer (0 epidermis, 1 dermis, 2 fat)" in field.cell_data
     outline = meshio.read(tmp_path / "indenter_1.vtu")
-    assert outline.points[:, 1].min() == pytest.approx(6 - float(history.indentation_depth[-1]) * 1e3, abs=1e-4)
+    assert outline.points[:, 1].min() == pytest.approx(
+        6 - float(history.indentation_depth[-1]) * 1e3, abs=1e-4
+    )
     film = ElementTree.parse(tmp_path / "snapshots.pvd").getroot().findall("Collection/DataSet")
-    assert [part.get("file") for part in film] == [f"{kind}_{k}.vtu" for k in (0, 1) for kind in ("snapshot", "indenter")]
+    assert [part.get("file") for part in film] == [
+        f"{kind}_{k}.vtu" for k in (0, 1) for kind in ("snapshot", "indenter")
+    ]
 
 
 def test_fields_are_consistent(run, tmp_path):
     """Stress, its invariants and the energy of the total stress belong together; a mirror turns the shear stress round."""
     _, _, mesh, history, _ = run
     write_vtu(history, tmp_path)
-    cells = {name: values[0] for name, values in meshio.read(tmp_path / "snapshot_1.vtu").cell_data.items()}
+    cells = {
+        name: values[0]
+        for name, values in meshio.read(tmp_path / "snapshot_1.vtu").cell_data.items()
+    }
     stress = cells["cauchy stress (kPa)"].reshape(-1, 3, 3)
     mean = np.trace(stress, axis1=1, axis2=2) / 3
     deviator = stress - mean[:, None, None] * np.eye(3)
     square = np.einsum("nij,nij->n", deviator, deviator)
-    np.testing.assert_allclose(cells["von mises stress (kPa)"], np.sqrt(1.5 * square), rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(
+        cells["von mises stress (kPa)"], np.sqrt(1.5 * square), rtol=1e-4, atol=1e-6
+    )
     large = np.abs(mean) > 0.1 * np.abs(mean).max()
     np.testing.assert_allclose(mean[large], cells["mean stress (kPa)"][large], rtol=0.02)
     youngs = np.array([0.15e3, 0.015e3, 0.015e3])[cells["layer"]]
     shear, bulk = youngs / 2.96, youngs / (3 * 0.04)  # instantaneous
-    energy = 1e3 * (square / (4 * shear) + mean**2 / (2 * bulk))  # but for det F, which is one within some per cent
-    np.testing.assert_allclose(cells["strain energy density (Pa)"], energy, rtol=0.12, atol=1e-3 * energy.max())
+    energy = 1e3 * (
+        square / (4 * shear) + mean**2 / (2 * bulk)
+    )  # but for det F, which is one within some per cent
+    np.testing.assert_allclose(
+        cells["strain energy density (Pa)"], energy, rtol=0.12, atol=1e-3 * energy.max()
+    )
     assert (cells["smallest principal strain (1)"] <= cells["largest principal strain (1)"]).all()
     centre = mesh.points[mesh.cells].mean(1)
     twin = cKDTree(centre).query(centre * [-1, 1])[1]
-    np.testing.assert_allclose(stress[twin], stress * [[1, -1, 1], [-1, 1, 1], [1, 1, 1]], rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(
+        stress[twin], stress * [[1, -1, 1], [-1, 1, 1], [1, 1, 1]], rtol=1e-12, atol=1e-15
+    )
     assert np.abs(stress[:, 0, 1]).max() > 1
 
 
@@ -207,7 +252,11 @@ def test_fields_are_what_receptors_see_in_one_element(run, monkeypatch):
     body, space = simulation.body, simulation.body.space
     body.displace(np.where(space.fixed, 0, 1e-6 * np.sin(4000 * space.points[:, ::-1])))
     some = np.arange(0, len(space.cells), 37)
-    middle = np.einsum("a,nai->ni", space.element.shape(np.array([[0.5, 0.5]]))[0][0], space.points[space.cells[some]])
+    middle = np.einsum(
+        "a,nai->ni",
+        space.element.shape(np.array([[0.5, 0.5]]))[0][0],
+        space.points[space.cells[some]],
+    )
     receptors = MaterialPoints(body, middle, simulation.fields.shear_instantaneous)
     there, here = receptors.sample(body), simulation.fields.sample(body)
     for name in there:
@@ -217,19 +266,25 @@ def test_fields_are_what_receptors_see_in_one_element(run, monkeypatch):
 def test_the_last_state_is_the_field_when_no_snapshot_is_named():
     """Whatever has no snapshots has one of its end when fields are asked for, and none when they are not."""
     scene = load_scene(SCENES / "ramp40_flat.yaml").with_accuracy("draft")
-    scene = scene.model_copy(update={"motion": (scene.motion[0].model_copy(update={"rate": None}),)})
+    scene = scene.model_copy(
+        update={"motion": (scene.motion[0].model_copy(update={"rate": None}),)}
+    )
     assert "snapshot_time" not in simulate(scene)
     history = simulate(scene, fields=True)
     assert history.snapshot_time.values == [float(history.time[-1])]
     apex = int(np.argmin(np.hypot(*(history.node_position.values - [0, 6e-3]).T)))
-    assert history.snapshot_displacement[0, apex, 1] == pytest.approx(-float(history.indentation_depth[-1]), rel=1e-4)
+    assert history.snapshot_displacement[0, apex, 1] == pytest.approx(
+        -float(history.indentation_depth[-1]), rel=1e-4
+    )
 
 
 def test_skin_is_indexed_by_the_way_along_it(run, tmp_path):
     """Pressure over place and time plots; the middle is found by its place; a file that was read again has it too."""
     write_history(run[3], tmp_path / "history.nc")
     for history in (run[3], read_history(tmp_path / "history.nc")):
-        assert history.contact_pressure.dims == ("time", "skin_node") and np.all(np.diff(history.skin_arc) > 0)
+        assert history.contact_pressure.dims == ("time", "skin_node") and np.all(
+            np.diff(history.skin_arc) > 0
+        )
         middle = history.contact_pressure.sel(skin_arc=0, method="nearest")
         np.testing.assert_array_equal(middle, history.centre_pressure)
         drawn = history.contact_pressure.plot(x="skin_arc", y="time")
@@ -246,18 +301,26 @@ def test_a_file_is_the_one_that_xarray_writes(run, tmp_path):
     history.to_netcdf(tmp_path / "xarray.nc", engine="netcdf4")
     own, theirs = read_history(tmp_path / "own.nc"), read_history(tmp_path / "xarray.nc")
     xr.testing.assert_identical(own, theirs)
-    assert {name: own[name].dtype for name in own.variables} == {name: theirs[name].dtype for name in theirs.variables}
-    assert {name: type(value) for name, value in own.attrs.items()} == {n: type(v) for n, v in theirs.attrs.items()}
+    assert {name: own[name].dtype for name in own.variables} == {
+        name: theirs[name].dtype for name in theirs.variables
+    }
+    assert {name: type(value) for name, value in own.attrs.items()} == {
+        n: type(v) for n, v in theirs.attrs.items()
+    }
 
 
 def test_a_summary_names_its_receptors(run):
     """Every energy of a summary stands beside depth and offset; of very many receptors only the history speaks."""
     history = run[3]
     leg = summary(history)["legs"][-1]
-    assert [(r["depth_mm"], r["offset_mm"]) for r in leg["receptors"]] == [(d, x) for d in (0.6, 0.915) for x in (-0.5, 0, 0.5)]
+    assert [(r["depth_mm"], r["offset_mm"]) for r in leg["receptors"]] == [
+        (d, x) for d in (0.6, 0.915) for x in (-0.5, 0, 0.5)
+    ]
     for name in ("strain_energy_Pa", "strain_energy_network_Pa"):
         assert leg[name] == [r[name] for r in leg["receptors"]]
-    assert leg["force_gf"] == pytest.approx(20, rel=1e-6) and leg["force_N"] == pytest.approx(0.196133, rel=1e-6)
+    assert leg["force_gf"] == pytest.approx(20, rel=1e-6) and leg["force_N"] == pytest.approx(
+        0.196133, rel=1e-6
+    )
     many = summary(history.isel(receptor=np.zeros(2000, int)))["legs"][-1]
     assert "2000 receptor points" in many["receptors"] and len(json.dumps(many)) < 1000
 
@@ -282,7 +345,11 @@ def test_an_interrupted_simulation_keeps_what_had_converged(run):
 def test_a_full_disk_is_an_error_of_the_system(run, tmp_path, monkeypatch):
     """What netCDF calls an HDF error becomes one that says what the disk says, and nothing is left."""
     monkeypatch.setattr(shutil, "disk_usage", lambda _: types.SimpleNamespace(free=0))
-    monkeypatch.setattr(netCDF4, "Dataset", lambda *_, **__: (_ for _ in ()).throw(RuntimeError("NetCDF: HDF error")))
+    monkeypatch.setattr(
+        netCDF4,
+        "Dataset",
+        lambda *_, **__: (_ for _ in ()).throw(RuntimeError("NetCDF: HDF error")),
+    )
     with pytest.raises(OSError, match="No space left") as caught:
         write_history(run[3], tmp_path / "history.nc")
     assert caught.value.errno == errno.ENOSPC and not list(tmp_path.iterdir())
@@ -320,12 +387,23 @@ def test_an_element_that_folds_at_a_receptor_ends_the_run(monkeypatch):
 
     def folded(points, body):
         found = sample(points, body)
-        return found | {"strain_energy_density": found["strain_energy_density"] * (np.nan if next(calls) == 3 else 1.0)}
+        return found | {
+            "strain_energy_density": found["strain_energy_density"]
+            * (np.nan if next(calls) == 3 else 1.0)
+        }
 
     monkeypatch.setattr(MaterialPoints, "sample", folded)
-    scene = load_scene(SCENES / "ramp40_flat.yaml").with_accuracy(Discretisation(skin_edge=0.8e-3, steps=8))
-    with pytest.raises(NonConvergence, match="turns inside out at the receptor 560 um deep.*try a finer skin mesh") as stop:
+    scene = load_scene(SCENES / "ramp40_flat.yaml").with_accuracy(
+        Discretisation(skin_edge=0.8e-3, steps=8)
+    )
+    with pytest.raises(
+        NonConvergence, match="turns inside out at the receptor 560 um deep.*try a finer skin mesh"
+    ) as stop:
         simulate(scene)
     kept = stop.value.dataset
-    assert kept.sizes["time"] == 3 and not kept.attrs["complete"] and np.isfinite(kept.strain_energy_density).all()
+    assert (
+        kept.sizes["time"] == 3
+        and not kept.attrs["complete"]
+        and np.isfinite(kept.strain_energy_density).all()
+    )
     assert stop.value.time == float(kept.time[-1])

@@ -13,7 +13,15 @@ from cysyk1999.measures.table import Measures
 from cysyk1999.studies.ridges import frames as ridge_frames
 from cysyk1999.studies.ridges import picture as ridge_study
 from cysyk1999.studies.ridges import run as cases_of
-from cysyk1999.studies.ridges.run import AS_DRAWN, FLANK, GRID, Case, boundary, case_scene, ridges_drawn
+from cysyk1999.studies.ridges.run import (
+    AS_DRAWN,
+    FLANK,
+    GRID,
+    Case,
+    boundary,
+    case_scene,
+    ridges_drawn,
+)
 from fingerpad import load_scene, plan, simulate
 from fingerpad.measures.features import energy
 from fingerpad.scenes.scene import Receptors, Slide
@@ -57,16 +65,29 @@ def test_strokes_to_either_side_are_mirror_images(base):
     """The identity that lets one stroke stand for two, simulated once on a draft mesh."""
     draft = base.with_accuracy("draft")
     offsets = (-120e-6, -BESIDE, 0.0, BESIDE, 120e-6)
-    outputs = draft.outputs.model_copy(update={"receptors": Receptors(depths=(600e-6, DEPTH, 935e-6), offsets=offsets)})
+    outputs = draft.outputs.model_copy(
+        update={"receptors": Receptors(depths=(600e-6, DEPTH, 935e-6), offsets=offsets)}
+    )
     right, left = (
-        simulate(draft.model_copy(update={"motion": (draft.motion[0], Slide(slide=x, speed=10e-3)), "outputs": outputs}))
+        simulate(
+            draft.model_copy(
+                update={
+                    "motion": (draft.motion[0], Slide(slide=x, speed=10e-3)),
+                    "outputs": outputs,
+                }
+            )
+        )
         for x in (-3e-3, 3e-3)
     )
     for depth in (600e-6, DEPTH, 935e-6):
         for x in offsets:
-            np.testing.assert_allclose(energy(right, depth, x), energy(left, depth, -x), rtol=LEFT_OUT)
+            np.testing.assert_allclose(
+                energy(right, depth, x), energy(left, depth, -x), rtol=LEFT_OUT
+            )
     found, mirrored = both_ways(right, DEPTH, -BESIDE)
-    np.testing.assert_allclose(mirrored, energy(left, DEPTH, -BESIDE)[-len(mirrored) :], rtol=LEFT_OUT)
+    np.testing.assert_allclose(
+        mirrored, energy(left, DEPTH, -BESIDE)[-len(mirrored) :], rtol=LEFT_OUT
+    )
     assert directional_index(right, DEPTH, -BESIDE) > 0.3 and (found > 1.5 * mirrored).all()
 
 
@@ -81,7 +102,10 @@ def test_islands_are_counted(made):
 
 def test_boundary_is_where_the_mesh_has_it(base):
     mesh = mesh_for(base, plan(base))
-    layers = [np.unique(mesh.cells[mesh.region == mesh.regions.index(name)]) for name in ("epidermis", "dermis")]
+    layers = [
+        np.unique(mesh.cells[mesh.region == mesh.regions.index(name)])
+        for name in ("epidermis", "dermis")
+    ]
     x, y = mesh.points[np.intersect1d(*layers)].T
     near = np.flatnonzero((np.abs(x) < 0.3e-3) & (y > 0))
     pad = RidgedPad(OUTLINE, base.specimen.ridges)
@@ -97,7 +121,9 @@ def test_boundary_is_where_the_mesh_has_it(base):
 
 def test_cases_and_figures_mean_the_same_receptor():
     assert (cases_of.DEPTH, cases_of.BESIDE) == (DEPTH, BESIDE)
-    assert {name: edge * 1e6 for name, edge in cases_of.EDGES.items()} == pytest.approx(ridge_study.MESHES)
+    assert {name: edge * 1e6 for name, edge in cases_of.EDGES.items()} == pytest.approx(
+        ridge_study.MESHES
+    )
     assert set(AS_DRAWN) == set(ridge_study.DRAWN)
 
 
@@ -123,16 +149,21 @@ def test_ridges_drawn_on_the_thesiss_elements(base, name):
     drawn = ridges_drawn(plain, asked.specimen.outline, asked.specimen.ridges, straight)
     assert not chosen.effects["ridges"].on and len(drawn.points) == len(plain.points)
     assert quality_of(drawn)["worst_scaled_jacobian"] > 0.3
-    np.testing.assert_array_equal(drawn.points[np.unique(drawn.curves["skin"])], plain.points[np.unique(plain.curves["skin"])])
-    corners = [np.unique(drawn.cells[drawn.region == drawn.regions.index(n), :4]) for n in ("epidermis", "dermis")]
+    np.testing.assert_array_equal(
+        drawn.points[np.unique(drawn.curves["skin"])], plain.points[np.unique(plain.curves["skin"])]
+    )
+    corners = [
+        np.unique(drawn.cells[drawn.region == drawn.regions.index(n), :4])
+        for n in ("epidermis", "dermis")
+    ]
     x, y = drawn.points[np.intersect1d(*corners)].T
     pad = RidgedPad(OUTLINE, asked.specimen.ridges)
     for at, height in zip(x, y, strict=True):
         if abs(at) < 0.4e-3 and height > 0:
             depth = boundary(OUTLINE, asked.specimen.ridges, at)
-            assert pad.curve.point(pad.curve.theta_at(at / (1 - depth / OUTLINE.apex_radius)), depth)[0, 1] == pytest.approx(
-                height, abs=1e-6
-            )
+            assert pad.curve.point(
+                pad.curve.theta_at(at / (1 - depth / OUTLINE.apex_radius)), depth
+            )[0, 1] == pytest.approx(height, abs=1e-6)
     moved = np.hypot(*(drawn.points - plain.points).T)
     assert 50e-6 < moved.max() < 80e-6
 
@@ -150,24 +181,39 @@ def test_frames_are_drawn_from_themselves(made):
             inner = {**synthetic.RIDGES["inner"], "height": height * 1e-6}
             ridges = "none" if not height else synthetic.RIDGES | {"inner": inner}
             own = scene | {"specimen": scene["specimen"] | {"ridges": ridges}}
-            cases[f"{height}_0.35_{mesh}"] = stroke.assign_attrs(scene=json.dumps(own), cost=json.dumps({"nodes": 10}))
+            cases[f"{height}_0.35_{mesh}"] = stroke.assign_attrs(
+                scene=json.dumps(own), cost=json.dumps({"nodes": 10})
+            )
     depths = {*GRID[0], DEPTH}
     for history in cases.values():
         depths |= {place(history)[0] for place in ridge_frames.READ.values()}
     offsets = sorted({*GRID[1], -BESIDE, BESIDE, -FLANK, FLANK})
     for name, history in cases.items():
-        felt = lambda z, x: 100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))  # noqa: E731
+        felt = lambda z, x: (
+            100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))
+        )  # noqa: E731
         cases[name] = synthetic._receptors(history, sorted(depths), offsets, felt)
     assert ridge_frames.specimen_of(cases["0_0.35_thesis"])[1] is None
     frames = ridge_frames.frames(cases, made, {})
     assert set(frames) == set(ridge_study.STUDIES)
-    profile = frames["offset"][frames["offset"]["series"].eq("inner ridges") & frames["offset"]["panel"].eq("profile")]
+    profile = frames["offset"][
+        frames["offset"]["series"].eq("inner ridges") & frames["offset"]["panel"].eq("profile")
+    ]
     beside = profile.set_index(ridge_study.OFFSET).loc[-46.0, ridge_study.INDEX]
     assert beside == pytest.approx(0.5)
     assert set(frames["height"][ridge_study.HEIGHT]) == {0, 150, 300}
-    thesis = frames["height"][frames["height"]["series"].str.startswith("thesis")].set_index(ridge_study.HEIGHT)["layer"]
+    thesis = frames["height"][frames["height"]["series"].str.startswith("thesis")].set_index(
+        ridge_study.HEIGHT
+    )["layer"]
     assert thesis.to_dict() == {0: "dermis", 150: "dermis", 300: "epidermis"}
-    assert list(frames["mesh"]["series"]) == ["coarse", "thesis", "fine", "curved", "straight", "shifted"]
+    assert list(frames["mesh"]["series"]) == [
+        "coarse",
+        "thesis",
+        "fine",
+        "curved",
+        "straight",
+        "shifted",
+    ]
     for name, draw in ridge_study.STUDIES.items():
         draw(frames[name])
 
@@ -176,7 +222,10 @@ def test_rows_hold_for_what_was_made_up_to_show_them(made):
     m = Measures.of(made)
     for id_ in ("T321", "TR43", "TR44", "TR45", "TR46", "TR47", "TR48", "TR49", "TR50", "TR51"):
         assert TRENDS[id_](m).holds, id_
-    assert m("highest_of_three", "ridged_stroke_right") == pytest.approx(300) and m("held_force", "ridged_stroke_right") == 20
+    assert (
+        m("highest_of_three", "ridged_stroke_right") == pytest.approx(300)
+        and m("held_force", "ridged_stroke_right") == 20
+    )
 
 
 def _backwards(history):
@@ -187,13 +236,29 @@ def _backwards(history):
 @pytest.mark.parametrize(
     ("id_", "scene", "mutant"),
     [
-        ("TR45", "ridged_40_k1260", lambda h: h.assign(strain_energy_density=0.5 * h.strain_energy_density)),
-        ("TR44", "ridged_40_k79", lambda h: h.assign(strain_energy_density=9 * h.strain_energy_density)),
+        (
+            "TR45",
+            "ridged_40_k1260",
+            lambda h: h.assign(strain_energy_density=0.5 * h.strain_energy_density),
+        ),
+        (
+            "TR44",
+            "ridged_40_k79",
+            lambda h: h.assign(strain_energy_density=9 * h.strain_energy_density),
+        ),
         ("TR43", "ridged_40_k210", _backwards),
         ("TR47", "plate_stroke_right", lambda h: synthetic.plate_stroke("ridged_stroke_right")),
         ("T321", "ridged_stroke_right", lambda h: synthetic.plate_stroke("plate_stroke_right")),
-        ("TR49", "ridged_stroke_left", lambda h: h.assign(strain_energy_density=3 * h.strain_energy_density)),
-        ("TR50", "ridged_outer_stroke_right", lambda h: synthetic.plate_stroke("plate_stroke_right")),
+        (
+            "TR49",
+            "ridged_stroke_left",
+            lambda h: h.assign(strain_energy_density=3 * h.strain_energy_density),
+        ),
+        (
+            "TR50",
+            "ridged_outer_stroke_right",
+            lambda h: synthetic.plate_stroke("plate_stroke_right"),
+        ),
         ("TR51", "ridged_outer_stroke_right", lambda h: h.assign(cutbacks=h.cutbacks + 1)),
     ],
 )

@@ -42,7 +42,15 @@ SIZE = MeshSize(skin_edge=134.4e-6, fine_half_width=3.4e-3, layer_edge=121.5e-6)
 DRAFT = MeshSize(skin_edge=268.8e-6, fine_half_width=3.4e-3, layer_edge=243e-6, growth=1.35)
 
 
-def ridges(height=0.15e-3, pitch=0.48e-3, shape="smooth", phase="tip", limiting=0.0, outer=None, half_width=3.4e-3) -> Ridges:
+def ridges(
+    height=0.15e-3,
+    pitch=0.48e-3,
+    shape="smooth",
+    phase="tip",
+    limiting=0.0,
+    outer=None,
+    half_width=3.4e-3,
+) -> Ridges:
     inner = InnerRidges(pitch=pitch, height=height, shape=shape, phase=phase, limiting=limiting)
     outer = outer and OuterRidges(height=outer, shape="smooth")
     return Ridges(inner=inner, outer=outer, half_width=half_width)
@@ -91,7 +99,9 @@ def named(points) -> tuple[np.ndarray, np.ndarray]:
         depth = ((skin - points) * normal).sum(axis=1)
         speed = np.hypot(*CURVE._tangent(theta))
         theta = theta + off / (speed * (1.0 - depth * CURVE.curvature(theta)))
-    return CURVE.arc_length(theta), ((CURVE.point(theta) - points) * CURVE.normal(theta)).sum(axis=1)
+    return CURVE.arc_length(theta), ((CURVE.point(theta) - points) * CURVE.normal(theta)).sum(
+        axis=1
+    )
 
 
 def between(mesh, upper: str, lower: str, reach: float = 5e-3) -> np.ndarray:
@@ -104,7 +114,13 @@ def between(mesh, upper: str, lower: str, reach: float = 5e-3) -> np.ndarray:
 def areas(mesh) -> dict[str, float]:
     weights = np.array([25, 25, 25, 25, 40, 40, 40, 40, 64]) / 324.0
     area = np.linalg.det(jacobians(mesh, sample_points(mesh.element)[1])) @ weights
-    return dict(zip(mesh.regions, np.bincount(mesh.region, area, minlength=len(mesh.regions)).tolist(), strict=True))
+    return dict(
+        zip(
+            mesh.regions,
+            np.bincount(mesh.region, area, minlength=len(mesh.regions)).tolist(),
+            strict=True,
+        )
+    )
 
 
 # -- nothing asked, nothing changed ----------------------------------------------------------------
@@ -114,7 +130,10 @@ def test_plain_mesh_is_what_it_was_before_ridges_existed():
     """Byte for byte when written; kept to a picometre, for sines differ in the last bit between processors."""
     mesh = build_pad_mesh(OUTLINE, SIZE)
     content = (mesh.points.round(12) + 0.0).tobytes() + mesh.cells.tobytes() + mesh.region.tobytes()
-    assert hashlib.sha256(content).hexdigest() == "8cc84893d75d5f18b2dd936fc7fe745540053613d010f4f2afc995a5d0e9a0f1"
+    assert (
+        hashlib.sha256(content).hexdigest()
+        == "8cc84893d75d5f18b2dd936fc7fe745540053613d010f4f2afc995a5d0e9a0f1"
+    )
     assert len(mesh.points) == 10812
 
 
@@ -149,25 +168,36 @@ def test_tips_are_deep_and_the_mean_depth_is_kept():
 def test_outer_crests_lie_over_inner_tips():
     pad = RidgedPad(OUTLINE, ridges(outer=60e-6, phase=0.1e-3))
     s = np.linspace(-0.24e-3, 0.24e-3, 2001)
-    assert s[np.argmin(pad.skin_shift(s))] == pytest.approx(s[np.argmax(pad.interface_shift(s))], abs=3e-7)
+    assert s[np.argmin(pad.skin_shift(s))] == pytest.approx(
+        s[np.argmax(pad.interface_shift(s))], abs=3e-7
+    )
     assert np.ptp(pad.skin_shift(s)) == pytest.approx(60e-6, rel=1e-4)
 
 
 def test_corneum_follows_outer_ridges_and_ignores_inner_ones():
     pad = RidgedPad(OUTLINE, ridges(outer=60e-6), OUTLINE.stratum_corneum_thickness)
     s = np.linspace(-1e-3, 1e-3, 101)
-    thickness = pad.depth(s, np.full_like(s, OUTLINE.stratum_corneum_thickness)) - pad.depth(s, np.zeros_like(s))
+    thickness = pad.depth(s, np.full_like(s, OUTLINE.stratum_corneum_thickness)) - pad.depth(
+        s, np.zeros_like(s)
+    )
     assert thickness == pytest.approx(OUTLINE.stratum_corneum_thickness, rel=1e-12)
 
 
 def test_places_of_tip_and_valley():
     assert RidgedPad(OUTLINE, RIDGES).nearest("tip") == (0.0, pytest.approx(0.925e-3))
     x, depth = RidgedPad(OUTLINE, RIDGES).nearest("valley")
-    assert (x, depth) == (pytest.approx(0.24e-3 * (1 - 0.775 / 11), rel=1e-3), pytest.approx(0.775e-3))
-    assert RidgedPad(OUTLINE, ridges(phase="valley")).nearest("valley")[0] == pytest.approx(0.0, abs=1e-18)
+    assert (x, depth) == (
+        pytest.approx(0.24e-3 * (1 - 0.775 / 11), rel=1e-3),
+        pytest.approx(0.775e-3),
+    )
+    assert RidgedPad(OUTLINE, ridges(phase="valley")).nearest("valley")[0] == pytest.approx(
+        0.0, abs=1e-18
+    )
     x, depth = RidgedPad(OUTLINE, ridges(phase=0.1e-3)).nearest("tip")
     assert 0.09e-3 < x < 0.1e-3 and depth == pytest.approx(0.925e-3)
-    assert RidgedPad(OUTLINE, ridges(limiting=0.5)).nearest("valley")[0] == pytest.approx(0.12e-3, rel=0.1)
+    assert RidgedPad(OUTLINE, ridges(limiting=0.5)).nearest("valley")[0] == pytest.approx(
+        0.12e-3, rel=0.1
+    )
     with pytest.raises(ValueError, match="crest"):
         RidgedPad(OUTLINE, RIDGES).nearest("crest")
 
@@ -227,7 +257,10 @@ def test_mesh_is_symmetric_to_the_last_bit_where_the_ridges_are(case):
             mesh.right_half()
         return
     assert mesh.symmetric and places(mesh.points[x > 0]) == mirrored
-    assert len(mesh.right_half().cells) * 2 == len(mesh.cells) and mesh.right_half().regions == mesh.regions
+    assert (
+        len(mesh.right_half().cells) * 2 == len(mesh.cells)
+        and mesh.right_half().regions == mesh.regions
+    )
     assert (x == 0).sum() == (np.abs(x) < 1e-9).sum()
 
 
@@ -242,7 +275,9 @@ def test_areas_are_those_under_the_stated_curves(case):
     curves = [pad.depth(s, np.full_like(s, d)) if pad else np.full_like(s, d) for d in lines]
     found = areas(mesh)
     for name, (a, b) in zip(mesh.regions, pairwise(curves), strict=False):
-        assert found[name] == pytest.approx(np.trapezoid((b - a) - 0.5 * k * (b**2 - a**2), s), rel=3e-4), name
+        assert found[name] == pytest.approx(
+            np.trapezoid((b - a) - 0.5 * k * (b**2 - a**2), s), rel=3e-4
+        ), name
     plain = areas(build_pad_mesh(OUTLINE, DRAFT))
     assert sum(found.values()) == pytest.approx(sum(plain.values()), rel=1e-3)
 
@@ -282,7 +317,10 @@ def test_ridges_do_not_blow_up_the_mesh(meshes):
     plain = build_pad_mesh(OUTLINE, SIZE)
     assert len(meshes["inner"].points) < 2.05 * len(plain.points)
     assert len(meshes["outer"].points) < 3.0 * len(plain.points)
-    fat = [np.count_nonzero(mesh.region == mesh.regions.index("fat")) for mesh in (plain, meshes["inner"])]
+    fat = [
+        np.count_nonzero(mesh.region == mesh.regions.index("fat"))
+        for mesh in (plain, meshes["inner"])
+    ]
     assert fat[1] < 1.1 * fat[0]
     assert len(skin_chain(meshes["inner"])) < 1.1 * len(skin_chain(plain))
 
@@ -290,7 +328,9 @@ def test_ridges_do_not_blow_up_the_mesh(meshes):
 def test_counting_is_building(case):
     given_ridges, corneum, mesh = case
     assert count_nodes(OUTLINE, SIZE, given_ridges, corneum) == len(mesh.points)
-    assert smallest_edge(OUTLINE, SIZE, given_ridges, corneum) == quality_of(mesh)["smallest_edge_m"]
+    assert (
+        smallest_edge(OUTLINE, SIZE, given_ridges, corneum) == quality_of(mesh)["smallest_edge_m"]
+    )
 
 
 def test_ridges_of_no_height_are_the_plain_pad():
@@ -298,7 +338,9 @@ def test_ridges_of_no_height_are_the_plain_pad():
     low = build_pad_mesh(OUTLINE, SIZE, ridges(1e-9, outer=1e-9))
     plain = build_pad_mesh(OUTLINE, SIZE)
     assert areas(low) == pytest.approx(areas(plain), rel=2e-5)
-    for layers, depth in zip((("epidermis", "dermis"), ("dermis", "fat")), CURVE.layer_depths, strict=True):
+    for layers, depth in zip(
+        (("epidermis", "dermis"), ("dermis", "fat")), CURVE.layer_depths, strict=True
+    ):
         np.testing.assert_allclose(named(low.points[between(low, *layers)])[1], depth, atol=1.01e-9)
     depths, offsets = np.array([600e-6, 915e-6, 915e-6]), np.array([0.0, 46e-6, -1e-3])
     for points in (below_skin(low, depths, offsets), below_outline(OUTLINE, depths, offsets)):
@@ -333,7 +375,9 @@ def test_what_has_no_room_is_refused():
     thin = Outline(**{**OUTLINE.model_dump(), "dermis_thickness": 0.2e-3})
     with pytest.raises(MeshError, match="^ridges: the dermis is too thin"):
         build_pad_mesh(thin, SIZE, ridges(0.14e-3))
-    all_horn = Outline(**{**OUTLINE.model_dump(), "stratum_corneum_thickness": OUTLINE.epidermis_thickness})
+    all_horn = Outline(
+        **{**OUTLINE.model_dump(), "stratum_corneum_thickness": OUTLINE.epidermis_thickness}
+    )
     with pytest.raises(MeshError, match="no epidermis"):
         build_pad_mesh(all_horn, DRAFT, None, True)
 
@@ -350,7 +394,9 @@ def test_what_has_no_room_is_refused():
     edge=st.floats(0.12e-3, 0.3e-3),
     growth=st.floats(1.15, 1.4),
 )
-def test_any_ridges_of_the_literature_can_be_meshed(height, pitch, shape, phase, limiting, outer, corneum, edge, growth):
+def test_any_ridges_of_the_literature_can_be_meshed(
+    height, pitch, shape, phase, limiting, outer, corneum, edge, growth
+):
     asked = ridges(height, pitch, shape, phase, limiting, outer)
     size = replace(SIZE, skin_edge=edge, layer_edge=0.9 * edge, growth=growth)
     mesh = build_pad_mesh(OUTLINE, size, asked, corneum)
@@ -374,21 +420,33 @@ def test_words_for_ridges():
     assert inner.inner.model_dump() == pytest.approx(RIDGES.inner.model_dump())
     assert inner.outer is None and inner.half_width == pytest.approx(3.4e-3)
     assert both.inner == inner.inner
-    assert both.outer.model_dump() == pytest.approx({"period": None, "height": 60e-6, "shape": "smooth"})
+    assert both.outer.model_dump() == pytest.approx(
+        {"period": None, "height": 60e-6, "shape": "smooth"}
+    )
     assert RidgedPad(OUTLINE, both).period == inner.inner.pitch
     assert Specimen().model_dump()["ridges"] == "none"
 
 
 def test_keys_of_ridges_left_out_are_the_thesis_files():
-    asked = Specimen(ridges={"inner": {"height": 0.2e-3, "phase": "valley"}, "outer": {"period": 0.5e-3}}).ridges
-    assert asked.inner.model_dump() == pytest.approx(ridges(0.2e-3, phase="valley").inner.model_dump())
-    assert asked.outer.model_dump() == pytest.approx({"period": 0.5e-3, "height": 60e-6, "shape": "smooth"})
+    asked = Specimen(
+        ridges={"inner": {"height": 0.2e-3, "phase": "valley"}, "outer": {"period": 0.5e-3}}
+    ).ridges
+    assert asked.inner.model_dump() == pytest.approx(
+        ridges(0.2e-3, phase="valley").inner.model_dump()
+    )
+    assert asked.outer.model_dump() == pytest.approx(
+        {"period": 0.5e-3, "height": 60e-6, "shape": "smooth"}
+    )
     assert Specimen(ridges={"half_width": 3e-3}).ridges.outer is None
 
 
 def test_stratum_corneum_is_a_layer_only_if_asked_for():
     layers = Specimen().layers
-    assert layers.stratum_corneum is None and set(layers.model_dump()) == {"epidermis", "dermis", "fat"}
+    assert layers.stratum_corneum is None and set(layers.model_dump()) == {
+        "epidermis",
+        "dermis",
+        "fat",
+    }
     own = Specimen(layers={"stratum_corneum": {"youngs_modulus": 1e6}}).layers
     assert (own.stratum_corneum.youngs_modulus, own.stratum_corneum.poisson_ratio) == (1e6, 0.48)
     assert Specimen(layers={"stratum_corneum": {}}).layers.stratum_corneum == layers.epidermis
@@ -404,12 +462,17 @@ def test_ridges_beside_a_mesh_are_refused(meshes, tmp_path):
 # -- plans -----------------------------------------------------------------------------------------
 
 
-def scene(specimen, stimulus=None, effects=None, accuracy="draft", hold=2.0, offsets=(0.0,)) -> Scene:
+def scene(
+    specimen, stimulus=None, effects=None, accuracy="draft", hold=2.0, offsets=(0.0,)
+) -> Scene:
     return Scene(
         name="ridged",
         specimen=specimen,
         stimulus=stimulus or {"shape": "flat"},
-        motion=[{"press_to_force": 20 * 9.80665e-3, "rate": 40 * 9.80665e-3}, *([{"hold": hold}] if hold else [])],
+        motion=[
+            {"press_to_force": 20 * 9.80665e-3, "rate": 40 * 9.80665e-3},
+            *([{"hold": hold}] if hold else []),
+        ],
         accuracy=accuracy,
         effects=effects or {},
         outputs={"receptors": {"depths": [600e-6, 915e-6], "offsets": list(offsets)}},
@@ -420,18 +483,26 @@ def test_plan_says_why_and_how_finely():
     chosen = plan(scene({"ridges": "inner"}, accuracy="thesis"))
     effect = chosen.effects["ridges"]
     assert effect.on and "0.48 mm apart, 0.15 mm high" in effect.why
-    assert re.search(r"10\.\d elements from ridge to ridge, 22\.\d in the middle, 4 rows", effect.why)
+    assert re.search(
+        r"10\.\d elements from ridge to ridge, 22\.\d in the middle, 4 rows", effect.why
+    )
     assert chosen.effects["symmetry"].on
     mesh = build_pad_mesh(Specimen().outline, chosen.mesh_size, Specimen(ridges="inner").ridges)
     assert chosen.nodes == len(mesh.points) // 2 + 1
     assert chosen.smallest_edge == pytest.approx(quality_of(mesh)["smallest_edge_m"], rel=1e-9)
-    assert "outer ones 0.48 mm apart, 0.06 mm high" in plan(scene({"ridges": "inner_and_outer"})).effects["ridges"].why
+    assert (
+        "outer ones 0.48 mm apart, 0.06 mm high"
+        in plan(scene({"ridges": "inner_and_outer"})).effects["ridges"].why
+    )
 
 
 def test_ridges_change_nothing_else_of_the_plan():
     plain, ridged = (plan(scene({"ridges": each}, accuracy="thesis")) for each in ("none", "inner"))
     assert not plain.effects["ridges"].on and plain.effects["ridges"].why == "the specimen has none"
-    assert replace(ridged.mesh_size, focus=()) == plain.mesh_size and ridged.contact_edge == plain.contact_edge
+    assert (
+        replace(ridged.mesh_size, focus=()) == plain.mesh_size
+        and ridged.contact_edge == plain.contact_edge
+    )
     assert {name: e for name, e in ridged.effects.items() if name != "ridges"} == {
         name: e for name, e in plain.effects.items() if name != "ridges"
     }
@@ -444,8 +515,12 @@ def test_ridges_can_be_overridden_off_but_not_on():
     chosen = plan(asked)
     assert not chosen.effects["ridges"].on and "asked for" in chosen.effects["ridges"].why
     assert chosen.effects["symmetry"].on
-    np.testing.assert_array_equal(mesh_for(asked, chosen).points, build_pad_mesh(Specimen().outline, chosen.mesh_size).points)
-    with pytest.raises(PlanError, match="effects.ridges: on, but the specimen has none; allowed: off or auto"):
+    np.testing.assert_array_equal(
+        mesh_for(asked, chosen).points, build_pad_mesh(Specimen().outline, chosen.mesh_size).points
+    )
+    with pytest.raises(
+        PlanError, match="effects.ridges: on, but the specimen has none; allowed: off or auto"
+    ):
         plan(scene({"ridges": "none"}, effects={"ridges": True}))
     assert plan(scene({"ridges": "inner"}, effects={"ridges": True})).effects["ridges"].on
 
@@ -474,15 +549,28 @@ def test_layer_that_the_mesh_does_not_have_is_refused(tmp_path):
 
 
 def ends(history) -> dict[str, np.ndarray]:
-    names = ("force", "indentation_depth", "contact_width", "centre_pressure", "strain_energy_density")
+    names = (
+        "force",
+        "indentation_depth",
+        "contact_width",
+        "centre_pressure",
+        "strain_energy_density",
+    )
     return {name: history[name].values[-1] for name in names}
 
 
-@pytest.mark.parametrize("stimulus", [{"shape": "flat"}, {"shape": "cylinder", "curvature": 209.97}], ids=["flat", "210 1/m"])
+@pytest.mark.parametrize(
+    "stimulus",
+    [{"shape": "flat"}, {"shape": "cylinder", "curvature": 209.97}],
+    ids=["flat", "210 1/m"],
+)
 def test_ridges_of_no_height_answer_as_the_plain_pad(stimulus):
     """To discretisation error: a draft's, planned to be 6 %, is 1 % here."""
     low = {"inner": {"height": 1e-9}}
-    plain, ridged = (ends(simulate(scene({"ridges": each}, stimulus, offsets=(0.0, 46e-6)))) for each in ("none", low))
+    plain, ridged = (
+        ends(simulate(scene({"ridges": each}, stimulus, offsets=(0.0, 46e-6))))
+        for each in ("none", low)
+    )
     for name, value in plain.items():
         np.testing.assert_allclose(ridged[name], value, rtol=0.01, err_msg=name)
 
@@ -490,10 +578,14 @@ def test_ridges_of_no_height_answer_as_the_plain_pad(stimulus):
 def test_inner_ridges_press_without_cuts_and_are_felt():
     """The energy at 600 um, in the epidermis, is larger over a tip than over a valley; the pad as a whole hardly knows."""
     at = [0.0, RidgedPad(OUTLINE, RIDGES).nearest("valley")[0]]
-    plain, ridged = (simulate(scene({"ridges": each}, hold=0, offsets=at)) for each in ("none", "inner"))
+    plain, ridged = (
+        simulate(scene({"ridges": each}, hold=0, offsets=at)) for each in ("none", "inner")
+    )
     assert ridged.cutbacks.sum() == 0 and ridged.min_detF.min() > 0.9
     assert abs(ridged.energy_balance_error[-1]) < 0.02
-    assert float(ridged.indentation_depth[-1]) == pytest.approx(float(plain.indentation_depth[-1]), rel=0.02)
+    assert float(ridged.indentation_depth[-1]) == pytest.approx(
+        float(plain.indentation_depth[-1]), rel=0.02
+    )
     tip, valley = ridged.strain_energy_density[-1].values[:2]
     assert tip > 1.3 * valley
     np.testing.assert_allclose(*plain.strain_energy_density[-1].values[:2], rtol=0.01)
@@ -504,12 +596,18 @@ def test_outer_ridges_break_the_contact_into_islands():
     assert history.cutbacks.sum() == 0
     pressure = history.contact_pressure[-1].values
     islands = np.count_nonzero(np.diff((pressure > 0).astype(int)) == 1)
-    assert islands >= 5 and float(history.force[-1]) == pytest.approx(20 * 9.80665e-3 / 0.0114, rel=1e-6)
+    assert islands >= 5 and float(history.force[-1]) == pytest.approx(
+        20 * 9.80665e-3 / 0.0114, rel=1e-6
+    )
 
 
 def test_own_corneum_of_the_epidermis_s_modulus_changes_nothing(meshes):
     """And the layer's stiffness does."""
-    specimens = ({}, {"layers": {"stratum_corneum": {}}}, {"layers": {"stratum_corneum": {"youngs_modulus": 1e6}}})
+    specimens = (
+        {},
+        {"layers": {"stratum_corneum": {}}},
+        {"layers": {"stratum_corneum": {"youngs_modulus": 1e6}}},
+    )
     plain, same, stiff = (ends(simulate(scene(each, hold=0))) for each in specimens)
     for name, value in plain.items():
         np.testing.assert_allclose(same[name], value, rtol=0.01, err_msg=name)

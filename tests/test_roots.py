@@ -20,7 +20,9 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_a_root_is_scipys(case):
     function, low, high = CASES[case]
-    assert root(function, low, high) == pytest.approx(brentq(function, low, high, xtol=1e-14), rel=1e-12)
+    assert root(function, low, high) == pytest.approx(
+        brentq(function, low, high, xtol=1e-14), rel=1e-12
+    )
     assert root(function, low, high, 1e-3) == pytest.approx(brentq(function, low, high), abs=1e-3)
 
 

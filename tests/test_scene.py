@@ -32,7 +32,19 @@ from fingerpad.scenes.scene import (
     scene_json_schema,
     specimen_json_schema,
 )
-from wrong_scenes import BAD, DEPTH, FORCE, OUTLINE, RAMP_AND_HOLD, changed, motion, pad_folder, specimen, wavy, write
+from wrong_scenes import (
+    BAD,
+    DEPTH,
+    FORCE,
+    OUTLINE,
+    RAMP_AND_HOLD,
+    changed,
+    motion,
+    pad_folder,
+    specimen,
+    wavy,
+    write,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -40,9 +52,15 @@ CONFIG = Path(__file__).parents[1] / "config"
 FILES = sorted(CONFIG.glob("scenes/**/*.yaml"))
 SCENES = [path.with_name(f"{name}.yaml") for path in FILES for name in read_family(path)]
 THESIS_CURVATURES = {
-    "k79": 78.74, "k105": 104.99, "k158": 157.48, "k210": 209.97,
-    "k315": 314.96, "k420": 419.95, "k630": 629.92, "k1260": 1259.84,
-}  # fmt: skip
+    "k79": 78.74,
+    "k105": 104.99,
+    "k158": 157.48,
+    "k210": 209.97,
+    "k315": 314.96,
+    "k420": 419.95,
+    "k630": 629.92,
+    "k1260": 1259.84,
+}
 
 
 @pytest.fixture
@@ -55,7 +73,9 @@ def test_a_scene_a_file_and_a_dictionary_are_taken_alike(folder):
     path = write(folder, RAMP_AND_HOLD)
     scene = load_scene(path)
     assert load_scene(scene) is scene
-    assert [fingerpad.plan(given).to_dict() for given in (path, str(path))] == [fingerpad.plan(scene).to_dict()] * 2
+    assert [fingerpad.plan(given).to_dict() for given in (path, str(path))] == [
+        fingerpad.plan(scene).to_dict()
+    ] * 2
     with pytest.raises(SceneError, match="there is no such file"):
         fingerpad.simulate(folder / "none.yaml")
     with pytest.raises(SceneError, match="motion"):
@@ -110,17 +130,26 @@ def test_a_profile_that_cannot_be_read(folder, content):
 
 
 def test_a_sampled_profile_is_read_in_metres(folder):
-    (folder / "profile.csv").write_text("\ufeffx (mm),y (mm)\n-1,0.5\n0,0\n1,0.5\n", encoding="utf-8")
+    (folder / "profile.csv").write_text(
+        "\ufeffx (mm),y (mm)\n-1,0.5\n0,0\n1,0.5\n", encoding="utf-8"
+    )
     scene = load_scene(write(folder, changed(stimulus={"shape": "sampled", "csv": "profile.csv"})))
     assert isinstance(scene.stimulus, Sampled)
     assert scene.stimulus.x == pytest.approx((-1e-3, 0.0, 1e-3))
     assert scene.stimulus.y == pytest.approx((5e-4, 0.0, 5e-4))
 
 
-@pytest.mark.parametrize("size", [{"radius": "2.5 mm"}, {"diameter": "5 mm"}, {"curvature": "400 1/m"}])
+@pytest.mark.parametrize(
+    "size", [{"radius": "2.5 mm"}, {"diameter": "5 mm"}, {"curvature": "400 1/m"}]
+)
 def test_a_cylinder_is_known_by_its_curvature_radius_or_diameter(folder, size):
     scene = load_scene(write(folder, changed(stimulus={"shape": "cylinder", **size})))
-    assert scene.stimulus == Cylinder(curvature=400.0) == Cylinder(radius=2.5e-3) == Cylinder(diameter=5e-3)
+    assert (
+        scene.stimulus
+        == Cylinder(curvature=400.0)
+        == Cylinder(radius=2.5e-3)
+        == Cylinder(diameter=5e-3)
+    )
     assert scene.canonical()["stimulus"] == {"shape": "cylinder", "curvature": 400.0}
 
 
@@ -198,35 +227,69 @@ def test_the_strokes_are_the_thesis_s():
         assert scene.end_time == pytest.approx(0.5 + 80 / speed)
         assert len(scene.outputs.snapshots) == (85 if speed == 10 else 0)
     sub = [
-        load_scene(CONFIG / "scenes" / f"{name}.yaml") for name in ("stroke_sub_1", "stroke_sub_10", "stroke_sub_40", "step_sub")
+        load_scene(CONFIG / "scenes" / f"{name}.yaml")
+        for name in ("stroke_sub_1", "stroke_sub_10", "stroke_sub_40", "step_sub")
     ]
     for scene in sub:
-        assert scene.stimulus.curvatures == pytest.approx(Wavy().curvatures[:2], rel=1e-5) and scene.stimulus.length > 50e-3
+        assert (
+            scene.stimulus.curvatures == pytest.approx(Wavy().curvatures[:2], rel=1e-5)
+            and scene.stimulus.length > 50e-3
+        )
     assert [scene.motion[1].speed for scene in sub[:3]] == pytest.approx([1e-3, 10e-3, 40e-3])
-    assert sub[3].motion == (PressToForce(press_to_force=20 * 9.80665e-3), StepAndRepeat(step=50e-3, every=1e-3))
+    assert sub[3].motion == (
+        PressToForce(press_to_force=20 * 9.80665e-3),
+        StepAndRepeat(step=50e-3, every=1e-3),
+    )
 
 
 def test_what_is_left_out_is_the_thesis_s(folder):
     scene = load_scene(write(folder, RAMP_AND_HOLD))
     assert scene.specimen.outline == Outline(
-        apex_height=6e-3, apex_radius=7.9e-3, half_width=8.5e-3, depth_below=6.2e-3,
-        epidermis_thickness=0.85e-3, dermis_thickness=0.85e-3, stratum_corneum_thickness=0.35e-3,
-        bone_centre_height=-1.5e-3, bone_half_width=4e-3, bone_half_height=2.5e-3, nail_half_width=5e-3,
-    )  # fmt: skip
+        apex_height=6e-3,
+        apex_radius=7.9e-3,
+        half_width=8.5e-3,
+        depth_below=6.2e-3,
+        epidermis_thickness=0.85e-3,
+        dermis_thickness=0.85e-3,
+        stratum_corneum_thickness=0.35e-3,
+        bone_centre_height=-1.5e-3,
+        bone_half_width=4e-3,
+        bone_half_height=2.5e-3,
+        nail_half_width=5e-3,
+    )
     layers = scene.specimen.layers
-    assert [layer.youngs_modulus for layer in (layers.epidermis, layers.dermis, layers.fat)] == [15e4, 15e3, 15e3]
-    assert {layer.poisson_ratio for layer in (layers.epidermis, layers.dermis, layers.fat)} == {0.48}
-    assert [(term.g, term.tau) for term in scene.specimen.prony] == [(0.055, 3.25), (0.3691, 0.3414)]
+    assert [layer.youngs_modulus for layer in (layers.epidermis, layers.dermis, layers.fat)] == [
+        15e4,
+        15e3,
+        15e3,
+    ]
+    assert {layer.poisson_ratio for layer in (layers.epidermis, layers.dermis, layers.fat)} == {
+        0.48
+    }
+    assert [(term.g, term.tau) for term in scene.specimen.prony] == [
+        (0.055, 3.25),
+        (0.3691, 0.3414),
+    ]
     assert (scene.specimen.moduli, scene.specimen.contact_length) == ("instantaneous", 0.0114)
     assert (scene.friction, scene.accuracy, scene.effects) == (0.0, "thesis", {})
     assert scene.outputs.receptors.depths and scene.outputs.receptors.offsets == (0.0,)
 
 
 def test_keys_left_out_of_a_part_are_the_thesis_s(folder):
-    scene = load_scene(write(folder, specimen(layers={"fat": {"youngs_modulus": "20 kPa"}}, outline={"apex_height": "6.5 mm"})))
+    scene = load_scene(
+        write(
+            folder,
+            specimen(
+                layers={"fat": {"youngs_modulus": "20 kPa"}}, outline={"apex_height": "6.5 mm"}
+            ),
+        )
+    )
     fat = scene.specimen.layers.fat
     assert (fat.youngs_modulus, fat.poisson_ratio) == (20e3, 0.48)
-    assert (scene.specimen.outline.apex_height, scene.specimen.outline.half_width) == (6.5e-3, 8.5e-3)
+    assert (scene.specimen.outline.apex_height, scene.specimen.outline.half_width) == (
+        6.5e-3,
+        8.5e-3,
+    )
     assert scene.specimen.outline.soft_thickness == pytest.approx(5.5e-3)
 
 
@@ -266,12 +329,28 @@ def test_legs(folder):
         ([FORCE, {"slide": "-80 mm", "speed": "10 mm/s"}, {"hold": "1 s"}], 9.5),
         ([FORCE, {"slide": "80 mm"}, {"step": "8 mm", "every": "1 mm"}], 0.5),
         ([FORCE, {"slide": "8 mm"}, {"press_to_force": "40 gf", "rate": "40 gf/s"}], 1.0),
-        ([FORCE, {"slide": "8 mm", "keep": "depth"}, {"press_to_force": "40 gf", "rate": "40 gf/s"}], None),
-        ([DEPTH, {"slide": "8 mm", "keep": "depth"}, {"press_to_depth": "2 mm", "speed": "1 mm/s"}], 1.5),
+        (
+            [
+                FORCE,
+                {"slide": "8 mm", "keep": "depth"},
+                {"press_to_force": "40 gf", "rate": "40 gf/s"},
+            ],
+            None,
+        ),
+        (
+            [
+                DEPTH,
+                {"slide": "8 mm", "keep": "depth"},
+                {"press_to_depth": "2 mm", "speed": "1 mm/s"},
+            ],
+            1.5,
+        ),
     ],
 )
 def test_the_end_is_known_when_the_programme_alone_tells(folder, legs, end):
-    assert load_scene(write(folder, motion(*legs))).end_time == (None if end is None else pytest.approx(end))
+    assert load_scene(write(folder, motion(*legs))).end_time == (
+        None if end is None else pytest.approx(end)
+    )
 
 
 @pytest.mark.parametrize(
@@ -295,7 +374,10 @@ def test_effects_are_switches_in_any_yaml(folder, text, effects):
         (0.02, 0.02),
         ("0.02", 0.02),
         ("2 %", 0.02),
-        ({"element": "Q1P0", "skin_edge": "67 um", "steps": 8}, Discretisation(element="Q1P0", skin_edge=67e-6, steps=8)),
+        (
+            {"element": "Q1P0", "skin_edge": "67 um", "steps": 8},
+            Discretisation(element="Q1P0", skin_edge=67e-6, steps=8),
+        ),
     ],
 )
 def test_accuracy(folder, accuracy, value):
@@ -311,9 +393,17 @@ def test_the_wavy_surface_is_the_thesis_s_unless_told(folder):
     chords = 2 * math.sin(math.radians(9)) * np.array(radii)
     assert chords[0] == pytest.approx(11.92e-3, abs=5e-6)
     assert Wavy().length == pytest.approx(18e-3 + chords.sum() + chords[1:].sum())
-    own = {"curvatures": ["50 1/m"], "half_angle": "30 deg", "lead_in": "1 mm", "run_out": "2 mm", "fillet": "0.5 mm"}
+    own = {
+        "curvatures": ["50 1/m"],
+        "half_angle": "30 deg",
+        "lead_in": "1 mm",
+        "run_out": "2 mm",
+        "fillet": "0.5 mm",
+    }
     stimulus = load_scene(write(folder, wavy(**own))).stimulus
-    assert stimulus == Wavy(curvatures=(50.0,), half_angle=math.pi / 6, lead_in=1e-3, run_out=2e-3, fillet=0.5e-3)
+    assert stimulus == Wavy(
+        curvatures=(50.0,), half_angle=math.pi / 6, lead_in=1e-3, run_out=2e-3, fillet=0.5e-3
+    )
     assert stimulus.length == pytest.approx(23e-3)
 
 
@@ -328,7 +418,9 @@ def test_a_leg_that_takes_time_has_as_many_outputs_as_are_asked_for(folder):
     """Fewer than the accuracy's steps change nothing, nor do any where nothing takes time or who gives the steps by hand."""
 
     def steps(outputs, **changes):
-        chosen = fingerpad.plan(load_scene(write(folder, changed(outputs=outputs, accuracy="draft", **changes))))
+        chosen = fingerpad.plan(
+            load_scene(write(folder, changed(outputs=outputs, accuracy="draft", **changes)))
+        )
         return chosen.steps_per_leg, chosen.outputs
 
     usual = steps({})
@@ -337,7 +429,8 @@ def test_a_leg_that_takes_time_has_as_many_outputs_as_are_asked_for(folder):
     assert steps({"per_leg": 64}, **steady) == steps({}, **steady)
     by_hand = {"accuracy": {"steps": 10}}
     chosen = [
-        fingerpad.plan(load_scene(write(folder, changed(outputs=outputs, **by_hand)))).steps for outputs in ({}, {"per_leg": 64})
+        fingerpad.plan(load_scene(write(folder, changed(outputs=outputs, **by_hand)))).steps
+        for outputs in ({}, {"per_leg": 64})
     ]
     assert chosen[0] == chosen[1]
     asked = load_scene(write(folder, changed(outputs={"per_leg": 64})))
@@ -347,10 +440,17 @@ def test_a_leg_that_takes_time_has_as_many_outputs_as_are_asked_for(folder):
 def test_snapshots_at_intervals_are_times(folder):
     """Multiples of the interval up to the end, the end itself too; the canonical form is that of the times."""
     every = load_scene(write(folder, changed(outputs={"snapshots": {"every": "0.5 s"}})))
-    listed = load_scene(write(folder, changed(outputs={"snapshots": ["0.5 s", "1 s", "1.5 s", "2 s", "2.5 s"]})))
+    listed = load_scene(
+        write(folder, changed(outputs={"snapshots": ["0.5 s", "1 s", "1.5 s", "2 s", "2.5 s"]}))
+    )
     assert every.outputs.snapshots == (0.5, 1.0, 1.5, 2.0, 2.5)
-    assert every.canonical() == listed.canonical() and every.with_accuracy("draft").outputs == every.outputs
-    stroke = wavy([FORCE, {"slide": "80 mm", "speed": "10 mm/s"}]) | {"outputs": {"snapshots": {"every": "0.1 s"}}}
+    assert (
+        every.canonical() == listed.canonical()
+        and every.with_accuracy("draft").outputs == every.outputs
+    )
+    stroke = wavy([FORCE, {"slide": "80 mm", "speed": "10 mm/s"}]) | {
+        "outputs": {"snapshots": {"every": "0.1 s"}}
+    }
     times = load_scene(write(folder, stroke)).outputs.snapshots
     assert len(times) == 85 and times[2] == 0.3 and times[-1] == 8.5
 
@@ -365,7 +465,11 @@ def test_pressing_again_after_a_slide_at_the_other_control(folder):
 def test_another_accuracy_is_a_copy(folder):
     scene = load_scene(write(folder, RAMP_AND_HOLD))
     draft = scene.with_accuracy("draft")
-    assert (scene.accuracy, draft.accuracy, scene.with_accuracy("0.1").accuracy) == ("thesis", "draft", 0.1)
+    assert (scene.accuracy, draft.accuracy, scene.with_accuracy("0.1").accuracy) == (
+        "thesis",
+        "draft",
+        0.1,
+    )
     assert draft.specimen is scene.specimen
     with pytest.raises(SceneError, match="accuracy: 'x' is not a known accuracy"):
         scene.with_accuracy("x")
@@ -382,21 +486,32 @@ def test_in_python_models_take_si_numbers():
 def test_canonical_has_no_paths_and_follows_the_contents(folder):
     def canonical(folder, rows):
         (folder / "p.csv").write_text("x (mm),y (mm)\n" + rows)
-        return load_scene(write(folder, changed(stimulus={"shape": "sampled", "csv": "p.csv"}))).canonical()
+        return load_scene(
+            write(folder, changed(stimulus={"shape": "sampled", "csv": "p.csv"}))
+        ).canonical()
 
     a, b = folder / "a", folder / "b"
     a.mkdir(), b.mkdir()
-    first, same, other = canonical(a, "0,0\n1,0\n"), canonical(b, "0.0,0\n1,0\n"), canonical(a, "0,0\n2,0\n")
+    first, same, other = (
+        canonical(a, "0,0\n1,0\n"),
+        canonical(b, "0.0,0\n1,0\n"),
+        canonical(a, "0,0\n2,0\n"),
+    )
     assert json.dumps(first) == json.dumps(same) != json.dumps(other)
     assert str(folder) not in json.dumps(first)
 
     (folder / "my.msh").write_text("nodes")
     meshed = load_scene(write(folder, specimen(mesh="my.msh"))).canonical()
-    assert meshed["specimen"]["mesh"]["name"] == "my.msh" and len(meshed["specimen"]["mesh"]["sha256"]) == 64
+    assert (
+        meshed["specimen"]["mesh"]["name"] == "my.msh"
+        and len(meshed["specimen"]["mesh"]["sha256"]) == 64
+    )
     assert str(folder) not in json.dumps(meshed)
 
 
-@pytest.mark.parametrize("name", ["ramp40_k210", "ridged_stroke_left", "step_sub", "steady_line", "calibration_less_fat"])
+@pytest.mark.parametrize(
+    "name", ["ramp40_k210", "ridged_stroke_left", "step_sub", "steady_line", "calibration_less_fat"]
+)
 def test_a_scene_is_found_again_in_what_it_recorded(name):
     scene = load_scene(CONFIG / "scenes" / f"{name}.yaml")
     assert recorded_scene(json.loads(json.dumps(scene.canonical()))) == scene
@@ -405,7 +520,9 @@ def test_a_scene_is_found_again_in_what_it_recorded(name):
 def test_a_recorded_scene_needs_none_of_its_files(folder):
     (folder / "p.csv").write_text("x (mm),y (mm)\n-1,1\n0,0\n1,1\n")
     (folder / "my.msh").write_text("nodes")
-    scene = load_scene(write(folder, specimen(mesh="my.msh") | {"stimulus": {"shape": "sampled", "csv": "p.csv"}}))
+    scene = load_scene(
+        write(folder, specimen(mesh="my.msh") | {"stimulus": {"shape": "sampled", "csv": "p.csv"}})
+    )
     data = scene.canonical()
     (folder / "p.csv").unlink(), (folder / "my.msh").unlink()
     again = recorded_scene(data)
@@ -416,18 +533,37 @@ def test_a_recorded_scene_needs_none_of_its_files(folder):
 def test_a_varied_scene_is_checked_like_one_that_was_read():
     scene = load_scene(CONFIG / "scenes" / "ridged_40_k210.yaml")
     assert scene.varied({}) is scene and scene.varied({"name": scene.name}) == scene
-    softer = scene.varied({"specimen.layers.fat.youngs_modulus": "10 kPa", "motion[0].rate": 0.5, "specimen.ridges": "none"})
+    softer = scene.varied(
+        {
+            "specimen.layers.fat.youngs_modulus": "10 kPa",
+            "motion[0].rate": 0.5,
+            "specimen.ridges": "none",
+        }
+    )
     assert softer.specimen.layers.fat.youngs_modulus == 10e3 and softer.motion[0].rate == 0.5
-    assert softer.specimen.ridges is None and softer.specimen.layers.dermis == scene.specimen.layers.dermis
-    assert scene.varied({"stimulus": Flat()}).stimulus == scene.varied({"stimulus": {"shape": "flat"}}).stimulus == Flat()
+    assert (
+        softer.specimen.ridges is None
+        and softer.specimen.layers.dermis == scene.specimen.layers.dermis
+    )
+    assert (
+        scene.varied({"stimulus": Flat()}).stimulus
+        == scene.varied({"stimulus": {"shape": "flat"}}).stimulus
+        == Flat()
+    )
 
 
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"specimen.layers.fat.youngs_modulus": -1.0}, "specimen.layers.fat.youngs_modulus: -1.0 is negative"),
+        (
+            {"specimen.layers.fat.youngs_modulus": -1.0},
+            "specimen.layers.fat.youngs_modulus: -1.0 is negative",
+        ),
         ({"specimen.layers.fat.youngs_modulus": "0.1 N"}, "has the wrong dimension"),
-        ({"specimen.layer.fat": 1.0}, "specimen.layer.fat: layer is not a known key; allowed: outline, mesh, slab"),
+        (
+            {"specimen.layer.fat": 1.0},
+            "specimen.layer.fat: layer is not a known key; allowed: outline, mesh, slab",
+        ),
         ({"motion[7].rate": 1.0}, "motion[7].rate: there is no such entry; allowed: 0 to 1"),
         ({"motion[0].rate.x": 1.0}, "there is no such key"),
         ({"stimulus.slope": 1.0}, "stimulus.slope: is not a known key"),
@@ -480,7 +616,21 @@ leaves = (
     | st.integers()
     | st.floats()
     | st.text(max_size=12)
-    | st.sampled_from(["1 mm", "20 gf", "40 gf/s", "2 s", "flat", "thesis", "auto", "none", "cylinder", "210 1/m", "-1 m"])
+    | st.sampled_from(
+        [
+            "1 mm",
+            "20 gf",
+            "40 gf/s",
+            "2 s",
+            "flat",
+            "thesis",
+            "auto",
+            "none",
+            "cylinder",
+            "210 1/m",
+            "-1 m",
+        ]
+    )
 )
 KEYS = """
 specimen outline mesh layers moduli prony ridges contact_length stimulus shape curvature width
@@ -491,9 +641,15 @@ depths offsets snapshots accuracy element skin_edge steps effects g tau fat youn
 poisson_ratio apex_height finite_strain
 """.split()
 keys = st.sampled_from(KEYS) | st.text(max_size=5) | st.integers() | st.booleans()
-junk = st.recursive(leaves, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(keys, inner, max_size=4), max_leaves=12)
+junk = st.recursive(
+    leaves,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(keys, inner, max_size=4),
+    max_leaves=12,
+)
 many = settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+    max_examples=150,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 
 
@@ -508,7 +664,9 @@ def _loads_or_says_why(path):
 @many
 @given(document=junk)
 def test_junk_is_a_scene_or_a_scene_error(folder, document):
-    _loads_or_says_why(write(folder, document if isinstance(document, dict) else {"motion": document}))
+    _loads_or_says_why(
+        write(folder, document if isinstance(document, dict) else {"motion": document})
+    )
 
 
 @many
@@ -527,7 +685,10 @@ def test_a_scene_with_anything_in_one_place_is_a_scene_or_a_scene_error(folder, 
 
 
 @many
-@given(content=st.binary(max_size=60) | st.text(alphabet="a:{}[]&*!|>-? \n\t'\"#%@,1", max_size=40).map(str.encode))
+@given(
+    content=st.binary(max_size=60)
+    | st.text(alphabet="a:{}[]&*!|>-? \n\t'\"#%@,1", max_size=40).map(str.encode)
+)
 def test_any_bytes_are_a_scene_or_a_scene_error(folder, content):
     path = folder / "bytes.yaml"
     path.write_bytes(content)
@@ -536,7 +697,10 @@ def test_any_bytes_are_a_scene_or_a_scene_error(folder, content):
 
 @many
 @given(
-    depth_um=st.integers(1, 4999), force_mgf=st.integers(1, 10**6), rate_mgf=st.integers(1, 10**6), curvature=st.integers(1, 5000)
+    depth_um=st.integers(1, 4999),
+    force_mgf=st.integers(1, 10**6),
+    rate_mgf=st.integers(1, 10**6),
+    curvature=st.integers(1, 5000),
 )
 def test_a_scene_is_the_same_in_any_units(folder, depth_um, force_mgf, rate_mgf, curvature):
     gf = 9.80665e-3
@@ -549,25 +713,38 @@ def test_a_scene_is_the_same_in_any_units(folder, depth_um, force_mgf, rate_mgf,
         )
         return load_scene(write(folder, document))
 
-    ours = load(f"{depth_um} um", f"{force_mgf / 1000!r} gf", f"{rate_mgf / 1000!r} gf/s", f"{curvature} 1/m")
+    ours = load(
+        f"{depth_um} um",
+        f"{force_mgf / 1000!r} gf",
+        f"{rate_mgf / 1000!r} gf/s",
+        f"{curvature} 1/m",
+    )
     theirs = load(
         f"{depth_um / 1e6!r} m",
         f"{force_mgf / 1000 * gf!r} N",
         f"{rate_mgf / 1000 * gf * 60!r} N/min",
         f"{curvature / 1000!r} 1/mm",
     )
-    assert ours.outputs.receptors.depths == pytest.approx(theirs.outputs.receptors.depths, rel=1e-14)
+    assert ours.outputs.receptors.depths == pytest.approx(
+        theirs.outputs.receptors.depths, rel=1e-14
+    )
     assert ours.stimulus.curvature == pytest.approx(theirs.stimulus.curvature, rel=1e-14)
     for name in ("press_to_force", "rate"):
-        assert getattr(ours.motion[0], name) == pytest.approx(getattr(theirs.motion[0], name), rel=1e-14)
+        assert getattr(ours.motion[0], name) == pytest.approx(
+            getattr(theirs.motion[0], name), rel=1e-14
+        )
 
 
 def test_a_profile_made_in_python_needs_no_file():
     """Points in metres are a profile; without points and without a file it says so, and records keep it."""
-    scene = load_scene({"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}, name="made")
+    scene = load_scene(
+        {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}, name="made"
+    )
     made = scene.varied({"stimulus": Sampled(x=(-1e-3, 0.0, 1e-3), y=(1e-4, 0.0, 1e-4))})
     assert made.stimulus.csv is None and recorded_scene(made.canonical()) == made
     with pytest.raises(SceneError, match="stimulus.csv: is missing"):
         load_scene({"stimulus": {"shape": "sampled"}, "motion": [{"press_to_force": "20 gf"}]})
-    with pytest.raises(SceneError, match=r"scene: motion\[0\].press_to_force: '20 g' has the wrong dimension"):
+    with pytest.raises(
+        SceneError, match=r"scene: motion\[0\].press_to_force: '20 g' has the wrong dimension"
+    ):
         load_scene({"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 g"}]})

@@ -32,7 +32,9 @@ def test_shape_functions_are_those_of_scikit_fem(kind):
     for node in range(KINDS[kind].nodes):
         truth, slope = getattr(skfem, LIBRARY[kind])().lbasis(at.T, node)
         np.testing.assert_allclose(values[:, node], truth, atol=1e-14)
-        np.testing.assert_allclose(gradients[:, node], np.broadcast_to(slope.T, (20, 2)), atol=1e-14)
+        np.testing.assert_allclose(
+            gradients[:, node], np.broadcast_to(slope.T, (20, 2)), atol=1e-14
+        )
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -42,7 +44,9 @@ def test_each_is_one_at_its_node_and_none_at_the_others_and_has_its_own_slope(ki
     at, step = np.random.default_rng(2).uniform(0.1, 0.4, (20, 2)), 1e-6
     for axis in range(2):
         on, back = (SHAPES[kind](at + sign * step * np.eye(2)[axis])[0] for sign in (1, -1))
-        np.testing.assert_allclose(SHAPES[kind](at)[1][..., axis], (on - back) / (2 * step), atol=1e-8)
+        np.testing.assert_allclose(
+            SHAPES[kind](at)[1][..., axis], (on - back) / (2 * step), atol=1e-8
+        )
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
@@ -59,7 +63,14 @@ def test_points_of_the_triangle_are_exact_up_to_their_degree_and_no_further(degr
     (x, y), weights = triangle_rule(degree)[0].T, triangle_rule(degree)[1]
 
     def off(p, q):
-        return abs(weights @ (x**p * y**q) * math.factorial(p + q + 2) / math.factorial(p) / math.factorial(q) - 1)
+        return abs(
+            weights
+            @ (x**p * y**q)
+            * math.factorial(p + q + 2)
+            / math.factorial(p)
+            / math.factorial(q)
+            - 1
+        )
 
     assert max(off(p, q) for p in range(degree + 1) for q in range(degree + 1 - p)) < 1e-12
     assert max(off(degree + 1 - q, q) for q in range(degree + 2)) > 1e-3

@@ -21,7 +21,12 @@ def test_companions_share_a_mesh_that_is_beside_each(tmp_path):
     histories = [tmp_path / name / "history.nc" for name in ("own", "coarse_mesh", "coarse")]
     for path in histories:
         path.parent.mkdir()
-    three = {"scenes": [scene] * 3, "accuracies": ["as_stated"] * 3, "strides": ["0", "1", "2"], "histories": histories}
+    three = {
+        "scenes": [scene] * 3,
+        "accuracies": ["as_stated"] * 3,
+        "strides": ["0", "1", "2"],
+        "histories": histories,
+    }
     run(SimpleNamespace(**three))
     own, mesh, both = (path.with_name("mesh.msh") for path in histories)
     assert mesh.read_bytes() == both.read_bytes() != own.read_bytes()

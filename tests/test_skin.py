@@ -35,7 +35,9 @@ def test_uneven_nodes_do_not_matter():
     x, y = arc(210.0, 30e-6, 0.3, 200)
     keep = np.sort(np.random.default_rng(1).choice(401, 200, replace=False))
     keep = np.union1d(keep, [200])
-    assert local_curvature(x[keep], y[keep], int(np.flatnonzero(keep == 200)[0])) == pytest.approx(210, rel=5e-3)
+    assert local_curvature(x[keep], y[keep], int(np.flatnonzero(keep == 200)[0])) == pytest.approx(
+        210, rel=5e-3
+    )
 
 
 @pytest.mark.unit
@@ -58,7 +60,9 @@ def test_in_contact_the_skin_has_the_surfaces_curvature(name, accuracy):
     centre, last = centre_node(history), history.isel(time=[-1])
     touching = np.flatnonzero(last["contact_pressure"].values[0] > 0)
     x = last["skin_x"].values + last["skin_displacement_x"].values[0]
-    inner = [n for n in touching if min(x[n] - x[touching[0]], x[touching[-1]] - x[n]) > 1.1 * WINDOW]
+    inner = [
+        n for n in touching if min(x[n] - x[touching[0]], x[touching[-1]] - x[n]) > 1.1 * WINDOW
+    ]
     surface = float(name.split("_k")[1])
     found = [float(skin_curvature(last, n)[0]) for n in inner]
     assert centre in inner and len(inner) >= 5

@@ -27,10 +27,17 @@ def test_a_failure_is_shrunk_to_its_smallest_scene(monkeypatch):
 
     monkeypatch.setattr("soak.tried", trips)
     drawn, why = soak(count=300, start=1, seconds=60).failure
-    assert "held" in why and set(drawn.document) == {"stimulus", "motion"} and len(drawn.document["motion"]) == 2
+    assert (
+        "held" in why
+        and set(drawn.document) == {"stimulus", "motion"}
+        and len(drawn.document["motion"]) == 2
+    )
 
 
 def test_damaged_files_are_refused_in_one_line_or_right():
     outcomes, failure = soak_files(count=150, start=7, seconds=120)
     assert not failure, failure
-    assert sum(outcomes.values()) > 100 and sum(n for what, n in outcomes.items() if what.endswith("refused")) > 50
+    assert (
+        sum(outcomes.values()) > 100
+        and sum(n for what, n in outcomes.items() if what.endswith("refused")) > 50
+    )

@@ -28,14 +28,19 @@ def curves(draw, least=4):
 def test_splines_are_scipys(curve):
     place, values, _ = curve
     slopes = spline_slopes(place, values)
-    assert slopes == pytest.approx(CubicSpline(place, values)(place, 1), rel=1e-9, abs=1e-10 * np.abs(slopes).max())
+    assert slopes == pytest.approx(
+        CubicSpline(place, values)(place, 1), rel=1e-9, abs=1e-10 * np.abs(slopes).max()
+    )
 
 
 @settings(max_examples=60, deadline=None)
 @given(curves(least=2))
 def test_akimas_slopes_are_scipys(curve):
     place, values, _ = curve
-    slopes, known = akima_slopes(place, values), Akima1DInterpolator(place, values, method="makima")(place, 1)
+    slopes, known = (
+        akima_slopes(place, values),
+        Akima1DInterpolator(place, values, method="makima")(place, 1),
+    )
     assert slopes == pytest.approx(known, rel=1e-9, abs=1e-10 * max(np.abs(known).max(), 1e-300))
 
 
@@ -44,7 +49,9 @@ def test_akimas_slopes_are_scipys(curve):
 def test_cubics_between_are_scipys(curve):
     place, values, at = curve
     slopes = np.cos(values)
-    assert hermite(place, values, slopes, at) == pytest.approx(CubicHermiteSpline(place, values, slopes)(at), rel=1e-9, abs=1e-9)
+    assert hermite(place, values, slopes, at) == pytest.approx(
+        CubicHermiteSpline(place, values, slopes)(at), rel=1e-9, abs=1e-9
+    )
 
 
 def test_a_cubic_is_its_own_spline_and_nothing_is_asked_of_no_places():
@@ -62,4 +69,6 @@ def test_akimas_curve_does_not_overshoot_a_step():
     values = np.where(place < 4, 0.0, 1.0)
     curve = hermite(place, values, akima_slopes(place, values), np.linspace(0, 7, 200))
     assert curve.min() >= 0 and curve.max() <= 1
-    assert not np.all((bent := hermite(place, values, spline_slopes(place, values), np.linspace(0, 7, 200))) >= 0), bent.min()
+    assert not np.all(
+        (bent := hermite(place, values, spline_slopes(place, values), np.linspace(0, 7, 200))) >= 0
+    ), bent.min()

@@ -33,7 +33,10 @@ def off(found, truth):
 
 def test_a_bump_passes_under_the_skin():
     """It goes along with the surface; node by node it would be two halves of a bump."""
-    first, last = touch(hertz(0.2e-3), 0.0, (-0.3e-3, 0.7e-3)), touch(hertz(-0.2e-3), 0.4e-3, (-0.7e-3, 0.3e-3))
+    first, last = (
+        touch(hertz(0.2e-3), 0.0, (-0.3e-3, 0.7e-3)),
+        touch(hertz(-0.2e-3), 0.4e-3, (-0.7e-3, 0.3e-3)),
+    )
     for share in (0.25, 0.5, 0.8):
         truth = hertz(0.2e-3 - 0.4e-3 * share)
         found = Passage.at(first, last, share, X).pressure(first.pressure, last.pressure)
@@ -54,7 +57,9 @@ def test_a_ripple_inside_goes_along_with_the_surface():
     """Between the edges that stay, what stands out of the surface moves."""
 
     def rippled(distance):
-        return hertz(half_width=3e-3) * (1 + 0.3 * np.sin(2 * np.pi * (X + distance) / 0.8e-3) * (np.abs(X) < 1.5e-3))
+        return hertz(half_width=3e-3) * (
+            1 + 0.3 * np.sin(2 * np.pi * (X + distance) / 0.8e-3) * (np.abs(X) < 1.5e-3)
+        )
 
     first, last = (touch(rippled(d), d, (-3e-3, 3e-3)) for d in (0.0, 0.25e-3))
     found = Passage.at(first, last, 0.5, X).pressure(first.pressure, last.pressure)
@@ -75,9 +80,15 @@ def test_a_piece_that_comes_fades_in():
 def test_ends_are_the_states():
     first, last = touch(hertz(0.1e-3), 0.0), touch(hertz(-0.1e-3), 0.25e-3)
     for share, state in ((0.0, first), (1.0, last)):
-        assert np.allclose(Passage.at(first, last, share, X).pressure(first.pressure, last.pressure), state.pressure, atol=1e-9)
+        assert np.allclose(
+            Passage.at(first, last, share, X).pressure(first.pressure, last.pressure),
+            state.pressure,
+            atol=1e-9,
+        )
     nowhere = touch(np.zeros(len(X)))
-    assert not Passage.at(nowhere, nowhere, 0.5, X).pressure(nowhere.pressure, nowhere.pressure).any()
+    assert (
+        not Passage.at(nowhere, nowhere, 0.5, X).pressure(nowhere.pressure, nowhere.pressure).any()
+    )
 
 
 # --- the estimate -------------------------------------------------------------------------------------------
@@ -88,7 +99,9 @@ def test_what_is_missed_is_what_a_parabola_leaves_over_a_line(ways):
     """A pressure that grows as 1 + c s^2 lies c h^2 / 4 off the line through the ends of a way h, at most."""
     bend = 4e6
     places = np.cumsum([0.0, *ways])
-    states = [touch(hertz(half_width=2e-3) * (1 + bend * s**2), s * 1e-9, (-2e-3, 2e-3)) for s in places]
+    states = [
+        touch(hertz(half_width=2e-3) * (1 + bend * s**2), s * 1e-9, (-2e-3, 2e-3)) for s in places
+    ]
     truth = bend * ways[1] ** 2 / 4 / (1 + bend * places[1] ** 2)
     assert missed(*states) == pytest.approx(truth, rel=0.02)
 
@@ -105,7 +118,10 @@ def test_friction_that_sets_in_is_missed_too():
 
 def outputs(count, way=0.05e-3, leg=1, dt=0.01):
     """Outputs of a slide, of which the last alone must be found."""
-    return [Step(leg, dt * k, dt, force=1.0, distance=way * k, solved=k == count) for k in range(1, count + 1)]
+    return [
+        Step(leg, dt * k, dt, force=1.0, distance=way * k, solved=k == count)
+        for k in range(1, count + 1)
+    ]
 
 
 def walk(strides, error):
@@ -136,7 +152,9 @@ def test_strides_grow_to_the_longest_where_nothing_is_missed():
 
 def test_strides_are_as_long_as_the_tolerance_allows():
     """What is missed grows with the square of the way: the way settles where it is the tolerance."""
-    found = walk(Strides(iter(outputs(300)), Between(1e-3, 0.01)), lambda way: 0.01 * (way / 0.31e-3) ** 2)
+    found = walk(
+        Strides(iter(outputs(300)), Between(1e-3, 0.01)), lambda way: 0.01 * (way / 0.31e-3) ** 2
+    )
     assert sum(found) == 300 and set(found[6:-1]) == {6}
 
 
@@ -159,7 +177,9 @@ def test_every_output_is_found_while_stick_turns_to_slip():
     states, found = [touch(plate, drag=0.3), touch(plate, drag=0.3)], []
     while (following := strides.next()) is not None:
         step, passed = following
-        sticks = float(np.clip((2e-3 - step.distance) / 1e-3, 0, 1))  # from 1 to 2 mm ever less of it
+        sticks = float(
+            np.clip((2e-3 - step.distance) / 1e-3, 0, 1)
+        )  # from 1 to 2 mm ever less of it
         now = Touch(X, plate, (np.nan, np.nan), step.distance, 0.3, sticks)
         if not strides.judge(*states, now):
             assert strides.shorten()
@@ -177,13 +197,18 @@ def test_what_must_be_found_is_found():
     slide = outputs(40)
     slide[13] = Step(1, slide[13].time, 0.01, force=1.0, distance=slide[13].distance)
     found = walk(Strides(iter(pressed + slide), Between(0.25e-3, 0.01)), lambda way: 0.0)
-    assert found[:3] == [1, 1, 1] and 17 in np.cumsum(found) and max(found) == 5 and sum(found) == 43
+    assert (
+        found[:3] == [1, 1, 1] and 17 in np.cumsum(found) and max(found) == 5 and sum(found) == 43
+    )
     assert walk(Strides(iter(pressed + slide)), lambda way: 0.0) == [1] * 43
 
 
 def test_a_leg_begins_with_short_strides():
     """Skin that is stroked back sticks first, however smoothly it has slipped before."""
-    back = [Step(2, s.time + 0.4, s.dt, force=1.0, distance=2e-3 - s.distance, solved=s.solved) for s in outputs(40)]
+    back = [
+        Step(2, s.time + 0.4, s.dt, force=1.0, distance=2e-3 - s.distance, solved=s.solved)
+        for s in outputs(40)
+    ]
     found = walk(Strides(iter(outputs(40) + back), Between(0.25e-3, 0.01)), lambda way: 0.0)
     start = int(np.flatnonzero(np.cumsum(found) == 40)[0]) + 1
     assert found[start - 2] == 5 and found[start : start + 4] == [1, 2, 4, 5]
@@ -230,7 +255,11 @@ def made(places, passed):
     found["slip"] = np.where(found["contact_state"] == 2, np.diff(s, prepend=0.0)[:, None], 0.0)
     records = []
     for k, place in enumerate(places):
-        steps = tuple(Step(1, 100 * d, 0.0, distance=d, solved=False) for d in passed if (0, *places)[k] < d < place)
+        steps = tuple(
+            Step(1, 100 * d, 0.0, distance=d, solved=False)
+            for d in passed
+            if (0, *places)[k] < d < place
+        )
         records.append(SimpleNamespace(passed=steps, edges=(0.0 - place, 1e-3 - place)))
     return found, np.append(0.0, 100 * np.array(places)), records
 
@@ -239,10 +268,16 @@ def test_between_states_curves_are_smooth_and_the_contact_goes_along():
     places, every = np.arange(1, 9) * 0.25e-3, np.arange(1, 41) * 0.05e-3
     found, time, records = made(places, np.setdiff1d(np.round(every, 9), np.round(places, 9)))
     out, times = at_outputs(found, time, records, X, len(X) // 2)
-    assert np.allclose(times, np.append(0, 100 * every)) and np.allclose(out["stroke_distance"], np.append(0, every))
-    assert (out["interpolated"] == 0).sum() == 9 and out["newton_iterations"].sum() == found["newton_iterations"].sum()
+    assert np.allclose(times, np.append(0, 100 * every)) and np.allclose(
+        out["stroke_distance"], np.append(0, every)
+    )
+    assert (out["interpolated"] == 0).sum() == 9 and out["newton_iterations"].sum() == found[
+        "newton_iterations"
+    ].sum()
     truth = 1e-3 + np.sin(2 * np.pi * out["stroke_distance"] / 4e-3) * 1e-4
-    assert np.abs(out["indentation_depth"] - truth).max() < 5e-8  # straight lines: 1.9e-6, Akima's curves: 4e-7
+    assert (
+        np.abs(out["indentation_depth"] - truth).max() < 5e-8
+    )  # straight lines: 1.9e-6, Akima's curves: 4e-7
     bump = np.array([hertz(0.5e-3 - d) for d in out["stroke_distance"]])
     assert np.abs(out["contact_pressure"] - bump).sum() < 0.015 * bump.sum()
     assert out["peak_pressure"] == pytest.approx(out["contact_pressure"].max(axis=1))
@@ -282,13 +317,26 @@ def pressed(times, passed):
     time = np.array([0.0, *times])
     width = 4e-3 * np.sqrt(time)
     contact = np.array([hertz(half_width=max(w / 2, 1e-9), peak=1e7 * w) * (w > 0) for w in width])
-    kept = {name: np.zeros(len(time)) for name in ("stroke_distance", "residual", "newton_iterations", "cutbacks")}
-    found = kept | {"leg": np.zeros(len(time), int), "skin_displacement_x": np.zeros(contact.shape), "force": 10 * time}
-    found |= {"contact_width": width, "contact_pressure": contact, "contact_pressure_smoothed": contact.copy()}
+    kept = {
+        name: np.zeros(len(time))
+        for name in ("stroke_distance", "residual", "newton_iterations", "cutbacks")
+    }
+    found = kept | {
+        "leg": np.zeros(len(time), int),
+        "skin_displacement_x": np.zeros(contact.shape),
+        "force": 10 * time,
+    }
+    found |= {
+        "contact_width": width,
+        "contact_pressure": contact,
+        "contact_pressure_smoothed": contact.copy(),
+    }
     found |= {"peak_pressure": 1e7 * width, "centre_pressure": contact[:, len(X) // 2].copy()}
     records = []
     for k, end in enumerate(times):
-        steps = tuple(Step(0, t, 0.0, force=10 * t, solved=False) for t in passed if time[k] < t < end)
+        steps = tuple(
+            Step(0, t, 0.0, force=10 * t, solved=False) for t in passed if time[k] < t < end
+        )
         records.append(SimpleNamespace(passed=steps, edges=(0.0, width[k + 1] / 2)))
     return found, time, records
 
@@ -297,16 +345,22 @@ def test_a_press_goes_from_state_to_state_as_its_width_does():
     """Mutants: the contact goes evenly in time; its edges are not told apart from nodes that come in; the right half for all."""
     every = np.arange(1, 41) / 40
     solved = np.append(every[:10], every[11::2])
-    out, times = at_outputs(*pressed(solved, np.setdiff1d(every, solved)), X, len(X) // 2, half=True)
+    out, times = at_outputs(
+        *pressed(solved, np.setdiff1d(every, solved)), X, len(X) // 2, half=True
+    )
     assert np.allclose(times, np.append(0, every)) and out["interpolated"].sum() == 15
     width = 4e-3 * np.sqrt(times)
-    assert np.abs(out["contact_width"] - width).max() < 1e-4 * width[-1] and np.allclose(out["force"], 10 * times)
+    assert np.abs(out["contact_width"] - width).max() < 1e-4 * width[-1] and np.allclose(
+        out["force"], 10 * times
+    )
     assert np.abs(out["centre_pressure"] - 1e7 * width).max() < 1e-4 * 1e7 * width[-1]
     for k in np.flatnonzero(out["interpolated"]):
         truth = hertz(half_width=width[k] / 2, peak=1e7 * width[k])
         assert off(out["contact_pressure"][k], truth) < 0.002
         assert np.array_equal(out["contact_pressure"][k] > 0, truth > 0)
-        assert out["contact_pressure"][k, len(X) // 2] == pytest.approx(out["centre_pressure"][k], rel=1e-12)
+        assert out["contact_pressure"][k, len(X) // 2] == pytest.approx(
+            out["centre_pressure"][k], rel=1e-12
+        )
 
 
 def test_states_of_a_press_are_found_where_its_accuracy_needs_them():
@@ -314,11 +368,22 @@ def test_states_of_a_press_are_found_where_its_accuracy_needs_them():
     press, hold = PressToForce(press_to_force=1.0, rate=2.0), Hold(hold=2.0)
     legs = press, hold, Lift(lift=1e-3)
     steps = list(programme(legs, steps=40, contact_length=0.01, snapshots=[0.4125], every=4))
-    found = [[k for k, step in enumerate((s for s in steps if s.leg == leg), start=1) if step.solved] for leg in range(3)]
-    assert found == [[*range(1, 11), 12, 16, 20, 24, 28, 32, 33, 36, 40], [*range(4, 41, 4)], [*range(1, 41)]]
+    found = [
+        [k for k, step in enumerate((s for s in steps if s.leg == leg), start=1) if step.solved]
+        for leg in range(3)
+    ]
+    assert found == [
+        [*range(1, 11), 12, 16, 20, 24, 28, 32, 33, 36, 40],
+        [*range(4, 41, 4)],
+        [*range(1, 41)],
+    ]
     assert all(step.solved for step in programme(legs, steps=40, contact_length=0.01))
-    steady = programme([PressToForce(press_to_force=1.0)], steps=40, contact_length=0.01, increments=8, every=4)
-    assert all(step.solved is True for step in steady)  # they take no time that anything could lie between
+    steady = programme(
+        [PressToForce(press_to_force=1.0)], steps=40, contact_length=0.01, increments=8, every=4
+    )
+    assert all(
+        step.solved is True for step in steady
+    )  # they take no time that anything could lie between
 
 
 def test_strides_pass_what_need_not_be_found_of_a_press():

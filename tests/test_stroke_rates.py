@@ -40,7 +40,9 @@ CURVATURES = ("26", "39", "52", "79", "105", "157", "210", "315")
 @pytest.fixture(scope="module")
 def made():
     full = {name: synthetic.stroke(name) for name in st.FULL.values()}
-    return full | {scene_name("ramp40", k): synthetic.history(scene_name("ramp40", k)) for k in SURFACES}
+    return full | {
+        scene_name("ramp40", k): synthetic.history(scene_name("ramp40", k)) for k in SURFACES
+    }
 
 
 def _with_energy(history, deep, shallow=None):
@@ -51,13 +53,21 @@ def _with_energy(history, deep, shallow=None):
 def _bumps(history, height, width=0.3, at=st.place):
     """Strain energy (Pa) with a bump over each convexity: heights by label, widths as a share of the chord."""
     d, arcs = at(history), st.convexities(history)
-    middle, chord = ({k: f(a) for k, a in arcs.items()} for f in (lambda a: (a.start + a.end) / 2, lambda a: a.end - a.start))
-    return 20.0 + sum(height(k) * np.exp(-(((d - middle[k]) / (width * chord[k])) ** 2)) for k in arcs)
+    middle, chord = (
+        {k: f(a) for k, a in arcs.items()}
+        for f in (lambda a: (a.start + a.end) / 2, lambda a: a.end - a.start)
+    )
+    return 20.0 + sum(
+        height(k) * np.exp(-(((d - middle[k]) / (width * chord[k])) ** 2)) for k in arcs
+    )
 
 
 def _felt(made, height, width=0.3, at=st.place):
     """All strokes with bumps of strain energy."""
-    return made | {name: _with_energy(made[name], _bumps(made[name], height, width, at)) for name in st.FULL.values()}
+    return made | {
+        name: _with_energy(made[name], _bumps(made[name], height, width, at))
+        for name in st.FULL.values()
+    }
 
 
 def _holds(histories, id_):
@@ -80,11 +90,16 @@ def test_raster_is_seeded_and_counts_the_integral_of_the_rate(made, number, low,
     felt = _felt(made, lambda k: 400)
     frame = _frame(felt, number)
     ticks = frame[frame[TRIAL].notna()]
-    assert set(ticks["source"]) == {PREDICTED} and ticks["stroke_distance (mm)"].between(low, high).all()
+    assert (
+        set(ticks["source"]) == {PREDICTED}
+        and ticks["stroke_distance (mm)"].between(low, high).all()
+    )
     assert sorted(ticks[TRIAL].unique()) == list(range(1, STROKES_SHOWN[number] + 1))
     pd.testing.assert_frame_equal(frame, _frame(felt, number))
     nine = {label: felt[scene] for label, scene in NINE.scenes.items()}
-    depth, law = (560e-6, shallow_law(nine, 560e-6)[0]) if number == "5-22" else (915e-6, THESIS_RATE)
+    depth, law = (
+        (560e-6, shallow_law(nine, 560e-6)[0]) if number == "5-22" else (915e-6, THESIS_RATE)
+    )
     rate = predicted_rate(st.loaded(felt["stroke_10"]), depth, law)
     inside = rate["stroke_distance (mm)"].between(low, high)
     expected = np.trapezoid(rate[IMPULSE_RATE][inside], rate["time (s)"][inside])
@@ -102,7 +117,9 @@ def test_histogram_of_the_raster_has_bins_of_half_a_millimetre(made):
     frame = _frame(_felt(made, lambda k: 400), "5-1")
     bars, ticks = frame[frame["panel"] == "histogram"], frame[frame["panel"] == "raster"]
     assert np.diff(bars["stroke_distance (mm)"]) == pytest.approx(0.5)
-    assert bars[IMPULSE_RATE].sum() * 0.05 * STROKES_SHOWN["5-1"] == pytest.approx(len(ticks), abs=1)
+    assert bars[IMPULSE_RATE].sum() * 0.05 * STROKES_SHOWN["5-1"] == pytest.approx(
+        len(ticks), abs=1
+    )
 
 
 def test_every_picture_of_predictions_says_so(made):
@@ -115,10 +132,21 @@ def test_every_picture_of_predictions_says_so(made):
 
 def test_recorded_bursts_of_a_user_are_laid_over(made):
     row = dict.fromkeys(RATES, "x") | {"receptor": "SA-I", "window": "burst", "recording": "mine"}
-    row |= {"curvature_per_m": 79.0, "speed_mm_per_s": 10.0, "rate_per_s": 21.0, "burst_width_mm": 4.0}
-    rates = pd.DataFrame([row, row | {"window": "hold", "speed_mm_per_s": 0.0}, row | {"receptor": "RA"}])
+    row |= {
+        "curvature_per_m": 79.0,
+        "speed_mm_per_s": 10.0,
+        "rate_per_s": 21.0,
+        "burst_width_mm": 4.0,
+    }
+    rates = pd.DataFrame(
+        [row, row | {"window": "hold", "speed_mm_per_s": 0.0}, row | {"receptor": "RA"}]
+    )
     felt = _felt(made, lambda k: 400)
-    for number, column, value in (("5-2", BURST_RATE, 21), ("5-3", BURST_WIDTH, 4), ("5-16", "burst_duration (s)", 0.4)):
+    for number, column, value in (
+        ("5-2", BURST_RATE, 21),
+        ("5-3", BURST_WIDTH, 4),
+        ("5-16", "burst_duration (s)", 0.4),
+    ):
         frame = _frame(felt, number, rates)
         assert frame.loc[frame["source"] == "measured (mine)", column].tolist() == [value]
         FIGURES[number].draw(frame)
@@ -146,22 +174,35 @@ def lawful(made):
     out = {}
     for name, history in made.items():
         sample = skin_sample(history, 915e-6)
-        energy = LAW.strain_energy(sample.x, sample.pressure, sample.indentation, SHIFT if "stroke" in name else 0.0)
+        energy = LAW.strain_energy(
+            sample.x, sample.pressure, sample.indentation, SHIFT if "stroke" in name else 0.0
+        )
         values = np.repeat(energy[:, None], history.sizes["receptor"], axis=1)
-        out[name] = history.assign(strain_energy_density=(history["strain_energy_density"].dims, values))
+        out[name] = history.assign(
+            strain_energy_density=(history["strain_energy_density"].dims, values)
+        )
     return out
 
 
 def test_constants_and_shift_are_given_back_and_the_figure_shows_them(lawful):
     law, shift = stroke_law(lawful)
-    assert (law.r, law.per_depth, law.constant) == pytest.approx((LAW.r, LAW.per_depth, LAW.constant), rel=1e-2)
-    assert shift == pytest.approx(SHIFT, abs=1e-5) and _number(lawful, "T265") == pytest.approx(-0.4, abs=0.01)
+    assert (law.r, law.per_depth, law.constant) == pytest.approx(
+        (LAW.r, LAW.per_depth, LAW.constant), rel=1e-2
+    )
+    assert shift == pytest.approx(SHIFT, abs=1e-5) and _number(lawful, "T265") == pytest.approx(
+        -0.4, abs=0.01
+    )
     frame = _frame(lawful, "5-14")
     energy = {
-        s: rows["strain_energy_density (Pa)"].dropna().to_numpy() for s, rows in frame[is_simulated(frame)].groupby("source")
+        s: rows["strain_energy_density (Pa)"].dropna().to_numpy()
+        for s, rows in frame[is_simulated(frame)].groupby("source")
     }
-    assert energy["simulated: Eq 4-4 and a constant shift"] == pytest.approx(energy["simulated"], rel=0.02, abs=0.5)
-    assert abs(energy["simulated: Eq 4-4 and the shift of the skin"] - energy["simulated"]).max() > 5
+    assert energy["simulated: Eq 4-4 and a constant shift"] == pytest.approx(
+        energy["simulated"], rel=0.02, abs=0.5
+    )
+    assert (
+        abs(energy["simulated: Eq 4-4 and the shift of the skin"] - energy["simulated"]).max() > 5
+    )
     assert _number(lawful, "T264") == pytest.approx(energy["simulated"].max(), rel=0.02)
 
 
@@ -185,14 +226,18 @@ def _scaled(history, factor):
 def test_impulses_under_concavities_are_noticed(made):
     assert _holds(_felt(made, lambda k: 300, 0.2, st.distance), "TR62").holds
     everywhere = _felt(made, lambda k: 300, 0.2, st.distance)
-    level = _with_energy(everywhere["stroke_10"], np.full(everywhere["stroke_10"].sizes["time"], 300.0))
+    level = _with_energy(
+        everywhere["stroke_10"], np.full(everywhere["stroke_10"].sizes["time"], 300.0)
+    )
     assert not _holds(everywhere | {"stroke_10": level}, "TR62").holds
 
 
 def test_burst_rate_and_width_over_curvature(made):
     rising = _felt(made, lambda k: 250 + float(k))
     assert _holds(rising, "TR63").holds and _holds(rising, "TR64").holds
-    turned = rising | {"stroke_10": _felt(made, lambda k: 250 + (k != "315") * float(k))["stroke_10"]}
+    turned = rising | {
+        "stroke_10": _felt(made, lambda k: 250 + (k != "315") * float(k))["stroke_10"]
+    }
     assert not _holds(turned, "TR63").holds
     high = _felt(made, lambda k: 140 if k == "26" else 400)
     assert not _holds(high, "TR64").holds  # the first bump is hardly above the threshold
@@ -208,10 +253,14 @@ def test_burst_rate_grows_with_velocity_and_width_does_not(made):
 
 def test_stroked_rates_against_pressed_ones(made):
     peaks = [NUMBERS[f"T{289 + k}"](Measures.of(made)) for k in range(8)]
-    assert (np.diff(peaks) > 0).all() and _number(made, "T274") >= peaks[WITHIN_350.index("315") - 1]
+    assert (np.diff(peaks) > 0).all() and _number(made, "T274") >= peaks[
+        WITHIN_350.index("315") - 1
+    ]
     low, high = _felt(made, lambda k: 131), _felt(made, lambda k: 1500)
     assert _holds(high, "TR68").holds and not _holds(low, "TR68").holds
-    between = next(h for h in range(120, 1500, 10) if _holds(_felt(made, lambda k, h=h: h), "TR67").holds)
+    between = next(
+        h for h in range(120, 1500, 10) if _holds(_felt(made, lambda k, h=h: h), "TR67").holds
+    )
     assert between and not _holds(high, "TR67").holds
 
 
@@ -224,9 +273,13 @@ def test_energy_rate_proportional_to_velocity(made):
 def test_rate_peaks_with_the_energy_rate_and_comes_mostly_from_it(made):
     sharp = _felt(made, lambda k: 135)
     assert _holds(sharp, "TR70").holds and _holds(sharp, "TR71").holds
-    slow = sharp | {"stroke_10": _felt(made, lambda k: 1000)["stroke_1"]}  # so slow a stroke is answered for its energy
+    slow = sharp | {
+        "stroke_10": _felt(made, lambda k: 1000)["stroke_1"]
+    }  # so slow a stroke is answered for its energy
     assert not _holds(slow, "TR71").holds
-    late = _with_energy(made["stroke_10"], _bumps(made["stroke_10"], lambda k: 1500, 0.45))  # far above the threshold
+    late = _with_energy(
+        made["stroke_10"], _bumps(made["stroke_10"], lambda k: 1500, 0.45)
+    )  # far above the threshold
     assert not _holds(sharp | {"stroke_10": late}, "TR70").holds
 
 
@@ -236,7 +289,9 @@ def _twin(history, apart):
     for arc in st.convexities(history).values():
         chord, middle = arc.end - arc.start, (arc.start + arc.end) / 2
         for side in (-0.5, 0.5):
-            values = values + 400 * np.exp(-(((d - middle - side * apart(chord)) / (0.15 * chord)) ** 2))
+            values = values + 400 * np.exp(
+                -(((d - middle - side * apart(chord)) / (0.15 * chord)) ** 2)
+            )
     return _with_energy(history, values)
 
 
@@ -244,7 +299,9 @@ def test_two_peaks_of_the_rate_and_their_distance(made):
     twins = made | {name: _twin(made[name], lambda chord: 0.8 * chord) for name in st.FULL.values()}
     assert all(_holds(twins, id_).holds for id_ in ("T301", "TR72", "TR73"))
     arc = st.convexities(made["stroke_10"])["52"]
-    assert Measures.of(twins)("rate_peaks_apart", "stroke_10", "52") == pytest.approx(0.8e3 * (arc.end - arc.start), abs=0.5)
+    assert Measures.of(twins)("rate_peaks_apart", "stroke_10", "52") == pytest.approx(
+        0.8e3 * (arc.end - arc.start), abs=0.5
+    )
     single = _with_energy(made["stroke_10"], _bumps(made["stroke_10"], lambda k: 400))
     assert not any(_holds(twins | {"stroke_10": single}, id_).holds for id_ in ("T301", "TR72"))
     wider = _twin(made["stroke_5"], lambda chord: 3e-3 * 6e-3 / chord)
@@ -252,7 +309,9 @@ def test_two_peaks_of_the_rate_and_their_distance(made):
 
 
 def test_plate_answered_at_the_beginning_one_way_and_throughout_the_other():
-    plates = {name: synthetic.plate_stroke(name) for name in ("ridged_stroke_left", "ridged_stroke_right")}
+    plates = {
+        name: synthetic.plate_stroke(name) for name in ("ridged_stroke_left", "ridged_stroke_right")
+    }
     d = abs(plates["ridged_stroke_right"]["stroke_distance"].values)
 
     def felt(left, right):
@@ -283,7 +342,9 @@ def test_numbers_are_those_of_the_figures(made):
     assert _number(felt, "T223") == pytest.approx(bursts[BURST_WIDTH].max())
     assert _number(felt, "T224") == pytest.approx(bursts[BURST_RATE].max())
     ten = burst_values(st.loaded(felt["stroke_10"]), BURST_RATE)
-    assert (_number(felt, "T221"), _number(felt, "T221a")) == pytest.approx((max(ten.values()), min(ten.values())))
+    assert (_number(felt, "T221"), _number(felt, "T221a")) == pytest.approx(
+        (max(ten.values()), min(ten.values()))
+    )
     assert _number(felt, "T280") == pytest.approx(_frame(felt, "5-19")[IMPULSE_RATE].max())
     assert _number(felt, "T287") == pytest.approx(_frame(felt, "5-20")[IMPULSE_RATE].max())
     frequency = _frame(felt, "5-23")
@@ -292,7 +353,9 @@ def test_numbers_are_those_of_the_figures(made):
     assert _number(felt, "T219") == pytest.approx(10)
     for k, speed in enumerate(("5", "10", "20", "40")):
         widest = burst_values(st.loaded(felt[f"stroke_{speed}"]), BURST_WIDTH)
-        assert _number(felt, f"T{269 + k}") == pytest.approx(max(widest.values()) / float(speed), rel=1e-3)
+        assert _number(felt, f"T{269 + k}") == pytest.approx(
+            max(widest.values()) / float(speed), rel=1e-3
+        )
 
 
 def test_number_of_impulses_is_that_of_the_sharpest_convexity(made):

@@ -36,7 +36,9 @@ def _holds(made, id_, **changed):
 
 def _with(history, **values):
     """The history with other values of some variables."""
-    return history.assign({name: (history[name].dims, v, history[name].attrs) for name, v in values.items()})
+    return history.assign(
+        {name: (history[name].dims, v, history[name].attrs) for name, v in values.items()}
+    )
 
 
 def _with_centre(history, values):
@@ -44,7 +46,9 @@ def _with_centre(history, values):
     pressure = history["contact_pressure"].values.copy()
     pressure[:, centre_node(history)] = values
     energy = np.outer(values, (0.02, 0.04))
-    return _with(history, contact_pressure=pressure, centre_pressure=values, strain_energy_density=energy)
+    return _with(
+        history, contact_pressure=pressure, centre_pressure=values, strain_energy_density=energy
+    )
 
 
 # --- what is read ------------------------------------------------------------------------------------------
@@ -55,7 +59,11 @@ def test_loaded_outputs_are_the_last_of_each_stroke_distance(made):
     assert st.distance(stepped) * 1e3 == pytest.approx(np.arange(51))
     assert stepped["force"].values == pytest.approx(synthetic.LOAD)
     stroke = st.loaded(made["stroke_10"])
-    assert stroke.sizes["time"] == 321 and st.distance(stroke)[0] == 0 and st.time_of(stroke)[[0, -1]].tolist() == [0, 8]
+    assert (
+        stroke.sizes["time"] == 321
+        and st.distance(stroke)[0] == 0
+        and st.time_of(stroke)[[0, -1]].tolist() == [0, 8]
+    )
 
 
 def test_what_is_loaded_already_is_not_made_again(made, slow):
@@ -74,7 +82,9 @@ def test_convexities_are_named_as_in_the_thesis_and_follow_one_another(made):
     found = st.convexities(made["stroke_10"])
     assert list(found) == ["26", "39", "52", "79", "105", "157", "210", "315"]
     first, *_, last = found.values()
-    assert first.start == pytest.approx(8e-3) and first.end == pytest.approx(8e-3 + 2 * 38.1e-3 * np.sin(np.radians(9)))
+    assert first.start == pytest.approx(8e-3) and first.end == pytest.approx(
+        8e-3 + 2 * 38.1e-3 * np.sin(np.radians(9))
+    )
     assert last.end * 1e3 == pytest.approx(70.58, abs=0.01)
 
 
@@ -87,14 +97,18 @@ def test_contact_lengths_are_the_chords_less_what_the_corner_takes(slow):
     found = st.contact_lengths(slow)
     chords = {k: arc.end - arc.start for k, arc in st.convexities(slow).items()}
     assert found["26"] == pytest.approx(chords["26"] - 0.4e-3, abs=0.15e-3)
-    assert [found[k] for k in chords if k != "26"] == pytest.approx([v for k, v in chords.items() if k != "26"], abs=2 * st.FINE)
+    assert [found[k] for k in chords if k != "26"] == pytest.approx(
+        [v for k, v in chords.items() if k != "26"], abs=2 * st.FINE
+    )
 
 
 def _passed_by_hertz(stroke, half_width):
     """The stroke with Hertz's pressure under a contact that goes over the centre node half way, one stroke distance one place."""
     x, d = stroke["skin_x"].values, st.distance(stroke)
     away = (x - x[centre_node(stroke)])[None] - (d - d.mean())[:, None]
-    pressure = 5e3 * np.sqrt(np.maximum(1 - (away / half_width) ** 2, 0)) * (stroke["skin_y"].values > 0)
+    pressure = (
+        5e3 * np.sqrt(np.maximum(1 - (away / half_width) ** 2, 0)) * (stroke["skin_y"].values > 0)
+    )
     return _with(stroke, contact_pressure=pressure)
 
 
@@ -112,13 +126,17 @@ def _contact_of_centre(stroke):
 def test_contact_of_the_centre_begins_and_ends_between_nodes_and_outputs(slow, spacings):
     """Half a node off at either end is what counting nodes is wrong by, and so is another law of the pressure at the edge."""
     half_width = spacings * _spacing(slow)
-    assert _contact_of_centre(_passed_by_hertz(slow, half_width)) == pytest.approx(2 * half_width, abs=2 * st.FINE)
+    assert _contact_of_centre(_passed_by_hertz(slow, half_width)) == pytest.approx(
+        2 * half_width, abs=2 * st.FINE
+    )
 
 
 def test_mutant_that_takes_the_last_node_for_the_edge(slow, monkeypatch):
     half_width = 6.1 * _spacing(slow)
     monkeypatch.setattr(st, "edge_of", lambda x, pressure, spacing, on_edge: x[-1])
-    assert abs(_contact_of_centre(_passed_by_hertz(slow, half_width)) - 2 * half_width) > 10 * st.FINE
+    assert (
+        abs(_contact_of_centre(_passed_by_hertz(slow, half_width)) - 2 * half_width) > 10 * st.FINE
+    )
 
 
 def test_contact_is_lost_at_the_corner_only(slow):
@@ -135,7 +153,9 @@ def test_passing_ends_half_way_into_the_neighbours(slow):
 
 
 def test_curvature_is_scaled_to_the_pressure_in_contact(slow):
-    fit, slope, offset, likeness = st.scaled(st.centre_curvature(slow), centre_pressure(slow), st.touching(slow))
+    fit, slope, offset, likeness = st.scaled(
+        st.centre_curvature(slow), centre_pressure(slow), st.touching(slow)
+    )
     x = np.linspace(0, 1, 50)
     straight = st.scaled(x, 3 * x - 1 + 100 * (x > 0.5), x <= 0.5)
     assert straight[1:] == pytest.approx((3, -1, 1)) and straight[0][-1] == pytest.approx(2)
@@ -151,7 +171,9 @@ def test_lag_recovers_a_shift(shift):
 
 
 def test_lag_of_the_made_up_stroke_is_its_drag(made):
-    assert Measures.of(made)("lag_of_stepped", "stroke_sub_10") == pytest.approx(0.9, abs=0.4)  # stepped by 1 mm
+    assert Measures.of(made)("lag_of_stepped", "stroke_sub_10") == pytest.approx(
+        0.9, abs=0.4
+    )  # stepped by 1 mm
 
 
 # --- trends: each holds in what is made for it, and fails in a mutant --------------------------------------
@@ -161,7 +183,9 @@ def _follower(history, of):
     """Centre pressure that is a function of the surface's curvature over the centre node."""
     pieces = st.profile_and_height(history)[0].segments
     under = st.place(history)
-    touches = st.touching(history) & (abs(st.centre_curvature(history)) < 350)  # the made-up skin has kinks at its edges
+    touches = st.touching(history) & (
+        abs(st.centre_curvature(history)) < 350
+    )  # the made-up skin has kinks at its edges
     bend = sum(np.where((under >= p.start) & (under < p.end), p.curvature, 0.0) for p in pieces)
     return _with_centre(history, touches * of(bend))
 
@@ -189,7 +213,9 @@ def test_skin_in_contact_has_the_surfaces_curvature(made):
 
 def test_peaks_grow_with_curvature(following):
     assert _holds(following, "TR28").holds
-    assert not _holds(following, "TR28", stroke_5=_follower(following["stroke_5"], lambda k: 12000 - 30 * k)).holds
+    assert not _holds(
+        following, "TR28", stroke_5=_follower(following["stroke_5"], lambda k: 12000 - 30 * k)
+    ).holds
 
 
 def test_peaks_change_little_with_velocity(following):
@@ -200,7 +226,9 @@ def test_peaks_change_little_with_velocity(following):
         assert not outcome.holds and outcome.shown == pytest.approx(50, rel=0.01)
         slower = _with_centre(following["stroke_40"], 0.8 * centre_pressure(following["stroke_40"]))
         assert not _holds(following, id_, stroke_40=slower).holds
-        between = _with_centre(following["stroke_10"], 1.1 * centre_pressure(following["stroke_10"]))  # the ends tell
+        between = _with_centre(
+            following["stroke_10"], 1.1 * centre_pressure(following["stroke_10"])
+        )  # the ends tell
         assert _holds(following, id_, stroke_10=between).holds
 
 
@@ -215,15 +243,21 @@ def test_length_in_contact_falls_with_curvature_and_not_with_velocity(made):
 
 def test_stepped_and_stroked_are_alike(following):
     assert _holds(following, "TR33").holds
-    half = _with_centre(following["stroke_sub_10"], 0.5 * centre_pressure(following["stroke_sub_10"]))
+    half = _with_centre(
+        following["stroke_sub_10"], 0.5 * centre_pressure(following["stroke_sub_10"])
+    )
     assert not _holds(following, "TR33", stroke_sub_10=half).holds
 
 
 def test_peaks_are_higher_stroked(following):
-    higher = _with_centre(following["stroke_sub_10"], 1.1 * centre_pressure(following["stroke_sub_10"]))
+    higher = _with_centre(
+        following["stroke_sub_10"], 1.1 * centre_pressure(following["stroke_sub_10"])
+    )
     assert _holds(following, "TR34", stroke_sub_10=higher).holds
     assert not _holds(
-        following, "TR34", step_sub=_with_centre(following["step_sub"], 1.2 * centre_pressure(following["step_sub"]))
+        following,
+        "TR34",
+        step_sub=_with_centre(following["step_sub"], 1.2 * centre_pressure(following["step_sub"])),
     ).holds
 
 
@@ -237,7 +271,9 @@ def test_contact_is_lost_at_the_corner_and_later_when_stroked(made):
 def test_contact_is_lost_before_both_convexities_at_40_mm_per_s_only(made):
     def losing(name):
         history = made[name]
-        return _with_centre(history, centre_pressure(history) * (abs(st.place(history) - 28e-3) > 0.6e-3))
+        return _with_centre(
+            history, centre_pressure(history) * (abs(st.place(history) - 28e-3) > 0.6e-3)
+        )
 
     assert not _holds(made, "TR37").holds and _holds(made, "TR38").holds
     assert _holds(made, "TR37", stroke_sub_40=losing("stroke_sub_40")).holds
@@ -248,12 +284,24 @@ def _felt(history, peak):
     """Strain energy with one bump over each convexity, of heights `peak` (curvature label -> Pa)."""
     under, arcs = st.place(history), st.convexities(history)
     middles = {k: (a.start + a.end) / 2 for k, a in arcs.items()}
-    bumps = sum(peak(k) * np.exp(-(((under - m) / (0.3 * (arcs[k].end - arcs[k].start))) ** 2)) for k, m in middles.items())
+    bumps = sum(
+        peak(k) * np.exp(-(((under - m) / (0.3 * (arcs[k].end - arcs[k].start))) ** 2))
+        for k, m in middles.items()
+    )
     return _with(history, strain_energy_density=np.column_stack([bumps, bumps]))
 
 
 def test_strain_energy_falls_for_the_two_sharpest(made):
-    falling = {"26": 170, "39": 190, "52": 210, "79": 250, "105": 290, "157": 300, "210": 240, "315": 180}
+    falling = {
+        "26": 170,
+        "39": 190,
+        "52": 210,
+        "79": 250,
+        "105": 290,
+        "157": 300,
+        "210": 240,
+        "315": 180,
+    }
     strokes = {f"stroke_{v}": _felt(made[f"stroke_{v}"], falling.get) for v in st.SPEEDS}
     assert _holds(made, "T263", **strokes).holds
     last_rises = _felt(made["stroke_40"], (falling | {"315": 260}).get)
@@ -261,7 +309,10 @@ def test_strain_energy_falls_for_the_two_sharpest(made):
 
 
 def test_strain_energy_stroked_against_pressed(made):
-    pressed = {f"ramp40_k{k}": synthetic.history(f"ramp40_k{k}") for k in ("79", "105", "158", "210", "315")}
+    pressed = {
+        f"ramp40_k{k}": synthetic.history(f"ramp40_k{k}")
+        for k in ("79", "105", "158", "210", "315")
+    }
     peaks = [float(energy(h, 915e-6).max()) for h in pressed.values()]
     labels = ("79", "105", "157", "210", "315")
     level = dict(zip(labels, np.array(peaks) * (1.0, 0.9, 0.8, 0.7, 0.6), strict=True))
@@ -283,10 +334,14 @@ def _twin(history, apart):
 
 
 def test_double_peaks_and_their_distance(made):
-    twins = {f"stroke_{v}": _twin(made[f"stroke_{v}"], lambda chord: 0.8 * chord) for v in st.SPEEDS}
+    twins = {
+        f"stroke_{v}": _twin(made[f"stroke_{v}"], lambda chord: 0.8 * chord) for v in st.SPEEDS
+    }
     assert _holds(made, "TR41", **twins).holds and _holds(made, "TR42", **twins).holds
     arc = st.convexities(made["stroke_1"])["52"]
-    assert MEASURES["energy_peaks_apart"](twins["stroke_1"])["52"] == pytest.approx(0.8e3 * (arc.end - arc.start), abs=0.5)
+    assert MEASURES["energy_peaks_apart"](twins["stroke_1"])["52"] == pytest.approx(
+        0.8e3 * (arc.end - arc.start), abs=0.5
+    )
     wider = _twin(made["stroke_5"], lambda chord: 3e-3 * 6e-3 / chord)
     assert not _holds(made, "TR42", **(twins | {"stroke_5": wider})).holds
     single = _felt(made["stroke_5"], lambda k: 100)
@@ -307,13 +362,17 @@ def test_animation_has_a_frame_a_snapshot_and_the_same_bytes_again(made, tmp_pat
             picture.seek(k)
             frames.append(np.asarray(picture.convert("RGB"), int))
     assert len(frames) == 3
-    assert all(abs(a - b).max() > 100 for a, b in zip(frames, frames[1:], strict=False))  # the surface has moved on
+    assert all(
+        abs(a - b).max() > 100 for a, b in zip(frames, frames[1:], strict=False)
+    )  # the surface has moved on
     yellow = frames[1][..., 0] - frames[1][..., 2] > 60
     assert yellow.mean() > 0.005  # stress in colours of the map
 
 
 def test_a_frame_shows_nothing_of_the_frame_before(made):
-    (_, *two), (_, *turned) = (_frames(made["stroke_10"].isel(snapshot=list(order)))[0] for order in ((0, 3, 7), (0, 7, 3)))
+    (_, *two), (_, *turned) = (
+        _frames(made["stroke_10"].isel(snapshot=list(order)))[0] for order in ((0, 3, 7), (0, 7, 3))
+    )
     assert all(np.array_equal(a, b) for a, b in zip(two, reversed(turned), strict=True))
 
 

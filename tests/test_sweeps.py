@@ -29,7 +29,11 @@ PRESS = {
     "motion": [{"press_to_force": "20 gf"}],
     "accuracy": "draft",
 }
-CURVATURE, FORCE, FAT = "stimulus.curvature", "motion[0].press_to_force", "specimen.layers.fat.youngs_modulus"
+CURVATURE, FORCE, FAT = (
+    "stimulus.curvature",
+    "motion[0].press_to_force",
+    "specimen.layers.fat.youngs_modulus",
+)
 
 
 def sweep_of(over, name="sweep", **more):
@@ -48,46 +52,114 @@ def design_of(over, **more):
 @pytest.mark.parametrize(
     "over, more, said",
     [
-        ({"stimulus.curvatur": ["1 1/m"]}, {}, "stimulus.curvatur: is not a known key, the nearest is 'curvature'"),
-        ({"friction": {"unifrom": [0, 1]}}, {}, "over.friction.unifrom: is not a known key, the nearest is 'uniform'"),
+        (
+            {"stimulus.curvatur": ["1 1/m"]},
+            {},
+            "stimulus.curvatur: is not a known key, the nearest is 'curvature'",
+        ),
+        (
+            {"friction": {"unifrom": [0, 1]}},
+            {},
+            "over.friction.unifrom: is not a known key, the nearest is 'uniform'",
+        ),
         ({"friction": {"uniform": [1, 0]}}, {}, "over.friction.uniform: [1, 0] is not rising"),
         ({FORCE: ["1 gf", "2 mm"]}, {}, "'2 mm' has the wrong dimension"),
         ({FORCE: {"range": ["1 mm", "2 mm"], "count": 2}}, {}, "'1.0 mm' has the wrong dimension"),
         ({FORCE: {"range": ["1 gf", "2 mm"], "count": 2}}, {}, "has the wrong dimension"),
         ({FORCE: {"range": ["1 foo", "2 foo"], "count": 2}}, {}, "has an unknown unit"),
-        ({FORCE: {"range": ["0 gf", "2 gf"], "count": 2, "spacing": "logarithmic"}}, {}, "cannot be logarithmic"),
-        ({FAT: {"normal": {"mean": "15 kPa", "sd": "0 kPa"}}}, {}, "normal.sd: '0 kPa' is not above"),
-        ({FAT: {"normal": {"mean": "15 kPa", "sd": "1 kPa"}, "within": ["90 kPa", "99 kPa"]}}, {}, "leaves nothing"),
+        (
+            {FORCE: {"range": ["0 gf", "2 gf"], "count": 2, "spacing": "logarithmic"}},
+            {},
+            "cannot be logarithmic",
+        ),
+        (
+            {FAT: {"normal": {"mean": "15 kPa", "sd": "0 kPa"}}},
+            {},
+            "normal.sd: '0 kPa' is not above",
+        ),
+        (
+            {FAT: {"normal": {"mean": "15 kPa", "sd": "1 kPa"}, "within": ["90 kPa", "99 kPa"]}},
+            {},
+            "leaves nothing",
+        ),
         ({FAT: {"uniform": ["1 kPa", "2 kPa"]}}, {}, "is drawn, but the design is a grid"),
-        ({FORCE: {"range": ["1 gf", "2 gf"]}}, {}, "is drawn, but the design is a grid; allowed: a count"),
-        ({"friction": [0]}, {"design": "sobol", "samples": 4}, "sobol draws, but no key is a distribution"),
-        ({FAT: {"uniform": ["1 kPa", "2 kPa"]}}, {"design": "latin_hypercube"}, "samples: is missing"),
+        (
+            {FORCE: {"range": ["1 gf", "2 gf"]}},
+            {},
+            "is drawn, but the design is a grid; allowed: a count",
+        ),
+        (
+            {"friction": [0]},
+            {"design": "sobol", "samples": 4},
+            "sobol draws, but no key is a distribution",
+        ),
+        (
+            {FAT: {"uniform": ["1 kPa", "2 kPa"]}},
+            {"design": "latin_hypercube"},
+            "samples: is missing",
+        ),
         ({"friction": []}, {}, "over.friction: [] is empty"),
         ({}, {}, "over: {} is not a mapping of keys"),
-        ({"friction": [0]}, {"keep": ["contact_widht"]}, "'contact_widht' is not a measure, the nearest is 'contact_width'"),
-        ({"friction": [0]}, {"keep": ["tangential_force"]}, "keep[0]: 'tangential_force' is not a measure of such a scene"),
-        ({"friction": [0]}, {"designs": "grid"}, "designs: is not a known key, the nearest is 'design'"),
+        (
+            {"friction": [0]},
+            {"keep": ["contact_widht"]},
+            "'contact_widht' is not a measure, the nearest is 'contact_width'",
+        ),
+        (
+            {"friction": [0]},
+            {"keep": ["tangential_force"]},
+            "keep[0]: 'tangential_force' is not a measure of such a scene",
+        ),
+        (
+            {"friction": [0]},
+            {"designs": "grid"},
+            "designs: is not a known key, the nearest is 'design'",
+        ),
         ({"friction": [0]}, {"accuracy": "rough"}, "accuracy: 'rough' is not a known accuracy"),
-        ({"stimulus.csv": {"folder": "nowhere"}}, {}, "over.stimulus.csv.folder: 'nowhere' holds no file *.csv"),
-        ({FORCE: [f"{n + 1} gf" for n in range(1001)], "friction": [n / 1000 for n in range(1000)]}, {}, "makes 1001000 scenes"),
+        (
+            {"stimulus.csv": {"folder": "nowhere"}},
+            {},
+            "over.stimulus.csv.folder: 'nowhere' holds no file *.csv",
+        ),
+        (
+            {
+                FORCE: [f"{n + 1} gf" for n in range(1001)],
+                "friction": [n / 1000 for n in range(1000)],
+            },
+            {},
+            "makes 1001000 scenes",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_with_a_sweep_is_one_line(over, more, said):
     with pytest.raises(SceneError) as error:
         design_of(over, **more)
-    assert said in str(error.value) and "allowed:" in str(error.value) and "\n" not in str(error.value)
+    assert (
+        said in str(error.value) and "allowed:" in str(error.value) and "\n" not in str(error.value)
+    )
 
 
 def test_an_impossible_corner_of_a_grid_is_named_before_anything_runs():
     over = {"specimen.prony[0].g": [0.05, 0.7], "specimen.prony[1].g": [0.2, 0.4]}
-    with pytest.raises(SceneError, match=r"scene 3 \(.*g = 0.7, .*g = 0.4\): specimen.prony: the terms g sum to 1.1"):
+    with pytest.raises(
+        SceneError,
+        match=r"scene 3 \(.*g = 0.7, .*g = 0.4\): specimen.prony: the terms g sum to 1.1",
+    ):
         design_of(over)
 
 
 def test_a_scene_that_cannot_be_planned_is_named(tmp_path):
-    fast = {"stimulus": {"shape": "flat"}, "motion": [{"press_to_depth": "1 mm", "speed": "2 mm/s"}]}
-    design = Design(load_sweep({"scene": fast, "over": {"motion[0].speed": ["2 mm/s", "9000 mm/s"]}}))
-    with pytest.raises(SceneError, match=r"scene 1 \(motion\[0\].speed = 9000 mm/s\): motion\[0\]: so fast that inertia matters"):
+    fast = {
+        "stimulus": {"shape": "flat"},
+        "motion": [{"press_to_depth": "1 mm", "speed": "2 mm/s"}],
+    }
+    design = Design(
+        load_sweep({"scene": fast, "over": {"motion[0].speed": ["2 mm/s", "9000 mm/s"]}})
+    )
+    with pytest.raises(
+        SceneError,
+        match=r"scene 1 \(motion\[0\].speed = 9000 mm/s\): motion\[0\]: so fast that inertia matters",
+    ):
         forecast(design)
 
 
@@ -116,7 +188,10 @@ def test_a_folder_of_profiles_with_a_broken_one_names_it(tmp_path):
     with pytest.raises(SceneError, match=r"scene 1 .*b.csv.*x does not increase in row 3"):
         Design(read).check()
     (tmp_path / "b.csv").write_text("x (mm),y (mm)\n0,0\n1,0.5\n2,0.1\n")
-    assert [scene.stimulus.y[1] for scene in Design(load_sweep(tmp_path / "sweep.yaml"))] == [0.0, 0.5e-3]
+    assert [scene.stimulus.y[1] for scene in Design(load_sweep(tmp_path / "sweep.yaml"))] == [
+        0.0,
+        0.5e-3,
+    ]
 
 
 # --- the design -----------------------------------------------------------------------------------------------
@@ -124,10 +199,16 @@ def test_a_folder_of_profiles_with_a_broken_one_names_it(tmp_path):
 
 def test_a_grid_crosses_its_values_the_last_fastest():
     design = design_of(
-        {CURVATURE: ["79 1/m", "210 1/m"], FORCE: {"range": ["2 gf", "200 gf"], "count": 3, "spacing": "logarithmic"}}
+        {
+            CURVATURE: ["79 1/m", "210 1/m"],
+            FORCE: {"range": ["2 gf", "200 gf"], "count": 3, "spacing": "logarithmic"},
+        }
     )
     assert design.dimensions == {"curvature": 2, "press_to_force": 3} and len(design) == 6
-    assert design.changes(4) == {CURVATURE: "210 1/m", FORCE: "20.0 gf"} and design.place(4) == (1, 1)
+    assert design.changes(4) == {CURVATURE: "210 1/m", FORCE: "20.0 gf"} and design.place(4) == (
+        1,
+        1,
+    )
     assert design.scene(5).motion[0].press_to_force == pytest.approx(200 * 9.80665e-3, rel=1e-12)
     assert design.scene(5) == load_scene(PRESS, "sweep").varied({FORCE: "200 gf"})
     assert [p.column for p in design.parameters] == ["curvature (1/m)", "press_to_force (gf)"]
@@ -141,14 +222,20 @@ def test_draws_follow_their_distributions_and_their_seed(kind):
         FORCE: {"range": ["2 gf", "200 gf"], "spacing": "logarithmic"},
     }
     (fat, dermis, force), other = (
-        [np.array(p.values) for p in Design(sweep_of(over, design=kind, samples=256, seed=seed)).parameters] for seed in (1, 2)
+        [
+            np.array(p.values)
+            for p in Design(sweep_of(over, design=kind, samples=256, seed=seed)).parameters
+        ]
+        for seed in (1, 2)
     )
     assert fat.min() > 10 and fat.max() < 40
     whole = stats.lognorm(math.log(1.5), scale=15)
     low, high = whole.cdf([10, 40])
     truncated = (whole.cdf(fat) - low) / (high - low)
     for shares in (truncated, stats.norm(15, 2).cdf(dermis), np.log(force / 2) / np.log(100)):
-        assert stats.kstest(shares, "uniform").statistic < 0.02  # as even as 256 points can be; at random it would be 0.05
+        assert (
+            stats.kstest(shares, "uniform").statistic < 0.02
+        )  # as even as 256 points can be; at random it would be 0.05
     assert not np.allclose(fat, other[0])
     again = Design(sweep_of(over, design=kind, samples=256, seed=1)).parameters[0].values
     assert again == fat.tolist()
@@ -157,15 +244,29 @@ def test_draws_follow_their_distributions_and_their_seed(kind):
 def test_draws_are_crossed_with_values_and_alone_are_scenes():
     drawn = {FAT: {"uniform": ["10 kPa", "20 kPa"]}}
     alone = Design(sweep_of(drawn, design="sobol", samples=4))
-    crossed = Design(sweep_of(drawn | {CURVATURE: ["79 1/m", "210 1/m"]}, design="sobol", samples=4))
+    crossed = Design(
+        sweep_of(drawn | {CURVATURE: ["79 1/m", "210 1/m"]}, design="sobol", samples=4)
+    )
     assert alone.dimensions == {"scene": 4} and crossed.dimensions == {"draw": 4, "curvature": 2}
-    assert crossed.changes(5)[FAT] == alone.changes(2)[FAT] and crossed.changes(5)[CURVATURE] == "210 1/m"
+    assert (
+        crossed.changes(5)[FAT] == alone.changes(2)[FAT]
+        and crossed.changes(5)[CURVATURE] == "210 1/m"
+    )
 
 
 def test_names_are_the_fewest_last_words_that_tell_keys_apart():
-    layers = {f"specimen.layers.{layer}.youngs_modulus": ["15 kPa"] for layer in ("epidermis", "dermis", "fat")}
+    layers = {
+        f"specimen.layers.{layer}.youngs_modulus": ["15 kPa"]
+        for layer in ("epidermis", "dermis", "fat")
+    }
     names = sweep_of(layers | {"specimen.prony[0].g": [0.1], "friction": [0]}).names
-    assert list(names.values()) == ["epidermis_youngs_modulus", "dermis_youngs_modulus", "fat_youngs_modulus", "g", "friction"]
+    assert list(names.values()) == [
+        "epidermis_youngs_modulus",
+        "dermis_youngs_modulus",
+        "fat_youngs_modulus",
+        "g",
+        "friction",
+    ]
     assert sweep_of({FAT: {"words": {"soft": "10 kPa"}, "name": "fat"}}).names == {FAT: "fat"}
 
 
@@ -175,8 +276,17 @@ def test_the_radius_of_a_cylinder_can_be_swept():
 
 
 def test_batches_are_a_minute_or_more_and_use_all_cores():
-    assert [len(each) for each in divided(list(range(1000)), [0.3] * 1000, 2)] == [167, 167, 167, 167, 167, 165]
-    assert len(divided(list(range(100)), [0.4] * 100, 2)) == 2  # 40 s are divided, so that both cores work
+    assert [len(each) for each in divided(list(range(1000)), [0.3] * 1000, 2)] == [
+        167,
+        167,
+        167,
+        167,
+        167,
+        165,
+    ]
+    assert (
+        len(divided(list(range(100)), [0.4] * 100, 2)) == 2
+    )  # 40 s are divided, so that both cores work
     assert len(divided(list(range(10)), [0.3] * 10, 2)) == 1  # 3 s are not worth a process
     assert len(divided(list(range(100_000)), [10.0] * 100_000, 2)) <= 1001
     uneven = divided(list(range(20)), [100.0] * 10 + [1.0] * 10, 2)
@@ -188,11 +298,17 @@ def test_a_forecast_counts_effects_and_adds_cost():
         design_of(
             {
                 CURVATURE: ["79 1/m", "210 1/m"],
-                "effects": {"words": {"on": {"finite_strain": True}, "off": {"finite_strain": False}}},
+                "effects": {
+                    "words": {"on": {"finite_strain": True}, "off": {"finite_strain": False}}
+                },
             }
         )
     )
-    assert found.effects["finite_strain"] == 2 and found.effects["symmetry"] == 4 and len(found.cost_s) == 4
+    assert (
+        found.effects["finite_strain"] == 2
+        and found.effects["symmetry"] == 4
+        and len(found.cost_s) == 4
+    )
     assert found.wall_s(2) >= max(found.cost_s) and found.memory_MB[0] > 100
 
 
@@ -205,7 +321,9 @@ def test_a_key_is_the_content_of_a_scene_and_what_is_kept():
     assert key == key_of(load_scene(PRESS, "b"), ("contact_width",), False)
     assert key != key_of(press.varied({FORCE: "20.001 gf"}), ("contact_width",), False)
     assert (
-        key != key_of(press, ("contact_width", "normal_force"), False) != key_of(press, ("contact_width", "normal_force"), True)
+        key
+        != key_of(press, ("contact_width", "normal_force"), False)
+        != key_of(press, ("contact_width", "normal_force"), True)
     )
 
 
@@ -227,7 +345,12 @@ def batch_in(folder, count=4):
     (folder / "todo").mkdir(parents=True)
     design = Design(read)
     scenes = [[n, f"key{n}", design.changes(n)] for n in range(count)]
-    spec = {"base": read.base.model_dump(mode="json"), "keep": ["contact_width"], "histories": False, "scenes": scenes}
+    spec = {
+        "base": read.base.model_dump(mode="json"),
+        "keep": ["contact_width"],
+        "histories": False,
+        "scenes": scenes,
+    }
     (folder / "todo" / "one.json").write_text(json.dumps(spec))
     return folder / "todo" / "one.json", folder / "batches" / "one.jsonl"
 
@@ -240,7 +363,10 @@ def pretend(monkeypatch, spoil=None):
         ran.append(round(scene.stimulus.curvature))
         if spoil and ran[-1] in spoil:
             raise spoil[ran[-1]]
-        return {"diagnosis": "", "measures": [["contact_width", "end", "mm", 1.0 / scene.stimulus.curvature]]}
+        return {
+            "diagnosis": "",
+            "measures": [["contact_width", "end", "mm", 1.0 / scene.stimulus.curvature]],
+        }
 
     monkeypatch.setattr(batch, "measured", measured)
     return ran
@@ -253,8 +379,15 @@ def test_one_bad_scene_is_a_record_with_its_diagnosis(tmp_path, monkeypatch):
     batch.run_batch(*batch_in(tmp_path))
     found = list(read_records(tmp_path / "batches" / "one.jsonl"))
     assert ran == [100, 200, 300, 400]
-    assert [r["diagnosis"] for r in found] == ["", "step 3 did not converge at t = 1 s", "ZeroDivisionError: by zero", ""]
-    assert not list((tmp_path / "batches").glob("*.part")) and not list((tmp_path / "batches").glob("*.at"))
+    assert [r["diagnosis"] for r in found] == [
+        "",
+        "step 3 did not converge at t = 1 s",
+        "ZeroDivisionError: by zero",
+        "",
+    ]
+    assert not list((tmp_path / "batches").glob("*.part")) and not list(
+        (tmp_path / "batches").glob("*.at")
+    )
 
 
 def test_an_interrupted_batch_goes_on_where_it_was(tmp_path, monkeypatch):
@@ -293,24 +426,42 @@ def test_a_scene_that_has_killed_two_processes_is_not_tried_again(tmp_path, monk
 
     todo, records = batch_in(tmp_path)
     ran = pretend(monkeypatch, {200: Killed()})
-    monkeypatch.setattr(batch._Watch, "__exit__", lambda self, kind, *_: kind is None and self._path.unlink())
+    monkeypatch.setattr(
+        batch._Watch, "__exit__", lambda self, kind, *_: kind is None and self._path.unlink()
+    )
     for _ in range(2):
         with pytest.raises(Killed):
             batch.run_batch(todo, records)
     batch.run_batch(todo, records)
     assert ran == [100, 200, 200, 300, 400]
-    assert [r["diagnosis"][:28] for r in read_records(records)] == ["", "its process was killed 2 tim", "", ""]
+    assert [r["diagnosis"][:28] for r in read_records(records)] == [
+        "",
+        "its process was killed 2 tim",
+        "",
+        "",
+    ]
 
 
 def test_the_numbers_of_a_record_are_those_of_the_scene():
     from fingerpad import simulate
 
     scene = load_scene(PRESS)
-    record, history = batch.measured(scene, ["contact_width", "strain_energy", "held_force"]), simulate(scene)
-    values = {(name, condition): (unit, value) for name, condition, unit, value in record["measures"]}
+    record, history = (
+        batch.measured(scene, ["contact_width", "strain_energy", "held_force"]),
+        simulate(scene),
+    )
+    values = {
+        (name, condition): (unit, value) for name, condition, unit, value in record["measures"]
+    }
     assert values["contact_width", "end"] == ("mm", 1e3 * float(history.contact_width[-1]))
-    assert values["strain_energy", "915 um, end"] == ("Pa", float(history.strain_energy_density[-1, 1]))
-    assert values["held_force", ""] == ("gf", pytest.approx(20)) and record["estimated_error"] == history.estimated_error
+    assert values["strain_energy", "915 um, end"] == (
+        "Pa",
+        float(history.strain_energy_density[-1, 1]),
+    )
+    assert (
+        values["held_force", ""] == ("gf", pytest.approx(20))
+        and record["estimated_error"] == history.estimated_error
+    )
 
 
 # --- the folder -----------------------------------------------------------------------------------------------
@@ -319,11 +470,19 @@ def test_the_numbers_of_a_record_are_those_of_the_scene():
 def run_all(layout):
     """The batches of a layout and their collection, in this process."""
     for name in layout.batches:
-        batch.run_batch(layout.folder / "todo" / f"{name}.json", layout.folder / "batches" / f"{name}.jsonl")
-    files = [layout.folder / name for name in [*layout.known, *(f"batches/{name}.jsonl" for name in layout.batches)]]
+        batch.run_batch(
+            layout.folder / "todo" / f"{name}.json", layout.folder / "batches" / f"{name}.jsonl"
+        )
+    files = [
+        layout.folder / name
+        for name in [*layout.known, *(f"batches/{name}.jsonl" for name in layout.batches)]
+    ]
     design = json.loads((layout.folder / "design.json").read_text())
     collect(design, files, layout.folder / "sweep.nc", layout.folder / "sweep.csv")
-    with xr.open_dataset(layout.folder / "sweep.nc") as dataset, (layout.folder / "sweep.csv").open() as table:
+    with (
+        xr.open_dataset(layout.folder / "sweep.nc") as dataset,
+        (layout.folder / "sweep.csv").open() as table,
+    ):
         return dataset.load(), list(csv.DictReader(table))
 
 
@@ -334,26 +493,45 @@ def test_a_grid_becomes_a_labelled_dataset_and_a_table(tmp_path, monkeypatch):
     pretend(monkeypatch, {200: ValueError("wrong")})
     data, rows = run_all(engine.lay_out(sweep_of(GRID), tmp_path, cores=2))
     width = data.contact_width_end
-    assert width.dims == ("curvature", "press_to_force") and width.units == "mm" and data.curvature.units == "1/m"
-    assert width.sel(curvature=400).values.tolist() == [1 / 400, 1 / 400] and data.press_to_force.values.tolist() == [10, 20]
-    assert np.isnan(width.sel(curvature=200)).all() and data.failed.sel(curvature=200).values.tolist() == [1, 1]
+    assert (
+        width.dims == ("curvature", "press_to_force")
+        and width.units == "mm"
+        and data.curvature.units == "1/m"
+    )
+    assert width.sel(curvature=400).values.tolist() == [
+        1 / 400,
+        1 / 400,
+    ] and data.press_to_force.values.tolist() == [10, 20]
+    assert np.isnan(width.sel(curvature=200)).all() and data.failed.sel(
+        curvature=200
+    ).values.tolist() == [1, 1]
     assert data.diagnosis.sel(curvature=200, press_to_force=20).item() == "ValueError: wrong"
     assert data.attrs["failed"] == 2 and data.attrs["scenes"] == 6 and "provenance" in data.attrs
-    assert [row["scene"] for row in rows] == list("012345") and [row["curvature (1/m)"] for row in rows][::2] == [
+    assert [row["scene"] for row in rows] == list("012345") and [
+        row["curvature (1/m)"] for row in rows
+    ][::2] == [
         "100.0",
         "200.0",
         "400.0",
     ]
-    assert rows[2]["contact_width_end (mm)"] == "" and rows[2]["diagnosis"] == "ValueError: wrong" and rows[2]["failed"] == "1"
+    assert (
+        rows[2]["contact_width_end (mm)"] == ""
+        and rows[2]["diagnosis"] == "ValueError: wrong"
+        and rows[2]["failed"] == "1"
+    )
     assert float(rows[5]["contact_width_end (mm)"]) == 1 / 400
 
 
 def test_draws_become_scenes_with_their_parameters_as_coordinates(tmp_path, monkeypatch):
     pretend(monkeypatch)
     over = {CURVATURE: {"range": ["100 1/m", "400 1/m"]}}
-    data, rows = run_all(engine.lay_out(sweep_of(over, design="sobol", samples=8), tmp_path, cores=1))
+    data, rows = run_all(
+        engine.lay_out(sweep_of(over, design="sobol", samples=8), tmp_path, cores=1)
+    )
     assert data.contact_width_end.dims == ("scene",) and "curvature" in data.coords
-    assert data.contact_width_end.values == pytest.approx(1 / data.curvature.values) and len(rows) == 8
+    assert (
+        data.contact_width_end.values == pytest.approx(1 / data.curvature.values) and len(rows) == 8
+    )
 
 
 def test_only_what_is_missing_or_changed_runs_again(tmp_path, monkeypatch):
@@ -366,7 +544,9 @@ def test_only_what_is_missing_or_changed_runs_again(tmp_path, monkeypatch):
     assert layout.missing == 2 and layout.scenes == 8
     data, _ = run_all(layout)
     assert ran[6:] == [500, 500] and data.sizes["curvature"] == 4
-    xr.testing.assert_equal(data.contact_width_end.isel(curvature=slice(3)), before.contact_width_end)
+    xr.testing.assert_equal(
+        data.contact_width_end.isel(curvature=slice(3)), before.contact_width_end
+    )
     ran.clear()
     again = engine.lay_out(sweep_of(wider), tmp_path, cores=1, again=True)
     assert again.missing == 2 and run_all(again) and ran == [200, 200]
@@ -378,7 +558,9 @@ def test_records_of_an_unfinished_batch_are_found_by_another_layout(tmp_path, mo
     with pytest.raises(KeyboardInterrupt):
         run_all(engine.lay_out(sweep_of(GRID), tmp_path, cores=1))
     spoil.clear()
-    layout = engine.lay_out(sweep_of(GRID | {FORCE: ["10 gf", "20 gf", "30 gf"]}), tmp_path, cores=1)
+    layout = engine.lay_out(
+        sweep_of(GRID | {FORCE: ["10 gf", "20 gf", "30 gf"]}), tmp_path, cores=1
+    )
     assert layout.missing == 5
     data, _ = run_all(layout)
     assert ran.count(100) == 3 and ran.count(200) == 3 and int(data.attrs["failed"]) == 0
@@ -386,10 +568,18 @@ def test_records_of_an_unfinished_batch_are_found_by_another_layout(tmp_path, mo
 
 def test_another_sweeps_folder_and_one_in_use_are_refused(tmp_path):
     engine.lay_out(sweep_of({"friction": [0]}), tmp_path, cores=1)
-    with pytest.raises(engine.SweepError, match="holds the sweep 'sweep'; allowed: another --out, or --force"):
+    with pytest.raises(
+        engine.SweepError, match="holds the sweep 'sweep'; allowed: another --out, or --force"
+    ):
         engine.lay_out(sweep_of({"friction": [0]}, "other"), tmp_path, cores=1)
-    assert engine.lay_out(sweep_of({"friction": [0]}, "other"), tmp_path, cores=1, force=True).name == "other"
-    with engine.held(tmp_path), pytest.raises(engine.SweepError, match="is being written by another sweep"):
+    assert (
+        engine.lay_out(sweep_of({"friction": [0]}, "other"), tmp_path, cores=1, force=True).name
+        == "other"
+    )
+    with (
+        engine.held(tmp_path),
+        pytest.raises(engine.SweepError, match="is being written by another sweep"),
+    ):
         with engine.held(tmp_path):
             pass
 
@@ -401,7 +591,12 @@ def test_a_scene_without_a_record_is_an_error_not_a_hole(tmp_path, monkeypatch):
     file = next((tmp_path / "batches").glob("*.jsonl"))
     file.write_bytes(b"".join(file.read_bytes().splitlines(keepends=True)[:-1]))
     with pytest.raises(ValueError, match="1 scenes have no record"):
-        collect(json.loads((tmp_path / "design.json").read_text()), [file], tmp_path / "sweep.nc", tmp_path / "sweep.csv")
+        collect(
+            json.loads((tmp_path / "design.json").read_text()),
+            [file],
+            tmp_path / "sweep.nc",
+            tmp_path / "sweep.csv",
+        )
 
 
 # --- the command ----------------------------------------------------------------------------------------------
@@ -418,11 +613,20 @@ def file(tmp_path):
 def test_a_plan_of_a_sweep_says_how_many_which_effects_and_what_it_costs(file, capsys):
     assert main(["plan", str(file), "--json", "--cores", "2"]) == 0
     said = json.loads(capsys.readouterr().out)
-    assert said["scenes"] == 4 and said["effects"] == {"finite_strain": 4, "symmetry": 4} and said["cores"] == 2
-    assert 0 < said["predicted_cost_s"] < 10 and said["predicted_wall_s"] >= said["predicted_cost_s"] / 2
+    assert (
+        said["scenes"] == 4
+        and said["effects"] == {"finite_strain": 4, "symmetry": 4}
+        and said["cores"] == 2
+    )
+    assert (
+        0 < said["predicted_cost_s"] < 10
+        and said["predicted_wall_s"] >= said["predicted_cost_s"] / 2
+    )
     assert main(["plan", str(file)]) == 0
     table = capsys.readouterr().out
-    assert "Sweep mine: 4 scenes" in table and "finite strain in 4" in table and "on 1 core" in table
+    assert (
+        "Sweep mine: 4 scenes" in table and "finite strain in 4" in table and "on 1 core" in table
+    )
 
 
 def test_the_command_says_what_was_run_and_what_was_known(file, tmp_path, monkeypatch, capsys):
@@ -441,7 +645,9 @@ def test_the_command_says_what_was_run_and_what_was_known(file, tmp_path, monkey
 
 def test_a_sweep_that_cannot_go_on_exits_3_with_one_line(file, tmp_path, monkeypatch, capsys):
     def full(layout, *_):
-        raise engine.NotFinished("2 of 4 scenes are done and kept; No space left on device; the same command goes on from there")
+        raise engine.NotFinished(
+            "2 of 4 scenes are done and kept; No space left on device; the same command goes on from there"
+        )
 
     monkeypatch.setattr(engine, "run_layout", full)
     assert main(["sweep", str(file), "--out", str(tmp_path / "out")]) == 3
@@ -453,7 +659,9 @@ def test_a_sweep_that_cannot_go_on_exits_3_with_one_line(file, tmp_path, monkeyp
 
 def tabled(folder, content, **more):
     (folder / "samples.csv").write_text(content)
-    return Design(load_sweep({"scene": PRESS, "over": {"table": str(folder / "samples.csv"), **more}}))
+    return Design(
+        load_sweep({"scene": PRESS, "over": {"table": str(folder / "samples.csv"), **more}})
+    )
 
 
 SAMPLES = "stimulus.curvature (1/m),motion[0].press_to_force (gf)\n100,5\n210.5,10\n420,20\n"
@@ -476,7 +684,10 @@ def test_a_table_is_crossed_with_lists(tmp_path):
 
 def test_a_table_may_have_words_and_numbers_without_units(tmp_path):
     design = tabled(tmp_path, "friction;accuracy\n0,1;draft\n0,25;thesis\n")
-    assert [scene.friction for scene in design] == [0.1, 0.25] and [s.accuracy for s in design] == ["draft", "thesis"]
+    assert [scene.friction for scene in design] == [0.1, 0.25] and [s.accuracy for s in design] == [
+        "draft",
+        "thesis",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -512,4 +723,6 @@ def test_salibs_samples_go_in(tmp_path):
     points = sample.sample({"num_vars": 2, "names": keys, "bounds": [[50, 800], [10, 20]]}, 4)
     np.savetxt(tmp_path / "samples.csv", points, delimiter=",", header=",".join(keys), comments="")
     design = Design(load_sweep({"scene": PRESS, "over": {"table": str(tmp_path / "samples.csv")}}))
-    assert len(design) == len(points) and design.scene(1).stimulus.curvature == pytest.approx(points[1, 0], rel=1e-12)
+    assert len(design) == len(points) and design.scene(1).stimulus.curvature == pytest.approx(
+        points[1, 0], rel=1e-12
+    )

@@ -22,7 +22,12 @@ POINTS = list(zip(X, Y, strict=True))
 def read_profile(folder, content):
     path = folder / "profile.csv"
     path.write_bytes(content)
-    return load_scene({"stimulus": {"shape": "sampled", "csv": str(path)}, "motion": [{"press_to_force": "20 gf"}]}).stimulus
+    return load_scene(
+        {
+            "stimulus": {"shape": "sampled", "csv": str(path)},
+            "motion": [{"press_to_force": "20 gf"}],
+        }
+    ).stimulus
 
 
 def written(
@@ -49,7 +54,11 @@ def written(
 
     rows = [[number(x), *([] if lateral is None else [lateral]), number(y)] for x, y in POINTS]
     rows = rows[::-1] if reverse else rows
-    lines = [before] * bool(before) + [comment + delimiter.join(header)] + [delimiter.join(row) + trailing for row in rows]
+    lines = (
+        [before] * bool(before)
+        + [comment + delimiter.join(header)]
+        + [delimiter.join(row) + trailing for row in rows]
+    )
     return (end.join(lines) + end).encode(encoding)
 
 
@@ -102,12 +111,16 @@ READ = {
 @pytest.mark.parametrize("name", READ)
 def test_a_profile_is_read_right_however_it_is_written(tmp_path, name):
     stimulus = read_profile(tmp_path, written(**READ[name]))
-    tolerance = 1e-3 * 0.5 * 10.0 ** -READ[name].get("digits", 4) / READ[name].get("scale", 1.0) + 1e-15
+    tolerance = (
+        1e-3 * 0.5 * 10.0 ** -READ[name].get("digits", 4) / READ[name].get("scale", 1.0) + 1e-15
+    )
     np.testing.assert_allclose(stimulus.x, 1e-3 * X, atol=tolerance)
     np.testing.assert_allclose(stimulus.y, 1e-3 * Y, atol=tolerance)
 
 
-@pytest.mark.parametrize("name", ["x, y, z", "x, z, y", "Windows-1252", "semicolons and decimal commas"])
+@pytest.mark.parametrize(
+    "name", ["x, y, z", "x, z, y", "Windows-1252", "semicolons and decimal commas"]
+)
 def test_what_had_to_be_guessed_is_noted(tmp_path, name):
     assert read_profile(tmp_path, written(**READ[name])).notes
     assert not read_profile(tmp_path, written()).notes
@@ -125,8 +138,14 @@ def with_cell(text, row=3, column=1):
 THREE = "".join(f"{x:.3f};{y + 2:.3f}\n" for x, y in POINTS)
 REFUSED = {
     "decimal commas between commas": (written(comma=True), "has 4 cells in row 2, 2 in its header"),
-    "commas that may be thousands": (b"x (um)\ty (um)\n-6,000\t3,600\n6,000\t3,600\n", "may be thousands"),
-    "points and commas": (written(delimiter=";", comma=True)[:-2] + b"1\n7.5;1,5\n", "decimal points, and '"),
+    "commas that may be thousands": (
+        b"x (um)\ty (um)\n-6,000\t3,600\n6,000\t3,600\n",
+        "may be thousands",
+    ),
+    "points and commas": (
+        written(delimiter=";", comma=True)[:-2] + b"1\n7.5;1,5\n",
+        "decimal points, and '",
+    ),
     "signs between thousands": (b"x (um);y (um)\n-1.234,5;0\n0;3\n", "between thousands"),
     "apostrophes": (b"x (um),y (um)\n-1'234.5,0\n0,3\n", "between thousands"),
     "an extra cell": (written()[:-1] + b",9\n", "has 3 cells in row 26"),
@@ -134,7 +153,10 @@ REFUSED = {
     "rows parted by something else": (b"x (mm),y (mm)\n0;1\n1;1\n", "has 1 cells in row 2"),
     "no header": (b"0,1\n1,1\n", "has no header"),
     "units in a second row": (b"x,y\nmm,mm\n0,1\n1,1\n", "has no column 'x (mm)', but 'x', 'y'"),
-    "columns of other names": (b"Distance (mm),Height (um)\n0,1\n1,1\n", "has no column 'x (mm)', but 'Distance (mm)'"),
+    "columns of other names": (
+        b"Distance (mm),Height (um)\n0,1\n1,1\n",
+        "has no column 'x (mm)', but 'Distance (mm)'",
+    ),
     "a column twice": (b"x (mm),x (mm),y (mm)\n0,0,1\n1,1,1\n", "'x (mm)' twice"),
     "three columns that move": (b"x (mm),y (mm),z (mm)\n0,0,1\n1,1,2\n", "all move"),
     "nan": (with_cell("nan"), "has 'nan' in row 3, column 'y (mm)'"),
@@ -145,7 +167,10 @@ REFUSED = {
     "a unit in a cell": (with_cell("1 mm"), "has '1 mm' in row 3"),
     "a spreadsheet": (b"PK\x03\x04" + b"\0" * 100, "is a spreadsheet"),
     "an old spreadsheet": (b"\xd0\xcf\x11\xe0" + b"\0" * 100, "is a spreadsheet"),
-    "no text": (b"x (mm),y (mm)\n" + bytes([0x81, 0x8D]) + b",1\n", "is not UTF-8 (byte 0x81 in row 2)"),
+    "no text": (
+        b"x (mm),y (mm)\n" + bytes([0x81, 0x8D]) + b",1\n",
+        "is not UTF-8 (byte 0x81 in row 2)",
+    ),
     "bytes of zero": (b"x (mm),y (mm)\n0\0,1\n", "is binary"),
     "nothing": (b"", "holds no rows"),
     "a header alone": (b"x (mm),y (mm)\n", "fewer than two points"),
@@ -160,7 +185,13 @@ def test_what_is_no_profile_is_refused_in_one_line(tmp_path, name):
     with pytest.raises(SceneError) as caught:
         read_profile(tmp_path, content)
     said = str(caught.value)
-    assert words in said and "stimulus.csv: " in said and "profile.csv" in said and "allowed: " in said and "\n" not in said
+    assert (
+        words in said
+        and "stimulus.csv: " in said
+        and "profile.csv" in said
+        and "allowed: " in said
+        and "\n" not in said
+    )
     assert len(said) < 500
 
 
@@ -196,8 +227,16 @@ def test_numpy_and_pandas_files_are_read(tmp_path):
     points = np.column_stack([X, Y])
     for delimiter, comments in itertools.product([",", ";", "\t", " "], ["# ", ""]):
         out = io.StringIO()
-        np.savetxt(out, points, delimiter=delimiter, header=delimiter.join(["x (mm)", "y (mm)"]), comments=comments)
-        np.testing.assert_allclose(read_profile(tmp_path, out.getvalue().encode()).y, 1e-3 * Y, atol=1e-12)
+        np.savetxt(
+            out,
+            points,
+            delimiter=delimiter,
+            header=delimiter.join(["x (mm)", "y (mm)"]),
+            comments=comments,
+        )
+        np.testing.assert_allclose(
+            read_profile(tmp_path, out.getvalue().encode()).y, 1e-3 * Y, atol=1e-12
+        )
     frame = pandas.DataFrame({"x (mm)": X, "y (mm)": Y})
     for how in ({"sep": ","}, {"sep": ";", "decimal": ","}, {"sep": "\t"}):
         content = frame.to_csv(index=False, **how).encode()

@@ -14,17 +14,32 @@ MOTIONS = {
     "steady press": [{"press_to_force": "5 gf"}],
     "steady press by many steps": [{"press_to_force": "5 gf"}, {"press_to_force": "10 gf"}],
     "press in time": [{"press_to_force": "5 gf", "rate": "40 gf/s"}, {"hold": "0.5 s"}],
-    "steady press, slide in time": [{"press_to_force": "5 gf"}, {"slide": "1 mm", "speed": "10 mm/s"}],
+    "steady press, slide in time": [
+        {"press_to_force": "5 gf"},
+        {"slide": "1 mm", "speed": "10 mm/s"},
+    ],
     "all steady": [{"press_to_force": "5 gf"}, {"slide": "1 mm"}, {"slide": "-1 mm"}],
-    "press, hold, lift, hold": [{"press_to_force": "5 gf"}, {"hold": "0.1 s"}, {"lift": "steady"}, {"hold": "0.1 s"}],
-    "in time, then steady": [{"press_to_force": "5 gf", "rate": "40 gf/s"}, {"press_to_force": "8 gf"}],
+    "press, hold, lift, hold": [
+        {"press_to_force": "5 gf"},
+        {"hold": "0.1 s"},
+        {"lift": "steady"},
+        {"hold": "0.1 s"},
+    ],
+    "in time, then steady": [
+        {"press_to_force": "5 gf", "rate": "40 gf/s"},
+        {"press_to_force": "8 gf"},
+    ],
     "step and repeat": [{"press_to_force": "5 gf"}, {"step": "2 mm", "every": "0.5 mm"}],
 }
 
 
 @pytest.fixture(scope="module", params=MOTIONS)
 def history(request):
-    scene = {"stimulus": {"shape": "cylinder", "radius": "5 mm"}, "friction": 0.3, "motion": MOTIONS[request.param]}
+    scene = {
+        "stimulus": {"shape": "cylinder", "radius": "5 mm"},
+        "friction": 0.3,
+        "motion": MOTIONS[request.param],
+    }
     return fingerpad.simulate(scene | {"accuracy": BY_HAND})
 
 
@@ -36,7 +51,9 @@ def test_sel_and_interp_work_by_time(history):
         assert abs(float(chosen.time) - at) == np.abs(time - at).min()
     wanted = np.linspace(0, max(float(time[-1]), 1e-12), 7)
     between = history[["force", "indentation_depth", "contact_pressure"]].interp(time=wanted)
-    assert np.isfinite(between.force).all() and float(between.force[-1]) == pytest.approx(float(history.force[-1]), rel=1e-6)
+    assert np.isfinite(between.force).all() and float(between.force[-1]) == pytest.approx(
+        float(history.force[-1]), rel=1e-6
+    )
     assert history.sel(time=slice(0, 1)).sizes["time"] == (time <= 1).sum()
     assert (history.force + history.force).sizes["time"] == len(time)
 
@@ -57,16 +74,23 @@ def test_two_histories_of_different_steps_can_be_compared(history):
 
 def test_what_takes_no_time_has_no_rate():
     """A steady press before a stroke is no impulse of infinite rate."""
-    scene = {"stimulus": {"shape": "cylinder", "radius": "5 mm"}, "motion": MOTIONS["steady press, slide in time"]}
+    scene = {
+        "stimulus": {"shape": "cylinder", "radius": "5 mm"},
+        "motion": MOTIONS["steady press, slide in time"],
+    }
     history = fingerpad.simulate(scene | {"accuracy": BY_HAND})
     rates = fingerpad.respond(history)
     assert float(rates.impulse_rate.max()) < 1e4
     rates.sel(response_time=0.05, method="nearest")
     with pytest.raises(ValueError, match="takes time"):
-        fingerpad.respond(fingerpad.simulate(scene | {"motion": MOTIONS["all steady"], "accuracy": BY_HAND}))
+        fingerpad.respond(
+            fingerpad.simulate(scene | {"motion": MOTIONS["all steady"], "accuracy": BY_HAND})
+        )
 
 
 @pytest.mark.parametrize("start", [0.0, 1.0, 1e4, 1e9])
 def test_times_are_apart_however_late(start):
     times = apart(np.array([start, start, start, start + 1.0, start + 1.0]))
-    assert (np.diff(times) > 0).all() and np.abs(times - start - [0, 0, 0, 1, 1]).max() <= 1e-11 + 1e-15 * start * 20
+    assert (np.diff(times) > 0).all() and np.abs(
+        times - start - [0, 0, 0, 1, 1]
+    ).max() <= 1e-11 + 1e-15 * start * 20

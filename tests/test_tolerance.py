@@ -88,18 +88,38 @@ def test_ridges_do_not_hide_the_edge_of_a_bar():
     ridged = plan(scene(ROUNDED, accuracy=0.05, specimen={"ridges": "inner"}))
     assert ridged.effects["ridges"].on and ridged.estimated_error <= 0.05 * 1.001
     smooth = plan(scene(ROUNDED, accuracy=0.05))
-    assert min(e for _, e in ridged.mesh_size.focus) == pytest.approx(min(e for _, e in smooth.mesh_size.focus), rel=0.5)
+    assert min(e for _, e in ridged.mesh_size.focus) == pytest.approx(
+        min(e for _, e in smooth.mesh_size.focus), rel=0.5
+    )
 
 
 def test_ridged_pads_are_refined_under_the_contact():
     """One per cent is met with fewer than 20,000 nodes; on half of them the press is within two per cent of that."""
     ramp = [{"press_to_force": "20 gf", "rate": "40 gf/s"}]
-    fine, rough = (plan(scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"})) for a in (0.01, 0.02))
-    assert fine.effects["ridges"].on and fine.estimated_error <= 0.01 and fine.nodes < 20_000 and rough.nodes < 0.6 * fine.nodes
-    last = [simulate(chosen_scene, chosen).isel(time=-1) for chosen_scene, chosen in (
-        (scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"}), p) for a, p in ((0.01, fine), (0.02, rough))
-    )]  # fmt: skip
-    for name in ("indentation_depth", "contact_width", "peak_pressure", "centre_pressure", "strain_energy_density"):
+    fine, rough = (
+        plan(scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"}))
+        for a in (0.01, 0.02)
+    )
+    assert (
+        fine.effects["ridges"].on
+        and fine.estimated_error <= 0.01
+        and fine.nodes < 20_000
+        and rough.nodes < 0.6 * fine.nodes
+    )
+    last = [
+        simulate(chosen_scene, chosen).isel(time=-1)
+        for chosen_scene, chosen in (
+            (scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"}), p)
+            for a, p in ((0.01, fine), (0.02, rough))
+        )
+    ]
+    for name in (
+        "indentation_depth",
+        "contact_width",
+        "peak_pressure",
+        "centre_pressure",
+        "strain_energy_density",
+    ):
         np.testing.assert_allclose(last[1][name], last[0][name], rtol=0.02, err_msg=name)
 
 
@@ -107,16 +127,31 @@ def test_ridges_are_refined_where_receptors_are_beside_them():
     """The wider the contact the less it refines the mesh, and strain energies beside ridges do not get better by that."""
     outputs = {"receptors": {"depths": ["915 um"], "offsets": ["-46 um", "46 um"]}}
     ramp, ridged = [{"press_to_force": "20 gf", "rate": "40 gf/s"}], {"ridges": "inner"}
-    plans = {a: plan(scene(FLAT, ramp, accuracy=a, specimen=ridged, outputs=outputs)) for a in ("draft", "thesis", "fine", 0.01)}
+    plans = {
+        a: plan(scene(FLAT, ramp, accuracy=a, specimen=ridged, outputs=outputs))
+        for a in ("draft", "thesis", "fine", 0.01)
+    }
     for asked, error in (("draft", 0.06), ("thesis", 0.02), ("fine", 0.007), (0.01, 0.01)):
-        assert plans[asked].least_error == pytest.approx(error, rel=1e-6) and plans[asked].missed() is None
+        assert (
+            plans[asked].least_error == pytest.approx(error, rel=1e-6)
+            and plans[asked].missed() is None
+        )
     middle = [min(edge for x, edge in plans[asked].mesh_size.focus if x == 0) for asked in plans]
-    assert middle[0] > middle[1] > middle[3] > middle[2] and plans["thesis"].contact_edge == pytest.approx(134.4e-6)
-    assert plans["thesis"].nodes < 1.2 * plan(scene(FLAT, ramp, accuracy={"skin_edge": "134.4 um"}, specimen=ridged)).nodes
+    assert middle[0] > middle[1] > middle[3] > middle[2] and plans[
+        "thesis"
+    ].contact_edge == pytest.approx(134.4e-6)
+    assert (
+        plans["thesis"].nodes
+        < 1.2 * plan(scene(FLAT, ramp, accuracy={"skin_edge": "134.4 um"}, specimen=ridged)).nodes
+    )
     far = outputs | {"receptors": {"depths": ["500 um"], "offsets": ["0 um"]}}
-    away = plan(scene(FLAT, ramp, accuracy="thesis", specimen=ridged, outputs=far, effects={"ridges": "on"}))
+    away = plan(
+        scene(FLAT, ramp, accuracy="thesis", specimen=ridged, outputs=far, effects={"ridges": "on"})
+    )
     assert away.least_error == 0 and not away.mesh_size.focus
-    by_hand = plan(scene(FLAT, ramp, accuracy={"skin_edge": "134.4 um"}, specimen=ridged, outputs=outputs))
+    by_hand = plan(
+        scene(FLAT, ramp, accuracy={"skin_edge": "134.4 um"}, specimen=ridged, outputs=outputs)
+    )
     assert (
         by_hand.least_error > 0.05
         and not by_hand.mesh_size.focus
@@ -129,15 +164,29 @@ def test_ridges_that_are_stroked_are_meshed_for_half_the_tolerance():
     outputs = {"receptors": {"depths": ["915 um"], "offsets": ["0 um"]}}
     stroke = [{"press_to_force": "20 gf"}, {"slide": "4 mm", "speed": "10 mm/s"}]
     for asked, error in (("thesis", 0.01), (0.05, 0.025)):
-        chosen = plan(scene(FLAT, stroke, accuracy=asked, specimen={"ridges": "inner"}, outputs=outputs, friction=0.3))
+        chosen = plan(
+            scene(
+                FLAT,
+                stroke,
+                accuracy=asked,
+                specimen={"ridges": "inner"},
+                outputs=outputs,
+                friction=0.3,
+            )
+        )
         assert chosen.least_error == pytest.approx(error, rel=1e-6)
 
 
 def test_steps_by_hand_leave_the_mesh_to_the_plan():
     """As of `thesis`, of presses and of strokes."""
-    press, stroke = [{"press_to_force": "20 gf"}], [{"press_to_force": "20 gf"}, {"slide": "4 mm", "speed": "10 mm/s"}]
+    press, stroke = (
+        [{"press_to_force": "20 gf"}],
+        [{"press_to_force": "20 gf"}, {"slide": "4 mm", "speed": "10 mm/s"}],
+    )
     for motion, stimulus in ((press, cylinder(1260)), (stroke, FLAT)):
-        named, by_hand = (plan(scene(stimulus, motion, accuracy=a)) for a in ("thesis", {"steps": 40}))
+        named, by_hand = (
+            plan(scene(stimulus, motion, accuracy=a)) for a in ("thesis", {"steps": 40})
+        )
         assert named.mesh_size == by_hand.mesh_size and named.mesh_size.focus
 
 
@@ -151,7 +200,11 @@ def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatc
     had = [plan(long.with_accuracy(accuracy)) for accuracy in (0.1, 0.05, 0.02, 0.01)]
     work = [chosen.nodes * chosen.steps for chosen in had]
     assert all(chosen.missed() is None for chosen in had) and work == sorted(work)
-    assert had[1].nodes < 15_000 and had[2].nodes < 30_000 and "of strokes root mean square" in had[0].covers
+    assert (
+        had[1].nodes < 15_000
+        and had[2].nodes < 30_000
+        and "of strokes root mean square" in had[0].covers
+    )
     over_plate = scene({"shape": "flat"}, [*PRESS, slide], friction=0.35, accuracy=1e-4)
     missing = plan(over_plate)
     monkeypatch.setattr("fingerpad.planning.discretisation._NEAR", 0.0)
@@ -164,29 +217,47 @@ def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatc
 def test_steps_of_a_steady_stroke_count_as_those_of_a_timed_one():
     """Friction remembers the way, however long it took."""
     slides = ({"slide": "80 mm"}, {"slide": "80 mm", "speed": "10 mm/s", "keep": "force"})
-    steady, timed = (plan(scene({"shape": "wavy"}, [*PRESS, slide], friction=0.35, accuracy=0.02)) for slide in slides)
+    steady, timed = (
+        plan(scene({"shape": "wavy"}, [*PRESS, slide], friction=0.35, accuracy=0.02))
+        for slide in slides
+    )
     assert not steady.timed and timed.timed and steady.steps_per_leg == timed.steps_per_leg > 10
     assert steady.estimated_error == pytest.approx(timed.estimated_error, rel=0.1)
 
 
 def test_peak_is_unbounded_under_a_true_edge_and_only_there():
     sharp, rounded = plan(scene(BAR)), plan(scene(ROUNDED))
-    assert sharp.unbounded and "pressure is unbounded at the edges" in sharp.covers and "root mean" not in sharp.covers
+    assert (
+        sharp.unbounded
+        and "pressure is unbounded at the edges" in sharp.covers
+        and "root mean" not in sharp.covers
+    )
     stroked = plan(scene(BAR, [*PRESS, {"slide": "1 mm"}])).covers
     assert "unbounded" in stroked and "root mean square" in stroked
     assert sharp.estimated_error >= RULES.edge_floor
-    for chosen in (rounded, plan(scene({"shape": "line"})), plan(scene()), plan(scene(cylinder(1e4)))):
+    for chosen in (
+        rounded,
+        plan(scene({"shape": "line"})),
+        plan(scene()),
+        plan(scene(cylinder(1e4))),
+    ):
         assert not chosen.unbounded and "unbounded" not in chosen.covers
-    assert plan(scene(BAR | {"fillet": "1 nm"}, accuracy=0.05)).unbounded, "a rounding that no mesh resolves"
+    assert plan(scene(BAR | {"fillet": "1 nm"}, accuracy=0.05)).unbounded, (
+        "a rounding that no mesh resolves"
+    )
 
 
 def test_run_under_a_true_edge_says_so_everywhere():
     history = simulate(scene(BAR, accuracy=0.05))
     totals = summary(history)
     assert totals["run"]["peak_pressure_singular"] and "unbounded" in totals["run"]["error_covers"]
-    assert "unbounded" in history.peak_pressure.attrs["comment"] and "unbounded" in _error_line(totals)
+    assert "unbounded" in history.peak_pressure.attrs["comment"] and "unbounded" in _error_line(
+        totals
+    )
     assert not totals["run"]["tolerance_met"] and len(totals["run"]["runs"]) == 1
-    assert "asked 5 %, got 15 %: at a true edge" in _error_line(totals) and "a finer mesh would not help" in _error_line(totals)
+    assert "asked 5 %, got 15 %: at a true edge" in _error_line(
+        totals
+    ) and "a finer mesh would not help" in _error_line(totals)
 
 
 # -- run again ----------------------------------------------------------------------------------------------------------
@@ -200,7 +271,12 @@ def believing(monkeypatch, *errors):
         plans.append(self.plan)
         error = next(told)
         legs = json.dumps([error])
-        return {"estimated_error": error, "estimated_error_of_legs": legs, "largest_error": error, "narrowest_half_width": 4e-4}
+        return {
+            "estimated_error": error,
+            "estimated_error_of_legs": legs,
+            "largest_error": error,
+            "narrowest_half_width": 4e-4,
+        }
 
     monkeypatch.setattr(simulation.Simulation, "_errors", estimates)
     return plans
@@ -209,7 +285,11 @@ def believing(monkeypatch, *errors):
 def test_missed_tolerance_is_refined_and_run_again(monkeypatch):
     plans = believing(monkeypatch, 0.3, 0.05)
     run = summary(simulate(scene(accuracy=0.1)))["run"]
-    assert [each["estimated_error"] for each in run["runs"]] == [0.3, 0.05] and run["tolerance_met"] and run["asked_error"] == 0.1
+    assert (
+        [each["estimated_error"] for each in run["runs"]] == [0.3, 0.05]
+        and run["tolerance_met"]
+        and run["asked_error"] == 0.1
+    )
     assert plans[1].nodes > plans[0].nodes and plans[1].contact.narrowest == 4e-4
     assert "after 2 runs" in _error_line({"run": run, "legs": [{"estimated_error": 0.05}]})
 
@@ -219,10 +299,14 @@ def test_runs_are_few(monkeypatch):
     believing(monkeypatch, 0.5, 0.4, 0.3, 0.2)
     run = summary(simulate(scene(accuracy=0.1)))["run"]
     assert len(run["runs"]) == RULES.most_runs == 3 and not run["tolerance_met"]
-    assert run["tolerance_missed"].startswith("asked 10 %, got 30 %: ") and run["tolerance_missed"].endswith("after 3 runs")
+    assert run["tolerance_missed"].startswith("asked 10 %, got 30 %: ") and run[
+        "tolerance_missed"
+    ].endswith("after 3 runs")
 
 
-@pytest.mark.parametrize("accuracy", [{"tolerance": 0.1, "once": True}, {"once": True, "skin_edge": "0.5 mm"}, "draft"])
+@pytest.mark.parametrize(
+    "accuracy", [{"tolerance": 0.1, "once": True}, {"once": True, "skin_edge": "0.5 mm"}, "draft"]
+)
 def test_once_by_hand_and_presets_run_once(monkeypatch, accuracy):
     believing(monkeypatch, 0.5)
     run = summary(simulate(scene(accuracy=accuracy)))["run"]
@@ -244,9 +328,14 @@ def test_refining_stops_where_it_is_too_dear_or_no_use():
     chosen = plan(asked)
     assert refined(asked, chosen, 0.01, 1e-3) == ""
     assert refined(asked, chosen, 0.05, 1e-3, runs=3) == "after 3 runs"
-    assert "would need" in refined(asked, chosen, 0.05, 1e-3, rules=replace(RULES, most_nodes_again=100))
+    assert "would need" in refined(
+        asked, chosen, 0.05, 1e-3, rules=replace(RULES, most_nodes_again=100)
+    )
     assert isinstance(refined(asked, chosen, 0.05, 3e-4), Plan)
-    assert refined(asked, replace(chosen, mesh_size=None), 0.05, 1e-3) == "an external mesh is not refined"
+    assert (
+        refined(asked, replace(chosen, mesh_size=None), 0.05, 1e-3)
+        == "an external mesh is not refined"
+    )
 
 
 def test_accuracy_that_cannot_be_had_is_said():
@@ -265,7 +354,9 @@ def test_own_meshes_are_believed_by_element_and_quantity(tmp_path):
         accuracy = {"tolerance": 0.001} | ({"element": "Q1P0"} if kind == "quad4" else {})
         chosen = plan(scene(specimen={"mesh": str(path)}, accuracy=accuracy))
         errors[kind] = chosen.errors
-        assert chosen.estimated_error == max(chosen.errors.values()) and set(chosen.errors) == {*errors["quad9"]}
+        assert chosen.estimated_error == max(chosen.errors.values()) and set(chosen.errors) == {
+            *errors["quad9"]
+        }
     assert all(errors["tri6"][quantity] > least for quantity, least in errors["quad9"].items())
     assert errors["quad4"]["depth"] > 2 * errors["quad9"]["depth"]
 
@@ -276,7 +367,9 @@ def test_linear_quads_are_raised_only_where_something_that_is_kept_needs_it(tmp_
     path = tmp_path / "quads.msh"
     write_pad(split(build_pad_mesh(scene().specimen.outline, size), "quad4"), path)
     given = {"specimen": {"mesh": str(path)}, "accuracy": 0.05}
-    receptors = [{"receptors": {"depths": depths, "offsets": ["0 mm"]}} for depths in (["0.5 mm"], [])]
+    receptors = [
+        {"receptors": {"depths": depths, "offsets": ["0 mm"]}} for depths in (["0.5 mm"], [])
+    ]
     kept, none = (plan(scene(outputs=outputs, **given)) for outputs in receptors)
     assert kept.element == "Q2P1" and "linear quads raised" in kept.specimen[-1]
     assert none.element == "Q1P0" and "strain energy" not in none.errors and none.missed() is None
@@ -290,11 +383,16 @@ def test_ten_thousand_nodes_of_linear_quads_stay_under_a_plate(tmp_path):
     """They are right within a fifth of a per cent, so that the thesis's accuracy does not make forty thousand of them."""
     built = mesh_for(scene(), plan(scene(accuracy="thesis")))
     write_pad(split(built, "quad4"), tmp_path / "quads.msh")
-    mine, own = scene(specimen={"mesh": str(tmp_path / "quads.msh")}, accuracy="thesis"), scene(accuracy="fine")
+    mine, own = (
+        scene(specimen={"mesh": str(tmp_path / "quads.msh")}, accuracy="thesis"),
+        scene(accuracy="fine"),
+    )
     chosen = plan(mine)
     assert chosen.element == "Q1P0" and chosen.estimated_error < 0.02
     found, truth = simulate(mine), simulate(own)
-    assert float(found.indentation_depth[-1] / truth.indentation_depth[-1]) == pytest.approx(1, abs=2e-3)
+    assert float(found.indentation_depth[-1] / truth.indentation_depth[-1]) == pytest.approx(
+        1, abs=2e-3
+    )
     assert float(found.attrs["estimated_error"]) < 0.02
 
 
@@ -318,10 +416,16 @@ def test_unloading_ends_with_a_small_error_and_tells_the_largest():
         ({"stimulus": cylinder(1e12)}, "stimulus.curvature: so sharp"),
         ({"stimulus": cylinder(1e30)}, "stimulus.curvature: so sharp"),
         ({"motion": [{"press_to_force": "1e-15 N"}]}, r"motion\[0\].press_to_force: so little"),
-        ({"motion": [{"press_to_force": "1e-9 gf"}], "accuracy": 0.05}, r"motion\[0\].press_to_force: so little"),
+        (
+            {"motion": [{"press_to_force": "1e-9 gf"}], "accuracy": 0.05},
+            r"motion\[0\].press_to_force: so little",
+        ),
         ({"motion": [{"press_to_depth": "1e-15 m"}]}, r"motion\[0\].press_to_depth: so little"),
         ({"accuracy": {"skin_edge": "1 nm"}}, "accuracy.skin_edge: edges of 0.001 um make"),
-        ({"specimen": {"ridges": {"inner": {"pitch": "1 um", "height": "0.5 um"}}}}, "specimen.ridges.inner.pitch: "),
+        (
+            {"specimen": {"ridges": {"inner": {"pitch": "1 um", "height": "0.5 um"}}}},
+            "specimen.ridges.inner.pitch: ",
+        ),
     ],
 )
 def test_what_no_machine_can_solve_is_refused(changes, key):
@@ -331,7 +435,12 @@ def test_what_no_machine_can_solve_is_refused(changes, key):
 
 
 @pytest.mark.parametrize(
-    ("rules", "key"), [({"bytes_node": 1e12}, "accuracy: "), ({"bytes_step": 1e9}, "motion: "), ({"most_nodes": 100}, "accuracy")]
+    ("rules", "key"),
+    [
+        ({"bytes_node": 1e12}, "accuracy: "),
+        ({"bytes_step": 1e9}, "motion: "),
+        ({"most_nodes": 100}, "accuracy"),
+    ],
 )
 def test_memory_is_bounded(rules, key):
     with pytest.raises(PlanError, match=f"^{key}.*allowed: "):
@@ -339,7 +448,12 @@ def test_memory_is_bounded(rules, key):
 
 
 def test_receptors_that_do_not_fit_are_named():
-    many = {"receptors": {"depths": [f"{300 + k} um" for k in range(300)], "offsets": [f"{k / 200:g} mm" for k in range(300)]}}
+    many = {
+        "receptors": {
+            "depths": [f"{300 + k} um" for k in range(300)],
+            "offsets": [f"{k / 200:g} mm" for k in range(300)],
+        }
+    }
     assert plan(scene(outputs=many)).nodes > 1000
     with pytest.raises(PlanError, match="outputs.receptors: .* 90000 receptors need about"):
         plan(scene(outputs=many), replace(RULES, most_memory=1e-6))
@@ -363,11 +477,16 @@ def test_tiny_edges_make_the_same_columns_on_a_graded_grid(monkeypatch):
 def test_plan_solved_is_the_plan_written(tmp_path, capsys):
     """What a run was solved with is what its folder tells, also of a run that was refined, and it can be run again from there."""
     document = tmp_path / "light.yaml"
-    document.write_text("stimulus: {shape: flat}\nmotion: [{press_to_force: 2 gf}]\naccuracy: 0.1\n")
+    document.write_text(
+        "stimulus: {shape: flat}\nmotion: [{press_to_force: 2 gf}]\naccuracy: 0.1\n"
+    )
     assert main(["run", str(document), "--out", str(tmp_path / "out")]) == 0
     from fingerpad.results import read_history
 
-    history, written = read_history(tmp_path / "out" / "history.nc"), read_plan(tmp_path / "out" / "plan.json")
+    history, written = (
+        read_history(tmp_path / "out" / "history.nc"),
+        read_plan(tmp_path / "out" / "plan.json"),
+    )
     assert Plan.from_dict(json.loads(history.attrs["plan"])) == written
     assert json.loads(history.attrs["cost"])["nodes"] == pytest.approx(written.nodes, rel=0.05)
     asked = scene(motion=[{"press_to_force": "2 gf"}], accuracy=0.1)

@@ -19,8 +19,18 @@ PRESS = [{"press_to_force": "20 gf"}]
 
 def sampled(folder, x, y, motion=PRESS, **keys):
     path = folder / "profile.csv"
-    np.savetxt(path, 1e3 * np.column_stack([x, y]), delimiter=",", header="x (mm),y (mm)", comments="", fmt="%.9g")
-    return load_scene({"stimulus": {"shape": "sampled", "csv": str(path)}, "motion": motion, "accuracy": "draft"} | keys)
+    np.savetxt(
+        path,
+        1e3 * np.column_stack([x, y]),
+        delimiter=",",
+        header="x (mm),y (mm)",
+        comments="",
+        fmt="%.9g",
+    )
+    return load_scene(
+        {"stimulus": {"shape": "sampled", "csv": str(path)}, "motion": motion, "accuracy": "draft"}
+        | keys
+    )
 
 
 def parabola(folder, spacing, **keys):
@@ -32,8 +42,16 @@ def marks(history):
     """What line, summary and variables say, which must agree."""
     totals = summary(history)
     at = totals["run"]["peak_pressure_unbounded_at"]
-    assert totals["run"]["peak_pressure_singular"] == bool(at) == ("unbounded" in history.peak_pressure.attrs.get("comment", ""))
-    assert ("unbounded" in _error_line(totals)) == bool(at) == ("unbounded" in history.attrs["error_covers"])
+    assert (
+        totals["run"]["peak_pressure_singular"]
+        == bool(at)
+        == ("unbounded" in history.peak_pressure.attrs.get("comment", ""))
+    )
+    assert (
+        ("unbounded" in _error_line(totals))
+        == bool(at)
+        == ("unbounded" in history.attrs["error_covers"])
+    )
     return at
 
 
@@ -42,7 +60,9 @@ def peak(history):
 
 
 @pytest.mark.parametrize("accuracy", ["draft", "thesis", 0.03])
-@pytest.mark.parametrize(("force", "spacing"), [("2 gf", 5e-6), ("2 gf", 20e-6), ("40 gf", 10e-6), ("40 gf", 80e-6)])
+@pytest.mark.parametrize(
+    ("force", "spacing"), [("2 gf", 5e-6), ("2 gf", 20e-6), ("40 gf", 10e-6), ("40 gf", 80e-6)]
+)
 def test_a_smooth_profile_sampled_densely_is_never_marked(tmp_path, spacing, accuracy, force):
     """Twenty points in the contact are dense enough."""
     scene = parabola(tmp_path, spacing, accuracy=accuracy, motion=[{"press_to_force": force}])
@@ -53,10 +73,19 @@ def test_a_smooth_profile_sampled_densely_is_never_marked(tmp_path, spacing, acc
 
 def test_nineteen_points_of_a_curve_have_corners_that_grow(tmp_path):
     """The same surface sampled coarsely: its peak does not settle, and is marked; sampled densely it does, and is not."""
-    coarse = [fingerpad.simulate(parabola(tmp_path, 12e-3 / 18, accuracy=a)) for a in ("draft", "thesis", "fine")]
-    dense = [fingerpad.simulate(parabola(tmp_path, 20e-6, accuracy=a)) for a in ("draft", "thesis", "fine")]
+    coarse = [
+        fingerpad.simulate(parabola(tmp_path, 12e-3 / 18, accuracy=a))
+        for a in ("draft", "thesis", "fine")
+    ]
+    dense = [
+        fingerpad.simulate(parabola(tmp_path, 20e-6, accuracy=a))
+        for a in ("draft", "thesis", "fine")
+    ]
     for history in coarse:
-        assert "corners from x = -1" in marks(history) and "pressure, " not in history.attrs["error_covers"].split(";")[0]
+        assert (
+            "corners from x = -1" in marks(history)
+            and "pressure, " not in history.attrs["error_covers"].split(";")[0]
+        )
     growth = np.diff([peak(history) for history in coarse]) / peak(coarse[0])
     assert (growth > 0.1).all()
     assert np.ptp([peak(history) for history in dense]) < 0.005 * peak(dense[0])
@@ -69,10 +98,16 @@ def test_a_wedge_is_unbounded_at_the_centre_too(tmp_path):
     assert plan(scene).unbounded.centre and "centre" not in plan(scene).covers
     history = fingerpad.simulate(scene)
     assert marks(history) == "the corner at x = 0 mm"
-    assert "unbounded" in history.centre_pressure.attrs["comment"] and "centre" not in history.attrs["error_covers"]
+    assert (
+        "unbounded" in history.centre_pressure.attrs["comment"]
+        and "centre" not in history.attrs["error_covers"]
+    )
 
 
-@pytest.mark.parametrize(("width", "fillet", "marked"), [("2 mm", None, True), ("12 mm", None, False), ("2 mm", "0.5 mm", False)])
+@pytest.mark.parametrize(
+    ("width", "fillet", "marked"),
+    [("2 mm", None, True), ("12 mm", None, False), ("2 mm", "0.5 mm", False)],
+)
 def test_a_bar_is_marked_where_its_edges_touch(width, fillet, marked):
     """A bar wider than the contact is a plate."""
     stimulus = {"shape": "bar", "width": width} | ({"fillet": fillet} if fillet else {})
@@ -84,7 +119,9 @@ def test_open_ends_are_marked_where_they_touch(tmp_path):
     x = np.linspace(-6e-3, 1e-3, 701)
     history = fingerpad.simulate(sampled(tmp_path, x, 20 * x**2))
     assert marks(history) == "the end of the profile's points at x = 1 mm"
-    short = fingerpad.simulate(sampled(tmp_path, x, 20 * x**2, motion=[{"press_to_force": "0.5 gf"}]))
+    short = fingerpad.simulate(
+        sampled(tmp_path, x, 20 * x**2, motion=[{"press_to_force": "0.5 gf"}])
+    )
     assert marks(short) == ""
 
 
@@ -95,7 +132,10 @@ def test_marks_are_of_each_leg(tmp_path):
     motion = [{"press_to_force": "5 gf"}, {"slide": "6 mm", "speed": "20 mm/s"}]
     totals = summary(fingerpad.simulate(sampled(tmp_path, x, y, motion)))
     first, second = (leg["peak_pressure_unbounded_at"] for leg in totals["legs"])
-    assert first == "" and second == "the corner at x = 6 mm" == totals["run"]["peak_pressure_unbounded_at"]
+    assert (
+        first == ""
+        and second == "the corner at x = 6 mm" == totals["run"]["peak_pressure_unbounded_at"]
+    )
 
 
 # --- the end of the skin --------------------------------------------------------------------------------------------------

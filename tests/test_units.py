@@ -20,17 +20,39 @@ from fingerpad.units import (
 pytestmark = pytest.mark.unit
 
 UNITS = {
-    "length": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "inch": 0.0254, "in": 0.0254},
-    "curvature": {"1/m": 1.0, "/m": 1.0, "m^-1": 1.0, "m**-1": 1.0, "1/mm": 1e3, "1/inch": 1 / 0.0254},
+    "length": {
+        "m": 1.0,
+        "mm": 1e-3,
+        "um": 1e-6,
+        "µm": 1e-6,
+        "μm": 1e-6,
+        "inch": 0.0254,
+        "in": 0.0254,
+    },
+    "curvature": {
+        "1/m": 1.0,
+        "/m": 1.0,
+        "m^-1": 1.0,
+        "m**-1": 1.0,
+        "1/mm": 1e3,
+        "1/inch": 1 / 0.0254,
+    },
     "force": {"N": 1.0, "mN": 1e-3, "gf": 9.80665e-3, "gw": 9.80665e-3, "g wt": 9.80665e-3},
-    "force_rate": {"N/s": 1.0, "gf/s": 9.80665e-3, "gw / s": 9.80665e-3, "gram-weight/s": 9.80665e-3},
+    "force_rate": {
+        "N/s": 1.0,
+        "gf/s": 9.80665e-3,
+        "gw / s": 9.80665e-3,
+        "gram-weight/s": 9.80665e-3,
+    },
     "pressure": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "N/mm^2": 1e6, "N/mm²": 1e6, "kN m^-2": 1e3},
     "speed": {"m/s": 1.0, "mm/s": 1e-3, "um/ms": 1e-3},
     "time": {"s": 1.0, "ms": 1e-3, "minute": 60.0},
     "angle": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "degree": math.pi / 180},
     "dimensionless": {"": 1.0, "%": 1e-2, "percent": 1e-2},
 }
-EVERY_UNIT = [(kind, unit, factor) for kind, units in UNITS.items() for unit, factor in units.items()]
+EVERY_UNIT = [
+    (kind, unit, factor) for kind, units in UNITS.items() for unit, factor in units.items()
+]
 
 
 @pytest.mark.parametrize(("unit", "dimension"), USUAL)
@@ -68,7 +90,9 @@ def test_a_quantity_is_the_same_in_every_unit_of_its_dimension(value, case):
     dimension, units, unit = case
     expected = value * units[unit]
     for other, factor in units.items():
-        assert parse_quantity(f"{expected / factor!r} {other}", dimension) == pytest.approx(expected, rel=1e-13)
+        assert parse_quantity(f"{expected / factor!r} {other}", dimension) == pytest.approx(
+            expected, rel=1e-13
+        )
 
 
 @given(value=numbers, dimension=st.sampled_from(sorted(DIMENSIONS)))
@@ -117,13 +141,18 @@ def test_wrong_quantities_say_what_is_wrong_and_what_is_allowed(value, dimension
     assert DIMENSIONS[dimension].example in caught.value.allowed
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 10**400, None, True, "x", [], "nan"])
+@pytest.mark.parametrize(
+    "value", [math.nan, math.inf, -math.inf, 10**400, None, True, "x", [], "nan"]
+)
 def test_wrong_numbers(value):
     with pytest.raises(QuantityError):
         parse_number(value)
 
 
-@given(text=st.text(max_size=40) | st.from_regex(QUANTITY_PATTERN), dimension=st.sampled_from(sorted(DIMENSIONS)))
+@given(
+    text=st.text(max_size=40) | st.from_regex(QUANTITY_PATTERN),
+    dimension=st.sampled_from(sorted(DIMENSIONS)),
+)
 def test_any_text_is_a_finite_number_or_a_quantity_error(text, dimension):
     try:
         assert math.isfinite(parse_quantity(text, dimension))

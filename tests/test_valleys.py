@@ -44,9 +44,14 @@ def test_where_there_is_no_valley():
     profile, rise = groove()
     assert not len(profile.walls(np.array([[3e-4, rise], [2e-3, 0.0]]), 1e-4).which)
     assert not Curve([-1, 0, 1], [1e-3, 0, 1e-3], [0, 0]).valleys
-    assert not Curve([-1, 0, 1], [0, 5e-4, 0], [0, 0]).valleys and Curve([-1, 0, 1], [0, 2e-3, 0], [0, 0]).valleys
+    assert (
+        not Curve([-1, 0, 1], [0, 5e-4, 0], [0, 0]).valleys
+        and Curve([-1, 0, 1], [0, 2e-3, 0], [0, 0]).valleys
+    )
     bottom = np.array([[0.0, rise]])
-    assert len(profile.walls(bottom, 1e-4, flat=1.0).which) and not len(profile.walls(bottom, 1e-4, flat=1.1).which)
+    assert len(profile.walls(bottom, 1e-4, flat=1.0).which) and not len(
+        profile.walls(bottom, 1e-4, flat=1.1).which
+    )
     assert not Flat().valleys and not len(Flat().walls(np.zeros((3, 2)), 1.0).which)
 
 
@@ -71,7 +76,14 @@ def test_forces_of_both_sides_are_one_on_the_point():
     """Two equal pushes from the sides of a groove hold a point against f / (2 sin) of its weight."""
     slant = np.array([np.sin(0.5), -np.cos(0.5)])
     gradient = np.array([[0.0, -1.0], slant, [0.0, -1.0], slant * [-1, 1]])
-    rows = Rows(zone_of(4), np.arange(4), np.array([-1, 3, -1, 1]), np.array([3.0, 2.0, 1.0, -1.0]), gradient, np.zeros(4))
+    rows = Rows(
+        zone_of(4),
+        np.arange(4),
+        np.array([-1, 3, -1, 1]),
+        np.array([3.0, 2.0, 1.0, -1.0]),
+        gradient,
+        np.zeros(4),
+    )
     push = rows.of_points(np.array([1.0, 5.0, 0.0, 5.0])[:, None] * gradient)
     np.testing.assert_allclose(push, [[0, -1], [0, -10 * np.cos(0.5)], [0, 0]], atol=1e-15)
     assert rows.points == 3
@@ -84,14 +96,26 @@ def test_forces_go_with_their_side():
     equation = np.arange(10).reshape(5, 2)
     equation[0, 0] = -1
     zone, part = Zone(np.arange(5), equation - (equation > 0)), slice(0, 5)
-    law, force, state = Valleys(profile, 5, 1e-4), np.r_[1.0, 2, 3, 4, 5, np.zeros(5)], np.zeros(10, np.int8)
+    law, force, state = (
+        Valleys(profile, 5, 1e-4),
+        np.r_[1.0, 2, 3, 4, 5, np.zeros(5)],
+        np.zeros(10, np.int8),
+    )
 
     def at(*places):
         points = np.array([[x, rise - 1e-5] for x in places])
         return law.rows(zone, part, points, profile.evaluate(points), [force, state])
 
     rows = at(0.0, -1e-3, -5e-5, 5e-5, 1e-3)
-    assert list(rows.place) == [0, 1, 2, 3, 4, 7, 8] and list(rows.partner) == [-1, -1, 5, 6, -1, 2, 3]
+    assert list(rows.place) == [0, 1, 2, 3, 4, 7, 8] and list(rows.partner) == [
+        -1,
+        -1,
+        5,
+        6,
+        -1,
+        2,
+        3,
+    ]
     assert list(rows.zone.shape.argmax(axis=1)) == [0, 1, 2, 3, 4, 2, 3]
     np.testing.assert_array_equal(force, [1, 2, 3, 0, 5, 0, 0, 0, 4, 0])
     state[[2, 7, 3, 8]] = 1, 1, 0, -1
@@ -122,10 +146,22 @@ def test_every_side_is_kept(seed, force):
     """Forces push, no side is crossed, only closed ones carry, and the vertical parts are the load."""
     (zone, schur, right, gap, gradient), _ = in_valleys(seed)
     zero = np.zeros(len(gap))
-    step = solve_contact(zone, schur, right, gap, gradient, zero, zero, zero.astype(bool), force=force)
-    opening = gap + zone.gather(gradient) @ step.condensed_displacement + gradient[:, 1] * step.depth_change
-    assert step.force.min() >= 0 and opening.min() > -1e-10 and np.abs(opening[step.active]).max() < 1e-10
-    assert not step.force[~step.active].any() and -gradient[:, 1] @ step.force == pytest.approx(force, rel=1e-9)
+    step = solve_contact(
+        zone, schur, right, gap, gradient, zero, zero, zero.astype(bool), force=force
+    )
+    opening = (
+        gap
+        + zone.gather(gradient) @ step.condensed_displacement
+        + gradient[:, 1] * step.depth_change
+    )
+    assert (
+        step.force.min() >= 0
+        and opening.min() > -1e-10
+        and np.abs(opening[step.active]).max() < 1e-10
+    )
+    assert not step.force[~step.active].any() and -gradient[:, 1] @ step.force == pytest.approx(
+        force, rel=1e-9
+    )
 
 
 def frictional(seed, coefficient, force=2.0):
@@ -158,7 +194,11 @@ def test_a_node_held_by_both_sides_needs_no_friction(coefficient, least):
         both = (partner >= 0) & step.active & step.active[partner]
         alone = step.active & ~both
         solved, lodged = solved + 1, lodged + both.sum() // 2
-        assert opening.min() > -1e-9 and np.abs(opening[step.active]).max() < 1e-9 and step.force.min() >= 0
+        assert (
+            opening.min() > -1e-9
+            and np.abs(opening[step.active]).max() < 1e-9
+            and step.force.min() >= 0
+        )
         assert not step.tangential[both].any() and np.all(step.state[both] != 0)
         assert np.all(np.abs(step.tangential) <= coefficient * step.force * (1 + 1e-5) + 1e-12)
         assert np.all(step.tangential[alone] * slip[alone] <= 1e-9)
@@ -173,12 +213,21 @@ def test_a_stroke_over_a_finely_sampled_hollow_with_friction(share, ends, tmp_pa
         monkeypatch.setattr(valleys, "SHARE", share)
     x = np.arange(-12, 20, 0.1)
     y = np.where(abs(x - 6) < 3, 0.05 * (9 - (x - 6) ** 2), 0.0)
-    np.savetxt(tmp_path / "hollow.csv", np.column_stack([x, y]), delimiter=",", header="x (mm),y (mm)", comments="")
+    np.savetxt(
+        tmp_path / "hollow.csv",
+        np.column_stack([x, y]),
+        delimiter=",",
+        header="x (mm),y (mm)",
+        comments="",
+    )
     scene = {
         "stimulus": {"shape": "sampled", "csv": str(tmp_path / "hollow.csv"), "smooth": "none"},
         "friction": 0.35,
         "accuracy": "draft",
-        "motion": [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"slide": "8 mm", "speed": "10 mm/s"}],
+        "motion": [
+            {"press_to_force": "20 gf", "rate": "40 gf/s"},
+            {"slide": "8 mm", "speed": "10 mm/s"},
+        ],
     }
     if ends:
         assert not simulate(scene)["cutbacks"].values.any()

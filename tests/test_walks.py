@@ -23,7 +23,12 @@ pytestmark = pytest.mark.workflow
 COARSE = {"skin_edge": "0.5 mm", "steps": 24}
 PRESS, STEADY = {"press_to_force": "20 gf", "rate": "40 gf/s"}, {"press_to_force": "20 gf"}
 ROUND, PLATE = {"shape": "cylinder", "curvature": "400 1/m"}, {"shape": "flat"}
-WAVES = {"shape": "wavy", "curvatures": ["100 1/m", "200 1/m"], "lead_in": "6 mm", "run_out": "6 mm"}
+WAVES = {
+    "shape": "wavy",
+    "curvatures": ["100 1/m", "200 1/m"],
+    "lead_in": "6 mm",
+    "run_out": "6 mm",
+}
 SOFT = {"layers": {"fat": {"youngs_modulus": "8 kPa"}}}
 
 
@@ -38,8 +43,14 @@ def told(name, capsys, *options, stimulus=ROUND, motion=(PRESS,), accuracy=COARS
     Path(f"{name}.yaml").write_text(yaml.safe_dump(document), encoding="utf-8")
     assert main(["run", f"{name}.yaml", *options]) == 0
     out, err = capsys.readouterr()
-    assert err == "" and out.count("\n") == 1 + out.count("\nnote: ") and f"results in results/{name}" in out
-    assert {"history.nc", "plan.json", "summary.json"} <= {path.name for path in Path("results", name).iterdir()}
+    assert (
+        err == ""
+        and out.count("\n") == 1 + out.count("\nnote: ")
+        and f"results in results/{name}" in out
+    )
+    assert {"history.nc", "plan.json", "summary.json"} <= {
+        path.name for path in Path("results", name).iterdir()
+    }
     return out, json.loads(Path("results", name, "summary.json").read_text())
 
 
@@ -53,15 +64,28 @@ def last(summary):
 def test_a_researcher_presses(capsys):
     """Ramps, plates, needles, edges and steady states: the force comes back as it went in, and shapes come in their order."""
     line, ramp = told("ramp", capsys)
-    assert "force 20.0 gf (17.2 N/m)" in line and last(ramp)["force_gf"] == pytest.approx(20, rel=1e-4)
+    assert "force 20.0 gf (17.2 N/m)" in line and last(ramp)["force_gf"] == pytest.approx(
+        20, rel=1e-4
+    )
     _, creep = told("creep", capsys, motion=[PRESS, {"hold": "60 s"}], outputs={"responses": True})
     _, steady = told("steady", capsys, motion=[STEADY])
-    assert last(ramp)["depth_mm"] < last(creep)["depth_mm"] == pytest.approx(last(steady)["depth_mm"], rel=0.01)
+    assert (
+        last(ramp)["depth_mm"]
+        < last(creep)["depth_mm"]
+        == pytest.approx(last(steady)["depth_mm"], rel=0.01)
+    )
     sent = {row["depth_mm"]: row["impulses"] for row in creep["responses"]}
     assert list(sent.values()) == sorted(sent.values(), reverse=True) and max(sent.values()) > 100
     _, plate = told("plate", capsys, stimulus=PLATE, motion=[STEADY])
-    _, line_load = told("line", capsys, stimulus={"shape": "line"}, motion=[{"press_to_force": "10 gf"}])
-    _, bar = told("bar", capsys, stimulus={"shape": "bar", "width": "3 mm", "fillet": "0.3 mm"}, motion=[STEADY])
+    _, line_load = told(
+        "line", capsys, stimulus={"shape": "line"}, motion=[{"press_to_force": "10 gf"}]
+    )
+    _, bar = told(
+        "bar",
+        capsys,
+        stimulus={"shape": "bar", "width": "3 mm", "fillet": "0.3 mm"},
+        motion=[STEADY],
+    )
     depths = [last(summary)["depth_mm"] for summary in (plate, bar, steady)]
     assert depths == sorted(depths) and last(line_load)["depth_mm"] > 0.5 * last(steady)["depth_mm"]
     _, soft = told("soft", capsys, specimen=SOFT, motion=[STEADY])
@@ -70,18 +94,41 @@ def test_a_researcher_presses(capsys):
 
 def test_a_researcher_moves(capsys):
     """Strokes there and back, steps over a surface, cycles, and a release with its recovery."""
-    _, stroke = told("stroke", capsys, stimulus=PLATE, friction=0.4, accuracy="draft",
-                     motion=[STEADY, {"slide": "1 mm", "speed": "10 mm/s"}, {"slide": "-1 mm", "speed": "10 mm/s"}])  # fmt: skip
+    _, stroke = told(
+        "stroke",
+        capsys,
+        stimulus=PLATE,
+        friction=0.4,
+        accuracy="draft",
+        motion=[
+            STEADY,
+            {"slide": "1 mm", "speed": "10 mm/s"},
+            {"slide": "-1 mm", "speed": "10 mm/s"},
+        ],
+    )
     there, back = stroke["legs"][1:]
-    assert there["tangential_force_N_per_m"] * back["tangential_force_N_per_m"] < 0 and back["stroke_distance_mm"] == 0
+    assert (
+        there["tangential_force_N_per_m"] * back["tangential_force_N_per_m"] < 0
+        and back["stroke_distance_mm"] == 0
+    )
     assert abs(there["tangential_force_N_per_m"]) <= 0.4 * there["force_N_per_m"] * (1 + 1e-6)
-    _, steps = told("steps", capsys, stimulus=WAVES, motion=[STEADY, {"step": "4 mm", "every": "2 mm"}])
+    _, steps = told(
+        "steps", capsys, stimulus=WAVES, motion=[STEADY, {"step": "4 mm", "every": "2 mm"}]
+    )
     assert last(steps)["stroke_distance_mm"] == pytest.approx(4)
-    cycle = [{"press_to_depth": "0.4 mm", "speed": "2 mm/s"}, {"press_to_depth": "0.2 mm", "speed": "2 mm/s"}]
+    cycle = [
+        {"press_to_depth": "0.4 mm", "speed": "2 mm/s"},
+        {"press_to_depth": "0.2 mm", "speed": "2 mm/s"},
+    ]
     _, cycles = told("cycles", capsys, motion=2 * cycle)
-    assert len(cycles["legs"]) == 4 and cycles["legs"][2]["force_N"] < cycles["legs"][0]["force_N"], "it relaxes under cycles"
+    assert (
+        len(cycles["legs"]) == 4 and cycles["legs"][2]["force_N"] < cycles["legs"][0]["force_N"]
+    ), "it relaxes under cycles"
     _, free = told("release", capsys, "--vtu", motion=[PRESS, {"lift": "2 mm/s"}, {"hold": "5 s"}])
-    assert last(free)["force_N"] == last(free)["contact_width_mm"] == 0 and free["run"]["estimated_error"] < 0.6
+    assert (
+        last(free)["force_N"] == last(free)["contact_width_mm"] == 0
+        and free["run"]["estimated_error"] < 0.6
+    )
     field = meshio.read("results/release/vtu/snapshot_0.vtu")
     assert np.abs(field.point_data["displacement (mm)"]).max() < 0.1 * free["legs"][0]["depth_mm"]
 
@@ -96,7 +143,10 @@ def test_a_researcher_plots(capsys):
     history.contact_pressure.plot(x="skin_arc", y="time", ax=above)
     history.contact_pressure.sel(skin_arc=0, method="nearest").plot(ax=below)
     figure.savefig("pressure.png")
-    assert "way along the undeformed skin" in above.get_xlabel() and plt.imread("pressure.png").std() > 0.05
+    assert (
+        "way along the undeformed skin" in above.get_xlabel()
+        and plt.imread("pressure.png").std() > 0.05
+    )
     plt.close(figure)
 
 
@@ -106,14 +156,20 @@ def test_a_researcher_plots(capsys):
 def test_an_engineer_varies_a_bar_thirty_times():
     """Widths by moduli in one process: wider and stiffer go in less deep, every variation of them."""
     base = fingerpad.load_scene(
-        {"stimulus": {"shape": "bar", "width": "1 mm", "fillet": "0.2 mm"}, "motion": [{"press_to_force": "10 gf"}],
-         "accuracy": {"skin_edge": "0.7 mm", "steps": 2}}
-    )  # fmt: skip
+        {
+            "stimulus": {"shape": "bar", "width": "1 mm", "fillet": "0.2 mm"},
+            "motion": [{"press_to_force": "10 gf"}],
+            "accuracy": {"skin_edge": "0.7 mm", "steps": 2},
+        }
+    )
     widths, moduli = np.linspace(0.8, 2.3, 6), (75, 120, 200, 350, 600)
     depth = np.empty((len(widths), len(moduli)))
     for i, width in enumerate(widths):
         for j, modulus in enumerate(moduli):
-            changes = {"stimulus.width": f"{width} mm", "specimen.layers.epidermis.youngs_modulus": f"{modulus} kPa"}
+            changes = {
+                "stimulus.width": f"{width} mm",
+                "specimen.layers.epidermis.youngs_modulus": f"{modulus} kPa",
+            }
             depth[i, j] = fingerpad.simulate(base.varied(changes)).indentation_depth[-1]
     assert (np.diff(depth, axis=0) < 1e-6).all() and (depth[0] > depth[-1] + 5e-6).all()
     assert (np.diff(depth, axis=1) < -20e-6).all()
@@ -125,10 +181,24 @@ def test_an_engineer_measures_a_profile(capsys):
     rows = [f"{a:.4f},{2.5 - np.sqrt(2.5**2 - a**2):.5f}" for a in x]
     Path("scan.csv").write_text("\n".join(["x (mm),y (mm)", *rows]), encoding="utf-8")
     _, exact = told("exact", capsys, motion=[STEADY])
-    _, scan = told("scan", capsys, stimulus={"shape": "sampled", "csv": "scan.csv"}, motion=[STEADY])
+    _, scan = told(
+        "scan", capsys, stimulus={"shape": "sampled", "csv": "scan.csv"}, motion=[STEADY]
+    )
     x = np.arange(-2400, 2401, 5) / 1000
-    np.savetxt("fine.csv", np.column_stack([x, 2.5 - np.sqrt(2.5**2 - x**2)]), "%.3f", ",", header="x (mm),y (mm)", comments="")
-    _, fine = told("fine", capsys, stimulus={"shape": "sampled", "csv": "fine.csv"}, motion=[STEADY, {"lift": "steady"}])
+    np.savetxt(
+        "fine.csv",
+        np.column_stack([x, 2.5 - np.sqrt(2.5**2 - x**2)]),
+        "%.3f",
+        ",",
+        header="x (mm),y (mm)",
+        comments="",
+    )
+    _, fine = told(
+        "fine",
+        capsys,
+        stimulus={"shape": "sampled", "csv": "fine.csv"},
+        motion=[STEADY, {"lift": "steady"}],
+    )
     for key in ("depth_mm", "contact_width_mm", "centre_pressure_Pa"):
         assert last(scan)[key] == pytest.approx(last(exact)[key], rel=0.05), key
         assert fine["legs"][0][key] == pytest.approx(last(exact)[key], rel=0.05), key
@@ -136,15 +206,37 @@ def test_an_engineer_measures_a_profile(capsys):
 
 def test_an_engineer_presses_robot_skin(capsys):
     """A slab of two layers with names of one's own under a plate and a bar: force over width is the pressure in the middle."""
-    foam = [{"name": "cover", "thickness": "1 mm", "youngs_modulus": "0.5 MPa", "poisson_ratio": 0.45},
-            {"name": "foam", "thickness": "4 mm", "youngs_modulus": "50 kPa", "poisson_ratio": 0.3}]  # fmt: skip
+    foam = [
+        {"name": "cover", "thickness": "1 mm", "youngs_modulus": "0.5 MPa", "poisson_ratio": 0.45},
+        {"name": "foam", "thickness": "4 mm", "youngs_modulus": "50 kPa", "poisson_ratio": 0.3},
+    ]
     skin = {"slab": {"width": "30 mm", "layers": foam}, "prony": "none"}
     bar = {"shape": "bar", "width": "6 mm", "fillet": "0.5 mm"}
     receptors = {"receptors": {"depths": ["1.5 mm"]}}
-    _, shallow = told("shallow", capsys, specimen=skin, stimulus=bar, motion=[{"press_to_depth": "0.1 mm"}], outputs=receptors)
-    _, deep = told("deep", capsys, specimen=skin, stimulus=bar, motion=[{"press_to_depth": "0.2 mm"}], outputs=receptors)
+    _, shallow = told(
+        "shallow",
+        capsys,
+        specimen=skin,
+        stimulus=bar,
+        motion=[{"press_to_depth": "0.1 mm"}],
+        outputs=receptors,
+    )
+    _, deep = told(
+        "deep",
+        capsys,
+        specimen=skin,
+        stimulus=bar,
+        motion=[{"press_to_depth": "0.2 mm"}],
+        outputs=receptors,
+    )
     assert 1.8 < last(deep)["force_N"] / last(shallow)["force_N"] < 2.6
-    assert 4 < last(deep)["receptors"][0]["strain_energy_Pa"] / last(shallow)["receptors"][0]["strain_energy_Pa"] * 1.2 < 7
+    assert (
+        4
+        < last(deep)["receptors"][0]["strain_energy_Pa"]
+        / last(shallow)["receptors"][0]["strain_energy_Pa"]
+        * 1.2
+        < 7
+    )
 
 
 # --- the student --------------------------------------------------------------------------------------------------------------
@@ -153,12 +245,24 @@ def test_an_engineer_presses_robot_skin(capsys):
 def test_a_student_brings_a_mesh_and_forces(capsys):
     """A mesh of one's own gives the force of every depth; measured forces at a factor on the moduli give the factor back."""
     plates = [{"press_to_depth": f"{depth} mm"} for depth in (0.5, 1.0, 1.5)]
-    Path("pad.yaml").write_text(yaml.safe_dump({"stimulus": PLATE, "motion": plates, "accuracy": COARSE}), encoding="utf-8")
+    Path("pad.yaml").write_text(
+        yaml.safe_dump({"stimulus": PLATE, "motion": plates, "accuracy": COARSE}), encoding="utf-8"
+    )
     assert main(["mesh", "pad.yaml", "--out", "meshes/mine.msh"]) == 0
     capsys.readouterr()
-    _, found = told("mine", capsys, specimen={"mesh": "meshes/mine.msh"}, stimulus=PLATE, motion=plates, accuracy="thesis")
+    _, found = told(
+        "mine",
+        capsys,
+        specimen={"mesh": "meshes/mine.msh"},
+        stimulus=PLATE,
+        motion=plates,
+        accuracy="thesis",
+    )
     Path("forces").mkdir()
-    rows = [f"1,flat plate,{leg['depth_mm']:.6g},0,{2.5 * leg['force_N']:.6g},measured by me,a scale" for leg in found["legs"]]
+    rows = [
+        f"1,flat plate,{leg['depth_mm']:.6g},0,{2.5 * leg['force_N']:.6g},measured by me,a scale"
+        for leg in found["legs"]
+    ]
     header = "subject,indenter,depth_mm,speed_mm_per_s,force_N,source,how_obtained"
     Path("forces/anna.csv").write_text("\n".join([header, *rows, ""]), encoding="utf-8")
     measured = read_force_depth("forces")
@@ -166,13 +270,22 @@ def test_a_student_brings_a_mesh_and_forces(capsys):
 
     history = read_history("results/mine/history.nc")
     curve = ElasticCurve.from_history(history)
-    fit = fit_constant(curve, measured.depth_mm.to_numpy() * 1e-3, measured.force_N.to_numpy(), 0.0114)
+    fit = fit_constant(
+        curve, measured.depth_mm.to_numpy() * 1e-3, measured.force_N.to_numpy(), 0.0114
+    )
     assert fit.values[0] == pytest.approx(2.5, rel=1e-3)
     figure, axes = plt.subplots()
-    loaded = history.assign_coords(depth_mm=history.indentation_depth * 1e3, force_N=history.force * 0.0114)
+    loaded = history.assign_coords(
+        depth_mm=history.indentation_depth * 1e3, force_N=history.force * 0.0114
+    )
     (line,) = loaded.force_N.plot(x="depth_mm", ax=axes, label="simulated on my mesh")
-    axes.plot(measured.depth_mm, measured.force_N / fit.values[0], "o", label="measured, over the factor")
+    axes.plot(
+        measured.depth_mm, measured.force_N / fit.values[0], "o", label="measured, over the factor"
+    )
     axes.legend()
     figure.savefig("mine.png")
     at = np.interp(measured.depth_mm, line.get_xdata(), line.get_ydata())
-    assert at == pytest.approx(measured.force_N.to_numpy() / 2.5, rel=1e-3) and np.ptp(plt.imread("mine.png")) > 0.5
+    assert (
+        at == pytest.approx(measured.force_N.to_numpy() / 2.5, rel=1e-3)
+        and np.ptp(plt.imread("mine.png")) > 0.5
+    )

@@ -10,7 +10,9 @@ LIST = re.compile(r"^\s*([-*]|\d+\.) ")
 
 
 def setup(app):
-    app.connect("autodoc-process-docstring", lambda *given: tidy(given[-1]), priority=100)  # before napoleon's 500
+    app.connect(
+        "autodoc-process-docstring", lambda *given: tidy(given[-1]), priority=100
+    )  # before napoleon's 500
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -24,12 +26,22 @@ def tidy(lines: list[str]) -> None:
             section, literal = found[1] if found else "", False
         elif indented and section in ("Args", "Attributes") and not ENTRY.match(line):
             line = f"    {line}"
-        elif indented and not section and not literal and made and not made[-1] and not LIST.match(said):
+        elif (
+            indented
+            and not section
+            and not literal
+            and made
+            and not made[-1]
+            and not LIST.match(said)
+        ):
             literal = True
             if not said.endswith("::"):
                 made += ["::", ""]
         if not literal:
-            line = "".join(part if LITERAL.fullmatch(part) else part.replace("|", r"\|") for part in LITERAL.split(line))
+            line = "".join(
+                part if LITERAL.fullmatch(part) else part.replace("|", r"\|")
+                for part in LITERAL.split(line)
+            )
         made.append(line)
         said = line or said
     lines[:] = made

@@ -33,7 +33,11 @@ def numbers() -> dict[str, str]:
 
 def pages() -> list[Path]:
     """The pages that are written by hand."""
-    ours = (path for path in (ROOT / "docs").rglob("*.md") if not {"_build", "generated"} & set(path.parts))
+    ours = (
+        path
+        for path in (ROOT / "docs").rglob("*.md")
+        if not {"_build", "generated"} & set(path.parts)
+    )
     return [ROOT / "README.md", ROOT / "workflow/profiles/slurm/README.md", *sorted(ours)]
 
 
@@ -188,25 +192,33 @@ def explained_share():
 @number
 def mending_readings():
     rows = table("figures/tables/explanations_readings").query("makes_hold > makes_fail")
-    return "; ".join(f"{row.words} ({row.makes_hold} and {row.makes_fail})" for row in rows.itertuples())
+    return "; ".join(
+        f"{row.words} ({row.makes_hold} and {row.makes_fail})" for row in rows.itertuples()
+    )
 
 
 # -- the pad of 1999 ------------------------------------------------------------------------------------------------------------
 
 
 def _reading(name: str, column: str) -> float:
-    rows = table("figures/tables/reconstruction_readings").query("`strain energy` == 'instantaneous elastic'")
+    rows = table("figures/tables/reconstruction_readings").query(
+        "`strain energy` == 'instantaneous elastic'"
+    )
     return float(rows.set_index("reading").loc[name, column])
 
 
 @number
 def decades_for_instantaneous():
-    ahead = _reading("instantaneous", "log evidence (1)") - _reading("long_term", "log evidence (1)")
+    ahead = _reading("instantaneous", "log evidence (1)") - _reading(
+        "long_term", "log evidence (1)"
+    )
     return f"{ahead / 2.302585:.0f}"
 
 
 def _inferred(quantity: str) -> str:
-    rows = table("figures/tables/reconstruction_posterior").query("reading == 'instantaneous' and quantity == @quantity")
+    rows = table("figures/tables/reconstruction_posterior").query(
+        "reading == 'instantaneous' and quantity == @quantity"
+    )
     row = rows.iloc[0]
     return f"{row['median']:.2g} {row['unit']} ({row['low 5 %']:.2g} to {row['high 95 %']:.2g})"
 
@@ -227,7 +239,11 @@ def inferred_load():
 
 
 def _distance(pad: str) -> float:
-    return float(table("figures/tables/reconstruction_families").set_index("pad").loc[pad, "distance, fitted (1)"])
+    return float(
+        table("figures/tables/reconstruction_families")
+        .set_index("pad")
+        .loc[pad, "distance, fitted (1)"]
+    )
 
 
 @number
@@ -261,13 +277,20 @@ def friction():
 
 @number
 def friction_range():
-    ends = (_calibrated("friction", f"{end} coefficient for about 1 mm")["estimate"] for end in ("least", "most"))
+    ends = (
+        _calibrated("friction", f"{end} coefficient for about 1 mm")["estimate"]
+        for end in ("least", "most")
+    )
     return several(list(ends))
 
 
 @number
 def friction_on_fitted_pad():
-    return digits(_calibrated("friction: moduli fitted to measured forces", "coefficient for 1 mm")["estimate"])
+    return digits(
+        _calibrated("friction: moduli fitted to measured forces", "coefficient for 1 mm")[
+            "estimate"
+        ]
+    )
 
 
 @number
@@ -297,7 +320,9 @@ def ridge_ratio():
 
 @number
 def ridge_index():
-    return digits(_ridge_meshes("resolved").set_index("series").loc["thesis", "directional_index (1)"])
+    return digits(
+        _ridge_meshes("resolved").set_index("series").loc["thesis", "directional_index (1)"]
+    )
 
 
 @number
@@ -322,7 +347,9 @@ def ridge_index_none():
 
 @number
 def rate_misfit():
-    rows = table("figures/tables/receptor_fits").query("law == \"5-1, thesis's constants\" and residual_units == 'impulses/s'")
+    rows = table("figures/tables/receptor_fits").query(
+        "law == \"5-1, thesis's constants\" and residual_units == 'impulses/s'"
+    )
     return digits(rows[rows["scenes"].str.startswith("Cysyk")]["residual_rms"].iloc[0])
 
 
@@ -342,7 +369,10 @@ _FAMILY = ("flat", "210", "1260", "stroke")
 def presets():
     """The table of presets, as Markdown."""
     rows = table("figures/tables/presets")
-    lines = ["| preset | nodes | flat | 210 1/m | 1260 1/m | stroke | a press takes | the stroke |", "|" + "---|" * 8]
+    lines = [
+        "| preset | nodes | flat | 210 1/m | 1260 1/m | stroke | a press takes | the stroke |",
+        "|" + "---|" * 8,
+    ]
     for name in ("draft", "thesis", "fine"):
         of = rows[rows["preset"] == name].set_index("scene")
         errors = [f"{digits(of.loc[scene, 'error (%)'])} %" for scene in _FAMILY]
@@ -354,7 +384,9 @@ def presets():
 
 def _profiles(mesh: str) -> pd.Series:
     """Largest error (%) of the pressure across the contact, by surface."""
-    rows = table("figures/tables/accuracy_edges").query("mesh == @mesh and `smoothing (of the method's)` == 1")
+    rows = table("figures/tables/accuracy_edges").query(
+        "mesh == @mesh and `smoothing (of the method's)` == 1"
+    )
     return rows.set_index("surface")["pressure profile off (%)"]
 
 
@@ -375,7 +407,9 @@ def profiles_refined_into_the_skin():
 
 @number
 def growth_exponent():
-    return digits(table("figures/studies/accuracy_growth").query("element == 'Q2P1'")["exponent"].iloc[0], 3)
+    return digits(
+        table("figures/studies/accuracy_growth").query("element == 'Q2P1'")["exponent"].iloc[0], 3
+    )
 
 
 def _without(model: str = "finite elements", strain: str | None = None) -> pd.Series:
@@ -390,7 +424,9 @@ def small_strain_errors():
 
 @number
 def small_strain_costs():
-    return several(table("figures/tables/accuracy").query("strain == 'small'")["cost (1 = default)"])
+    return several(
+        table("figures/tables/accuracy").query("strain == 'small'")["cost (1 = default)"]
+    )
 
 
 @number
@@ -637,7 +673,9 @@ def choice_scenes():
 @number
 def worst_left_out():
     rows = table("figures/tables/planner_choices")
-    return digits(rows[rows["verdict"].str.endswith("left out")].query("planned == 'off'")["share"].max())
+    return digits(
+        rows[rows["verdict"].str.endswith("left out")].query("planned == 'off'")["share"].max()
+    )
 
 
 @number
@@ -671,33 +709,51 @@ def peer_loop():
 
 
 def _swept(what: str, scenes: int, quantity: str) -> float:
-    rows = table("figures/tables/sweeps").query("what == @what and scenes == @scenes and quantity == @quantity")
+    rows = table("figures/tables/sweeps").query(
+        "what == @what and scenes == @scenes and quantity == @quantity"
+    )
     return rows["value"].iloc[0]
 
 
 @number
 def thousand_presses():
-    return digits(_swept("steady press, finite strain, the command on 2 cores", 1000, "wall time, median of 3"))
+    return digits(
+        _swept(
+            "steady press, finite strain, the command on 2 cores", 1000, "wall time, median of 3"
+        )
+    )
 
 
 @number
 def two_cores():
-    return digits(_swept("steady press, finite strain, the command", 1000, "scenes on two cores over scenes on one"))
+    return digits(
+        _swept(
+            "steady press, finite strain, the command",
+            1000,
+            "scenes on two cores over scenes on one",
+        )
+    )
 
 
 @number
 def thousand_cheap_presses():
-    return digits(_swept("steady press, small strain", 1000, "process time a scene, all included") * 1000)
+    return digits(
+        _swept("steady press, small strain", 1000, "process time a scene, all included") * 1000
+    )
 
 
 def duration(seconds: float) -> str:
     """To two digits, in the unit that suits."""
-    unit, size = next((u, s) for u, s in (("h", 3600.0), ("min", 60.0), ("s", 0.0)) if seconds >= 1.5 * s)
+    unit, size = next(
+        (u, s) for u, s in (("h", 3600.0), ("min", 60.0), ("s", 0.0)) if seconds >= 1.5 * s
+    )
     return f"{digits(seconds / (size or 1.0))} {unit}"
 
 
 def _pressing(scenes: int) -> str:
-    return duration(scenes * _swept("steady press, finite strain", 200, "process time a scene, all included"))
+    return duration(
+        scenes * _swept("steady press, finite strain", 200, "process time a scene, all included")
+    )
 
 
 def _laying_out(scenes: int, measured: int) -> str:
@@ -707,11 +763,26 @@ def _laying_out(scenes: int, measured: int) -> str:
 @number
 def sweep_costs():
     """The table of what sweeps take, as Markdown."""
-    lines = ["| scenes | batches | laying out | steady presses | dataset and table of 30 measures |", "|" + "---|" * 5]
+    lines = [
+        "| scenes | batches | laying out | steady presses | dataset and table of 30 measures |",
+        "|" + "---|" * 5,
+    ]
     for scenes in (100, 1000, 10_000):
-        collected = [_swept("collecting 30 measures", scenes, what) for what in ("process time", "largest memory")]
-        cells = [f"{scenes:,}", f"{_swept('laying out', scenes, 'batches'):.0f}", _laying_out(scenes, scenes), _pressing(scenes)]
-        lines.append("| " + " | ".join([*cells, f"{duration(collected[0])}, {digits(collected[1])} MB"]) + " |")
+        collected = [
+            _swept("collecting 30 measures", scenes, what)
+            for what in ("process time", "largest memory")
+        ]
+        cells = [
+            f"{scenes:,}",
+            f"{_swept('laying out', scenes, 'batches'):.0f}",
+            _laying_out(scenes, scenes),
+            _pressing(scenes),
+        ]
+        lines.append(
+            "| "
+            + " | ".join([*cells, f"{duration(collected[0])}, {digits(collected[1])} MB"])
+            + " |"
+        )
     return "\n".join(lines)
 
 
@@ -727,13 +798,27 @@ def million_presses():
 
 @number
 def memory_growth():
-    return digits(100 * (_swept("steady press, small strain", 1000, "largest memory after scene 100 over memory then") - 1))
+    return digits(
+        100
+        * (
+            _swept(
+                "steady press, small strain",
+                1000,
+                "largest memory after scene 100 over memory then",
+            )
+            - 1
+        )
+    )
 
 
 @number
 def largest_memory():
     rows = table("figures/tables/sweeps")
-    return digits(rows[rows["quantity"].str.startswith("largest memory") & rows["unit"].eq("MB")]["value"].max())
+    return digits(
+        rows[rows["quantity"].str.startswith("largest memory") & rows["unit"].eq("MB")][
+            "value"
+        ].max()
+    )
 
 
 def _soaked(what: str) -> str:
@@ -773,7 +858,11 @@ def pad():
     """The specimen that scenes have by default, with its inner ridges."""
     from fingerpad import load_scene
 
-    scene = {"specimen": {"ridges": "inner"}, "stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}
+    scene = {
+        "specimen": {"ridges": "inner"},
+        "stimulus": {"shape": "flat"},
+        "motion": [{"press_to_force": "20 gf"}],
+    }
     return load_scene(scene).specimen
 
 

@@ -69,11 +69,24 @@ def gallery() -> Iterator[tuple[str, str]]:
 
     known = shown()
     for name, (title, prefix) in CHAPTERS.items():
-        numbers = [n for n in sorted(FIGURES, key=_order) if n.startswith(prefix) and _picture(f"thesis/fig_{n}")]
-        cards = [_card(f"thesis/fig_{n}", f"{n}: {FIGURES[n].title}", known, verdict(n)) for n in numbers]
+        numbers = [
+            n
+            for n in sorted(FIGURES, key=_order)
+            if n.startswith(prefix) and _picture(f"thesis/fig_{n}")
+        ]
+        cards = [
+            _card(f"thesis/fig_{n}", f"{n}: {FIGURES[n].title}", known, verdict(n)) for n in numbers
+        ]
         yield f"gallery/{name}.md", _page(f"# {title}", GRID, *cards, "::::")
-    studies = sorted(path.stem for path in (ROOT / "figures/studies").iterdir() if path.suffix in (".png", ".gif"))
-    cards = [_card(f"studies/{n}", n.replace("_", " ").capitalize(), known, "") for n in dict.fromkeys(studies)]
+    studies = sorted(
+        path.stem
+        for path in (ROOT / "figures/studies").iterdir()
+        if path.suffix in (".png", ".gif")
+    )
+    cards = [
+        _card(f"studies/{n}", n.replace("_", " ").capitalize(), known, "")
+        for n in dict.fromkeys(studies)
+    ]
     yield "gallery/studies.md", _page("# Studies", GRID, *cards, "::::")
 
 
@@ -82,7 +95,14 @@ def _order(number: str) -> list[int]:
 
 
 def _picture(name: str) -> Path | None:
-    return next((path for path in (ROOT / f"figures/{name}{end}" for end in (".png", ".gif")) if path.exists()), None)
+    return next(
+        (
+            path
+            for path in (ROOT / f"figures/{name}{end}" for end in (".png", ".gif"))
+            if path.exists()
+        ),
+        None,
+    )
 
 
 def _card(name: str, title: str, known: Mapping[str, Mapping[str, str]], judged: str) -> str:
@@ -135,7 +155,11 @@ def tables() -> Iterator[tuple[str, str]]:
         chapter = re.fullmatch(r"(.+)_chapter(\d)", name)
         whole = chapter[1] if chapter else name
         title = name.replace("_", " ").capitalize()
-        link = f"[The whole of it as CSV](../../../figures/tables/{whole}.csv)" if data or chapter else ""
+        link = (
+            f"[The whole of it as CSV](../../../figures/tables/{whole}.csv)"
+            if data or chapter
+            else ""
+        )
         about = known.get(f"tables/{name}", {}).get("question", "")
         text = path.read_text(encoding="utf-8")
         if text.startswith("# "):
@@ -152,11 +176,23 @@ def tables() -> Iterator[tuple[str, str]]:
 # -- the language, from the typed models ----------------------------------------------------------------------------------------
 
 DOCUMENTS = {
-    "scene": ("Scene", "What is touched, what touches it, how it moves, what is recorded and how well."),
-    "specimen": ("Specimen", "A pad, in a file that scenes name: `{outline: thesis}` is that of `config/specimens/thesis.yaml`."),
+    "scene": (
+        "Scene",
+        "What is touched, what touches it, how it moves, what is recorded and how well.",
+    ),
+    "specimen": (
+        "Specimen",
+        "A pad, in a file that scenes name: `{outline: thesis}` is that of `config/specimens/thesis.yaml`.",
+    ),
     "sweep": ("Sweep", "One scene to thousands."),
-    "reconstruction": ("Unknowns", "What the thesis does not say of its pad, with priors: for `snakemake reconstruction`."),
-    "workflow": ("Configuration", "What the workflow simulates, draws and tabulates, and where it puts it."),
+    "reconstruction": (
+        "Unknowns",
+        "What the thesis does not say of its pad, with priors: for `snakemake reconstruction`.",
+    ),
+    "workflow": (
+        "Configuration",
+        "What the workflow simulates, draws and tabulates, and where it puts it.",
+    ),
 }
 
 
@@ -165,16 +201,25 @@ def language() -> Iterator[tuple[str, str]]:
     from cysyk1999.config import schemas
 
     made, said = schemas(), set()
-    for kind in sorted(made, key=lambda kind: kind != "scene"):  # what several kinds have is said where it is of a scene
+    for kind in sorted(
+        made, key=lambda kind: kind != "scene"
+    ):  # what several kinds have is said where it is of a scene
         schema, (title, about) = made[kind], DOCUMENTS[kind]
-        example = {"scene": "scenes/examples/every_key", "specimen": "specimens/thesis", "sweep": "sweeps/example"}
+        example = {
+            "scene": "scenes/examples/every_key",
+            "specimen": "specimens/thesis",
+            "sweep": "sweeps/example",
+        }
         example["reconstruction"] = "reconstruction/unknowns"
         whole = f"../../../config/{example.get(kind, 'thesis')}.yaml"
         parts = [f"# {title}", about, _section(schema)]
         for name, part in schema.get("$defs", {}).items():
             if "properties" in part and name not in said:
                 said.add(name)
-                parts += [f"(keys-{_slug(name)})=\n## {_words(name)}", _prose(part.get("description", ""))]
+                parts += [
+                    f"(keys-{_slug(name)})=\n## {_words(name)}",
+                    _prose(part.get("description", "")),
+                ]
                 parts += [_section(part)]
         parts += ["## A whole file", f"```{{literalinclude}} {whole}\n:language: yaml\n```"]
         yield f"reference/{kind}.md", _page(*parts)
@@ -228,7 +273,9 @@ def _takes(part: Mapping) -> str:
     if kind == "string":
         if examples := part.get("examples"):
             return f"text such as `{examples[0]}`"
-        return "" if part.get("pattern", "").startswith("^\\s*[+-]?[0-9.]") else "text"  # numbers may be written as text
+        return (
+            "" if part.get("pattern", "").startswith("^\\s*[+-]?[0-9.]") else "text"
+        )  # numbers may be written as text
     if kind in ("number", "integer"):
         return ("a whole number" if kind == "integer" else "a number") + _bounds(part)
     if kind == "boolean":
@@ -237,9 +284,16 @@ def _takes(part: Mapping) -> str:
 
 
 def _bounds(part: Mapping) -> str:
-    words = {"minimum": "from", "exclusiveMinimum": "above", "maximum": "to", "exclusiveMaximum": "below"}
+    words = {
+        "minimum": "from",
+        "exclusiveMinimum": "above",
+        "maximum": "to",
+        "exclusiveMaximum": "below",
+    }
     said = " and".join(f" {word} {part[key]:,g}" for key, word in words.items() if key in part)
-    return said.replace(" and to", " to") if "maximum" in part else said.replace("from", "of at least")
+    return (
+        said.replace(" and to", " to") if "maximum" in part else said.replace("from", "of at least")
+    )
 
 
 # -- command line and results ---------------------------------------------------------------------------------------------------
@@ -250,7 +304,9 @@ def command_line() -> str:
     from fingerpad import cli
 
     parser = cli._parser()
-    (commands,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    (commands,) = (
+        action for action in parser._actions if isinstance(action, argparse._SubParsersAction)
+    )
     parts = ["# Command line", cli.__doc__.split("\n\n")[1].replace("\n", " ")]
     for name, command in commands.choices.items():
         command.formatter_class = lambda prog: argparse.HelpFormatter(prog, width=92)
@@ -263,9 +319,18 @@ def results() -> str:
     from fingerpad.results import COORDINATES, FIELDS, VARIABLES
 
     def rows(entries) -> str:
-        return "\n".join(["| name | unit | |", "|---|---|---|", *(f"| `{n}` | {u} | {said} |" for n, u, said in entries)])
+        return "\n".join(
+            [
+                "| name | unit | |",
+                "|---|---|---|",
+                *(f"| `{n}` | {u} | {said} |" for n, u, said in entries),
+            ]
+        )
 
-    described = rows((name, unit, f"{said} ({', '.join(dims)})") for name, (dims, unit, said) in VARIABLES.items())
+    described = rows(
+        (name, unit, f"{said} ({', '.join(dims)})")
+        for name, (dims, unit, said) in VARIABLES.items()
+    )
     placed = rows((name, unit, said) for name, (_, unit, said) in COORDINATES.items())
     fields = rows((name, unit, said) for name, (_, unit, _, said) in FIELDS.items())
     return _page(

@@ -20,7 +20,12 @@ from fingerpad.documents import Problem, Strict, explain
 from fingerpad.fields import filled, listed
 
 LEVELS = ("draft", "thesis", "fine")
-ELASTIC_CURVES = ("calibration_plate", "calibration_less_fat", "calibration_more_fat", "calibration_long_term")
+ELASTIC_CURVES = (
+    "calibration_plate",
+    "calibration_less_fat",
+    "calibration_more_fat",
+    "calibration_long_term",
+)
 
 
 def _text(pattern: str, allowed: str) -> Any:
@@ -55,7 +60,9 @@ def _least(least: float, above: bool) -> Any:
 def _accuracy(value: Any) -> Any:
     if value in LEVELS or (isinstance(value, float) and 0 < value < 1):
         return value
-    raise Problem("is not a known accuracy", f"{', '.join(LEVELS)}, or a tolerance above 0 and below 1")
+    raise Problem(
+        "is not a known accuracy", f"{', '.join(LEVELS)}, or a tolerance above 0 and below 1"
+    )
 
 
 def _list(item: Any, check: Callable = listed) -> Any:
@@ -64,10 +71,17 @@ def _list(item: Any, check: Callable = listed) -> Any:
 
 Name = _text(r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$", "letters, digits, _, - and .")
 FigureNumber = _text(r"^[0-9]+-[0-9]+$", 'a figure of the thesis in quotes, such as "4-10"')
-Directory = _text(r"^[^/](.*[^/])?$", "a folder, relative to where the workflow runs, such as results/mine")
+Directory = _text(
+    r"^[^/](.*[^/])?$", "a folder, relative to where the workflow runs, such as results/mine"
+)
 Folder = _text(r"\S", "a folder, relative to where the workflow runs or absolute")
 Coefficient, Height = _least(0, above=True), _least(0, above=False)
-_ACCURACY = {"anyOf": [{"enum": list(LEVELS)}, {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}]}
+_ACCURACY = {
+    "anyOf": [
+        {"enum": list(LEVELS)},
+        {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
+    ]
+}
 Accuracy = Annotated[Any, BeforeValidator(_accuracy), Field(json_schema_extra=_ACCURACY)]
 
 
@@ -131,7 +145,11 @@ class WorkflowConfig(Strict):
     @property
     def every_scene(self) -> tuple[str, ...]:
         """Names of all the scenes, each once."""
-        return tuple(dict.fromkeys((*self.scenes, *self.variants, *self.calibration_scenes, *self.friction_scenes)))
+        return tuple(
+            dict.fromkeys(
+                (*self.scenes, *self.variants, *self.calibration_scenes, *self.friction_scenes)
+            )
+        )
 
 
 def read_config(document: Mapping[str, Any], file: str | Path) -> WorkflowConfig:

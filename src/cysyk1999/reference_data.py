@@ -43,7 +43,13 @@ class Column:
             return ", ".join(self.words)
         if self.text:
             return "text or nothing" if self.optional else "text"
-        bound = f" above {self.above:g}" if self.above is not None else f" from {self.least:g}" if self.least is not None else ""
+        bound = (
+            f" above {self.above:g}"
+            if self.above is not None
+            else f" from {self.least:g}"
+            if self.least is not None
+            else ""
+        )
         return f"a number{bound}{' or nothing' if self.optional else ''}"
 
     def read(self, cell: str | float) -> str | float:
@@ -128,7 +134,9 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
     else:
         files = sorted(map(Path, [paths] if isinstance(paths, (str, Path)) else paths))
     if not files:
-        raise ReferenceDataError(f"{paths}: holds no CSV file; allowed: at least one with columns {', '.join(FORCE_DEPTH)}")
+        raise ReferenceDataError(
+            f"{paths}: holds no CSV file; allowed: at least one with columns {', '.join(FORCE_DEPTH)}"
+        )
     frames = [read_table(file, FORCE_DEPTH) for file in files]
     for file, frame in zip(files, frames, strict=True):
         seen: dict[tuple, int] = {}
@@ -136,11 +144,15 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
             key = (record.subject, record.indenter, record.depth_mm, record.speed_mm_per_s)
             if key in seen:
                 what = f"subject '{key[0]}', {key[1]}, {key[2]:g} mm, {key[3]:g} mm/s"
-                raise ReferenceDataError(f"{file}: row {record.Index}: {what} is in row {seen[key]} already; allowed: each once")
+                raise ReferenceDataError(
+                    f"{file}: row {record.Index}: {what} is in row {seen[key]} already; allowed: each once"
+                )
             seen[key] = record.Index
     files_of = Counter(subject for frame in frames for subject in frame["subject"].unique())
     for file, frame in zip(files, frames, strict=True):
-        named = {subject: f"{subject} ({file.stem})" for subject, count in files_of.items() if count > 1}
+        named = {
+            subject: f"{subject} ({file.stem})" for subject, count in files_of.items() if count > 1
+        }
         frame["subject"] = frame["subject"].replace(named)
     return pd.concat(frames, ignore_index=True)
 
@@ -151,7 +163,9 @@ def read_relaxation(path: str | Path) -> pd.DataFrame:
     totals = frame.groupby("series", sort=False)["g"].sum()
     for series, total in totals[totals >= 1].items():
         row = frame.index[frame["series"] == series][0]
-        raise ReferenceDataError(f"{path}: row {row}, column g: series '{series}' sums to {total:g}; allowed: less than 1")
+        raise ReferenceDataError(
+            f"{path}: row {row}, column g: series '{series}' sums to {total:g}; allowed: less than 1"
+        )
     return frame
 
 
@@ -180,7 +194,9 @@ def read_bands(path: str | Path) -> pd.DataFrame:
     frame = read_table(path, BANDS)
     for row in frame.index[frame["high"] < frame["low"]]:
         low, high = frame.loc[row, ["low", "high"]]
-        raise ReferenceDataError(f"{path}: row {row}, column high: '{high:g}'; allowed: from {low:g}")
+        raise ReferenceDataError(
+            f"{path}: row {row}, column high: '{high:g}'; allowed: from {low:g}"
+        )
     return frame
 
 
@@ -189,7 +205,9 @@ def read_friction(path: str | Path) -> pd.DataFrame:
     frame = read_table(path, FRICTION)
     for row in frame.index[frame["high"] < frame["low"]]:
         low, high = frame.loc[row, ["low", "high"]]
-        raise ReferenceDataError(f"{path}: row {row}, column high: '{high:g}'; allowed: a number from {low:g} or nothing")
+        raise ReferenceDataError(
+            f"{path}: row {row}, column high: '{high:g}'; allowed: a number from {low:g} or nothing"
+        )
     return frame
 
 
@@ -210,11 +228,15 @@ def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
         raise ReferenceDataError(f"{path}: {error}") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or type(error).__name__
-        raise ReferenceDataError(f"{path}: cannot be read ({reason}); allowed: a CSV file in UTF-8") from None
+        raise ReferenceDataError(
+            f"{path}: cannot be read ({reason}); allowed: a CSV file in UTF-8"
+        ) from None
     for name in schema:
         if name not in table.header:
             found = ", ".join(table.header)[:80]
-            raise ReferenceDataError(f"{path}: has no column {name}, but {found}; allowed: {columns}")
+            raise ReferenceDataError(
+                f"{path}: has no column {name}, but {found}; allowed: {columns}"
+            )
     for name in table.header:
         if name not in schema:
             raise ReferenceDataError(f"{path}: column '{name}' is not known; allowed: {columns}")
@@ -226,7 +248,9 @@ def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
                 number = cell and not (column.words or column.text)
                 values[name].append(column.read(table.number(cell, line, k) if number else cell))
             except ValueError:
-                raise ReferenceDataError(f"{path}: row {line}, column {name}: '{cell[:60]}'; allowed: {column.allowed}") from None
+                raise ReferenceDataError(
+                    f"{path}: row {line}, column {name}: '{cell[:60]}'; allowed: {column.allowed}"
+                ) from None
     if not table.rows:
         raise ReferenceDataError(f"{path}: has no rows; allowed: at least one")
     return pd.DataFrame(values, index=table.lines)[list(schema)]
@@ -259,7 +283,9 @@ def read_reference(path: str | PathLike) -> pd.DataFrame:
     }.items():
         unknown = set(table[column]) - allowed
         if unknown:
-            raise ValueError(f"{path}: unknown {column} {sorted(map(str, unknown))}, allowed {sorted(allowed)}")
+            raise ValueError(
+                f"{path}: unknown {column} {sorted(map(str, unknown))}, allowed {sorted(allowed)}"
+            )
     wrong = table.index[(table["role"] == "trend") != (table["form"] == "trend")]
     wrong = wrong.union(table.index[(table["role"] == "") != (table["form"] == "layout")])
     if len(wrong):

@@ -70,7 +70,9 @@ def main(arguments: list[str] | None = None) -> int:
         SystemExit: by argparse, with code 2 for a wrong command line and 0 after help and version.
     """
     collect_seldom()
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it would look for them in every package there is
+    os.environ.setdefault(
+        "PYDANTIC_DISABLE_PLUGINS", "__all__"
+    )  # it would look for them in every package there is
     for stream in (sys.stdout, sys.stderr):  # any name of a file can be printed
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
@@ -87,7 +89,10 @@ def _guarded(arguments: list[str] | None, heard: list[warnings.WarningMessage] |
         try:
             options = _parser().parse_args(arguments)
             if _too_little_memory():
-                return _say(f"not enough memory: a limit (ulimit -v) below {LEAST_BYTES / 1e9:.2g} GB", NOT_COMPLETED)
+                return _say(
+                    f"not enough memory: a limit (ulimit -v) below {LEAST_BYTES / 1e9:.2g} GB",
+                    NOT_COMPLETED,
+                )
             return options.command(options)
         finally:
             sys.stdout.flush()
@@ -100,7 +105,10 @@ def _guarded(arguments: list[str] | None, heard: list[warnings.WarningMessage] |
     except _NotWritten as error:
         return _say(str(error), NOT_COMPLETED)
     except MemoryError as error:
-        return _say(f"not enough memory: {error or 'out of memory'}; try a coarser accuracy or fewer receptors", NOT_COMPLETED)
+        return _say(
+            f"not enough memory: {error or 'out of memory'}; try a coarser accuracy or fewer receptors",
+            NOT_COMPLETED,
+        )
     except Exception as error:
         if (why := _of_the_machine(error)) is not None:
             if getattr(error, "filename", None) is None:
@@ -120,11 +128,19 @@ def _too_little_memory() -> bool:
 def _of_the_machine(error: Exception) -> str | None:
     """What to say of an error that is not the program's but of its surroundings: disk, rights, memory; None of others."""
     if isinstance(error, OSError) and error.errno in _SURROUNDINGS:
-        return f"'{error.filename}' fails: {error.strerror}" if error.filename else f"output cannot be written: {error.strerror}"
+        return (
+            f"'{error.filename}' fails: {error.strerror}"
+            if error.filename
+            else f"output cannot be written: {error.strerror}"
+        )
     if isinstance(error, ImportError) and "cannot be loaded" in str(error):
         return str(error)
-    if isinstance(error, ImportError) and any(words in str(error) for words in ("failed to map", "cannot allocate")):
-        return f"not enough memory to load what a run needs: {error}; try a larger limit (ulimit -v)"
+    if isinstance(error, ImportError) and any(
+        words in str(error) for words in ("failed to map", "cannot allocate")
+    ):
+        return (
+            f"not enough memory to load what a run needs: {error}; try a larger limit (ulimit -v)"
+        )
     return None
 
 
@@ -142,7 +158,9 @@ def _unforeseen(error: Exception, heard: list[warnings.WarningMessage] | None) -
     import traceback
     from importlib.metadata import version
 
-    warned = "".join(f"{w.category.__name__}: {w.message} ({w.filename}:{w.lineno})\n" for w in heard or ())
+    warned = "".join(
+        f"{w.category.__name__}: {w.message} ({w.filename}:{w.lineno})\n" for w in heard or ()
+    )
     lines = (
         f"fingerpad {version('fingerpad')}, Python {platform.python_version()}, {platform.platform()}",
         f"arguments: {sys.argv[1:]}",
@@ -158,44 +176,79 @@ def _unforeseen(error: Exception, heard: list[warnings.WarningMessage] | None) -
     said = " ".join(str(error).split())
     said = said if len(said) <= 200 else said[:200] + " ..."
     cause = ": ".join(filter(None, [type(error).__name__, said]))
-    return _say(f"internal error, {cause}: details in {name}, please report it with the scene", UNFORESEEN)
+    return _say(
+        f"internal error, {cause}: details in {name}, please report it with the scene", UNFORESEEN
+    )
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="fingerpad", description="Simulate touch on a human fingerpad.")
+    parser = argparse.ArgumentParser(
+        prog="fingerpad", description="Simulate touch on a human fingerpad."
+    )
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    plan = commands.add_parser("plan", help="say what would be simulated, why, and what it would cost")
+    plan = commands.add_parser(
+        "plan", help="say what would be simulated, why, and what it would cost"
+    )
     plan.add_argument("--json", action="store_true", help="print plan.json instead of a table")
-    plan.add_argument("--cores", metavar="N", type=_cores, default=1, help="of a sweep: how many would run it")
+    plan.add_argument(
+        "--cores", metavar="N", type=_cores, default=1, help="of a sweep: how many would run it"
+    )
     plan.set_defaults(command=_plan)
 
     run = commands.add_parser("run", help="simulate a scene: history.nc, summary.json, plan.json")
-    run.add_argument("--out", metavar="DIR", type=Path, help="where the results go (default: results/SCENE)")
-    run.add_argument("--force", action="store_true", help="replace what is in DIR under the names of the results")
     run.add_argument(
-        "--vtu", action="store_true", help="also write fields for ParaView, in DIR/vtu: snapshots, or the last state"
+        "--out", metavar="DIR", type=Path, help="where the results go (default: results/SCENE)"
+    )
+    run.add_argument(
+        "--force", action="store_true", help="replace what is in DIR under the names of the results"
+    )
+    run.add_argument(
+        "--vtu",
+        action="store_true",
+        help="also write fields for ParaView, in DIR/vtu: snapshots, or the last state",
     )
     run.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
     run.set_defaults(command=_run)
 
     mesh = commands.add_parser("mesh", help="write the mesh a scene would be simulated on")
-    mesh.add_argument("--out", metavar="FILE.msh", type=Path, required=True, help="mesh file, coordinates in mm")
+    mesh.add_argument(
+        "--out", metavar="FILE.msh", type=Path, required=True, help="mesh file, coordinates in mm"
+    )
     mesh.set_defaults(command=_mesh)
 
-    sweep = commands.add_parser("sweep", help="simulate the scenes of a sweep: sweep.nc, sweep.csv; only what is missing")
-    sweep.add_argument("--out", metavar="DIR", type=Path, help="where the results go (default: results/sweeps/SWEEP)")
-    sweep.add_argument("--cores", metavar="N", type=_cores, default=1, help="processes at a time (default: 1)")
-    sweep.add_argument("--profile", metavar="DIR", help="a Snakemake profile instead of --cores, as workflow/profiles/slurm")
-    sweep.add_argument("--again", action="store_true", help="also try scenes again that could not be simulated before")
+    sweep = commands.add_parser(
+        "sweep", help="simulate the scenes of a sweep: sweep.nc, sweep.csv; only what is missing"
+    )
+    sweep.add_argument(
+        "--out",
+        metavar="DIR",
+        type=Path,
+        help="where the results go (default: results/sweeps/SWEEP)",
+    )
+    sweep.add_argument(
+        "--cores", metavar="N", type=_cores, default=1, help="processes at a time (default: 1)"
+    )
+    sweep.add_argument(
+        "--profile",
+        metavar="DIR",
+        help="a Snakemake profile instead of --cores, as workflow/profiles/slurm",
+    )
+    sweep.add_argument(
+        "--again",
+        action="store_true",
+        help="also try scenes again that could not be simulated before",
+    )
     sweep.add_argument("--force", action="store_true", help="use DIR though it holds another sweep")
     sweep.add_argument("--quiet", action="store_true", help="no progress bar, no closing line")
     sweep.add_argument("sweep", metavar="SWEEP.yaml", type=Path, help="the sweep")
     sweep.set_defaults(command=_sweep)
 
     for command in (plan, run, mesh):
-        command.add_argument("scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan")
+        command.add_argument(
+            "scene", metavar="SCENE.yaml", type=Path, help="the scene, or a sweep to plan"
+        )
     for command in (plan, run, mesh, sweep):
         command.add_argument(
             "--accuracy",
@@ -249,7 +302,10 @@ def _run(options: argparse.Namespace) -> int:
     with _folder(out, scene, plan, options) as folder:
         _check_room(out, plan.result_bytes(scene, options.vtu))
         try:
-            with _naming(options.scene, scene), _progress(scene.name, quiet=options.quiet) as progress:
+            with (
+                _naming(options.scene, scene),
+                _progress(scene.name, quiet=options.quiet) as progress,
+            ):
                 dataset = solve(scene, plan=plan, progress=progress, fields=options.vtu)
         except NonConvergence as error:
             return _say(folder.rescue(error), NOT_COMPLETED)
@@ -304,7 +360,9 @@ def _prepare(options: argparse.Namespace) -> tuple[Scene, Plan]:
     from fingerpad.sweeps.command import is_sweep
 
     if is_sweep(options.scene):
-        raise _Refusal(f"{options.scene}: is a sweep, not a scene; allowed: fingerpad sweep, or fingerpad plan")
+        raise _Refusal(
+            f"{options.scene}: is a sweep, not a scene; allowed: fingerpad sweep, or fingerpad plan"
+        )
     scene = load_scene(options.scene)
     if options.accuracy is not None:
         try:
@@ -327,7 +385,9 @@ def _mesh_for(path: Path, scene: Scene, plan: Plan) -> Any:
 
 def _input_errors() -> tuple[type[ValueError], ...]:
     """What counts as wrong input; a module that was not imported cannot have raised its error."""
-    loaded = ((sys.modules.get(f"fingerpad.{module}"), name) for name, (module, _) in _ERRORS.items())
+    loaded = (
+        (sys.modules.get(f"fingerpad.{module}"), name) for name, (module, _) in _ERRORS.items()
+    )
     return (_Refusal, *(getattr(module, name) for module, name in loaded if hasattr(module, name)))
 
 
@@ -340,7 +400,11 @@ def _naming(path: Path, scene: Scene) -> Iterator[None]:
         message = str(error).removeprefix(f"{scene.name}: ")
         key = _ERRORS.get(type(error).__name__, ("", ""))[1]
         if key == "specimen.mesh" and scene.specimen.mesh is None:
-            key = next(f"specimen.{shape}" for shape in ("outline", "slab", "half_round") if getattr(scene.specimen, shape))
+            key = next(
+                f"specimen.{shape}"
+                for shape in ("outline", "slab", "half_round")
+                if getattr(scene.specimen, shape)
+            )
         message = message.removeprefix(f"{key.rpartition('.')[2]}: ")
         raise _Refusal(": ".join(filter(None, [str(path), key, message]))) from None
 
@@ -361,9 +425,13 @@ def _check_writable(path: Path, directory: bool) -> None:
         while not nearest.exists():
             nearest = nearest.parent
     except OSError as error:
-        raise _Refusal(f"--out: '{path}' cannot be used: {error.strerror}; allowed: a path") from None
+        raise _Refusal(
+            f"--out: '{path}' cannot be used: {error.strerror}; allowed: a path"
+        ) from None
     if not nearest.is_dir() or not os.access(nearest, os.W_OK | os.X_OK):
-        raise _Refusal(f"--out: '{path}' cannot be written; allowed: a path in a directory that can")
+        raise _Refusal(
+            f"--out: '{path}' cannot be written; allowed: a path in a directory that can"
+        )
 
 
 def _check_room(path: Path, needed: float) -> None:
@@ -371,7 +439,9 @@ def _check_room(path: Path, needed: float) -> None:
     from fingerpad.files import disk_is_full
 
     if disk_is_full(path, needed):
-        raise _Refusal(f"--out: '{path}' has no room for about {needed / 1e6:.2g} MB of results; allowed: a folder that has")
+        raise _Refusal(
+            f"--out: '{path}' has no room for about {needed / 1e6:.2g} MB of results; allowed: a folder that has"
+        )
 
 
 @contextlib.contextmanager
@@ -397,7 +467,9 @@ def _unwritable(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         what = error.strerror or error
-        raise _NotWritten(f"'{path}' cannot be written: {what}; what was there is as it was") from None
+        raise _NotWritten(
+            f"'{path}' cannot be written: {what}; what was there is as it was"
+        ) from None
 
 
 @contextlib.contextmanager
@@ -409,7 +481,9 @@ def _folder(path: Path, scene: Scene, plan: Plan, options: argparse.Namespace) -
         try:
             held.enter_context(locked(path))
         except BlockingIOError:
-            raise _Refusal(f"--out: '{path}' is being written by another run; allowed: another folder, or later") from None
+            raise _Refusal(
+                f"--out: '{path}' is being written by another run; allowed: another folder, or later"
+            ) from None
         patterns = () if options.force else RESULTS + FIELDS if options.vtu else RESULTS
         folder = _Folder(path, scene.name, plan.to_dict(), patterns)
         folder.check()
@@ -422,7 +496,9 @@ class _Folder:
     Of files like ``patterns`` those that no run has written are left alone; none, where they may be replaced.
     """
 
-    def __init__(self, path: Path, scene: str, plan: dict[str, Any], patterns: Iterable[str]) -> None:
+    def __init__(
+        self, path: Path, scene: str, plan: dict[str, Any], patterns: Iterable[str]
+    ) -> None:
         from fingerpad.files import read_input
 
         self.path, self.scene, self.plan, self.patterns = path, scene, plan, tuple(patterns)
@@ -437,9 +513,13 @@ class _Folder:
         """Refuses to replace results of another scene, and files that no run has written."""
         cure = "allowed: another --out, or --force to replace"
         if self.patterns and self.files and self.before.get("scene") != self.scene:
-            raise _Refusal(f"--out: '{self.path}' holds the results of the scene '{self.before.get('scene')}'; {cure} them")
+            raise _Refusal(
+                f"--out: '{self.path}' holds the results of the scene '{self.before.get('scene')}'; {cure} them"
+            )
         for found in self._foreign():
-            raise _Refusal(f"--out: '{found}' was not written by a run that is known here; {cure} it")
+            raise _Refusal(
+                f"--out: '{found}' was not written by a run that is known here; {cure} it"
+            )
 
     def _foreign(self) -> list[Path]:
         found = sorted(file for pattern in self.patterns for file in self.path.glob(pattern))
@@ -451,7 +531,9 @@ class _Folder:
         try:
             with _unwritable(self.path):
                 if foreign := self._foreign():  # since the run began
-                    raise FileExistsError(errno.EEXIST, f"'{foreign[0].name}' has come into it meanwhile")
+                    raise FileExistsError(
+                        errno.EEXIST, f"'{foreign[0].name}' has come into it meanwhile"
+                    )
                 self._replace(fill, keeping)
         except _NotWritten as reason:
             raise _NotWritten(f"{reason}; {self._elsewhere(fill)}") from None
@@ -465,9 +547,14 @@ class _Folder:
 
     def _describe(self, stage: Path, kept: Iterable[str] = ()) -> None:
         """Writes plan.json, which names the files that there are."""
-        written = {item.relative_to(stage).as_posix() for item in stage.rglob("*") if item.is_file()}
+        written = {
+            item.relative_to(stage).as_posix() for item in stage.rglob("*") if item.is_file()
+        }
         files = sorted({*kept, *written, "plan.json"})
-        _write_json({**(self.before if kept else self.plan), "scene": self.scene, "files": files}, stage / "plan.json")
+        _write_json(
+            {**(self.before if kept else self.plan), "scene": self.scene, "files": files},
+            stage / "plan.json",
+        )
 
     def _elsewhere(self, fill: Callable[[Path], None]) -> str:
         """Writes the results to a temporary place instead, and says where; or that they are lost."""
@@ -520,7 +607,9 @@ class _Folder:
 def _is_result(name: str) -> bool:
     """Could a run have written a file of this (relative) name?"""
     path = PurePosixPath(name)
-    return name in RESULTS or (len(path.parts) == 2 and any(path.match(pattern) for pattern in FIELDS))
+    return name in RESULTS or (
+        len(path.parts) == 2 and any(path.match(pattern) for pattern in FIELDS)
+    )
 
 
 def _write_json(data: Any, path: Path) -> None:
@@ -551,13 +640,21 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
     console.print(effects)
     details = Table("discretisation", "")
     for name, value in plan.discretisation.items():
-        details.add_row(Text(name.replace("_", " ")), Text(f"{value:.4g}" if isinstance(value, float) else str(value)))
+        details.add_row(
+            Text(name.replace("_", " ")),
+            Text(f"{value:.4g}" if isinstance(value, float) else str(value)),
+        )
     console.print(details)
     for line in plan.specimen:
         console.print(Text(f"specimen: {line}"), soft_wrap=True)
     console.print(Text(f"expected error: {percent(plan.estimated_error)} ({plan.covers})"))
     if plan.errors:
-        console.print(Text("by quantity: " + ", ".join(f"{name} {percent(error)}" for name, error in plan.errors.items())))
+        console.print(
+            Text(
+                "by quantity: "
+                + ", ".join(f"{name} {percent(error)}" for name, error in plan.errors.items())
+            )
+        )
     if plan.missed():
         console.print(Text(plan.missed()))
     for note in plan.surface.notes:
@@ -610,7 +707,9 @@ def _force_unit(path: Path) -> str:
         return "gf"
     try:
         legs = read_scene(path).document["motion"]
-        return next((unit_of(leg["press_to_force"]) for leg in legs if "press_to_force" in leg), "gf")
+        return next(
+            (unit_of(leg["press_to_force"]) for leg in legs if "press_to_force" in leg), "gf"
+        )
     except (SceneError, QuantityError):  # it has changed since
         return "gf"
 
@@ -623,7 +722,9 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
     once = run.get("compiling_s", 0.0)
     compiled = f", {once:.2g} of them to compile, once" if once > 0.5 else ""
     touching = last.get("touching_width_mm", last["contact_width_mm"])
-    gaps = f", {touching:.3g} mm of it touching" if touching < _GAPS * last["contact_width_mm"] else ""
+    gaps = (
+        f", {touching:.3g} mm of it touching" if touching < _GAPS * last["contact_width_mm"] else ""
+    )
     return (
         f"depth {last['depth_mm']:.3g} mm, force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "
         f"contact {last['contact_width_mm']:.3g} mm wide{gaps}; {run['steps']} steps, "
@@ -645,4 +746,8 @@ def _error_line(totals: dict[str, Any]) -> str:
         line += f", after {len(run['runs'])} runs"
     if run.get("tolerance_missed"):
         line += f" ({run['tolerance_missed']})"
-    return f"{line}; pressure is unbounded at {run['peak_pressure_unbounded_at']}" if run["peak_pressure_singular"] else line
+    return (
+        f"{line}; pressure is unbounded at {run['peak_pressure_unbounded_at']}"
+        if run["peak_pressure_singular"]
+        else line
+    )

@@ -27,7 +27,9 @@ def edge_of(x: np.ndarray, pressure: np.ndarray, spacing: float, on_edge: int) -
     terms = np.array([np.ones_like(along), along, along * along, along**3, along**4])
     squares = terms[:3] * pressure**2
     for _ in range(4):
-        weight = np.minimum(np.maximum(along + (1 + (plain - edge) / reach), 0.0), 1.0) ** 2 * pressure
+        weight = (
+            np.minimum(np.maximum(along + (1 + (plain - edge) / reach), 0.0), 1.0) ** 2 * pressure
+        )
         roots = _roots(*_parabola(terms @ weight, squares @ weight, np.count_nonzero(weight) - 2))
         near = [reach * root for root in roots if -4 * spacing < reach * root < 2 * spacing]
         if not near:

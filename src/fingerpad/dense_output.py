@@ -30,7 +30,12 @@ _SAME = 1e-6
 
 
 def at_outputs(
-    found: dict[str, np.ndarray], time: np.ndarray, records: Sequence[Record], skin_x: np.ndarray, apex: int, half: bool = False
+    found: dict[str, np.ndarray],
+    time: np.ndarray,
+    records: Sequence[Record],
+    skin_x: np.ndarray,
+    apex: int,
+    half: bool = False,
 ):
     """The arrays of a history (states, ...) and its times (states,) s at all outputs.
 
@@ -41,7 +46,9 @@ def at_outputs(
     count = [len(record.passed) + 1 for record in records]
     state = np.concatenate([[0], np.repeat(np.arange(1, len(records) + 1), count)]).astype(int)
     passed = np.concatenate([[False], *(np.arange(n) < n - 1 for n in count)]).astype(bool)
-    out = {"interpolated": passed.astype(np.int8)} | {name: values[state] for name, values in found.items()}
+    out = {"interpolated": passed.astype(np.int8)} | {
+        name: values[state] for name, values in found.items()
+    }
     time = np.asarray(time)
     times = time[state]
     if not passed.any():
@@ -74,13 +81,18 @@ def at_outputs(
             grown = width[last] - width[last - 1]
             changed = np.abs(grown) > _SAME * width[last]
             share[here] = np.where(
-                changed, (out["contact_width"][here] - width[last - 1]) / np.where(changed, grown, 1.0), share[here]
+                changed,
+                (out["contact_width"][here] - width[last - 1]) / np.where(changed, grown, 1.0),
+                share[here],
             ).clip(0, 1)
     out["stroke_distance"] = place
     for name in _TAKEN:
         out[name][passed] = 0
     _contact(out, found, state, passed, share, records, skin_x, half)
-    out["peak_pressure"], out["centre_pressure"] = out["contact_pressure"].max(axis=1), out["contact_pressure"][:, apex]
+    out["peak_pressure"], out["centre_pressure"] = (
+        out["contact_pressure"].max(axis=1),
+        out["contact_pressure"][:, apex],
+    )
     return out, times
 
 
@@ -142,11 +154,17 @@ def _contact(out, found, state, passed, share, records, skin_x, half):
                 for name in _PRESSURES:
                     ends = found[name][[k - 1, k]]
                     carried = here.pressure(*ends)
-                    out[name][i] = _pressing(out[name][i], carried, ends, share[i]) if still else carried
+                    out[name][i] = (
+                        _pressing(out[name][i], carried, ends, share[i]) if still else carried
+                    )
             if not frictional:
                 continue
             if here:
-                ratio, most, both = here.value(*ratios), here.value(*np.abs(ratios)), here.value(*states)
+                ratio, most, both = (
+                    here.value(*ratios),
+                    here.value(*np.abs(ratios)),
+                    here.value(*states),
+                )
                 # what slips in both states, and the same way, slips between them
                 slides = (both > 2 - 1e-9) & (np.abs(ratio) > most - 1e-9)
                 pressure = out["contact_pressure"][i]
@@ -175,7 +193,9 @@ def _pressing(of_nodes, carried, ends, share):
 def _ratio(found, k):
     """Traction over pressure (skin nodes,) in a state."""
     pressure = found["contact_pressure"][k]
-    return _spread(found, k, found["tangential_traction"][k] / np.where(pressure > 0, pressure, 1.0))
+    return _spread(
+        found, k, found["tangential_traction"][k] / np.where(pressure > 0, pressure, 1.0)
+    )
 
 
 def _spread(found, k, values):

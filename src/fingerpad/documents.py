@@ -45,7 +45,9 @@ class Problem(ValueError):
         value: the offending value; `LOOK_UP` takes it from the document, `HIDE` shows none.
     """
 
-    def __init__(self, problem: str, allowed: str = "", key: tuple = (), value: Any = LOOK_UP) -> None:
+    def __init__(
+        self, problem: str, allowed: str = "", key: tuple = (), value: Any = LOOK_UP
+    ) -> None:
         super().__init__(": ".join(filter(None, [dotted(key), problem])) + _or_allowed(allowed))
         self.problem, self.allowed, self.key, self.value = problem, allowed, tuple(key), value
 
@@ -64,7 +66,9 @@ class _Short(reprlib.Repr):
 
     def repr_int(self, value: int, level: int) -> str:
         """As in the base class, but for integers that Python refuses to print."""
-        return super().repr_int(value, level) if value.bit_length() < 1000 else "a very long integer"
+        return (
+            super().repr_int(value, level) if value.bit_length() < 1000 else "a very long integer"
+        )
 
 
 _SHORT = _Short()
@@ -110,7 +114,9 @@ def error_line(file: Any, location: tuple, problem: Problem, document: Any = Non
     return one_line(f"{where}: {shown}{problem.problem}{_or_allowed(problem.allowed)}")
 
 
-def explain(error: ValidationError, file: Any, document: Any, tags: frozenset[str] = frozenset()) -> SceneError:
+def explain(
+    error: ValidationError, file: Any, document: Any, tags: frozenset[str] = frozenset()
+) -> SceneError:
     """The first error of a validation as a `SceneError`; `tags` are union labels to leave out of the key."""
     first = error.errors(include_url=False, include_input=False)[0]
     location = tuple(part for part in first["loc"] if part not in tags)
@@ -131,19 +137,29 @@ def _described(model: type[BaseModel]) -> dict[str, str]:
     """What is written under the fields of a model, its own and inherited ones."""
     found: dict[str, str] = {}
     for each in reversed(model.__mro__):
-        if not (issubclass(each, BaseModel) and set(get_annotations(each)) & model.model_fields.keys()):
+        if not (
+            issubclass(each, BaseModel) and set(get_annotations(each)) & model.model_fields.keys()
+        ):
             continue
         body = ast.parse(textwrap.dedent(inspect.getsource(each))).body[0].body
         for field, under in pairwise(body):
-            if isinstance(field, ast.AnnAssign) and isinstance(under, ast.Expr) and isinstance(under.value, ast.Constant):
+            if (
+                isinstance(field, ast.AnnAssign)
+                and isinstance(under, ast.Expr)
+                and isinstance(under.value, ast.Constant)
+            ):
                 found[field.target.id] = inspect.cleandoc(under.value.value)
     return found
 
 
 def _parts(schema: Any) -> list[dict[str, Any]]:
     """A field's JSON schema and those it is made of, at any depth."""
-    inner = schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ()
-    return ([schema] if isinstance(schema, dict) else []) + [part for each in inner for part in _parts(each)]
+    inner = (
+        schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ()
+    )
+    return ([schema] if isinstance(schema, dict) else []) + [
+        part for each in inner for part in _parts(each)
+    ]
 
 
 class Strict(BaseModel):
@@ -183,7 +199,9 @@ class Strict(BaseModel):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _check_keys(cls, data: Any, handler: ModelWrapValidatorHandler, info: ValidationInfo) -> Any:
+    def _check_keys(
+        cls, data: Any, handler: ModelWrapValidatorHandler, info: ValidationInfo
+    ) -> Any:
         if isinstance(data, cls):
             return data
         keys = [key for key in cls.model_fields if info.context is None or key not in cls.internal]
@@ -214,7 +232,9 @@ class _Loader(yaml.SafeLoader):
             if isinstance(key, Hashable) and key_node.tag != "tag:yaml.org,2002:merge":
                 if key in seen:
                     problem = f"the key '{key}' is given twice"
-                    raise yaml.constructor.ConstructorError(None, None, problem, key_node.start_mark)
+                    raise yaml.constructor.ConstructorError(
+                        None, None, problem, key_node.start_mark
+                    )
                 seen.add(key)
         return super().construct_mapping(node, deep)
 
@@ -250,7 +270,14 @@ def _parsed(path: Path) -> Any:
     except yaml.MarkedYAMLError as error:
         mark = f" at line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise SceneError(one_line(f"{path}: is not valid YAML{mark}: {error.problem}")) from None
-    except (yaml.YAMLError, ValueError, LookupError, TypeError, AttributeError, OverflowError) as error:
+    except (
+        yaml.YAMLError,
+        ValueError,
+        LookupError,
+        TypeError,
+        AttributeError,
+        OverflowError,
+    ) as error:
         reason = " ".join(str(error).split())
         raise SceneError(one_line(f"{path}: is not valid YAML: {reason}")) from None
     except RecursionError:

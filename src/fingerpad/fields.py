@@ -9,7 +9,13 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, ValidationInfo
 
 from fingerpad.documents import Problem
-from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, QuantityError, parse_number, parse_quantity
+from fingerpad.units import (
+    DIMENSIONS,
+    QUANTITY_PATTERN,
+    QuantityError,
+    parse_number,
+    parse_quantity,
+)
 
 
 class SI(float):
@@ -30,14 +36,27 @@ def quantity(
         in_python = info.context is None or isinstance(value, SI)
         kind = DIMENSIONS[dimension]
         try:
-            result = parse_number(value) if in_python and not isinstance(value, str) else parse_quantity(value, dimension)
+            result = (
+                parse_number(value)
+                if in_python and not isinstance(value, str)
+                else parse_quantity(value, dimension)
+            )
         except QuantityError as error:
             if words:
                 raise Problem(error.problem, " or ".join((*words, error.allowed))) from None
             raise
-        wrong = {"positive": result <= 0, "non-negative": result < 0, "nonzero": result == 0, "any": False}[sign]
+        wrong = {
+            "positive": result <= 0,
+            "non-negative": result < 0,
+            "nonzero": result == 0,
+            "any": False,
+        }[sign]
         if wrong:
-            right = {"positive": "above zero", "non-negative": "of zero or more", "nonzero": "other than zero"}[sign]
+            right = {
+                "positive": "above zero",
+                "non-negative": "of zero or more",
+                "nonzero": "other than zero",
+            }[sign]
             what = "is negative" if result < 0 else "is zero"
             raise Problem(f"{what}{note}", f"{kind.noun} {right} such as '{kind.example}'")
         return result
@@ -68,7 +87,10 @@ def number(allowed: str, low: float, high: float, *, low_included: bool = False)
     bounds: dict[str, float] = {"ge" if low_included else "gt": low}
     if math.isfinite(high):
         bounds["lt"] = high
-    surface = Annotated[float, Field(**bounds)] | Annotated[str, Field(pattern=r"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*%?\s*$")]
+    surface = (
+        Annotated[float, Field(**bounds)]
+        | Annotated[str, Field(pattern=r"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*%?\s*$")]
+    )
     return Annotated[float, BeforeValidator(parse, json_schema_input_type=surface)]
 
 
@@ -80,7 +102,9 @@ def whole(low: int, high: int) -> Any:
             raise Problem("is not in the range", f"a whole number from {low} to {high}")
         return value
 
-    return Annotated[int, BeforeValidator(parse, json_schema_input_type=Annotated[int, Field(ge=low, le=high)])]
+    return Annotated[
+        int, BeforeValidator(parse, json_schema_input_type=Annotated[int, Field(ge=low, le=high)])
+    ]
 
 
 def read(kind: Any, value: Any, key: str, context: Any) -> Any:
@@ -89,13 +113,17 @@ def read(kind: Any, value: Any, key: str, context: Any) -> Any:
         return TypeAdapter(kind).validate_python(value, context=context)
     except ValidationError as error:
         cause = error.errors()[0].get("ctx", {}).get("error")
-        raise Problem(getattr(cause, "problem", "is not valid"), getattr(cause, "allowed", ""), (key,)) from None
+        raise Problem(
+            getattr(cause, "problem", "is not valid"), getattr(cause, "allowed", ""), (key,)
+        ) from None
 
 
 def listed(value: Any) -> Any:
     """`value` if it is a list; `Problem` otherwise."""
     if not isinstance(value, (list, tuple)):
-        raise Problem("is not a list", f"a list, in square brackets: [{json.dumps(value, default=str)}]")
+        raise Problem(
+            "is not a list", f"a list, in square brackets: [{json.dumps(value, default=str)}]"
+        )
     return value
 
 

@@ -19,7 +19,9 @@ from functools import cache
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
-BUILT_IN = _PACKAGE / "built_in" if (_PACKAGE / "built_in").is_dir() else _PACKAGE.parents[1] / "config"
+BUILT_IN = (
+    _PACKAGE / "built_in" if (_PACKAGE / "built_in").is_dir() else _PACKAGE.parents[1] / "config"
+)
 """Folder of the built-in `specimens`: config/ of the clone, of which an installed package carries a copy (setup.py)."""
 
 SCRATCH = ".fingerpad-"
@@ -74,7 +76,9 @@ def write_atomically(path: str | Path, write: Callable[[Path], object]) -> None:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     _remove_leftovers(path)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.{_HOST}-{os.getpid()}.", suffix=path.suffix)
+    handle, name = tempfile.mkstemp(
+        dir=path.parent, prefix=f".{path.name}.{_HOST}-{os.getpid()}.", suffix=path.suffix
+    )
     os.close(handle)
     try:
         write(Path(name))
@@ -110,7 +114,9 @@ def unusable(path: Path) -> str:
     """What in a path's name the NetCDF library cannot take, in words; "" where there is nothing."""
     if "\\" in str(path):
         return "a backslash"
-    return "a space at the end of a part" if any(part != part.strip() for part in path.parts) else ""
+    return (
+        "a space at the end of a part" if any(part != part.strip() for part in path.parts) else ""
+    )
 
 
 def write_text(path: str | Path, text: str) -> None:
@@ -175,8 +181,14 @@ def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> It
     try:
         (stage / "new").mkdir()
         yield stage / "new"
-        written = {item.relative_to(stage / "new").as_posix() for item in (stage / "new").rglob("*") if item.is_file()}
-        names = sorted(written, key=lambda name: (name != first, name)) + sorted(set(removing) - written)
+        written = {
+            item.relative_to(stage / "new").as_posix()
+            for item in (stage / "new").rglob("*")
+            if item.is_file()
+        }
+        names = sorted(written, key=lambda name: (name != first, name)) + sorted(
+            set(removing) - written
+        )
         for parent in {(directory / name).parent for name in names} - {directory}:
             if parent.is_symlink():  # what it leads to is not ours
                 raise OSError(errno.ELOOP, f"'{parent.name}' is a link to another folder")

@@ -46,7 +46,9 @@ class Loop:
     def __init__(self, name: str, compiler: Callable[[], Any], sources: str | None):
         self._name, self._compiler, self._sources = name, compiler, sources
         self._ready: dict[tuple, Callable] = {}  # by kinds
-        self._known: dict[tuple, Callable] = {}  # and by what is quick to ask, of which several may be of the same kinds
+        self._known: dict[
+            tuple, Callable
+        ] = {}  # and by what is quick to ask, of which several may be of the same kinds
 
     def __call__(self, *arguments):
         marks = tuple(map(_mark, arguments))
@@ -60,14 +62,18 @@ class Loop:
     def _found(self, kinds: tuple) -> Callable | None:
         if self._sources is None or (linker := _linker()) is None:
             return None
-        kept = next(filter(None, (_read(folder / self._file(kinds)) for folder in _folders())), None)
+        kept = next(
+            filter(None, (_read(folder / self._file(kinds)) for folder in _folders())), None
+        )
         return linker.link(*kept) if kept else None
 
     def _compiled(self, kinds: tuple, arguments: tuple) -> Callable:
         global _spent
         start = time.process_time()
         try:
-            with waiting("fingerpad: compiling loops for this machine, once; about a minute in all"):
+            with waiting(
+                "fingerpad: compiling loops for this machine, once; about a minute in all"
+            ):
                 return self._compiled_by_numba(kinds, arguments)
         finally:
             _spent += time.process_time() - start
@@ -79,16 +85,27 @@ class Loop:
         dispatcher.compile(types := tuple(map(typeof, arguments)))
         made = dispatcher.overloads[types]
         if self._sources is not None:
-            (_, _, (code, _)), function, environment, *_ = made._reduce()  # what numba itself would keep
-            self._keep(kinds, pickle.dumps((function.llvm_cpython_wrapper_name, environment.env_name, code)))
+            (_, _, (code, _)), function, environment, *_ = (
+                made._reduce()
+            )  # what numba itself would keep
+            self._keep(
+                kinds,
+                pickle.dumps((function.llvm_cpython_wrapper_name, environment.env_name, code)),
+            )
         return made.entry_point
 
     def _keep(self, kinds: tuple, content: bytes) -> None:
         for folder in _folders():
-            with contextlib.suppress(OSError):  # somebody else's folder, a full disk: compiled anew the next time
-                write_atomically(folder / self._file(kinds), lambda path: path.write_bytes(_signed(content)))
+            with contextlib.suppress(
+                OSError
+            ):  # somebody else's folder, a full disk: compiled anew the next time
+                write_atomically(
+                    folder / self._file(kinds), lambda path: path.write_bytes(_signed(content))
+                )
                 for path in folder.glob(f"{self._name}.*.loop"):
-                    if path.name.split(".")[1] != self._made_of():  # of sources that were edited since
+                    if (
+                        path.name.split(".")[1] != self._made_of()
+                    ):  # of sources that were edited since
                         path.unlink(missing_ok=True)
                 return
 
@@ -186,19 +203,36 @@ class _Linker:
         import llvmlite.binding as llvm
 
         helpers, self._functions, runtime = map(_library, _LIBRARIES)
-        symbols = {f"numba_{name}": at for part in (helpers, self._functions) for name, at in part.c_helpers.items()}
-        symbols |= {name if name.startswith("_") else f"NRT_{name}": at for name, at in runtime.c_helpers.items()}
-        symbols |= {
-            f"PyExc_{e.__name__}": id(e) for e in vars(builtins).values() if isinstance(e, type) and issubclass(e, BaseException)
+        symbols = {
+            f"numba_{name}": at
+            for part in (helpers, self._functions)
+            for name, at in part.c_helpers.items()
         }
-        symbols |= {name: at for name, at in helpers.c_helpers.items() if llvm.address_of_symbol(name) is None}
+        symbols |= {
+            name if name.startswith("_") else f"NRT_{name}": at
+            for name, at in runtime.c_helpers.items()
+        }
+        symbols |= {
+            f"PyExc_{e.__name__}": id(e)
+            for e in vars(builtins).values()
+            if isinstance(e, type) and issubclass(e, BaseException)
+        }
+        symbols |= {
+            name: at
+            for name, at in helpers.c_helpers.items()
+            if llvm.address_of_symbol(name) is None
+        }
         for name, at in (symbols | {"_Py_NoneStruct": id(None)}).items():
             llvm.add_symbol(name, at)
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
-        relocation = "static" if platform.machine().lower() in ("x86_64", "amd64", "i686") else "default"
+        relocation = (
+            "static" if platform.machine().lower() in ("x86_64", "amd64", "i686") else "default"
+        )
         target = llvm.Target.from_default_triple()
-        self._machine = target.create_target_machine(reloc=relocation, codemodel="jitdefault", jit=True)
+        self._machine = target.create_target_machine(
+            reloc=relocation, codemodel="jitdefault", jit=True
+        )
         self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), self._machine)
         self._llvm = llvm
 
@@ -210,15 +244,23 @@ class _Linker:
         place = self._engine.get_global_value_address(environment)
         ctypes.c_void_p.from_address(place).value = id(around)
         start = self._engine.get_function_address(function)
-        return self._functions.make_function(sys.modules[__name__], "loop", "", start, around, (self, around))
+        return self._functions.make_function(
+            sys.modules[__name__], "loop", "", start, around, (self, around)
+        )
 
 
 def _library(name: str) -> ModuleType:
     """One of numba's own libraries; numba, should it be imported later, goes on with the same."""
     if name not in sys.modules:
         stem = _numba().joinpath(*name.split(".")[1:])
-        path = next(filter(Path.exists, (stem.with_name(stem.name + suffix) for suffix in EXTENSION_SUFFIXES)))
-        spec = importlib.util.spec_from_file_location(name, path, loader=ExtensionFileLoader(name, str(path)))
+        path = next(
+            filter(
+                Path.exists, (stem.with_name(stem.name + suffix) for suffix in EXTENSION_SUFFIXES)
+            )
+        )
+        spec = importlib.util.spec_from_file_location(
+            name, path, loader=ExtensionFileLoader(name, str(path))
+        )
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         sys.modules[name] = module

@@ -38,34 +38,78 @@ VARIABLES = {
     "touching_width": (("time",), "m", "touching width, the contact's without its gaps"),
     "centre_pressure": (("time",), "Pa", "contact pressure at the skin node at x = 0"),
     "peak_pressure": (("time",), "Pa", "largest nodal contact pressure"),
-    "centre_lateral_displacement": (("time",), "m", "lateral displacement of the skin node at x = 0"),
+    "centre_lateral_displacement": (
+        ("time",),
+        "m",
+        "lateral displacement of the skin node at x = 0",
+    ),
     "contact_pressure": (("time", "skin_node"), "Pa", "contact pressure, nodal"),
-    "contact_pressure_smoothed": (("time", "skin_node"), "Pa", "contact pressure, 5-point average of force over length"),
+    "contact_pressure_smoothed": (
+        ("time", "skin_node"),
+        "Pa",
+        "contact pressure, 5-point average of force over length",
+    ),
     "skin_displacement_x": (("time", "skin_node"), "m", "lateral displacement of the skin"),
     "skin_displacement_y": (("time", "skin_node"), "m", "vertical displacement of the skin"),
-    "strain_energy_density": (("time", "receptor"), "Pa", "strain energy density, total stress on instantaneous moduli"),
-    "strain_energy_long_term_moduli": (("time", "receptor"), "Pa", "strain energy density, total stress on long-term moduli"),
-    "strain_energy_half_stress_strain": (("time", "receptor"), "Pa", "strain energy density, half of total stress times strain"),
-    "strain_energy_recoverable": (("time", "receptor"), "Pa", "strain energy density of network and Maxwell springs"),
-    "strain_energy_network": (("time", "receptor"), "Pa", "strain energy density of the long-term network"),
-    "compressive_strain": (("time", "receptor"), "1", "largest compressive principal strain, 1 - stretch"),
+    "strain_energy_density": (
+        ("time", "receptor"),
+        "Pa",
+        "strain energy density, total stress on instantaneous moduli",
+    ),
+    "strain_energy_long_term_moduli": (
+        ("time", "receptor"),
+        "Pa",
+        "strain energy density, total stress on long-term moduli",
+    ),
+    "strain_energy_half_stress_strain": (
+        ("time", "receptor"),
+        "Pa",
+        "strain energy density, half of total stress times strain",
+    ),
+    "strain_energy_recoverable": (
+        ("time", "receptor"),
+        "Pa",
+        "strain energy density of network and Maxwell springs",
+    ),
+    "strain_energy_network": (
+        ("time", "receptor"),
+        "Pa",
+        "strain energy density of the long-term network",
+    ),
+    "compressive_strain": (
+        ("time", "receptor"),
+        "1",
+        "largest compressive principal strain, 1 - stretch",
+    ),
     "tensile_strain": (("time", "receptor"), "1", "largest tensile principal strain, stretch - 1"),
     "von_mises_stress": (("time", "receptor"), "Pa", "von Mises stress, Cauchy"),
-    "hydrostatic_pressure": (("time", "receptor"), "Pa", "mean compressive stress, volumetric part"),
+    "hydrostatic_pressure": (
+        ("time", "receptor"),
+        "Pa",
+        "mean compressive stress, volumetric part",
+    ),
     "dilatation": (("time", "receptor"), "1", "relative change of volume, det F - 1"),
     "leg": (("time",), "1", "leg of the motion programme"),
     "interpolated": (("time",), "1", "1 between two states that were found, 0 where one was"),
     "newton_iterations": (("time",), "1", "Newton iterations of the step"),
     "cutbacks": (("time",), "1", "halvings of the step"),
     "residual": (("time",), "1", "out-of-balance force over contact force"),
-    "complementarity_error": (("time",), "1", "sum of force times gap over total force times node spacing"),
+    "complementarity_error": (
+        ("time",),
+        "1",
+        "sum of force times gap over total force times node spacing",
+    ),
     "energy_balance_error": (("time",), "1", "work less stored and dissipated energy, over work"),
     "min_detF": (("time",), "1", "smallest det F of the body"),
     "external_work": (("time",), "J/m", "work of the indenter per contact length"),
     "stored_energy": (("time",), "J/m", "network and Maxwell-spring energy per contact length"),
     "dissipated_energy": (("time",), "J/m", "viscous dissipation per contact length"),
     "frictional_dissipation": (("time",), "J/m", "frictional dissipation per contact length"),
-    "tangential_traction": (("time", "skin_node"), "Pa", "frictional traction on the skin along the contact's tangent"),
+    "tangential_traction": (
+        ("time", "skin_node"),
+        "Pa",
+        "frictional traction on the skin along the contact's tangent",
+    ),
     "slip": (("time", "skin_node"), "m", "way of the skin node over the stimulus in the step"),
     "contact_state": (("time", "skin_node"), "1", "0 no contact, 1 sticks, 2 slips"),
 }
@@ -77,7 +121,11 @@ COORDINATES = {
     "receptor_offset": ("receptor", "m", "lateral receptor position, undeformed"),
     "skin_x": ("skin_node", "m", "lateral position of the skin node, undeformed"),
     "skin_y": ("skin_node", "m", "height of the skin node, undeformed"),
-    "skin_arc": ("skin_node", "m", "way along the undeformed skin from the apex, positive to the right"),
+    "skin_arc": (
+        "skin_node",
+        "m",
+        "way along the undeformed skin from the apex, positive to the right",
+    ),
 }
 #: what a full field holds beside displacement and mean stress: name -> (unit in files, in vtu files, factor, long name)
 ENERGIES = [name for name in VARIABLES if name.startswith("strain_energy")]
@@ -122,7 +170,8 @@ class Arrays:
         if isinstance(history, cls):
             return history
         parts = (
-            {str(k): Variable(v.dims, v.values, v.attrs) for k, v in part.items()} for part in (history.data_vars, history.coords)
+            {str(k): Variable(v.dims, v.values, v.attrs) for k, v in part.items()}
+            for part in (history.data_vars, history.coords)
         )
         return cls(*parts, history.attrs)
 
@@ -136,26 +185,43 @@ class Arrays:
     def sizes(self) -> dict[str, int]:
         """Length of each dimension."""
         parts = (*self.variables.values(), *self.coordinates.values())
-        return {name: size for part in parts for name, size in zip(part.dims, part.values.shape, strict=True)}
+        return {
+            name: size
+            for part in parts
+            for name, size in zip(part.dims, part.values.shape, strict=True)
+        }
 
     def labelled(self) -> xr.Dataset:
         """The history as what everybody else works with."""
         import xarray as xr
 
-        parts = ({k: (v.dims, v.values, v.attrs) for k, v in part.items()} for part in (self.variables, self.coordinates))
+        parts = (
+            {k: (v.dims, v.values, v.attrs) for k, v in part.items()}
+            for part in (self.variables, self.coordinates)
+        )
         return _indexed(xr.Dataset(*parts, self.attrs))
 
 
-def arrays(variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray], attributes: dict[str, Any]) -> Arrays:
+def arrays(
+    variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray], attributes: dict[str, Any]
+) -> Arrays:
     """A history from arrays named as in :data:`VARIABLES` and :data:`COORDINATES`; dict attributes become JSON."""
     made = (
         {
-            name: Variable(known[name][0], values, {"units": known[name][1], "long_name": known[name][2]})
+            name: Variable(
+                known[name][0], values, {"units": known[name][1], "long_name": known[name][2]}
+            )
             for name, values in given.items()
         }
         for known, given in ((VARIABLES, variables), (COORDINATES, coordinates))
     )
-    return Arrays(*made, {k: json.dumps(v, sort_keys=True) if isinstance(v, (dict, list)) else v for k, v in attributes.items()})
+    return Arrays(
+        *made,
+        {
+            k: json.dumps(v, sort_keys=True) if isinstance(v, (dict, list)) else v
+            for k, v in attributes.items()
+        },
+    )
 
 
 def _indexed(history: xr.Dataset) -> xr.Dataset:
@@ -170,7 +236,16 @@ def skin_arc(x: np.ndarray, y: np.ndarray, apex: int) -> np.ndarray:
 
 
 def add_snapshots(
-    history: Arrays, times, points, cells, region, displacement, pressure, regions, indenter=None, fields=None
+    history: Arrays,
+    times,
+    points,
+    cells,
+    region,
+    displacement,
+    pressure,
+    regions,
+    indenter=None,
+    fields=None,
 ) -> None:
     """Add full fields: ``snapshot_displacement`` (snapshot, node, 2) m and ``snapshot_pressure`` (snapshot, element) Pa.
 
@@ -184,13 +259,28 @@ def add_snapshots(
         "element_nodes": (("element", "element_node"), cells, "1", "nodes of each element"),
         "element_region": ("element", region, "1", layers),
         "snapshot_displacement": (("snapshot", "node", "axis"), displacement, "m", "displacement"),
-        "snapshot_pressure": (("snapshot", "element"), pressure, "Pa", "mean stress kappa (J - 1), element mean"),
+        "snapshot_pressure": (
+            ("snapshot", "element"),
+            pressure,
+            "Pa",
+            "mean stress kappa (J - 1), element mean",
+        ),
     }
     if indenter is not None:
-        found["snapshot_indenter"] = (("snapshot", "outline_point", "axis"), indenter, "m", "outline of the stimulus")
+        found["snapshot_indenter"] = (
+            ("snapshot", "outline_point", "axis"),
+            indenter,
+            "m",
+            "outline of the stimulus",
+        )
     for name, values in (fields or {}).items():
         dims = ("snapshot", "element", *((f"component_of_{name}",) if values.ndim == 3 else ()))
-        found[f"snapshot_{name}"] = (dims, values, FIELDS[name][0], f"{FIELDS[name][3]}, middle of the element")
+        found[f"snapshot_{name}"] = (
+            dims,
+            values,
+            FIELDS[name][0],
+            f"{FIELDS[name][3]}, middle of the element",
+        )
     for name, (dims, values, units, what) in found.items():
         history.variables[name] = Variable(dims, values, {"units": units, "long_name": what})
 
@@ -201,7 +291,17 @@ def provenance() -> dict[str, Any]:
     from importlib.metadata import PackageNotFoundError, version
 
     packages = {}
-    for name in ("fingerpad", "numpy", "scipy", "numba", "scikit-fem", "gmsh", "meshio", "mkl", "xarray"):
+    for name in (
+        "fingerpad",
+        "numpy",
+        "scipy",
+        "numba",
+        "scikit-fem",
+        "gmsh",
+        "meshio",
+        "mkl",
+        "xarray",
+    ):
         try:
             packages[name] = version(name)
         except PackageNotFoundError:
@@ -267,12 +367,19 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
     history = Arrays.of(history)
     attributes, leg_of = history.attrs, history["leg"].values
     numbers = np.unique(leg_of[1:])
-    errors = json.loads(attributes.get("estimated_error_of_legs", "[]")) or [float(attributes["estimated_error"])] * len(numbers)
-    cost, length = json.loads(history.attrs["cost"]), json.loads(history.attrs["scene"])["specimen"]["contact_length"]
+    errors = json.loads(attributes.get("estimated_error_of_legs", "[]")) or [
+        float(attributes["estimated_error"])
+    ] * len(numbers)
+    cost, length = (
+        json.loads(history.attrs["cost"]),
+        json.loads(history.attrs["scene"])["specimen"]["contact_length"],
+    )
     places = [
         {"depth_mm": round(depth * 1e3, 9), "offset_mm": round(offset * 1e3, 9)}
         for depth, offset in zip(
-            history["receptor_depth"].values.tolist(), history["receptor_offset"].values.tolist(), strict=True
+            history["receptor_depth"].values.tolist(),
+            history["receptor_offset"].values.tolist(),
+            strict=True,
         )
     ]
     legs = []
@@ -293,7 +400,10 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
             "force_gf": force * length / 9.80665e-3,
             "tangential_force_N_per_m": at_end("tangential_force"),
             "contact_width_mm": at_end("contact_width") * 1e3,
-            "touching_width_mm": at_end("touching_width" if "touching_width" in history else "contact_width") * 1e3,
+            "touching_width_mm": at_end(
+                "touching_width" if "touching_width" in history else "contact_width"
+            )
+            * 1e3,
             "peak_pressure_Pa": at_end("peak_pressure"),
             "peak_pressure_unbounded_at": unbounded,
             "centre_pressure_Pa": at_end("centre_pressure"),
@@ -301,12 +411,19 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
             "stroke_distance_mm": at_end("stroke_distance") * 1e3,
         }
         if len(places) > MOST_RECEPTORS:
-            entry["receptors"] = f"{len(places)} receptor points: their strain energies are in the history"
+            entry["receptors"] = (
+                f"{len(places)} receptor points: their strain energies are in the history"
+            )
         else:
             energies = {_energy_key(name): history[name].values[end].tolist() for name in ENERGIES}
-            each = [dict(zip(energies, values, strict=True)) for values in zip(*energies.values(), strict=True)]
+            each = [
+                dict(zip(energies, values, strict=True))
+                for values in zip(*energies.values(), strict=True)
+            ]
             entry |= energies
-            entry["receptors"] = [place | values for place, values in zip(places, each, strict=True)]
+            entry["receptors"] = [
+                place | values for place, values in zip(places, each, strict=True)
+            ]
         legs.append(entry)
     run = {
         "steps": states_found(history),
@@ -326,10 +443,20 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
         missed = attributes["tolerance"]
         run |= {"asked_error": asked, "tolerance_met": not missed, "tolerance_missed": missed}
         run["runs"] = json.loads(attributes["runs"])
-    how, notes = (json.loads(history.attrs.get(name, empty)) for name, empty in (("plan", "{}"), ("notes", "[]")))
-    run |= {key: value for key, value in how.get("discretisation", {}).items() if key.startswith("profile_")}
+    how, notes = (
+        json.loads(history.attrs.get(name, empty))
+        for name, empty in (("plan", "{}"), ("notes", "[]"))
+    )
+    run |= {
+        key: value
+        for key, value in how.get("discretisation", {}).items()
+        if key.startswith("profile_")
+    }
     if notes:
-        run |= {"contact_reached_profile_end": any("reached the end" in note for note in notes), "notes": notes}
+        run |= {
+            "contact_reached_profile_end": any("reached the end" in note for note in notes),
+            "notes": notes,
+        }
     totals = {"legs": legs, "run": run}
     if "impulse_rate" in history:
         totals["responses"] = _responses(history, places)
@@ -340,7 +467,9 @@ def _responses(history: Arrays, places: list[dict[str, float]]) -> list[dict[str
     """What each receptor sends: how many impulses, the highest rate, and when the first impulse comes (None: never)."""
     if len(places) > MOST_RECEPTORS:
         return f"{len(places)} receptor points: their impulses are in the history"
-    rates, counts, times = (history[name].values for name in ("impulse_rate", "impulses", "impulse_time"))
+    rates, counts, times = (
+        history[name].values for name in ("impulse_rate", "impulses", "impulse_time")
+    )
     out = []
     for kind, afferent in enumerate(history["afferent"].values.tolist()):
         for number, place in enumerate(places):
@@ -379,22 +508,34 @@ def _write_netcdf(history: Arrays, path: Path) -> None:
         for name, size in history.sizes.items():
             file.createDimension(name, size)
         file.setncatts(history.attrs)
-        beside = {name: set(each.dims) for name, each in history.coordinates.items() if each.dims != (name,)}
+        beside = {
+            name: set(each.dims)
+            for name, each in history.coordinates.items()
+            if each.dims != (name,)
+        }
         made = {}
         for name, each in (history.variables | history.coordinates).items():
             text = each.values.dtype.kind in "UO"
-            packed = "zlib" if each.values.ndim > 1 and not text and _mostly_zero(each.values) else None
+            packed = (
+                "zlib" if each.values.ndim > 1 and not text and _mostly_zero(each.values) else None
+            )
             fill = np.nan if each.values.dtype.kind == "f" else None
             kind = str if text else each.values.dtype
-            made[name] = file.createVariable(name, kind, each.dims, packed, complevel=4, fill_value=fill)
+            made[name] = file.createVariable(
+                name, kind, each.dims, packed, complevel=4, fill_value=fill
+            )
             made[name].setncatts(each.attrs)
-            if name in history.variables:  # the convention of the CF metadata, by which xarray tells coordinates
+            if (
+                name in history.variables
+            ):  # the convention of the CF metadata, by which xarray tells coordinates
                 belong = sorted(other for other, dims in beside.items() if dims <= set(each.dims))
                 if belong:
                     made[name].setncattr("coordinates", " ".join(belong))
         # all after all, as a file is laid out anew at each change from the one to the other: a third of the time
         for name, each in (history.variables | history.coordinates).items():
-            made[name][...] = each.values.astype(object) if each.values.dtype.kind in "UO" else each.values
+            made[name][...] = (
+                each.values.astype(object) if each.values.dtype.kind in "UO" else each.values
+            )
 
 
 def _mostly_zero(values: np.ndarray) -> bool:
@@ -418,10 +559,14 @@ def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
         raise
     except (OSError, RuntimeError, ValueError, KeyError) as error:
         why = " ".join(str(error).split())
-        raise ResultError(f"{path}: cut off, or no NetCDF file; remove it and run again ({why})") from None
+        raise ResultError(
+            f"{path}: cut off, or no NetCDF file; remove it and run again ({why})"
+        ) from None
     for name in holds:
         if name not in found.variables:
-            raise ResultError(f"{path}: holds no {name}, so is no result of this kind; remove it and run again")
+            raise ResultError(
+                f"{path}: holds no {name}, so is no result of this kind; remove it and run again"
+            )
     return found
 
 
@@ -433,7 +578,12 @@ def _loaded(path: str | Path) -> xr.Dataset:
     with netCDF4.Dataset(path) as file:
         file.set_auto_maskandscale(False)
         found = xr.Dataset(
-            {name: (each.dimensions, each[...], each.__dict__) for name, each in file.variables.items()}, None, file.__dict__
+            {
+                name: (each.dimensions, each[...], each.__dict__)
+                for name, each in file.variables.items()
+            },
+            None,
+            file.__dict__,
         )
     return xr.decode_cf(found).load()
 
@@ -467,7 +617,13 @@ def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]
     paths, parts = [], []
     for k, time in enumerate(times):
         now = history.isel(snapshot=k)
-        state = history.isel(time=int(np.flatnonzero(np.isclose(history.time.values, time, rtol=1e-9, atol=NO_TIME / 2))[-1]))
+        state = history.isel(
+            time=int(
+                np.flatnonzero(np.isclose(history.time.values, time, rtol=1e-9, atol=NO_TIME / 2))[
+                    -1
+                ]
+            )
+        )
         on_skin = {"contact pressure (kPa)": state.contact_pressure}
         if "tangential_traction" in state:
             on_skin["frictional traction (kPa)"] = state.tangential_traction
@@ -475,13 +631,18 @@ def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]
         for name, values in on_skin.items():
             point_data[name] = np.zeros(nodes)
             point_data[name][skin] = values.values * 1e-3
-        cell_data = {"mean stress (kPa)": now.snapshot_pressure.values * 1e-3, "layer": region.values.astype(np.int32)}
+        cell_data = {
+            "mean stress (kPa)": now.snapshot_pressure.values * 1e-3,
+            "layer": region.values.astype(np.int32),
+        }
         cell_data[f"layer ({region.attrs['long_name']})"] = cell_data["layer"]
         for name, (_, unit, factor, _) in FIELDS.items():
             if f"snapshot_{name}" in now:
                 cell_data |= _named(name, unit, factor * now[f"snapshot_{name}"].values)
         blocks = {name: [values] for name, values in cell_data.items()}
-        field = meshio.Mesh(_in_space(position * 1e3), [(kind, history.element_nodes.values)], point_data, blocks)
+        field = meshio.Mesh(
+            _in_space(position * 1e3), [(kind, history.element_nodes.values)], point_data, blocks
+        )
         paths.append(directory / f"snapshot_{k}.vtu")
         made = {paths[-1].name: field}
         if "snapshot_indenter" in now:
@@ -490,9 +651,17 @@ def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]
             line = np.column_stack([np.arange(len(outline) - 1), np.arange(1, len(outline))])
             made[f"indenter_{k}.vtu"] = meshio.Mesh(_in_space(outline), [("line", line)])
         for part, (name, mesh) in enumerate(made.items()):
-            write_atomically(directory / name, lambda partial, mesh=mesh: mesh.write(partial, file_format="vtu"))
+            write_atomically(
+                directory / name, lambda partial, mesh=mesh: mesh.write(partial, file_format="vtu")
+            )
             parts.append(f'<DataSet timestep="{time!r}" part="{part}" file="{name}"/>')
-    film = "\n".join(['<VTKFile type="Collection" version="0.1"><Collection>', *parts, "</Collection></VTKFile>\n"])
+    film = "\n".join(
+        [
+            '<VTKFile type="Collection" version="0.1"><Collection>',
+            *parts,
+            "</Collection></VTKFile>\n",
+        ]
+    )
     write_text(directory / "snapshots.pvd", film)
     frames = [{"name": path.name, "time": time} for path, time in zip(paths, times, strict=True)]
     series = {"file-series-version": "1.0", "files": frames}
@@ -512,5 +681,8 @@ def _named(name: str, unit: str, values: np.ndarray) -> dict[str, np.ndarray]:
         zero = np.zeros_like(xx)
         return {f"{label} ({unit})": np.column_stack([xx, xy, zero, xy, yy, zero, zero, zero, zz])}
     if name == "principal_strains":
-        return {f"smallest principal strain ({unit})": values[:, 0], f"largest principal strain ({unit})": values[:, 1]}
+        return {
+            f"smallest principal strain ({unit})": values[:, 0],
+            f"largest principal strain ({unit})": values[:, 1],
+        }
     return {f"{label} ({unit})": values}

@@ -19,7 +19,15 @@ from fingerpad.mechanics.finite_strain import FiniteStrainBody
 from fingerpad.mechanics.pressure import checkerboard, smoothed_pressure
 from fingerpad.mechanics.small_strain import SmallStrainBody
 from fingerpad.mechanics.space import PlaneStrain, Space
-from fingerpad.mechanics.stepping import FOLDED, NewtonSettings, NonConvergence, QuasiStatic, Record, Skin, hard_here
+from fingerpad.mechanics.stepping import (
+    FOLDED,
+    NewtonSettings,
+    NonConvergence,
+    QuasiStatic,
+    Record,
+    Skin,
+    hard_here,
+)
 from fingerpad.mechanics.strides import Between
 from fingerpad.planning.bounds import PlanError
 from fingerpad.planning.effects import EFFECTS
@@ -28,9 +36,23 @@ from fingerpad.planning.hardness import hard_in
 from fingerpad.planning.plan import Plan, plan, refined
 from fingerpad.planning.rules import RULES
 from fingerpad.planning.schedule import schedule
-from fingerpad.planning.unbounded import OF_STROKES, Unbounded, ends_unbounded, in_words, seen_corners
+from fingerpad.planning.unbounded import (
+    OF_STROKES,
+    Unbounded,
+    ends_unbounded,
+    in_words,
+    seen_corners,
+)
 from fingerpad.receptors.material_points import MaterialPoints
-from fingerpad.results import FIELDS, Arrays, add_snapshots, arrays, peak_memory_MB, provenance, skin_arc
+from fingerpad.results import (
+    FIELDS,
+    Arrays,
+    add_snapshots,
+    arrays,
+    peak_memory_MB,
+    provenance,
+    skin_arc,
+)
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
@@ -52,7 +74,9 @@ _NO_CONTACT = 1e-5  # m, half-width that stands for none
 _UNBALANCED = 0.03  # of the work, noted as missing energy beyond it; of a press at once the work is not known as well
 _SQUEEZED = 0.1  # det F, noted below it
 _UNEVEN = 0.15  # of the peak pressure, r.m.s. from node to node, noted beyond it
-_STIFF_IN_BULK = 200.0  # bulk over shear modulus, beyond which single precision does not tell them apart
+_STIFF_IN_BULK = (
+    200.0  # bulk over shear modulus, beyond which single precision does not tell them apart
+)
 
 
 def simulate(
@@ -99,7 +123,13 @@ def solve(
         runs = [_told(history)]
         why_not = "a mesh was given" if mesh is not None else ""
         while mesh is None:
-            following = refined(scene, chosen, history.attrs["estimated_error"], history.attrs["narrowest_half_width"], len(runs))
+            following = refined(
+                scene,
+                chosen,
+                history.attrs["estimated_error"],
+                history.attrs["narrowest_half_width"],
+                len(runs),
+            )
             if isinstance(following, str):
                 why_not = following
                 break
@@ -135,7 +165,10 @@ def _labelled(made: Callable[[], Arrays]) -> xr.Dataset:
 
 def _told(history: Arrays) -> dict[str, Any]:
     """What is kept of a run that may be run again: its nodes and its own estimate of its error."""
-    return {"nodes": json.loads(history.attrs["cost"])["nodes"], "estimated_error": history.attrs["estimated_error"]}
+    return {
+        "nodes": json.loads(history.attrs["cost"])["nodes"],
+        "estimated_error": history.attrs["estimated_error"],
+    }
 
 
 class Simulation:
@@ -155,16 +188,23 @@ class Simulation:
         self.skin = self._skin()
         self.skin_ends, self.corners = skin_ends(self.mesh), self.profile.corners()
         shear, bulk = (
-            modulus[np.isin(self.mesh.cells, self.skin.nodes).any(axis=1)] for modulus in (self.body.shear, self.body.bulk)
+            modulus[np.isin(self.mesh.cells, self.skin.nodes).any(axis=1)]
+            for modulus in (self.body.shear, self.body.bulk)
         )
         self.modulus = float((4 * shear * (3 * bulk + shear) / (3 * bulk + 4 * shear)).max())
-        self.fields = MaterialPoints.centres(self.body, instantaneous if self.prony else None) if fields else None
+        self.fields = (
+            MaterialPoints.centres(self.body, instantaneous if self.prony else None)
+            if fields
+            else None
+        )
         friction = scene.friction if plan.effects["friction"].on else None
         observers = (self.receptors, self.fields) if fields else (self.receptors,)
         soft = float((self.body.bulk / self.body.shear).max()) < _STIFF_IN_BULK
         tolerance = {"force_tolerance": plan.newton_tolerance} if plan.newton_tolerance else {}
         settings = NewtonSettings(single=soft, **tolerance)
-        self.stepper = QuasiStatic(self.body, self.skin, self.profile, settings, observers, friction=friction)
+        self.stepper = QuasiStatic(
+            self.body, self.skin, self.profile, settings, observers, friction=friction
+        )
         self._require_room()
         for name, effect in EFFECTS.items():
             if effect.compose and name in plan.effects and plan.effects[name].on:
@@ -177,24 +217,38 @@ class Simulation:
             fixed[np.unique(mesh.curves[name])] = True
         if mesh.half:
             fixed[np.unique(mesh.curves["symmetry"]), 0] = True
-        space = Space(mesh.points, mesh.cells, mesh.element, fixed, plan.element, PlaneStrain(specimen.contact_length))
+        space = Space(
+            mesh.points,
+            mesh.cells,
+            mesh.element,
+            fixed,
+            plan.element,
+            PlaneStrain(specimen.contact_length),
+        )
         layers = [specimen.material(name) for name in mesh.regions]
         known = moduli(
-            [layer.youngs_modulus for layer in layers], [layer.poisson_ratio for layer in layers], self.prony, specimen.moduli
+            [layer.youngs_modulus for layer in layers],
+            [layer.poisson_ratio for layer in layers],
+            self.prony,
+            specimen.moduli,
         )
         shear = known.shear_long_term if plan.state == "long_term" else known.shear_instantaneous
         prony = self.prony if plan.effects["viscoelasticity"].on else None
         laws = assign([(layer.law.law, layer.law.constants) for layer in layers], mesh.region)
         args = (space, shear[mesh.region], known.bulk[mesh.region], prony)
         if plan.effects["finite_strain"].on:
-            body = FiniteStrainBody(*args, pointwise=EDGE_STIFFNESS if self.profile.singular else None, laws=laws)
+            body = FiniteStrainBody(
+                *args, pointwise=EDGE_STIFFNESS if self.profile.singular else None, laws=laws
+            )
         else:
             body = SmallStrainBody(*args, laws=laws)
         return body, known.shear_instantaneous[mesh.region]
 
     def _receptors(self, instantaneous):
         receptors = self.scene.outputs.receptors
-        depth, offset = (grid.ravel() for grid in np.meshgrid(receptors.depths, receptors.offsets, indexing="ij"))
+        depth, offset = (
+            grid.ravel() for grid in np.meshgrid(receptors.depths, receptors.offsets, indexing="ij")
+        )
         ridges = self.scene.specimen.ridges if self.plan.effects["ridges"].on else None
         if ridges is not None and ridges.outer is not None:
             points = below_outline(self.scene.specimen.outline, depth, offset)
@@ -203,7 +257,9 @@ class Simulation:
         if self.mesh.half:
             points = np.abs(points * [1, 0]) + points * [0, 1]
         self.depth, self.offset = depth, offset
-        return MaterialPoints(self.body, points, instantaneous if self.prony else None, self.mesh.half)
+        return MaterialPoints(
+            self.body, points, instantaneous if self.prony else None, self.mesh.half
+        )
 
     def _skin(self):
         chain = skin_chain(self.mesh)
@@ -218,7 +274,9 @@ class Simulation:
     def _require_room(self):
         """The stimulus must not come down on what is held: ends of the skin that are part of a fixed curve."""
         mesh = self.mesh
-        held = np.intersect1d(self.skin.nodes, np.concatenate([np.unique(mesh.curves[name]) for name in mesh.fixed]))
+        held = np.intersect1d(
+            self.skin.nodes, np.concatenate([np.unique(mesh.curves[name]) for name in mesh.fixed])
+        )
         if not len(held):
             return
         depth = max(leg.depth or 0.0 for leg in self.scene.motion)
@@ -252,13 +310,26 @@ class Simulation:
             if progress:
                 counts["iterations"] += record.iterations
                 counts["cutbacks"] += record.halvings
-                width = 1e3 * np.ptp(self._edges(record)) / self.share if record.nodal_force.any() else 0.0
-                progress({"time_s": record.time, "end_time_s": total, "contact_width_mm": float(width)} | counts)
+                width = (
+                    1e3 * np.ptp(self._edges(record)) / self.share
+                    if record.nodal_force.any()
+                    else 0.0
+                )
+                progress(
+                    {"time_s": record.time, "end_time_s": total, "contact_width_mm": float(width)}
+                    | counts
+                )
 
         try:
-            records = self.stepper.run(self.steps(), after, self.plan.between and Between(*self.plan.between))
+            records = self.stepper.run(
+                self.steps(), after, self.plan.between and Between(*self.plan.between)
+            )
         except (NonConvergence, KeyboardInterrupt) as stop:
-            stop.dataset = self._history(done, states[: len(done) + 1], snapshots, complete=False) if done else None
+            stop.dataset = (
+                self._history(done, states[: len(done) + 1], snapshots, complete=False)
+                if done
+                else None
+            )
             stop.hard = hard_in(self.scene)
             raise
         if self.fields is not None and not snapshots and not wanted:
@@ -272,7 +343,11 @@ class Simulation:
         for name, values in sampled.items():
             if not np.isfinite(values).all():
                 depth = 1e6 * self.depth[int(np.flatnonzero(~np.isfinite(values))[0])]
-                raise NonConvergence(before, f"an element turns inside out at the receptor {depth:.4g} um deep ({name})", FOLDED)
+                raise NonConvergence(
+                    before,
+                    f"an element turns inside out at the receptor {depth:.4g} um deep ({name})",
+                    FOLDED,
+                )
         return sampled
 
     def _present(self):
@@ -298,18 +373,31 @@ class Simulation:
         error left.
         """
         width, force = np.asarray(width[1:]), np.array([record.force for record in records])
-        touching = np.array([np.count_nonzero(record.nodal_force) / self.share for record in records])
+        touching = np.array(
+            [np.count_nonzero(record.nodal_force) / self.share for record in records]
+        )
         ends = _leg_ends(records)
         lost = self._lost_work(records)
-        stroke = stroke_of(self.scene, self.profile.uneven) if any(record.distance for record in records) else None
-        own = {k: max(self._error_at(width[k], stroke), lost, 0.5 if touching[k] < 4 else 0.0) for k in ends}
+        stroke = (
+            stroke_of(self.scene, self.profile.uneven)
+            if any(record.distance for record in records)
+            else None
+        )
+        own = {
+            k: max(self._error_at(width[k], stroke), lost, 0.5 if touching[k] < 4 else 0.0)
+            for k in ends
+        }
         legs = []
         for k in ends:
             largest = int(np.argmax(force[: k + 1]))
             unloaded = force[k] < _UNLOADED * force[largest] and width[k] < width[largest]
             legs.append(own[k] * width[k] / width[largest] if unloaded else own[k])
-        widths = np.unique(width[width > 0])  # the law is smooth: some of a thousand tell the largest error of all
-        some = widths[np.unique(np.linspace(0, len(widths) - 1, min(len(widths), _WIDTHS)).astype(int))]
+        widths = np.unique(
+            width[width > 0]
+        )  # the law is smooth: some of a thousand tell the largest error of all
+        some = widths[
+            np.unique(np.linspace(0, len(widths) - 1, min(len(widths), _WIDTHS)).astype(int))
+        ]
         beside = [self._error_at(each, stroke) * each / width.max() for each in some]
         judged = [k for k, error in zip(ends, legs, strict=True) if error == own[k]]
         narrowest = min((width[k] for k in judged), default=0.0)
@@ -326,12 +414,27 @@ class Simulation:
         half_width = min(width / 2, plan.contact.narrowest or np.inf)
         around = plan.mesh_size and plan.mesh_size.skin_edge
         steps = plan.states_per_leg if plan.timed or plan.strokes else None
-        edge, half_width, bumpy = plan.contact_edge, half_width or _NO_CONTACT, self.scene.stimulus.irregular
+        edge, half_width, bumpy = (
+            plan.contact_edge,
+            half_width or _NO_CONTACT,
+            self.scene.stimulus.irregular,
+        )
         if plan.mesh_size is None:
-            own = own_errors(plan.element, edge, half_width, plan.receptor_height, steps, stroke, rules=RULES, bumpy=bumpy)
+            own = own_errors(
+                plan.element,
+                edge,
+                half_width,
+                plan.receptor_height,
+                steps,
+                stroke,
+                rules=RULES,
+                bumpy=bumpy,
+            )
             found = max(own.values())
         else:
-            found = estimated_error(edge, half_width, steps, stroke, around, rules=RULES, bumpy=bumpy)
+            found = estimated_error(
+                edge, half_width, steps, stroke, around, rules=RULES, bumpy=bumpy
+            )
         return max(found, plan.least_error) + plan.small_strain_error + plan.surface.error
 
     def _unbounded(self, record: Record) -> Unbounded:
@@ -347,33 +450,55 @@ class Simulation:
         else:
             pressure, half_width = (record.nodal_force / record.length).max(), np.ptp(x) / 2
             there = slice(*np.searchsorted(self.corners[:, 0], [x.min() - near, x.max() + near]))
-            corners = seen_corners(self.corners[there], self.modulus, pressure, self.skin.spacing, half_width)
-        corners = corners[[np.abs(x - corner).min() <= near for corner in corners]] if len(corners) else corners
+            corners = seen_corners(
+                self.corners[there], self.modulus, pressure, self.skin.spacing, half_width
+            )
+        corners = (
+            corners[[np.abs(x - corner).min() <= near for corner in corners]]
+            if len(corners)
+            else corners
+        )
         places = list(in_words(self.profile, corners))
         for node, angle in self.skin_ends:
             if node in on and ends_unbounded(angle, self.stepper.friction is not None):
-                places.append(f"the end of the skin at x = {self.mesh.points[node, 0] * 1e3:.4g} mm")
+                places.append(
+                    f"the end of the skin at x = {self.mesh.points[node, 0] * 1e3:.4g} mm"
+                )
         return Unbounded(tuple(places), bool(np.any(np.abs(corners - record.distance) <= 2 * near)))
 
     def _lost_work(self, records) -> float:
-        missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
+        missing = [
+            record.work - record.energies[0] - record.energies[2] - record.frictional
+            for record in records
+        ]
         drift = [
             abs(now - before)
-            for now, before, record, last in zip(missing[1:], missing, records[1:], records, strict=False)
+            for now, before, record, last in zip(
+                missing[1:], missing, records[1:], records, strict=False
+            )
             if record.leg == last.leg and self.scene.motion[record.leg].strokes
         ]
-        return sum(drift) / max((abs(record.work) for record in records), default=1.0) if drift else 0.0
+        return (
+            sum(drift) / max((abs(record.work) for record in records), default=1.0)
+            if drift
+            else 0.0
+        )
 
     def _doubts(self, records, pressures) -> Iterator[str]:
         """What should make a person doubt the states that were found."""
-        missing = [record.work - record.energies[0] - record.energies[2] - record.frictional for record in records]
+        missing = [
+            record.work - record.energies[0] - record.energies[2] - record.frictional
+            for record in records
+        ]
         missing = np.abs(missing).max() / max(max(abs(record.work) for record in records), 1e-300)
         least = min(record.smallest_jacobian for record in records)
         if self.plan.timed and missing > _UNBALANCED and self.stepper.external is None:
             yield f"the energy found is off the work that was done by up to {missing:.1%}: more steps or a finer mesh will tell"
         if least < _SQUEEZED and not self.body.geometrically_linear:
             yield f"an element keeps {least:.1%} of its volume at one point: a finer mesh, or a fillet, will tell"
-        uneven = max((board for each in pressures if np.isfinite(board := checkerboard(*each))), default=0.0)
+        uneven = max(
+            (board for each in pressures if np.isfinite(board := checkerboard(*each))), default=0.0
+        )
         if uneven > _UNEVEN and not any(self.unbounded):
             yield f"pressure goes up and down from node to node, by {uneven:.0%} of its peak (r.m.s.): a finer mesh will tell"
         if self.stepper.wavered:
@@ -386,11 +511,20 @@ class Simulation:
         """
         doubts, hard = list(self._doubts(records, pressures)), hard_in(self.scene)
         doubts += [f"or try {hard_here(hard)}"] if doubts and hard else []
-        notes = [*doubts, *self.scene.stimulus.notes, *(note for note in self.plan.surface.notes if "expected" not in note)]
+        notes = [
+            *doubts,
+            *self.scene.stimulus.notes,
+            *(note for note in self.plan.surface.notes if "expected" not in note),
+        ]
         for record in records:
             on = self.skin.nodes[record.nodal_force > 0]
             x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance
-            over = np.array([self.profile.known[0] - x.min(initial=np.inf), x.max(initial=-np.inf) - self.profile.known[1]])
+            over = np.array(
+                [
+                    self.profile.known[0] - x.min(initial=np.inf),
+                    x.max(initial=-np.inf) - self.profile.known[1],
+                ]
+            )
             if over.max() > -self.plan.contact_edge:
                 end = self.profile.known[int(over.argmax())]
                 return [
@@ -403,7 +537,11 @@ class Simulation:
 
     def _full_field(self, record: Record) -> dict[str, np.ndarray]:
         """What a snapshot holds of the body that is solved, and the outline of the stimulus."""
-        field = {"displacement": record.displacement, "pressure": self._element_pressure(), "indenter": self._outline(record)}
+        field = {
+            "displacement": record.displacement,
+            "pressure": self._element_pressure(),
+            "indenter": self._outline(record),
+        }
         if self.fields is not None:
             found = self.fields.sample(self.body) | self.fields.stress_and_strain(self.body)
             field |= {name: found[name] for name in FIELDS}
@@ -439,14 +577,37 @@ class Simulation:
         unfold = _Unfolding(self.whole, self.mesh, self.skin.nodes)
         count = len(records) + 1
         chain = skin_chain(self.whole)
-        out = {name: np.zeros(count) for name in (
-            "force", "tangential_force", "indentation_depth", "contact_width", "touching_width", "centre_pressure",
-            "peak_pressure", "centre_lateral_displacement", "residual", "complementarity_error", "energy_balance_error",
-            "external_work", "stored_energy", "dissipated_energy", "frictional_dissipation", "stroke_distance",
-        )}  # fmt: skip
-        out |= {name: np.zeros(count, np.int32) for name in ("leg", "newton_iterations", "cutbacks")}
+        out = {
+            name: np.zeros(count)
+            for name in (
+                "force",
+                "tangential_force",
+                "indentation_depth",
+                "contact_width",
+                "touching_width",
+                "centre_pressure",
+                "peak_pressure",
+                "centre_lateral_displacement",
+                "residual",
+                "complementarity_error",
+                "energy_balance_error",
+                "external_work",
+                "stored_energy",
+                "dissipated_energy",
+                "frictional_dissipation",
+                "stroke_distance",
+            )
+        }
+        out |= {
+            name: np.zeros(count, np.int32) for name in ("leg", "newton_iterations", "cutbacks")
+        }
         out["min_detF"] = np.ones(count)
-        for name in ("contact_pressure", "contact_pressure_smoothed", "skin_displacement_x", "skin_displacement_y"):
+        for name in (
+            "contact_pressure",
+            "contact_pressure_smoothed",
+            "skin_displacement_x",
+            "skin_displacement_y",
+        ):
             out[name] = np.zeros((count, len(chain)))
         if self.stepper.friction is not None:
             out |= {name: np.zeros((count, len(chain))) for name in ("tangential_traction", "slip")}
@@ -462,7 +623,8 @@ class Simulation:
                 "tangential_force": 0.0 if self.mesh.half else record.tangential_force,
                 "indentation_depth": record.depth,
                 "contact_width": max(np.nan_to_num(edges[1] - edges[0]), 0.0) / self.share,
-                "touching_width": max(np.nan_to_num(edges[1] - edges[0] - self._gaps(record)), 0.0) / self.share,
+                "touching_width": max(np.nan_to_num(edges[1] - edges[0] - self._gaps(record)), 0.0)
+                / self.share,
                 "residual": record.residual,
                 "complementarity_error": record.complementarity,
                 "energy_balance_error": record.energy_error,
@@ -482,7 +644,10 @@ class Simulation:
             }
             if record.state is not None:
                 row["tangential_traction"] = unfold.skin(record.tangential / length, odd=True)
-                row |= {"slip": unfold.skin(record.slip, odd=True), "contact_state": unfold.skin(record.state)}
+                row |= {
+                    "slip": unfold.skin(record.slip, odd=True),
+                    "contact_state": unfold.skin(record.state),
+                }
             for name, value in row.items():
                 out[name][k] = value
             out["peak_pressure"][k] = out["contact_pressure"][k].max()
@@ -491,9 +656,14 @@ class Simulation:
         for name in states[0]:
             out[name] = np.array([state[name] for state in states])
         widths = out["contact_width"]
-        pressures = [(out["contact_pressure"][k + 1], out["contact_pressure_smoothed"][k + 1]) for k in _leg_ends(records)]
+        pressures = [
+            (out["contact_pressure"][k + 1], out["contact_pressure_smoothed"][k + 1])
+            for k in _leg_ends(records)
+        ]
         time_found = np.array([0.0] + [record.time for record in records])
-        out, times = at_outputs(out, time_found, records, self.whole.points[chain, 0], apex, self.mesh.half)
+        out, times = at_outputs(
+            out, time_found, records, self.whole.points[chain, 0], apex, self.mesh.half
+        )
         coordinates = {
             "time": apart(times),
             "receptor_depth": self.depth,
@@ -503,7 +673,9 @@ class Simulation:
             "skin_arc": skin_arc(*self.whole.points[chain].T, apex),
         }
         self.unbounded = [self._unbounded(record) for record in records]
-        worst = max(self.unbounded, key=lambda each: (each.centre, len(each.text)), default=Unbounded())
+        worst = max(
+            self.unbounded, key=lambda each: (each.centre, len(each.text)), default=Unbounded()
+        )
         once = compiling() - self.compiling  # for the first of all simulations on these elements
         cost = {
             "cpu_s": round(time.process_time() - self.cpu - once, 4),
@@ -528,14 +700,21 @@ class Simulation:
                 "error_covers": worst.covers + self.plan.strokes * OF_STROKES,
                 "singular": int(bool(worst)),
                 "unbounded_at": worst.text,
-                "unbounded_at_of_legs": json.dumps([self.unbounded[k].text for k in _leg_ends(records)]),
+                "unbounded_at_of_legs": json.dumps(
+                    [self.unbounded[k].text for k in _leg_ends(records)]
+                ),
                 "notes": self._notes(records, pressures),
                 "provenance": provenance(),
             },
         )
-        history["time"].attrs["comment"] = f"states of a leg that takes no time stand {INSTANT:g} s apart"
+        history["time"].attrs["comment"] = (
+            f"states of a leg that takes no time stand {INSTANT:g} s apart"
+        )
         if snapshots:
-            found = {name: [field[name] for field in snapshots.values()] for name in next(iter(snapshots.values()))}
+            found = {
+                name: [field[name] for field in snapshots.values()]
+                for name in next(iter(snapshots.values()))
+            }
             add_snapshots(
                 history,
                 [history["time"].values[_last(out["leg"], times, *key)] for key in snapshots],
@@ -546,7 +725,10 @@ class Simulation:
                 np.array([unfold.elements(p) for p in found.pop("pressure")]),
                 self.whole.regions,
                 np.array(found.pop("indenter")),
-                {name: np.array([unfold.elements(values, name) for values in each]) for name, each in found.items()},
+                {
+                    name: np.array([unfold.elements(values, name) for values in each])
+                    for name, each in found.items()
+                },
             )
         wanted = self.scene.outputs.responses
         if wanted and out["leg"].size > 1 and coordinates["time"][-1] > NO_TIME:
@@ -554,8 +736,14 @@ class Simulation:
 
             history = Arrays.of(history.labelled().merge(respond(history.labelled(), wanted)))
         if worst:
-            for name in ("peak_pressure", "contact_pressure", *(["centre_pressure"] if worst.centre else [])):
-                history[name].attrs["comment"] = f"pressure is unbounded at {worst.text}: its largest value is the mesh's"
+            for name in (
+                "peak_pressure",
+                "contact_pressure",
+                *(["centre_pressure"] if worst.centre else []),
+            ):
+                history[name].attrs["comment"] = (
+                    f"pressure is unbounded at {worst.text}: its largest value is the mesh's"
+                )
         return history
 
 
@@ -566,7 +754,11 @@ def _last(legs: np.ndarray, times: np.ndarray, leg: int, time: float) -> int:
 
 def _leg_ends(records) -> list[int]:
     """Which of the states found are the last ones of their legs."""
-    return [k for k, record in enumerate(records) if k + 1 == len(records) or records[k + 1].leg != record.leg]
+    return [
+        k
+        for k, record in enumerate(records)
+        if k + 1 == len(records) or records[k + 1].leg != record.leg
+    ]
 
 
 def _apex(skin: np.ndarray) -> int:
@@ -580,13 +772,19 @@ class _Unfolding:
 
     def __init__(self, whole: PadMesh, solved: PadMesh, skin_nodes: np.ndarray):
         self.left = whole.points[:, 0] < 0 if solved.half else np.zeros(len(whole.points), bool)
-        self._mirrored = whole.points[whole.cells].mean(1)[:, 0] < 0 if solved.half else np.zeros(len(whole.cells), bool)
+        self._mirrored = (
+            whole.points[whole.cells].mean(1)[:, 0] < 0
+            if solved.half
+            else np.zeros(len(whole.cells), bool)
+        )
         if not solved.half:
             self.node = np.arange(len(whole.points))
             self.element = np.arange(len(whole.cells))
         else:
             self.node = _mirror_match(solved.points, whole.points)
-            self.element = _mirror_match(solved.points[solved.cells].mean(1), whole.points[whole.cells].mean(1))
+            self.element = _mirror_match(
+                solved.points[solved.cells].mean(1), whole.points[whole.cells].mean(1)
+            )
         chain = skin_chain(whole)
         position = np.full(len(solved.points), -1)
         position[skin_nodes] = np.arange(len(skin_nodes))
@@ -609,6 +807,8 @@ class _Unfolding:
 
 
 def _mirror_match(solved, whole):
-    index = same_place(np.column_stack([np.abs(whole[:, 0]), whole[:, 1]]), solved, 1e-6 * np.ptp(whole[:, 0]))
+    index = same_place(
+        np.column_stack([np.abs(whole[:, 0]), whole[:, 1]]), solved, 1e-6 * np.ptp(whole[:, 0])
+    )
     assert index.min() >= 0, "the half mesh is not half of the whole"
     return index

@@ -11,18 +11,27 @@ _BLOCK = 32
 """Places that are looked at together, for what is read of their values to stay near."""
 
 
-def hermite(place: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: np.ndarray) -> np.ndarray:
+def hermite(
+    place: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: np.ndarray
+) -> np.ndarray:
     """Values (k, ...) at places (k,) between the first and the last of the cubics that have the values and slopes."""
     first = np.clip(np.searchsorted(place, at, side="right") - 1, 0, len(place) - 2)
     step = np.diff(place)[first]
     share = (at - place[first]) / step
     rest = 1 - share
-    weights = rest**2 * (1 + 2 * share), share**2 * (3 - 2 * share), share * rest**2 * step, -(share**2) * rest * step
+    weights = (
+        rest**2 * (1 + 2 * share),
+        share**2 * (3 - 2 * share),
+        share * rest**2 * step,
+        -(share**2) * rest * step,
+    )
     out = np.zeros((len(at), *values.shape[1:]))
     for start in range(0, len(at), _BLOCK):
         some = slice(start, start + _BLOCK)
         one, other = first[some], first[some] + 1
-        for weight, what in zip(weights, (values[one], values[other], slopes[one], slopes[other]), strict=True):
+        for weight, what in zip(
+            weights, (values[one], values[other], slopes[one], slopes[other]), strict=True
+        ):
             what *= weight[some].reshape((-1,) + (1,) * (values.ndim - 1))
             out[some] += what
     return out
@@ -65,4 +74,6 @@ def akima_slopes(place: np.ndarray, values: np.ndarray) -> np.ndarray:
     both = left + right
     known = both > 1e-9 * both.max(initial=0.0)
     mean = 0.5 * (secant[3:] + secant[:-3])
-    return np.where(known, (left * secant[1:-2] + right * secant[2:-1]) / np.where(known, both, 1.0), mean)
+    return np.where(
+        known, (left * secant[1:-2] + right * secant[2:-1]) / np.where(known, both, 1.0), mean
+    )

@@ -70,7 +70,10 @@ class Table:
         ------
         TableError : a cell holds no finite number; the message names row, column and cell.
         """
-        return [self.number(row[column], line, column) for row, line in zip(self.rows, self.lines, strict=True)]
+        return [
+            self.number(row[column], line, column)
+            for row, line in zip(self.rows, self.lines, strict=True)
+        ]
 
     def number(self, cell: str, line: int, column: int) -> float:
         """The number in a cell; errors as in :meth:`numbers`."""
@@ -143,7 +146,11 @@ def _decoded(content: bytes) -> tuple[str, list[str]]:
 
 def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
     """Names of the columns, what parts them, and the (number, text) of the lines below that say something."""
-    lines = [(number, line) for number, line in enumerate(io.StringIO(text, newline=""), start=1) if line.strip()]
+    lines = [
+        (number, line)
+        for number, line in enumerate(io.StringIO(text, newline=""), start=1)
+        if line.strip()
+    ]
     told = None
     if lines and (match := re.fullmatch(r'"?sep=(.)"?', lines[0][1].strip())):
         told = match[1]
@@ -157,12 +164,19 @@ def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
     delimiter = told or _delimiter(first)
     header = _cells(first, delimiter)
     if all(map(_like_a_number, header)):
-        before = [line for number, line in lines[: _place(lines, first)] if line.lstrip().startswith(_COMMENT)]
+        before = [
+            line
+            for number, line in lines[: _place(lines, first)]
+            if line.lstrip().startswith(_COMMENT)
+        ]
         first = before[-1].lstrip().lstrip("".join(_COMMENT)) if before else ""
         delimiter = told or _delimiter(first)
         header = _cells(first, delimiter)
         if not before or len(header) < 2:
-            raise TableError("has no header: its first row is numbers", "names and units of the columns above the numbers")
+            raise TableError(
+                "has no header: its first row is numbers",
+                "names and units of the columns above the numbers",
+            )
     else:
         lines = lines[_place(lines, said[0]) + 1 :]
     while header and not header[-1]:
@@ -172,7 +186,11 @@ def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
             raise TableError(f"has the column '{name[:40]}' twice", "each column once")
         if len(name) > MOST_LETTERS:
             raise TableError(f"has a column's name of {len(name)} letters", f"up to {MOST_LETTERS}")
-    return header, delimiter, [(number, line) for number, line in lines if not line.lstrip().startswith(_COMMENT)]
+    return (
+        header,
+        delimiter,
+        [(number, line) for number, line in lines if not line.lstrip().startswith(_COMMENT)],
+    )
 
 
 def _place(lines: list[tuple[int, str]], text: str) -> int:
@@ -189,7 +207,12 @@ def _cells(line: str, delimiter: str) -> list[str]:
     """Cells of one line. A space before a unit in brackets parts nothing."""
     if delimiter == " ":
         return re.split(r"\s+(?![(\[])", line.strip())
-    return [cell.strip() for cell in next(csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), [])]
+    return [
+        cell.strip()
+        for cell in next(
+            csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), []
+        )
+    ]
 
 
 def _split(lines: list[tuple[int, str]], delimiter: str) -> Iterator[tuple[int, list[str]]]:
@@ -220,9 +243,17 @@ def _like_a_number(cell: str) -> bool:
 
 def _wrong_count(line: int, cells: list[str], header: list[str], delimiter: str) -> TableError:
     what = f"has {len(cells)} cells in row {line}, {len(header)} in its header ({', '.join(header)[:60]})"
-    if delimiter == "," and len(cells) > len(header) and all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells):
-        return TableError(what + ": commas part columns here", "decimal points, or semicolons between columns")
-    return TableError(what, f"{len(header)} cells in each row, parted by {_PARTED[delimiter]} as the header is")
+    if (
+        delimiter == ","
+        and len(cells) > len(header)
+        and all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells)
+    ):
+        return TableError(
+            what + ": commas part columns here", "decimal points, or semicolons between columns"
+        )
+    return TableError(
+        what, f"{len(header)} cells in each row, parted by {_PARTED[delimiter]} as the header is"
+    )
 
 
 def _decimal_comma(rows: list[list[str]], lines: list[int], delimiter: str) -> bool:
@@ -236,7 +267,9 @@ def _decimal_comma(rows: list[list[str]], lines: list[int], delimiter: str) -> b
             elif "." in cell and _NUMBER.fullmatch(cell):
                 points = True
             elif _THOUSANDS.fullmatch(cell):
-                raise TableError(f"has '{cell}' in row {line}, with a sign between thousands", _WRITE_POINTS)
+                raise TableError(
+                    f"has '{cell}' in row {line}, with a sign between thousands", _WRITE_POINTS
+                )
     if not found:
         return False
     if points:

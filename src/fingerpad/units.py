@@ -69,8 +69,12 @@ USUAL: dict[tuple[str, str], float] = {
 """Factors to SI of the units that scenes are mostly written in, as pint has them; importing it takes a third of a second."""
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_QUANTITY = re.compile(rf"(?P<number>{_NUMBER})(?:\s*/\s*(?P<divisor>[0-9]+)(?=\s))?\s*(?P<unit>.*)", re.DOTALL)
-_FACTOR = re.compile(r"(?P<name>1|%|[A-Za-zµμ]+(?:_[A-Za-zµμ]+)*)(?:(?:\^|\*\*)(?P<power>-?[1-9])(?![0-9]))?")
+_QUANTITY = re.compile(
+    rf"(?P<number>{_NUMBER})(?:\s*/\s*(?P<divisor>[0-9]+)(?=\s))?\s*(?P<unit>.*)", re.DOTALL
+)
+_FACTOR = re.compile(
+    r"(?P<name>1|%|[A-Za-zµμ]+(?:_[A-Za-zµμ]+)*)(?:(?:\^|\*\*)(?P<power>-?[1-9])(?![0-9]))?"
+)
 _SEPARATOR = re.compile(r"\s*(?P<sign>[/*·])\s*|\s+")
 _GRAM_WEIGHT = re.compile(r"\b(?:g|gram)[\s-]*(?:wt|weight)\b")
 
@@ -250,7 +254,11 @@ def parse_quantity(text: Any, dimension: str) -> float:
         number = float(match["number"]) / float(match["divisor"] or 1.0)
         # dividing by a whole number keeps "0.85 mm" the float nearest to 0.00085
         inverse = round(1.0 / factor)
-        value = number / inverse if inverse > 1 and math.isclose(inverse * factor, 1.0, rel_tol=1e-15) else number * factor
+        value = (
+            number / inverse
+            if inverse > 1 and math.isclose(inverse * factor, 1.0, rel_tol=1e-15)
+            else number * factor
+        )
     except (ZeroDivisionError, OverflowError):
         value = math.nan
     if not math.isfinite(value):

@@ -47,7 +47,11 @@ PartitionName=touch Nodes={host} Default=YES MaxTime=INFINITE State=UP
 
 def missing() -> str:
     """What there is not, of what this needs; "" if all is there."""
-    lacking = [name for name in (*DAEMONS, "sbatch", "squeue") if not shutil.which(name, path="/usr/sbin:/usr/bin:/sbin:/bin")]
+    lacking = [
+        name
+        for name in (*DAEMONS, "sbatch", "squeue")
+        if not shutil.which(name, path="/usr/sbin:/usr/bin:/sbin:/bin")
+    ]
     if lacking:
         return f"no {', '.join(lacking)}: apt-get install slurm-wlm munge"
     return "" if os.geteuid() == 0 else "only root can start a cluster"
@@ -65,12 +69,16 @@ class Cluster:
             (self.folder / name).mkdir(parents=True, exist_ok=True)
         self._before = CONFIGURATION.read_bytes() if CONFIGURATION.exists() else None
         CONFIGURATION.parent.mkdir(exist_ok=True)
-        CONFIGURATION.write_text(TEXT.format(host=os.uname().nodename.partition(".")[0], folder=self.folder))
+        CONFIGURATION.write_text(
+            TEXT.format(host=os.uname().nodename.partition(".")[0], folder=self.folder)
+        )
         try:
             for place in ("/run/munge", "/var/lib/munge", "/var/log/munge", "/etc/munge"):
                 Path(place).mkdir(exist_ok=True)
                 shutil.chown(place, "munge", "munge")
-            self._start("munged", "runuser", "-u", "munge", "--", "munged", "--foreground", "--force")
+            self._start(
+                "munged", "runuser", "-u", "munge", "--", "munged", "--foreground", "--force"
+            )
             self._start("slurmctld", "slurmctld", "-D", "-c")
             self.start_node()
             self._wait("idle")
@@ -81,7 +89,9 @@ class Cluster:
 
     def __exit__(self, *_: object) -> None:
         with contextlib.suppress(OSError, subprocess.SubprocessError):
-            jobs = subprocess.run(["squeue", "-h", "-o", "%i"], capture_output=True, text=True, timeout=20).stdout.split()
+            jobs = subprocess.run(
+                ["squeue", "-h", "-o", "%i"], capture_output=True, text=True, timeout=20
+            ).stdout.split()
             subprocess.run(["scancel", "--full", *jobs], timeout=20, check=False) if jobs else None
         self.kill_node()
         for process in reversed(list(self._daemons.values())):
@@ -110,10 +120,17 @@ class Cluster:
 
     def _wait(self, state: str, seconds: float = 90) -> None:
         until = time.monotonic() + seconds
-        while (said := subprocess.run(["sinfo", "-h", "-o", "%T"], capture_output=True, text=True)).stdout.strip() != state:
+        while (
+            said := subprocess.run(["sinfo", "-h", "-o", "%T"], capture_output=True, text=True)
+        ).stdout.strip() != state:
             if time.monotonic() > until:
-                logs = "\n".join(log.read_text(errors="replace")[-2000:] for log in self.folder.glob("*.[lo][ou][gt]"))
-                raise TimeoutError(f"the node is {said.stdout.strip() or said.stderr.strip()}, not {state}\n{logs}")
+                logs = "\n".join(
+                    log.read_text(errors="replace")[-2000:]
+                    for log in self.folder.glob("*.[lo][ou][gt]")
+                )
+                raise TimeoutError(
+                    f"the node is {said.stdout.strip() or said.stderr.strip()}, not {state}\n{logs}"
+                )
             time.sleep(1)
 
     def start_node(self) -> None:
@@ -140,7 +157,13 @@ def _pids() -> list[str]:
 
 def _command(process: str) -> str:
     try:
-        return Path(f"/proc/{process}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
+        return (
+            Path(f"/proc/{process}/cmdline")
+            .read_bytes()
+            .replace(b"\0", b" ")
+            .decode(errors="replace")
+            .strip()
+        )
     except OSError:
         return ""
 
@@ -150,7 +173,9 @@ def _below(process: int) -> list[int]:
     parents = {}
     for pid in _pids():
         with contextlib.suppress(OSError, IndexError):
-            parents[int(pid)] = int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1])
+            parents[int(pid)] = int(
+                Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[1]
+            )
     found, todo = [], [process]
     while todo:
         parent = todo.pop()

@@ -46,7 +46,10 @@ def test_every_two_hard_levels_that_may_meet_do():
 def test_pairs_that_are_kept_apart_are_few_and_say_why():
     known = {(factor, level) for factor, levels in FACTORS.items() for level in levels}
     assert all(set(pair) <= known and why for pair, why in APART.items())
-    pairs = sum((len(FACTORS[one]) - 1) * (len(FACTORS[other]) - 1) for one, other in combinations(FACTORS, 2))
+    pairs = sum(
+        (len(FACTORS[one]) - 1) * (len(FACTORS[other]) - 1)
+        for one, other in combinations(FACTORS, 2)
+    )
     assert len(APART) < 0.03 * pairs
 
 
@@ -71,7 +74,9 @@ def test_array_keeps_apart_what_cannot_meet():
         return not (pair.get("a") == "0" and pair.get("b") in ("y", "z"))
 
     rows = covering(THREE, may, 1, 3)
-    assert not missing(THREE, rows, may) and all(row["b"] in "ex" for row in rows if row["a"] == "0")
+    assert not missing(THREE, rows, may) and all(
+        row["b"] in "ex" for row in rows if row["a"] == "0"
+    )
 
 
 # -- the cases ----------------------------------------------------------------------------------------------------------------
@@ -79,9 +84,18 @@ def test_array_keeps_apart_what_cannot_meet():
 
 def test_first_levels_are_easy_and_others_are_named():
     """What makes a combination hard is said by its levels; names and numbers are the table's."""
-    for number, (case, row) in enumerate(zip(COMBINED, rows_of_catalogue(), strict=True), start=len(PICKED) + 1):
-        assert case.name == f"{number}: {row['stimulus']}, {row['pad']}" and list(CATALOGUE)[number - 1] == case.name
-        hard = {factor: level for factor, level in row.items() if level != next(iter(FACTORS[factor])) and factor != "stimulus"}
+    for number, (case, row) in enumerate(
+        zip(COMBINED, rows_of_catalogue(), strict=True), start=len(PICKED) + 1
+    ):
+        assert (
+            case.name == f"{number}: {row['stimulus']}, {row['pad']}"
+            and list(CATALOGUE)[number - 1] == case.name
+        )
+        hard = {
+            factor: level
+            for factor, level in row.items()
+            if level != next(iter(FACTORS[factor])) and factor != "stimulus"
+        }
         assert all(f"{factor} {level}" in case.hard for factor, level in hard.items())
 
 
@@ -98,7 +112,12 @@ def test_hundreds_of_kinds_of_scene_are_read(tmp_path):
 
 # -- what judges --------------------------------------------------------------------------------------------------------------
 
-PRESS = Case("press", "test", "not hard", {"stimulus": FLAT, "motion": [force(20)], "effects": {"symmetry": "off"}})
+PRESS = Case(
+    "press",
+    "test",
+    "not hard",
+    {"stimulus": FLAT, "motion": [force(20)], "effects": {"symmetry": "off"}},
+)
 
 
 def test_forces_balance_and_a_missing_one_is_seen(tmp_path):
@@ -112,7 +131,9 @@ def test_forces_balance_and_a_missing_one_is_seen(tmp_path):
 
 def test_a_mirror_image_is_told_from_what_is_none():
     x = np.linspace(-1, 1, 21)
-    history = xr.Dataset({"skin_displacement_x": (("t", "s"), [-x]), "skin_displacement_y": (("t", "s"), [x**2])})
+    history = xr.Dataset(
+        {"skin_displacement_x": (("t", "s"), [-x]), "skin_displacement_y": (("t", "s"), [x**2])}
+    )
     assert mirrored(history) < 1e-15
     history["skin_displacement_y"] += 0.01 * x
     assert mirrored(history) == pytest.approx(0.02 / np.sqrt(2), rel=0.05)
@@ -122,7 +143,13 @@ def test_a_mirror_image_is_told_from_what_is_none():
 def test_side_forces_are_told_apart_by_the_force_they_belong_to(side, apart):
     """A frictionless press has one of rounding, which may change as it will; a drag half as large as the force may not."""
     one, other = (
-        xr.Dataset({"leg": ("time", [0, 0]), "force": ("time", [0, 1.0]), "tangential_force": ("time", [0, side + more])})
+        xr.Dataset(
+            {
+                "leg": ("time", [0, 0]),
+                "force": ("time", [0, 1.0]),
+                "tangential_force": ("time", [0, side + more]),
+            }
+        )
         for more in (1e-6, 1e-6 + (0.01 * side or 1e-5))
     )
     assert difference(one, other, ("force", "tangential_force")) == pytest.approx(apart, rel=1e-3)
@@ -137,11 +164,20 @@ def test_the_other_solver_is_another_and_agrees(tmp_path):
 
 
 def test_advice_is_tried_as_it_is_given():
-    case = Case("c", "test", "hard", {"stimulus": {"shape": "line"}, "motion": [depth(2), slide(1)]})
-    found = dict(relaxed(case, "no convergence; try a finer skin mesh, a fillet on sharp edges, or a smaller depth or force"))
+    case = Case(
+        "c", "test", "hard", {"stimulus": {"shape": "line"}, "motion": [depth(2), slide(1)]}
+    )
+    found = dict(
+        relaxed(
+            case,
+            "no convergence; try a finer skin mesh, a fillet on sharp edges, or a smaller depth or force",
+        )
+    )
     assert [words.split(":")[0] for words in found] == ["load", "load", "load", "stimulus", "mesh"]
     half = found["load: 0.5 of it"]
-    assert half.scene["motion"] == [depth(1), slide(1)] and half.scene["stimulus"] == {"shape": "line"}
+    assert half.scene["motion"] == [depth(1), slide(1)] and half.scene["stimulus"] == {
+        "shape": "line"
+    }
     assert found["stimulus: rounded"].scene["stimulus"]["shape"] == "cylinder"
     assert not dict(relaxed(case, "no convergence; try another method"))
     assert list(dict(relaxed(case, "estimated error 7"))) == ["mesh: planned for accuracy: thesis"]
@@ -164,19 +200,36 @@ def test_what_is_hard_is_said_and_can_be_asked_less_of(tmp_path):
     """Each thing that is hard in a scene is named, and the case with less of it names it no more."""
     case = Case("c", "test", "hard", HARD_CASE)
     hard = hard_in(case.read(tmp_path))
-    said = ["1e4 times as stiff", "0.4999", "200 gf", "true edge", "0.7", "yeoh", "a stroke", "small strain"]
-    assert sorted(word for word in said for text in hard if word in text) == sorted(said) and len(hard) == len(said)
+    said = [
+        "1e4 times as stiff",
+        "0.4999",
+        "200 gf",
+        "true edge",
+        "0.7",
+        "yeoh",
+        "a stroke",
+        "small strain",
+    ]
+    assert sorted(word for word in said for text in hard if word in text) == sorted(said) and len(
+        hard
+    ) == len(said)
     easier = dict(relaxed(case, f"off by a lot; {hard_here(hard)}"))
     assert not hard_in(easier.pop("all that is hard").read(tmp_path))
     assert len(easier) == 1 + len(hard)  # and a finer mesh
     for said, case_with_less in easier.items():
         left = set(hard_in(case_with_less.read(tmp_path)))
         assert len(set(hard) - left) == (said.startswith("mesh") is False), said
-    assert not hard_in(Case("c", "test", "easy", {"stimulus": {"shape": "flat"}, "motion": [force(20)]}).read(tmp_path))
+    assert not hard_in(
+        Case("c", "test", "easy", {"stimulus": {"shape": "flat"}, "motion": [force(20)]}).read(
+            tmp_path
+        )
+    )
 
 
 def test_a_failure_names_what_is_hard():
     failure = NonConvergence(0.0, "it failed", "a finer mesh")
     assert str(failure) == "no convergence after t = 0 s: it failed; try a finer mesh"
     failure.hard = ("a true edge", "a stroke")
-    assert str(failure).endswith("; try a finer mesh; or less of what is hard here: a true edge, a stroke")
+    assert str(failure).endswith(
+        "; try a finer mesh; or less of what is hard here: a true edge, a stroke"
+    )

@@ -12,7 +12,18 @@ from cysyk1999.studies.stability import picture as figure
 from cysyk1999.studies.stability.catalogue import CATALOGUE, FAST
 from cysyk1999.studies.stability.hard_cases import PICKED, Limits
 from cysyk1999.studies.stability.invariants import excess
-from cysyk1999.studies.stability.run import ADMITS, CLEAN, LABOURS, METHODS, SILENT, STABLE, compared, cured, judged, run
+from cysyk1999.studies.stability.run import (
+    ADMITS,
+    CLEAN,
+    LABOURS,
+    METHODS,
+    SILENT,
+    STABLE,
+    compared,
+    cured,
+    judged,
+    run,
+)
 from fingerpad import simulation
 from fingerpad.cli import main
 from fingerpad.mechanics import stepping
@@ -69,7 +80,9 @@ def test_depth_hardly_depends_on_poissons_ratio(shape, nu):
 
 @pytest.mark.parametrize("curvature", [2.5e3, 5e3, 1e4])
 def test_needles_end_where_their_radius_no_longer_matters(curvature):
-    assert 1e3 * float(end(f"needle {curvature:g} 1/m").indentation_depth) == pytest.approx(1.38, abs=0.06)
+    assert 1e3 * float(end(f"needle {curvature:g} 1/m").indentation_depth) == pytest.approx(
+        1.38, abs=0.06
+    )
 
 
 @pytest.mark.parametrize("name", ["sharp bar", "bar, fillet 0.03 mm", "line load"])
@@ -82,7 +95,10 @@ def test_holds_stay_between_the_two_elastic_limits(share):
     """In steps of 1e-4 to 1e3 times the longest time constant."""
     depths = done(f"steps of {share:g} tau").history.indentation_depth.values[10:]
     # forces balance within a ten-thousandth, and so the depth stands still
-    assert np.all(np.diff(depths) > -1e-4 * depths.max()) and 0.8e-3 < depths.min() < depths.max() < 1.13e-3
+    assert (
+        np.all(np.diff(depths) > -1e-4 * depths.max())
+        and 0.8e-3 < depths.min() < depths.max() < 1.13e-3
+    )
 
 
 @pytest.mark.parametrize("shape", ["flat", "210 1/m"])
@@ -116,7 +132,9 @@ def test_strokes_keep_the_law_of_friction(name):
     elif name.startswith("ridges"):
         there = history.isel(time=np.flatnonzero(history.leg == 1))
         assert float(there.tangential_force[-1]) == pytest.approx(friction * LOAD, rel=1e-3)
-        assert history.min_detF.min() > 0.7  # at sharp tips, of which 28 elements from ridge to ridge show more than eight
+        assert (
+            history.min_detF.min() > 0.7
+        )  # at sharp tips, of which 28 elements from ridge to ridge show more than eight
     elif "frictionless cylinder" in name:
         assert float(history.tangential_force.min()) < -0.04 * LOAD  # down the slope of the pad
 
@@ -124,7 +142,9 @@ def test_strokes_keep_the_law_of_friction(name):
 def test_featherweight():
     """A ten-thousandth of a gram-weight is carried by a node or a few."""
     last = end("one node in contact")
-    assert np.count_nonzero(last.contact_pressure) <= 3 and float(last.force) == pytest.approx(1e-4 * 9.80665e-3 / 11.4e-3)
+    assert np.count_nonzero(last.contact_pressure) <= 3 and float(last.force) == pytest.approx(
+        1e-4 * 9.80665e-3 / 11.4e-3
+    )
 
 
 # -- failures -----------------------------------------------------------------------------------------------------------------
@@ -141,9 +161,16 @@ def test_what_is_beyond_the_method_leaves_the_last_state_and_a_cause(name, tmp_p
     said = capsys.readouterr().err
     assert code == 3 and said.count("\n") == 1
     assert "no convergence after t =" in said and "try" in said and "last_converged.nc" in said
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["last_converged.nc", "plan.json"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        "last_converged.nc",
+        "plan.json",
+    ]
     saved = read_history(tmp_path / "out" / "last_converged.nc")
-    assert not saved.attrs["complete"] and saved.sizes["time"] > 1 and np.isfinite(saved.to_array().values).all()
+    assert (
+        not saved.attrs["complete"]
+        and saved.sizes["time"] > 1
+        and np.isfinite(saved.to_array().values).all()
+    )
     assert float(saved.complementarity_error.max()) < 1e-3 and float(saved.min_detF.min()) > 0
     assert float(saved.energy_balance_error[-1]) < 0.05
 
@@ -158,7 +185,10 @@ def test_what_the_message_says_to_relax_makes_the_case_run(name):
 
 @pytest.mark.parametrize(
     ("name", "method", "measure"),
-    [("nu 0.4999, flat", "plain P2", "checkerboard"), ("one load step, flat, nu 0.4999", "plain Newton", "factorisations")],
+    [
+        ("nu 0.4999, flat", "plain P2", "checkerboard"),
+        ("one load step, flat, nu 0.4999", "plain Newton", "factorisations"),
+    ],
 )
 def test_what_the_method_buys(name, method, measure):
     """Mutants: without pressure modes pressure oscillates, without the lagged pressure Newton's method needs more."""
@@ -171,12 +201,21 @@ def test_full_quads_lock():
     """Mutant: they complete, with nothing to see in their own measures, at half the depth."""
     locked = run(CATALOGUE["nu 0.4999, flat"], "full Q1", compare=False)
     assert locked.completed
-    assert float(locked.history.indentation_depth[-1] / end("nu 0.4999, flat").indentation_depth) < 0.7
+    assert (
+        float(locked.history.indentation_depth[-1] / end("nu 0.4999, flat").indentation_depth) < 0.7
+    )
 
 
 def test_a_run_outside_its_limits_is_told():
     """No failure is silent: each measure on the wrong side of its limit is named."""
-    fine = {"cuts": 0, "factorisations": 3, "energy": 0.01, "complementarity": 1e-9, "det_f": 0.9, "checkerboard": np.nan}
+    fine = {
+        "cuts": 0,
+        "factorisations": 3,
+        "energy": 0.01,
+        "complementarity": 1e-9,
+        "det_f": 0.9,
+        "checkerboard": np.nan,
+    }
     assert not excess(fine, Limits())
     for name, value in {
         "cuts": 1,
@@ -202,7 +241,12 @@ def test_a_run_outside_its_limits_is_told():
         ({"halving": 0.2}, "[]", 0.6, ADMITS),
         ({"solver": 0.01}, "[]", 0.1, SILENT),
         ({"solver": 0.01}, '["states near to one another"]', 0.1, ADMITS),
-        ({"checkerboard": 0.2, "factorisations": 99}, '["pressure goes up and down from node to node"]', 0.1, ADMITS),
+        (
+            {"checkerboard": 0.2, "factorisations": 99},
+            '["pressure goes up and down from node to node"]',
+            0.1,
+            ADMITS,
+        ),
         ({"checkerboard": 0.2}, "[]", 0.1, SILENT),
     ],
 )
@@ -221,9 +265,13 @@ def test_a_run_notes_energy_that_is_missing_and_an_element_that_is_squeezed():
     with pytest.MonkeyPatch.context() as mutant:
         mutant.setattr(simulation, "_UNBALANCED", 1e-6)
         mutant.setattr(simulation, "_SQUEEZED", 1.0)
-        assert "the energy found is off" in notes("nu 0.48, flat") and "of its volume" in notes("nu 0.48, flat")
+        assert "the energy found is off" in notes("nu 0.48, flat") and "of its volume" in notes(
+            "nu 0.48, flat"
+        )
         assert "energy" not in notes("sharp bar, 1 mm")
-        assert "what is hard here" not in notes("nu 0.48, flat") and "a Poisson's ratio of 0.4999" in notes("nu 0.4999, flat")
+        assert "what is hard here" not in notes(
+            "nu 0.48, flat"
+        ) and "a Poisson's ratio of 0.4999" in notes("nu 0.4999, flat")
     assert "what is hard here" not in notes("nu 0.4999, flat")  # where nothing is doubted
 
 
@@ -241,7 +289,11 @@ def test_a_run_notes_pressure_that_alternates_but_not_that_of_an_edge(monkeypatc
 
 def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
     """Starved of iterations where nodes pop round a fillet it does; round an edge, starved as much, steps are only cut."""
-    monkeypatch.setattr(simulation, "NewtonSettings", partial(stepping.NewtonSettings, max_iterations=3, snap_iterations=0))
+    monkeypatch.setattr(
+        simulation,
+        "NewtonSettings",
+        partial(stepping.NewtonSettings, max_iterations=3, snap_iterations=0),
+    )
     names = "bar, fillet 0.03 mm, 2 mm", "sharp bar, 2 mm"
     notes = [run(CATALOGUE[name], compare=False).history.attrs["notes"] for name in names]
     assert ["states near to one another" in each for each in notes] == [True, False]
@@ -249,15 +301,22 @@ def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
 
 def test_a_step_is_not_tried_for_ever(monkeypatch):
     case = CATALOGUE["needle through the pad"]
-    monkeypatch.setattr(simulation, "NewtonSettings", partial(stepping.NewtonSettings, most_iterations=30))
+    monkeypatch.setattr(
+        simulation, "NewtonSettings", partial(stepping.NewtonSettings, most_iterations=30)
+    )
     found = run(case, compare=False)
-    assert found.outcome == CLEAN and "Newton iterations did not suffice for a step cut" in found.message
+    assert (
+        found.outcome == CLEAN
+        and "Newton iterations did not suffice for a step cut" in found.message
+    )
 
 
 def test_a_run_that_stops_keeps_its_last_state_and_says_why(monkeypatch):
     """A solver starved of iterations fails cleanly, with the steps before; one that says nothing would not count as clean."""
     monkeypatch.setattr(
-        simulation, "NewtonSettings", partial(stepping.NewtonSettings, max_iterations=2, snap_iterations=0, max_halvings=0)
+        simulation,
+        "NewtonSettings",
+        partial(stepping.NewtonSettings, max_iterations=2, snap_iterations=0, max_halvings=0),
     )
     found = run(CATALOGUE["nu 0.49999, flat"], compare=False)
     assert not found.completed and found.outcome == CLEAN and "try" in found.message
@@ -271,7 +330,9 @@ def test_checkerboard_sees_what_alternates_and_nodes_that_lift_off():
     kernel = np.array([1, 2, 3, 2, 1]) / 9
 
     def index(pressure):
-        return checkerboard(pressure, np.where(pressure > 0, np.convolve(pressure, kernel, "same"), 0))
+        return checkerboard(
+            pressure, np.where(pressure > 0, np.convolve(pressure, kernel, "same"), 0)
+        )
 
     wave = (-1.0) ** np.arange(41)
     assert index(smooth) < 0.03

@@ -25,7 +25,10 @@ def base():
 CASES = {
     "as the scenes": ({"inner": {}}, 0.65),
     "high, full friction": ({"inner": {"height": 0.3 * MM}}, 1.0),
-    "high, aside, limiting": ({"inner": {"height": 0.3 * MM, "phase": 0.1 * MM, "limiting": 0.5}}, 1.0),
+    "high, aside, limiting": (
+        {"inner": {"height": 0.3 * MM, "phase": 0.1 * MM, "limiting": 0.5}},
+        1.0,
+    ),
     "outer, full friction": ({"inner": {"height": 0.3 * MM}, "outer": {"height": 0.06 * MM}}, 1.0),
 }
 
@@ -37,7 +40,9 @@ def test_plate_over_ridges(base, case):
     specimen = Specimen(ridges=ridges)
     layers = specimen.layers
     assert layers.epidermis.youngs_modulus == pytest.approx(10 * layers.dermis.youngs_modulus)
-    asked = scene(base, Flat(), (PRESS, slide(3.5), slide(-1))).model_copy(update={"specimen": specimen, "friction": friction})
+    asked = scene(base, Flat(), (PRESS, slide(3.5), slide(-1))).model_copy(
+        update={"specimen": specimen, "friction": friction}
+    )
     history = simulate(asked)
     sound_stroke(history, friction)
     assert history.cutbacks.sum() == 0

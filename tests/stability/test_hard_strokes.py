@@ -14,13 +14,23 @@ from test_hard_cases import MM, SCENES, depth, force, scene, sound
 from fingerpad import load_scene, simulate
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.results import states_found
-from fingerpad.scenes.scene import Cylinder, Discretisation, Flat, Sampled, Slide, StepAndRepeat, Wavy
+from fingerpad.scenes.scene import (
+    Cylinder,
+    Discretisation,
+    Flat,
+    Sampled,
+    Slide,
+    StepAndRepeat,
+    Wavy,
+)
 
 pytestmark = pytest.mark.stability
 
 WAVY = Wavy(curvatures=(104.99, 209.97), lead_in=4 * MM, run_out=5 * MM)  # 15 mm long
 ROUND = Cylinder(curvature=104.99)
-SHALLOW = Wavy(curvatures=(104.99, 78.74), lead_in=4 * MM, run_out=5 * MM)  # its hollow is wider than the pad's apex
+SHALLOW = Wavy(
+    curvatures=(104.99, 78.74), lead_in=4 * MM, run_out=5 * MM
+)  # its hollow is wider than the pad's apex
 PRESS = force(20, 40)
 LOAD = 20 * 9.80665e-3 / 0.0114
 
@@ -47,16 +57,23 @@ def sound_stroke(history, friction, **limits):
     """Assert that every state of a stroke is sound."""
     sound(history, **limits)
     lost = np.diff(history.frictional_dissipation)
-    assert lost.min() > -1e-4 * max(history.frictional_dissipation.max(), 1e-12), "friction gives energy"
+    assert lost.min() > -1e-4 * max(history.frictional_dissipation.max(), 1e-12), (
+        "friction gives energy"
+    )
     if friction == 0:
         assert "slip" not in history and not lost.any()
         return
-    pressure, traction, state = (history[name].values for name in ("contact_pressure", "tangential_traction", "contact_state"))
+    pressure, traction, state = (
+        history[name].values
+        for name in ("contact_pressure", "tangential_traction", "contact_state")
+    )
     limit = friction * pressure
     assert np.all(np.abs(traction) <= limit * (1 + 1e-6) + 1e-3), "friction beyond mu p"
     slides = state == 2
     np.testing.assert_allclose(np.abs(traction[slides]), limit[slides], rtol=1e-6, atol=1e-3)
-    assert np.all((state == 0) == (pressure == 0)) or np.mean((state == 0) != (pressure == 0)) < 1e-3
+    assert (
+        np.all((state == 0) == (pressure == 0)) or np.mean((state == 0) != (pressure == 0)) < 1e-3
+    )
     slip = history.slip.values
     assert np.all(traction[slides] * slip[slides] <= 1e-6), "friction drives the skin"
     assert np.abs(slip[state == 1]).max(initial=0.0) < 1e-6
@@ -69,8 +86,12 @@ def turned_round(history, friction):
     """On a plate the force ends at mu times the load, the skin trails behind, and 4 mm back turn both round."""
     there, back = (history.isel(time=np.flatnonzero(history.leg == leg)) for leg in (1, 2))
     for ends, sign in ((there, 1), (back, -1)):
-        assert float(ends.tangential_force[-1]) == pytest.approx(sign * friction * LOAD, rel=1e-3, abs=1e-6)
-        assert sign * float(ends.centre_lateral_displacement[-1]) <= (-5e-4 * friction if friction else 1e-9)
+        assert float(ends.tangential_force[-1]) == pytest.approx(
+            sign * friction * LOAD, rel=1e-3, abs=1e-6
+        )
+        assert sign * float(ends.centre_lateral_displacement[-1]) <= (
+            -5e-4 * friction if friction else 1e-9
+        )
 
 
 def few_factors(history):
@@ -97,17 +118,28 @@ def test_coefficients(base, stimulus, motion, then, friction):
     then(history, friction)
 
 
-@pytest.mark.parametrize(("curvature", "friction"), [(700, 0.25), (1333, 0.33), (2500, 0.5), (1e4, 0.3)])
+@pytest.mark.parametrize(
+    ("curvature", "friction"), [(700, 0.25), (1333, 0.33), (2500, 0.5), (1e4, 0.3)]
+)
 def test_sharp_surfaces_pressed_with_friction_into_a_whole_pad(base, curvature, friction):
     """Where load on a sharp curve outweighs the skin's stiffness along it, its nodes still slip, as on half a pad."""
     whole, half = (
-        stroke(base, Cylinder(curvature=curvature), friction, force(20), viscoelasticity=False, **effects)
+        stroke(
+            base,
+            Cylinder(curvature=curvature),
+            friction,
+            force(20),
+            viscoelasticity=False,
+            **effects,
+        )
         for effects in ({"symmetry": False}, {})
     )
     sound(whole, energy=0.05)
     np.testing.assert_allclose(whole.indentation_depth, half.indentation_depth, rtol=3e-4)
     for name in ("contact_pressure", "tangential_traction"):
-        np.testing.assert_allclose(whole[name], half[name], atol=1e-3 * float(half.contact_pressure.max()), err_msg=name)
+        np.testing.assert_allclose(
+            whole[name], half[name], atol=1e-3 * float(half.contact_pressure.max()), err_msg=name
+        )
 
 
 @pytest.mark.parametrize("speed", [0.1, 400.0, None])
@@ -156,7 +188,9 @@ def lost_and_found(history):
 
 
 def test_contact_is_lost_and_found_without_friction(base):
-    history = stroke(base, SHALLOW, 0.0, depth(0.03, 1.0), slide(14, 10, "depth"), slide(-14, 10, "depth"))
+    history = stroke(
+        base, SHALLOW, 0.0, depth(0.03, 1.0), slide(14, 10, "depth"), slide(-14, 10, "depth")
+    )
     sound_stroke(history, 0.0, energy=0.05, cuts=1)
     lost_and_found(history)
 
@@ -180,10 +214,14 @@ def test_pulled_sideways_without_friction(base):
 def test_step_and_repeat_forgets(base):
     """Indentations one by one leave nothing behind: each is that of a pad that was never touched before."""
     history = stroke(base, WAVY, 0.0, force(20), StepAndRepeat(step=6 * MM, every=2 * MM))
-    sound_stroke(history, 0.0, energy=0.25)  # each in one step, of which the trapezoidal rule knows the ends alone
+    sound_stroke(
+        history, 0.0, energy=0.25
+    )  # each in one step, of which the trapezoidal rule knows the ends alone
     again = stroke(base, WAVY, 0.0, force(20), StepAndRepeat(step=6 * MM, every=6 * MM))
     assert float(history.stroke_distance[-1]) == pytest.approx(6 * MM)
-    assert float(history.indentation_depth[-1]) == pytest.approx(float(again.indentation_depth[-1]), rel=1e-4)
+    assert float(history.indentation_depth[-1]) == pytest.approx(
+        float(again.indentation_depth[-1]), rel=1e-4
+    )
 
 
 # -- step size ----------------------------------------------------------------------------------------------------------------
@@ -198,13 +236,26 @@ def test_step_sizes(base, step, distance):
     sound_stroke(history, 0.7, energy=0.03)
 
 
-NAMES = ("tangential_force", "indentation_depth", "centre_lateral_displacement", "contact_width", "centre_pressure")
+NAMES = (
+    "tangential_force",
+    "indentation_depth",
+    "centre_lateral_displacement",
+    "contact_width",
+    "centre_pressure",
+)
 
 
 def test_output_does_not_depend_on_the_step(base):
     """Half the step changes no headline quantity of a stroke by more than the draft's error of 6 %."""
     coarse, fine = (
-        stroke(base, WAVY, 0.7, PRESS, slide(8), accuracy=Discretisation(element=None, skin_edge=268.8e-6, steps=steps))
+        stroke(
+            base,
+            WAVY,
+            0.7,
+            PRESS,
+            slide(8),
+            accuracy=Discretisation(element=None, skin_edge=268.8e-6, steps=steps),
+        )
         for steps in (32, 64)
     )
     common = coarse.stroke_distance.values[coarse.leg.values == 1]
@@ -231,7 +282,9 @@ def teeth(height, land):
 
 @pytest.mark.parametrize("friction", [0.0, 0.7])
 @pytest.mark.parametrize(
-    "height, land", [(0.1, 1.0), (0.3, 1.0), (0.2, 0.0), (1.0, 0.0)], ids=["low", "high", "cusps", "deep cusps"]
+    "height, land",
+    [(0.1, 1.0), (0.3, 1.0), (0.2, 0.0), (1.0, 0.0)],
+    ids=["low", "high", "cusps", "deep cusps"],
 )
 def test_gratings_with_sharp_edges(base, height, land, friction):
     """Stroked over sharp convex edges a run ends soundly, or says how little it can be trusted, or fails with a diagnosis."""
@@ -240,15 +293,23 @@ def test_gratings_with_sharp_edges(base, height, land, friction):
     except NonConvergence as failure:
         assert failure.reason and failure.advice
         kept = failure.dataset
-        assert kept.sizes["time"] > 1 and not kept.attrs["complete"] and np.isfinite(kept.force).all()
+        assert (
+            kept.sizes["time"] > 1 and not kept.attrs["complete"] and np.isfinite(kept.force).all()
+        )
         assert float(kept.complementarity_error.max()) < 1e-3
         return
-    assert float(history.complementarity_error.max()) < 1e-3 and float(history.min_detF.min()) > 0.02
+    assert (
+        float(history.complementarity_error.max()) < 1e-3 and float(history.min_detF.min()) > 0.02
+    )
     np.testing.assert_allclose(history.force[11:], LOAD, rtol=1e-3)
     kept = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
-    missing = (history.external_work - kept)[history.leg == 1]  # what jumps over the edges cost, or what a false state makes
+    missing = (history.external_work - kept)[
+        history.leg == 1
+    ]  # what jumps over the edges cost, or what a false state makes
     lost = float((missing.max() - missing.min()) / np.abs(history.external_work).max())
-    assert lost < max(0.06, 1.01 * history.attrs["estimated_error"]), f"a false state: {lost:.1%} of the work is out of balance"
+    assert lost < max(0.06, 1.01 * history.attrs["estimated_error"]), (
+        f"a false state: {lost:.1%} of the work is out of balance"
+    )
 
 
 # -- the whole surface --------------------------------------------------------------------------------------------------------
@@ -260,5 +321,7 @@ def test_full_stroke(base):
     history = stroke(base, Wavy(), 0.7, PRESS, slide(80, 40.0))
     sound_stroke(history, 0.7)
     few_factors(history)
-    effort = history.newton_iterations.values[(history.leg.values == 1) & (history.interpolated.values == 0)]
+    effort = history.newton_iterations.values[
+        (history.leg.values == 1) & (history.interpolated.values == 0)
+    ]
     assert effort[80:].mean() < 1.5 * effort[:80].mean()

@@ -5,7 +5,15 @@ import numpy as np
 from fingerpad.specimen.pad import PadMesh
 
 #: Mesh kind that each element runs on.
-KIND = {"Q2P1": "quad9", "Q2": "quad9", "Q2R": "quad9", "Q1P0": "quad4", "Q1": "quad4", "P2B": "tri6", "P2": "tri6"}
+KIND = {
+    "Q2P1": "quad9",
+    "Q2": "quad9",
+    "Q2R": "quad9",
+    "Q1P0": "quad4",
+    "Q1": "quad4",
+    "P2B": "tri6",
+    "P2": "tri6",
+}
 
 
 def mapped(columns, rows, mapping, kind="quad9", distortion=0.0, region=None):
@@ -24,7 +32,9 @@ def mapped(columns, rows, mapping, kind="quad9", distortion=0.0, region=None):
     inner = np.zeros((nx + 1, ny + 1, 1))
     inner[1:-1, 1:-1] = 1
     edge = np.array([1 / nx, 1 / ny])
-    corner = corner + distortion * inner * edge * np.random.default_rng(1).uniform(-1, 1, corner.shape)
+    corner = corner + distortion * inner * edge * np.random.default_rng(1).uniform(
+        -1, 1, corner.shape
+    )
 
     grid = np.empty((2 * nx + 1, 2 * ny + 1, 2))
     grid[::2, ::2] = corner
@@ -37,8 +47,17 @@ def mapped(columns, rows, mapping, kind="quad9", distortion=0.0, region=None):
     i, j = (2 * part.ravel() for part in np.meshgrid(np.arange(nx), np.arange(ny), indexing="ij"))
     steps = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)]
     cells = np.stack([number[i + a, j + b] for a, b in steps], 1)
-    layer = np.zeros(len(cells), int) if region is None else np.asarray(region(grid.reshape(-1, 2)[cells[:, 8]]))
-    rims = {"bottom": number[::-1, 0], "right": number[-1, ::-1], "top": number[:, -1], "left": number[0]}
+    layer = (
+        np.zeros(len(cells), int)
+        if region is None
+        else np.asarray(region(grid.reshape(-1, 2)[cells[:, 8]]))
+    )
+    rims = {
+        "bottom": number[::-1, 0],
+        "right": number[-1, ::-1],
+        "top": number[:, -1],
+        "left": number[0],
+    }
     curves = {name: np.stack([rim[:-2:2], rim[2::2], rim[1::2]], 1) for name, rim in rims.items()}
 
     points = mapping(grid.reshape(-1, 2))
@@ -63,7 +82,16 @@ def mapped(columns, rows, mapping, kind="quad9", distortion=0.0, region=None):
     )
 
 
-def rectangle(columns, rows, width=1.0, height=1.0, kind="quad9", distortion=0.0, origin=(0.0, 0.0), region=None):
+def rectangle(
+    columns,
+    rows,
+    width=1.0,
+    height=1.0,
+    kind="quad9",
+    distortion=0.0,
+    origin=(0.0, 0.0),
+    region=None,
+):
     """Rectangle with its lower left corner at ``origin``."""
     return mapped(columns, rows, lambda s: s * (width, height) + origin, kind, distortion, region)
 
@@ -106,5 +134,7 @@ def _growth(total, count):
     low, high = 0.1, 10.0
     for _ in range(80):
         middle = (low + high) / 2
-        low, high = (middle, high) if (middle ** np.arange(1, count + 1)).sum() < total else (low, middle)
+        low, high = (
+            (middle, high) if (middle ** np.arange(1, count + 1)).sum() < total else (low, middle)
+        )
     return (low + high) / 2

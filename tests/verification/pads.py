@@ -61,7 +61,10 @@ def press_pad(body, mesh, shape="flat", settings=TIGHT, **goal):
 
 def ramp_and_hold(key, goal, count, seconds=0.5, held=2.0):
     """Steps of a ramp at constant speed in ``count`` steps and a hold in as many growing ones."""
-    ramp = [Step(0, seconds * k / count, seconds / count, **{key: goal * k / count}) for k in range(1, count + 1)]
+    ramp = [
+        Step(0, seconds * k / count, seconds / count, **{key: goal * k / count})
+        for k in range(1, count + 1)
+    ]
     ends = seconds + held * (np.arange(1, count + 1) / count) ** 1.5
     sizes = np.diff(ends, prepend=seconds)
     return ramp + [Step(1, t, dt, **{key: goal}) for t, dt in zip(ends, sizes, strict=True)]

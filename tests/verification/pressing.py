@@ -31,7 +31,9 @@ class Pressed:
 def skin_of(mesh, curve="top"):
     """The whole curve as candidate skin, ordered from left to right."""
     edges = mesh.curves[curve]
-    nodes = np.append((edges[:, [0, 2]] if edges.shape[1] == 3 else edges[:, :1]).ravel(), edges[-1, 1])
+    nodes = np.append(
+        (edges[:, [0, 2]] if edges.shape[1] == 3 else edges[:, :1]).ravel(), edges[-1, 1]
+    )
     spacing = np.hypot(*np.diff(mesh.points[nodes], axis=0).T).min()
     return Skin(nodes, edges, spacing, (0, len(nodes)))
 
@@ -51,7 +53,9 @@ def over_skin(body, skin, records, record):
     else:
         position = body.space.points + record.displacement
     pressure = record.nodal_force / record.length
-    return Pressed(position[skin.nodes, 0], pressure, record.force, record.depth, record.edges, records)
+    return Pressed(
+        position[skin.nodes, 0], pressure, record.force, record.depth, record.edges, records
+    )
 
 
 def press(body, mesh, profile=None, *, force=None, depth=None, steps=1):

@@ -15,8 +15,12 @@ BODIES = {"small": SmallStrainBody, "finite": FiniteStrainBody}
 
 def two_numbers(value, *, truth, within, frozen, tight=1e-6):
     """Assert ``value`` is near the truth and (tighter) what this code gave when the test was written."""
-    assert abs(value - truth) <= within * abs(truth), f"truth: {value!r} is not {truth!r} within {within:g}"
-    assert abs(value - frozen) <= tight * abs(frozen), f"frozen: {value!r} is not {frozen!r} within {tight:g}"
+    assert abs(value - truth) <= within * abs(truth), (
+        f"truth: {value!r} is not {truth!r} within {within:g}"
+    )
+    assert abs(value - frozen) <= tight * abs(frozen), (
+        f"frozen: {value!r} is not {frozen!r} within {tight:g}"
+    )
 
 
 def lame_constants(youngs_modulus, poisson):
@@ -78,4 +82,6 @@ def l2_error(space, u, exact):
     position, weight, values = _fine_quadrature(space)
     truth = exact(position)
     error = np.einsum("qa,eai->eqi", values, u[space.cells]) - truth
-    return float(np.sqrt(np.einsum("eq,eqi->", weight, error**2) / np.einsum("eq,eqi->", weight, truth**2)))
+    return float(
+        np.sqrt(np.einsum("eq,eqi->", weight, error**2) / np.einsum("eq,eqi->", weight, truth**2))
+    )

@@ -43,10 +43,23 @@ def dragged(body, skin, record, records=()):
     if record.tangential is None:
         drag, stick, slip = np.zeros(len(touching)), np.zeros_like(touching), touching
     else:
-        drag, stick, slip = -record.tangential, touching & (record.state == STICK), touching & (record.state == SLIP)
+        drag, stick, slip = (
+            -record.tangential,
+            touching & (record.state == STICK),
+            touching & (record.state == SLIP),
+        )
     moved = record.displacement[skin.nodes, 0]
     return Dragged(
-        pressed.x, pressed.pressure, drag / record.length, stick, slip, record.nodal_force, drag, pressed, record, moved
+        pressed.x,
+        pressed.pressure,
+        drag / record.length,
+        stick,
+        slip,
+        record.nodal_force,
+        drag,
+        pressed,
+        record,
+        moved,
     )
 
 
@@ -62,7 +75,10 @@ def slide(force, distance, count, press=1, depth=None, dt=1.0):
     """Press to ``force`` (or ``depth``) in ``press`` steps, then slide in ``count``; the press is leg 0."""
     goal = ("force", force) if depth is None else ("depth", depth)
     down = [Step(0, k * dt, dt, **{goal[0]: goal[1] * k / press}) for k in range(1, press + 1)]
-    along = [Step(1, (press + k) * dt, dt, **{goal[0]: goal[1]}, distance=distance * k / count) for k in range(1, count + 1)]
+    along = [
+        Step(1, (press + k) * dt, dt, **{goal[0]: goal[1]}, distance=distance * k / count)
+        for k in range(1, count + 1)
+    ]
     return down + along
 
 
@@ -79,7 +95,9 @@ def drag_to(stepper, record, targets, first):
             if abs(left) < 1e-5 * abs(target) + 1e-9 * force or slope == 0:
                 break
             size = first if slope is None else left / slope
-            step = Step(record.leg + 1, record.time + 1, 1.0, force=force, distance=record.distance + size)
+            step = Step(
+                record.leg + 1, record.time + 1, 1.0, force=force, distance=record.distance + size
+            )
             before, record = record, stepper.run([step])[-1]
             slope = (record.tangential_force - before.tangential_force) / size
             slope = 0 if abs(slope * size) < 1e-9 * force else slope
@@ -87,7 +105,17 @@ def drag_to(stepper, record, targets, first):
     return out
 
 
-def block(half_length, depth, poisson, shear=1.0, columns=(20, 12), fine=1.25, strain="small", element=None, rows=None):
+def block(
+    half_length,
+    depth,
+    poisson,
+    shear=1.0,
+    columns=(20, 12),
+    fine=1.25,
+    strain="small",
+    element=None,
+    rows=None,
+):
     """Whole block between smooth walls on a rigid base, fine at its middle.
 
     ``columns`` and ``rows``: equal ones within ``fine`` of the middle, growing ones beyond.

@@ -7,7 +7,17 @@ from problems import make_body
 from fingerpad.reference_solutions.layered import Layer
 
 
-def half_strip(layers, half_length, element="Q2P1", strain="small", prony=None, *, fine=0.1, columns=(16, 12), rows=None):
+def half_strip(
+    layers,
+    half_length,
+    element="Q2P1",
+    strain="small",
+    prony=None,
+    *,
+    fine=0.1,
+    columns=(16, 12),
+    rows=None,
+):
     """Mesh and body of ``layers`` (at most three :class:`Layer`, from the top) on 0 <= x <= half_length.
 
     ``fine``: share of the length with ``columns[0]`` equal columns, followed by ``columns[1]`` growing ones.
@@ -21,7 +31,10 @@ def half_strip(layers, half_length, element="Q2P1", strain="small", prony=None, 
         ys = 1 - graded(fine * half_length / depth, *rows)[::-1]
     else:
         ends = 1 - np.cumsum([0.0, *(layer.thickness / depth for layer in layers)])
-        parts = [np.linspace(low, high, n + 1)[:-1] for low, high, n in zip(ends[1:], ends[:-1], rows, strict=True)]
+        parts = [
+            np.linspace(low, high, n + 1)[:-1]
+            for low, high, n in zip(ends[1:], ends[:-1], rows, strict=True)
+        ]
         ys = np.append(np.concatenate(parts[::-1]), 1.0)
     bounds = np.cumsum([layer.thickness / depth for layer in layers])[:-1]
     mesh = rectangle(

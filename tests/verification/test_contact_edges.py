@@ -40,7 +40,9 @@ def test_pressures_of_corners_and_mid_sides_do_not_alternate(must_fail):
     """By half a per cent of the peak at most."""
 
     def check_alternation(share=1.0):
-        assert edges.alternation(edges.pressed(load_scene(SCENE), share)) < 5e-3, "truth: a smooth pressure"
+        assert edges.alternation(edges.pressed(load_scene(SCENE), share)) < 5e-3, (
+            "truth: a smooth pressure"
+        )
 
     check_alternation()
     must_fail(check_alternation, share=0.001)

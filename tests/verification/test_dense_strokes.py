@@ -47,11 +47,24 @@ def off(found, truth):
 
 def test_fewer_states_say_the_same(every, chosen):
     """At common outputs: what the body does to half a per cent, what the contact does to three, with fewer states."""
-    assert np.array_equal(every.stroke_distance, chosen.stroke_distance) and np.allclose(every.time, chosen.time)
-    assert states_found(every) == every.sizes["time"] - 1 and states_found(chosen) < 0.8 * states_found(every)
-    for name in ("indentation_depth", "strain_energy_density", "tangential_force", "skin_displacement_x"):
+    assert np.array_equal(every.stroke_distance, chosen.stroke_distance) and np.allclose(
+        every.time, chosen.time
+    )
+    assert states_found(every) == every.sizes["time"] - 1 and states_found(
+        chosen
+    ) < 0.8 * states_found(every)
+    for name in (
+        "indentation_depth",
+        "strain_energy_density",
+        "tangential_force",
+        "skin_displacement_x",
+    ):
         assert off(chosen[name].values, every[name].values) < 0.005, name
-    for name, most in (("centre_pressure", 0.02), ("contact_pressure", 0.03), ("tangential_traction", 0.03)):
+    for name, most in (
+        ("centre_pressure", 0.02),
+        ("contact_pressure", 0.03),
+        ("tangential_traction", 0.03),
+    ):
         assert off(chosen[name].values, every[name].values) < most, name
     assert off(chosen.contact_width.values, every.contact_width.values) < 0.03
     assert float(chosen.slip.sum()) == pytest.approx(float(every.slip.sum()), rel=0.03)
@@ -102,7 +115,9 @@ def test_what_the_skin_yields_to_is_inverted_as_often_as_factors_change(scene, m
     """Not in every iteration: the geometric term of the contact is kept with the factors. Answers are as if it was not."""
     short, made = scene.varied({"motion[1].slide": 3e-3}), []
     of = Flexibility.of.__func__
-    monkeypatch.setattr(Flexibility, "of", classmethod(lambda cls, *given: made.append(1) or of(cls, *given)))
+    monkeypatch.setattr(
+        Flexibility, "of", classmethod(lambda cls, *given: made.append(1) or of(cls, *given))
+    )
     run = Simulation(short, plan(short), None)
     kept, inverted, iterations = run.run(None), len(made), run.stepper.total_iterations
     assert run.stepper.factorisations <= inverted < 0.5 * iterations

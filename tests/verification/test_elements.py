@@ -47,14 +47,23 @@ def check_patch(element, strain, poisson, soft_element=1.0):
     error = np.abs(body.u - AFFINE.displacement(space.points)).max()
     assert error < 1e-11, f"truth: the field is affine, but off by {error:.2e}"
 
-    stress = {"small": manufactured.small_strain_stress, "finite": manufactured.first_piola_stress}[strain]
+    stress = {"small": manufactured.small_strain_stress, "finite": manufactured.first_piola_stress}[
+        strain
+    ]
     piola = stress(AFFINE, np.zeros(2), shear, bulk)
     traction = np.zeros_like(body.u)
-    for name, normal in {"left": (-1, 0), "right": (1, 0), "bottom": (0, -1), "top": (0, 1)}.items():
+    for name, normal in {
+        "left": (-1, 0),
+        "right": (1, 0),
+        "bottom": (0, -1),
+        "top": (0, 1),
+    }.items():
         load = edge_load_vectors(mesh.points, mesh.curves[name])
         length = np.hypot(load[:, 0], load[:, 1])
         traction[: len(length)] += length[:, None] * (piola @ normal)
-    np.testing.assert_allclose(body.internal_force(), traction, atol=1e-9 * np.abs(traction).max(), err_msg="truth")
+    np.testing.assert_allclose(
+        body.internal_force(), traction, atol=1e-9 * np.abs(traction).max(), err_msg="truth"
+    )
 
 
 @pytest.mark.parametrize("poisson", [0.3, 0.4999])
@@ -143,7 +152,9 @@ def check_kept_tangent(element, off=0.0):
     assert abs(gained - truth) < 1e-8 * abs(truth), f"truth: {truth!r} of work and not {gained!r}"
     body.advance(way, 1e-3)
     found, truth = body.dilatation(), volume + 1e-3 * slopes["way"] * (1 + off)
-    assert np.abs(found - truth).max() < 1e-8 * np.abs(truth).max(), "truth: the dilatation that the step leads to"
+    assert np.abs(found - truth).max() < 1e-8 * np.abs(truth).max(), (
+        "truth: the dilatation that the step leads to"
+    )
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
@@ -175,7 +186,14 @@ def check_mixed_laws(element, prony, moved=0):
     shear, bulk = (np.full(len(mesh.cells), value) for value in lame_constants(3.0, 0.45))
     alone = FiniteStrainBody(space, shear, bulk, prony, pointwise=2.0)
     yeoh = np.random.default_rng(0).random(len(mesh.cells)) < 0.6
-    mixed = FiniteStrainBody(space, shear, bulk, prony, pointwise=2.0, laws=assign([(NEO_HOOKE, ()), (YEOH, (0, 0))], 1 * yeoh))
+    mixed = FiniteStrainBody(
+        space,
+        shear,
+        bulk,
+        prony,
+        pointwise=2.0,
+        laws=assign([(NEO_HOOKE, ()), (YEOH, (0, 0))], 1 * yeoh),
+    )
     for *_, blocks in mixed._loops:
         blocks[:1, 1] += np.uint64(moved)
     for one, both in zip(answers(alone), answers(mixed), strict=True):
@@ -196,14 +214,26 @@ def test_elements_of_several_laws_are_all_counted_once(element, prony, must_fail
 def test_blocks_hold_every_element_that_is_asked_for(count):
     mesh = rectangle(count, 1, 1.0, 0.8, "quad4")
     space = Space(mesh.points, mesh.cells, "quad4", boundary(mesh, "bottom"))
-    for which in (np.ones(count, bool), np.zeros(count, bool), np.random.default_rng(count).random(count) < 0.5):
-        found = [TOGETHER * block + k for block, first, last in space.blocks(which).tolist() for k in range(first, last)]
+    for which in (
+        np.ones(count, bool),
+        np.zeros(count, bool),
+        np.random.default_rng(count).random(count) < 0.5,
+    ):
+        found = [
+            TOGETHER * block + k
+            for block, first, last in space.blocks(which).tolist()
+            for k in range(first, last)
+        ]
         assert found == np.flatnonzero(which).tolist()
         assert all(first < last <= TOGETHER for _, first, last in space.blocks(which).tolist())
 
 
 def check_factor(step=0.0):
-    found = compiled_factor(spread := np.concatenate([np.exp(np.linspace(-30, 30, 1001)), 1 + np.linspace(-0.1, 0.1, 1001)]))
+    found = compiled_factor(
+        spread := np.concatenate(
+            [np.exp(np.linspace(-30, 30, 1001)), 1 + np.linspace(-0.1, 0.1, 1001)]
+        )
+    )
     getcontext().prec = 40
     truth = np.array([float(Decimal(jac) ** (Decimal(-2) / 3)) for jac in spread.tolist()])
     error = np.abs(found * (1 + step) / truth - 1).max()
@@ -214,7 +244,9 @@ def check_factor(step=0.0):
 def compiled_factor(values):
     from numba import njit
 
-    from fingerpad.mechanics import kernels  # what it says of isochoric is what compiled loops go by
+    from fingerpad.mechanics import (
+        kernels,
+    )  # what it says of isochoric is what compiled loops go by
 
     @njit(**kernels._JIT)
     def each(values, out):
@@ -247,7 +279,9 @@ def check_force_is_gradient(element, strain, wrong_bulk=1.0, own=1.0):
         body.displace(u + sign * h * direction, dilatation)
         energy.append(body.energies()[0])
     numerical = (energy[0] - energy[1]) / (2 * h)
-    assert abs(work - numerical) < 1e-7 * abs(work), f"truth: the energy's slope {numerical!r} is not the work {work!r}"
+    assert abs(work - numerical) < 1e-7 * abs(work), (
+        f"truth: the energy's slope {numerical!r} is not the work {work!r}"
+    )
 
 
 @pytest.mark.parametrize("element", ELEMENTS)
@@ -284,22 +318,34 @@ def test_finite_strain_forces_start_as_small_strain_ones(must_fail):
 def check_uniform_pressure(element, curved, weight=1.0):
     """Forces at the points of skin under a uniform pressure are that of a consistent load, and that pressure at every node."""
     bend = 0.3 if curved else 0.0
-    mesh = mapped(5, 2, lambda s: np.stack([s[:, 0], 0.5 * s[:, 1] - bend * s[:, 1] * s[:, 0] ** 2], 1), KIND[element])
+    mesh = mapped(
+        5,
+        2,
+        lambda s: np.stack([s[:, 0], 0.5 * s[:, 1] - bend * s[:, 1] * s[:, 0] ** 2], 1),
+        KIND[element],
+    )
     edges = mesh.curves["top"]
     chain = np.unique(edges)
     chain = chain[np.argsort(mesh.points[chain, 0])]
     places = ContactPoints.on(mesh.points, chain, edges, np.ones(len(edges)))
-    tangent = np.einsum("qa,qai->qi", places.slopes, mesh.points[places.nodes]) * (places.weight * weight)[:, None]
+    tangent = (
+        np.einsum("qa,qai->qi", places.slopes, mesh.points[places.nodes])
+        * (places.weight * weight)[:, None]
+    )
     force = 1250.0 * np.stack([tangent[:, 1], -tangent[:, 0]], 1)
     found = np.zeros(mesh.points.shape)
     np.add.at(found, places.nodes, places.values[:, :, None] * force[:, None])
     load = -1250.0 * edge_load_vectors(mesh.points, edges)
-    np.testing.assert_allclose(found, load, atol=(5e-3 if curved else 1e-12) * np.abs(load).max(), err_msg="truth: load")
+    np.testing.assert_allclose(
+        found, load, atol=(5e-3 if curved else 1e-12) * np.abs(load).max(), err_msg="truth: load"
+    )
     pressure = places.of_nodes(np.hypot(*force.T)) / places.of_nodes(places.lengths(mesh.points))
     np.testing.assert_allclose(pressure, 1250.0, rtol=1e-12, err_msg="truth: uniform pressure")
     ends = mesh.points[chain[-1]] - mesh.points[chain[0]]
     resultant = 1250.0 * np.array([ends[1], -ends[0]])
-    np.testing.assert_allclose(found.sum(0), resultant, atol=1e-12 * np.hypot(*resultant), err_msg="truth: resultant")
+    np.testing.assert_allclose(
+        found.sum(0), resultant, atol=1e-12 * np.hypot(*resultant), err_msg="truth: resultant"
+    )
 
 
 @pytest.mark.parametrize("curved", [False, True], ids=["straight", "curved"])
@@ -312,7 +358,9 @@ def test_uniform_pressure_patch(element, curved, must_fail):
 
 def check_smoothing(mirrored, weights=(1, 2, 3, 2, 1)):
     force, length = np.random.default_rng(4).uniform(1, 2, (2, 12))
-    whole = [np.concatenate([v[:0:-1], [2 * v[0]], v[1:]]) if mirrored else v for v in (force, length)]
+    whole = [
+        np.concatenate([v[:0:-1], [2 * v[0]], v[1:]]) if mirrored else v for v in (force, length)
+    ]
     sums = [np.convolve(v, weights, mode="same") for v in whole]
     expected = (sums[0] / sums[1])[-12:]
     found = smoothed_pressure(force, length, mirrored)
@@ -336,7 +384,9 @@ def check_contact_patch(element, strain, depth, poisson=0.0):
     expected = 2e6 * depth / 2.0
     within = 1e-9 if strain == "small" else 2 * depth
     np.testing.assert_allclose(result.pressure, expected, rtol=within, err_msg="truth: pressure")
-    np.testing.assert_allclose(result.pressure, result.pressure[0], rtol=1e-7, err_msg="truth: uniform pressure")
+    np.testing.assert_allclose(
+        result.pressure, result.pressure[0], rtol=1e-7, err_msg="truth: uniform pressure"
+    )
     assert abs(result.force - 2.0 * result.pressure[0]) < 1e-7 * result.force, "truth: resultant"
 
 

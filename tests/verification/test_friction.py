@@ -33,7 +33,9 @@ def dragged_cylinder(shares, friction=MU, poisson=POISSON, back=()):
     """
     mesh, body = block(DEPTH, DEPTH, poisson, SHEAR)
     skin = skin_of(mesh)
-    stepper = QuasiStatic(body, skin, Cylinder(curvature=1 / RADIUS), TIGHT, friction=friction or None)
+    stepper = QuasiStatic(
+        body, skin, Cylinder(curvature=1 / RADIUS), TIGHT, friction=friction or None
+    )
     record = stepper.run([Step(0, 1.0, 1.0, force=HERTZ_LOAD)])[-1]
     limit = MU * HERTZ_LOAD
     records = drag_to(stepper, record, [share * limit for share in shares], 5e-6)
@@ -55,18 +57,30 @@ def stick_half_width(state, friction=MU):
 def check_partial_slip(share, **mutant):
     state = dragged_cylinder([share], **mutant)[0]
     q = state.record.tangential_force
-    assert abs(q - share * MU * HERTZ_LOAD) < 1e-4 * q, f"truth: {share} of mu P cannot be reached: {q!r}"
+    assert abs(q - share * MU * HERTZ_LOAD) < 1e-4 * q, (
+        f"truth: {share} of mu P cannot be reached: {q!r}"
+    )
     ratio = cattaneo_mindlin.stick_ratio(share, 1.0, 1.0)
     truth = cattaneo_mindlin.traction(state.x, 1.0, PEAK, MU, ratio)
     error = (state.traction - truth)[np.abs(state.x) < 0.9] / (MU * PEAK)
-    assert np.abs(error).max() < 0.08, f"truth: the traction is off by {np.abs(error).max():.4f} of mu p0"  # next to the kink
-    assert np.std(error) < 0.012, f"truth: the traction is off by {np.std(error):.4f} of mu p0 in the mean"
+    assert np.abs(error).max() < 0.08, (
+        f"truth: the traction is off by {np.abs(error).max():.4f} of mu p0"
+    )  # next to the kink
+    assert np.std(error) < 0.012, (
+        f"truth: the traction is off by {np.std(error):.4f} of mu p0 in the mean"
+    )
     ends = np.abs(state.x[state.stick])[[0, -1]]
     assert np.all(np.abs(ends - ratio) < 0.04), f"truth: {ends} stick, not {ratio:.4f}"
     centre = np.argmin(np.abs(state.x))
     frozen = PARTIAL_SLIP[share]
     two_numbers(stick_half_width(state), truth=ratio, within=0.01, frozen=frozen[0], tight=2e-5)
-    two_numbers(state.traction[centre] / (MU * PEAK), truth=1 - ratio, within=0.02, frozen=frozen[1], tight=2e-5)
+    two_numbers(
+        state.traction[centre] / (MU * PEAK),
+        truth=1 - ratio,
+        within=0.02,
+        frozen=frozen[1],
+        tight=2e-5,
+    )
     two_numbers(state.record.distance, truth=frozen[2], within=0.1, frozen=frozen[2], tight=2e-5)
 
 
@@ -92,11 +106,19 @@ def check_return(turn=0.75, back=(0.4, 0.0, -0.4), **mutant):
     limit = MU * HERTZ_LOAD
     for share, state in zip(back, states[1:], strict=True):
         q = state.record.tangential_force
-        assert abs(q - share * limit) < 1e-4 * limit, f"truth: the way back ends at {q / limit:.4f} of mu P"
-        truth = cattaneo_mindlin.returned_traction(state.x, 1.0, PEAK, MU, turn * limit, share * limit, HERTZ_LOAD)
+        assert abs(q - share * limit) < 1e-4 * limit, (
+            f"truth: the way back ends at {q / limit:.4f} of mu P"
+        )
+        truth = cattaneo_mindlin.returned_traction(
+            state.x, 1.0, PEAK, MU, turn * limit, share * limit, HERTZ_LOAD
+        )
         error = (state.traction - truth)[np.abs(state.x) < 0.9] / (MU * PEAK)
-        assert np.abs(error).max() < 0.1, f"truth: the traction is off by {np.abs(error).max():.4f} of mu p0"  # next to a kink
-        assert np.std(error) < 0.02, f"truth: the traction is off by {np.std(error):.4f} of mu p0 in the mean"
+        assert np.abs(error).max() < 0.1, (
+            f"truth: the traction is off by {np.abs(error).max():.4f} of mu p0"
+        )  # next to a kink
+        assert np.std(error) < 0.02, (
+            f"truth: the traction is off by {np.std(error):.4f} of mu p0 in the mean"
+        )
         centre = np.argmin(np.abs(state.x))
         expected, found = truth[centre] / (MU * PEAK), state.traction[centre] / (MU * PEAK)
         two_numbers(found, truth=float(expected), within=0.02, frozen=RETURN[share], tight=2e-5)
@@ -115,11 +137,15 @@ def test_partial_slip_on_the_way_back(must_fail):
 def check_sliding_cylinder(friction=MU, distance=0.1):
     """Pressed, then slid far enough for everything to slip."""
     mesh, body = block(DEPTH, DEPTH, POISSON, SHEAR)
-    pressed, *_, state = stroke(body, mesh, slide(HERTZ_LOAD, distance, 2), Cylinder(curvature=1 / RADIUS), friction or None)
+    pressed, *_, state = stroke(
+        body, mesh, slide(HERTZ_LOAD, distance, 2), Cylinder(curvature=1 / RADIUS), friction or None
+    )
     assert abs(state.ratio - MU) < 1e-4 * MU, f"truth: F_t/F_n = {state.ratio!r} is not mu"
     assert not state.stick.any(), "truth: all of it slips"
     inside = np.abs(state.x + distance) < 0.85
-    error = np.abs(state.traction - MU * hertz.pressure(state.x + distance, 1.0, PEAK))[inside].max() / (MU * PEAK)
+    error = np.abs(state.traction - MU * hertz.pressure(state.x + distance, 1.0, PEAK))[
+        inside
+    ].max() / (MU * PEAK)
     assert error < 0.03, f"truth: the traction is off by {error:.4f} of mu p0"
     two_numbers(state.pressed.half_width, truth=1.0, within=0.01, frozen=SLIDING[0])
     two_numbers(state.traction.max() / (MU * PEAK), truth=1.0, within=0.02, frozen=SLIDING[1])
@@ -138,13 +164,21 @@ def test_sliding_cylinder(must_fail):
 def check_full_stick(friction=100.0):
     """A cylinder that cannot slip, dragged in equal small steps."""
     mesh, body = block(DEPTH, DEPTH, POISSON, SHEAR)
-    pressed, *states = stroke(body, mesh, slide(HERTZ_LOAD, 4e-5, 4), Cylinder(curvature=1 / RADIUS), friction or None)
+    pressed, *states = stroke(
+        body, mesh, slide(HERTZ_LOAD, 4e-5, 4), Cylinder(curvature=1 / RADIUS), friction or None
+    )
     forces = np.array([state.record.tangential_force for state in (pressed, *states)])
-    assert forces[-1] > 0.1 * MU * HERTZ_LOAD, f"truth: the skin is dragged along, F_t = {forces[-1]!r}"
+    assert forces[-1] > 0.1 * MU * HERTZ_LOAD, (
+        f"truth: the skin is dragged along, F_t = {forces[-1]!r}"
+    )
     assert not any(state.slip.any() for state in states), "truth: nothing slips"
-    np.testing.assert_allclose(np.diff(forces), forces[-1] / 4, rtol=5e-3, err_msg="truth: F_t grows with the distance")
+    np.testing.assert_allclose(
+        np.diff(forces), forces[-1] / 4, rtol=5e-3, err_msg="truth: F_t grows with the distance"
+    )
     for before, after in zip((pressed, *states), states, strict=False):
-        moved = (after.moved - before.moved)[after.stick & before.stick & (np.abs(after.x) < 0.8)] + 1e-5
+        moved = (after.moved - before.moved)[
+            after.stick & before.stick & (np.abs(after.x) < 0.8)
+        ] + 1e-5
         assert np.abs(moved).max() < 1e-9, "truth: the skin goes with the profile"
     x = states[-1].x
     inside = np.abs(x) < 0.8
@@ -175,7 +209,10 @@ PUNCH_LOAD = 0.01
 def check_punch(nominal, poisson=None, friction=100.0, shift=2e-3):
     """A punch with sharp edges that sticks while it is pressed and while it is shifted."""
     poisson = nominal if poisson is None else poisson
-    bar, steps = Bar(width=2 * 1.015625), slide(PUNCH_LOAD, shift, 1)  # its edges lie between nodes, the last touching ones at 1
+    bar, steps = (
+        Bar(width=2 * 1.015625),
+        slide(PUNCH_LOAD, shift, 1),
+    )  # its edges lie between nodes, the last touching ones at 1
     mesh, body = block(DEPTH, DEPTH, poisson, SHEAR)
     free = press(body, mesh, bar, force=PUNCH_LOAD)
     mesh, body = block(DEPTH, DEPTH, poisson, SHEAR)
@@ -183,10 +220,15 @@ def check_punch(nominal, poisson=None, friction=100.0, shift=2e-3):
     inside, touching = np.abs(pressed.x) < 0.8, np.abs(pressed.x) < 1.01
     change = shifted.record.tangential_force - pressed.record.tangential_force
     assert change > 0.1 * PUNCH_LOAD, f"truth: the punch drags the skin along, F_t = {change!r}"
-    assert np.all(pressed.stick == touching) and np.all(shifted.stick == touching), "truth: all of it sticks"
+    assert np.all(pressed.stick == touching) and np.all(shifted.stick == touching), (
+        "truth: all of it sticks"
+    )
     for state, sideways in ((pressed, 0.0), (shifted, change)):
         p, q = punch.sticking_tractions(state.x[inside], 1.0, PUNCH_LOAD, -sideways, nominal)
-        for name, error in (("pressure", state.pressure[inside] - p), ("traction", -state.traction[inside] - q)):
+        for name, error in (
+            ("pressure", state.pressure[inside] - p),
+            ("traction", -state.traction[inside] - q),
+        ):
             worst = np.abs(error / p).max()
             assert worst < 0.035, f"truth: the {name} is off by {worst:.4f} of the pressure"
     if nominal > 0.49:
@@ -194,7 +236,9 @@ def check_punch(nominal, poisson=None, friction=100.0, shift=2e-3):
         assert error < 0.01, f"truth: stick and slip differ by {error:.4f}"
     centre = np.argmin(np.abs(pressed.x))
     truth = punch.sticking_tractions(0.0, 1.0, PUNCH_LOAD, 0.0, nominal)[0]
-    two_numbers(pressed.pressure[centre], truth=float(truth), within=0.015, frozen=PUNCH[nominal][0])
+    two_numbers(
+        pressed.pressure[centre], truth=float(truth), within=0.015, frozen=PUNCH[nominal][0]
+    )
     two_numbers(change, truth=PUNCH[nominal][1], within=0.1, frozen=PUNCH[nominal][1])
 
 
@@ -216,7 +260,14 @@ def friction_plate_contact(elements, friction=friction_plate.FRICTION):
     """The plate upside down, under a fixed plane, on a cushion a million times softer that only keeps it from floating."""
     side, cushion = friction_plate.SIDE, friction_plate.SIDE / 4
     rows = np.append(np.linspace(0, 0.2, 2)[:-1], np.linspace(0.2, 1, elements + 1))
-    mesh = rectangle(elements, rows, side, side + cushion, origin=(0.0, -side - cushion), region=lambda c: c[:, 1] < 0.2)
+    mesh = rectangle(
+        elements,
+        rows,
+        side,
+        side + cushion,
+        origin=(0.0, -side - cushion),
+        region=lambda c: c[:, 1] < 0.2,
+    )
     fixed = np.zeros(mesh.points.shape, bool)
     fixed[nodes_of(mesh, "bottom")] = True
     fixed[nodes_of(mesh, "right"), 0] = True
@@ -231,7 +282,15 @@ def friction_plate_contact(elements, friction=friction_plate.FRICTION):
     left = left[y[left].min(1) > -side * (1 + 1e-9)]
     external = friction_plate.TOP_PRESSURE * edge_load_vectors(mesh.points, pushed)
     external -= friction_plate.SIDE_PRESSURE * edge_load_vectors(mesh.points, left)
-    return mesh, stroke(body, mesh, [Step(0, 1.0, 1.0, depth=0.0)], Flat(), friction or None, TIGHT, external=external)[-1]
+    return mesh, stroke(
+        body,
+        mesh,
+        [Step(0, 1.0, 1.0, depth=0.0)],
+        Flat(),
+        friction or None,
+        TIGHT,
+        external=external,
+    )[-1]
 
 
 def check_friction_plate(elements=32, **mutant):
@@ -246,7 +305,9 @@ def check_friction_plate(elements=32, **mutant):
         two_numbers(value, truth=converged, within=1e-3, frozen=frozen)
     spacing = friction_plate.SIDE / elements
     touching = place[state.nodal_force > 0]
-    assert abs(touching[0] - friction_plate.LIFTED) < spacing, f"truth: lifted off up to {touching[0]}"
+    assert abs(touching[0] - friction_plate.LIFTED) < spacing, (
+        f"truth: lifted off up to {touching[0]}"
+    )
     slipping = place[state.slip].max()
     assert abs(slipping - friction_plate.SLIPPING) < spacing, f"truth: slips up to {slipping}"
     load = friction_plate.TOP_PRESSURE * friction_plate.SIDE
@@ -269,7 +330,9 @@ def test_friction_plate(must_fail):
 def check_incline(nominal, friction=None, slope=0.1):
     """A slope drawn under a stiff block whose face lies flat on it, until all of it slides."""
     friction = nominal if friction is None else friction
-    mesh = mapped(8, 4, lambda s: np.stack([2 * s[:, 0] - 1, s[:, 1] * (1 - slope * (2 * s[:, 0] - 1))], 1))
+    mesh = mapped(
+        8, 4, lambda s: np.stack([2 * s[:, 0] - 1, s[:, 1] * (1 - slope * (2 * s[:, 0] - 1))], 1)
+    )
     fixed = np.zeros(mesh.points.shape, bool)
     fixed[nodes_of(mesh, "bottom")] = True
     body = make_body(mesh, fixed, *lame_constants(1e6, 0.3))
@@ -278,7 +341,13 @@ def check_incline(nominal, friction=None, slope=0.1):
     assert not state.stick.any(), "truth: all of it slides"
     limit = incline.limit_ratio(0.1, nominal)
     two_numbers(state.ratio, truth=float(limit), within=1e-6, frozen=CGS4[nominal], tight=5e-6)
-    two_numbers(state.record.depth - start.record.depth, truth=-0.1 * slope, within=1e-3, frozen=-0.01, tight=1e-3)
+    two_numbers(
+        state.record.depth - start.record.depth,
+        truth=-0.1 * slope,
+        within=1e-3,
+        frozen=-0.01,
+        tight=1e-3,
+    )
 
 
 CGS4 = {0.0: 0.1, 0.1: 0.20202, 0.2: 0.306122, 0.3: 0.412371}
@@ -302,14 +371,21 @@ PAD_MU = 0.5
 def pad_stroke(steps, profile=FLAT, friction=PAD_MU, strain="finite", mesh=None, **body):
     """A stroke of the small pad; returns every step's state."""
     mesh = mesh or pad_mesh()
-    return stroke(pad_body(mesh, strain, **body), mesh, steps, profile, friction or None, curve="skin")
+    return stroke(
+        pad_body(mesh, strain, **body), mesh, steps, profile, friction or None, curve="skin"
+    )
 
 
 def check_full_slip(profile, strain, friction=PAD_MU):
     state = pad_stroke(slide(LOAD / 2, 3e-3, 6), profile, friction, strain)[-1]
     touching = state.nodal_force > 0
     assert touching.sum() > 5 and not state.stick.any(), "truth: all of it slips"
-    np.testing.assert_allclose(state.drag[touching], PAD_MU * state.nodal_force[touching], rtol=1e-9, err_msg="truth: q = mu p")
+    np.testing.assert_allclose(
+        state.drag[touching],
+        PAD_MU * state.nodal_force[touching],
+        rtol=1e-9,
+        err_msg="truth: q = mu p",
+    )
     if profile is FLAT:
         two_numbers(state.ratio, truth=PAD_MU, within=1e-6, frozen=PAD_MU, tight=1e-6)
 
@@ -326,7 +402,10 @@ def viscoelastic_stroke(count, distance=3e-3, speed=10e-3, profile=FLAT, steady=
     """Pressed in 0.5 s, then slid at 10 mm/s; ``count`` steps each. Then slid to distances (m) of ``steady``, very slowly."""
     down = slide(LOAD, 0.0, 0, press=count, dt=0.5 / count)
     sizes = distance / speed / count
-    along = [Step(1, 0.5 + sizes * k, sizes, force=LOAD, distance=distance * k / count) for k in range(1, count + 1)]
+    along = [
+        Step(1, 0.5 + sizes * k, sizes, force=LOAD, distance=distance * k / count)
+        for k in range(1, count + 1)
+    ]
     slow = [Step(2, along[-1].time, STEADY, force=LOAD, distance=place) for place in steady]
     return pad_stroke(down + along + slow, profile, prony=THESIS, **more)
 
@@ -336,21 +415,37 @@ def check_energy(strain, friction=PAD_MU, frictional_share=1.0):
     for count in (10, 20):
         states = viscoelastic_stroke(count, steady=(3.5e-3, 4e-3), strain=strain, friction=friction)
         *_, end, before, last = (state.record for state in states)
-        way, truth = last.distance - before.distance, PAD_MU * LOAD * (last.distance - before.distance)
+        way, truth = (
+            last.distance - before.distance,
+            PAD_MU * LOAD * (last.distance - before.distance),
+        )
         work, lost = last.work - before.work, last.frictional - before.frictional
-        assert abs(last.tangential_force * way - truth) < 1e-6 * truth, f"truth: F_t is not mu F_n but {last.tangential_force!r}"
-        assert abs(work - truth) < 1e-5 * truth, f"truth: the work in steady slip is {work!r}, not {truth!r}"
-        assert abs(lost - truth) < 1e-5 * truth, f"truth: friction dissipates {lost!r} in steady slip, not {truth!r}"
+        assert abs(last.tangential_force * way - truth) < 1e-6 * truth, (
+            f"truth: F_t is not mu F_n but {last.tangential_force!r}"
+        )
+        assert abs(work - truth) < 1e-5 * truth, (
+            f"truth: the work in steady slip is {work!r}, not {truth!r}"
+        )
+        assert abs(lost - truth) < 1e-5 * truth, (
+            f"truth: friction dissipates {lost!r} in steady slip, not {truth!r}"
+        )
         found = [
-            abs(r.work - sum(r.energies[:2]) - r.dissipated - frictional_share * r.frictional) / r.work
+            abs(r.work - sum(r.energies[:2]) - r.dissipated - frictional_share * r.frictional)
+            / r.work
             for r in (state.record for state in states)
         ]
         errors.append(found[2 * count - 1])
-        assert max(found[count:]) < 0.03, f"truth: {max(found[count:]):.2e} of the work is lost on the way"
+        assert max(found[count:]) < 0.03, (
+            f"truth: {max(found[count:]):.2e} of the work is lost on the way"
+        )
     coarse, fine = errors
     assert fine < 3e-5, f"truth: {fine:.2e} of the work is lost"
-    assert fine < max(0.65 * coarse, 2e-5), f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
-    two_numbers(end.frictional, truth=FRICTIONAL[strain], within=0.02, frozen=FRICTIONAL[strain], tight=1e-5)
+    assert fine < max(0.65 * coarse, 2e-5), (
+        f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
+    )
+    two_numbers(
+        end.frictional, truth=FRICTIONAL[strain], within=0.02, frozen=FRICTIONAL[strain], tight=1e-5
+    )
 
 
 FRICTIONAL = {"small": 0.023967038, "finite": 0.023787169}
@@ -367,16 +462,27 @@ def test_energy_of_a_stroke(strain, must_fail):
 def check_mirror(profile, friction=PAD_MU, share=-1.0, count=6):
     """A stroke to one side and its mirror image."""
     one = viscoelastic_stroke(count, 1.5e-3, profile=profile)
-    other = viscoelastic_stroke(count, share * 1.5e-3, speed=share * 10e-3, profile=profile, friction=friction)
+    other = viscoelastic_stroke(
+        count, share * 1.5e-3, speed=share * 10e-3, profile=profile, friction=friction
+    )
     assert one[-1].ratio > 0.2, "truth: it is dragged"
     for a, b in zip(one, other, strict=True):
         top = a.pressure.max()
-        np.testing.assert_allclose(b.record.depth, a.record.depth, rtol=1e-6, err_msg="truth: depth")
         np.testing.assert_allclose(
-            b.record.tangential_force, -a.record.tangential_force, atol=1e-6 * LOAD, err_msg="truth: force"
+            b.record.depth, a.record.depth, rtol=1e-6, err_msg="truth: depth"
         )
-        np.testing.assert_allclose(b.pressure[::-1], a.pressure, atol=1e-5 * top, err_msg="truth: pressure")
-        np.testing.assert_allclose(b.traction[::-1], -a.traction, atol=1e-5 * top, err_msg="truth: traction")
+        np.testing.assert_allclose(
+            b.record.tangential_force,
+            -a.record.tangential_force,
+            atol=1e-6 * LOAD,
+            err_msg="truth: force",
+        )
+        np.testing.assert_allclose(
+            b.pressure[::-1], a.pressure, atol=1e-5 * top, err_msg="truth: pressure"
+        )
+        np.testing.assert_allclose(
+            b.traction[::-1], -a.traction, atol=1e-5 * top, err_msg="truth: traction"
+        )
         np.testing.assert_allclose(b.x[::-1], -a.x, atol=1e-9, err_msg="truth: the skin's place")
 
 
@@ -397,12 +503,22 @@ def check_units(length, stress, friction=PAD_MU, load_share=1.0):
     result = pad_stroke(steps, FLAT, friction, mesh=scaled, scale=stress)
     for a, b in zip(reference, result, strict=True):
         expected = a.record.tangential_force * stress * length
-        np.testing.assert_allclose(b.record.tangential_force, expected, atol=1e-7 * b.record.force, err_msg="truth: force")
-        np.testing.assert_allclose(b.record.depth, a.record.depth * length, rtol=1e-7, err_msg="truth: depth")
         np.testing.assert_allclose(
-            b.record.frictional, a.record.frictional * stress * length**2, rtol=1e-6, atol=0, err_msg="truth: dissipation"
+            b.record.tangential_force, expected, atol=1e-7 * b.record.force, err_msg="truth: force"
         )
-        np.testing.assert_allclose(b.x, a.x * length, atol=1e-9 * length, err_msg="truth: the skin's place")
+        np.testing.assert_allclose(
+            b.record.depth, a.record.depth * length, rtol=1e-7, err_msg="truth: depth"
+        )
+        np.testing.assert_allclose(
+            b.record.frictional,
+            a.record.frictional * stress * length**2,
+            rtol=1e-6,
+            atol=0,
+            err_msg="truth: dissipation",
+        )
+        np.testing.assert_allclose(
+            b.x, a.x * length, atol=1e-9 * length, err_msg="truth: the skin's place"
+        )
         np.testing.assert_array_equal(b.stick, a.stick, err_msg="truth: stick")
 
 
@@ -417,7 +533,9 @@ def test_units_of_a_stroke_do_not_matter(length, stress, must_fail):
 def check_step_size(friction=PAD_MU, distance=3e-3):
     """A cylinder drawn from under the pad, in steps of 0.5, 0.25 and 0.125 mm, compared where all of them stand."""
     runs = [
-        viscoelastic_stroke(count, distance, profile=ROUND, friction=mu)[count + stride - 1 :: stride]
+        viscoelastic_stroke(count, distance, profile=ROUND, friction=mu)[
+            count + stride - 1 :: stride
+        ]
         for count, stride, mu in ((6, 1, friction), (12, 2, friction), (24, 4, PAD_MU))
     ]
     assert [len(states) for states in runs] == [6, 6, 6]
@@ -456,12 +574,18 @@ def check_frictionless_slide(friction=0.0):
     pressed, *states = pad_stroke(slide(LOAD, -2e-3, 3), FLAT, friction)
     for state in states:
         record = state.record
-        assert abs(record.tangential_force) < 1e-9 * LOAD, f"truth: F_t = {record.tangential_force!r}"
+        assert abs(record.tangential_force) < 1e-9 * LOAD, (
+            f"truth: F_t = {record.tangential_force!r}"
+        )
         error = np.abs(record.displacement - pressed.record.displacement).max()
         assert error < 1e-10, f"truth: the pad moves by {error:.2e} m"
-        np.testing.assert_allclose(record.nodal_force, pressed.record.nodal_force, atol=1e-6 * LOAD, err_msg="truth: force")
+        np.testing.assert_allclose(
+            record.nodal_force, pressed.record.nodal_force, atol=1e-6 * LOAD, err_msg="truth: force"
+        )
         assert record.work == pytest.approx(pressed.record.work, rel=1e-7), "truth: no work"
-        assert record.tangential is record.slip is record.state is None, "truth: nothing of friction is recorded"
+        assert record.tangential is record.slip is record.state is None, (
+            "truth: nothing of friction is recorded"
+        )
 
 
 def test_a_plate_without_friction_slides_unnoticed(must_fail):

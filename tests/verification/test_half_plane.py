@@ -78,7 +78,11 @@ class Sinusoid(Profile):
         slope = self.amplitude * k * np.sin(phase)
         cosine = 1 / np.sqrt(1 + slope**2)
         gradient = np.column_stack([slope, -np.ones_like(slope)]) * cosine[:, None]
-        return (height - points[:, 1]) * cosine, gradient, self.amplitude * k**2 * np.cos(phase) * cosine**3
+        return (
+            (height - points[:, 1]) * cosine,
+            gradient,
+            self.amplitude * k**2 * np.cos(phase) * cosine**3,
+        )
 
 
 WAVE, WAVELENGTH = 1e-3, 2.0
@@ -102,7 +106,12 @@ def check_westergaard(element, ratio, poisson=0.4, amplitude=WAVE):
     full = westergaard.full_contact_pressure(WAVE, WAVELENGTH, modulus)
     load = westergaard.mean_pressure(half, WAVE, WAVELENGTH, modulus) * WAVELENGTH
     mesh, body = half_strip(
-        [Layer(WAVELENGTH, SHEAR, poisson)], WAVELENGTH / 2, element, fine=0.98, columns=(40, 1), rows=(20, 10)
+        [Layer(WAVELENGTH, SHEAR, poisson)],
+        WAVELENGTH / 2,
+        element,
+        fine=0.98,
+        columns=(40, 1),
+        rows=(20, 10),
     )
     result = press(body, mesh, Sinusoid(amplitude, WAVELENGTH), force=load / 2)
     truth = westergaard.pressure(result.x, half, WAVE, WAVELENGTH, modulus)

@@ -17,19 +17,32 @@ from fingerpad.stimuli.shapes import Cylinder
 
 HALF_WIDTH, THIN_RADIUS, SHEAR, POISSON = 15.0, 2e4, 1.0, 0.49999
 #: half width, centre pressure and depth
-THIN = {"Q1P0": (0.3213214, 0.0018420974), "Q2P1": (0.32110099, 0.001845894), "P2B": (0.32104154, 0.0018457883)}
+THIN = {
+    "Q1P0": (0.3213214, 0.0018420974),
+    "Q2P1": (0.32110099, 0.001845894),
+    "P2B": (0.32104154, 0.0018457883),
+}
 
 
 @cache
 def fourier(layers, radius, half_length, load):
     """What an independent solution says, once for all elements and mutants."""
-    return layered_contact.press(lambda x: x**2 / (2 * radius), list(layers), half_length, load, 1024)
+    return layered_contact.press(
+        lambda x: x**2 / (2 * radius), list(layers), half_length, load, 1024
+    )
 
 
 def check_thin_layer(element, poisson=POISSON, ran_as=None):
     """A layer of thickness one under a contact fifteen thicknesses to each side."""
     load = layered.thin_layer_force(HALF_WIDTH, THIN_RADIUS, 1.0, 3 * SHEAR)
-    mesh, body = half_strip([Layer(1.0, SHEAR, poisson)], 4 * HALF_WIDTH, ran_as or element, fine=0.3, columns=(36, 16), rows=[4])
+    mesh, body = half_strip(
+        [Layer(1.0, SHEAR, poisson)],
+        4 * HALF_WIDTH,
+        ran_as or element,
+        fine=0.3,
+        columns=(36, 16),
+        rows=[4],
+    )
     result = press(body, mesh, Cylinder(curvature=1 / THIN_RADIUS), force=load / 2)
     truth = fourier((Layer(1.0, SHEAR, POISSON),), THIN_RADIUS, 4 * HALF_WIDTH, load)
     law = layered.thin_layer_pressure(result.x, HALF_WIDTH, THIN_RADIUS, 1.0, 3 * SHEAR)
@@ -88,16 +101,25 @@ def cosine_load(mesh):
 
 def check_kernel(element, ratio, thickness, run_ratio=None, poisson=0.4999):
     """Layer of shear modulus one on ``ratio``, half a period wide, six over k deep."""
-    layers = [Layer(thickness, 1.0, poisson), Layer(6 / WAVENUMBER - thickness, run_ratio or ratio, poisson)]
+    layers = [
+        Layer(thickness, 1.0, poisson),
+        Layer(6 / WAVENUMBER - thickness, run_ratio or ratio, poisson),
+    ]
     rows = [max(4, round(16 * thickness)), 14]
-    mesh, body = half_strip(layers, np.pi / WAVENUMBER, element, fine=0.98, columns=(20, 1), rows=rows)
+    mesh, body = half_strip(
+        layers, np.pi / WAVENUMBER, element, fine=0.98, columns=(20, 1), rows=rows
+    )
     load = np.zeros_like(body.u)
     load[: len(mesh.points)] = cosine_load(mesh)
     solve(body, load, tolerance=1e-9)
     crest = np.flatnonzero((mesh.points == (0.0, 0.0)).all(1))[0]
     sinking = -body.u[crest, 1]
-    half_plane = PRESSURE / (2 * WAVENUMBER) * layered.incompressible_kernel(WAVENUMBER * thickness, ratio)
-    assert abs(sinking - half_plane) < 0.03 * half_plane, f"truth: {sinking!r} is not {half_plane!r}"
+    half_plane = (
+        PRESSURE / (2 * WAVENUMBER) * layered.incompressible_kernel(WAVENUMBER * thickness, ratio)
+    )
+    assert abs(sinking - half_plane) < 0.03 * half_plane, (
+        f"truth: {sinking!r} is not {half_plane!r}"
+    )
     stack = [Layer(thickness, 1.0, 0.4999), Layer(6 / WAVENUMBER - thickness, ratio, 0.4999)]
     truth = PRESSURE * layered.stack_compliance(WAVENUMBER, stack)
     within = 0.02 if element == "Q1P0" else 2e-3
@@ -129,7 +151,9 @@ STRIP = {
 
 def check_strip(element, load, layers=SKIN):
     radius, half_length = 200.0, 12.0
-    mesh, body = half_strip(layers, half_length, element, fine=0.3, columns=(48, 16), rows=[7, 4, 9])
+    mesh, body = half_strip(
+        layers, half_length, element, fine=0.3, columns=(48, 16), rows=[7, 4, 9]
+    )
     result = press(body, mesh, Cylinder(curvature=1 / radius), force=load / 2)
     truth = fourier(tuple(SKIN), radius, half_length, load)
     within, frozen = (0.03 if element == "Q1P0" else 0.01), STRIP[element, load]

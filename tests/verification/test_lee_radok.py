@@ -28,9 +28,14 @@ def run(steps, series, element="Q2P1"):
 
 def hold(value, key, count):
     """A jump at once to a force or depth, and its hold up to each of TIMES in ``count`` growing steps."""
-    parts = [np.linspace(a, b, count + 1)[1:] for a, b in zip((0.0, *TIMES[:-1]), TIMES, strict=True)]
+    parts = [
+        np.linspace(a, b, count + 1)[1:] for a, b in zip((0.0, *TIMES[:-1]), TIMES, strict=True)
+    ]
     ends = np.concatenate(parts)
-    later = [Step(1, t, dt, **{key: value}) for t, dt in zip(ends, np.diff(ends, prepend=0.0), strict=True)]
+    later = [
+        Step(1, t, dt, **{key: value})
+        for t, dt in zip(ends, np.diff(ends, prepend=0.0), strict=True)
+    ]
     return [Step(0, 0.0, 0.0, **{key: value}), *later]
 
 
@@ -42,7 +47,9 @@ def check_creep(count=6, series=ONE_TERM):
     two_numbers(widths[0], truth=1.0, within=0.01, frozen=CREEP[0])
     table = (1.3134, 1.5227, 1.8784)
     for time, width, published, frozen in zip(TIMES, widths[1:], table, CREEP[1:], strict=True):
-        truth = float(lee_radok.step_creep_width(time, RADIUS, load, SHEAR / 0.2, ONE_TERM.g, ONE_TERM.tau))
+        truth = float(
+            lee_radok.step_creep_width(time, RADIUS, load, SHEAR / 0.2, ONE_TERM.g, ONE_TERM.tau)
+        )
         assert truth == pytest.approx(published, abs=1e-3)  # of the table, for a0 = 1
         two_numbers(width, truth=truth, within=0.01, frozen=frozen)
 
@@ -65,7 +72,9 @@ def check_relaxation(count=2, series=ONE_TERM):
     forces = np.array([2 * end.force for end in ends[::count]])
     table = (0.4943, 0.3083, 0.2054)
     for time, force, published, frozen in zip(TIMES, forces[1:], table, RELAXED, strict=True):
-        truth = float(lee_radok.held_width_force(time, 1.0, RADIUS, SHEAR / 0.2, ONE_TERM.g, ONE_TERM.tau))
+        truth = float(
+            lee_radok.held_width_force(time, 1.0, RADIUS, SHEAR / 0.2, ONE_TERM.g, ONE_TERM.tau)
+        )
         assert truth / load == pytest.approx(published, abs=1e-3)
         two_numbers(force, truth=truth, within=4e-3, frozen=frozen)
     widths = [end.half_width for end in ends]
@@ -85,13 +94,23 @@ def test_force_relaxes_under_a_held_contact(must_fail):
 def check_ramp_and_hold(count=10, series=THESIS):
     """The thesis's programme: force up in 0.5 s, held for 2 s; width against the hereditary integral."""
     load = hertz.force(1.2, RADIUS, 4 * SHEAR)
-    times = np.concatenate([np.linspace(0, 0.5, count + 1)[1:], 0.5 + 2.0 * (np.arange(1, count + 1) / count) ** 2])
+    times = np.concatenate(
+        [np.linspace(0, 0.5, count + 1)[1:], 0.5 + 2.0 * (np.arange(1, count + 1) / count) ** 2]
+    )
     forces = np.minimum(times / 0.5, 1.0) * load / 2
-    steps = [Step(0, t, dt, force=f) for t, dt, f in zip(times, np.diff(times, prepend=0.0), forces, strict=True)]
+    steps = [
+        Step(0, t, dt, force=f)
+        for t, dt, f in zip(times, np.diff(times, prepend=0.0), forces, strict=True)
+    ]
     ends = run(steps, series)
     fine = np.unique(np.concatenate([[0.0], times]))
     truth = lee_radok.width_from_force(
-        fine, load * np.minimum(fine / 0.5, 1.0), RADIUS, SHEAR / THESIS.g_infinity, THESIS.g, THESIS.tau
+        fine,
+        load * np.minimum(fine / 0.5, 1.0),
+        RADIUS,
+        SHEAR / THESIS.g_infinity,
+        THESIS.g,
+        THESIS.tau,
     )[1:]
     for index, frozen in zip((count - 1, -1), RAMP, strict=True):
         two_numbers(ends[index].half_width, truth=truth[index], within=0.01, frozen=frozen)
@@ -116,7 +135,9 @@ def check_pressure_shape(series=THESIS):
     inside = end.x < 0.9 * width
     error = np.abs(end.pressure - truth)[inside].max() / truth[0]
     assert error < 0.01, f"truth: the pressure is off by {error:.4f} of its peak"
-    elastic = ting.elastic_force_under_force_control([0.0, 5.0], [load, load], THESIS.g, THESIS.tau)[-1]
+    elastic = ting.elastic_force_under_force_control(
+        [0.0, 5.0], [load, load], THESIS.g, THESIS.tau
+    )[-1]
     assert hertz.half_width(elastic, RADIUS, 4 * shear) == pytest.approx(width)
 
 

@@ -30,10 +30,18 @@ def errors(element, strain, poisson, ran_as=None, force_poisson=None):
     """Relative L2 errors of the displacement on distorted meshes of 4, 8 and 16 elements a side."""
     shear, bulk = lame_constants(1.0, poisson)
     if strain == "small":
-        isochoric, force = manufactured.divergence_free(0.1, 2.0), manufactured.small_strain_body_force
+        isochoric, force = (
+            manufactured.divergence_free(0.1, 2.0),
+            manufactured.small_strain_body_force,
+        )
     else:
-        isochoric, force = manufactured.isochoric_shears(0.08, 2.5), manufactured.finite_strain_body_force
-    field = manufactured.nearly_incompressible(isochoric, manufactured.gradient_of_potential(0.1, 2.0), bulk, PRESSURE_MODULUS)
+        isochoric, force = (
+            manufactured.isochoric_shears(0.08, 2.5),
+            manufactured.finite_strain_body_force,
+        )
+    field = manufactured.nearly_incompressible(
+        isochoric, manufactured.gradient_of_potential(0.1, 2.0), bulk, PRESSURE_MODULUS
+    )
     loaded = lame_constants(1.0, force_poisson or poisson)
     found = []
     for count in (4, 8, 16):

@@ -20,7 +20,10 @@ from fingerpad.specimen.materials import Prony
 from fingerpad.stimuli.shapes import Cylinder
 
 THESIS = Prony((0.055, 0.3691), (3.25, 0.3414))
-ENERGIES = {f"strain_energy_{name}" for name in ("density", "long_term_moduli", "half_stress_strain", "recoverable", "network")}
+ENERGIES = {
+    f"strain_energy_{name}"
+    for name in ("density", "long_term_moduli", "half_stress_strain", "recoverable", "network")
+}
 DEPTHS = (0.3, 0.786, 1.5, 2.5)  # half widths
 
 #: network energy over p0^2/G at DEPTHS
@@ -39,7 +42,9 @@ def hertz_contact(element, strain):
     """The load on an incompressible half-plane of shear modulus one, and its body, pressed."""
     radius, depth, poisson = 200.0, 150.0, 0.4999
     load = hertz.force(1.0, radius, 2 / (1 - poisson))
-    mesh, body = half_strip([Layer(depth, 1.0, poisson)], depth, element, strain, fine=3 / depth, columns=(24, 18))
+    mesh, body = half_strip(
+        [Layer(depth, 1.0, poisson)], depth, element, strain, fine=3 / depth, columns=(24, 18)
+    )
     press(body, mesh, Cylinder(curvature=1 / radius), force=load / 2)
     return load, body
 
@@ -51,14 +56,25 @@ def check_hertz_energy(element, strain="small", off_axis=0.0):
     points = np.column_stack([np.full(len(DEPTHS), off_axis), -np.array(DEPTHS)])
     energies = MaterialPoints(body, points, body.shear, mirrored=True).sample(body)
     truth = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)["max_shear"] ** 2 / (2 * shear)
-    for found, expected, frozen in zip(energies["strain_energy_network"], truth, HERTZ[element, strain], strict=True):
+    for found, expected, frozen in zip(
+        energies["strain_energy_network"], truth, HERTZ[element, strain], strict=True
+    ):
         two_numbers(found / p0**2, truth=expected / p0**2, within=0.02, frozen=frozen, tight=1e-5)
     # incompressible and in the plane: von Mises stress is sqrt(3) times the largest shear stress
     stresses = hertz.axis_stresses(np.array(DEPTHS), 1.0, p0, 0.5)
-    np.testing.assert_allclose(energies["von_mises_stress"], 3**0.5 * stresses["max_shear"], rtol=0.02, err_msg="truth")
-    np.testing.assert_allclose(energies["compressive_strain"], stresses["max_shear"] / (2 * shear), rtol=0.04, err_msg="truth")
+    np.testing.assert_allclose(
+        energies["von_mises_stress"], 3**0.5 * stresses["max_shear"], rtol=0.02, err_msg="truth"
+    )
+    np.testing.assert_allclose(
+        energies["compressive_strain"],
+        stresses["max_shear"] / (2 * shear),
+        rtol=0.04,
+        err_msg="truth",
+    )
     for name in ENERGIES:
-        np.testing.assert_allclose(energies[name], energies["strain_energy_network"], rtol=2e-3, err_msg="truth")
+        np.testing.assert_allclose(
+            energies[name], energies["strain_energy_network"], rtol=2e-3, err_msg="truth"
+        )
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])
@@ -105,7 +121,9 @@ def check_shear_energies(strain, series=THESIS):
         truth["von_mises_stress"] = 3**0.5 * abs(total[k])
         found = receptors.sample(body)
         for name in truth:
-            np.testing.assert_allclose(found[name], truth[name], rtol=1e-5, err_msg=f"truth: {name} at {time} s")
+            np.testing.assert_allclose(
+                found[name], truth[name], rtol=1e-5, err_msg=f"truth: {name} at {time} s"
+            )
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])
@@ -119,10 +137,16 @@ def test_five_strain_energies_in_shear(strain, must_fail):
 def test_logarithmic_strain_is_half_the_logarithm_of_b():
     """Of a rotation none, of a stretch its logarithm, of any deformation that of F F^T by scipy."""
     turn = np.array([[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]])
-    f = np.array([turn, turn @ np.diag([1.5, 0.8]), [[1.2, 0.4], [-0.1, 0.9]], np.eye(2) + 1e-9 * turn])
+    f = np.array(
+        [turn, turn @ np.diag([1.5, 0.8]), [[1.2, 0.4], [-0.1, 0.9]], np.eye(2) + 1e-9 * turn]
+    )
     truth = np.array([np.real(logm(one @ one.T)) / 2 for one in f])
-    np.testing.assert_allclose(truth[1], turn @ np.diag(np.log([1.5, 0.8])) @ turn.T, atol=1e-14, err_msg="truth")
-    np.testing.assert_allclose(logarithmic_strain(f), truth, atol=1e-15, rtol=1e-12, err_msg="truth")
+    np.testing.assert_allclose(
+        truth[1], turn @ np.diag(np.log([1.5, 0.8])) @ turn.T, atol=1e-14, err_msg="truth"
+    )
+    np.testing.assert_allclose(
+        logarithmic_strain(f), truth, atol=1e-15, rtol=1e-12, err_msg="truth"
+    )
 
 
 def test_between_elements_no_side_is_preferred(monkeypatch):
@@ -161,7 +185,9 @@ def energy_errors(element, divisions, distortion):
 
 
 def check_fit(element, within):
-    coarse, fine, irregular = (energy_errors(element, *mesh) for mesh in ((12, 0.0), (24, 0.0), (24, 0.15)))
+    coarse, fine, irregular = (
+        energy_errors(element, *mesh) for mesh in ((12, 0.0), (24, 0.0), (24, 0.15))
+    )
     assert fine < within and irregular < 2.2 * within, "truth"
     assert np.log2(coarse / fine) > 1.95, "truth"
 
@@ -184,19 +210,25 @@ def test_nothing_is_fitted_across_layers_or_gaps():
     gap = (np.abs(centre[:, 0] - 0.5) < 0.01) & (centre[:, 1] < 0.5) & (centre[:, 1] > 0.125)
     mesh = replace(mesh, cells=mesh.cells[~gap], region=stiff[~gap].astype(int))
     alone = ~np.isin(np.arange(len(mesh.points)), mesh.cells)
-    body = make_body(mesh, np.column_stack([alone, alone]), np.array([2.0, 20.0, 0.0]), 50.0, "Q2P1", "small")
+    body = make_body(
+        mesh, np.column_stack([alone, alone]), np.array([2.0, 20.0, 0.0]), 50.0, "Q2P1", "small"
+    )
     left = mesh.points[:, 0] < 0.5
     body.displace(1e-3 * np.column_stack([np.where(left, 1, 3) * mesh.points[:, 1], 0 * left]))
     points = np.array([[0.3, 0.49], [0.3, 0.51], [0.469, 0.3], [0.531, 0.3]])
     found = MaterialPoints(body, points, None).sample(body)["strain_energy_network"]
-    np.testing.assert_allclose(found, 0.5 * 1e-6 * np.array([2, 20, 2, 18]), rtol=1e-6, err_msg="truth")
+    np.testing.assert_allclose(
+        found, 0.5 * 1e-6 * np.array([2, 20, 2, 18]), rtol=1e-6, err_msg="truth"
+    )
 
 
 def test_the_half_of_a_symmetric_body_reads_what_the_whole_does():
     """Near the axis what is fitted goes over it, as in a mirror."""
     found = []
     for low in (-1, 0):
-        mesh = rectangle(np.linspace(0, 1, 8 * (1 - low) + 1), 8, 1.0 - low, 1.0, origin=(float(low), 0.0))
+        mesh = rectangle(
+            np.linspace(0, 1, 8 * (1 - low) + 1), 8, 1.0 - low, 1.0, origin=(float(low), 0.0)
+        )
         body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, "Q2P1", "finite")
         x, y = mesh.points.T
         body.displace(0.02 * np.column_stack([np.sin(2 * x) * y, np.cos(3 * x) * y * y]))
@@ -211,7 +243,9 @@ def test_no_energy_is_negative():
     mesh = rectangle(8, 8, origin=(-0.5, 0.0))
     body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, "Q2P1", "small")
     body.displace(0.01 * np.column_stack([mesh.points[:, 0] ** 3, 0 * mesh.points[:, 0]]))
-    found = MaterialPoints(body, np.column_stack([np.zeros(9), np.linspace(0.3, 0.7, 9)]), None).sample(body)
+    found = MaterialPoints(
+        body, np.column_stack([np.zeros(9), np.linspace(0.3, 0.7, 9)]), None
+    ).sample(body)
     for name in ENERGIES:
         assert (found[name] >= 0).all(), name
     assert (found["hydrostatic_pressure"] < 0).any() or (found["dilatation"] < 0).any()
@@ -233,7 +267,11 @@ def located(space, points):
     return Location(found.element[first], found.xi[first])
 
 
-CURVED = {"quad9": ("Q2P1", ElementQuad2), "tri6": ("P2B", ElementTriP2), "quad4": ("Q1P0", ElementQuad1)}
+CURVED = {
+    "quad9": ("Q2P1", ElementQuad2),
+    "tri6": ("P2B", ElementTriP2),
+    "quad4": ("Q1P0", ElementQuad1),
+}
 
 
 @pytest.mark.parametrize("bent", [False, True], ids=["irregular", "curved"])
@@ -241,14 +279,25 @@ CURVED = {"quad9": ("Q2P1", ElementQuad2), "tri6": ("P2B", ElementTriP2), "quad4
 def test_points_are_found_where_scikit_fem_maps_them(kind, bent):
     """Places in elements of curved sides or irregular shape, mapped by scikit-fem, are found again, and in no second element."""
     element, shape = CURVED[kind]
-    mesh = quarter_annulus(5, 6, 1.0, 2.0, kind) if bent else rectangle(9, 8, kind=kind, distortion=0.3)
+    mesh = (
+        quarter_annulus(5, 6, 1.0, 2.0, kind)
+        if bent
+        else rectangle(9, 8, kind=kind, distortion=0.3)
+    )
     body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, element, "finite")
     random = np.random.default_rng(3)
-    host, xi = random.integers(len(mesh.cells), size=2000), random.uniform(1e-3, 1 - 1e-3, (2000, 2))
+    host, xi = (
+        random.integers(len(mesh.cells), size=2000),
+        random.uniform(1e-3, 1 - 1e-3, (2000, 2)),
+    )
     if kind == "tri6":
         xi = np.where(xi.sum(1, keepdims=True) < 1, xi, 1 - xi)
-    numbered = SimpleNamespace(element_dofs=mesh.cells.T)  # gmsh and scikit-fem number the nodes of these elements alike
-    mapping = MappingIsoparametric(SimpleNamespace(doflocs=mesh.points.T, dofs=numbered, dim=lambda: 2), shape())
+    numbered = SimpleNamespace(
+        element_dofs=mesh.cells.T
+    )  # gmsh and scikit-fem number the nodes of these elements alike
+    mapping = MappingIsoparametric(
+        SimpleNamespace(doflocs=mesh.points.T, dofs=numbered, dim=lambda: 2), shape()
+    )
     mapped = mapping.F(xi.T[:, :, None], tind=host)[:, :, 0].T
     found = located(body.space, mapped)
     np.testing.assert_array_equal(found.element, host)
@@ -267,7 +316,13 @@ def test_points_are_found_in_long_elements_beside_many_narrow_ones(kind):
     points = np.array([[0.5025, 0.15], [0.3025, 0.05], [0.5, 0.15], [0.7025, 0.12]])
     found = located(body.space, points)
     values = body.space.element.shape(found.xi)[0]
-    np.testing.assert_allclose(np.einsum("na,nai->ni", values, body.space.points[body.space.cells[found.element]]), points)
-    assert len(np.unique(containing(body.space, points)[0])) == len(points) < len(containing(body.space, points)[0])
+    np.testing.assert_allclose(
+        np.einsum("na,nai->ni", values, body.space.points[body.space.cells[found.element]]), points
+    )
+    assert (
+        len(np.unique(containing(body.space, points)[0]))
+        == len(points)
+        < len(containing(body.space, points)[0])
+    )
     with pytest.raises(ReceptorError, match="outside"):
         located(body.space, np.array([[0.5, 0.15], [0.5, 1.2]]))

@@ -49,7 +49,9 @@ def pressed_history(mesh, shape, key, goal, poisson, prony, count=COUNT):
     body = pad_body(mesh, "small", poisson, prony)
     records = walk(body, mesh, steps, SHAPES[shape], curve="skin").records
     skin = skin_of(mesh, "skin")
-    return np.array([step.time for step in steps]), [over_skin(body, skin, records, r) for r in records]
+    return np.array([step.time for step in steps]), [
+        over_skin(body, skin, records, r) for r in records
+    ]
 
 
 def force_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
@@ -65,12 +67,16 @@ def depth_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
     """Force control: largest deviations of depth and width from the elastic ones at the creep integral."""
     times, ends = pressed_history(mesh, shape, "force", LOAD / 2, poisson, prony)
     applied = LOAD * np.minimum(np.append(0.0, times) / 0.5, 1.0)
-    elastic = THESIS.g_infinity * ting.elastic_force_under_force_control(np.append(0.0, times), applied, THESIS.g, THESIS.tau)
+    elastic = THESIS.g_infinity * ting.elastic_force_under_force_control(
+        np.append(0.0, times), applied, THESIS.g, THESIS.tau
+    )
     worst = np.zeros(2)
     for k in (COUNT // 2, COUNT - 1, 3 * COUNT // 2, 2 * COUNT - 1):
         truth = pressed_half(shape, poisson=poisson, force=elastic[k + 1])
         found = ends[k]
-        worst = np.maximum(worst, np.abs([found.depth / truth.depth - 1, found.half_width / truth.half_width - 1]))
+        worst = np.maximum(
+            worst, np.abs([found.depth / truth.depth - 1, found.half_width / truth.half_width - 1])
+        )
     return worst
 
 
@@ -109,11 +115,17 @@ def check_half_is_full(shape, strain, layers=None):
     half = press_pad(pad_body(half_mesh(), strain, **extra), half_mesh(), shape, force=LOAD)
     np.testing.assert_allclose(half.depth, whole.depth, rtol=1e-8, err_msg="truth: depth")
     np.testing.assert_allclose(2 * half.force, whole.force, rtol=1e-8, err_msg="truth: force")
-    np.testing.assert_allclose(2 * half.half_width, np.ptp(whole.edges), rtol=1e-7, err_msg="truth: width")
+    np.testing.assert_allclose(
+        2 * half.half_width, np.ptp(whole.edges), rtol=1e-7, err_msg="truth: width"
+    )
     right = len(whole.pressure) // 2
     top = whole.pressure.max()
-    np.testing.assert_allclose(half.pressure, whole.pressure[right:], atol=1e-7 * top, err_msg="truth: pressure")
-    np.testing.assert_allclose(whole.pressure, whole.pressure[::-1], atol=1e-7 * top, err_msg="truth: mirror")
+    np.testing.assert_allclose(
+        half.pressure, whole.pressure[right:], atol=1e-7 * top, err_msg="truth: pressure"
+    )
+    np.testing.assert_allclose(
+        whole.pressure, whole.pressure[::-1], atol=1e-7 * top, err_msg="truth: mirror"
+    )
     assert abs(whole.records[-1].tangential_force) < 1e-8 * LOAD, "truth: no tangential force"
 
 
@@ -131,19 +143,28 @@ def test_half_model_is_the_full_model(shape, strain, must_fail):
 @cache
 def ramp_and_hold_records(strain, prony, count):
     body = pad_body(half_mesh(), strain, 0.48, prony)
-    return walk(body, half_mesh(), ramp_and_hold("force", LOAD / 2, count), SHAPES["flat"], curve="skin").records
+    return walk(
+        body, half_mesh(), ramp_and_hold("force", LOAD / 2, count), SHAPES["flat"], curve="skin"
+    ).records
 
 
 def energy_errors(strain, prony, count, dissipated_share=1.0):
     """Imbalance of work, stored and dissipated energy over the work, after each step of a ramp and hold."""
     records = ramp_and_hold_records(strain, prony, count)
-    return np.array([abs(r.work - sum(r.energies[:2]) - dissipated_share * r.dissipated) / r.work for r in records])
+    return np.array(
+        [
+            abs(r.work - sum(r.energies[:2]) - dissipated_share * r.dissipated) / r.work
+            for r in records
+        ]
+    )
 
 
 def check_energy(strain, prony=THESIS, **mutant):
     coarse, fine = (energy_errors(strain, prony, count, **mutant)[-1] for count in (8, 16))
     assert fine < 5e-5, f"truth: {fine:.2e} of the work is lost"
-    assert fine < max(0.4 * coarse, 5e-5), f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
+    assert fine < max(0.4 * coarse, 5e-5), (
+        f"truth: the imbalance does not vanish: {coarse:.2e} -> {fine:.2e}"
+    )
 
 
 @pytest.mark.parametrize("prony", [None, THESIS], ids=["elastic", "viscoelastic"])
@@ -162,15 +183,26 @@ def check_scaling(mesh, strain, length, stress, load_share=1.0):
     """Lengths times ``length`` and stresses times ``stress`` leave every ratio unchanged."""
     scaled = replace(mesh, points=mesh.points * length)
     reference = pressed_half("flat", strain, force=LOAD)
-    result = press_pad(pad_body(scaled, strain, scale=stress), scaled, "flat", force=load_share * LOAD * stress * length)
+    result = press_pad(
+        pad_body(scaled, strain, scale=stress),
+        scaled,
+        "flat",
+        force=load_share * LOAD * stress * length,
+    )
     for name, unit in {"depth": length, "half_width": length, "force": stress * length}.items():
         expected = getattr(reference, name) * unit
-        np.testing.assert_allclose(getattr(result, name), expected, rtol=1e-8, err_msg=f"truth: {name}")
-    np.testing.assert_allclose(result.pressure, stress * reference.pressure, atol=1e-7 * result.pressure.max())
+        np.testing.assert_allclose(
+            getattr(result, name), expected, rtol=1e-8, err_msg=f"truth: {name}"
+        )
+    np.testing.assert_allclose(
+        result.pressure, stress * reference.pressure, atol=1e-7 * result.pressure.max()
+    )
     assert result.records[-1].iterations == reference.records[-1].iterations
 
 
-@pytest.mark.parametrize("length, stress", [(1.0, 37.0), (1e3, 1e-6), (1e6, 1e-3)], ids=["stiffer", "mm N", "um"])
+@pytest.mark.parametrize(
+    "length, stress", [(1.0, 37.0), (1e3, 1e-6), (1e6, 1e-3)], ids=["stiffer", "mm N", "um"]
+)
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_units_do_not_matter(half, strain, length, stress, must_fail):
     """Moduli and forces times c leave every length; millimetres give what metres give."""
@@ -186,12 +218,15 @@ def check_small_is_the_limit(mesh, shape, poisson=0.48):
     found = []
     for share in (16, 32, 64):
         depths = [
-            pressed_half(shape, strain, nu, force=LOAD / share).depth for strain, nu in (("small", 0.48), ("finite", poisson))
+            pressed_half(shape, strain, nu, force=LOAD / share).depth
+            for strain, nu in (("small", 0.48), ("finite", poisson))
         ]
         found.append(abs(depths[1] / depths[0] - 1))
     rates = np.log2(np.array(found[:-1]) / found[1:])
     assert found[-1] < 2.5e-3, f"truth: still {found[-1]:.2e} apart"
-    assert rates.mean() > 0.9, f"truth: the difference falls with the rates {rates}, not in proportion to the load"
+    assert rates.mean() > 0.9, (
+        f"truth: the difference falls with the rates {rates}, not in proportion to the load"
+    )
     two_numbers(found[0], truth=LIMIT[shape], within=0.1, frozen=LIMIT[shape], tight=1e-4)
 
 
@@ -243,7 +278,9 @@ def pressures(shape, settings, of_displacement=False):
 
 def check_pressures(shape, **more):
     truth = pressures(shape, TIGHT)
-    error = np.linalg.norm(pressures(shape, NewtonSettings(force_tolerance=2e-3), **more) - truth) / np.linalg.norm(truth)
+    error = np.linalg.norm(
+        pressures(shape, NewtonSettings(force_tolerance=2e-3), **more) - truth
+    ) / np.linalg.norm(truth)
     assert error < 1e-5, f"truth: pressures are off by {error:.2e}"
 
 
@@ -286,7 +323,9 @@ def check_quadratic_convergence(mesh, shape=Cylinder):
     settings = replace(TIGHT, force_tolerance=1e-10)
     body, step = pad_body(mesh, "finite"), Step(0, 1.0, 1.0, force=LOAD / 2)
     record = walk(body, mesh, [step], shape(curvature=1260.0), settings, "skin").records[-1]
-    assert record.iterations <= 6, f"truth: {record.iterations} iterations are not quadratic convergence"
+    assert record.iterations <= 6, (
+        f"truth: {record.iterations} iterations are not quadratic convergence"
+    )
 
 
 def test_newton_converges_quadratically_on_a_sharp_cylinder(half, must_fail):
@@ -307,8 +346,12 @@ def check_prony_limit(mesh, strain, held, modulus, prony=THESIS):
     ratio = viscoelastic.force / elastic.force
     assert abs(ratio - modulus) < 2e-3 * modulus, f"truth: {ratio!r} is not {modulus!r}"
     if modulus == 1.0:
-        np.testing.assert_allclose(viscoelastic.depth, elastic.depth, rtol=1e-8, err_msg="truth: depth")
-        np.testing.assert_allclose(ratio, 1, rtol=1e-6, err_msg="truth: exactly the long-term answer")
+        np.testing.assert_allclose(
+            viscoelastic.depth, elastic.depth, rtol=1e-8, err_msg="truth: depth"
+        )
+        np.testing.assert_allclose(
+            ratio, 1, rtol=1e-6, err_msg="truth: exactly the long-term answer"
+        )
 
 
 @pytest.mark.parametrize("strain", ["small", "finite"])

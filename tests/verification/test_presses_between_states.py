@@ -35,15 +35,22 @@ def test_outputs_between_states_are_those_that_are_solved_for(surface):
     for name, least in CLOSE.items():
         scale = np.abs(solved[name].values).max()
         assert np.abs(found[name].values - solved[name].values).max() < least * scale, name
-    apart = np.linalg.norm(found["contact_pressure"].values - solved["contact_pressure"].values, axis=1)
+    apart = np.linalg.norm(
+        found["contact_pressure"].values - solved["contact_pressure"].values, axis=1
+    )
     assert (apart < 0.03 * np.linalg.norm(solved["contact_pressure"].values, axis=1) + 1e-9).all()
     assert found.newton_iterations.sum() < 0.8 * solved.newton_iterations.sum()
     assert (leg_ends(found)["interpolated"] == 0).all()
     assert max(kinks(found).values()) < 3e-3
-    pressure, hold = found["contact_pressure"].values, np.flatnonzero(between & (found["leg"].values == 1))
+    pressure, hold = (
+        found["contact_pressure"].values,
+        np.flatnonzero(between & (found["leg"].values == 1)),
+    )
     sides = pressure[hold - 1], pressure[hold + 1]
     out = np.maximum(np.minimum(*sides) - pressure[hold], pressure[hold] - np.maximum(*sides))
-    assert out.max() < 1e-3 * pressure.max()  # nodes at the edge of a contact that hardly grows neither jump nor bounce
+    assert (
+        out.max() < 1e-3 * pressure.max()
+    )  # nodes at the edge of a contact that hardly grows neither jump nor bounce
 
 
 def test_no_more_states_than_the_accuracy_needs_unless_steps_are_given():

@@ -45,7 +45,12 @@ def check_relaxation(strain, held, series=THESIS):
     """``held``: times of the steps after a jump to a shear of 0.4."""
     times = np.concatenate([[0.0], held])
     stress = drive(strain, series, times, np.full(len(times), 0.4))
-    np.testing.assert_allclose(stress, 0.4 * SHEAR * THESIS.relaxation(times) / THESIS.g_infinity, rtol=1e-11, err_msg="truth")
+    np.testing.assert_allclose(
+        stress,
+        0.4 * SHEAR * THESIS.relaxation(times) / THESIS.g_infinity,
+        rtol=1e-11,
+        err_msg="truth",
+    )
     two_numbers(stress[-1], truth=0.4 * SHEAR, within=0.02, frozen=0.8007562572)
 
 
@@ -76,7 +81,9 @@ def check_large_relaxation(held, series=THESIS, rotation=0.0):
     for curve in ("left", "right", "bottom", "top"):
         load = edge_load_vectors(mesh.points, mesh.curves[curve])
         reaction += load @ piola.T
-    np.testing.assert_allclose(force, reaction, atol=1e-10 * np.abs(reaction).max(), err_msg="truth")
+    np.testing.assert_allclose(
+        force, reaction, atol=1e-10 * np.abs(reaction).max(), err_msg="truth"
+    )
 
 
 @pytest.mark.parametrize("rotation", [0.0, 0.7])
@@ -146,14 +153,19 @@ def check_cycle(strain, frozen, series=THESIS, amplitude=0.02, frequency=2.5):
         stresses.append(shear_stress(mesh, body))
         body.commit()
         lost.append(body.energies()[2] - body.energies()[1])
-    truth = prony_point.dissipation_per_cycle(amplitude, frequency, THESIS.g, THESIS.tau, SHEAR / THESIS.g_infinity)
+    truth = prony_point.dissipation_per_cycle(
+        amplitude, frequency, THESIS.g, THESIS.tau, SHEAR / THESIS.g_infinity
+    )
     last = slice(-97, None)
-    two_numbers(np.trapezoid(stresses[last], shears[last]), truth=truth, within=5e-3, frozen=frozen[0])
+    two_numbers(
+        np.trapezoid(stresses[last], shears[last]), truth=truth, within=5e-3, frozen=frozen[0]
+    )
     two_numbers(lost[-1] - lost[-97], truth=truth, within=5e-3, frozen=frozen[1])
 
 
 @pytest.mark.parametrize(
-    "strain, frozen", [("small", (8.23581110e-4, 8.23554609e-4)), ("finite", (8.23639581e-4, 8.23613066e-4))]
+    "strain, frozen",
+    [("small", (8.23581110e-4, 8.23554609e-4)), ("finite", (8.23639581e-4, 8.23613066e-4))],
 )
 def test_dissipation_of_a_cycle(strain, frozen, must_fail):
     """A steady cycle loses pi amplitude^2 G'', as work and as recorded dissipation (Christensen 1982)."""

@@ -15,12 +15,21 @@ SCENE = {
 }
 IN_METRES = {
     "stimulus": {"shape": "cylinder", "curvature": "0.21 1/mm"},
-    "motion": [{"press_to_force": "0.02 kilogram_force", "rate": "0.04 kilogram_force/s"}, {"hold": "2000 ms"}],
+    "motion": [
+        {"press_to_force": "0.02 kilogram_force", "rate": "0.04 kilogram_force/s"},
+        {"hold": "2000 ms"},
+    ],
     "outputs": {"receptors": {"depths": ["0.0006 m", "0.915 mm"], "offsets": ["0 m", "0.5 mm"]}},
     "accuracy": {"skin_edge": "0.0004 m", "steps": 8},
 }
 #: Counters and errors of the solver may differ between two runs of the same problem.
-EXCLUDED = {"residual", "complementarity_error", "energy_balance_error", "newton_iterations", "min_detF"}
+EXCLUDED = {
+    "residual",
+    "complementarity_error",
+    "energy_balance_error",
+    "newton_iterations",
+    "min_detF",
+}
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +50,9 @@ def check_same(one, other, within):
         first, second = one[name].values, other[name].values
         scale = np.abs(first).max()
         if name in ("tangential_force", "centre_lateral_displacement"):
-            scale = np.abs(one["force" if name == "tangential_force" else "indentation_depth"].values).max()
+            scale = np.abs(
+                one["force" if name == "tangential_force" else "indentation_depth"].values
+            ).max()
         error = np.abs(first - second).max()
         assert error <= within * scale, f"truth: {name} differs by {error / scale:.2e}"
 
@@ -61,7 +72,9 @@ def test_spelling_of_units_changes_nothing(run, must_fail):
 
 
 @pytest.mark.parametrize("finite", ["on", "off"])
-@pytest.mark.parametrize("stimulus", [{"shape": "flat"}, {"shape": "cylinder", "curvature": "1260 1/m"}])
+@pytest.mark.parametrize(
+    "stimulus", [{"shape": "flat"}, {"shape": "cylinder", "curvature": "1260 1/m"}]
+)
 def test_contact_laws_hold_at_every_step(run, stimulus, finite):
     """Pressures only push, force times gap vanishes, the force is the one asked for, forces balance."""
     history = run(stimulus=stimulus, effects={"finite_strain": finite}).isel(time=slice(1, None))
@@ -80,15 +93,27 @@ STEADY = {"motion": [{"press_to_force": "20 gf"}, {"press_to_depth": "1.2 mm"}]}
 
 def check_steady(run, stimulus, legs, factor=1.0):
     """Legs of one step and of four end in the same state; their work is known well enough to balance the energy."""
-    once, often = (run(stimulus=stimulus, **legs, accuracy={"skin_edge": "400 um", "steps": n}) for n in (2, 8))
+    once, often = (
+        run(stimulus=stimulus, **legs, accuracy={"skin_edge": "400 um", "steps": n}) for n in (2, 8)
+    )
     assert once.sizes["time"] == 3 and often.sizes["time"] == 9 and not once.cutbacks.any()
-    for name in ("force", "indentation_depth", "contact_width", "peak_pressure", "strain_energy_density"):
+    for name in (
+        "force",
+        "indentation_depth",
+        "contact_width",
+        "peak_pressure",
+        "strain_energy_density",
+    ):
         first, second = factor * once[name].values[-1], often[name].values[-1]
         np.testing.assert_allclose(first, second, rtol=1e-4, err_msg=f"truth: {name}")
-    assert once.energy_balance_error[1:].max() < 0.1, "truth: work = energy; a straight line from zero is off by 0.19"
+    assert once.energy_balance_error[1:].max() < 0.1, (
+        "truth: work = energy; a straight line from zero is off by 0.19"
+    )
 
 
-@pytest.mark.parametrize("stimulus", [{"shape": "flat"}, {"shape": "cylinder", "curvature": "1260 1/m"}])
+@pytest.mark.parametrize(
+    "stimulus", [{"shape": "flat"}, {"shape": "cylinder", "curvature": "1260 1/m"}]
+)
 def test_steady_press_in_one_step(run, stimulus, must_fail):
     """A steady press does not depend on its load increments, and one step knows its work."""
     check_steady(run, stimulus, STEADY)
@@ -106,7 +131,10 @@ def check_narrow_contact(run, accuracy):
     top = int(np.flatnonzero(history.leg == 0)[-1])
     width = float(history.contact_width[top])
     np.testing.assert_allclose(width, WIDTH, rtol=0.045, err_msg="truth: the width on finer meshes")
-    energy, time = history.strain_energy_density.values[: top + 1, 2], history.time.values[: top + 1]
+    energy, time = (
+        history.strain_energy_density.values[: top + 1, 2],
+        history.time.values[: top + 1],
+    )
     rate = np.diff(energy) / np.diff(time)
     assert rate.argmax() >= len(rate) - 2, "truth: the rate is highest where the ramp ends"
 

@@ -67,7 +67,9 @@ def matrix(body, data):
 
 
 def close(found, truth):
-    np.testing.assert_allclose(found, truth, atol=1e-10 * np.abs(truth).max(), rtol=0, err_msg="truth")
+    np.testing.assert_allclose(
+        found, truth, atol=1e-10 * np.abs(truth).max(), rtol=0, err_msg="truth"
+    )
 
 
 def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
@@ -85,7 +87,11 @@ def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
         elastic = np.einsum("ij...,jk...->ik...", np.linalg.inv(f.T).T, isochoric_stress(f, slopes))
         for beta, tau in zip(prony.beta, prony.tau, strict=True):
             gammas = [(1 - np.exp(-dt / tau)) / (dt / tau) for dt in (first, second)]
-            history = history + np.exp(-second / tau) * beta * gammas[0] * elastic - beta * gammas[1] * elastic
+            history = (
+                history
+                + np.exp(-second / tau) * beta * gammas[0] * elastic
+                - beta * gammas[1] * elastic
+            )
             factor += beta * gammas[1]
     u = displacement(points)
     random = np.random.default_rng(5)
@@ -101,7 +107,8 @@ def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
 
 
 @pytest.mark.parametrize(
-    ("element", "law"), [(e, law) for e in KIND for law in LAWS if law == "neo_hooke" or e in ("Q2P1", "Q1P0", "P2B")]
+    ("element", "law"),
+    [(e, law) for e in KIND for law in LAWS if law == "neo_hooke" or e in ("Q2P1", "Q1P0", "P2B")],
 )
 def test_finite_strain(element, law, must_fail):
     """Every element with one law, and every law with the elements that are solved with: each pair is compiled on its own."""
@@ -127,7 +134,10 @@ def check_small(element, law="neo_hooke", prony=None, change=1.0):
     """Small strain: force and tangent, whatever the law; with branches, in a second step."""
     body, form, _, mu = parts(element, "small", law, prony)
     factor, history = 1.0, np.zeros(body.u.shape)
-    shape, points = form.linear_stiffness(mu[:, 0]) - form.linear_stiffness(0 * mu[:, 0]), body.space.points
+    shape, points = (
+        form.linear_stiffness(mu[:, 0]) - form.linear_stiffness(0 * mu[:, 0]),
+        body.space.points,
+    )
     if prony is not None:
         first, second, early = 0.3, 0.7, displacement(points, -0.1)
         body.begin_step(first)

@@ -12,8 +12,20 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TREE = (".test", "CITATION.cff", "Snakefile", "config", "profiles", "pyproject.toml", "requirements.lock", "src", "workflow")
-COMPILED_TOO = shutil.ignore_patterns("*.egg-info", ".*.loop", "*.pyc.*")  # all but what is being written
+TREE = (
+    ".test",
+    "CITATION.cff",
+    "Snakefile",
+    "config",
+    "profiles",
+    "pyproject.toml",
+    "requirements.lock",
+    "src",
+    "workflow",
+)
+COMPILED_TOO = shutil.ignore_patterns(
+    "*.egg-info", ".*.loop", "*.pyc.*"
+)  # all but what is being written
 QUIET = ("--quiet", "host")
 SMOKE = ("--configfile", "config/smoke.yaml")
 
@@ -35,7 +47,9 @@ class Project:
                 shutil.copy(source, root / name)
         return cls(root)
 
-    def snakemake(self, *arguments: str, folder: Path | None = None, **environment: str) -> subprocess.CompletedProcess:
+    def snakemake(
+        self, *arguments: str, folder: Path | None = None, **environment: str
+    ) -> subprocess.CompletedProcess:
         """Run Snakemake in the tree, or in another folder."""
         path = os.pathsep.join([str(self.root / "src"), str(Path(__file__).parent / "trace")])
         return subprocess.run(
@@ -56,7 +70,9 @@ class Project:
     def run(self, *arguments: str, folder: Path | None = None, **environment: str) -> str:
         """Run the workflow; its whole output."""
         done = self.snakemake(*arguments, folder=folder, **environment)
-        logs = "\n".join(f"{log}:\n{log.read_text()}" for log in self.root.glob("results/*/logs/**/*.log"))
+        logs = "\n".join(
+            f"{log}:\n{log.read_text()}" for log in self.root.glob("results/*/logs/**/*.log")
+        )
         assert done.returncode == 0, f"{done.stdout}\n{done.stderr}\n{logs}"
         return done.stdout + done.stderr
 

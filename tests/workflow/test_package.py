@@ -20,11 +20,25 @@ def installed(tmp_path_factory) -> Path:
     tree, target = tmp_path_factory.mktemp("tree"), tmp_path_factory.mktemp("installed")
     for name in PARTS:
         if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+            shutil.copytree(
+                ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info")
+            )
         else:
             shutil.copy(ROOT / name, tree / name)
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-index"]
-    subprocess.run([*pip, "--no-build-isolation", "--no-deps", "--target", target, tree], check=True, capture_output=True)
+    pip = [
+        sys.executable,
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--no-index",
+    ]
+    subprocess.run(
+        [*pip, "--no-build-isolation", "--no-deps", "--target", target, tree],
+        check=True,
+        capture_output=True,
+    )
     shutil.rmtree(tree)
     return target
 
@@ -46,11 +60,17 @@ def elsewhere(installed, tmp_path):
 
 
 def test_the_package_is_the_installed_one_with_the_specimens_of_config(installed, elsewhere):
-    found = elsewhere("-c", "import fingerpad.files; print(fingerpad.__file__); print(fingerpad.files.BUILT_IN)")
+    found = elsewhere(
+        "-c", "import fingerpad.files; print(fingerpad.__file__); print(fingerpad.files.BUILT_IN)"
+    )
     module, built_in = map(Path, found.stdout.split())
     assert module.is_relative_to(installed) and built_in.is_relative_to(installed)
-    committed = {path.name: path.read_bytes() for path in (ROOT / "config" / "specimens").glob("*.yaml")}
-    assert {path.name: path.read_bytes() for path in (built_in / "specimens").iterdir()} == committed
+    committed = {
+        path.name: path.read_bytes() for path in (ROOT / "config" / "specimens").glob("*.yaml")
+    }
+    assert {
+        path.name: path.read_bytes() for path in (built_in / "specimens").iterdir()
+    } == committed
     rules = Path("rules", "sweeps.smk")
     assert (built_in / rules.name).read_bytes() == (ROOT / "workflow" / rules).read_bytes()
 
@@ -66,14 +86,23 @@ def test_a_scene_runs_with_the_built_in_specimens_from_any_folder(elsewhere, tmp
     (tmp_path / "mine.yaml").write_text("\n".join(lines))
     done = elsewhere("-m", "fingerpad", "run", "mine.yaml", "--out", "results")
     assert done.returncode == 0, done.stderr
-    assert {path.name for path in (tmp_path / "results").iterdir()} == {"history.nc", "plan.json", "summary.json"}
+    assert {path.name for path in (tmp_path / "results").iterdir()} == {
+        "history.nc",
+        "plan.json",
+        "summary.json",
+    }
 
 
 def test_a_specimen_of_ones_own_is_found_beside_the_built_in_ones(elsewhere, tmp_path):
     (tmp_path / "config" / "specimens").mkdir(parents=True)
     own = tmp_path / "config" / "specimens" / "soft.yaml"
-    own.write_text("layers:\n" + "".join(f"  {name}: {{youngs_modulus: 10 kPa, poisson_ratio: 0.4}}\n" for name in LAYERS))
-    (tmp_path / "mine.yaml").write_text("specimen: {layers: soft}\nstimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf}]\n")
+    own.write_text(
+        "layers:\n"
+        + "".join(f"  {name}: {{youngs_modulus: 10 kPa, poisson_ratio: 0.4}}\n" for name in LAYERS)
+    )
+    (tmp_path / "mine.yaml").write_text(
+        "specimen: {layers: soft}\nstimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf}]\n"
+    )
     code = "import fingerpad; print(fingerpad.load_scene('mine.yaml').specimen.layers.fat.youngs_modulus)"
     assert float(elsewhere("-c", code).stdout) == pytest.approx(1e4)
     own.unlink()

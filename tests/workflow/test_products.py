@@ -45,13 +45,25 @@ class Plan:
         return names
 
     def default(self) -> set[str]:
-        parts = ("catalogue", "animations", "views", "all_tables", "calibration", "ridges", "meanings")
+        parts = (
+            "catalogue",
+            "animations",
+            "views",
+            "all_tables",
+            "calibration",
+            "ridges",
+            "meanings",
+        )
         return self.needed(self.products.targets(*parts, figures=""))
 
     def rerun(self, edited: str) -> set[str]:
         """Kinds of jobs of the default target that rest on a file of the project themselves."""
         names = self.default()
-        return {n for n in names if any(Path(p).resolve() == ROOT / edited for p in inputs(self.jobs[n]))}
+        return {
+            n
+            for n in names
+            if any(Path(p).resolve() == ROOT / edited for p in inputs(self.jobs[n]))
+        }
 
     def scenes(self, names: Iterable[str]) -> set[str]:
         jobs = [self.jobs[name] for name in names if self.jobs[name].run == "simulate"]
@@ -63,7 +75,10 @@ def made(job: Job) -> list[str]:
 
 
 def inputs(job: Job) -> list[str]:
-    return [*job.sources, *(path for key, paths in job.inputs.items() if key != "scene_files" for path in paths)]
+    return [
+        *job.sources,
+        *(path for key, paths in job.inputs.items() if key != "scene_files" for path in paths),
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -86,23 +101,49 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
     names = thesis.default()
     assert len(names) <= 90
     outputs = {path for name in names for path in made(thesis.jobs[name])}
-    assert {f"figures/thesis/fig_{n}.{kind}" for n in thesis.products.specs for kind in ("png", "csv")} <= outputs
-    assert {f"figures/tables/{name}.{kind}" for name in thesis.config.table_names for kind in ("csv", "md")} <= outputs
-    assert {f"figures/studies/calibration_{n}.png" for n in STUDY_FIGURES} | {"figures/tables/calibration.md"} <= outputs
-    assert {f"figures/studies/ridges_{n}.png" for n in RIDGES} | {"figures/studies/strain_energy_meanings.png"} <= outputs
-    assert {"figures/README.md", "figures/studies/animation_stroke_10.gif", "results/thesis/specimens"} <= outputs
+    assert {
+        f"figures/thesis/fig_{n}.{kind}" for n in thesis.products.specs for kind in ("png", "csv")
+    } <= outputs
+    assert {
+        f"figures/tables/{name}.{kind}"
+        for name in thesis.config.table_names
+        for kind in ("csv", "md")
+    } <= outputs
+    assert {f"figures/studies/calibration_{n}.png" for n in STUDY_FIGURES} | {
+        "figures/tables/calibration.md"
+    } <= outputs
+    assert {f"figures/studies/ridges_{n}.png" for n in RIDGES} | {
+        "figures/studies/strain_energy_meanings.png"
+    } <= outputs
+    assert {
+        "figures/README.md",
+        "figures/studies/animation_stroke_10.gif",
+        "results/thesis/specimens",
+    } <= outputs
     views = {*offered()["VIEWS"], "scorecard", "candidate_stimuli"}
     assert {f"figures/studies/{n}.{kind}" for n in views for kind in ("png", "csv")} <= outputs
-    assert {f"results/thesis/pdf/{n}.pdf" for n in ("fig_4-10", "overview", "calibration_fit")} <= outputs
+    assert {
+        f"results/thesis/pdf/{n}.pdf" for n in ("fig_4-10", "overview", "calibration_fit")
+    } <= outputs
     fields = {Path(p).parent.name for p in outputs if p.startswith("results/thesis/fields/")}
     assert fields == set(thesis.config.field_scenes)
     every = set(thesis.config.every_scene)
-    assert {Path(p).parent.name for p in outputs if p.startswith("results/thesis/simulations/")} == every
+    assert {
+        Path(p).parent.name for p in outputs if p.startswith("results/thesis/simulations/")
+    } == every
     coarse = {Path(p).parent.name for p in outputs if p.startswith("results/thesis/coarse/")}
     compared = {scene for figure in thesis.products.drawn for scene in figure.companions}
-    assert coarse == {*thesis.config.scenes, *compared, "calibration_plate", "calibration_ramp_hold", "stroke_sub_10"}
+    assert coarse == {
+        *thesis.config.scenes,
+        *compared,
+        "calibration_plate",
+        "calibration_ramp_hold",
+        "stroke_sub_10",
+    }
     assert {"ramp150_flat", "press10_flat"} <= coarse < every
-    assert {Path(p).parent.name for p in outputs if p.startswith("results/thesis/coarse_mesh/")} == coarse
+    assert {
+        Path(p).parent.name for p in outputs if p.startswith("results/thesis/coarse_mesh/")
+    } == coarse
 
 
 @pytest.mark.parametrize("configuration", ["thesis", "smoke"])
@@ -115,10 +156,14 @@ def test_companions_have_fewer_nodes_than_what_they_accompany(configuration, req
         assert 0.3 * how.nodes < companion(scene, how).nodes < 0.75 * how.nodes, name
 
 
-def test_companions_are_solved_beside_their_scenes_on_one_mesh_with_all_steps_and_with_every_two_made_one(thesis):
+def test_companions_are_solved_beside_their_scenes_on_one_mesh_with_all_steps_and_with_every_two_made_one(
+    thesis,
+):
     (job,) = [job for job in thesis.jobs.values() if job.called == "simulate_stroke_10"]
     folder = "results/thesis/{}/stroke_10/history.nc"
-    assert job.outputs["histories"] == [folder.format(kind) for kind in ("simulations", "coarse_mesh", "coarse")]
+    assert job.outputs["histories"] == [
+        folder.format(kind) for kind in ("simulations", "coarse_mesh", "coarse")
+    ]
     assert job.values["strides"] == ["0", "1", "2"]
     assert set(job.values["accuracies"]) == {"as_stated"}
 
@@ -131,7 +176,13 @@ def test_the_table_of_measures_has_every_companion_there_is(thesis):
 
 def test_studies_are_not_part_of_the_default(thesis):
     runs = {thesis.jobs[name].run for name in thesis.default()}
-    assert not runs & {"accuracy_sweep", "accuracy_belief", "stability_method", "effects_study", "peers"}
+    assert not runs & {
+        "accuracy_sweep",
+        "accuracy_belief",
+        "stability_method",
+        "effects_study",
+        "peers",
+    }
 
 
 @pytest.mark.parametrize("chapter", ["3", "4", "5"])
@@ -145,7 +196,8 @@ def test_a_chapter_makes_its_figures_only(thesis, chapter):
 
 def test_a_figure_simulates_the_families_it_needs_only(thesis):
     assert thesis.scenes(thesis.needed(["figures/thesis/fig_4-10.png"])) == {
-        f"ramp40_{k}" for k in ("flat", "k79", "k105", "k158", "k210", "k315", "k420", "k630", "k1260")
+        f"ramp40_{k}"
+        for k in ("flat", "k79", "k105", "k158", "k210", "k315", "k420", "k630", "k1260")
     }
     assert thesis.scenes(thesis.needed(["figures/thesis/fig_5-11.png"])) == {"stroke_10"}
 
@@ -154,7 +206,10 @@ def test_ridges_and_calibration_simulate_their_own_scenes_only(thesis):
     names = thesis.needed(thesis.products.targets("ridges"))
     assert all(scene.startswith("ridged_outer_stroke_") for scene in thesis.scenes(names))
     names = thesis.needed(thesis.products.targets("calibration"))
-    assert thesis.scenes(names) == {*thesis.config.calibration_scenes, *thesis.config.friction_scenes}
+    assert thesis.scenes(names) == {
+        *thesis.config.calibration_scenes,
+        *thesis.config.friction_scenes,
+    }
     assert not {"figures", "tables"} & {thesis.jobs[name].run for name in names}
 
 
@@ -198,9 +253,16 @@ def test_studies_make_their_tables_and_figures(thesis):
     assert runs.count("accuracy_sweep") == 24
     simulated = [job for job in jobs if job.run == "simulate"]  # for the errors that figures state
     (shown,) = (job for job in jobs if job.run == "accuracy_shown")
-    assert all(set(job.outputs["histories"]) & {*shown.inputs["histories"], *shown.inputs["coarse"]} for job in simulated)
+    assert all(
+        set(job.outputs["histories"]) & {*shown.inputs["histories"], *shown.inputs["coarse"]}
+        for job in simulated
+    )
     assert {Path(p).stem for p in thesis.products.targets("stability")} == {"stability"}
-    assert {Path(p).stem for p in thesis.products.targets("effects")} == {"effects", "planner_choices", "planner_rules"}
+    assert {Path(p).stem for p in thesis.products.targets("effects")} == {
+        "effects",
+        "planner_choices",
+        "planner_rules",
+    }
 
 
 def test_smoke_writes_under_its_results_only_and_skips_what_it_lacks(smoke):
@@ -208,7 +270,9 @@ def test_smoke_writes_under_its_results_only_and_skips_what_it_lacks(smoke):
     outputs = [path for name in names for path in made(smoke.jobs[name])]
     assert all(Path(path).is_relative_to("results/smoke") for path in outputs)
     assert smoke.scenes(names) == {*smoke.config.scenes, *smoke.config.calibration_scenes}
-    assert not {"calibrate_friction", "ridge_cases", "catalogue"} & {smoke.jobs[name].run for name in names}
+    assert not {"calibrate_friction", "ridge_cases", "catalogue"} & {
+        smoke.jobs[name].run for name in names
+    }
 
 
 # -- the report ------------------------------------------------------------------------------------------------------------
@@ -216,15 +280,37 @@ def test_smoke_writes_under_its_results_only_and_skips_what_it_lacks(smoke):
 
 def test_the_report_has_a_page_a_figure_study_and_table_in_the_order_of_numbers(thesis):
     jobs = {name: job for name, job in thesis.jobs.items() if job.run == "report_pages"}
-    assert {job.category for job in jobs.values()} == {"Chapter 3", "Chapter 4", "Chapter 5", "Studies", "Tables"}
+    assert {job.category for job in jobs.values()} == {
+        "Chapter 3",
+        "Chapter 4",
+        "Chapter 5",
+        "Studies",
+        "Tables",
+    }
     assert not set(jobs) & thesis.default()
-    four = [job.reported("pages", page) for job in (jobs["report_chapter_4"],) for page in job.outputs["pages"]]
+    four = [
+        job.reported("pages", page)
+        for job in (jobs["report_chapter_4"],)
+        for page in job.outputs["pages"]
+    ]
     order = sorted((entry["labels"] for entry in four), key=lambda labels: labels["no."])
-    assert [labels["figure"] for labels in order[:2]] == ["4-2", "4-3"] and order[-1]["figure"] == "4-29"
-    assert jobs["report_chapter_4"].inputs["judged"] == ["figures/tables/thesis_comparison_chapter4.md"]
+    assert [labels["figure"] for labels in order[:2]] == ["4-2", "4-3"] and order[-1][
+        "figure"
+    ] == "4-29"
+    assert jobs["report_chapter_4"].inputs["judged"] == [
+        "figures/tables/thesis_comparison_chapter4.md"
+    ]
     studies = {Path(page).stem for page in jobs["report_studies"].outputs["pages"]}
-    assert {"animation_stroke_10", "ridges_offset", "calibration_fit", "accuracy_error", "stability"} <= studies
-    assert {"thesis_comparison", "accuracy", "peers"} <= {Path(page).stem for page in jobs["report_tables"].outputs["pages"]}
+    assert {
+        "animation_stroke_10",
+        "ridges_offset",
+        "calibration_fit",
+        "accuracy_error",
+        "stability",
+    } <= studies
+    assert {"thesis_comparison", "accuracy", "peers"} <= {
+        Path(page).stem for page in jobs["report_tables"].outputs["pages"]
+    }
 
 
 def test_published_studies_are_shown_and_not_made_for_the_report(thesis):
@@ -242,7 +328,11 @@ def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
         names = thesis.rerun(path)
         assert names and {thesis.jobs[name].run for name in names} == {"figures"}
         own = {name for name in names if module in thesis.jobs[name].values["modules"]}
-        assert own == {name for name in thesis.default() if module in thesis.jobs[name].values.get("modules", [])}
+        assert own == {
+            name
+            for name in thesis.default()
+            if module in thesis.jobs[name].values.get("modules", [])
+        }
         chapters = [{name.split("_")[1] for name in part} for part in (names, own)]
         assert chapters[0] == chapters[1], f"drawn again by an edit in {module}"
 
@@ -255,16 +345,25 @@ def test_an_edited_figure_grammar_redraws_figures_only(thesis):
 
 def test_an_edited_claim_remakes_the_tables_and_the_figures_that_say_whether_it_holds(thesis):
     for module in ("comparison", "reasons"):
-        assert thesis.rerun(f"src/cysyk1999/claims/{module}.py") == {"tables", "catalogue"}  # which counts verdicts
+        assert thesis.rerun(f"src/cysyk1999/claims/{module}.py") == {
+            "tables",
+            "catalogue",
+        }  # which counts verdicts
     for module in ("trends_pressing", "said"):
         runs = {thesis.jobs[name].run for name in thesis.rerun(f"src/cysyk1999/claims/{module}.py")}
-        assert runs == {"figures"} | ({"tables", "catalogue"} if module == "trends_pressing" else set())
+        assert runs == {"figures"} | (
+            {"tables", "catalogue"} if module == "trends_pressing" else set()
+        )
 
 
 def test_an_edited_kernel_reruns_simulations(thesis):
     names = thesis.rerun("src/fingerpad/mechanics/kernels.py")
     runs = {thesis.jobs[name].run for name in names}
-    assert {"simulate", "strokes_with_friction", "ridge_cases"} <= runs and not {"figures", "tables", "measures"} & runs
+    assert {"simulate", "strokes_with_friction", "ridge_cases"} <= runs and not {
+        "figures",
+        "tables",
+        "measures",
+    } & runs
     assert all(name in names for name in thesis.default() if thesis.jobs[name].run == "simulate")
 
 
@@ -274,12 +373,16 @@ def test_sources_are_found_from_wherever_they_are_asked_for(thesis, tmp_path, mo
     here, code = job.sources, job.code
     monkeypatch.chdir(tmp_path)
     assert all(Path(path).exists() for path in job.sources) and job.sources != here
-    assert [line.split()[0] for line in job.code.splitlines()] == [line.split()[0] for line in code.splitlines()]
+    assert [line.split()[0] for line in job.code.splitlines()] == [
+        line.split()[0] for line in code.splitlines()
+    ]
 
 
 def test_an_edited_job_reruns_itself_only(thesis):
     assert thesis.rerun("src/cysyk1999/workflow/jobs/calibrate.py") == {"calibrate"}
-    assert not thesis.rerun("src/cysyk1999/workflow/products.py") and not thesis.rerun("src/cysyk1999/config.py")
+    assert not thesis.rerun("src/cysyk1999/workflow/products.py") and not thesis.rerun(
+        "src/cysyk1999/config.py"
+    )
 
 
 @pytest.fixture
@@ -287,17 +390,25 @@ def own(tmp_path, monkeypatch):
     """A study of its own in a folder of its own: two families and a configuration of name and scenes."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scenes").mkdir()
-    family = (
-        "motion: [{press_to_force: 5 gf}]\nover: {surface: {flat: {stimulus: {shape: flat}}, line: {stimulus: {shape: line}}}}\n"
-    )
+    family = "motion: [{press_to_force: 5 gf}]\nover: {surface: {flat: {stimulus: {shape: flat}}, line: {stimulus: {shape: line}}}}\n"
     (tmp_path / "scenes" / "press.yaml").write_text(family)
-    (tmp_path / "scenes" / "soft.yaml").write_text("extends: press.yaml\nspecimen: {layers: calibrated_mean}\n")
-    return {"name": "mine", "scenes": ["press_flat", "press_line", "soft_flat", "ramp40_flat"], "scenes_folder": "scenes"}
+    (tmp_path / "scenes" / "soft.yaml").write_text(
+        "extends: press.yaml\nspecimen: {layers: calibrated_mean}\n"
+    )
+    return {
+        "name": "mine",
+        "scenes": ["press_flat", "press_line", "soft_flat", "ramp40_flat"],
+        "scenes_folder": "scenes",
+    }
 
 
 def written(document: dict) -> dict[str, list[str]]:
     jobs = Plan(document).jobs
-    return {name: [*job.values["written"], *job.inputs["files"]] for name, job in jobs.items() if job.run == "simulate"}
+    return {
+        name: [*job.values["written"], *job.inputs["files"]]
+        for name, job in jobs.items()
+        if job.run == "simulate"
+    }
 
 
 def test_an_edited_scene_reruns_its_family_and_what_extends_it_only_if_that_changes_it(own):
@@ -311,7 +422,10 @@ def test_an_edited_scene_reruns_its_family_and_what_extends_it_only_if_that_chan
     text = path.read_text()
     assert changed(text + "# a remark\n") == set()
     assert changed(text.replace("shape: line", "shape: bar, width: 1 mm")) == {"simulate_press"}
-    assert changed(text.replace("shape: flat", "shape: bar, width: 1 mm")) == {"simulate_press", "simulate_soft"}
+    assert changed(text.replace("shape: flat", "shape: bar, width: 1 mm")) == {
+        "simulate_press",
+        "simulate_soft",
+    }
 
 
 def test_a_study_of_ones_own_needs_name_and_scenes_and_writes_under_its_name(own):
@@ -320,7 +434,10 @@ def test_a_study_of_ones_own_needs_name_and_scenes_and_writes_under_its_name(own
     assert all(Path(path).is_relative_to("results/mine") for path in outputs)
     assert "results/mine/tables/summary.csv" in outputs
     assert plan.scenes(plan.default()) == set(own["scenes"])
-    assert any(path.endswith("config/specimens/calibrated_mean.yaml") for path in plan.jobs["simulate_soft"].inputs["files"])
+    assert any(
+        path.endswith("config/specimens/calibrated_mean.yaml")
+        for path in plan.jobs["simulate_soft"].inputs["files"]
+    )
 
 
 def test_subjects_of_ones_own_are_calibrated_to_in_ones_own_results(own):
@@ -341,19 +458,34 @@ def test_subjects_of_ones_own_are_calibrated_to_in_ones_own_results(own):
             {"scenes": ["press_flat", "pres"]},
             "config.yaml: scenes[1]: 'pres' is not the name of a scene; allowed: names of scenes in",
         ),
-        ({"scenes": ["press_round"]}, "press_round.yaml: is not a scene of press.yaml; allowed: one of press_flat, press_line"),
-        ({"figure_numbers": ["9-99"]}, "config.yaml: figure_numbers[0]: '9-99' is not drawn, the nearest is"),
+        (
+            {"scenes": ["press_round"]},
+            "press_round.yaml: is not a scene of press.yaml; allowed: one of press_flat, press_line",
+        ),
+        (
+            {"figure_numbers": ["9-99"]},
+            "config.yaml: figure_numbers[0]: '9-99' is not drawn, the nearest is",
+        ),
         (
             {"figure_numbers": ["5-6"]},
             "config.yaml: figure_numbers[0]: '5-6' shows scenes that the configuration has not: stroke_sub_10; allowed",
         ),
-        ({"table_names": ["sumary"]}, "config.yaml: table_names[0]: 'sumary' is not a table; allowed: "),
-        ({"subjects": "nowhere"}, "config.yaml: subjects: 'nowhere' holds no CSV file; allowed: a folder of at least one"),
+        (
+            {"table_names": ["sumary"]},
+            "config.yaml: table_names[0]: 'sumary' is not a table; allowed: ",
+        ),
+        (
+            {"subjects": "nowhere"},
+            "config.yaml: subjects: 'nowhere' holds no CSV file; allowed: a folder of at least one",
+        ),
         (
             {"friction_coefficients": [0.3]},
             "config.yaml: friction_coefficients: lacks friction_scenes; allowed",
         ),
-        ({"calibration_scenes": ["ramp40_flat"]}, "config.yaml: calibration_scenes: ('ramp40_flat',) lacks calibration_plate"),
+        (
+            {"calibration_scenes": ["ramp40_flat"]},
+            "config.yaml: calibration_scenes: ('ramp40_flat',) lacks calibration_plate",
+        ),
     ],
 )
 def test_what_is_not_there_is_said_in_one_line(own, change, message):

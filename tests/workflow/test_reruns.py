@@ -28,14 +28,21 @@ pytestmark = [pytest.mark.workflow, pytest.mark.slow]
 
 SMOKE = ("--configfile", "config/smoke.yaml")
 HISTORY = "results/smoke/simulations/homogeneous_flat/history.nc"
-COMPANIONS = {f"results/smoke/{kind}/homogeneous_flat/history.nc" for kind in ("coarse_mesh", "coarse")}
+COMPANIONS = {
+    f"results/smoke/{kind}/homogeneous_flat/history.nc" for kind in ("coarse_mesh", "coarse")
+}
 
 
 TOUCHED = (
-    "src/fingerpad/mechanics/stepping.py", "src/cysyk1999/publishing/style.py", "src/cysyk1999/workflow/jobs/simulate.py",
-    "config/scenes/ramp40.yaml", "config/specimens/thesis.yaml", "config/reference/thesis_numbers.csv", "requirements.lock",
+    "src/fingerpad/mechanics/stepping.py",
+    "src/cysyk1999/publishing/style.py",
+    "src/cysyk1999/workflow/jobs/simulate.py",
+    "config/scenes/ramp40.yaml",
+    "config/specimens/thesis.yaml",
+    "config/reference/thesis_numbers.csv",
+    "requirements.lock",
     HISTORY,
-)  # fmt: skip
+)
 
 
 def test_nothing_is_left_to_do_and_touched_files_and_remarks_rerun_nothing(finished):
@@ -53,7 +60,9 @@ def test_a_changed_scene_reruns_that_scene(finished):
     assert not {"calibrate", "calibration_pictures"} & set(jobs)
 
 
-def test_a_changed_specimen_reruns_the_scenes_that_name_it_and_a_further_file_of_forces_the_calibration(finished):
+def test_a_changed_specimen_reruns_the_scenes_that_name_it_and_a_further_file_of_forces_the_calibration(
+    finished,
+):
     path = finished.root / "config/reference/force_depth/mine.csv"
     path.write_text((path.parent / "dandekar_2003.csv").read_text())
     try:
@@ -67,7 +76,9 @@ def test_a_changed_specimen_reruns_the_scenes_that_name_it_and_a_further_file_of
 
 def test_changed_environment_reruns_simulations_and_what_reads_them(finished):
     with finished.edited("requirements.lock"):
-        assert {"simulate_ramp40", "figures_4_12", "tables", "calibrate"} <= set(finished.planned(*SMOKE))
+        assert {"simulate_ramp40", "figures_4_12", "tables", "calibrate"} <= set(
+            finished.planned(*SMOKE)
+        )
 
 
 def test_snakemake_looks_for_jobs_when_one_has_ended_and_not_by_the_clock(finished):
@@ -79,20 +90,29 @@ def test_snakemake_looks_for_jobs_when_one_has_ended_and_not_by_the_clock(finish
 
 def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
     """What is not declared cannot trigger a rerun: the rules' inputs against what processes really opened."""
-    config = read_config(yaml.safe_load((finished.root / "config" / "smoke.yaml").read_text()), "smoke.yaml")
+    config = read_config(
+        yaml.safe_load((finished.root / "config" / "smoke.yaml").read_text()), "smoke.yaml"
+    )
     before = os.getcwd()
     os.chdir(finished.root)
     try:
         jobs = Products(config, "smoke.yaml", finished.root).jobs()
         declared = {f"results/smoke/logs/{job.name}.log": job for job in jobs}
         inputs = {
-            log: {os.path.relpath(p) for p in (*job.sources, *(p for paths in job.inputs.values() for p in paths))}
+            log: {
+                os.path.relpath(p)
+                for p in (*job.sources, *(p for paths in job.inputs.values() for p in paths))
+            }
             for log, job in declared.items()
         }
     finally:
         os.chdir(before)
-    here = os.path.relpath(os.path.join(os.path.dirname(__file__), "..", "..", "src"), finished.root)
-    results = {path for job in jobs for paths in (*job.outputs.values(), job.beside) for path in paths}
+    here = os.path.relpath(
+        os.path.join(os.path.dirname(__file__), "..", "..", "src"), finished.root
+    )
+    results = {
+        path for job in jobs for paths in (*job.outputs.values(), job.beside) for path in paths
+    }
     traced = [json.loads(path.read_text()) for path in finished.traces.iterdir()]
     runs = set()
     for process in (t for t in traced if t["argv"][:2] == ["-m", "cysyk1999.workflow"]):
@@ -100,11 +120,22 @@ def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
         job = declared[log]
         allowed = {path.replace(here, "src") for path in inputs[log]}
         own = {path for paths in (*job.outputs.values(), job.beside) for path in paths}
-        read = {path for path in process["files"] if path in results or not path.startswith("results/")}
+        read = {
+            path for path in process["files"] if path in results or not path.startswith("results/")
+        }
         undeclared = {path for path in read - allowed - own if "__pycache__" not in path}
         assert not undeclared, f"{job.name} opens what it does not declare"
         runs.add(job.run)
-    assert runs >= {"simulate", "figures", "measures", "tables", "calibrate", "pictures", "joined", "receptor_tables"}
+    assert runs >= {
+        "simulate",
+        "figures",
+        "measures",
+        "tables",
+        "calibrate",
+        "pictures",
+        "joined",
+        "receptor_tables",
+    }
 
 
 def test_copied_results_are_adopted_by_one_command(finished, tmp_path):
@@ -112,7 +143,9 @@ def test_copied_results_are_adopted_by_one_command(finished, tmp_path):
     subprocess.run(["cp", "-r", finished.root / "results", copy.root], check=True)
     hour_ago = time.time() - 3600
     for path in copy.root.rglob("results/**/*"):
-        os.utime(path, (hour_ago, hour_ago))  # not by the order in which two clocks of a machine tick
+        os.utime(
+            path, (hour_ago, hour_ago)
+        )  # not by the order in which two clocks of a machine tick
     for path in (copy.root / "src").rglob("*.py"):
         os.utime(path)  # a clone's files are as new as the clone
     assert copy.planned(*SMOKE)
@@ -135,7 +168,9 @@ def start(project, *arguments):
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # also where the tests run in the background
+        preexec_fn=lambda: signal.signal(
+            signal.SIGINT, signal.SIG_DFL
+        ),  # also where the tests run in the background
     )
 
 
@@ -159,10 +194,15 @@ def test_an_interrupted_run_goes_on_by_the_same_command(clone, how):
     finally:
         if started.poll() is None:
             os.killpg(started.pid, signal.SIGKILL)
-    histories = [clone.root / f"results/mine/simulations/{name}/history.nc" for name in ("one", "two")]
+    histories = [
+        clone.root / f"results/mine/simulations/{name}/history.nc" for name in ("one", "two")
+    ]
     assert not all(path.exists() for path in histories), "not interrupted"
     text = clone.run("--configfile", "mine.yaml")
-    assert all(path.exists() for path in histories) and (clone.root / "results/mine/tables/summary.csv").exists()
+    assert (
+        all(path.exists() for path in histories)
+        and (clone.root / "results/mine/tables/summary.csv").exists()
+    )
     assert ("took over" in text) == how.startswith("SIGKILL")
 
 
@@ -176,8 +216,16 @@ EXACT = {".csv", ".png", ".msh"}
 
 def products(root):
     """What the coarse workflow makes under final names, but logs and what tells of costs and times."""
-    found = {path.relative_to(root).as_posix(): path for path in (root / "results" / "smoke").rglob("*") if path.is_file()}
-    return {name: path for name, path in found.items() if "/logs/" not in name and not path.name.startswith(".snakemake")}
+    found = {
+        path.relative_to(root).as_posix(): path
+        for path in (root / "results" / "smoke").rglob("*")
+        if path.is_file()
+    }
+    return {
+        name: path
+        for name, path in found.items()
+        if "/logs/" not in name and not path.name.startswith(".snakemake")
+    }
 
 
 def same(path, other):
@@ -187,7 +235,9 @@ def same(path, other):
     if path.suffix == ".nc":
         one, two = read_history(path), read_history(other)
         names = {*one.variables, *two.variables}
-        return all(np.array_equal(one[name].values, two[name].values, equal_nan=True) for name in names)
+        return all(
+            np.array_equal(one[name].values, two[name].values, equal_nan=True) for name in names
+        )
     return path.stat().st_size > 0
 
 
@@ -199,7 +249,11 @@ def test_a_workflow_killed_at_random_instants_ends_with_the_same_results(clone, 
         os.killpg(run.pid, signal.SIGKILL)
         run.wait()
         left = products(clone.root)
-        half = [name for name, path in left.items() if name in expected and not same(path, expected[name])]
+        half = [
+            name
+            for name, path in left.items()
+            if name in expected and not same(path, expected[name])
+        ]
         assert not half, f"under final names: {half}"
         if set(expected) <= set(left):  # it was through before: from nothing again
             whole += 1
@@ -215,8 +269,10 @@ def test_a_failed_job_says_why_where_it_failed(clone):
     (clone.root / "forces").mkdir()
     header = "subject,indenter,depth_mm,speed_mm_per_s,force_N,source,how_obtained"
     (clone.root / "forces" / "mine.csv").write_text(f"{header}\nme,flat plate,1,0,0.2,me,scale\n")
-    (clone.root / "mine.yaml").write_text("{name: mine, scenes: [calibration_plate], calibration_scenes: [calibration_plate], "
-                                          "subjects: forces, accuracy: draft}")  # fmt: skip
+    (clone.root / "mine.yaml").write_text(
+        "{name: mine, scenes: [calibration_plate], calibration_scenes: [calibration_plate], "
+        "subjects: forces, accuracy: draft}"
+    )
     done = clone.snakemake("--configfile", "mine.yaml", "--", "calibration")
     assert done.returncode != 0
     said = [line for line in done.stderr.splitlines() if line.startswith("calibrate: ")]
@@ -226,9 +282,14 @@ def test_a_failed_job_says_why_where_it_failed(clone):
 def test_measured_files_are_checked_before_anything_is_simulated(clone):
     (clone.root / "forces").mkdir()
     (clone.root / "forces" / "mine.csv").write_text("subject,depth\nme,1\n")
-    (clone.root / "mine.yaml").write_text("{name: mine, scenes: [calibration_plate], subjects: forces, accuracy: draft}")
+    (clone.root / "mine.yaml").write_text(
+        "{name: mine, scenes: [calibration_plate], subjects: forces, accuracy: draft}"
+    )
     done = clone.snakemake("--configfile", "mine.yaml", "--", "calibration")
-    assert done.returncode == 2 and "forces/mine.csv: has no column indenter, but subject, depth" in done.stderr
+    assert (
+        done.returncode == 2
+        and "forces/mine.csv: has no column indenter, but subject, depth" in done.stderr
+    )
     assert "Traceback" not in done.stderr and not (clone.root / "results").exists()
 
 
@@ -280,7 +341,12 @@ window.addEventListener("load", async () => {
 def report(finished):
     """The folder of the report, unpacked."""
     finished.run(*SMOKE, "--", "report_pages")
-    how = ("--report-stylesheet", "workflow/report/report.css", "--report-metadata", "workflow/report/metadata.yaml")
+    how = (
+        "--report-stylesheet",
+        "workflow/report/report.css",
+        "--report-metadata",
+        "workflow/report/metadata.yaml",
+    )
     finished.run(*SMOKE, "--report", "results/report.zip", *how, "--", "all", "report_pages")
     with zipfile.ZipFile(finished.root / "results/report.zip") as packed:
         packed.extractall(finished.root / "results/unpacked")
@@ -296,18 +362,39 @@ def test_the_report_opens_in_a_browser_and_shows_everything_whole(report):
     probe = report / "probe.html"
     before, _, after = text.replace("<head>", f"<head>{LISTEN}", 1).rpartition("</body>")
     probe.write_text(f"{before}{LOOK}</body>{after}", encoding="utf-8")
-    flags = ("--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files", "--window-size=1280,900")
+    flags = (
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--allow-file-access-from-files",
+        "--window-size=1280,900",
+    )
     words = [browser, *flags, "--virtual-time-budget=60000", "--dump-dom", probe.as_uri()]
     done = subprocess.run(words, capture_output=True, text=True, timeout=300)
     (found,) = re.findall(r'<pre id="seen">(.*?)</pre>', done.stdout, re.S)
     seen = json.loads(found.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
     assert seen["problems"] == []
-    assert "What happens in the skin" in seen["first"] and "How to cite" in seen["first"] and not seen["graph"]
+    assert (
+        "What happens in the skin" in seen["first"]
+        and "How to cite" in seen["first"]
+        and not seen["graph"]
+    )
     assert set(seen["rows"]) == {"Chapter 3", "Chapter 4", "Chapter 5", "Studies", "Tables"}
-    assert [row.split()[1] for row in seen["rows"]["Chapter 4"]] == ["4-12", "4-14", "4-15", "4-16", "4-17"]
+    assert [row.split()[1] for row in seen["rows"]["Chapter 4"]] == [
+        "4-12",
+        "4-14",
+        "4-15",
+        "4-16",
+        "4-17",
+    ]
     pages = {page["name"]: page for page in seen["pages"]}
-    assert pages["fig_4-12.html"]["title"].startswith("4-12: ") and pages["fig_4-12.html"]["cells"] > 0
-    assert pages["thesis_comparison.html"]["cells"] > 1000 and not pages["thesis_comparison.html"]["pictures"]
+    assert (
+        pages["fig_4-12.html"]["title"].startswith("4-12: ") and pages["fig_4-12.html"]["cells"] > 0
+    )
+    assert (
+        pages["thesis_comparison.html"]["cells"] > 1000
+        and not pages["thesis_comparison.html"]["pictures"]
+    )
     pictures = [picture for page in seen["pages"] for picture in page["pictures"]]
     assert len(pictures) >= 12 and all(width > 300 and right <= 900 for width, right in pictures)
     assert all(page["wide"] <= 900 and page["words"] > 100 for page in seen["pages"])
@@ -321,20 +408,29 @@ def test_the_archive_is_a_crate_in_which_everything_leads_somewhere(finished):
     graph = json.loads((crate / "ro-crate-metadata.json").read_text(encoding="utf-8"))["@graph"]
     known = {entity["@id"]: entity for entity in graph}
     assert len(known) == len(graph)
-    named = {each["@id"] for entity in graph for value in entity.values() for each in _references(value)}
+    named = {
+        each["@id"] for entity in graph for value in entity.values() for each in _references(value)
+    }
     assert {name for name in named if "://" not in name} <= set(known)
     for name, entity in known.items():
         if {"File", "Dataset"} & set(np.atleast_1d(entity["@type"])) and name != "./":
             assert (crate / name).exists(), name
     parts = {each["@id"] for each in known["./"]["hasPart"]}
-    assert {"Snakefile", "config/smoke.yaml", "results/smoke/figures/fig_4-12.png", "costs.csv"} < parts
+    assert {
+        "Snakefile",
+        "config/smoke.yaml",
+        "results/smoke/figures/fig_4-12.png",
+        "costs.csv",
+    } < parts
     run = known["#run"]
     assert run["instrument"] == {"@id": "Snakefile"} and run["startTime"] < run["endTime"]
     drawn = known["#job-figures_4_12"]
     assert {"@id": "results/smoke/simulations/homogeneous_flat/"} in drawn["object"]
     assert {"@id": "results/smoke/figures/fig_4-12.csv"} in drawn["result"]
     costs = pd.read_csv(crate / "costs.csv")
-    assert {f"#job-{job}" for job in costs["job"]} == {each["@id"] for each in known["./"]["mentions"]} - {"#run"}
+    assert {f"#job-{job}" for job in costs["job"]} == {
+        each["@id"] for each in known["./"]["mentions"]
+    } - {"#run"}
     assert costs.set_index("scene").loc["simulations/homogeneous_flat", "process time (s)"] > 0
 
 
@@ -348,7 +444,11 @@ def _references(value):
 
 def test_there_is_nothing_to_archive_where_nothing_has_run(fresh):
     done = fresh.python("cysyk1999.workflow.archive", "config/smoke.yaml", "results/archive")
-    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1 and "run the workflow first" in done.stderr
+    assert (
+        done.returncode == 2
+        and len(done.stderr.splitlines()) == 1
+        and "run the workflow first" in done.stderr
+    )
     assert not (fresh.root / "results/archive").exists()
 
 
@@ -357,7 +457,9 @@ def test_there_is_nothing_to_archive_where_nothing_has_run(fresh):
 
 def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clone):
     """Files of no content stand for all the results; what edits rerun is planned, not run."""
-    config = read_config(yaml.safe_load((clone.root / "config" / "thesis.yaml").read_text()), "thesis.yaml")
+    config = read_config(
+        yaml.safe_load((clone.root / "config" / "thesis.yaml").read_text()), "thesis.yaml"
+    )
     for job in Products(config, "thesis.yaml", clone.root).jobs():
         for path in (path for paths in (*job.outputs.values(), job.beside) for path in paths):
             file = clone.root / path
@@ -369,14 +471,22 @@ def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clon
     clone.run("--touch")
     assert clone.planned() == {}
     for paths, kinds in (
-        (("figures/chapter4.py", "claims/comparison.py"), {"figures_4", "table_pictures", "tables", "catalogue"}),
+        (
+            ("figures/chapter4.py", "claims/comparison.py"),
+            {"figures_4", "table_pictures", "tables", "catalogue"},
+        ),
         (("figures/grammar.py",), {"figures_3", "figures_4", "figures_5"}),
     ):
         with ExitStack() as edits:
             for path in paths:
                 edits.enter_context(clone.edited(f"src/fingerpad/{path}"))
             jobs = clone.planned()
-        assert {name if name == "tables" else "_".join(name.split("_")[:2]) for name in jobs} == kinds, paths
+        assert {
+            name if name == "tables" else "_".join(name.split("_")[:2]) for name in jobs
+        } == kinds, paths
     with clone.edited("src/fingerpad/mechanics/kernels.py"):
         jobs = clone.planned()
-    assert {name for name in jobs if name.startswith("simulate_")} > {"simulate_ramp40", "simulate_stroke_1"}
+    assert {name for name in jobs if name.startswith("simulate_")} > {
+        "simulate_ramp40",
+        "simulate_stroke_1",
+    }

@@ -29,9 +29,13 @@ def test_committed_figures_of_a_fresh_clone_are_made_anew(clone):
     figure.touch()
     figure.with_suffix(".csv").touch()
     (clone.root / ".venv").mkdir()
-    (clone.root / ".venv" / "installed.lock").write_bytes((clone.root / "requirements.lock").read_bytes())
+    (clone.root / ".venv" / "installed.lock").write_bytes(
+        (clone.root / "requirements.lock").read_bytes()
+    )
     jobs = clone.planned("figures/thesis/fig_4-12.png")
-    assert "figures/thesis/fig_4-12.png" in jobs["figures_4_12"] and set(jobs) > {"simulate_homogeneous_flat"}
+    assert "figures/thesis/fig_4-12.png" in jobs["figures_4_12"] and set(jobs) > {
+        "simulate_homogeneous_flat"
+    }
 
 
 def test_a_file_that_no_job_makes_is_left_alone_or_refused(clone):
@@ -41,11 +45,17 @@ def test_a_file_that_no_job_makes_is_left_alone_or_refused(clone):
     clone.snakemake("figures/tables/speed.md")
     assert path.read_text() == "measured by hand"
     done = clone.snakemake("figures/thesis/fig_9-99.png")
-    assert done.returncode != 0 and "figures/thesis/fig_9-99.png" in done.stderr and "KeyError" not in done.stderr
+    assert (
+        done.returncode != 0
+        and "figures/thesis/fig_9-99.png" in done.stderr
+        and "KeyError" not in done.stderr
+    )
 
 
 def test_a_wrong_configuration_is_one_line(clone):
-    (clone.root / "wrong.yaml").write_text((clone.root / "config" / "smoke.yaml").read_text() + "acuracy: draft\n")
+    (clone.root / "wrong.yaml").write_text(
+        (clone.root / "config" / "smoke.yaml").read_text() + "acuracy: draft\n"
+    )
     done = clone.snakemake("--dry-run", "--configfile", "wrong.yaml")
     profile, said = done.stderr.splitlines()
     assert done.returncode == 2 and "profile" in profile
@@ -66,8 +76,12 @@ def test_from_another_folder_and_as_a_module(fresh, tmp_path_factory):
     """Code and built-in files come from beside the Snakefile, results go where Snakemake is started."""
     elsewhere = tmp_path_factory.mktemp("elsewhere")
     (elsewhere / "scenes").mkdir()
-    (elsewhere / "scenes" / "own.yaml").write_text("stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf}]\n")
-    (elsewhere / "mine.yaml").write_text("{name: mine, scenes: [own, ramp40_flat], scenes_folder: scenes}")
+    (elsewhere / "scenes" / "own.yaml").write_text(
+        "stimulus: {shape: flat}\nmotion: [{press_to_force: 5 gf}]\n"
+    )
+    (elsewhere / "mine.yaml").write_text(
+        "{name: mine, scenes: [own, ramp40_flat], scenes_folder: scenes}"
+    )
     there = ("--snakefile", str(fresh.root / "Snakefile"), "--configfile", "mine.yaml")
     jobs = fresh.planned(*there, folder=elsewhere)
     outputs = {path for paths in jobs.values() for path in paths}
@@ -83,27 +97,46 @@ def test_from_another_folder_and_as_a_module(fresh, tmp_path_factory):
 
 def test_as_the_catalogue_of_workflows_finds_and_tries_it(clone):
     """By workflow/Snakefile, its profile found by itself, in the folder .test with the configuration that is there."""
-    there = ("--snakefile", "workflow/Snakefile", "--directory", ".test", "--configfile", ".test/config/config.yaml")
+    there = (
+        "--snakefile",
+        "workflow/Snakefile",
+        "--directory",
+        ".test",
+        "--configfile",
+        ".test/config/config.yaml",
+    )
     text = clone.run("--dry-run", *there)
     jobs = clone.jobs_in(text)
     assert "profiles/default" in text
-    files = {f"results/test/figures/fig_4-12.{kind}" for kind in ("csv", "png")} | {"results/test/pdf/fig_4-12.pdf"}
+    files = {f"results/test/figures/fig_4-12.{kind}" for kind in ("csv", "png")} | {
+        "results/test/pdf/fig_4-12.pdf"
+    }
     assert jobs["figures_4_12"] == files
     assert {"simulate_homogeneous_flat", "simulate_ramp40", "summary"} < set(jobs)
     listed = yaml.safe_load((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
     assert listed["report"] is True and listed["mandatory-flags"]["flags"] == ""
-    assert {"conda", "apptainer"} <= set(listed["software-stack-deployment"]) and (ROOT / "config/README.md").exists()
+    assert {"conda", "apptainer"} <= set(listed["software-stack-deployment"]) and (
+        ROOT / "config/README.md"
+    ).exists()
 
 
 def test_a_sweep_is_a_target_that_a_configuration_names(fresh, tmp_path):
-    sweep, words = tmp_path / "mine.yaml", ("--snakefile", str(fresh.root / "Snakefile"), "sweep", "--config", "sweep=mine.yaml")
+    sweep, words = (
+        tmp_path / "mine.yaml",
+        ("--snakefile", str(fresh.root / "Snakefile"), "sweep", "--config", "sweep=mine.yaml"),
+    )
     scene = "{stimulus: {shape: flat}, motion: [{press_to_force: 5 gf}], accuracy: draft}"
     sweep.write_text(f"scene: {scene}\nover: {{friction: [0, 0.5]}}\n")
     jobs = fresh.planned(*words, folder=tmp_path)
     (records,) = jobs["sweep_batch"]
     assert records.startswith("results/sweeps/mine/batches/")
-    assert jobs["sweep_collect"] == {"results/sweeps/mine/sweep.nc", "results/sweeps/mine/sweep.csv"}
+    assert jobs["sweep_collect"] == {
+        "results/sweeps/mine/sweep.nc",
+        "results/sweeps/mine/sweep.csv",
+    }
     sweep.write_text(sweep.read_text() + "designs: grid\n")
     done = fresh.snakemake("--dry-run", *words, folder=tmp_path)
     assert done.returncode == 2
-    assert done.stderr.splitlines()[-1].startswith("mine.yaml: designs: is not a known key, the nearest is 'design'; allowed:")
+    assert done.stderr.splitlines()[-1].startswith(
+        "mine.yaml: designs: is not a known key, the nearest is 'design'; allowed:"
+    )

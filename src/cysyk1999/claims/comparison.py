@@ -39,12 +39,26 @@ PARTS = ("mesh_error", "time_step_error", "sampling_error")
 """Columns of what a number is wrong by, each in the row's units."""
 
 COLUMNS = (
-    "id", "figure", "quantity", "condition", "role", "score", "thesis_low", "thesis_high", "thesis_kind", "simulated",
-    *PARTS, "units", "verdict", "note",
-)  # fmt: skip
+    "id",
+    "figure",
+    "quantity",
+    "condition",
+    "role",
+    "score",
+    "thesis_low",
+    "thesis_high",
+    "thesis_kind",
+    "simulated",
+    *PARTS,
+    "units",
+    "verdict",
+    "note",
+)
 
 
-def thesis_comparison(fine: Measures, instead: Instead, reference_csv: str | PathLike) -> pd.DataFrame:
+def thesis_comparison(
+    fine: Measures, instead: Instead, reference_csv: str | PathLike
+) -> pd.DataFrame:
     """Compare the thesis's numbers and trends of chapters 3 to 5 with the simulated ones.
 
     Parameters
@@ -59,7 +73,11 @@ def thesis_comparison(fine: Measures, instead: Instead, reference_csv: str | Pat
     were not simulated give ``not_comparable``. `summary` of the rows is in ``attrs["summary"]``.
     """
     reference = read_reference(reference_csv)
-    rows = [_row(entry, fine, instead, reference) for _, entry in reference.iterrows() if entry["form"] != "layout"]
+    rows = [
+        _row(entry, fine, instead, reference)
+        for _, entry in reference.iterrows()
+        if entry["form"] != "layout"
+    ]
     table = pd.DataFrame(rows, columns=COLUMNS)
     table.attrs["summary"] = summary(table, reference)
     return table
@@ -70,7 +88,11 @@ SCORES = ("fitted", "held out")
 
 def score_of(entry: pd.Series) -> str:
     """What a row counts among: fitted, held out, or nothing (empty)."""
-    if entry["role"] not in ("result", "trend", "calibrated") or entry["score"] == "none" or entry["same_as"]:
+    if (
+        entry["role"] not in ("result", "trend", "calibrated")
+        or entry["score"] == "none"
+        or entry["same_as"]
+    ):
         return ""
     return "fitted" if entry["score"] == "fitted" or entry["role"] == "calibrated" else "held out"
 
@@ -80,7 +102,11 @@ def scores(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
 
     Columns kind, score, agree, judged. Rows that are not comparable are not judged.
     """
-    kind = table["id"].map(reference["form"]).map(lambda form: {"axis": "axis", "trend": "trend"}.get(form, "value or range"))
+    kind = (
+        table["id"]
+        .map(reference["form"])
+        .map(lambda form: {"axis": "axis", "trend": "trend"}.get(form, "value or range"))
+    )
     found = table["id"].map(reference.apply(score_of, axis=1))
     judged = table["verdict"].ne("not_comparable") & found.ne("")
     agree = table["verdict"].isin(AGREES)
@@ -105,7 +131,8 @@ def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
 
     def told(kind: str) -> str:
         found = {
-            score: "{} of {}".format(*counted.loc[(kind, score), ["agree", "judged"]]) for score in ("held out", "fitted", "all")
+            score: "{} of {}".format(*counted.loc[(kind, score), ["agree", "judged"]])
+            for score in ("held out", "fitted", "all")
         }
         return f"{found['held out']} (fitted {found['fitted']}, all {found['all']})"
 
@@ -121,7 +148,9 @@ def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
 
 
 def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataFrame) -> dict:
-    row = {"id": entry.name} | {k: entry[k] for k in ("figure", "quantity", "condition", "role", "units")}
+    row = {"id": entry.name} | {
+        k: entry[k] for k in ("figure", "quantity", "condition", "role", "units")
+    }
     row |= {f"thesis_{k}": entry[k] for k in ("low", "high", "kind")} | {"score": score_of(entry)}
     row |= dict.fromkeys(("simulated", *PARTS), float("nan"))
     try:
@@ -129,7 +158,11 @@ def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataF
             trend = TRENDS[entry.name](fine)
             verdict = "trend_holds" if trend.holds else "trend_fails"
             note = _note(REASONS.get(entry["reason"], ""), trend.note)
-            return row | {"simulated": significant(trend.shown, 4), "verdict": verdict, "note": note}
+            return row | {
+                "simulated": significant(trend.shown, 4),
+                "verdict": verdict,
+                "note": note,
+            }
         number = Number.of(entry)
         value = number(fine)
     except KeyError as missing:
@@ -137,25 +170,42 @@ def _row(entry: pd.Series, fine: Measures, instead: Instead, reference: pd.DataF
         return row | {"verdict": "not_comparable", "note": f"not simulated: {why}"}
     if entry["role"] in GIVEN:
         verdict, *notes = judge(value, 0.0, entry)
-        notes += [reason(entry["reason"], fine, number)] * (verdict == "outside" or entry["form"] == "unlike")
+        notes += [reason(entry["reason"], fine, number)] * (
+            verdict == "outside" or entry["form"] == "unlike"
+        )
         return row | {"simulated": value, "verdict": verdict, "note": _note(*notes, _doubt(entry))}
     # what a scene alone tells is no result
-    errors = Errors(0.0, 0.0, 0.0) if MEASURES[number.measure].of == "scene" else instead.errors(number, value)
+    errors = (
+        Errors(0.0, 0.0, 0.0)
+        if MEASURES[number.measure].of == "scene"
+        else instead.errors(number, value)
+    )
     allowed = errors.total
     verdict, *notes = judge(value, allowed, entry)
-    if verdict == "outside" or entry["form"] in ("estimate", "unlike") or entry["reason"] == "panels":
+    if (
+        verdict == "outside"
+        or entry["form"] in ("estimate", "unlike")
+        or entry["reason"] == "panels"
+    ):
         notes.append(reason(entry["reason"], fine, number))
     if verdict == "outside":
         notes.append(evidence(entry.name, number, value, allowed, fine, reference))
-    row |= {"simulated": significant(value, 4)} | {p: significant(e, 2) for p, e in zip(PARTS, astuple(errors), strict=True)}
-    return row | {"verdict": verdict, "note": _note(*notes, _at_start(number, entry, fine), _doubt(entry))}
+    row |= {"simulated": significant(value, 4)} | {
+        p: significant(e, 2) for p, e in zip(PARTS, astuple(errors), strict=True)
+    }
+    return row | {
+        "verdict": verdict,
+        "note": _note(*notes, _at_start(number, entry, fine), _doubt(entry)),
+    }
 
 
 def _at_start(number: Number, entry: Mapping, fine: Measures) -> str:
     start = when_the_hold_starts(fine, number)
     if start is None:
         return ""
-    return f"{start:.3g} when the hold starts" + ("" if is_inside(start, 0.0, entry) else ", outside")
+    return f"{start:.3g} when the hold starts" + (
+        "" if is_inside(start, 0.0, entry) else ", outside"
+    )
 
 
 def _doubt(entry: Mapping) -> str:

@@ -11,7 +11,11 @@ from cysyk1999.claims.comparison import PARTS, summary
 from cysyk1999.claims.verdicts import significant
 from cysyk1999.publishing.write import markdown
 
-CHAPTERS = {"3": "the specimen and what it was checked by", "4": "pressed and held", "5": "stroked, and what follows"}
+CHAPTERS = {
+    "3": "the specimen and what it was checked by",
+    "4": "pressed and held",
+    "5": "stroked, and what follows",
+}
 """Chapters that have a page; what the thesis sums up in its sixth stands with the fifth."""
 ROLES = {
     "result": "Results",
@@ -20,7 +24,12 @@ ROLES = {
     "input": "What went in",
     "count": "Of the model itself",
 }
-VERDICTS = {"trend_holds": "holds", "trend_fails": "**fails**", "outside": "**outside**", "not_comparable": "not comparable"}
+VERDICTS = {
+    "trend_holds": "holds",
+    "trend_fails": "**fails**",
+    "outside": "**outside**",
+    "not_comparable": "not comparable",
+}
 
 
 def pages(csv: str | PathLike, reference: pd.DataFrame) -> dict[str, str]:
@@ -88,9 +97,13 @@ def _here(row: pd.Series) -> str:
     said = [
         f"{word} {_number(significant(error, 2))}"
         for part, word in zip(PARTS, ("mesh", "steps", "sampling"), strict=True)
-        if _there(error := row[part]) and error > 0 and error >= 5e-5 * abs(row["simulated"])  # in one of four digits
+        if _there(error := row[part])
+        and error > 0
+        and error >= 5e-5 * abs(row["simulated"])  # in one of four digits
     ]
-    return _with_unit(_number(row["simulated"]), row["units"]) + f" (± {', '.join(said)})" * bool(said)
+    return _with_unit(_number(row["simulated"]), row["units"]) + f" (± {', '.join(said)})" * bool(
+        said
+    )
 
 
 def _with_unit(text: str, unit: str) -> str:

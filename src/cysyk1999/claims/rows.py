@@ -13,7 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from cysyk1999.measures.runs import CYLINDERS, FAST, NINE, RIDGED_NINE, SPEEDS, SUB_SPEEDS, WITHIN_350, WITHIN_400
+from cysyk1999.measures.runs import (
+    CYLINDERS,
+    FAST,
+    NINE,
+    RIDGED_NINE,
+    SPEEDS,
+    SUB_SPEEDS,
+    WITHIN_350,
+    WITHIN_400,
+)
 from cysyk1999.measures.steady import DEPTH_SCENES, SPEED_SCENES
 from cysyk1999.measures.table import MEASURES, Measures
 
@@ -31,7 +40,13 @@ SETS: dict[str, tuple[str, ...]] = {
 }
 """Sets of scenes by the name they have in the column `of`."""
 
-MADE: dict[str, Callable[[list[float]], float]] = {"largest": max, "least": min, "mean": np.mean, "sum": sum, "number": len}
+MADE: dict[str, Callable[[list[float]], float]] = {
+    "largest": max,
+    "least": min,
+    "mean": np.mean,
+    "sum": sum,
+    "number": len,
+}
 
 
 @dataclass(frozen=True)
@@ -47,16 +62,25 @@ class Number:
     def of(cls, row: Mapping) -> Number:
         """Read a row of the reference table. Raises ValueError, naming the row, for an unknown measure or unit that differs."""
         if row["measure"] not in MEASURES:
-            raise ValueError(f"{row.name}: measure '{row['measure']}' is not one of {', '.join(sorted(MEASURES))}")
+            raise ValueError(
+                f"{row.name}: measure '{row['measure']}' is not one of {', '.join(sorted(MEASURES))}"
+            )
         unit = MEASURES[row["measure"]].unit
         if unit != row["units"]:
-            raise ValueError(f"{row.name}: units '{row['units']}', its measure {row['measure']} has '{unit}'")
+            raise ValueError(
+                f"{row.name}: units '{row['units']}', its measure {row['measure']} has '{unit}'"
+            )
         made, found, names = row["of"].partition(" of ")
         if not found:
             made, names = "largest", row["of"]
         if made not in MADE:
             raise ValueError(f"{row.name}: of '{row['of']}' begins with none of {', '.join(MADE)}")
-        return cls(row["measure"], row["at"], made, tuple(s for name in names.split() for s in SETS.get(name, (name,))))
+        return cls(
+            row["measure"],
+            row["at"],
+            made,
+            tuple(s for name in names.split() for s in SETS.get(name, (name,))),
+        )
 
     def __call__(self, measures: Measures) -> float:
         return float(MADE[self.made](list(self._values(measures))))
@@ -64,7 +88,11 @@ class Number:
     def _values(self, measures: Measures) -> Iterator[float]:
         for scene in self.scenes:
             try:
-                values = measures.find(self.measure, scene) if not self.at else {"": measures(self.measure, scene, self.at)}
+                values = (
+                    measures.find(self.measure, scene)
+                    if not self.at
+                    else {"": measures(self.measure, scene, self.at)}
+                )
             except KeyError:
                 if self.made == "number":
                     continue
@@ -74,4 +102,6 @@ class Number:
 
 def numbers(reference: pd.DataFrame) -> dict[str, Number]:
     """The number of every row of the reference table that has one, by id. Raises ValueError as `Number.of` does."""
-    return {id_: Number.of(row) for id_, row in reference.iterrows() if row["role"] not in ("", "trend")}
+    return {
+        id_: Number.of(row) for id_, row in reference.iterrows() if row["role"] not in ("", "trend")
+    }

@@ -36,17 +36,23 @@ def said(number: str, fine: Measures, instead: Instead, reference: pd.DataFrame)
     fine, instead: measures of the histories, and of what tells their errors. reference: of `read_reference`.
     """
     rows = reference[(reference["figure"] == number) & (reference["form"] != "layout")]
-    drawn = rows["condition"].astype(str).str.contains(DRAWN, regex=False)  # of several definitions only that which is drawn
+    drawn = (
+        rows["condition"].astype(str).str.contains(DRAWN, regex=False)
+    )  # of several definitions only that which is drawn
     rows = rows[drawn | ~rows["quantity"].isin(rows.loc[drawn, "quantity"])]
     for roles in SPEAKING:
-        judged = (_judged(row, fine, instead) for _, row in rows[rows["role"].isin(roles)].iterrows())
+        judged = (
+            _judged(row, fine, instead) for _, row in rows[rows["role"].isin(roles)].iterrows()
+        )
         if found := [one for one in judged if one is not None]:
             break
     else:
         return None
     rank, chosen = min(found, key=lambda pair: pair[0])
     holds = sum(one.verdict == "holds" for _, one in found)
-    return Said(f"{chosen.ids}; {holds} of {len(found)} hold", *(getattr(chosen, k) for k in _PARTS))
+    return Said(
+        f"{chosen.ids}; {holds} of {len(found)} hold", *(getattr(chosen, k) for k in _PARTS)
+    )
 
 
 SPEAKING = (("trend", "result"), ("calibrated",))
@@ -61,9 +67,20 @@ def _judged(row: pd.Series, fine: Measures, instead: Instead) -> tuple[int, Said
         if row["form"] == "trend":
             trend = TRENDS[row.name](fine)
             verdict, *details = "holds" if trend.holds else "fails", *trend.note.split("; ")
-            short = next((each for each in details if each.startswith(("not for", "not from"))), "") or _counted(trend.shown, row)
-            long = "; ".join(dict.fromkeys(filter(None, (details[0], short if short in details else ""))))
-            parts = row.name, _plain(row["quantity"]), _plain(row["condition"]), verdict, short, _plain(long) or short
+            short = next(
+                (each for each in details if each.startswith(("not for", "not from"))), ""
+            ) or _counted(trend.shown, row)
+            long = "; ".join(
+                dict.fromkeys(filter(None, (details[0], short if short in details else "")))
+            )
+            parts = (
+                row.name,
+                _plain(row["quantity"]),
+                _plain(row["condition"]),
+                verdict,
+                short,
+                _plain(long) or short,
+            )
             return (2 if trend.holds else 0), Said(*parts)
         measured = Number.of(row)
         value = measured(fine)
@@ -72,17 +89,35 @@ def _judged(row: pd.Series, fine: Measures, instead: Instead) -> tuple[int, Said
     verdict, remark = judge(value, instead.errors(measured, value).total, row)
     if verdict == "not_comparable":
         return None
-    units, scale = ("kPa", 1e-3) if row["units"] == "Pa" and "pressure" in row["quantity"] else (row["units"], 1.0)
-    stated = " to ".join(f"{scale * row[end]:g}" for end in (("low",) if row["form"] == "value" else ("low", "high")))
+    units, scale = (
+        ("kPa", 1e-3)
+        if row["units"] == "Pa" and "pressure" in row["quantity"]
+        else (row["units"], 1.0)
+    )
+    stated = " to ".join(
+        f"{scale * row[end]:g}" for end in (("low",) if row["form"] == "value" else ("low", "high"))
+    )
     axis = "on an axis of " if row["form"] == "axis" else ""
     doubt = ", reading uncertain" if row["kind"] == "garbled" else ""
     words = f"{_plain(row['quantity'])} {axis}{_shown(stated, units)}{doubt}"
-    condition = "; ".join(filter(None, (_plain(row["condition"]), "the pad was fitted to it" * (row["role"] == "calibrated"))))
+    condition = "; ".join(
+        filter(
+            None,
+            (_plain(row["condition"]), "the pad was fitted to it" * (row["role"] == "calibrated")),
+        )
+    )
     holds = verdict in ("inside", "plausible")
     shown = _shown(scale * value, units)
     remark = re.sub(r"^by \S+ \((.+)\)$", r"\1", remark.partition(", ")[0])
     rank = (4 if holds else 3) if row["form"] == "axis" else 2 if holds else 1
-    return rank, Said(row.name, words, condition, "holds" if holds else "fails", shown, ", ".join(filter(None, (shown, remark))))
+    return rank, Said(
+        row.name,
+        words,
+        condition,
+        "holds" if holds else "fails",
+        shown,
+        ", ".join(filter(None, (shown, remark))),
+    )
 
 
 def _plain(text: object) -> str:
@@ -99,4 +134,6 @@ def _counted(value: float, row: pd.Series) -> str:
     """The number of a trend where it says something by itself: with its unit, or of how many it counts."""
     if row["units"] in ("1", "count"):
         return ""
-    return _shown(f"{value:g} of {row['low']:g}" if row["low"] == row["low"] else value, row["units"])
+    return _shown(
+        f"{value:g} of {row['low']:g}" if row["low"] == row["low"] else value, row["units"]
+    )

@@ -32,24 +32,56 @@ SHAPES = ("flat", "210", "1260")
 """Surfaces the variants are pressed by."""
 
 COLUMNS = (
-    "quantity", "surface", "thesis_ids", "thesis_low", "thesis_high", "thesis_kind", "units", "base", "base_draft",
-    *VARIANTS, "inside",
-)  # fmt: skip
+    "quantity",
+    "surface",
+    "thesis_ids",
+    "thesis_low",
+    "thesis_high",
+    "thesis_kind",
+    "units",
+    "base",
+    "base_draft",
+    *VARIANTS,
+    "inside",
+)
 
 _WIDTHS = {"flat": "T106", "210": "T114", "1260": "T120"}
 _PRESSURES = {"flat": "T125", "210": "T129", "1260": "T133"}
 
 QUANTITIES: tuple[tuple[str, str, str, str, dict[str, str]], ...] = (
-    ("indentation depth at the end of the hold", "mm", "depth", "end", {"flat": "T143", "1260": "T102a"}),
+    (
+        "indentation depth at the end of the hold",
+        "mm",
+        "depth",
+        "end",
+        {"flat": "T143", "1260": "T102a"},
+    ),
     ("contact width at the end of the ramp", "mm", "width", "top", _WIDTHS),
     ("contact width at the end of the hold", "mm", "width", "end", _WIDTHS),
     ("highest pressure", "Pa", "highest_pressure", "highest", _PRESSURES),
     ("highest pressure at the end of the hold", "Pa", "highest_pressure", "end", _PRESSURES),
-    ("strain energy density at 600 um at the end of the ramp", "Pa", "energy_at_top", "600 um", {"1260": "T193"}),
-    ("strain energy density at 800 um at the end of the ramp", "Pa", "energy_at_top", "800 um", {"1260": "T196"}),
-    ("strain energy density at 915 um at the end of the ramp", "Pa", "energy_at_top", "915 um",
-     {"flat": "T181", "210": "T185", "1260": "T187c"}),
-)  # fmt: skip
+    (
+        "strain energy density at 600 um at the end of the ramp",
+        "Pa",
+        "energy_at_top",
+        "600 um",
+        {"1260": "T193"},
+    ),
+    (
+        "strain energy density at 800 um at the end of the ramp",
+        "Pa",
+        "energy_at_top",
+        "800 um",
+        {"1260": "T196"},
+    ),
+    (
+        "strain energy density at 915 um at the end of the ramp",
+        "Pa",
+        "energy_at_top",
+        "915 um",
+        {"flat": "T181", "210": "T185", "1260": "T187c"},
+    ),
+)
 """Quantity, its unit, measure and condition, and the ids of its thesis range by surface."""
 
 
@@ -89,7 +121,12 @@ def sensitivity(fine: Measures, instead: Instead, reference_csv: str | PathLike)
                 "base_draft": _read(fine, measure, variant_scene(BASE, label), at),
                 **{v: _read(fine, measure, variant_scene(v, label), at) for v in VARIANTS},
             }
-            row = {"quantity": quantity, "surface": label, "thesis_ids": ids.get(label, ""), "units": units}
+            row = {
+                "quantity": quantity,
+                "surface": label,
+                "thesis_ids": ids.get(label, ""),
+                "units": units,
+            }
             if label in ids:
                 entry = thesis_range(ids[label], units, reference)
                 if "end of the hold" in quantity and entry["form"] == "axis":
@@ -112,7 +149,9 @@ def _read(measures: Measures, quantity: str, scene: str, at: str) -> float:
 def _widths_fit(fine: Measures, variant: str, reference: pd.DataFrame) -> bool:
     """Whether the contact widths at the end of the hold, by surface, are within the thesis's ranges."""
     widths = {k: fine("width", variant_scene(variant, k), "end") for k in SHAPES}
-    return all(is_inside(widths[k], 0.0, thesis_range(id_, "mm", reference)) for k, id_ in _WIDTHS.items())
+    return all(
+        is_inside(widths[k], 0.0, thesis_range(id_, "mm", reference)) for k, id_ in _WIDTHS.items()
+    )
 
 
 # --- evidence for the notes of the comparison ----------------------------------------------------------
@@ -124,12 +163,18 @@ def _nearest(label: str) -> str:
     return min(SHAPES, key=lambda k: (abs(SURFACES.index(k) - place), k != "210"))
 
 
-NEAREST = {scene: _nearest(label) for runs in (NINE, FAST, RIDGED_NINE) for label, scene in runs.scenes.items()}
+NEAREST = {
+    scene: _nearest(label)
+    for runs in (NINE, FAST, RIDGED_NINE)
+    for label, scene in runs.scenes.items()
+}
 NEAREST[PADS["homogeneous"]] = "flat"
 """Scene of one of the nine surfaces -> the surface of the variants that stands in for it."""
 
 
-def evidence(id_: str, number: Number, value: float, error: float, fine: Measures, reference: pd.DataFrame) -> str:
+def evidence(
+    id_: str, number: Number, value: float, error: float, fine: Measures, reference: pd.DataFrame
+) -> str:
     """What the variants make of a number of the comparison that is outside, and which of them bring it inside.
 
     A number of surfaces that the variants were not pressed by is given as the change in per cent that the
@@ -138,17 +183,25 @@ def evidence(id_: str, number: Number, value: float, error: float, fine: Measure
     """
     entry = reference.loc[id_]
     try:
-        before = number(fine.standing_in({scene: variant_scene(BASE, k) for scene, k in NEAREST.items()}))
+        before = number(
+            fine.standing_in({scene: variant_scene(BASE, k) for scene, k in NEAREST.items()})
+        )
         if not before and value:
             return "variants: 0 under the nearest surface of theirs"
         shown, fits = [], []
         exact = all(NINE[NEAREST[scene]] == scene for scene in number.scenes)
         for variant in VARIANTS:
-            after = number(fine.standing_in({scene: variant_scene(variant, k) for scene, k in NEAREST.items()}))
+            after = number(
+                fine.standing_in({scene: variant_scene(variant, k) for scene, k in NEAREST.items()})
+            )
             fits.append(is_inside(after if exact else value * after / before, error, entry))
             text = f"{significant(after, 3):g}" if exact else f"{after / before - 1:+.0%}"
             if fits[-1]:
-                text += " (inside)" if _widths_fit(fine, variant, reference) else " (inside, widths outside)"
+                text += (
+                    " (inside)"
+                    if _widths_fit(fine, variant, reference)
+                    else " (inside, widths outside)"
+                )
             shown.append(f"{variant} {text}")
     except KeyError:
         return ""

@@ -9,5 +9,8 @@ import pandas as pd
 from cysyk1999.claims.comparison import thesis_comparison
 from cysyk1999.claims.sensitivity import sensitivity
 
-TABLES: dict[str, Callable[..., pd.DataFrame]] = {"thesis_comparison": thesis_comparison, "sensitivity": sensitivity}
+TABLES: dict[str, Callable[..., pd.DataFrame]] = {
+    "thesis_comparison": thesis_comparison,
+    "sensitivity": sensitivity,
+}
 """Table name -> function(measures, what tells their errors, reference_csv)."""

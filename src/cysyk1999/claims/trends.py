@@ -47,7 +47,9 @@ def trend(id_: str, **given) -> Callable[[Callable[..., Trend]], Callable[..., T
     return enter
 
 
-def of_each(m: Measures, quantity: str, scenes: Mapping[str, str], condition: str = "") -> dict[str, float]:
+def of_each(
+    m: Measures, quantity: str, scenes: Mapping[str, str], condition: str = ""
+) -> dict[str, float]:
     """A number of each of several scenes, by their names."""
     return {name: m(quantity, scene, condition) for name, scene in scenes.items()}
 
@@ -63,9 +65,17 @@ def everywhere(outcome: Mapping[str, bool], what: str = "", needed: int | None =
 def ordered(values: Mapping[str, float], what: str, growing: bool = True) -> Trend:
     """Whether the values of the surfaces, broad to sharp, only grow (or only fall)."""
     names, numbers = list(values), list(values.values())
-    wrong = [f"{a} to {b}" for (a, x), (b, y) in pairwise(values.items()) if (y <= x if growing else y >= x)]
+    wrong = [
+        f"{a} to {b}"
+        for (a, x), (b, y) in pairwise(values.items())
+        if (y <= x if growing else y >= x)
+    ]
     note = f"{what}: {digits(numbers[0])} ({names[0]}) to {digits(numbers[-1])} ({names[-1]})"
-    return Trend(not wrong, len(values) - len(wrong), note + (f"; not from {', '.join(wrong)}" if wrong else ""))
+    return Trend(
+        not wrong,
+        len(values) - len(wrong),
+        note + (f"; not from {', '.join(wrong)}" if wrong else ""),
+    )
 
 
 def stepwise(values: Mapping[str, float], unit: str, sign: int = 1) -> Trend:
@@ -81,4 +91,7 @@ def listed(values: Mapping[str, float], unit: str, count: int = 3) -> str:
 
 def spreads(values: Sequence[Mapping[str, float]]) -> dict[str, float]:
     """Spread (%) of each labelled value over the velocities: standard deviation over mean."""
-    return {k: 100 * float(np.std([v[k] for v in values]) / (np.mean([v[k] for v in values]) or np.nan)) for k in values[0]}
+    return {
+        k: 100 * float(np.std([v[k] for v in values]) / (np.mean([v[k] for v in values]) or np.nan))
+        for k in values[0]
+    }

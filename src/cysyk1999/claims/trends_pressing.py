@@ -43,9 +43,13 @@ def order_of_surfaces(m, quantity, at, what, growing=True):
 @trend("TR22")
 def pressure_exceeds_energy_by_more(m):
     pressure, energy = (
-        of_each(m, *q) for q in (("centre_pressure", NINE.scenes, "end"), ("energy_at_end", NINE.scenes, "915 um"))
+        of_each(m, *q)
+        for q in (("centre_pressure", NINE.scenes, "end"), ("energy_at_end", NINE.scenes, "915 um"))
     )
-    return ordered({k: PRESSURE_SCALE * pressure[k] - energy[k] for k in NINE}, "0.04 x pressure less energy, Pa")
+    return ordered(
+        {k: PRESSURE_SCALE * pressure[k] - energy[k] for k in NINE},
+        "0.04 x pressure less energy, Pa",
+    )
 
 
 # --- ramp and hold ---------------------------------------------------------------------------------------
@@ -63,7 +67,9 @@ def changes_in_the_hold(m, quantity, sign):
 def contact_grows_faster_in_the_ramp(m):
     def faster(scene):
         top = m("width", scene, "top")
-        return top / m("ramp_time", scene) > (m("width", scene, "end") - top) / m("hold_time", scene)
+        return top / m("ramp_time", scene) > (m("width", scene, "end") - top) / m(
+            "hold_time", scene
+        )
 
     return everywhere({k: faster(scene) for k, scene in NINE.scenes.items()})
 
@@ -72,16 +78,23 @@ def contact_grows_faster_in_the_ramp(m):
 def double_peak_of_the_plate(m):
     pressure, time = m.find("ramp_pressure", PLATE), m.find("ramp_pressure_time", PLATE)
     if "first" not in pressure:
-        return Trend(False, 0, f"rises to {pressure['top']:.0f} Pa at the ramp's end with no peak before")
+        return Trend(
+            False, 0, f"rises to {pressure['top']:.0f} Pa at the ramp's end with no peak before"
+        )
     holds = time["dip"] < time["top"] and pressure["top"] > pressure["dip"]
-    return Trend(bool(holds), 1 + holds, ", ".join(f"{pressure[k]:.0f} Pa at {time[k]:.2f} s" for k in ("first", "dip", "top")))
+    return Trend(
+        bool(holds),
+        1 + holds,
+        ", ".join(f"{pressure[k]:.0f} Pa at {time[k]:.2f} s" for k in ("first", "dip", "top")),
+    )
 
 
 @trend("T328")
 def peaks_before_the_top(m):
     times, tops = of_each(m, "peak_time", BEFORE), of_each(m, "ramp_end_time", BEFORE)
     return everywhere(
-        {k: t < tops[k] for k, t in times.items()}, "peak times " + ", ".join(f"{k}: {t:.2f} s" for k, t in times.items())
+        {k: t < tops[k] for k, t in times.items()},
+        "peak times " + ", ".join(f"{k}: {t:.2f} s" for k, t in times.items()),
     )
 
 
@@ -89,14 +102,18 @@ def peaks_before_the_top(m):
 def peaks_sooner_when_broad(m):
     times = list(of_each(m, "peak_time", BEFORE).values())
     sooner = [True, *(b >= a for a, b in zip(times, times[1:], strict=False))]
-    return everywhere(dict(zip(BEFORE, sooner, strict=True)), f"{times[0]:.2f} s (79) to {times[-1]:.2f} s (420)")
+    return everywhere(
+        dict(zip(BEFORE, sooner, strict=True)), f"{times[0]:.2f} s (79) to {times[-1]:.2f} s (420)"
+    )
 
 
 @trend("T328b", label="630")
 @trend("T329", label="1260")
 def peaks_at_the_top(m, label):
     time, top = m("peak_time", NINE[label]), m("ramp_end_time", NINE[label])
-    return Trend(abs(time - top) <= 0.04 * top, time, f"peak at {time:.3f} s, ramp ends at {top:.3f} s")
+    return Trend(
+        abs(time - top) <= 0.04 * top, time, f"peak at {time:.3f} s, ramp ends at {top:.3f} s"
+    )
 
 
 @trend("TR15")
@@ -104,15 +121,23 @@ def largest_and_centre_decay_alike(m):
     (largest, half), (centre, half_centre) = (
         (m("fall_in_hold", K210, k), m("half_of_fall", K210, k)) for k in ("largest", "centre")
     )
-    note = f"fall {largest:.1%} and {centre:.1%}, half of it after {half:.2f} and {half_centre:.2f} s"
-    return Trend(largest > 0 and centre > 0 and abs(half - half_centre) <= 0.3 * half_centre, half / half_centre, note)
+    note = (
+        f"fall {largest:.1%} and {centre:.1%}, half of it after {half:.2f} and {half_centre:.2f} s"
+    )
+    return Trend(
+        largest > 0 and centre > 0 and abs(half - half_centre) <= 0.3 * half_centre,
+        half / half_centre,
+        note,
+    )
 
 
 @trend("TR16")
 def same_time_constant_at_every_node(m):
     short, long, mean = (m("half_of_fall", K210, k) for k in ("shortest", "longest", "mean"))
     times = " to ".join(dict.fromkeys((f"{short:.2f}", f"{long:.2f}")))
-    note = f"half of the fall after {times} s at {m('nodes_past_peak', K210):.0f} nodes past the peak"
+    note = (
+        f"half of the fall after {times} s at {m('nodes_past_peak', K210):.0f} nodes past the peak"
+    )
     return Trend(bool((long - short) / mean <= 0.3), (long - short) / mean, note)
 
 
@@ -139,24 +164,35 @@ def falls_but_at_the_edge(m):
 
 @trend("TR10")
 def pressure_peaks_off_the_centre(m):
-    excess, at = of_each(m, "off_centre_excess", NINE.scenes, "end"), of_each(m, "off_centre_place", NINE.scenes)
+    excess, at = (
+        of_each(m, "off_centre_excess", NINE.scenes, "end"),
+        of_each(m, "off_centre_place", NINE.scenes),
+    )
     twins = {k: e for k, e in excess.items() if e > TWIN}
     where = ", ".join(f"{k} at ±{at[k]:.2f} mm ({e:+.0%})" for k, e in twins.items())
     without = ", ".join(label for label in BROAD if label not in twins)
-    return Trend(not without, len(twins), f"end of hold: {where or 'none'}" + (f"; not for {without}" if without else ""))
+    return Trend(
+        not without,
+        len(twins),
+        f"end of hold: {where or 'none'}" + (f"; not for {without}" if without else ""),
+    )
 
 
 @trend("TR11")
 def pressure_is_symmetric(m):
     found = of_each(m, "asymmetry", NINE.scenes)
-    return everywhere({k: v <= 1e-3 for k, v in found.items()}, "mirror images within 0.1 % of the peak")
+    return everywhere(
+        {k: v <= 1e-3 for k, v in found.items()}, "mirror images within 0.1 % of the peak"
+    )
 
 
 @trend("TR12", scene=SHARPEST, name="K = 1260 1/m")
 @trend("TR13", scene=PADS["homogeneous"], name="homogeneous pad")
 def never_off_the_centre(m, scene, name):
     worst = m("off_centre_excess", scene, "ever")
-    return Trend(worst <= TWIN, worst, f"{name}: largest excess over the centre {worst:.1%} at any time")
+    return Trend(
+        worst <= TWIN, worst, f"{name}: largest excess over the centre {worst:.1%} at any time"
+    )
 
 
 @trend("TR13a")
@@ -197,7 +233,9 @@ def _definitions(function):
 
 @_definitions
 def energy_peaks_and_decays(m, at, peak):
-    high, top, end = (of_each(m, q, NINE.scenes, at) for q in ("highest_energy", "energy_at_top", "energy_at_end"))
+    high, top, end = (
+        of_each(m, q, NINE.scenes, at) for q in ("highest_energy", "energy_at_top", "energy_at_end")
+    )
     note = ", ".join(f"{k}: {end[k] / top[k] - 1:+.0%}" for k in ("flat", "210", "1260"))
     outcome = {k: top[k] == high[k] if peak else end[k] < top[k] for k in NINE}
     return everywhere(outcome, f"change in the hold at 915 um {note}")
@@ -205,8 +243,14 @@ def energy_peaks_and_decays(m, at, peak):
 
 @trend("TR23")
 def stands_out_less_when_deep(m):
-    shallow, deep = (m("energy_at_end", SHARPEST, z) / m("energy_at_end", PLATE, z) for z in ("600 um", "915 um"))
-    return Trend(deep < shallow, deep / shallow, f"1260 over flat: {shallow:.1f} at 600 um, {deep:.1f} at 915 um")
+    shallow, deep = (
+        m("energy_at_end", SHARPEST, z) / m("energy_at_end", PLATE, z) for z in ("600 um", "915 um")
+    )
+    return Trend(
+        deep < shallow,
+        deep / shallow,
+        f"1260 over flat: {shallow:.1f} at 600 um, {deep:.1f} at 915 um",
+    )
 
 
 @trend("TR87")
@@ -230,7 +274,11 @@ def rate_grows(m, runs, window, what, silent):
     wrong = [f"{names[i]} to {names[i + 1]}" for i in np.flatnonzero(np.diff(values) <= 0)]
     note = f"{what} {values[0]:.1f} ({names[0]}) to {values[-1]:.1f} (1260) impulses/s"
     note += f"; none under {', '.join(list(found)[:first])}" if first else ""
-    return Trend(values[-1] > 0 and not wrong, len(values) - len(wrong), "; not from ".join([note, *wrong[:1]]))
+    return Trend(
+        values[-1] > 0 and not wrong,
+        len(values) - len(wrong),
+        "; not from ".join([note, *wrong[:1]]),
+    )
 
 
 @trend("TR81")
@@ -248,15 +296,23 @@ def rate_peaks_and_decays(m):
         if m("rate", scene, "highest of hold") > 0:
             at_top = bool(np.isclose(m("rate_peak_time", scene), m("ramp_end_time", scene)))
             outcome[label] = at_top and m("rate", scene, "end") < m("rate", scene, "start of hold")
-    return everywhere(outcome, f"{len(outcome)} surfaces make impulses in the hold", max(len(outcome), 1))
+    return everywhere(
+        outcome, f"{len(outcome)} surfaces make impulses in the hold", max(len(outcome), 1)
+    )
 
 
 @trend("TR84", x=("rate", "peak"), y=("rate", "steady"))
 @trend("TR86", x=("highest_pressure", "highest"), y=("rate", "peak"))
 @trend("TR89", x=("highest_energy_rate", ""), y=("rate", "peak"))
 def linear(m, x, y):
-    slope, _, share = straight_line(*(list(of_each(m, q, NINE.scenes, at).values()) for q, at in (x, y)))
-    return Trend(bool(share >= LINEAR and slope > 0), share, f"R2 {share:.3f} of the line through predicted rates")
+    slope, _, share = straight_line(
+        *(list(of_each(m, q, NINE.scenes, at).values()) for q, at in (x, y))
+    )
+    return Trend(
+        bool(share >= LINEAR and slope > 0),
+        share,
+        f"R2 {share:.3f} of the line through predicted rates",
+    )
 
 
 @trend("TR85")
@@ -268,14 +324,22 @@ def rates_saturate(m):
         slope, _, share = straight_line(curvature[:-1], rate[:-1])
         last = (rate[-1] - rate[-2]) / (curvature[-1] - curvature[-2])
         outcome[window] = bool(share >= LINEAR and last < 0.5 * slope)
-        notes.append(f"{window}: R2 {share:.3f} below the highest, then {last / slope:.2f} as steep")
+        notes.append(
+            f"{window}: R2 {share:.3f} below the highest, then {last / slope:.2f} as steep"
+        )
     return everywhere(outcome, "; ".join(notes))
 
 
 @trend("TR88")
 def saturates_less_when_shallow(m):
-    shallow, deep = (m(q, SHARPEST, "hold") / max(m(q, K210, "hold"), 1e-9) for q in ("rate_at_600_um", "rate"))
-    return Trend(bool(shallow > deep), shallow / deep, f"1260 over 210: {shallow:.1f} from 600 um, {deep:.1f} from 915 um")
+    shallow, deep = (
+        m(q, SHARPEST, "hold") / max(m(q, K210, "hold"), 1e-9) for q in ("rate_at_600_um", "rate")
+    )
+    return Trend(
+        bool(shallow > deep),
+        shallow / deep,
+        f"1260 over 210: {shallow:.1f} from 600 um, {deep:.1f} from 915 um",
+    )
 
 
 # --- a pad with inner ridges -----------------------------------------------------------------------------
@@ -286,10 +350,16 @@ PLACES = {"centre": "915 um", "46 um": "915 um, 46 um"}
 
 @trend("TR43")
 def rises_and_falls_as_without_ridges(m):
-    found = {f"{k} at {p}": m("correlation_with_plain", s, p) for k, s in RIDGED_NINE.scenes.items() for p in PLACES}
+    found = {
+        f"{k} at {p}": m("correlation_with_plain", s, p)
+        for k, s in RIDGED_NINE.scenes.items()
+        for p in PLACES
+    }
     worst = min(found, key=found.get)
     outcome = {k: all(found[f"{k} at {p}"] >= CORRELATED for p in PLACES) for k in RIDGED_NINE}
-    return everywhere(outcome, f"correlation over time with the plain pad at least {found[worst]:.4f} ({worst})")
+    return everywhere(
+        outcome, f"correlation over time with the plain pad at least {found[worst]:.4f} ({worst})"
+    )
 
 
 @trend("TR44")
@@ -297,7 +367,9 @@ def same_order_with_ridges(m):
     outcome, notes = {}, []
     for place, at in PLACES.items():
         values = list(of_each(m, "energy_at_top", RIDGED_NINE.scenes, at).values())
-        outcome |= {f"{k} at {place}": b > a for k, a, b in zip(CYLINDERS, values, values[1:], strict=False)}
+        outcome |= {
+            f"{k} at {place}": b > a for k, a, b in zip(CYLINDERS, values, values[1:], strict=False)
+        }
         notes.append(f"{place} {values[0]:.0f} (flat) to {values[-1]:.0f} Pa (1260)")
     return everywhere(outcome, ", ".join(notes))
 
@@ -307,7 +379,10 @@ def ridges_set_the_sharpest_apart(m):
     def apart(runs, at):
         return m("highest_energy", runs["1260"], at) / m("highest_energy", runs["630"], at)
 
-    plain, centre, beside = apart(NINE, "915 um"), *(apart(RIDGED_NINE, at) for at in PLACES.values())
+    plain, centre, beside = (
+        apart(NINE, "915 um"),
+        *(apart(RIDGED_NINE, at) for at in PLACES.values()),
+    )
     note = f"1260 over 630 1/m: {plain:.3f} without ridges, with ridges {centre:.3f} at the centre, {beside:.3f} at 46 um"
     return Trend(min(centre, beside) > plain, centre / plain, note)
 
@@ -317,7 +392,14 @@ def ridges_change_the_magnitude(m):
     outcome, ratios = {}, {}
     plain = of_each(m, "highest_energy", NINE.scenes, "915 um")
     for place, at in PLACES.items():
-        ratios[place] = {k: v / plain[k] for k, v in of_each(m, "highest_energy", RIDGED_NINE.scenes, at).items()}
+        ratios[place] = {
+            k: v / plain[k] for k, v in of_each(m, "highest_energy", RIDGED_NINE.scenes, at).items()
+        }
     outcome = {f"{k} at {place}": abs(ratios[place][k] - 1) > 0.1 for k in NINE for place in PLACES}
-    note = ", ".join(f"{min(v.values()):.2f} to {max(v.values()):.2f} at {k}" for k, v in ratios.items())
-    return everywhere(outcome, f"largest energy over the plain pad's {note}; the centre lies in the epidermis of the ridge's tip")
+    note = ", ".join(
+        f"{min(v.values()):.2f} to {max(v.values()):.2f} at {k}" for k, v in ratios.items()
+    )
+    return everywhere(
+        outcome,
+        f"largest energy over the plain pad's {note}; the centre lies in the epidermis of the ridge's tip",
+    )

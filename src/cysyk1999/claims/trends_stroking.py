@@ -61,7 +61,11 @@ def pressure_follows_curvature_at_nodes(m):
 @trend("TR27")
 def skin_has_the_curvature_of_the_surface(m):
     """On every convexity, where what the curvature is fitted through touches it, within 5 % (median)."""
-    found = {f"{k} at {v}": miss for v, each in by_speed(m, "curvature_miss").items() for k, miss in each.items()}
+    found = {
+        f"{k} at {v}": miss
+        for v, each in by_speed(m, "curvature_miss").items()
+        for k, miss in each.items()
+    }
     note = f"largest median difference on a convexity {np.nanmax(list(found.values())):.1%}"
     return everywhere({k: miss <= 0.05 for k, miss in found.items()}, note)
 
@@ -69,7 +73,9 @@ def skin_has_the_curvature_of_the_surface(m):
 @trend("TR28")
 def pressure_peaks_grow(m):
     found = by_speed(m, "convexity_pressure")
-    return everywhere({v: _grow(each) for v, each in found.items()}, "10 mm/s: " + listed(found["10 mm/s"], "Pa"))
+    return everywhere(
+        {v: _grow(each) for v, each in found.items()}, "10 mm/s: " + listed(found["10 mm/s"], "Pa")
+    )
 
 
 def _grow(values) -> bool:
@@ -87,7 +93,9 @@ def velocity_hardly_matters(m, quantity, trace):
     worst, whole = max(spread, key=spread.get), m("spread_of_traces", FULL["1"], trace)
     note = f"peaks change by up to {max(map(abs, change.values())):.0f} %; "
     note += f"they spread by {np.mean(list(spread.values())):.1f} % on average, at most {spread[worst]:.1f} % (K = {worst}); "
-    note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + listed(change, "%", 2)
+    note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + listed(
+        change, "%", 2
+    )
     return Trend(max(map(abs, change.values())) <= NEGLIGIBLE, max(change.values(), key=abs), note)
 
 
@@ -109,8 +117,13 @@ def falls_from_convexity_to_convexity(m, quantity):
 def energy_rate_is_proportional(m):
     found = list(by_speed(m, "convexity_energy_rate").values())
     velocity = np.log([m("stroke_speed", scene) for scene in FULL.values()])
-    exponents = {k: float(np.polyfit(velocity, np.log([f[k] for f in found]), 1)[0]) for k in found[0]}
-    return everywhere({k: abs(v - 1) <= PROPORTIONAL for k, v in exponents.items()}, "exponents " + listed(exponents, ""))
+    exponents = {
+        k: float(np.polyfit(velocity, np.log([f[k] for f in found]), 1)[0]) for k in found[0]
+    }
+    return everywhere(
+        {k: abs(v - 1) <= PROPORTIONAL for k, v in exponents.items()},
+        "exponents " + listed(exponents, ""),
+    )
 
 
 # --- stepped and stroked ---------------------------------------------------------------------------------
@@ -129,25 +142,38 @@ def alike_stepped_and_stroked(m):
 @trend("TR34")
 def peaks_higher_stroked(m):
     stroked, stepped = (m.find("start_pressure", scene) for scene in (SUB["10"], STEPPED))
-    note = ", ".join(f"K = {k}: {high:.0f} against {stepped[k]:.0f} Pa" for k, high in stroked.items())
+    note = ", ".join(
+        f"K = {k}: {high:.0f} against {stepped[k]:.0f} Pa" for k, high in stroked.items()
+    )
     return everywhere({f"K = {k}": high > stepped[k] for k, high in stroked.items()}, note)
 
 
 @trend("TR35")
 def contact_lost_at_the_corner(m):
     pressure, length = m("corner_pressure", STEPPED), m("lost_contact", STEPPED, "corner")
-    return Trend(pressure == 0, length, f"centre pressure {pressure:.0f} Pa at the corner, zero over {length:.2f} mm")
+    return Trend(
+        pressure == 0,
+        length,
+        f"centre pressure {pressure:.0f} Pa at the corner, zero over {length:.2f} mm",
+    )
 
 
 @trend("TR36")
 def contact_lost_later_stroked(m):
     stepped, stroked = (m("lost_contact", scene, "at") for scene in (STEPPED, SUB["10"]))
-    return Trend(stroked > stepped, stroked - stepped, f"out of contact about {stepped:.1f} mm stepped, {stroked:.1f} mm stroked")
+    return Trend(
+        stroked > stepped,
+        stroked - stepped,
+        f"out of contact about {stepped:.1f} mm stepped, {stroked:.1f} mm stroked",
+    )
 
 
 def _lost(m, scene) -> tuple[tuple[float, float], str]:
     corner, second = (m("lost_contact", scene, k) for k in ("corner", "second"))
-    return (corner, second), f"over {corner:.2f} mm at the corner and {second:.2f} mm before the second convexity"
+    return (
+        corner,
+        second,
+    ), f"over {corner:.2f} mm at the corner and {second:.2f} mm before the second convexity"
 
 
 @trend("TR37")
@@ -159,7 +185,10 @@ def contact_lost_before_both(m):
 @trend("TR38")
 def contact_kept_when_slow(m):
     found = {v: _lost(m, SUB_SPEEDS[v]) for v in ("1 mm/s", "10 mm/s")}
-    return everywhere({k: v[0][1] == 0 for k, v in found.items()}, "; ".join(f"{k}: {v[1]}" for k, v in found.items()))
+    return everywhere(
+        {k: v[0][1] == 0 for k, v in found.items()},
+        "; ".join(f"{k}: {v[1]}" for k, v in found.items()),
+    )
 
 
 # --- strain energy ---------------------------------------------------------------------------------------
@@ -168,13 +197,18 @@ def contact_kept_when_slow(m):
 @trend("T263")
 def energy_falls_at_the_sharpest(m):
     found = by_speed(m, "convexity_energy")
-    outcome = {v: [*each.values()][-3] > [*each.values()][-2] > [*each.values()][-1] for v, each in found.items()}
+    outcome = {
+        v: [*each.values()][-3] > [*each.values()][-2] > [*each.values()][-1]
+        for v, each in found.items()
+    }
     return everywhere(outcome, "10 mm/s: " + listed(found["10 mm/s"], "Pa"))
 
 
 def _stroked_over_pressed(m) -> dict[str, float]:
     """Peak strain energy stroked over that pressed, at the cylinders' curvatures (stroked: interpolated)."""
-    found, exact = (list(m.find(q, TEN).values()) for q in ("convexity_energy", "convexity_curvature"))
+    found, exact = (
+        list(m.find(q, TEN).values()) for q in ("convexity_energy", "convexity_curvature")
+    )
     pressed = {k: m("highest_energy", NINE[k], "915 um") for k in WITHIN_400 if k != "flat"}
     return {k: float(np.interp(float(k), exact, found)) / v for k, v in pressed.items()}
 
@@ -182,7 +216,9 @@ def _stroked_over_pressed(m) -> dict[str, float]:
 @trend("TR39")
 def as_high_stroked_as_pressed(m):
     label, ratio = next(iter(_stroked_over_pressed(m).items()))
-    return Trend(abs(ratio - 1) <= ALIKE, ratio, f"stroked over pressed at K = {label}: {ratio:.2f}")
+    return Trend(
+        abs(ratio - 1) <= ALIKE, ratio, f"stroked over pressed at K = {label}: {ratio:.2f}"
+    )
 
 
 @trend("TR40")
@@ -203,7 +239,8 @@ def two_peaks_a_convexity(m, quantity, speeds, shown=""):
     apart = {f"{k} at {v}": found[v][k] for v in speeds for k in ("52", "79")}
     given = {k: v for k, v in (found[shown] if shown else apart).items() if v > 0}
     return everywhere(
-        {k: v > 0 for k, v in apart.items()}, f"apart {f'at {shown} ' if shown else ''}" + listed(given, "mm", 3 if shown else 2)
+        {k: v > 0 for k, v in apart.items()},
+        f"apart {f'at {shown} ' if shown else ''}" + listed(given, "mm", 3 if shown else 2),
     )
 
 
@@ -220,8 +257,15 @@ def peaks_closer_when_sharp(m, quantity):
 
 @trend("TR60")
 def eq_4_4_agrees(m):
-    residual, share = (of_each(m, "departure_of_eq_4_4", SPEEDS.scenes, k) for k in ("residual", "R2"))
-    note = "residual over the energy " + listed({k: 100 * v for k, v in residual.items()}, "%") + "; R2 " + listed(share, "", 2)
+    residual, share = (
+        of_each(m, "departure_of_eq_4_4", SPEEDS.scenes, k) for k in ("residual", "R2")
+    )
+    note = (
+        "residual over the energy "
+        + listed({k: 100 * v for k, v in residual.items()}, "%")
+        + "; R2 "
+        + listed(share, "", 2)
+    )
     return everywhere({k: v <= ALIKE for k, v in residual.items()}, note)
 
 
@@ -238,40 +282,65 @@ def eq_4_4_departs_with_velocity(m):
 def impulses_under_convexities_only(m):
     found, dragged = m.find("impulses_in_hollows", TEN), m.find("impulses_under_hollows", TEN)
     note = "mean number of impulses at the distances of a concavity " + listed(found, "", 2)
-    note += f"; under the centre of the skin, which is dragged back, up to {max(dragged.values()):.2g}"
+    note += (
+        f"; under the centre of the skin, which is dragged back, up to {max(dragged.values()):.2g}"
+    )
     return everywhere({k: v < NONE_LEFT for k, v in found.items()}, note)
 
 
 @trend("TR63")
 def burst_rate_grows(m):
     found = stepwise(m.find("burst_rate", TEN), "impulses/s")
-    return Trend(found.holds, found.shown, f"{found.note}; largest rates " + listed(m.find("convexity_rate", TEN), "impulses/s"))
+    return Trend(
+        found.holds,
+        found.shown,
+        f"{found.note}; largest rates " + listed(m.find("convexity_rate", TEN), "impulses/s"),
+    )
 
 
 @trend("TR65")
 def burst_rate_grows_with_velocity(m):
     found = list(by_speed(m, "burst_rate").values())
-    note = "from 1 to 40 mm/s " + ", ".join(f"{k}: {found[0][k]:.3g} to {v:.3g}" for k, v in found[-1].items())
+    note = "from 1 to 40 mm/s " + ", ".join(
+        f"{k}: {found[0][k]:.3g} to {v:.3g}" for k, v in found[-1].items()
+    )
     return everywhere({k: all(b[k] > a[k] for a, b in pairwise(found)) for k in found[0]}, note)
 
 
 @trend("TR66")
 def burst_width_hardly_varies(m):
     spread = spreads(list(by_speed(m, "burst_width").values()))
-    return everywhere({k: v <= HARDLY for k, v in spread.items()}, "spread over velocities " + listed(spread, "%", 2))
+    return everywhere(
+        {k: v <= HARDLY for k, v in spread.items()},
+        "spread over velocities " + listed(spread, "%", 2),
+    )
 
 
 @trend("TR67")
 def stroked_rate_between_those_pressed(m):
-    low, rate, high = m("rate", NINE["79"], "end"), m("burst_rate", TEN, "79"), m("rate", NINE["79"], "peak")
-    return Trend(low < rate < high, rate, f"steady {low:.3g}, stroked {rate:.3g}, peak {high:.3g} impulses/s; K = 79 1/m")
+    low, rate, high = (
+        m("rate", NINE["79"], "end"),
+        m("burst_rate", TEN, "79"),
+        m("rate", NINE["79"], "peak"),
+    )
+    return Trend(
+        low < rate < high,
+        rate,
+        f"steady {low:.3g}, stroked {rate:.3g}, peak {high:.3g} impulses/s; K = 79 1/m",
+    )
 
 
 @trend("TR68")
 def stroked_rate_above_the_peak_pressed(m):
     rate = m.find("burst_rate", TEN)
-    ratios = {k: rate["157" if k == "158" else k] / m("rate", NINE[k], "peak") for k in WITHIN_350 if k != "flat"}
-    return Trend(ratios["315"] > 1, ratios["315"], "stroked over peak pressed " + listed(ratios, "", 2))
+    ratios = {
+        k: rate["157" if k == "158" else k] / m("rate", NINE[k], "peak")
+        for k in WITHIN_350
+        if k != "flat"
+    }
+    return Trend(
+        ratios["315"] > 1, ratios["315"], "stroked over peak pressed " + listed(ratios, "", 2)
+    )
 
 
 @trend("TR70")
@@ -302,13 +371,24 @@ def no_direction_without_ridges(m):
 def receptors_differ(m):
     """Largest over smallest of the three receptors; and at equal material."""
     left, centre, right, tip = (
-        m("energy_at_end", RIDGED["right"], at) for at in ("915 um, -46 um", "915 um", "915 um, 46 um", "935 um")
+        m("energy_at_end", RIDGED["right"], at)
+        for at in ("915 um, -46 um", "915 um", "915 um, 46 um", "935 um")
     )
-    values = dict(zip((k.replace("−", "-").replace("µ", "u") for k in OFFSETS), (left, centre, right), strict=True))
+    values = dict(
+        zip(
+            (k.replace("−", "-").replace("µ", "u") for k in OFFSETS),
+            (left, centre, right),
+            strict=True,
+        )
+    )
     note = ", ".join(f"{v:.0f} Pa at {k}" for k, v in values.items())
     note += f" at the end; the centre lies in the epidermis of the tip, 20 um deeper, in the dermis, it is {tip:.0f} Pa"
     ratio = max(values.values()) / min(values.values())
-    return Trend(left / right >= 2, ratio, f"{note}; of the two in the dermis one has {left / right:.1f} times the other's")
+    return Trend(
+        left / right >= 2,
+        ratio,
+        f"{note}; of the two in the dermis one has {left / right:.1f} times the other's",
+    )
 
 
 @trend("T321", strokes=RIDGED)
@@ -316,7 +396,9 @@ def receptors_differ(m):
 def direction_is_felt(m, strokes):
     index = m("direction", strokes["right"])
     try:
-        right, left = (m("energy_at_end", strokes[way], "915 um, -46 um") for way in ("right", "left"))
+        right, left = (
+            m("energy_at_end", strokes[way], "915 um, -46 um") for way in ("right", "left")
+        )
         note = f"at -46 um {right:.0f} Pa at the end of the stroke to the right, {left:.0f} Pa to the left"
     except KeyError:
         note = "stroke to the left by mirror image"
@@ -328,7 +410,8 @@ def responds_throughout_one_way_only(m):
     """A receptor at -46 um: throughout one way, and only at the start the other way."""
     threshold = m("energy_threshold", RIDGED["right"])
     least, start, late = (
-        m("energy_beside", RIDGED[way], k) for way, k in (("right", "least late"), ("left", "start"), ("left", "highest late"))
+        m("energy_beside", RIDGED[way], k)
+        for way, k in (("right", "least late"), ("left", "start"), ("left", "highest late"))
     )
     through, ceases = least > threshold, start > threshold > late
     note = (
@@ -343,7 +426,10 @@ def islands_under_outer_ridges(m):
     found = [m.find("islands_of_contact", scene) for scene in OUTER.values()]
     fewest, most = min(f["fewest"] for f in found), max(f["most"] for f in found)
     cuts = sum(m("steps_cut", scene) for scene in OUTER.values())
-    volume, plain = min(m("smallest_volume", scene) for scene in OUTER.values()), m("islands_of_contact", RIDGED["right"], "end")
+    volume, plain = (
+        min(m("smallest_volume", scene) for scene in OUTER.values()),
+        m("islands_of_contact", RIDGED["right"], "end"),
+    )
     note = (
         f"{fewest:.0f} to {most:.0f} islands in the strokes ({plain:.0f} without outer ridges), "
         f"{cuts:.0f} steps cut, smallest det F {volume:.3f}"
@@ -358,5 +444,11 @@ def one_way_at_the_beginning(m):
     (few, early), (many, first) = sorted(found.values())
     holds = few >= NONE_LEFT and early > few / 2 and many > 2 * few and first < many / 2
     note = f"{few:.2g} impulses one way, {many:.2g} the other; "
-    note += "; ".join(f"to the {way} {n:.2g}, {b:.2g} of them in the first 5 mm" for way, (n, b) in found.items())
-    return Trend(holds, many / max(few, 1e-9), f"{note}; mean numbers of a stroke, receptor 46 um to the right")
+    note += "; ".join(
+        f"to the {way} {n:.2g}, {b:.2g} of them in the first 5 mm" for way, (n, b) in found.items()
+    )
+    return Trend(
+        holds,
+        many / max(few, 1e-9),
+        f"{note}; mean numbers of a stroke, receptor 46 um to the right",
+    )

@@ -69,7 +69,10 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
             return "outside", f"{value / high - 1:.0%} above the axis's end"
         tick = float(entry.get("tick", np.nan))
         if np.isfinite(tick) and value < tick - helped(tick):
-            return "outside", f"{1 - value / tick:.0%} below the last tick but one, {tick:g}: the axis would have ended there"
+            return (
+                "outside",
+                f"{1 - value / tick:.0%} below the last tick but one, {tick:g}: the axis would have ended there",
+            )
         if np.isnan(tick) and value < FILL * high - helped(FILL * high):
             return "outside", f"fills only {value / high:.0%} of the axis"
         return "plausible", f"fills {value / high:.0%} of the axis"

@@ -58,7 +58,13 @@ def animate(history: xr.Dataset, gif: str | PathLike, film: str | PathLike | Non
     few = frames[:: -(-len(frames) // MOST_FRAMES)]
     first, *others = _indexed(few, _palette(colours))
     longer = FRAME_TIME * len(frames) // len(few)
-    options = {"save_all": True, "append_images": others, "duration": longer, "loop": 0, "optimize": False}
+    options = {
+        "save_all": True,
+        "append_images": others,
+        "duration": longer,
+        "loop": 0,
+        "optimize": False,
+    }
     stream = io.BytesIO()
     first.save(stream, format="GIF", **options)
     write_atomically(Path(gif), lambda p: p.write_bytes(stream.getvalue()))
@@ -71,9 +77,17 @@ def _write_film(frames: list[np.ndarray], path: Path) -> None:
     from imageio_ffmpeg import write_frames  # here, for only films need it
 
     high, wide = frames[0].shape[:2]
-    exact = "-crf 34 -b:v 0 -cpu-used 4 -threads 1 -fflags +bitexact -flags:v +bitexact -f webm".split()
+    exact = (
+        "-crf 34 -b:v 0 -cpu-used 4 -threads 1 -fflags +bitexact -flags:v +bitexact -f webm".split()
+    )
     writer = write_frames(
-        str(path), (wide, high), fps=1000 / FRAME_TIME, codec="libvpx-vp9", output_params=exact, macro_block_size=2, quality=None
+        str(path),
+        (wide, high),
+        fps=1000 / FRAME_TIME,
+        codec="libvpx-vp9",
+        output_params=exact,
+        macro_block_size=2,
+        quality=None,
     )
     writer.send(None)
     for frame in frames:
@@ -93,28 +107,44 @@ def _indexed(frames: list[np.ndarray], palette: np.ndarray) -> Iterator[Image]:
     """Frames (height, width, 3) as images of the palette's closest colours, each colour looked for once."""
     from PIL.Image import fromarray
 
-    closest = np.full(1 << 24, 255, np.uint8)  # by colour; 255: not known yet, for no palette is that long
+    closest = np.full(
+        1 << 24, 255, np.uint8
+    )  # by colour; 255: not known yet, for no palette is that long
     for frame in frames:
         red, green, blue = np.moveaxis(frame.astype(np.int32), -1, 0)
         packed = red << 16 | green << 8 | blue
         new = np.unique(packed[closest[packed] == 255])
         colours = np.stack([new >> 16, new >> 8 & 255, new & 255], axis=-1)
-        closest[new] = ((colours[:, None] - palette[None].astype(np.int32)) ** 2).sum(axis=-1).argmin(axis=1)
+        closest[new] = (
+            ((colours[:, None] - palette[None].astype(np.int32)) ** 2).sum(axis=-1).argmin(axis=1)
+        )
         image = fromarray(closest[packed], "P")
         image.putpalette(palette.tobytes())
         yield image
 
 
-def _coloured(history: xr.Dataset, middle: np.ndarray) -> tuple[np.ndarray, Normalize, mpl.colors.Colormap, str]:
+def _coloured(
+    history: xr.Dataset, middle: np.ndarray
+) -> tuple[np.ndarray, Normalize, mpl.colors.Colormap, str]:
     """Values (snapshot, element) to be coloured, their scale, map and label: strain energy if there is some, else mean stress."""
     judged = (middle[:, 1] > JUDGED) & (abs(middle[:, 0]) < 8)
     if FIELD in history:
         values = np.maximum(history[FIELD].values, 1e-6)
         high = float(np.percentile(values[:, judged], 99.8))
-        return values, LogNorm(3e-3 * high, high), mpl.colormaps[style.FIELD], "strain energy density (Pa)"
+        return (
+            values,
+            LogNorm(3e-3 * high, high),
+            mpl.colormaps[style.FIELD],
+            "strain energy density (Pa)",
+        )
     values = -1e-3 * history["snapshot_pressure"].values
     high = float(np.percentile(values[:, judged], 99.8))
-    return values, Normalize(0.0, high), mpl.colormaps[style.FIELD], "mean stress, compression (kPa)"
+    return (
+        values,
+        Normalize(0.0, high),
+        mpl.colormaps[style.FIELD],
+        "mean stress, compression (kPa)",
+    )
 
 
 def _frames(history: xr.Dataset) -> tuple[list[np.ndarray], mpl.colors.Colormap]:
@@ -128,30 +158,49 @@ def _frames(history: xr.Dataset) -> tuple[list[np.ndarray], mpl.colors.Colormap]
     values, norm, colours, label = _coloured(history, 1e3 * rest[cells].mean(axis=1))
     layer_lines = _borders(points[0], cells, history["element_region"].values)
     stroke = is_stroke(history)
-    distance = history["stroke_distance"].values if "stroke_distance" in history else np.zeros(len(time))
+    distance = (
+        history["stroke_distance"].values if "stroke_distance" in history else np.zeros(len(time))
+    )
 
     fig = Figure(figsize=SIZE, dpi=DPI, layout="constrained")
     canvas = FigureCanvasAgg(fig)
     grid = fig.add_gridspec(3, 2, height_ratios=[3.2, 1.0, 1.0])
     section, below = fig.add_subplot(grid[0, :]), fig.add_subplot(grid[1:, 0])
     felt, answer = fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[2, 1])
-    body = PolyCollection(1e3 * points[0][cells], array=values[0], cmap=colours, norm=norm, edgecolor="face", lw=0.2)
+    body = PolyCollection(
+        1e3 * points[0][cells], array=values[0], cmap=colours, norm=norm, edgecolor="face", lw=0.2
+    )
     lines = LineCollection(1e3 * points[0][layer_lines], colors=style.INK, lw=0.7)
     section.add_collection(body)
     section.add_collection(lines)
-    section.set(xlim=(-HALF_WIDTH, HALF_WIDTH), ylim=(LOW, HIGH), aspect="equal", ylabel="y (mm)", xlabel="x (mm)")
+    section.set(
+        xlim=(-HALF_WIDTH, HALF_WIDTH),
+        ylim=(LOW, HIGH),
+        aspect="equal",
+        ylabel="y (mm)",
+        xlabel="x (mm)",
+    )
     fig.colorbar(body, ax=section, label=label, shrink=0.8, pad=0.01, extend="both")
     x = np.linspace(-HALF_WIDTH, HALF_WIDTH, 721)
     top = 1.05e-3 * float(history[PRESSURE].values[at].max())
     reach = 1.15e3 * float(history["contact_width"].values.max())
-    below.set(ylim=(0, top), xlim=(-reach / 2 - 1.5 * stroke, reach / 2 + 1.5 * stroke), xlabel="x (mm)")
+    below.set(
+        ylim=(0, top), xlim=(-reach / 2 - 1.5 * stroke, reach / 2 + 1.5 * stroke), xlabel="x (mm)"
+    )
     below.set_ylabel("contact pressure (kPa)")
     (curve,) = below.plot([], [], color=style.INK)
     rate = predicted_rate(history)
     passed = rate[TIME] >= (time[history["leg"].values > 0][0] if stroke else 0.0)
-    for ax, column, words in ((felt, SED, "energy, 915 µm\n(Pa)"), (answer, IMPULSE_RATE, "rate, Eq 5-1\n(impulses/s)")):
+    for ax, column, words in (
+        (felt, SED, "energy, 915 µm\n(Pa)"),
+        (answer, IMPULSE_RATE, "rate, Eq 5-1\n(impulses/s)"),
+    ):
         ax.plot(rate[TIME], rate[column], color=style.GREY, lw=0.8)
-        ax.set(xlim=(0, rate[TIME].iloc[-1]), ylim=(0, 1.1 * rate.loc[passed, column].max()), ylabel=words)
+        ax.set(
+            xlim=(0, rate[TIME].iloc[-1]),
+            ylim=(0, 1.1 * rate.loc[passed, column].max()),
+            ylabel=words,
+        )
     felt.tick_params(labelbottom=False)
     answer.set_xlabel("time (s)")
     dots = [ax.plot([], [], "o", color=style.HIGHLIGHT, ms=5)[0] for ax in (felt, answer)]
@@ -176,7 +225,9 @@ def _frames(history: xr.Dataset) -> tuple[list[np.ndarray], mpl.colors.Colormap]
     show(0)
     canvas.draw()
     fig.set_layout_engine("none")  # laid out once: nothing moves between frames
-    changing = [artist for each in ((body, block), (curve,), dots[:1], dots[1:]) for artist in _above(*each)]
+    changing = [
+        artist for each in ((body, block), (curve,), dots[:1], dots[1:]) for artist in _above(*each)
+    ]
     for artist in changing:
         artist.set_animated(True)
     canvas.draw()
@@ -193,7 +244,10 @@ def _frames(history: xr.Dataset) -> tuple[list[np.ndarray], mpl.colors.Colormap]
 
 def _above(*moving: Artist) -> list[Artist]:
     """Of axes the lowest of some artists and what is drawn over it, in that order."""
-    drawn = sorted((each for each in moving[0].axes.get_children() if each is not moving[0].axes.patch), key=Artist.get_zorder)
+    drawn = sorted(
+        (each for each in moving[0].axes.get_children() if each is not moving[0].axes.patch),
+        key=Artist.get_zorder,
+    )
     return drawn[min(map(drawn.index, moving)) :]
 
 

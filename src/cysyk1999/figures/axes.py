@@ -64,19 +64,31 @@ def rows_of(frame: pd.DataFrame, column: str, value: object) -> pd.DataFrame:
 # --- notes -----------------------------------------------------------------------------------------------
 
 
-def footnote(frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH, lines: Lines = ()) -> list[str]:
+def footnote(
+    frame: pd.DataFrame, how: str = "", width: int = style.NOTE_WIDTH, lines: Lines = ()
+) -> list[str]:
     """What a picture shows: simulated or predicted, with which errors, from which strain energy.
 
     `how` errors are taken, or of which `lines` through points they are (:func:`error_text`), is said as well.
     """
     own = frame[is_simulated(frame)]
     shown = [column for column in own if own[column].notna().any()]
-    predicted = any("(impulses/s)" in c or c.startswith(("burst_", "impulse_time", "trial")) for c in shown)
+    predicted = any(
+        "(impulses/s)" in c or c.startswith(("burst_", "impulse_time", "trial")) for c in shown
+    )
     error = error_text(frame, lines)
     energy = predicted or any(c.startswith("strain_energy") for c in shown)
     of = " from strain energy" if predicted else ""
-    meant = (" on instantaneous moduli" if predicted else "; strain energy on instantaneous moduli") if energy else ""
-    first = f"Predicted by Eq 5-1{of}{meant}, not measured" if predicted else f"Simulated, not measured{meant}"
+    meant = (
+        (" on instantaneous moduli" if predicted else "; strain energy on instantaneous moduli")
+        if energy
+        else ""
+    )
+    first = (
+        f"Predicted by Eq 5-1{of}{meant}, not measured"
+        if predicted
+        else f"Simulated, not measured{meant}"
+    )
     if width < style.NOTE_WIDTH / 2:  # of a column
         first = "Predicted by Eq 5-1, not measured" if predicted else "Simulated, not measured"
         error = error.replace("Largest error", "Error")
@@ -101,7 +113,9 @@ def of_lines(frame: pd.DataFrame, lines: Lines) -> pd.DataFrame:
     """
     found = []
     for named, shown in lines:
-        for _, rows in frame.dropna(subset=[shown]).dropna(subset=list(PARTS), how="all").groupby(named):
+        for _, rows in (
+            frame.dropna(subset=[shown]).dropna(subset=list(PARTS), how="all").groupby(named)
+        ):
             size = rows[shown].to_numpy(float)
             off = np.linalg.norm(rows[list(PARTS)].to_numpy(float) * size[:, None], axis=0)
             found.append(off / (np.linalg.norm(size) or np.inf))
@@ -113,7 +127,9 @@ def error_text(frame: pd.DataFrame, lines: Lines = ()) -> str:
     where that stands out, and ``not known`` where only that of the mesh is not; nothing where none is known. Where points are
     joined to `lines` it is that of a line."""
     if lines:
-        return error_text(of_lines(frame, lines)).replace("Largest error", "Largest error of a line")
+        return error_text(of_lines(frame, lines)).replace(
+            "Largest error", "Largest error of a line"
+        )
     sums = total(frame)
     if not sums.notna().any():
         return ""
@@ -134,9 +150,13 @@ def error_text(frame: pd.DataFrame, lines: Lines = ()) -> str:
     return f"Largest error{of}: {said}"
 
 
-def statement_row(ids: str, words: str, condition: str, verdict: str, number: str, detail: str) -> dict[str, str]:
+def statement_row(
+    ids: str, words: str, condition: str, verdict: str, number: str, detail: str
+) -> dict[str, str]:
     """A row that holds what the thesis says of a figure, and how it is here: for a figure's frame."""
-    return {"source": f"{STATEMENT}{ids}): " + " | ".join((words, condition, verdict, number, detail))}
+    return {
+        "source": f"{STATEMENT}{ids}): " + " | ".join((words, condition, verdict, number, detail))
+    }
 
 
 def statement(frame: pd.DataFrame, width: int = style.NOTE_WIDTH) -> list[str]:
@@ -166,7 +186,13 @@ def _typeset(text: str) -> str:
 
 
 def curve(
-    ax: Axes, rows: pd.DataFrame, x: str, y: str, points: bool = False, whole: pd.DataFrame | None = None, **look: object
+    ax: Axes,
+    rows: pd.DataFrame,
+    x: str,
+    y: str,
+    points: bool = False,
+    whole: pd.DataFrame | None = None,
+    **look: object,
 ) -> Line2D:
     """A simulated curve, or points, of a frame's rows, with their error where it is above 2 %: as a faint band as high as the
     error's norm to either side, or as bars at points. `whole`: all rows of a curve of which these are a part."""
@@ -177,24 +203,45 @@ def curve(
     known, all_of = total(rows), (rows if whole is None else whole).dropna(subset=[x, y])
     if known.max() > SHOWN_ABOVE and len(all_of):
         half = known.max() / 100 * norm(*(all_of[q].to_numpy(float) for q in (x, y)))
-        faint = {"color": line.get_color(), "alpha": 0.18, "lw": 0, "zorder": line.get_zorder() - 0.5}
+        faint = {
+            "color": line.get_color(),
+            "alpha": 0.18,
+            "lw": 0,
+            "zorder": line.get_zorder() - 0.5,
+        }
         ax.fill_between(rows[x], rows[y] - half, rows[y] + half, **faint)
     return line
 
 
-def bars(ax: Axes, rows: pd.DataFrame, x: str, y: str, sizes: pd.Series | float, colour: object = style.INK) -> None:
+def bars(
+    ax: Axes,
+    rows: pd.DataFrame,
+    x: str,
+    y: str,
+    sizes: pd.Series | float,
+    colour: object = style.INK,
+) -> None:
     """Bars of the errors of points where they are above 2 % of `sizes`, in their unit."""
     known = total(rows)
     far = known > SHOWN_ABOVE
     if far.any():
         half = (known / 100 * sizes)[far]
-        ax.errorbar(rows[x][far], rows[y][far], half, fmt="none", ecolor=colour, elinewidth=0.7, zorder=1)
+        ax.errorbar(
+            rows[x][far], rows[y][far], half, fmt="none", ecolor=colour, elinewidth=0.7, zorder=1
+        )
 
 
 # --- limits ----------------------------------------------------------------------------------------------
 
 
-def limit_axis(ax: Axes, frame: pd.DataFrame, column: str, axis: str = "y", text: bool = True, marked: bool = True) -> None:
+def limit_axis(
+    ax: Axes,
+    frame: pd.DataFrame,
+    column: str,
+    axis: str = "y",
+    text: bool = True,
+    marked: bool = True,
+) -> None:
     """Set one axis to the thesis's range found in `frame` and extend it only if simulated data leave it.
 
     Where it must be extended, the thesis's range is shaded and, with `text`, labelled (one of several alike panels
@@ -222,7 +269,12 @@ class Range:
 
 
 def draw_bands(
-    ax: Axes, rows: pd.DataFrame, x: str | None, y: str | None, place: Callable[[pd.Series], float], width: float = 4.0
+    ax: Axes,
+    rows: pd.DataFrame,
+    x: str | None,
+    y: str | None,
+    place: Callable[[pd.Series], float],
+    width: float = 4.0,
 ) -> None:
     """What other pads show that the thesis's figures do not tell apart (`Data.bands`): a bar from the lowest to the highest.
 
@@ -233,29 +285,50 @@ def draw_bands(
         low, high = found.iloc[k : k + 2][x or y]
         at = place(found.iloc[k])
         draw = ax.hlines if x else ax.vlines
-        draw(at, low, high, lw=width, color=look(found.iloc[k]["surface"])["color"], alpha=0.35, capstyle="butt", zorder=1.5)
+        draw(
+            at,
+            low,
+            high,
+            lw=width,
+            color=look(found.iloc[k]["surface"])["color"],
+            alpha=0.35,
+            capstyle="butt",
+            zorder=1.5,
+        )
 
 
 def together(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
     """The frame with the simulated values of all columns in the first: an axis then holds them all."""
     first, *others = columns
     own = frame[is_simulated(frame)]
-    return pd.concat([frame, *(own.assign(**{first: own[other]}) for other in others)], ignore_index=True) if others else frame
+    return (
+        pd.concat(
+            [frame, *(own.assign(**{first: own[other]}) for other in others)], ignore_index=True
+        )
+        if others
+        else frame
+    )
 
 
 def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> Range | None:
     """Set the limits of one axis; the thesis's range if the data leave it or its reading is uncertain."""
-    ranges = ~is_simulated(frame) & frame["source"].str.contains("axis range") & frame[column].notna()
+    ranges = (
+        ~is_simulated(frame) & frame["source"].str.contains("axis range") & frame[column].notna()
+    )
     values = frame.loc[ranges, column]
     doubt = bool(frame.loc[ranges, "source"].str.contains("uncertain").any())
-    data = frame.loc[is_simulated(frame) | frame["source"].str.startswith("measured"), column].dropna()
+    data = frame.loc[
+        is_simulated(frame) | frame["source"].str.startswith("measured"), column
+    ].dropna()
     set_limits = ax.set_ylim if axis == "y" else ax.set_xlim
     if values.empty:
         if axis == "y" and not data.empty:
             set_limits(min(0.0, data.min()), data.max() * 1.06)
         return None
     low, high = values.min(), values.max()
-    if axis == "x" and not data.empty and low < 0 and data.abs().max() > high:  # a profile wider than the axis
+    if (
+        axis == "x" and not data.empty and low < 0 and data.abs().max() > high
+    ):  # a profile wider than the axis
         set_limits(-data.abs().max() * 1.04, data.abs().max() * 1.04)
         return Range(low, high, True, doubt)
     slack = 1e-3 * (high - low)
@@ -265,9 +338,14 @@ def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> Range 
         free and data.max() > high + slack,
     )  # an axis from 0 starts there
     set_limits(
-        data.min() - 0.06 * (high - data.min()) if below else low, data.max() + 0.06 * (data.max() - low) if above else high
+        data.min() - 0.06 * (high - data.min()) if below else low,
+        data.max() + 0.06 * (data.max() - low) if above else high,
     )
-    return Range(low, high, below or above, doubt) if below or above or (doubt and axis == "y") else None
+    return (
+        Range(low, high, below or above, doubt)
+        if below or above or (doubt and axis == "y")
+        else None
+    )
 
 
 def _mark(ax: Axes, x: Range | None = None, y: Range | None = None, text: bool = True) -> None:
@@ -280,19 +358,39 @@ def _mark(ax: Axes, x: Range | None = None, y: Range | None = None, text: bool =
         ax.axhspan(y.low, y.high, **_band(y.uncertain))
     if y:
         bracket = {"xycoords": ("axes fraction", "data"), "textcoords": ("axes fraction", "data")}
-        line = {"arrowstyle": "|-|,widthA=.2,widthB=.2", "color": style.GREY, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
+        line = {
+            "arrowstyle": "|-|,widthA=.2,widthB=.2",
+            "color": style.GREY,
+            "lw": 0.7,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        }
         line["ls"] = (0, (2, 2)) if y.uncertain else "-"
         ax.annotate("", (1.02, y.low), (1.02, y.high), arrowprops=line, **bracket)
         words = "thesis axis,\nuncertain" if y.uncertain else "thesis axis\nrange"
-        says = {"rotation": 90 if text else 0, "ha": "left", "va": "center", "multialignment": "center", "linespacing": 1.0}
-        ax.annotate(words if text else "?" * y.uncertain, (1.03, (y.low + y.high) / 2), xycoords=("axes fraction", "data"),
-                    fontsize=6, color=style.GREY, **says)  # fmt: skip
+        says = {
+            "rotation": 90 if text else 0,
+            "ha": "left",
+            "va": "center",
+            "multialignment": "center",
+            "linespacing": 1.0,
+        }
+        ax.annotate(
+            words if text else "?" * y.uncertain,
+            (1.03, (y.low + y.high) / 2),
+            xycoords=("axes fraction", "data"),
+            fontsize=6,
+            color=style.GREY,
+            **says,
+        )
 
 
 def _band(uncertain: bool) -> dict[str, object]:
     """How the thesis's range is shaded: an uncertain one is hatched."""
     plain = {"lw": 0, "zorder": 0}
-    return plain | ({"fc": "white", "ec": "0.9", "hatch": "///"} if uncertain else {"color": style.BAND})
+    return plain | (
+        {"fc": "white", "ec": "0.9", "hatch": "///"} if uncertain else {"color": style.BAND}
+    )
 
 
 def thesis_box(ax: Axes, x: tuple[float, float], y: tuple[float, float], uncertain: bool) -> None:
@@ -301,7 +399,16 @@ def thesis_box(ax: Axes, x: tuple[float, float], y: tuple[float, float], uncerta
 
     ax.add_patch(Rectangle((x[0], y[0]), x[1] - x[0], y[1] - y[0], **_band(uncertain)))
     if uncertain:
-        ax.annotate("?", (x[1], y[1]), (-2, -2), textcoords="offset points", ha="right", va="top", fontsize=6.5, color=style.GREY)
+        ax.annotate(
+            "?",
+            (x[1], y[1]),
+            (-2, -2),
+            textcoords="offset points",
+            ha="right",
+            va="top",
+            fontsize=6.5,
+            color=style.GREY,
+        )
 
 
 def wide_limits(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
@@ -312,7 +419,9 @@ def wide_limits(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
         ranges = rows.loc[~is_simulated(rows) & marks, column]
         doubt |= bool(rows.loc[marks, "source"].str.contains("uncertain").any())
         data = rows.loc[~rows["source"].str.contains("axis range"), column].dropna()
-        low, high = (ranges.min(), ranges.max()) if len(ranges) else (min(0.0, data.min()), data.max())
+        low, high = (
+            (ranges.min(), ranges.max()) if len(ranges) else (min(0.0, data.min()), data.max())
+        )
         wide = min(low, data.min()), max(high, data.max(), low + 1e-9)
         margin = 0.05 * (wide[1] - wide[0])
         on_the_axis = data.min() <= low + 0.2 * margin  # so that it does not cut the points
@@ -321,7 +430,9 @@ def wide_limits(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
             high if wide[1] == high and len(ranges) else wide[1] + margin,
         )
         box.append((low, high, wide != (low, high) and len(ranges) > 0))
-    if (doubt or any(beyond for *_, beyond in box)) and all(len(rows[column].dropna()) for column in (x, y)):
+    if (doubt or any(beyond for *_, beyond in box)) and all(
+        len(rows[column].dropna()) for column in (x, y)
+    ):
         (left, right, _), (bottom, top, _) = box
         thesis_box(ax, (left, right), (bottom, top), doubt)
 
@@ -351,14 +462,29 @@ def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
     ax.set(xlim=(x[0], x[-1]), ylim=(y.min() - 0.1, top), yticks=[-0.4, 0])
     ax.tick_params(labelbottom=False)
     ax.set_ylabel("height\n(mm)")
-    runs = [run for _, run in rows.groupby((rows[CURVATURE].diff() != 0).cumsum()) if run[CURVATURE].iloc[0] > 0 and len(run) > 2]
+    runs = [
+        run
+        for _, run in rows.groupby((rows[CURVATURE].diff() != 0).cumsum())
+        if run[CURVATURE].iloc[0] > 0 and len(run) > 2
+    ]
     room = 0.034 * (x[-1] - x[0])
-    if x[-1] in runs[-1][DISTANCE].to_numpy() and np.ptp(runs[-1][DISTANCE]) < room:  # cut off by the picture's end
+    if (
+        x[-1] in runs[-1][DISTANCE].to_numpy() and np.ptp(runs[-1][DISTANCE]) < room
+    ):  # cut off by the picture's end
         runs.pop()
     places = [(run[DISTANCE].iloc[0] + run[DISTANCE].iloc[-1]) / 2 for run in runs]
     units = [" 1/m", *[""] * (len(runs) - 1)]
-    for run, unit, place in zip(runs, units, style.spread(places, room, x[0] + room / 2, x[-1] - room / 2), strict=True):
-        ax.text(place, top - 0.06, f"{run[CURVATURE].iloc[0]:.0f}{unit}", ha="center", va="top", fontsize=6)
+    for run, unit, place in zip(
+        runs, units, style.spread(places, room, x[0] + room / 2, x[-1] - room / 2), strict=True
+    ):
+        ax.text(
+            place,
+            top - 0.06,
+            f"{run[CURVATURE].iloc[0]:.0f}{unit}",
+            ha="center",
+            va="top",
+            fontsize=6,
+        )
 
 
 def below_surface(fig: Figure, frame: pd.DataFrame, count: int, along: bool = True) -> list[Axes]:

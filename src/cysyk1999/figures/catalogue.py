@@ -31,14 +31,20 @@ def read_catalogue(path: str | PathLike) -> pd.DataFrame:
     """
     table = read_table(path, CATALOGUE)
     if table["number"].duplicated().any():
-        raise ValueError(f"{path}: figure {table['number'][table['number'].duplicated()].iloc[0]} is given twice")
+        raise ValueError(
+            f"{path}: figure {table['number'][table['number'].duplicated()].iloc[0]} is given twice"
+        )
     bare = table[~table["kind"].isin(DRAWABLE) & (table["stand_in"] == "")]
     if len(bare):
-        raise ValueError(f"{path}: figure {bare['number'].iloc[0]} is a {bare['kind'].iloc[0]} and nothing stands in for it")
+        raise ValueError(
+            f"{path}: figure {bare['number'].iloc[0]} is a {bare['kind'].iloc[0]} and nothing stands in for it"
+        )
     return table
 
 
-def readme(catalogue: pd.DataFrame, made: Mapping[str, str], judged: Mapping[str, tuple[int, int]]) -> str:
+def readme(
+    catalogue: pd.DataFrame, made: Mapping[str, str], judged: Mapping[str, tuple[int, int]]
+) -> str:
     """Text of ``figures/README.md``.
 
     made: the figures that are drawn, number -> title. judged: number -> how many of the thesis's statements on it hold here, and
@@ -46,7 +52,9 @@ def readme(catalogue: pd.DataFrame, made: Mapping[str, str], judged: Mapping[str
     """
     here = catalogue[catalogue["number"].isin(list(made))]
     drawable = catalogue["kind"].isin(DRAWABLE) | catalogue["stand_in"].str.startswith("predicted")
-    never, missing = (catalogue[~catalogue["number"].isin(list(made)) & which] for which in (~drawable, drawable))
+    never, missing = (
+        catalogue[~catalogue["number"].isin(list(made)) & which] for which in (~drawable, drawable)
+    )
     parts = [
         "# Figures",
         "Written by the workflow from `config/reference/figures.csv`, the titles of the figures drawn and the table that compares"
@@ -59,8 +67,16 @@ def readme(catalogue: pd.DataFrame, made: Mapping[str, str], judged: Mapping[str
         _table(
             ("figure", "shows", "holds", "kind in the thesis", "in place of what is not public"),
             [
-                (f"[{number}](thesis/fig_{number}.png)", made[number], _holds(number, judged), kind, stand_in)
-                for number, kind, stand_in in here[["number", "kind", "stand_in"]].itertuples(index=False)
+                (
+                    f"[{number}](thesis/fig_{number}.png)",
+                    made[number],
+                    _holds(number, judged),
+                    kind,
+                    stand_in,
+                )
+                for number, kind, stand_in in here[["number", "kind", "stand_in"]].itertuples(
+                    index=False
+                )
             ],
         ),
         "## Not drawn, and what stands in",
@@ -73,7 +89,8 @@ def readme(catalogue: pd.DataFrame, made: Mapping[str, str], judged: Mapping[str
         parts += [
             "## Not drawn yet",
             _table(
-                ("figure", "thesis shows", "kind"), [(row.number, row.thesis_shows, row.kind) for row in missing.itertuples()]
+                ("figure", "thesis shows", "kind"),
+                [(row.number, row.thesis_shows, row.kind) for row in missing.itertuples()],
             ),
         ]
     parts += [

@@ -41,7 +41,7 @@ from cysyk1999.measures.quantities import (
     TIME,
     P,
     Q,
-)  # fmt: skip
+)
 from cysyk1999.measures.responses import (
     NODE_COUNT,
     RECEPTOR_DEPTH,
@@ -119,7 +119,13 @@ def line_through(rows: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
     """Two rows: the ends of the line through points, from 0 to the last of them, where it is not negative."""
     slope, offset, share = straight_line(rows[x], rows[y])
     ends = np.array([max(0.0, -offset / slope) if slope > 0 else 0.0, rows[x].max()])
-    return pd.DataFrame({"source": f"{SIMULATED}: least-squares line, R2 {share:.3f}", x: ends, y: slope * ends + offset})
+    return pd.DataFrame(
+        {
+            "source": f"{SIMULATED}: least-squares line, R2 {share:.3f}",
+            x: ends,
+            y: slope * ends + offset,
+        }
+    )
 
 
 def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> pd.DataFrame:
@@ -134,7 +140,9 @@ def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> pd.
         & (rates["ramp_gf_per_s"] == ramp)
         & (rates["window"] == window)
     ]
-    printed = {float(data.reference.loc[id_, "low"]): id_ for id_ in PRINTED if id_ in data.reference.index}
+    printed = {
+        float(data.reference.loc[id_, "low"]): id_ for id_ in PRINTED if id_ in data.reference.index
+    }
     of_thesis = same["source"].str.startswith("Cysyk 1999")
     same = same[~of_thesis | same["rate_per_s"].isin(printed)].reset_index(drop=True)
     sources = [
@@ -143,18 +151,28 @@ def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> pd.
         else f"measured ({row['recording']}; {row['source']})"
         for row in same.to_dict("records")
     ]
-    shown = {CURVATURE: same["curvature_per_m"], DOUBT: same["or_curvature_per_m"], column: same["rate_per_s"]}
+    shown = {
+        CURVATURE: same["curvature_per_m"],
+        DOUBT: same["or_curvature_per_m"],
+        column: same["rate_per_s"],
+    }
     if same["sd_per_s"].notna().any():
         shown[SPREAD] = same["sd_per_s"]
     return pd.DataFrame({"source": sources} | shown)
 
 
-def published(data: Data, panel: str, window: str, model: bool, force: float | None = None) -> pd.DataFrame:
+def published(
+    data: Data, panel: str, window: str, model: bool, force: float | None = None
+) -> pd.DataFrame:
     """Published rates, or another model's, of pressed surfaces in a window, one series a recording."""
     if (rates := data.measured) is None:
         return pd.DataFrame()
     rows = rates[(rates["species"] == "model") == model]
-    rows = rows[(rows["window"] == window) & (rows["receptor"] == "SA-I") & ~rows["source"].str.startswith("Cysyk")]
+    rows = rows[
+        (rows["window"] == window)
+        & (rows["receptor"] == "SA-I")
+        & ~rows["source"].str.startswith("Cysyk")
+    ]
     rows = rows[rows["stimulus"].isin(("sphere", "flat plate")) | model]
     spheres = rows.groupby("recording")["stimulus"].transform(lambda kinds: "sphere" in set(kinds))
     rows = rows[spheres.astype(bool) | model] if len(rows) else rows
@@ -162,7 +180,9 @@ def published(data: Data, panel: str, window: str, model: bool, force: float | N
         rows = rows[rows["force_gf"] == force]
     source = ("other model (" if model else "measured (") + rows["source"] + ")"
     shared = {"source": source, "panel": panel, "series": rows["recording"]}
-    return pd.DataFrame(shared | {CURVATURE: rows["curvature_per_m"], GIVEN_RATE: rows["rate_per_s"]})
+    return pd.DataFrame(
+        shared | {CURVATURE: rows["curvature_per_m"], GIVEN_RATE: rows["rate_per_s"]}
+    )
 
 
 def trains_and_rates(data: Data) -> pd.DataFrame:
@@ -176,7 +196,11 @@ def trains_and_rates(data: Data) -> pd.DataFrame:
     errors = numbers.set_index("surface")[list(PARTS)]
     for k, (label, history, _) in enumerate(data.runs(FAST)):
         impulses = raster(predicted_rate(history), TRIALS, SEED + k)
-        part = {"panel": "impulses", "surface": label, "series": [f"trial {n}" for n in impulses["trial"]]}
+        part = {
+            "panel": "impulses",
+            "surface": label,
+            "series": [f"trial {n}" for n in impulses["trial"]],
+        }
         parts.append(pd.DataFrame(part | {IMPULSE: impulses[TIME], **errors.loc[label]}))
     return below(pd.concat(parts, ignore_index=True), given(data, "hold", 150))
 
@@ -185,7 +209,10 @@ def frequencies(data: Data) -> pd.DataFrame:
     """Instantaneous frequency of predicted impulses at 40 gf/s, mean of many trials, and the rate they were made from."""
     parts, at = [], np.arange(0, 2.0001, 0.02)
     for k, (label, history, coarse) in enumerate(data.runs(NINE)):
-        rate, errors = predicted_rate(history), curve_errors(history, coarse, RATE_OVER_TIME).columns
+        rate, errors = (
+            predicted_rate(history),
+            curve_errors(history, coarse, RATE_OVER_TIME).columns,
+        )
         frequency = mean_frequency(raster(rate, AVERAGED, SEED + k), AVERAGED, at)
         parts += [
             frequency.assign(surface=label, series="frequency of impulses", **errors),
@@ -202,18 +229,29 @@ def peak_and_steady(data: Data) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFram
 
 def steady_over_peak(data: Data) -> pd.DataFrame:
     rows, peak, steady = peak_and_steady(data)
-    both = peak.merge(steady, on=["source", CURVATURE, DOUBT]) if len(peak) and len(steady) else pd.DataFrame()
+    both = (
+        peak.merge(steady, on=["source", CURVATURE, DOUBT])
+        if len(peak) and len(steady)
+        else pd.DataFrame()
+    )
     return below(rows, line_through(rows, GIVEN_RATE, STEADY_RATE), both)
 
 
 def over_curvature(data: Data) -> pd.DataFrame:
     rows, peak, steady = peak_and_steady(data)
-    return below(rows, *(line_through(rows, CURVATURE, column) for column in (GIVEN_RATE, STEADY_RATE)), peak, steady)
+    return below(
+        rows,
+        *(line_through(rows, CURVATURE, column) for column in (GIVEN_RATE, STEADY_RATE)),
+        peak,
+        steady,
+    )
 
 
 def widths_of_other_pads(data: Data) -> pd.DataFrame:
     """How far the inverse contact widths of other pads differ as the hold begins and as it ends."""
-    return data.bands(INVERSE_WIDTH, {m: {OF: m} for m in ("width_top", "width_end")}, lambda width: 1 / width)
+    return data.bands(
+        INVERSE_WIDTH, {m: {OF: m} for m in ("width_top", "width_end")}, lambda width: 1 / width
+    )
 
 
 def rate_and_width(data: Data) -> pd.DataFrame:
@@ -229,7 +267,11 @@ def rate_and_width(data: Data) -> pd.DataFrame:
     for label, history, coarse in data.runs(NINE):
         held = history.isel(time=slice(ramp_end(history), None))
         errors = curve_errors(history, coarse, Curve(lambda d: (held_time(d), held_rate(d))))
-        part = {"surface": label, TIME: held["time"].values, INVERSE_WIDTH: INVERSE_WIDTH.read(held)}
+        part = {
+            "surface": label,
+            TIME: held["time"].values,
+            INVERSE_WIDTH: INVERSE_WIDTH.read(held),
+        }
         parts.append(pd.DataFrame(part | {IMPULSE_RATE: held_rate(history)} | errors.columns))
     return pd.concat(parts, ignore_index=True)
 
@@ -281,9 +323,19 @@ def peaks_over_pressure(data: Data) -> pd.DataFrame:
 def linear_in_pressure(data: Data) -> pd.DataFrame:
     """Rates as linear functions of the mean centre pressure: closest to Eq 5-1's in the hold, and to Goodwin's first second."""
     early = Q("first_second_pressure", "Pa")
-    rows = data.numbers(NINE, {GIVEN_RATE: HELD, MEAN_P: mean_pressure, early: partial(mean_pressure, window="first second")})
+    rows = data.numbers(
+        NINE,
+        {
+            GIVEN_RATE: HELD,
+            MEAN_P: mean_pressure,
+            early: partial(mean_pressure, window="first second"),
+        },
+    )
     early = rows.pop(early)
-    parts, theirs = [rows.assign(source=f"{SIMULATED}: Eq 5-1")], published(data, "published", "first second", False, 20)
+    parts, theirs = (
+        [rows.assign(source=f"{SIMULATED}: Eq 5-1")],
+        published(data, "published", "first second", False, 20),
+    )
 
     def fitted(pressure: np.ndarray, rates: np.ndarray) -> tuple:
         law = gain_and_threshold(pressure, rates)
@@ -292,10 +344,20 @@ def linear_in_pressure(data: Data) -> pd.DataFrame:
     law, source = fitted(rows[MEAN_P].to_numpy(), rows[GIVEN_RATE].to_numpy())
     parts.append(rows.assign(source=source, **{GIVEN_RATE: law(rows[MEAN_P])}))
     if len(theirs):
-        law, source = fitted(np.interp(theirs[CURVATURE], rows[CURVATURE], early), theirs[GIVEN_RATE].to_numpy())
+        law, source = fitted(
+            np.interp(theirs[CURVATURE], rows[CURVATURE], early), theirs[GIVEN_RATE].to_numpy()
+        )
         inside = rows[CURVATURE] <= 1.01 * theirs[CURVATURE].max()
-        part = {"source": source, "panel": "published", CURVATURE: rows[CURVATURE], MEAN_P: early, GIVEN_RATE: law(early)}
-        parts.append(pd.DataFrame(part)[inside].assign(surface=rows["surface"], **rows[list(PARTS)]))
+        part = {
+            "source": source,
+            "panel": "published",
+            CURVATURE: rows[CURVATURE],
+            MEAN_P: early,
+            GIVEN_RATE: law(early),
+        }
+        parts.append(
+            pd.DataFrame(part)[inside].assign(surface=rows["surface"], **rows[list(PARTS)])
+        )
     return below(pd.concat(parts, ignore_index=True), theirs, given(data, "hold", 40))
 
 
@@ -318,8 +380,13 @@ def mean_rates(data: Data, depth: float) -> pd.DataFrame:
     steady = data.numbers(NINE, {GIVEN_RATE: partial(number, window="steady")})
     parts.append(steady.assign(panel="TouchSim", series="predicted, cylinders"))
     rows = pd.concat(parts, ignore_index=True)
-    rows = rows[rows["panel"].isna() | (rows[CURVATURE] < 700)].assign(source=f"{SIMULATED}: {text}")
-    beside = published(data, "published", "first second", False), published(data, "TouchSim", "steady", True)
+    rows = rows[rows["panel"].isna() | (rows[CURVATURE] < 700)].assign(
+        source=f"{SIMULATED}: {text}"
+    )
+    beside = (
+        published(data, "published", "first second", False),
+        published(data, "TouchSim", "steady", True),
+    )
     return below(rows, *beside, given(data, "hold", 40))
 
 
@@ -327,7 +394,11 @@ def peak_rates(data: Data) -> pd.DataFrame:
     """Predicted peak rates at two depths, the line in the peak rate of strain energy closest to each; TouchSim's first 200 ms."""
     parts = []
     for depth in (SHALLOW_DEPTH, RECEPTOR_DEPTH):
-        law, factor = shallow_law(NINE.histories(data.histories)) if depth == SHALLOW_DEPTH else (THESIS_RATE, 1.0)
+        law, factor = (
+            shallow_law(NINE.histories(data.histories))
+            if depth == SHALLOW_DEPTH
+            else (THESIS_RATE, 1.0)
+        )
         columns = {
             GIVEN_RATE: partial(rate_in, window="peak", depth=depth, law=law),
             RATE: partial(peak_energy_rate, depth=depth),
@@ -336,17 +407,31 @@ def peak_rates(data: Data) -> pd.DataFrame:
         slope, offset, share = straight_line(rows[RATE], rows[GIVEN_RATE])
         parts.append(rows.assign(source=f"{SIMULATED}: Eq 5-1, energies times {factor:.3f}"))
         by = {GIVEN_RATE: rectified(slope * rows[RATE] + offset)}
-        parts.append(rows.assign(source=f"{SIMULATED}: linear in the peak energy rate, R2 {share:.3f}", **by))
+        parts.append(
+            rows.assign(source=f"{SIMULATED}: linear in the peak energy rate, R2 {share:.3f}", **by)
+        )
     early = data.numbers(FAST, {GIVEN_RATE: partial(rate_in, window="first 200 ms")})
-    early = early[early[CURVATURE] < 700].assign(panel="TouchSim", series="predicted, cylinders", source=f"{SIMULATED}: Eq 5-1")
-    mine = [rows.assign(panel=panel) for panel in ("600 um", "915 um") if len(rows := given(data, "peak", 40))]
-    return below(pd.concat([*parts, early], ignore_index=True), published(data, "TouchSim", "first 200 ms", True), *mine)
+    early = early[early[CURVATURE] < 700].assign(
+        panel="TouchSim", series="predicted, cylinders", source=f"{SIMULATED}: Eq 5-1"
+    )
+    mine = [
+        rows.assign(panel=panel)
+        for panel in ("600 um", "915 um")
+        if len(rows := given(data, "peak", 40))
+    ]
+    return below(
+        pd.concat([*parts, early], ignore_index=True),
+        published(data, "TouchSim", "first 200 ms", True),
+        *mine,
+    )
 
 
 # --- drawing ---------------------------------------------------------------------------------------------
 
 
-def stamp(ax: Axes, text: str = "predicted", x: float = 0.985, y: float = 0.03, va: str = "bottom") -> None:
+def stamp(
+    ax: Axes, text: str = "predicted", x: float = 0.985, y: float = 0.03, va: str = "bottom"
+) -> None:
     """A word in the picture, so that it is not taken for a recording."""
     ax.text(x, y, text, transform=ax.transAxes, style="italic", color=style.GREY, ha="right", va=va)
 
@@ -355,7 +440,9 @@ def points(ax: Axes, rows: pd.DataFrame, x: str, y: str, **look) -> None:
     """One point a surface, in the surfaces' colours; the errors of those over 2 % of the largest as bars."""
     look = {"marker": "o", "s": 30, "zorder": 3, "clip_on": False} | look
     axs.bars(ax, rows, x, y, rows[y].abs().max())
-    ax.scatter(rows[x], rows[y], color=[axs.look(label)["color"] for label in rows["surface"]], **look)
+    ax.scatter(
+        rows[x], rows[y], color=[axs.look(label)["color"] for label in rows["surface"]], **look
+    )
 
 
 def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
@@ -365,7 +452,11 @@ def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
     rows = frame[frame["source"].str.contains(r"stated in the thesis|^measured")]
     printed = rows["source"].str.startswith("stated")
     for mine, look, label in (
-        (rows[printed], {"marker": "s", "mfc": "none", "mec": style.INK}, "printed in the thesis, uncertain"),
+        (
+            rows[printed],
+            {"marker": "s", "mfc": "none", "mec": style.INK},
+            "printed in the thesis, uncertain",
+        ),
         (rows[~printed], {"marker": "D", "color": style.INK}, "recorded"),
     ):
         if mine.empty:
@@ -375,7 +466,16 @@ def draw_given(ax: Axes, frame: pd.DataFrame, column: str = GIVEN_RATE) -> None:
         middle = (mine[CURVATURE] + other) / 2
         ax.plot(middle, mine[column], ls="none", ms=5, zorder=4, label=label, **look)
         if SPREAD in mine:
-            ax.errorbar(middle, mine[column], mine[SPREAD], ls="none", capsize=2, color=style.INK, lw=0.8, zorder=3)
+            ax.errorbar(
+                middle,
+                mine[column],
+                mine[SPREAD],
+                ls="none",
+                capsize=2,
+                color=style.INK,
+                lw=0.8,
+                zorder=3,
+            )
 
 
 def source_text(rows: pd.DataFrame) -> str:
@@ -394,7 +494,13 @@ def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     for (label, series), train in frame[frame[IMPULSE].notna()].groupby(["surface", "series"]):
         row = place[label] + (int(series.split()[1]) - 1) * 0.2 - 0.3
         ax.vlines(train[IMPULSE], row - 0.07, row + 0.07, **axs.look(label), lw=0.8)
-    ax.set(xlim=(0, force[TIME].max()), ylim=(8.6, -0.6), xlabel=TIME.label, ylabel=CURVATURE.label, yticks=range(9))
+    ax.set(
+        xlim=(0, force[TIME].max()),
+        ylim=(8.6, -0.6),
+        xlabel=TIME.label,
+        ylabel=CURVATURE.label,
+        yticks=range(9),
+    )
     ax.set_yticklabels(["flat plate", *SURFACES[1:]])
     ax.tick_params(left=False)
     for k in range(8):
@@ -405,15 +511,27 @@ def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
         ax.text(1.062, place[label], f"{rate:.1f}", va="center", **outside)
     curvatures = rows.set_index("surface")[CURVATURE]
     for entry in frame[frame["source"].str.startswith(("stated", "measured"))].to_dict("records"):
-        at = [float((curvatures - k).abs().argmin()) for k in (entry[CURVATURE], entry[DOUBT]) if k == k]
+        at = [
+            float((curvatures - k).abs().argmin())
+            for k in (entry[CURVATURE], entry[DOUBT])
+            if k == k
+        ]
         printed = f"{entry[GIVEN_RATE]:.1f}" + "?" * ("uncertain" in entry["source"])
         ax.text(1.135, np.mean(at), printed, va="center", color=style.GREY, **outside)
     outside |= {"fontsize": 6.5}
     ax.text(1.066, -0.62, "predicted", color=style.INK, va="bottom", **outside)
     ax.text(1.135, -0.62, "printed", color=style.GREY, va="bottom", **outside)
     ax.text(1.135, 8.75, "impulses/s", color=style.INK, va="top", **outside)
-    upper.text(0.99, 0.5, "predicted, not recorded", transform=upper.transAxes, ha="right", va="center", style="italic",
-               color=style.GREY)  # fmt: skip
+    upper.text(
+        0.99,
+        0.5,
+        "predicted, not recorded",
+        transform=upper.transAxes,
+        ha="right",
+        va="center",
+        style="italic",
+        color=style.GREY,
+    )
 
 
 def nine_frequencies(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
@@ -427,7 +545,9 @@ def nine_frequencies(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
         for leg in (rate[:jump], rate[jump:]):
             axs.curve(ax, leg, TIME, IMPULSE_RATE, whole=rate, lw=1.3, **look)
         often = np.interp(frequency[TIME], rate[TIME], rate[IMPULSE_RATE]) >= OFTEN
-        ax.plot(frequency[TIME], frequency[FREQUENCY].where(often), ".", ms=2, **look | {"ls": "none"})
+        ax.plot(
+            frequency[TIME], frequency[FREQUENCY].where(often), ".", ms=2, **look | {"ls": "none"}
+        )
         ends[label] = (2.0, float(np.interp(2.0, rate[TIME], rate[IMPULSE_RATE])))
     style.label_ends(ax, ends, 2.12, "curvature (1/m)")
     dots = f"dots: mean frequency of its impulses,\nwhere over {OFTEN} a second"
@@ -459,9 +579,14 @@ def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, line: pd.DataFrame
         floor = up < 0.1  # there the name is above the point
         above = floor or at[y] > np.interp(at[x], line[x], line[y])
         left = above and across > 0.08
-        how = {"va": "bottom" if above else "top", "ha": "center" if floor else "right" if left else "left"}
+        how = {
+            "va": "bottom" if above else "top",
+            "ha": "center" if floor else "right" if left else "left",
+        }
         away = (0 if floor else -5 if left else 5, 4 if above else -4)
-        ax.annotate(", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=6.5, **how)
+        ax.annotate(
+            ", ".join(group["surface"]), at, away, textcoords="offset points", fontsize=6.5, **how
+        )
 
 
 def peak_and_steady_over_curvature(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
@@ -474,9 +599,19 @@ def peak_and_steady_over_curvature(ax: Axes, frame: pd.DataFrame, spec: Figure) 
         ax.plot(line[CURVATURE], line[column], color=style.INK, lw=1)
         draw_given(ax, frame[frame[column].notna()], column)
         end = line.iloc[-1]
-        ax.annotate(f"{name}: {source_text(line)}", (end[CURVATURE], end[column]), (0, 5), textcoords="offset points",
-                    ha="right", fontsize=6.5, color=style.INK)  # fmt: skip
-    kinds = [style.handle(f"{name} rate", ls=":", marker=m, color=style.INK) for m, name in (("^", "peak"), ("P", "steady"))]
+        ax.annotate(
+            f"{name}: {source_text(line)}",
+            (end[CURVATURE], end[column]),
+            (0, 5),
+            textcoords="offset points",
+            ha="right",
+            fontsize=6.5,
+            color=style.INK,
+        )
+    kinds = [
+        style.handle(f"{name} rate", ls=":", marker=m, color=style.INK)
+        for m, name in (("^", "peak"), ("P", "steady"))
+    ]
     ax.legend(handles=kinds + ax.get_legend_handles_labels()[0][:1], loc="upper left")
     stamp(ax)
 
@@ -491,8 +626,16 @@ def rate_over_width(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     axs.draw_bands(ax, rows, INVERSE_WIDTH, None, lambda row: ends[row[OF]])
     ax.locator_params(axis="x", nbins=4)
     if own[IMPULSE_RATE].max() == 0:
-        ax.text(0.5, 0.2, "below the threshold:\nno impulses predicted", transform=ax.transAxes, ha="center", va="center",
-                fontsize=6.5, color=style.GREY)  # fmt: skip
+        ax.text(
+            0.5,
+            0.2,
+            "below the threshold:\nno impulses predicted",
+            transform=ax.transAxes,
+            ha="center",
+            va="center",
+            fontsize=6.5,
+            color=style.GREY,
+        )
 
 
 def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
@@ -501,35 +644,70 @@ def twelve_nodes(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     looks = {
         "simulated": (P, axs.look("210") | {"lw": 1.6}),
         "Eq 4-1, one set": (P_LAW, {"ls": style.DASHED, "lw": 1.0, "color": style.INK}),
-        "Eq 4-1, a set for each": (P_LAW, {"ls": style.DOTTED, "lw": 1.0, "color": style.HIGHLIGHT}),
+        "Eq 4-1, a set for each": (
+            P_LAW,
+            {"ls": style.DOTTED, "lw": 1.0, "color": style.HIGHLIGHT},
+        ),
     }
     wide = frame.assign(**{P: frame[P].fillna(frame[P_LAW])})
     nodes = frame[is_simulated(frame)].groupby(NODE)
     for k, (ax, (x, rows)) in enumerate(zip(axes.ravel(), nodes, strict=True)):
         for series, (column, look) in looks.items():
             own = rows[rows["series"] == series]
-            axs.curve(ax, own if column == P else own.assign(**dict.fromkeys(PARTS, np.nan)), TIME, column, **look)
+            axs.curve(
+                ax,
+                own if column == P else own.assign(**dict.fromkeys(PARTS, np.nan)),
+                TIME,
+                column,
+                **look,
+            )
         axs.limit_axis(ax, wide, P, marked=k == 5)
         style.in_kilo(ax.yaxis)
         ax.set(title=f"x = {x:.3g} mm", **HOLD)
     axes[3, 1].set_xlabel(TIME.label)
     axes[2, 0].set_ylabel("contact pressure (kPa)", y=1.15)
-    names = {"Eq 4-1, one set": "Eq 4-1, one set of constants", "Eq 4-1, a set for each": "a set for each node"}
-    style.header_legend(fig, [style.handle(names.get(name, name), **look) for name, (_, look) in looks.items()])
+    names = {
+        "Eq 4-1, one set": "Eq 4-1, one set of constants",
+        "Eq 4-1, a set for each": "a set for each node",
+    }
+    style.header_legend(
+        fig, [style.handle(names.get(name, name), **look) for name, (_, look) in looks.items()]
+    )
 
 
 def energy_and_law(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
     """Points simulated, line by Eq 4-4, and what is left between them."""
     own = rows[is_simulated(rows)]
-    axs.curve(ax, own, TIME, SED, marker="o", ls="none", ms=2.4, mfc="none", mew=0.7, **axs.look(own["surface"].iloc[0]))
+    axs.curve(
+        ax,
+        own,
+        TIME,
+        SED,
+        marker="o",
+        ls="none",
+        ms=2.4,
+        mfc="none",
+        mew=0.7,
+        **axs.look(own["surface"].iloc[0]),
+    )
     ax.plot(own[TIME], own[SED_LAW], color=style.INK, lw=1)
     left = np.sqrt(np.mean((own[SED] - own[SED_LAW]) ** 2) / np.mean(own[SED] ** 2))
-    ax.text(0.97, 0.06, f"r.m.s. residual {left:.0%}", transform=ax.transAxes, ha="right", fontsize=6.5, color=style.GREY)
+    ax.text(
+        0.97,
+        0.06,
+        f"r.m.s. residual {left:.0%}",
+        transform=ax.transAxes,
+        ha="right",
+        fontsize=6.5,
+        color=style.GREY,
+    )
 
 
 def left_note(how: str) -> Callable[[pd.DataFrame], list[str]]:
     """The usual line, of what is in no panel of its own: the large panel at the left."""
-    return lambda frame: axs.footnote(frame[frame["panel"].isna() | frame["panel"].isin(("600 um", "915 um"))], how)
+    return lambda frame: axs.footnote(
+        frame[frame["panel"].isna() | frame["panel"].isin(("600 um", "915 um"))], how
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -550,13 +728,17 @@ class Beside:
         axes = fig.subplots(1, len(self.ratios), width_ratios=self.ratios)
         for ax, name in zip(axes, self.names, strict=False):
             ranges = frame["source"].str.contains("axis range")
-            rows = frame[frame["panel"].isna() if name is None else (frame["panel"] == name) | ranges]
+            rows = frame[
+                frame["panel"].isna() if name is None else (frame["panel"] == name) | ranges
+            ]
             axs.wide_limits(ax, rows, CURVATURE, GIVEN_RATE)
             self.fill(ax, rows)
             ax.set(xlabel=CURVATURE.label, title=name.replace("um", "µm") if name else "")
             ax.legend(**self.legend)
         axes[0].set_ylabel(self.ylabel)
-        for ax, (name, (title, mismatch)) in zip(axes[len(self.names) :], self.others.items(), strict=True):
+        for ax, (name, (title, mismatch)) in zip(
+            axes[len(self.names) :], self.others.items(), strict=True
+        ):
             beside(ax, frame[frame["panel"] == name], title, mismatch)
             ax.set_ylabel(f"mean rate, {title.partition(', ')[2]} (impulses/s)")
         return {}
@@ -587,8 +769,12 @@ def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str) -> None:
     own, times = is_simulated(rows), []
     curves = dict(list(rows[own].groupby("series", sort=False))) if "series" in rows else {}
     fitted, curves = not curves, curves or {"linear in the pressure, fitted": rows[own]}
-    for marker, (name, theirs) in zip(style.MARKERS, rows[~own].groupby("series", sort=False), strict=False):
-        same = [ours for ours in curves if ours.split()[-2:] == name.split()[-2:]] or list(curves)[:1]
+    for marker, (name, theirs) in zip(
+        style.MARKERS, rows[~own].groupby("series", sort=False), strict=False
+    ):
+        same = [ours for ours in curves if ours.split()[-2:] == name.split()[-2:]] or list(curves)[
+            :1
+        ]
         look = style.look_of("force (gf)", _force(name), "color")
         look |= {"marker": marker, "ls": "none", "ms": 3.5, "clip_on": False, "zorder": 3}
         ax.plot(theirs[CURVATURE], theirs[GIVEN_RATE], **look, label=name)
@@ -597,10 +783,28 @@ def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str) -> None:
         times += list((theirs[GIVEN_RATE] / at)[at > 1])
     for name, curve in curves.items():
         curve = curve.sort_values(CURVATURE)
-        ax.plot(curve[CURVATURE], curve[GIVEN_RATE], **style.look_of("force (gf)", _force(name)), lw=1.1, label=name)
-    ax.set(xlim=(0, 1.04 * rows[CURVATURE].max()), ylim=(0, 1.6 * rows[GIVEN_RATE].max()), xlabel=CURVATURE.label)
+        ax.plot(
+            curve[CURVATURE],
+            curve[GIVEN_RATE],
+            **style.look_of("force (gf)", _force(name)),
+            lw=1.1,
+            label=name,
+        )
+    ax.set(
+        xlim=(0, 1.04 * rows[CURVATURE].max()),
+        ylim=(0, 1.6 * rows[GIVEN_RATE].max()),
+        xlabel=CURVATURE.label,
+    )
     far = f"theirs over ours: {np.median(times):.1f} (median)" if times and not fitted else ""
-    ax.legend(title=far, alignment="left", loc="upper left", fontsize=6, handlelength=1.8, borderaxespad=0.2, labelspacing=0.3)
+    ax.legend(
+        title=far,
+        alignment="left",
+        loc="upper left",
+        fontsize=6,
+        handlelength=1.8,
+        borderaxespad=0.2,
+        labelspacing=0.3,
+    )
 
 
 def _force(name: str) -> str:
@@ -618,79 +822,206 @@ def draw_rates(ax: Axes, frame: pd.DataFrame, spec: Figure | None = None) -> Non
     stamp(ax, "points: predicted")
 
 
-def of_rates(number: str, title: str, rows, layout, thesis: Mapping, runs=NINE, **options) -> Figure:
+def of_rates(
+    number: str, title: str, rows, layout, thesis: Mapping, runs=NINE, **options
+) -> Figure:
     """A figure of rates over curvature, or of one rate over another."""
-    options = {"how": OF_THE_LARGEST, "measured": RATES, "remarks": (DEEP,), "x": CURVATURE, "y": (GIVEN_RATE,)} | options
+    options = {
+        "how": OF_THE_LARGEST,
+        "measured": RATES,
+        "remarks": (DEEP,),
+        "x": CURVATURE,
+        "y": (GIVEN_RATE,),
+    } | options
     return Figure(number, title, runs, thesis=thesis, layout=layout, rows=rows, **options)
 
 
 def points_of(fill, legend: bool = True, **options) -> Panels:
     """One panel of points, on axes that hold all of them."""
-    return Panels(height=3.0, limit="wide", fill=fill, legend={"loc": "upper left"} if legend else None, **options)
+    return Panels(
+        height=3.0,
+        limit="wide",
+        fill=fill,
+        legend={"loc": "upper left"} if legend else None,
+        **options,
+    )
 
 
 def from_depth(number: str, depth: float, axis: str) -> Figure:
     """Figs 4-26 and 4-27."""
     words = f"{depth * 1e6:.0f} µm"
     title = f"Predicted mean rate of the hold from strain energy at {words}, 40 gf/s"
-    return of_rates(number, title, partial(mean_rates, depth=depth),
-                    Beside(height=3.1, fill=draw_rates, ratios=(1.7, 1, 1),
-                           others={"published": GOODWIN, "TouchSim": ("TouchSim, steady", HALF_SPACE)}),
-                    {GIVEN_RATE: axis, CURVATURE: "T202"}, (NINE, *LOWER.values()),
-                    note=left_note(OF_THE_LARGEST), remarks=(LAW_NOTE, BESIDE))  # fmt: skip
+    return of_rates(
+        number,
+        title,
+        partial(mean_rates, depth=depth),
+        Beside(
+            height=3.1,
+            fill=draw_rates,
+            ratios=(1.7, 1, 1),
+            others={"published": GOODWIN, "TouchSim": ("TouchSim, steady", HALF_SPACE)},
+        ),
+        {GIVEN_RATE: axis, CURVATURE: "T202"},
+        (NINE, *LOWER.values()),
+        note=left_note(OF_THE_LARGEST),
+        remarks=(LAW_NOTE, BESIDE),
+    )
 
 
 FIGURES = (
-    Figure("4-2", "Predicted impulses, 150 gf/s ramp to 20 gf, 2 s hold", FAST, TIME, (IMPULSE,), {FORCE: "T080"},
-           Own(height=5.0, paint=trains), rows=trains_and_rates, measured=RATES, how="of the largest rate",
-           remarks=(f"{LAW_NOTE}, strain energy 915 µm under the centre; integrate-and-fire, coefficient of variation of the "
-                    f"intervals {VARIATION} (assumed), seed {SEED}. Right: mean predicted rate of the hold; grey: rates printed "
-                    "beside the recordings in Fig. 4-2 of Cysyk (1999), from a scan, where a rate between two rows may belong to "
-                    "either.",)),
-    Figure("4-3", "Predicted instantaneous frequency, 40 gf/s ramp to 20 gf", NINE, TIME, (FREQUENCY,),
-           {TIME: "T091", FREQUENCY: "T090"},
-           Panels(height=3.4, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}), rows=frequencies,
-           remarks=(f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses (integrate-and-fire, "
-                    f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",)),
-    of_rates("4-4", "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf", steady_over_peak,
-             points_of(points_and_line, xlabel=PEAK_WORDS),
-             {GIVEN_RATE: "T094", STEADY_RATE: "T095"}, x=GIVEN_RATE, y=(STEADY_RATE,), remarks=(STEADY_NOTE,)),
-    of_rates("4-5", "Predicted peak and steady rates against curvature", over_curvature,
-             points_of(peak_and_steady_over_curvature, False, xlabel="surface curvature (1/m)",
-                       ylabel="impulse rate (impulses/s)"),
-             {GIVEN_RATE: "T096", CURVATURE: "T162"}, remarks=(STEADY_NOTE,)),
-    Figure("4-9", "Predicted rate against the inverse of the contact width in the hold", NINE, INVERSE_WIDTH, (IMPULSE_RATE,),
-           {INVERSE_WIDTH: WIDTH_IDS,
-            IMPULSE_RATE: by_surface("T107 T109 T111 T113 T117 T119 T121", ("flat", "79", "105", "158", "420", "630", "1260"))},
-           nine(SURFACES, 5.8, fill=rate_over_width, limit=""), rows=rate_and_width,
-           remarks=(f"{DEEP} Time runs leftwards: the contact grows.", OTHER_PADS), measured="pads", after=widths_of_other_pads),
-    Figure("4-17", "Pressure at twelve nodes and its decay by Eq 4-1, K = 210 1/m", K210, TIME, (P, P_LAW),
-           {TIME: "T155", P: "T154"}, Own(height=6.2, header=0.16, paint=twelve_nodes), rows=nodes_by_law,
-           remarks=("Eq 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the edge's) + A3, from the peak "
-                    "of a node on; constants by least squares. Nodes count from one spacing inside the edge on.",)),
-    of_rates("4-18", "Predicted peak rate against peak contact pressure", peaks_over_pressure,
-             points_of(points_and_line, ylabel=PEAK_WORDS),
-             {P_PEAK: "T159", GIVEN_RATE: "T160"}, x=P_PEAK, width=style.COLUMN_WIDTH),
-    of_rates("4-19", "Mean rate from mean contact pressure, against curvature", linear_in_pressure,
-             Beside(height=3.1, fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
-             {GIVEN_RATE: "T161", CURVATURE: "T162"},
-             remarks=(f"{DEEP} Left: mean over the hold, as in the thesis, whose recorded rates are not public. Right: Goodwin, "
-                      "Browning and Wheat (1995), digitised by a third party, impulses in the first second at 20 gf; gain and "
-                      "threshold of the line fitted to them.",)),
-    Figure("4-22", "Strain energy density at 915 µm, and from contact pressure by Eq 4-4", NINE, TIME, (SED, SED_LAW),
-           {SED: by_surface("T181 T182 T183 T184 T185 T186 T187a T187b T187c")},
-           nine(SURFACES, 5.8, fill=energy_and_law, limit="y", set=HOLD | {"xlim": (0, 2.58)}), rows=energy_by_pressure,
-           remarks=("Points simulated; lines by Eq 4-4 with one set of constants for all nine surfaces.",)),
-    of_rates("4-25", "Predicted mean rate of the hold, 150 gf/s ramp to 20 gf", held_rates,
-             points_of(draw_rates), {GIVEN_RATE: "T201", CURVATURE: "T202"}, FAST, width=style.COLUMN_WIDTH,
-             remarks=(f"{DEEP[:-1]}; nothing is fitted here. Squares: mean rates printed beside Fig. 4-2 of Cysyk (1999), read "
-                      "from a scan (17.0 without its point); a bar joins the two surfaces that a rate may belong to.",)),
+    Figure(
+        "4-2",
+        "Predicted impulses, 150 gf/s ramp to 20 gf, 2 s hold",
+        FAST,
+        TIME,
+        (IMPULSE,),
+        {FORCE: "T080"},
+        Own(height=5.0, paint=trains),
+        rows=trains_and_rates,
+        measured=RATES,
+        how="of the largest rate",
+        remarks=(
+            f"{LAW_NOTE}, strain energy 915 µm under the centre; integrate-and-fire, coefficient of variation of the "
+            f"intervals {VARIATION} (assumed), seed {SEED}. Right: mean predicted rate of the hold; grey: rates printed "
+            "beside the recordings in Fig. 4-2 of Cysyk (1999), from a scan, where a rate between two rows may belong to "
+            "either.",
+        ),
+    ),
+    Figure(
+        "4-3",
+        "Predicted instantaneous frequency, 40 gf/s ramp to 20 gf",
+        NINE,
+        TIME,
+        (FREQUENCY,),
+        {TIME: "T091", FREQUENCY: "T090"},
+        Panels(height=3.4, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}),
+        rows=frequencies,
+        remarks=(
+            f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses (integrate-and-fire, "
+            f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",
+        ),
+    ),
+    of_rates(
+        "4-4",
+        "Predicted steady rate against peak rate, 40 gf/s ramp to 20 gf",
+        steady_over_peak,
+        points_of(points_and_line, xlabel=PEAK_WORDS),
+        {GIVEN_RATE: "T094", STEADY_RATE: "T095"},
+        x=GIVEN_RATE,
+        y=(STEADY_RATE,),
+        remarks=(STEADY_NOTE,),
+    ),
+    of_rates(
+        "4-5",
+        "Predicted peak and steady rates against curvature",
+        over_curvature,
+        points_of(
+            peak_and_steady_over_curvature,
+            False,
+            xlabel="surface curvature (1/m)",
+            ylabel="impulse rate (impulses/s)",
+        ),
+        {GIVEN_RATE: "T096", CURVATURE: "T162"},
+        remarks=(STEADY_NOTE,),
+    ),
+    Figure(
+        "4-9",
+        "Predicted rate against the inverse of the contact width in the hold",
+        NINE,
+        INVERSE_WIDTH,
+        (IMPULSE_RATE,),
+        {
+            INVERSE_WIDTH: WIDTH_IDS,
+            IMPULSE_RATE: by_surface(
+                "T107 T109 T111 T113 T117 T119 T121",
+                ("flat", "79", "105", "158", "420", "630", "1260"),
+            ),
+        },
+        nine(SURFACES, 5.8, fill=rate_over_width, limit=""),
+        rows=rate_and_width,
+        remarks=(f"{DEEP} Time runs leftwards: the contact grows.", OTHER_PADS),
+        measured="pads",
+        after=widths_of_other_pads,
+    ),
+    Figure(
+        "4-17",
+        "Pressure at twelve nodes and its decay by Eq 4-1, K = 210 1/m",
+        K210,
+        TIME,
+        (P, P_LAW),
+        {TIME: "T155", P: "T154"},
+        Own(height=6.2, header=0.16, paint=twelve_nodes),
+        rows=nodes_by_law,
+        remarks=(
+            "Eq 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the edge's) + A3, from the peak "
+            "of a node on; constants by least squares. Nodes count from one spacing inside the edge on.",
+        ),
+    ),
+    of_rates(
+        "4-18",
+        "Predicted peak rate against peak contact pressure",
+        peaks_over_pressure,
+        points_of(points_and_line, ylabel=PEAK_WORDS),
+        {P_PEAK: "T159", GIVEN_RATE: "T160"},
+        x=P_PEAK,
+        width=style.COLUMN_WIDTH,
+    ),
+    of_rates(
+        "4-19",
+        "Mean rate from mean contact pressure, against curvature",
+        linear_in_pressure,
+        Beside(height=3.1, fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
+        {GIVEN_RATE: "T161", CURVATURE: "T162"},
+        remarks=(
+            f"{DEEP} Left: mean over the hold, as in the thesis, whose recorded rates are not public. Right: Goodwin, "
+            "Browning and Wheat (1995), digitised by a third party, impulses in the first second at 20 gf; gain and "
+            "threshold of the line fitted to them.",
+        ),
+    ),
+    Figure(
+        "4-22",
+        "Strain energy density at 915 µm, and from contact pressure by Eq 4-4",
+        NINE,
+        TIME,
+        (SED, SED_LAW),
+        {SED: by_surface("T181 T182 T183 T184 T185 T186 T187a T187b T187c")},
+        nine(SURFACES, 5.8, fill=energy_and_law, limit="y", set=HOLD | {"xlim": (0, 2.58)}),
+        rows=energy_by_pressure,
+        remarks=(
+            "Points simulated; lines by Eq 4-4 with one set of constants for all nine surfaces.",
+        ),
+    ),
+    of_rates(
+        "4-25",
+        "Predicted mean rate of the hold, 150 gf/s ramp to 20 gf",
+        held_rates,
+        points_of(draw_rates),
+        {GIVEN_RATE: "T201", CURVATURE: "T202"},
+        FAST,
+        width=style.COLUMN_WIDTH,
+        remarks=(
+            f"{DEEP[:-1]}; nothing is fitted here. Squares: mean rates printed beside Fig. 4-2 of Cysyk (1999), read "
+            "from a scan (17.0 without its point); a bar joins the two surfaces that a rate may belong to.",
+        ),
+    ),
     from_depth("4-26", RECEPTOR_DEPTH, "T203"),
     from_depth("4-27", SHALLOW_DEPTH, "T204"),
-    of_rates("4-29", "Predicted peak rate, and from the peak rate of strain energy, against curvature", peak_rates,
-             Beside(height=3.1, fill=points_and_law, ratios=(1.25, 1.25, 1), names=("600 um", "915 um"),
-                    others={"TouchSim": ("TouchSim, first 200 ms", HALF_SPACE)}, ylabel="peak rate (impulses/s)",
-                    legend={"loc": "lower right", "handlelength": 1.4}),
-             {GIVEN_RATE: "T207", CURVATURE: "T208"}, (NINE, FAST),
-             note=left_note(OF_THE_LARGEST), remarks=(LAW_NOTE, SCALED)),
-)  # fmt: skip
+    of_rates(
+        "4-29",
+        "Predicted peak rate, and from the peak rate of strain energy, against curvature",
+        peak_rates,
+        Beside(
+            height=3.1,
+            fill=points_and_law,
+            ratios=(1.25, 1.25, 1),
+            names=("600 um", "915 um"),
+            others={"TouchSim": ("TouchSim, first 200 ms", HALF_SPACE)},
+            ylabel="peak rate (impulses/s)",
+            legend={"loc": "lower right", "handlelength": 1.4},
+        ),
+        {GIVEN_RATE: "T207", CURVATURE: "T208"},
+        (NINE, FAST),
+        note=left_note(OF_THE_LARGEST),
+        remarks=(LAW_NOTE, SCALED),
+    ),
+)

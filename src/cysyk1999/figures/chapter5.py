@@ -17,7 +17,17 @@ import pandas as pd
 import xarray as xr
 
 from cysyk1999.figures import axes as axs
-from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, nine, stack, upper_profile
+from cysyk1999.figures.grammar import (
+    HOW,
+    Data,
+    Figure,
+    Lines,
+    Own,
+    Panels,
+    nine,
+    stack,
+    upper_profile,
+)
 from cysyk1999.measures.errors import PARTS, Curve, curve_errors, over_stroke, shared_place
 from cysyk1999.measures.quantities import (
     CURVATURE,
@@ -38,13 +48,28 @@ from cysyk1999.measures.quantities import (
     X,
     Y,
     sed,
-)  # fmt: skip
+)
 from cysyk1999.measures.runs import NINE, SPEEDS, STEPPED_OVER, SUB_SPEEDS, WITHIN_400, Runs
 from cysyk1999.measures.table import reading
 from cysyk1999.publishing import style
-from fingerpad.measures.features import PRESSURE, SIMULATED, is_simulated, pressure_at, profile, skin_at
+from fingerpad.measures.features import (
+    PRESSURE,
+    SIMULATED,
+    is_simulated,
+    pressure_at,
+    profile,
+    skin_at,
+)
 from fingerpad.measures.skin import skin_curvatures
-from fingerpad.measures.strokes import LOCATIONS, NODES, distance, loaded, nodes_at, profile_and_height, time_of
+from fingerpad.measures.strokes import (
+    LOCATIONS,
+    NODES,
+    distance,
+    loaded,
+    nodes_at,
+    profile_and_height,
+    time_of,
+)
 from fingerpad.planning.errors import PROFILE_ORDER
 
 if TYPE_CHECKING:
@@ -59,7 +84,10 @@ OTHER = {"color": style.HIGHLIGHT, "ls": style.DASHED, "lw": 1.1}
 """The second of two curves."""
 WITH_CURVATURE = Lines(
     looks={P_CENTRE: {"color": style.INK}, SCALED_CURVATURE: OTHER},
-    names={P_CENTRE: "contact pressure", SCALED_CURVATURE: "skin curvature, $A_1 K + A_2$, in contact"},
+    names={
+        P_CENTRE: "contact pressure",
+        SCALED_CURVATURE: "skin curvature, $A_1 K + A_2$, in contact",
+    },
     hidden={SCALED_CURVATURE: P_CENTRE},
 )
 SAMPLED = replace(
@@ -97,10 +125,21 @@ def locations(data: Data, runs: Runs) -> pd.DataFrame:
         shown = (abs(x) <= 5e-3) & (stroke["skin_y"].values > 0)
         over = np.linspace(-5e-3, 5e-3, 201)
         skin = {"series": "skin", X: x[shown] * 1e3, Y: y[shown] * 1e3, P: p[shown]}
-        surface = {"series": axs.SURFACE, X: over * 1e3, Y: (heights[index] + shape.outline(over + reached)) * 1e3}
-        errors = curve_errors(history, coarse, Curve(partial(profile_at, at=reached), False, PROFILE_ORDER)).columns
+        surface = {
+            "series": axs.SURFACE,
+            X: over * 1e3,
+            Y: (heights[index] + shape.outline(over + reached)) * 1e3,
+        }
+        errors = curve_errors(
+            history, coarse, Curve(partial(profile_at, at=reached), False, PROFILE_ORDER)
+        ).columns
         for rows, checked in ((skin, errors), (surface, {})):
-            part = {"source": SIMULATED, "panel": f"{location:g} mm"} | rows | {DISTANCE: reached * 1e3} | checked
+            part = (
+                {"source": SIMULATED, "panel": f"{location:g} mm"}
+                | rows
+                | {DISTANCE: reached * 1e3}
+                | checked
+            )
             parts.append(pd.DataFrame(part))
     return pd.concat(parts, ignore_index=True)
 
@@ -117,16 +156,24 @@ def nodes_over_time(data: Data) -> pd.DataFrame:
     stroke, parts = loaded(history), []
     nodes = nodes_at(stroke)
     for place, node, curvature in zip(NODES, nodes, skin_curvatures(stroke, nodes), strict=True):
-        part = {"panel": f"X = {place:g} mm", NODE: round(1e3 * float(stroke["skin_x"].values[node]), 5), TIME: time_of(stroke)}
+        part = {
+            "panel": f"X = {place:g} mm",
+            NODE: round(1e3 * float(stroke["skin_x"].values[node]), 5),
+            TIME: time_of(stroke),
+        }
         part |= {P: stroke[PRESSURE].values[:, node], SKIN_CURVATURE: 1e-3 * curvature}
-        pressed = over_stroke(partial(pressure_at, place=shared_place(float(stroke["skin_x"].values[node]), coarse)))
+        pressed = over_stroke(
+            partial(pressure_at, place=shared_place(float(stroke["skin_x"].values[node]), coarse))
+        )
         parts.append(pd.DataFrame(part | curve_errors(history, coarse, pressed).columns))
     return pd.concat(parts, ignore_index=True)
 
 
 def largest_energies(data: Data) -> pd.DataFrame:
     """Largest strain energy at 915 um for each curvature: pressed by cylinders, and stroked at 10 mm/s."""
-    pressed = data.numbers(PRESSED, {SED: reading("highest_energy", "915 um")}, own=True).assign(series="ramp and hold")
+    pressed = data.numbers(PRESSED, {SED: reading("highest_energy", "915 um")}, own=True).assign(
+        series="ramp and hold"
+    )
     stroked = data.convexities(TEN_RUN, {SED: "convexity_energy"})
     return pd.concat([pressed, stroked])[["series", CURVATURE, SED, *PARTS]]
 
@@ -142,13 +189,19 @@ def at_ten(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
     words = f"1 to 40 mm/s: at most {apart:.0f} % apart"
     ax.fill_between(extent.index, *extent.to_numpy().T, color="#9fc3d6", lw=0, label=words)
     line = rows[rows["series"] == TEN].sort_values(spec.x)
-    axs.curve(ax, line, spec.x, y, points=True, color=style.INK, marker="o", ms=3, lw=0.8, label=TEN)
+    axs.curve(
+        ax, line, spec.x, y, points=True, color=style.INK, marker="o", ms=3, lw=0.8, label=TEN
+    )
 
 
 def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     """The surface with a star at each location above; its window, the skin and the pressure at each below."""
     grid = fig.add_gridspec(4, 3, height_ratios=[1.0, 1.0, 1.5, 1.5])
-    trace, shape, marks = fig.add_subplot(grid[0, :]), axs.shape_of(frame), frame[~is_simulated(frame)]
+    trace, shape, marks = (
+        fig.add_subplot(grid[0, :]),
+        axs.shape_of(frame),
+        frame[~is_simulated(frame)],
+    )
     axs.draw_surface(trace, frame)
     trace.tick_params(labelbottom=True)
     own = marks[marks["panel"] == axs.SURFACE]
@@ -156,17 +209,29 @@ def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     trace.set_xlim(own[DISTANCE].min() if own[DISTANCE].notna().any() else 5, shape[DISTANCE].max())
     for column, location in enumerate(LOCATIONS):
         panel = f"{location:g} mm"
-        rows, axes = axs.rows_of(frame, "panel", panel), [fig.add_subplot(grid[row, column]) for row in (1, 2, 3)]
+        rows, axes = (
+            axs.rows_of(frame, "panel", panel),
+            [fig.add_subplot(grid[row, column]) for row in (1, 2, 3)],
+        )
         skin, surface = (rows[rows["series"] == series] for series in ("skin", axs.SURFACE))
         at = skin[DISTANCE].iloc[0]
-        star = {"marker": "*", "ms": 8, "color": style.HIGHLIGHT, "mec": "white", "mew": 0.5, "clip_on": False}
+        star = {
+            "marker": "*",
+            "ms": 8,
+            "color": style.HIGHLIGHT,
+            "mec": "white",
+            "mew": 0.5,
+            "clip_on": False,
+        }
         window = marks.loc[marks["panel"] == panel, DISTANCE]
         for ax in (trace, axes[0]):
             ax.plot(at, np.interp(at, shape[DISTANCE], shape[HEIGHT]), **star)
         axes[0].fill_between(shape[DISTANCE], shape[HEIGHT], 1.0, color=style.PALE, lw=0)
         axes[0].plot(shape[DISTANCE], shape[HEIGHT], color=style.INK, lw=1.0)
         low, high = (window.min(), window.max()) if len(window) else (at - 4, at + 4)
-        axes[0].set(xlim=(low, high), ylim=(-0.52, 0.36), xlabel=DISTANCE.label, title=f"at {at:g} mm")
+        axes[0].set(
+            xlim=(low, high), ylim=(-0.52, 0.36), xlabel=DISTANCE.label, title=f"at {at:g} mm"
+        )
         axes[1].fill_between(surface[X], surface[Y], 6.4, color=style.PALE, lw=0)
         axes[1].plot(surface[X], surface[Y], color=style.GREY, lw=0.8)
         axes[1].plot(skin[X], skin[Y], color=style.INK)
@@ -175,7 +240,11 @@ def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
         axs.curve(axes[2], skin, X, P, color=style.INK)
         axes[2].set(xlim=(-5, 5), xlabel=X.label)
         style.in_kilo(axes[2].yaxis)
-        for ax, name in zip(axes, (HEIGHT.label, "surface and skin,\ny (mm)", "contact pressure\n(kPa)"), strict=True):
+        for ax, name in zip(
+            axes,
+            (HEIGHT.label, "surface and skin,\ny (mm)", "contact pressure\n(kPa)"),
+            strict=True,
+        ):
             ax.tick_params(labelleft=column == 0)
             ax.set_ylabel(name if column == 0 else "")
 
@@ -205,7 +274,10 @@ def two_axes(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
         right.tick_params(labelright=number % 3 == 2)
         if number == 5:
             right.set_ylabel("contact pressure (kPa)")
-    names = {P: "contact pressure (right axis)", SKIN_CURVATURE: "skin curvature in contact (left axis)"}
+    names = {
+        P: "contact pressure (right axis)",
+        SKIN_CURVATURE: "skin curvature in contact (left axis)",
+    }
     style.header_legend(ax.figure, [style.handle(names[k], **look) for k, look in LOOKS.items()])
 
 
@@ -214,15 +286,37 @@ def from_half_a_millimetre(panels: Mapping[object, Axes], frame: pd.DataFrame) -
     (ax,) = panels.values()
     axs.limit_axis(ax, frame[frame[LATERAL] <= TOP_OF_STRETCH], LATERAL)
     ax.set_ylim(None, TOP_OF_STRETCH)
-    ax.text(2.0, TOP_OF_STRETCH - 0.02, "from 0 at the start,\noff the axis", va="top", fontsize=6.5, color=style.GREY)
+    ax.text(
+        2.0,
+        TOP_OF_STRETCH - 0.02,
+        "from 0 at the start,\noff the axis",
+        va="top",
+        fontsize=6.5,
+        color=style.GREY,
+    )
 
 
 def at_locations(number: str, title: str, runs: Runs, pressure: str) -> Figure:
     """Figs 5-5 and 5-6."""
-    windows = {f"{location:g} mm": id_ for location, id_ in zip(LOCATIONS, ("T235", "T236", "T237"), strict=True)}
-    ids = {DISTANCE: windows | {axs.SURFACE: "T234"}, HEIGHT: {axs.SURFACE: "T233a", **dict.fromkeys(windows, "T238")}}
-    return Figure(number, title, runs, X, (Y, P), ids | {X: "T239", Y: "T239a", P: pressure},
-                  Own(height=6.2, paint=three_locations), key="panel", rows=partial(locations, runs=runs))  # fmt: skip
+    windows = {
+        f"{location:g} mm": id_
+        for location, id_ in zip(LOCATIONS, ("T235", "T236", "T237"), strict=True)
+    }
+    ids = {
+        DISTANCE: windows | {axs.SURFACE: "T234"},
+        HEIGHT: {axs.SURFACE: "T233a", **dict.fromkeys(windows, "T238")},
+    }
+    return Figure(
+        number,
+        title,
+        runs,
+        X,
+        (Y, P),
+        ids | {X: "T239", Y: "T239a", P: pressure},
+        Own(height=6.2, paint=three_locations),
+        key="panel",
+        rows=partial(locations, runs=runs),
+    )
 
 
 def below(height: float = 3.2, **options) -> Panels:
@@ -231,49 +325,173 @@ def below(height: float = 3.2, **options) -> Panels:
 
 
 FIGURES = (
-    Figure("5-4", "Length of each convexity in contact with the centre node", SPEEDS, CURVATURE, (LENGTH,),
-           {CURVATURE: "T229", RADIUS: "T230", LENGTH: "T228"},
-           Panels(height=3.0, pairs=((CURVATURE, LENGTH), (RADIUS, LENGTH)), shape=(1, 2), fill=at_ten,
-                  legend={"loc": "lower right"}),
-           rows=lengths, remarks=("Recorded burst widths are not available.",)),
-    at_locations("5-5", "Skin and contact pressure, surface stepped over the pad by 1 mm", STEPPED_OVER, "T240"),
-    at_locations("5-6", "Skin and contact pressure, surface stroked over the pad at 10 mm/s", SUB_TEN, "T241"),
-    Figure("5-7", "Centre pressure and scaled skin curvature, stepped by 1 mm", STEPPED_OVER, DISTANCE,
-           (P_CENTRE, SCALED_CURVATURE), {DISTANCE: "T246", P_CENTRE: "T245"},
-           below(fill=SAMPLED, ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6}),
-           surface=(0, 50), extra=zero_line),
-    Figure("5-8", "Centre pressure, stepped and stroked", (STEPPED_OVER, SUB_TEN), DISTANCE, (P_CENTRE,),
-           {DISTANCE: "T248", P_CENTRE: "T247"},
-           below(fill=Lines(looks={"stepped": OTHER | {"marker": ".", "ms": 3}, TEN: {"color": style.INK, "ls": "-"}},
-                            names={"stepped": "stepped by 1 mm", TEN: "stroked, 10 mm/s"}),
-                 legend={"loc": "upper right", "handlelength": 2.6}),
-           surface=(0, 50)),
-    Figure("5-9", "Centre pressure at three stroking velocities", SUB_SPEEDS, DISTANCE, (P_CENTRE,),
-           {DISTANCE: "T248", P_CENTRE: "T250"}, below(fill=BY_SPEED, legend={"loc": "upper right", "handlelength": 2.8}),
-           surface=(0, 50)),
-    Figure("5-10", "Contact pressure and skin curvature at nine nodes, 10 mm/s", SUB_TEN, TIME, (SKIN_CURVATURE,),
-           {TIME: "T255", P: "T254", SKIN_CURVATURE: "T253"},
-           nine(AT_NODES, 5.6, header=0.16, by="panel", titles=str, limit="x",
-                fill=Lines(by="panel", looks=LOOKS, hidden={SKIN_CURVATURE: P})),
-           rows=nodes_over_time, extra=two_axes, how=HOW),
-    Figure("5-11", "Centre pressure and scaled skin curvature, 10 mm/s", TEN_RUN, STROKE_TIME, (P_CENTRE, SCALED_CURVATURE),
-           {TIME: "T257", P_CENTRE: "T256"}, below(3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
-           keep=(DISTANCE,), surface=(0, 80)),
-    Figure("5-12", "Centre pressure at five stroking velocities", SPEEDS, DISTANCE, (P_CENTRE,),
-           {DISTANCE: "T260", P_CENTRE: "T259"}, stack(5.6), surface=(0, 80)),
-    Figure("5-13", "Strain energy density 915 µm under the centre at five stroking velocities", SPEEDS, DISTANCE, (sed(DEEP),),
-           {DISTANCE: "T262", SED: "T261"}, stack(5.6), surface=(0, 80), constants={RECEPTOR: DEEP * 1e6}),
-    Figure("5-15", "Lateral displacement of the centre node", SPEEDS.only(SUB_SPEEDS), DISTANCE, (LATERAL,),
-           {DISTANCE: "T260", LATERAL: "T266b"},
-           below(3.3, fill=BY_SPEED, limit="x", legend={"loc": "upper right", "ncols": 3, "handlelength": 2.8}),
-           surface=(0, 80), extra=from_half_a_millimetre),
-    Figure("5-18", "Largest strain energy density 915 µm under the centre", (PRESSED, TEN_RUN), CURVATURE, (SED,),
-           {CURVATURE: "T277", SED: "T276"},
-           Panels(height=2.8, legend={"loc": "upper left", "handlelength": 3},
-                  fill=Lines(by="series", names={TEN: f"stroked at {TEN}"}, bars=True,
-                             looks={"ramp and hold": {"marker": "o", "ms": 3.5, "color": style.INK},
-                                    TEN: OTHER | {"marker": "s", "ms": 3.5}})),
-           rows=largest_energies, width=style.COLUMN_WIDTH, joined="series"),
-    Figure("5-24", "Strain energy density 560 µm under the centre at five stroking velocities", SPEEDS, DISTANCE, (sed(SHALLOW),),
-           {DISTANCE: "T308", SED: "T307"}, stack(5.6), surface=(40, 80), constants={RECEPTOR: SHALLOW * 1e6}),
-)  # fmt: skip
+    Figure(
+        "5-4",
+        "Length of each convexity in contact with the centre node",
+        SPEEDS,
+        CURVATURE,
+        (LENGTH,),
+        {CURVATURE: "T229", RADIUS: "T230", LENGTH: "T228"},
+        Panels(
+            height=3.0,
+            pairs=((CURVATURE, LENGTH), (RADIUS, LENGTH)),
+            shape=(1, 2),
+            fill=at_ten,
+            legend={"loc": "lower right"},
+        ),
+        rows=lengths,
+        remarks=("Recorded burst widths are not available.",),
+    ),
+    at_locations(
+        "5-5",
+        "Skin and contact pressure, surface stepped over the pad by 1 mm",
+        STEPPED_OVER,
+        "T240",
+    ),
+    at_locations(
+        "5-6", "Skin and contact pressure, surface stroked over the pad at 10 mm/s", SUB_TEN, "T241"
+    ),
+    Figure(
+        "5-7",
+        "Centre pressure and scaled skin curvature, stepped by 1 mm",
+        STEPPED_OVER,
+        DISTANCE,
+        (P_CENTRE, SCALED_CURVATURE),
+        {DISTANCE: "T246", P_CENTRE: "T245"},
+        below(fill=SAMPLED, ylabel=P.label, legend={"loc": "lower right", "handlelength": 2.6}),
+        surface=(0, 50),
+        extra=zero_line,
+    ),
+    Figure(
+        "5-8",
+        "Centre pressure, stepped and stroked",
+        (STEPPED_OVER, SUB_TEN),
+        DISTANCE,
+        (P_CENTRE,),
+        {DISTANCE: "T248", P_CENTRE: "T247"},
+        below(
+            fill=Lines(
+                looks={
+                    "stepped": OTHER | {"marker": ".", "ms": 3},
+                    TEN: {"color": style.INK, "ls": "-"},
+                },
+                names={"stepped": "stepped by 1 mm", TEN: "stroked, 10 mm/s"},
+            ),
+            legend={"loc": "upper right", "handlelength": 2.6},
+        ),
+        surface=(0, 50),
+    ),
+    Figure(
+        "5-9",
+        "Centre pressure at three stroking velocities",
+        SUB_SPEEDS,
+        DISTANCE,
+        (P_CENTRE,),
+        {DISTANCE: "T248", P_CENTRE: "T250"},
+        below(fill=BY_SPEED, legend={"loc": "upper right", "handlelength": 2.8}),
+        surface=(0, 50),
+    ),
+    Figure(
+        "5-10",
+        "Contact pressure and skin curvature at nine nodes, 10 mm/s",
+        SUB_TEN,
+        TIME,
+        (SKIN_CURVATURE,),
+        {TIME: "T255", P: "T254", SKIN_CURVATURE: "T253"},
+        nine(
+            AT_NODES,
+            5.6,
+            header=0.16,
+            by="panel",
+            titles=str,
+            limit="x",
+            fill=Lines(by="panel", looks=LOOKS, hidden={SKIN_CURVATURE: P}),
+        ),
+        rows=nodes_over_time,
+        extra=two_axes,
+        how=HOW,
+    ),
+    Figure(
+        "5-11",
+        "Centre pressure and scaled skin curvature, 10 mm/s",
+        TEN_RUN,
+        STROKE_TIME,
+        (P_CENTRE, SCALED_CURVATURE),
+        {TIME: "T257", P_CENTRE: "T256"},
+        below(3.4, fill=WITH_CURVATURE, legend={"loc": "upper left", "handlelength": 2.6}),
+        keep=(DISTANCE,),
+        surface=(0, 80),
+    ),
+    Figure(
+        "5-12",
+        "Centre pressure at five stroking velocities",
+        SPEEDS,
+        DISTANCE,
+        (P_CENTRE,),
+        {DISTANCE: "T260", P_CENTRE: "T259"},
+        stack(5.6),
+        surface=(0, 80),
+    ),
+    Figure(
+        "5-13",
+        "Strain energy density 915 µm under the centre at five stroking velocities",
+        SPEEDS,
+        DISTANCE,
+        (sed(DEEP),),
+        {DISTANCE: "T262", SED: "T261"},
+        stack(5.6),
+        surface=(0, 80),
+        constants={RECEPTOR: DEEP * 1e6},
+    ),
+    Figure(
+        "5-15",
+        "Lateral displacement of the centre node",
+        SPEEDS.only(SUB_SPEEDS),
+        DISTANCE,
+        (LATERAL,),
+        {DISTANCE: "T260", LATERAL: "T266b"},
+        below(
+            3.3,
+            fill=BY_SPEED,
+            limit="x",
+            legend={"loc": "upper right", "ncols": 3, "handlelength": 2.8},
+        ),
+        surface=(0, 80),
+        extra=from_half_a_millimetre,
+    ),
+    Figure(
+        "5-18",
+        "Largest strain energy density 915 µm under the centre",
+        (PRESSED, TEN_RUN),
+        CURVATURE,
+        (SED,),
+        {CURVATURE: "T277", SED: "T276"},
+        Panels(
+            height=2.8,
+            legend={"loc": "upper left", "handlelength": 3},
+            fill=Lines(
+                by="series",
+                names={TEN: f"stroked at {TEN}"},
+                bars=True,
+                looks={
+                    "ramp and hold": {"marker": "o", "ms": 3.5, "color": style.INK},
+                    TEN: OTHER | {"marker": "s", "ms": 3.5},
+                },
+            ),
+        ),
+        rows=largest_energies,
+        width=style.COLUMN_WIDTH,
+        joined="series",
+    ),
+    Figure(
+        "5-24",
+        "Strain energy density 560 µm under the centre at five stroking velocities",
+        SPEEDS,
+        DISTANCE,
+        (sed(SHALLOW),),
+        {DISTANCE: "T308", SED: "T307"},
+        stack(5.6),
+        surface=(40, 80),
+        constants={RECEPTOR: SHALLOW * 1e6},
+    ),
+)

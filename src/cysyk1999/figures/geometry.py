@@ -74,7 +74,9 @@ def loops(edges: np.ndarray) -> list[np.ndarray]:
         neighbours.setdefault(b, []).append(a)
     found = []
     while neighbours:
-        start = next((n for n, near in neighbours.items() if len(near) == 1), next(iter(neighbours)))
+        start = next(
+            (n for n, near in neighbours.items() if len(near) == 1), next(iter(neighbours))
+        )
         line = [start]
         while near := neighbours.get(line[-1]):
             step = near.pop()
@@ -99,7 +101,9 @@ def inward(loop: np.ndarray, distance: float) -> np.ndarray:
     points = loop[:-1]
     tangent = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
     normal = np.column_stack((-tangent[:, 1], tangent[:, 0])) / np.hypot(*tangent.T)[:, None]
-    area = np.sum(points[:, 0] * np.roll(points[:, 1], -1) - np.roll(points[:, 0], -1) * points[:, 1])
+    area = np.sum(
+        points[:, 0] * np.roll(points[:, 1], -1) - np.roll(points[:, 0], -1) * points[:, 1]
+    )
     moved = points + np.sign(area) * distance * normal
     return np.vstack((moved, moved[:1]))
 
@@ -123,11 +127,25 @@ def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
     layer, lines = np.array(mesh.regions)[mesh.region], boundaries(mesh)
     polygons = [_outline(mesh, nodes) for nodes in mesh.cells]
     counts, points = [len(p) for p in polygons], np.concatenate(polygons) * 1e3
-    numbers = {"element": np.repeat(np.arange(len(polygons)), counts), "layer": np.repeat(layer, counts)}
-    elements = {"series": "element"} | numbers | {X: points[:, 0].round(4), Y: points[:, 1].round(4)}
-    bone = {"series": "rim", "layer": "bone", X: lines["bone"][:, 0] * 1e3, Y: lines["bone"][:, 1] * 1e3}
+    numbers = {
+        "element": np.repeat(np.arange(len(polygons)), counts),
+        "layer": np.repeat(layer, counts),
+    }
+    elements = (
+        {"series": "element"} | numbers | {X: points[:, 0].round(4), Y: points[:, 1].round(4)}
+    )
+    bone = {
+        "series": "rim",
+        "layer": "bone",
+        X: lines["bone"][:, 0] * 1e3,
+        Y: lines["bone"][:, 1] * 1e3,
+    }
     skin, inner = densify(lines["skin"], 0.1e-3), inward(densify(lines["skin"], 0.1e-3), corneum)
-    held = mesh.points[loops(mesh.curves["nail"][:, :2])[0]] if "nail" in mesh.curves else np.empty((0, 2))
+    held = (
+        mesh.points[loops(mesh.curves["nail"][:, :2])[0]]
+        if "nail" in mesh.curves
+        else np.empty((0, 2))
+    )
     edges = [
         {"series": series, "layer": "stratum corneum", X: line[:, 0] * 1e3, Y: line[:, 1] * 1e3}
         for series, line in (("skin", skin), ("inner", inner), ("held", held))
@@ -137,7 +155,8 @@ def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
     values = {
         "nodes (1)": found["nodes"],
         "elements (1)": found["elements"],
-        "node_spacing_under_contact (um)": 1e6 * float(np.median(np.hypot(*np.diff(lines["skin"][top], axis=0).T))),
+        "node_spacing_under_contact (um)": 1e6
+        * float(np.median(np.hypot(*np.diff(lines["skin"][top], axis=0).T))),
         "smallest_edge (um)": found["smallest_edge_m"] * 1e6,
         "worst_scaled_jacobian (1)": found["worst_scaled_jacobian"],
     }
@@ -154,7 +173,9 @@ def _outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.nda
         return first
     middle = mesh.points[nodes[corners : 2 * corners]]
     bent = np.hypot(*(middle - (first + np.roll(first, -1, axis=0)) / 2).T) > straight
-    return np.concatenate([[a, m] if b else [a] for a, m, b in zip(first, middle, bent, strict=True)])
+    return np.concatenate(
+        [[a, m] if b else [a] for a, m, b in zip(first, middle, bent, strict=True)]
+    )
 
 
 def draw_mesh(ax: Axes, frame: pd.DataFrame, line: float = 0.22) -> None:
@@ -168,8 +189,12 @@ def draw_mesh(ax: Axes, frame: pd.DataFrame, line: float = 0.22) -> None:
     rim = frame[frame["series"] == "rim"]
     ax.fill(rim[X], rim[Y], facecolor=style.LAYER_COLOURS["bone"], edgecolor="none")
     ax.add_collection(PolyCollection(polygons, facecolors=colours, edgecolors="none"))
-    draw_corneum(ax, *(frame.loc[frame["series"] == name, [X, Y]].to_numpy() for name in ("skin", "inner")))
-    ax.add_collection(PolyCollection(polygons, facecolors="none", edgecolors="0.25", linewidths=line))
+    draw_corneum(
+        ax, *(frame.loc[frame["series"] == name, [X, Y]].to_numpy() for name in ("skin", "inner"))
+    )
+    ax.add_collection(
+        PolyCollection(polygons, facecolors="none", edgecolors="0.25", linewidths=line)
+    )
     held = frame[frame["series"] == "held"]
     if len(held):
         ax.plot(held[X], held[Y], color=style.INK, lw=2.4, solid_capstyle="butt")
@@ -183,14 +208,18 @@ def draw_corneum(ax: Axes, skin: np.ndarray, inner: np.ndarray) -> None:
     if len(skin) and len(inner):
         codes = [[Path.MOVETO, *[Path.LINETO] * (len(line) - 1)] for line in (skin, inner)]
         ring = Path(np.vstack((skin, inner[::-1])), np.concatenate(codes))
-        ax.add_patch(PathPatch(ring, facecolor=style.LAYER_COLOURS["stratum corneum"], edgecolor="none"))
+        ax.add_patch(
+            PathPatch(ring, facecolor=style.LAYER_COLOURS["stratum corneum"], edgecolor="none")
+        )
 
 
 def layer_patches(layers: tuple[str, ...] = LAYERS) -> list:
     """Entries of a legend of the layers."""
     from matplotlib.patches import Patch
 
-    return [Patch(facecolor=style.LAYER_COLOURS[k], edgecolor="0.25", lw=0.4, label=k) for k in layers]
+    return [
+        Patch(facecolor=style.LAYER_COLOURS[k], edgecolor="0.25", lw=0.4, label=k) for k in layers
+    ]
 
 
 def quality_of(frame: pd.DataFrame) -> pd.Series:
@@ -211,14 +240,24 @@ def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[st
 
     points = history["node_position"].values
     cells, region = history["element_nodes"].values, history["element_region"].values
-    numbered = boundaries(PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True), as_nodes=True)
-    moved = history["snapshot_displacement"].values[leg_of(history, depth)] if depth else np.zeros_like(points)
+    numbered = boundaries(
+        PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True), as_nodes=True
+    )
+    moved = (
+        history["snapshot_displacement"].values[leg_of(history, depth)]
+        if depth
+        else np.zeros_like(points)
+    )
     lines = {name: points[nodes] + moved[nodes] for name, nodes in numbered.items()}
     if corneum:
         inner = inward(densify(points[numbered["skin"]], 0.1e-3), stratum_corneum(history))
         epidermis = np.unique(cells[region == 0])
         # in mm: in m its search for triangles takes many times as long
-        motion = LinearNDInterpolator(points[epidermis] * 1e3, moved[epidermis])(inner * 1e3) if depth else 0.0
+        motion = (
+            LinearNDInterpolator(points[epidermis] * 1e3, moved[epidermis])(inner * 1e3)
+            if depth
+            else 0.0
+        )
         lines["corneum"] = inner + motion
     x = np.linspace(-8.4e-3, 8.4e-3, 1681)
     height = scene_of(history).stimulus.outline(x) + points[:, 1].max() - depth
@@ -226,11 +265,20 @@ def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[st
     return lines
 
 
-def section_rows(panel: str, state: str, lines: dict[str, np.ndarray], layers: tuple[str, ...], errors: Errors) -> pd.DataFrame:
+def section_rows(
+    panel: str, state: str, lines: dict[str, np.ndarray], layers: tuple[str, ...], errors: Errors
+) -> pd.DataFrame:
     """Some lines of a `section` as rows."""
     parts = [
         pd.DataFrame(
-            {"panel": panel, "phase": state, "layer": k, X: lines[k][:, 0] * 1e3, Y: lines[k][:, 1] * 1e3} | errors.columns
+            {
+                "panel": panel,
+                "phase": state,
+                "layer": k,
+                X: lines[k][:, 0] * 1e3,
+                Y: lines[k][:, 1] * 1e3,
+            }
+            | errors.columns
         )
         for k in layers
     ]

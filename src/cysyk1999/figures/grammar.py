@@ -35,7 +35,18 @@ from cysyk1999.measures.errors import (
     over_time,
     thinned,
 )
-from cysyk1999.measures.quantities import CURVATURE, DISTANCE, DOWN, HEIGHT, P_CENTRE, P_PEAK, TIME, P, Q, X
+from cysyk1999.measures.quantities import (
+    CURVATURE,
+    DISTANCE,
+    DOWN,
+    HEIGHT,
+    P_CENTRE,
+    P_PEAK,
+    TIME,
+    P,
+    Q,
+    X,
+)
 from cysyk1999.measures.responses import curvature_of
 from cysyk1999.measures.runs import Runs
 from cysyk1999.measures.table import MEASURES
@@ -117,11 +128,24 @@ class Data:
             sunk = -history["skin_displacement_y"].values
             for index, phase in phase_indices(history):
                 x, p = edged_profile(history, index)
-                errors = curve_errors(history, coarse, at_output(float(history["time"][index]), edged_profile, PROFILE_ORDER))
+                errors = curve_errors(
+                    history,
+                    coarse,
+                    at_output(float(history["time"][index]), edged_profile, PROFILE_ORDER),
+                )
                 near = in_contact(history, index)
-                down = np.interp(x, profile(history, index)[0][near], sunk[index][near]) if near.any() else 0 * x
+                down = (
+                    np.interp(x, profile(history, index)[0][near], sunk[index][near])
+                    if near.any()
+                    else 0 * x
+                )
                 keep = (x >= 0) & near.any() if half else np.full(len(x), near.any())
-                part = {"phase": phase, TIME: history["time"].values[index], X: x[keep] * 1e3, DOWN: down[keep] * 1e3}
+                part = {
+                    "phase": phase,
+                    TIME: history["time"].values[index],
+                    X: x[keep] * 1e3,
+                    DOWN: down[keep] * 1e3,
+                }
                 parts.append(pd.DataFrame(part | {P: p[keep], **errors.columns, runs.column: name}))
         return pd.concat(parts, ignore_index=True)
 
@@ -132,7 +156,10 @@ class Data:
         def read(history: xr.Dataset) -> pd.Series:
             return pd.Series({q: each(history) for q, each in columns.items()}, dtype=float)
 
-        rows, sparse = pd.DataFrame(map(read, histories)), pd.DataFrame([read(thinned(history)) for history in histories])
+        rows, sparse = (
+            pd.DataFrame(map(read, histories)),
+            pd.DataFrame([read(thinned(history)) for history in histories]),
+        )
         others = [instead(history, companion, read) for _, history, companion in self.runs(runs)]
         mesh, left, both = map(pd.DataFrame, zip(*others, strict=True))
         sizes = rows.abs() if own else rows.abs().max()
@@ -173,7 +200,10 @@ class Data:
         return pd.DataFrame(part | {HEIGHT: heights, CURVATURE: curvature})
 
     def bands(
-        self, column: str, measures: Mapping[str, Mapping[str, object]], read: Callable[[float], float] = float
+        self,
+        column: str,
+        measures: Mapping[str, Mapping[str, object]],
+        read: Callable[[float], float] = float,
     ) -> pd.DataFrame:
         """How far other pads differ that the thesis's figures do not rule out: two rows (its ends) a surface and measure.
 
@@ -217,7 +247,9 @@ def edged_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarr
     spacing = x[touch[0] + 1] - x[touch[0]]
     inside = touch[(x[touch] < end - spacing / 2) | (touch == touch[0])]
     to_edge = np.linspace(0, 1, 9)[1:]
-    right = np.append(x[inside], x[inside[-1]] + (1 - (1 - to_edge) ** 2) * max(end - x[inside[-1]], 0.0))
+    right = np.append(
+        x[inside], x[inside[-1]] + (1 - (1 - to_edge) ** 2) * max(end - x[inside[-1]], 0.0)
+    )
     pressure = np.append(p[inside], p[inside[-1]] * (1 - to_edge))
     return np.append(-right[:0:-1], right), np.append(pressure[:0:-1], pressure)
 
@@ -228,15 +260,23 @@ def upper_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarr
     return tuple(part[upper] for part in profile(history, index))
 
 
-def largest_of(pairs: Sequence[tuple[pd.DataFrame, pd.DataFrame]], sizes: pd.DataFrame | pd.Series) -> pd.DataFrame:
+def largest_of(
+    pairs: Sequence[tuple[pd.DataFrame, pd.DataFrame]], sizes: pd.DataFrame | pd.Series
+) -> pd.DataFrame:
     """The errors (columns `PARTS`, %) of each row's number that is furthest off, relative to sizes; none of what is zero.
 
     pairs: numbers that differ by the mesh, by the steps, and by how many outputs are read.
     """
-    parts = [100 * left * (a - b).abs() / sizes.replace(0, np.nan) for left, (a, b) in zip(LEFT, pairs, strict=True)]
+    parts = [
+        100 * left * (a - b).abs() / sizes.replace(0, np.nan)
+        for left, (a, b) in zip(LEFT, pairs, strict=True)
+    ]
     worst = sum(part.fillna(0) for part in parts).to_numpy().argmax(axis=1)
     rows = np.arange(len(worst))
-    return pd.DataFrame({name: part.to_numpy()[rows, worst] for name, part in zip(PARTS, parts, strict=True)}, parts[0].index)
+    return pd.DataFrame(
+        {name: part.to_numpy()[rows, worst] for name, part in zip(PARTS, parts, strict=True)},
+        parts[0].index,
+    )
 
 
 def below(rows: pd.DataFrame, *others: pd.DataFrame) -> pd.DataFrame:
@@ -334,12 +374,16 @@ class Figure:
     @property
     def needs(self) -> tuple[str, ...]:
         """Names of the scenes whose histories the frame is made from."""
-        return tuple(dict.fromkeys(scene for runs in self.all_runs for scene in runs.scenes.values()))
+        return tuple(
+            dict.fromkeys(scene for runs in self.all_runs for scene in runs.scenes.values())
+        )
 
     @property
     def read_companions(self) -> tuple[str, ...]:
         """Names of the scenes whose coarse companions the frame reads."""
-        return tuple(dict.fromkeys(scene for runs in self.all_runs for scene in runs.companion_scenes))
+        return tuple(
+            dict.fromkeys(scene for runs in self.all_runs for scene in runs.companion_scenes)
+        )
 
     def measurements(self, folder: str | PathLike) -> tuple[pd.DataFrame, ...]:
         """The measured data in `folder` that `frame` takes after its four arguments: one table or none."""
@@ -370,11 +414,15 @@ class Figure:
         marks = [data.axis(column, ids, self.key) for column, ids in self.thesis.items()]
         if self.after:
             marks.append(self.after(data))
-        return without_round_off(pd.concat([rows, *(part for part in marks if len(part))], ignore_index=True))
+        return without_round_off(
+            pd.concat([rows, *(part for part in marks if len(part))], ignore_index=True)
+        )
 
     def _traces(self, data: Data) -> pd.DataFrame:
         columns = (*self.keep, self.x, *self.y)
-        rows = pd.concat([data.traces(runs, columns, self.checked) for runs in self.all_runs], ignore_index=True)
+        rows = pd.concat(
+            [data.traces(runs, columns, self.checked) for runs in self.all_runs], ignore_index=True
+        )
         rows = rows.assign(**self.constants)
         if self.surface is None:
             return rows
@@ -388,9 +436,20 @@ class Figure:
             how = self.how if self.how is not None else HOW if self.surface else ""
             wide = style.note_width(self.width)
             through = [(self.joined, q) for q in self.y if self.joined]
-            lines = style.wrapped(self.note(frame), wide) if self.note else axs.footnote(frame, how, wide, through)
+            lines = (
+                style.wrapped(self.note(frame), wide)
+                if self.note
+                else axs.footnote(frame, how, wide, through)
+            )
             lines += axs.statement(frame, wide)
-            fig = style.sheet(self.title, lines, self.layout.height, self.number, self.layout.header, width=self.width)
+            fig = style.sheet(
+                self.title,
+                lines,
+                self.layout.height,
+                self.number,
+                self.layout.header,
+                width=self.width,
+            )
             panels = self.layout.draw(fig, frame, self)
             if self.extra:
                 self.extra(panels, frame)
@@ -423,14 +482,20 @@ class Lines:
         curves = own.groupby(self.by or spec.all_runs[0].column, sort=False)
         for name, curve in sorted(curves, key=lambda item: [*self.looks, item[0]].index(item[0])):
             for q in spec.y:
-                label = self.names.get(q) or self.names.get(name, str(name) if len(spec.y) == 1 else q)
+                label = self.names.get(q) or self.names.get(
+                    name, str(name) if len(spec.y) == 1 else q
+                )
                 look = axs.look(name) | self.looks.get(name, {}) | self.looks.get(q, {})
                 y = curve[q].where(curve[self.hidden[q]] > 0) if q in self.hidden else curve[q]
                 shown = curve.assign(**{q: y} | ({} if q.checked else dict.fromkeys(PARTS, np.nan)))
                 axs.curve(ax, shown, spec.x, q, label=label, points=self.bars, **look)
             ends[name] = (curve[spec.x].iloc[-1], curve[spec.y[-1]].iloc[-1])
         if self.recorded and len(points := rows[rows["source"].str.startswith("measured")]):
-            ax.plot(points[spec.x], points[spec.y[0]], **{"ls": "none", "marker": "x", "label": "recorded"} | self.recorded)
+            ax.plot(
+                points[spec.x],
+                points[spec.y[0]],
+                **{"ls": "none", "marker": "x", "label": "recorded"} | self.recorded,
+            )
         if self.ends is not None:
             style.label_ends(ax, ends, self.ends, self.heading)
 
@@ -445,7 +510,9 @@ class Phases:
     def __call__(self, ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
         own = rows[is_simulated(rows)]
         times = [TIME] if TIME in own else []
-        for (phase, *_), curve in sorted(own.groupby(["phase", *times]), key=lambda item: self.order.index(item[0][0])):
+        for (phase, *_), curve in sorted(
+            own.groupby(["phase", *times]), key=lambda item: self.order.index(item[0][0])
+        ):
             colour = axs.look(self.colour or curve["surface"].iloc[0])
             axs.curve(ax, curve, spec.x, spec.y[0], **colour | axs.PHASE_LINES[phase])
 
@@ -509,7 +576,9 @@ class Panels:
             elif self.limit == "xy":
                 axs.limit_axes(ax, within, spec.x, spec.y[0], text)
             elif self.limit:
-                axs.limit_axis(ax, within, spec.x if self.limit == "x" else spec.y[0], self.limit, text)
+                axs.limit_axis(
+                    ax, within, spec.x if self.limit == "x" else spec.y[0], self.limit, text
+                )
             self.fill(ax, rows, spec)
             ax.set(**self.set)
             tops.append(ax.get_ylim()[1])
@@ -545,7 +614,9 @@ class Panels:
             grid[-1].legend(**self.legend)
         return dict(zip(self.pairs, grid, strict=True))
 
-    def _place(self, fig: Picture, frame: pd.DataFrame, spec: Figure) -> tuple[dict[object, Axes], np.ndarray]:
+    def _place(
+        self, fig: Picture, frame: pd.DataFrame, spec: Figure
+    ) -> tuple[dict[object, Axes], np.ndarray]:
         if spec.surface is None:
             grid = fig.subplots(*self.shape, squeeze=False, **self.share)
             return dict(zip(self.names, grid.ravel(), strict=False)), grid
@@ -578,6 +649,15 @@ def nine(names: Sequence[object], height: float, **options) -> Panels:
 
 def stack(height: float, **options) -> Panels:
     """A panel a velocity below the surface."""
-    options = {"by": "series", "corner": lambda series: f"v = {series}", "alike": True, "marked": "10 mm/s"} | options
+    options = {
+        "by": "series",
+        "corner": lambda series: f"v = {series}",
+        "alike": True,
+        "marked": "10 mm/s",
+    } | options
     names = tuple(f"{v} mm/s" for v in style.SPEED_COLOURS)
-    return Panels(height=height, names=names, **{"fill": Lines(looks=dict.fromkeys(names, {"ls": "-"}))} | options)
+    return Panels(
+        height=height,
+        names=names,
+        **{"fill": Lines(looks=dict.fromkeys(names, {"ls": "-"}))} | options,
+    )

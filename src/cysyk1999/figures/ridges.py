@@ -13,7 +13,15 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from cysyk1999.figures import axes as axs
-from cysyk1999.figures.geometry import LAYERS, NOTE, draw_mesh, layer_patches, mesh_rows, quality_of, stratum_corneum
+from cysyk1999.figures.geometry import (
+    LAYERS,
+    NOTE,
+    draw_mesh,
+    layer_patches,
+    mesh_rows,
+    quality_of,
+    stratum_corneum,
+)
 from cysyk1999.figures.grammar import HOW, Data, Figure, Lines, Own, Panels, stacked
 from cysyk1999.measures.direction import BESIDE, DEPTH, OFFSETS, UNDER_TIP
 from cysyk1999.measures.errors import curve_errors, over_stroke, total
@@ -45,8 +53,12 @@ LOOKS = {
 def elements(data: Data) -> pd.DataFrame:
     """Elements of the ridged pad within the thesis's window."""
     rows = mesh_rows(data.meshes[FLAT["flat"]], stratum_corneum(data.histories[FLAT["flat"]]))
-    rows = rows[(rows["series"] != "element") | (rows[X].abs().le(WINDOW[0] + 2.5) & rows[Y].ge(-2.5))]
-    whole = rows.groupby("element")[Y].transform("size") >= 4  # those cut by the window's edge are left out
+    rows = rows[
+        (rows["series"] != "element") | (rows[X].abs().le(WINDOW[0] + 2.5) & rows[Y].ge(-2.5))
+    ]
+    whole = (
+        rows.groupby("element")[Y].transform("size") >= 4
+    )  # those cut by the window's edge are left out
     return rows[(rows["series"] != "element") | whole].reset_index(drop=True)
 
 
@@ -61,17 +73,38 @@ def mesh_and_detail(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
     whole.set(xlim=(-WINDOW[0], WINDOW[0]), ylim=(0, WINDOW[1]), xticks=range(-5, 6))
     left, right, low, high = DETAIL
     detail.set(xlim=(left, right), ylim=(low, high))
-    whole.add_patch(Rectangle((left, low), right - left, high - low, fill=False, ec=style.INK, lw=0.8))
-    small = {"ncols": 4, "handlelength": 1.0, "columnspacing": 0.9, "fontsize": 6.5, "borderaxespad": 0.2}
+    whole.add_patch(
+        Rectangle((left, low), right - left, high - low, fill=False, ec=style.INK, lw=0.8)
+    )
+    small = {
+        "ncols": 4,
+        "handlelength": 1.0,
+        "columnspacing": 0.9,
+        "fontsize": 6.5,
+        "borderaxespad": 0.2,
+    }
     whole.legend(handles=layer_patches(LAYERS[:-1]), loc="upper left", **small)
-    detail.plot([-BESIDE * 1e3, 0, BESIDE * 1e3], [6.0 - DEPTH * 1e3] * 3, "o", mfc="white", mec=style.INK, ms=3.2, mew=0.7)
+    detail.plot(
+        [-BESIDE * 1e3, 0, BESIDE * 1e3],
+        [6.0 - DEPTH * 1e3] * 3,
+        "o",
+        mfc="white",
+        mec=style.INK,
+        ms=3.2,
+        mew=0.7,
+    )
     value = quality_of(frame)
-    detail.set_title(f"{value['nodes (1)']:,.0f} nodes, smallest edge {value['smallest_edge (um)']:.0f} µm", fontsize=6.5)
+    detail.set_title(
+        f"{value['nodes (1)']:,.0f} nodes, smallest edge {value['smallest_edge (um)']:.0f} µm",
+        fontsize=6.5,
+    )
 
 
 def at_two_places(data: Data) -> pd.DataFrame:
     """Strain energy at 915 um against time, nine surfaces, at the centre and beside it."""
-    rows = stacked({panel: data.traces(RIDGED_NINE, (TIME, sed(DEPTH, x))) for panel, x in PLACES.items()})
+    rows = stacked(
+        {panel: data.traces(RIDGED_NINE, (TIME, sed(DEPTH, x))) for panel, x in PLACES.items()}
+    )
     rows.insert(0, "source", rows.pop("source"))
     return rows
 
@@ -87,27 +120,40 @@ def named_at_both(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
         axis = frame.loc[frame["source"].str.contains("axis range"), SED].max()
         if axis == axis:
             text = f"thesis's axis: to {axis:.0f} Pa, {axis / rows[SED].max():.1f} times as high"
-            ax.text(0.03, 0.98, text, transform=ax.transAxes, va="top", fontsize=6.5, color=style.GREY)
+            ax.text(
+                0.03, 0.98, text, transform=ax.transAxes, va="top", fontsize=6.5, color=style.GREY
+            )
 
 
 def at_receptors(data: Data, runs: Runs) -> pd.DataFrame:
     """Strain energy over time at the thesis's three receptors, and under the tip if there are ridges, both ways."""
-    places = {series: (DEPTH, x) for series, x in OFFSETS.items()} | ({EXTRA: (UNDER_TIP, 0.0)} if runs is RIDGED else {})
+    places = {series: (DEPTH, x) for series, x in OFFSETS.items()} | (
+        {EXTRA: (UNDER_TIP, 0.0)} if runs is RIDGED else {}
+    )
     parts, right = [], runs["right"]
     for way, scene in runs.scenes.items():
         stroke = loaded(data.histories[scene])
         for series, (depth, x) in places.items():
             # the two ways are mirror images: the companion of the stroke to the right serves both, read on either side
             side = sed(depth, x if way == "right" else -x).read
-            errors = curve_errors(data.histories[right], data.coarse.get(right), over_stroke(side)).columns
-            part = {"source": SIMULATED, "panel": way, "series": series, TIME: STROKE_TIME.read(stroke)}
+            errors = curve_errors(
+                data.histories[right], data.coarse.get(right), over_stroke(side)
+            ).columns
+            part = {
+                "source": SIMULATED,
+                "panel": way,
+                "series": series,
+                TIME: STROKE_TIME.read(stroke),
+            }
             parts.append(pd.DataFrame(part | {SED: sed(depth, x).read(stroke)} | errors))
     return pd.concat(parts, ignore_index=True)
 
 
 def name_receptors(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     series = frame.loc[is_simulated(frame), "series"].unique()
-    style.header_legend(panels["right"].figure, [style.handle(each, **LOOKS[each]) for each in series])
+    style.header_legend(
+        panels["right"].figure, [style.handle(each, **LOOKS[each]) for each in series]
+    )
 
 
 def magnify_the_difference(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
@@ -115,7 +161,9 @@ def magnify_the_difference(panels: Mapping[object, Axes], frame: pd.DataFrame) -
     name_receptors(panels, frame)
     own = frame[is_simulated(frame)]
     for way, ax in panels.items():
-        curves = {series: rows for series, rows in own[own["panel"] == way].groupby("series", sort=False)}
+        curves = {
+            series: rows for series, rows in own[own["panel"] == way].groupby("series", sort=False)
+        }
         high = own[SED].min() / ax.get_ylim()[1] - 0.26  # below the curves
         inset, centre = ax.inset_axes((0.16, 0.12, 0.8, max(high, 0.15))), curves.pop("centre")
         for series, rows in curves.items():
@@ -126,35 +174,94 @@ def magnify_the_difference(panels: Mapping[object, Axes], frame: pd.DataFrame) -
         inset.tick_params(labelbottom=False)
 
 
-def plate_stroked(number: str, pad: str, runs: Runs, axis: str, remark: str, extra=name_receptors) -> Figure:
+def plate_stroked(
+    number: str, pad: str, runs: Runs, axis: str, remark: str, extra=name_receptors
+) -> Figure:
     """Figs 5-28 and 5-29."""
 
     def note(frame: pd.DataFrame) -> list[str]:
         beside = frame["series"].isin(["x = −46 µm", "x = 46 µm"]) | ~is_simulated(frame)
         others = total(frame[~beside]).groupby(frame["series"]).max().dropna()
-        how = f"at x = ±46 µm, {HOW}" + "".join(f"; {each} {value:.1f} %" for each, value in others.items())
+        how = f"at x = ±46 µm, {HOW}" + "".join(
+            f"; {each} {value:.1f} %" for each, value in others.items()
+        )
         return axs.footnote(frame[beside], how)
 
     title = f"Strain energy density at 915 µm, flat plate stroked at 10 mm/s, {pad}"
-    return Figure(number, title, runs, STROKE_TIME, (SED,), {TIME: "T318", SED: axis},
-                  Panels(height=3.0, header=0.16, by="panel", names=tuple(WAYS), shape=(1, 2), alike=True, marked="left",
-                         fill=Lines(by="series", looks=LOOKS), titles=WAYS.get, each=True, share={"sharey": True}),
-                  rows=partial(at_receptors, runs=runs), note=note, extra=extra,
-                  remarks=(remark,))  # fmt: skip
+    return Figure(
+        number,
+        title,
+        runs,
+        STROKE_TIME,
+        (SED,),
+        {TIME: "T318", SED: axis},
+        Panels(
+            height=3.0,
+            header=0.16,
+            by="panel",
+            names=tuple(WAYS),
+            shape=(1, 2),
+            alike=True,
+            marked="left",
+            fill=Lines(by="series", looks=LOOKS),
+            titles=WAYS.get,
+            each=True,
+            share={"sharey": True},
+        ),
+        rows=partial(at_receptors, runs=runs),
+        note=note,
+        extra=extra,
+        remarks=(remark,),
+    )
 
 
 FIGURES = (
-    Figure("5-25", "Finite element mesh of the fingerpad with inner ridges", FLAT, X, (Y,), {X: "T309", Y: "T310"},
-           Own(height=3.75, paint=mesh_and_detail), rows=elements, meshes=True,
-           note=lambda frame: [NOTE],
-           remarks=("The thesis states neither pitch nor height of its ridges: 0.48 mm and 0.15 mm here, see "
-                               "config/reference/ridges.csv.", "Circles: the receptors of Figs 5-28 and 5-29.")),
-    Figure("5-26", "Strain energy density at 915 µm, pad with inner ridges", RIDGED_NINE, TIME, (SED,),
-           {TIME: "T312", SED: "T311"},
-           Panels(height=3.4, by="panel", names=tuple(PLACES), shape=(1, 2), each=True, limit="",
-                  fill=Lines(by="surface"), titles=str, set={"xlim": (0, 3.05)}),
-           rows=at_two_places, remarks=(LAYERED,), extra=named_at_both),
-    plate_stroked("5-28", "no ridges", PLAIN, "T317",
-                  "Times count from the start of the stroke; the pad was pressed to 20 gf before.", magnify_the_difference),
+    Figure(
+        "5-25",
+        "Finite element mesh of the fingerpad with inner ridges",
+        FLAT,
+        X,
+        (Y,),
+        {X: "T309", Y: "T310"},
+        Own(height=3.75, paint=mesh_and_detail),
+        rows=elements,
+        meshes=True,
+        note=lambda frame: [NOTE],
+        remarks=(
+            "The thesis states neither pitch nor height of its ridges: 0.48 mm and 0.15 mm here, see "
+            "config/reference/ridges.csv.",
+            "Circles: the receptors of Figs 5-28 and 5-29.",
+        ),
+    ),
+    Figure(
+        "5-26",
+        "Strain energy density at 915 µm, pad with inner ridges",
+        RIDGED_NINE,
+        TIME,
+        (SED,),
+        {TIME: "T312", SED: "T311"},
+        Panels(
+            height=3.4,
+            by="panel",
+            names=tuple(PLACES),
+            shape=(1, 2),
+            each=True,
+            limit="",
+            fill=Lines(by="surface"),
+            titles=str,
+            set={"xlim": (0, 3.05)},
+        ),
+        rows=at_two_places,
+        remarks=(LAYERED,),
+        extra=named_at_both,
+    ),
+    plate_stroked(
+        "5-28",
+        "no ridges",
+        PLAIN,
+        "T317",
+        "Times count from the start of the stroke; the pad was pressed to 20 gf before.",
+        magnify_the_difference,
+    ),
     plate_stroked("5-29", "inner ridges", RIDGED, "T319", LAYERED),
-)  # fmt: skip
+)

@@ -43,7 +43,9 @@ def both_ways(
     return right, left
 
 
-def directional_index(history: xr.Dataset, depth: float, offset: float, steady: float = STEADY, tip: float = 0.0) -> float:
+def directional_index(
+    history: xr.Dataset, depth: float, offset: float, steady: float = STEADY, tip: float = 0.0
+) -> float:
     """Mean over the steady part of a stroke to the right of (W right - W left) / (W right + W left)."""
     right, left = both_ways(history, depth, offset, steady, tip)
     return float(np.mean((right - left) / (right + left)))

@@ -61,11 +61,15 @@ class Companion:
     @cached_property
     def sparse(self) -> xr.Dataset:
         """The one with the run's own steps at the outputs of the other: what these two differ by is the steps'."""
-        return self.mesh if self.mesh.sizes["time"] == self.both.sizes["time"] else thinned(self.mesh)
+        return (
+            self.mesh if self.mesh.sizes["time"] == self.both.sizes["time"] else thinned(self.mesh)
+        )
 
     def apart(self, history: xr.Dataset) -> xr.Dataset | None:
         """The one with the run's own steps; None where its mesh has as many nodes as the run's: it tells nothing of its error."""
-        own, other = (_planned(each).get("discretisation", {}).get("nodes") for each in (history, self.mesh))
+        own, other = (
+            _planned(each).get("discretisation", {}).get("nodes") for each in (history, self.mesh)
+        )
         return None if own is not None and own == other else self.mesh
 
     def remains(self, history: xr.Dataset, order: float = ORDER) -> float:
@@ -85,7 +89,11 @@ class Companion:
             return np.nan
         (x, y), (xm, ym) = curve(history), curve(other)
         # over the skin at the nodes of the coarser mesh: what is between them is no error of these
-        change = norm(x, y - np.interp(x, xm, ym)) if curve.outputs else norm(xm, ym - np.interp(xm, x, y))
+        change = (
+            norm(x, y - np.interp(x, xm, ym))
+            if curve.outputs
+            else norm(xm, ym - np.interp(xm, x, y))
+        )
         return self.remains(history, curve.order) * change
 
     def number(self, history: xr.Dataset, own: Number, other: Number) -> Number:
@@ -106,7 +114,9 @@ def _external(planned: Mapping[str, Any]) -> bool:
     return "mesh_size_SI" in planned and planned["mesh_size_SI"] is None
 
 
-def instead(history: xr.Dataset, companion: Companion | None, read: Callable[[xr.Dataset], Number]) -> tuple[Number, ...]:
+def instead(
+    history: xr.Dataset, companion: Companion | None, read: Callable[[xr.Dataset], Number]
+) -> tuple[Number, ...]:
     """What is read in place of a run's: on a coarser mesh, and there with its own steps and coarser ones; NaN: not known."""
     own = read(history)
     if companion is None:
@@ -204,9 +214,17 @@ def over_stroke(trace: Trace, low: float = -np.inf, high: float = np.inf) -> Cur
     return Curve(read)
 
 
-def at_output(time: float, read: Callable[[xr.Dataset, int], tuple[np.ndarray, np.ndarray]], order: float = ORDER) -> Curve:
+def at_output(
+    time: float,
+    read: Callable[[xr.Dataset, int], tuple[np.ndarray, np.ndarray]],
+    order: float = ORDER,
+) -> Curve:
     """A curve over the skin, ``read(history, index)``, at the output nearest to a time (s)."""
-    return Curve(lambda history: read(history, int(np.argmin(abs(history["time"].values - time)))), False, order)
+    return Curve(
+        lambda history: read(history, int(np.argmin(abs(history["time"].values - time)))),
+        False,
+        order,
+    )
 
 
 @kept
@@ -215,9 +233,13 @@ def thinned(history: xr.Dataset, every: int = 2) -> xr.Dataset:
     if "stroke_distance" in history and np.ptp(history["stroke_distance"].values):
         history = loaded(history)
     leg = history["leg"].values
-    first = np.searchsorted(leg, leg)  # the unloaded pad is where the first leg begins, and the end of each where the next does
+    first = np.searchsorted(
+        leg, leg
+    )  # the unloaded pad is where the first leg begins, and the end of each where the next does
     count = np.arange(len(leg)) - first + (first > 0)
-    return history.isel(time=np.flatnonzero((count % every == 0) | np.append(np.diff(leg) != 0, True)))
+    return history.isel(
+        time=np.flatnonzero((count % every == 0) | np.append(np.diff(leg) != 0, True))
+    )
 
 
 def norm(x: np.ndarray, y: np.ndarray) -> float:
@@ -231,15 +253,23 @@ def curve_errors(history: xr.Dataset, companion: Companion | None, *curves: Curv
     return furthest(_of_curve(history, companion, curve) for curve in curves)
 
 
-def family_errors(history: xr.Dataset, companion: Companion | None, curves: Iterable[Curve]) -> Errors:
+def family_errors(
+    history: xr.Dataset, companion: Companion | None, curves: Iterable[Curve]
+) -> Errors:
     """Errors of curves drawn as one family: r.m.s. of all of them over that of what they show, in per cent.
 
     For many lines of one quantity on one axis, of which some hardly rise from zero: relative to themselves these tell nothing.
     """
-    found = [(norm(*curve(history)), astuple(_of_curve(history, companion, curve))) for curve in curves]
+    found = [
+        (norm(*curve(history)), astuple(_of_curve(history, companion, curve))) for curve in curves
+    ]
     size, parts = np.array([size for size, _ in found]), np.array([parts for _, parts in found])
     whole = np.linalg.norm(size) or np.inf
-    return Errors(*(np.linalg.norm(size[:, None] * np.where(size[:, None] > 0, parts, 0.0), axis=0) / whole).tolist())
+    return Errors(
+        *(
+            np.linalg.norm(size[:, None] * np.where(size[:, None] > 0, parts, 0.0), axis=0) / whole
+        ).tolist()
+    )
 
 
 def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) -> Errors:
@@ -249,7 +279,11 @@ def _of_curve(history: xr.Dataset, companion: Companion | None, curve: Curve) ->
         return Errors(np.nan, np.nan, share * sampling(history, curve))
     (xb, yb), sparse = curve(companion.both), curve(companion.sparse)
     steps = STEPS_REMAIN * norm(xb, yb - np.interp(xb, *sparse))
-    return Errors(share * companion.mesh_error(history, curve), share * steps, share * sampling(history, curve))
+    return Errors(
+        share * companion.mesh_error(history, curve),
+        share * steps,
+        share * sampling(history, curve),
+    )
 
 
 def shared_place(place: float, companion: Companion | None) -> float:
@@ -267,11 +301,18 @@ def sampling(history: xr.Dataset, curve: Curve) -> float:
     outputs, as rates do, those that stay change too, by 2^p - 1 times what they are wrong by. Of a surface stepped over the pad
     nothing is left out: it is pressed at these points.
     """
-    if curve.outputs and "scene" in history.attrs and any(leg.fresh for leg in scene_of(history).motion):
+    if (
+        curve.outputs
+        and "scene" in history.attrs
+        and any(leg.fresh for leg in scene_of(history).motion)
+    ):
         return 0.0
     x, y = curve(history)
     rough = [curve.sparse(history, every) for every in (2, 4)]
-    second, fourth = (np.sqrt(np.mean([norm(x, y - np.interp(x, *each)) ** 2 for each in found])) for found in rough)
+    second, fourth = (
+        np.sqrt(np.mean([norm(x, y - np.interp(x, *each)) ** 2 for each in found]))
+        for found in rough
+    )
     if second <= _ROUND_OFF * norm(x, y):
         return 0.0
     order = np.clip(np.log2(fourth / second), _ROUGH, _SMOOTH) if len(x) >= _FEW else _ROUGH

@@ -43,7 +43,9 @@ def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping
 
 def read_coarse(paths: Iterable[str | Path]) -> Mapping[str, xr.Dataset]:
     """Histories of the companions with coarser meshes and steps, by scene, of those among some files of the workflow."""
-    return _Opened(read_dataset, (path for path in map(Path, paths) if path.parent.parent.name == "coarse"))
+    return _Opened(
+        read_dataset, (path for path in map(Path, paths) if path.parent.parent.name == "coarse")
+    )
 
 
 def _read_mesh(path: Path) -> Any:

@@ -40,7 +40,19 @@ from fingerpad.measures.features import (
     skin_at,
     surface_nodes,
 )
-from fingerpad.measures.measure import Measure, Together, deep, forced, held, measure, named, slides, strokes, waves, wavy
+from fingerpad.measures.measure import (
+    Measure,
+    Together,
+    deep,
+    forced,
+    held,
+    measure,
+    named,
+    slides,
+    strokes,
+    waves,
+    wavy,
+)
 from fingerpad.measures.strokes import NODES, loaded, nodes_at
 from fingerpad.receptors.laws import ImpulseRate
 from fingerpad.receptors.spikes import impulses
@@ -76,8 +88,16 @@ def pressing(scene) -> bool:
 @measure("count", lambda scene: not wavy(scene))
 def receptor_depths(history):
     """How many of the thesis's depths there are: of its profiles, in the epidermis and in the dermis."""
-    have = set(np.round(history["receptor_depth"].values * 1e6).astype(int)) if "receptor_depth" in history else set()
-    return {"profiles": len(have & {800, 915}), "epidermis": len(have & set(UM[:6])), "dermis": len(have & set(UM[6:]))}
+    have = (
+        set(np.round(history["receptor_depth"].values * 1e6).astype(int))
+        if "receptor_depth" in history
+        else set()
+    )
+    return {
+        "profiles": len(have & {800, 915}),
+        "epidermis": len(have & set(UM[:6])),
+        "dermis": len(have & set(UM[6:])),
+    }
 
 
 @measure("um", forced)
@@ -119,10 +139,14 @@ def skin_height(history):
 @measure("N", named([PLATE]))
 def steady(history):
     """Steady force of the plate by depth."""
-    return {f"{1e3 * z:g} mm": force_N(history)[leg_end(history, z)] for z in pressed_depths(history)}
+    return {
+        f"{1e3 * z:g} mm": force_N(history)[leg_end(history, z)] for z in pressed_depths(history)
+    }
 
 
-@measure("1", lambda scene: deep(scene) and any(leg.key == "hold" for leg in scene.motion), beside=True)
+@measure(
+    "1", lambda scene: deep(scene) and any(leg.key == "hold" for leg in scene.motion), beside=True
+)
 def peak_over_steady(history, runs):
     """Largest force of a ramp and hold over the steady force of the plate at its depth."""
     return force_N(history).max() / steady_force(runs[PLATE], max(pressed_depths(history)))
@@ -153,7 +177,11 @@ def _first_peak(history: xr.Dataset) -> dict[str, int]:
     top = ramp_end(history)
     p = features.centre_pressure(history)[: top + 1]
     inner = [i for i in range(1, top) if p[i] > p[i - 1] and p[i] >= p[i + 1]]
-    return {"first": inner[0], "dip": inner[0] + int(p[inner[0] :].argmin()), "top": top} if inner else {"top": top}
+    return (
+        {"first": inner[0], "dip": inner[0] + int(p[inner[0] :].argmin()), "top": top}
+        if inner
+        else {"top": top}
+    )
 
 
 @measure("1", held)
@@ -209,7 +237,9 @@ def critical_distance(history):
     if not within.any():
         return np.nan
     x, _ = skin_at(history)
-    return 1e3 * np.mean(history["contact_width"].values[peaks[within]] / 2 - x[peaks[within], nodes[within]])
+    return 1e3 * np.mean(
+        history["contact_width"].values[peaks[within]] / 2 - x[peaks[within], nodes[within]]
+    )
 
 
 # --- decay in the hold -----------------------------------------------------------------------------------
@@ -227,21 +257,31 @@ def _decay(history: xr.Dataset, values: np.ndarray) -> tuple[float, float]:
 
 
 def _falls(history: xr.Dataset) -> dict[str, tuple[float, float]]:
-    traces = {"largest": features.peak_pressure(history), "centre": features.centre_pressure(history)}
+    traces = {
+        "largest": features.peak_pressure(history),
+        "centre": features.centre_pressure(history),
+    }
     return {k: _decay(history, v) for k, v in traces.items()}
 
 
 @measure("s", held)
 def half_of_fall(history):
     """Time to half of the fall of the pressure: of the largest, of the centre's, and at nodes past the peak."""
-    found = [_decay(history, values)[1] for values in history[PRESSURE].values.T[_past_peak(history)]]
-    spread = {"shortest": min(found), "longest": max(found), "mean": np.mean(found)} if found else {}
+    found = [
+        _decay(history, values)[1] for values in history[PRESSURE].values.T[_past_peak(history)]
+    ]
+    spread = (
+        {"shortest": min(found), "longest": max(found), "mean": np.mean(found)} if found else {}
+    )
     return {k: half for k, (_, half) in _falls(history).items()} | spread
 
 
 def _past_peak(history: xr.Dataset) -> np.ndarray:
     """Skin nodes from the centre to 0.6 mm within the contact's edge at the ramp's end."""
-    nodes, half_width = surface_nodes(history), history["contact_width"].values[ramp_end(history)] / 2
+    nodes, half_width = (
+        surface_nodes(history),
+        history["contact_width"].values[ramp_end(history)] / 2,
+    )
     return nodes[history["skin_x"].values[nodes] < half_width - 0.6e-3]
 
 
@@ -271,7 +311,9 @@ def falls_up_to(history):
     nodes, top = surface_nodes(history), ramp_end(history)
     change = history[PRESSURE].values[-1, nodes] - history[PRESSURE].values[top, nodes]
     rising = np.flatnonzero(change > 0)
-    parted = rising.size > 0 and (change[: rising[0]] < 0).all() and (change[rising[0] :] >= 0).all()
+    parted = (
+        rising.size > 0 and (change[: rising[0]] < 0).all() and (change[rising[0] :] >= 0).all()
+    )
     return 1e3 * history["skin_x"].values[nodes][rising[0]] if parted else np.nan
 
 
@@ -281,7 +323,10 @@ def falls_up_to(history):
 def _traces(history: xr.Dataset) -> dict[str, np.ndarray]:
     """Strain energy (time) Pa at the thesis's receptors: under the centre, beside it, and by other definitions."""
     places = {f"{z} um": (z * 1e-6, 0.0, "strain_energy_density") for z in (*UM, 935)}
-    places |= {f"915 um, {side}46 um": (DEPTH, x, "strain_energy_density") for side, x in (("-", -BESIDE), ("", BESIDE))}
+    places |= {
+        f"915 um, {side}46 um": (DEPTH, x, "strain_energy_density")
+        for side, x in (("-", -BESIDE), ("", BESIDE))
+    }
     places |= {f"915 um, {k}": (DEPTH, 0.0, v) for k, v in ENERGIES.items()}
     found = {}
     for condition, (z, x, name) in places.items():
@@ -302,7 +347,9 @@ def energy_peak_offset(history):
         if len(row) < 5:
             raise KeyError("receptors beside the centre")
         values = history["strain_energy_density"].values[[ramp_end(history), -1]][:, row]
-        found[f"{depth * 1e6:.0f} um"] = abs(offset[values.argmax(axis=1)]).max() / np.diff(offset).max()
+        found[f"{depth * 1e6:.0f} um"] = (
+            abs(offset[values.argmax(axis=1)]).max() / np.diff(offset).max()
+        )
     return found
 
 
@@ -332,7 +379,9 @@ def rate(history):
         return found
     held = frame[frame[TIME] >= history["time"].values[ramp_end(history)]][IMPULSE_RATE].to_numpy()
     found |= {w: windowed(history, frame[TIME], frame[IMPULSE_RATE], w) for w in ("hold", "steady")}
-    return found | ({"start of hold": held[1], "highest of hold": held[1:].max()} if len(held) > 1 else {})
+    return found | (
+        {"start of hold": held[1], "highest of hold": held[1:].max()} if len(held) > 1 else {}
+    )
 
 
 @measure("impulses/s", lambda scene: held(scene) or waves(scene))
@@ -376,7 +425,10 @@ def residual_of_eq_4_4(history, runs):
 def fall_by_eq_4_4(history, runs):
     """Relative fall in the hold of the energy by Eq 4-4, of each of the nine surfaces."""
     tops = {k: ramp_end(h) for k, h in _nine(runs).items()}
-    return {k: 1 - f[SED_LAW].iloc[-1] / f[SED_LAW].iloc[tops[k]] for k, f in runs.once(_by_eq_4_4).items()}
+    return {
+        k: 1 - f[SED_LAW].iloc[-1] / f[SED_LAW].iloc[tops[k]]
+        for k, f in runs.once(_by_eq_4_4).items()
+    }
 
 
 def _by_eq_4_4(runs: Together) -> dict[str, pd.DataFrame]:
@@ -387,7 +439,9 @@ def _by_eq_4_4(runs: Together) -> dict[str, pd.DataFrame]:
 
 def _pressure_or_energy(history: xr.Dataset) -> float:
     """The larger of 0.04 x centre pressure and strain energy (Pa), as Fig 4-21 shows them."""
-    return max(PRESSURE_SCALE * features.centre_pressure(history).max(), energy(history, DEPTH).max())
+    return max(
+        PRESSURE_SCALE * features.centre_pressure(history).max(), energy(history, DEPTH).max()
+    )
 
 
 PLAIN = (
@@ -398,26 +452,60 @@ PLAIN = (
     Measure("half_width", "mm", lambda h: 1e3 * h["contact_width"].values[-1] / 2, pressing),
     # largest downward displacement of any skin node; where a depth is prescribed, it is that, to 0.1 um
     Measure("sunk", "mm", lambda h: -1e3 * h["skin_displacement_y"].values.min(), pressing),
-    Measure("deflection", "mm", lambda h: round(-1e3 * float(h["skin_displacement_y"].values.min()), 4), deep),
+    Measure(
+        "deflection",
+        "mm",
+        lambda h: round(-1e3 * float(h["skin_displacement_y"].values.min()), 4),
+        deep,
+    ),
     Measure("largest_force", "N", lambda h: force_N(h).max(), deep),
 )
 
 PRESSURE_MEASURES = (
     Measure("highest_pressure", "Pa", lambda h: _ends(h, features.peak_pressure(h)), pressing),
     # at the first peak within the ramp, at the dip after it and at the ramp's end; without one the last alone
-    Measure("ramp_pressure", "Pa", lambda h: {k: features.centre_pressure(h)[i] for k, i in _first_peak(h).items()}, held),
-    Measure("ramp_pressure_time", "s", lambda h: {k: h["time"].values[i] for k, i in _first_peak(h).items()}, held),
+    Measure(
+        "ramp_pressure",
+        "Pa",
+        lambda h: {k: features.centre_pressure(h)[i] for k, i in _first_peak(h).items()},
+        held,
+    ),
+    Measure(
+        "ramp_pressure_time",
+        "s",
+        lambda h: {k: h["time"].values[i] for k, i in _first_peak(h).items()},
+        held,
+    ),
     Measure("off_centre_place", "mm", lambda h: 1e3 * _off_centre(h), held),
     Measure("fall_in_hold", "1", lambda h: {k: fall for k, (fall, _) in _falls(h).items()}, held),
     Measure("nodes_past_peak", "count", lambda h: len(_past_peak(h)), held),
 )
 
 ENERGY_MEASURES = (
-    Measure("highest_energy", "Pa", lambda h: {k: v.max() for k, v in _traces(shown(h)).items()}, forced),
-    Measure("energy_at_top", "Pa", lambda h: {k: v[ramp_end(h)] for k, v in _traces(h).items()}, pressing),
-    Measure("energy_at_end", "Pa", lambda h: {k: v[-1] for k, v in _traces(shown(h)).items()}, forced),
+    Measure(
+        "highest_energy", "Pa", lambda h: {k: v.max() for k, v in _traces(shown(h)).items()}, forced
+    ),
+    Measure(
+        "energy_at_top",
+        "Pa",
+        lambda h: {k: v[ramp_end(h)] for k, v in _traces(h).items()},
+        pressing,
+    ),
+    Measure(
+        "energy_at_end", "Pa", lambda h: {k: v[-1] for k, v in _traces(shown(h)).items()}, forced
+    ),
     # as Fig 4-21 shows them
     Measure("pressure_or_energy", "Pa", _pressure_or_energy, pressing),
-    Measure("highest_energy_rate", "Pa/s", lambda h: peak_energy_rate(shown(h), RECEPTOR_DEPTH), lambda s: held(s) or slides(s)),
-    Measure("rate_peak_time", "s", lambda h: predicted_rate(h).set_index(TIME)[IMPULSE_RATE].idxmax(), held),
+    Measure(
+        "highest_energy_rate",
+        "Pa/s",
+        lambda h: peak_energy_rate(shown(h), RECEPTOR_DEPTH),
+        lambda s: held(s) or slides(s),
+    ),
+    Measure(
+        "rate_peak_time",
+        "s",
+        lambda h: predicted_rate(h).set_index(TIME)[IMPULSE_RATE].idxmax(),
+        held,
+    ),
 )

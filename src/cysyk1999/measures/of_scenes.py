@@ -9,7 +9,19 @@ import numpy as np
 
 from cysyk1999.measures.responses import NODE_COUNT, TRIALS
 from cysyk1999.measures.steady import PLATE
-from fingerpad.measures.measure import Measure, anywhere, cylinders, deep, forced, held, named, slides, speed_of, strokes, wavy
+from fingerpad.measures.measure import (
+    Measure,
+    anywhere,
+    cylinders,
+    deep,
+    forced,
+    held,
+    named,
+    slides,
+    speed_of,
+    strokes,
+    wavy,
+)
 from fingerpad.receptors.laws import THESIS_RATE
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.element_kinds import KINDS
@@ -48,7 +60,10 @@ def _convex(scene: Scene) -> list[Segment]:
 def _departure(scene: Scene) -> float:
     """Largest departure (%) of the curvatures from the ones that the thesis lists."""
     if wavy(scene):
-        return max(100 * abs(arc.curvature / listed - 1) for arc, listed in zip(_convex(scene), WAVES, strict=False))
+        return max(
+            100 * abs(arc.curvature / listed - 1)
+            for arc, listed in zip(_convex(scene), WAVES, strict=False)
+        )
     k = scene.stimulus.curvature
     return 100 * abs(k - min(CYLINDERS, key=lambda listed: abs(listed - k))) / k
 
@@ -66,7 +81,10 @@ def _depths(scene: Scene) -> list[float]:
 
 def _moduli(scene: Scene) -> dict[str, float]:
     """Young's modulus (MPa) of the layers."""
-    return {k: getattr(scene.specimen.layers, k).youngs_modulus * 1e-6 for k in ("epidermis", "dermis", "fat")}
+    return {
+        k: getattr(scene.specimen.layers, k).youngs_modulus * 1e-6
+        for k in ("epidermis", "dermis", "fat")
+    }
 
 
 def _ratios(scene: Scene) -> dict[str, float]:
@@ -80,7 +98,10 @@ def _left(scene: Scene) -> float:
 
 
 def _relaxation(scene: Scene) -> dict[str, float]:
-    return {"at once": _left(scene) + sum(term.g for term in scene.specimen.prony), "long after": _left(scene)}
+    return {
+        "at once": _left(scene) + sum(term.g for term in scene.specimen.prony),
+        "long after": _left(scene),
+    }
 
 
 def _instantaneous(scene: Scene) -> dict[str, float]:
@@ -103,13 +124,25 @@ STIMULUS = (
     given("largest_radius", "mm", lambda s: round(1e3 / min(s.stimulus.curvatures), 6), wavy),
     given("half_angle", "deg", lambda s: math.degrees(s.stimulus.half_angle), wavy),
     # by the thesis's name of the convexity: its curvature, rounded
-    given("convexity_curvature", "1/m", lambda s: {f"{arc.curvature:.0f}": arc.curvature for arc in _convex(s)}, wavy),
-    given("hollow_curvature", "1/m", lambda s: -min(arc.curvature for arc in s.stimulus.segments), wavy),
+    given(
+        "convexity_curvature",
+        "1/m",
+        lambda s: {f"{arc.curvature:.0f}": arc.curvature for arc in _convex(s)},
+        wavy,
+    ),
+    given(
+        "hollow_curvature",
+        "1/m",
+        lambda s: -min(arc.curvature for arc in s.stimulus.segments),
+        wavy,
+    ),
     given("peak_to_valley", "mm", _height, wavy),
 )
 
 MOTION = (
-    given("pressed_depth", "mm", lambda s: {"first": _depths(s)[0], "deepest": _depths(s)[-1]}, deep),
+    given(
+        "pressed_depth", "mm", lambda s: {"first": _depths(s)[0], "deepest": _depths(s)[-1]}, deep
+    ),
     given("depth_step", "mm", lambda s: np.diff([0.0, *_depths(s)]).max(), deep),
     # how many of the thesis's four depths are pressed to
     given("thesis_depths", "count", lambda s: len({0.5, 1.0, 1.5, 2.0} & set(_depths(s))), deep),
@@ -126,14 +159,27 @@ MOTION = (
 
 LAYERS = ("stratum_corneum", "epidermis", "dermis")
 SPECIMEN = (
-    given("thickness", "um", lambda s: {k: 1e6 * getattr(s.specimen.outline, f"{k}_thickness") for k in LAYERS}, finger),
+    given(
+        "thickness",
+        "um",
+        lambda s: {k: 1e6 * getattr(s.specimen.outline, f"{k}_thickness") for k in LAYERS},
+        finger,
+    ),
     given("apex_radius", "mm", lambda s: 1e3 * s.specimen.outline.apex_radius, finger),
     given("poisson_ratio", "1", lambda s: s.specimen.layers.dermis.poisson_ratio, finger),
     given("modulus", "MPa", _moduli, finger),
     given("ratio_of_moduli", "1", _ratios, finger),
     given("instantaneous_modulus", "MPa", _instantaneous, finger),
-    given("prony_share", "1", lambda s: {str(i): term.g for i, term in enumerate(s.specimen.prony, start=1)}),
-    given("prony_time", "s", lambda s: {str(i): term.tau for i, term in enumerate(s.specimen.prony, start=1)}),
+    given(
+        "prony_share",
+        "1",
+        lambda s: {str(i): term.g for i, term in enumerate(s.specimen.prony, start=1)},
+    ),
+    given(
+        "prony_time",
+        "s",
+        lambda s: {str(i): term.tau for i, term in enumerate(s.specimen.prony, start=1)},
+    ),
     given("relaxation", "1", _relaxation),
 )
 
@@ -153,7 +199,9 @@ def _smallest_edge(mesh: PadMesh) -> float:
     """Smallest element edge (um) in epidermis and dermis within 2 mm of the middle, on the upper side."""
     corners = mesh.points[mesh.cells[:, : KINDS[mesh.element].corners]]
     middle = corners.mean(axis=1)
-    near = (mesh.region < mesh.regions.index("fat")) & (abs(middle[:, 0]) < 2e-3) & (middle[:, 1] > 0)
+    near = (
+        (mesh.region < mesh.regions.index("fat")) & (abs(middle[:, 0]) < 2e-3) & (middle[:, 1] > 0)
+    )
     edges = corners[near] - np.roll(corners[near], 1, axis=1)
     return np.hypot(edges[..., 0], edges[..., 1]).min() * 1e6
 
@@ -164,7 +212,13 @@ MESH = (
     counted("nodes", "count", lambda mesh: len(mesh.points), anywhere),
     counted("elements", "count", lambda mesh: len(mesh.cells), anywhere),
     counted("smallest_edge", "um", _smallest_edge, finger),
-    counted("section", "mm", lambda mesh: {k: 1e3 * np.ptp(mesh.points[:, i]) for i, k in enumerate(("width", "height"))}),
+    counted(
+        "section",
+        "mm",
+        lambda mesh: {
+            k: 1e3 * np.ptp(mesh.points[:, i]) for i, k in enumerate(("width", "height"))
+        },
+    ),
     # layers with elements, the stratum corneum and the bone
     counted("shaded_layers", "count", lambda mesh: len(mesh.regions) + 2, finger),
 )

@@ -74,7 +74,11 @@ SETTLED, BEGINNING = 2e-3, 5.0
 """Stroke of a plate (m) after which its start is over, and the part of it (mm) that is its beginning."""
 
 stroked, Stroke = partial(measure, of="stroke"), partial(Measure, of="stroke")
-in_full, in_part, only_ten = named(FULL.values()), named([*SUB.values(), STEPPED]), named([SUB["10"]])
+in_full, in_part, only_ten = (
+    named(FULL.values()),
+    named([*SUB.values(), STEPPED]),
+    named([SUB["10"]]),
+)
 
 
 # --- contact and pressure --------------------------------------------------------------------------------
@@ -87,13 +91,18 @@ def _at_location(stroke: xr.Dataset, location: float) -> int:
 @stroked("Pa", in_part)
 def location_pressure(stroke):
     """Largest pressure of any node at the three locations of Figs 5-5 and 5-6."""
-    return {f"{at:g} mm": stroke[PRESSURE].values[_at_location(stroke, at)].max() for at in LOCATIONS}
+    return {
+        f"{at:g} mm": stroke[PRESSURE].values[_at_location(stroke, at)].max() for at in LOCATIONS
+    }
 
 
 @stroked("Pa", in_part)
 def node_pressure(stroke):
     """Largest pressure of the nine nodes of Fig 5-10."""
-    return {f"{at:g} mm": stroke[PRESSURE].values[:, n].max() for at, n in zip(NODES, nodes_at(stroke), strict=True)}
+    return {
+        f"{at:g} mm": stroke[PRESSURE].values[:, n].max()
+        for at, n in zip(NODES, nodes_at(stroke), strict=True)
+    }
 
 
 @stroked("Pa", wavy)
@@ -126,7 +135,10 @@ def lost_contact(stroke):
     near = free[abs(free - first.start) < 4e-3]
     return {
         "corner": 1e3 * _lost(stroke, first.start - 2e-3, first.start + 2e-3),
-        "second": 1e3 * _lost(stroke, (first.end + second.start) / 2, second.start + (second.end - second.start) / 4),
+        "second": 1e3
+        * _lost(
+            stroke, (first.end + second.start) / 2, second.start + (second.end - second.start) / 4
+        ),
         "at": 1e3 * near.mean() if near.size else np.nan,
     }
 
@@ -150,8 +162,14 @@ def skin_drag(stroke):
 def curvature_correlation(stroke):
     """Of pressure with the curvature of the skin while it touches: at the centre, and at the nine nodes of Fig 5-10."""
     found, pressures = {"centre": _scaled_curvature(stroke)[3]}, stroke[PRESSURE].values
-    touched = {at: n for at, n in zip(NODES, nodes_at(stroke), strict=True) if (pressures[:, n] > 0).sum() > 2}
-    for (at, n), curvature in zip(touched.items(), skin_curvatures(stroke, touched.values()), strict=True):
+    touched = {
+        at: n
+        for at, n in zip(NODES, nodes_at(stroke), strict=True)
+        if (pressures[:, n] > 0).sum() > 2
+    }
+    for (at, n), curvature in zip(
+        touched.items(), skin_curvatures(stroke, touched.values()), strict=True
+    ):
         found[f"{at:g} mm"] = scaled(curvature, pressures[:, n], pressures[:, n] > 0)[3]
     return found
 
@@ -199,14 +217,22 @@ def profile_shift(history, runs):
 def _lag(stroke: xr.Dataset, runs: Together) -> tuple[float, float]:
     """Lag (m) of the centre pressure of a stroke behind that of the stepped surface, and their correlation when shifted."""
     stepped = loaded(runs[STEPPED])
-    return lag(distance(stroke), features.centre_pressure(stroke), distance(stepped), features.centre_pressure(stepped))
+    return lag(
+        distance(stroke),
+        features.centre_pressure(stroke),
+        distance(stepped),
+        features.centre_pressure(stepped),
+    )
 
 
 @stroked("%", named([FULL["1"]]), beside=True)
 def spread_of_traces(history, runs):
     """Standard deviation of whole traces over the velocities, root mean square, over the mean square root of the traces."""
     strokes, found = [loaded(runs[name]) for name in FULL.values()], {}
-    for label, trace in (("pressure", features.centre_pressure), ("energy", energy_at(RECEPTOR_DEPTH))):
+    for label, trace in (
+        ("pressure", features.centre_pressure),
+        ("energy", energy_at(RECEPTOR_DEPTH)),
+    ):
         d = distance(strokes[0])
         traces = np.array([np.interp(d, distance(s), trace(s)) for s in strokes])
         found[label] = 100 * np.sqrt(np.mean(traces.std(axis=0) ** 2) / np.mean(traces**2))
@@ -235,7 +261,11 @@ def peaks_apart(d: np.ndarray, values: np.ndarray) -> float:
 
 def _double_peaks(stroke: xr.Dataset, trace: features.Trace) -> dict[str, float]:
     values, d = trace(stroke), 1e3 * distance(stroke)
-    return {k: peaks_apart(d[where], values[where]) for k, where in _passages(stroke).items() if where.any()}
+    return {
+        k: peaks_apart(d[where], values[where])
+        for k, where in _passages(stroke).items()
+        if where.any()
+    }
 
 
 def _law_at_560_um(runs: Together) -> ImpulseRate:
@@ -304,9 +334,15 @@ def impulses_at_560_um(stroke, runs):
 
 
 def _in_hollows(stroke: xr.Dataset, under: Callable[[xr.Dataset], np.ndarray]) -> dict[str, float]:
-    labels, hollows, at = list(convexities(stroke)), [arc for arc in arcs(stroke) if arc.curvature < 0], under(stroke)
+    labels, hollows, at = (
+        list(convexities(stroke)),
+        [arc for arc in arcs(stroke) if arc.curvature < 0],
+        under(stroke),
+    )
     pairs = zip(labels, labels[1:], hollows, strict=False)
-    return _impulses(stroke, {f"{a} to {b}": (at >= arc.start) & (at <= arc.end) for a, b, arc in pairs})
+    return _impulses(
+        stroke, {f"{a} to {b}": (at >= arc.start) & (at <= arc.end) for a, b, arc in pairs}
+    )
 
 
 @stroked("%", in_full)
@@ -323,7 +359,9 @@ def rate_after_energy_rate(stroke):
     frame, apart = predicted_rate(stroke), {}
     for label, where in _passages(stroke).items():
         part = frame[where]
-        first, second = (part[DISTANCE].loc[part[column].idxmax()] for column in (RATE, IMPULSE_RATE))
+        first, second = (
+            part[DISTANCE].loc[part[column].idxmax()] for column in (RATE, IMPULSE_RATE)
+        )
         apart[label] = second - first
     return apart
 
@@ -356,7 +394,11 @@ def spread_of_three(stroke):
 def energy_beside(stroke):
     """Strain energy at -46 um: the highest at the start of the stroke, the highest and the least once it is settled."""
     settled, values = _settled(stroke), energy(stroke, DEPTH, -BESIDE)
-    return {"start": values[~settled].max(), "highest late": values[settled].max(), "least late": values[settled].min()}
+    return {
+        "start": values[~settled].max(),
+        "highest late": values[settled].max(),
+        "least late": values[settled].min(),
+    }
 
 
 @measure("count", plates)
@@ -377,13 +419,21 @@ def plate_impulses(history):
 
 CONVEXITIES = (
     # stroke distance over which the centre node touches
-    Stroke("contact_length", "mm", lambda h: {k: 1e3 * v for k, v in contact_lengths(h).items()}, wavy),
+    Stroke(
+        "contact_length", "mm", lambda h: {k: 1e3 * v for k, v in contact_lengths(h).items()}, wavy
+    ),
     # largest value at the centre, and 915 um under it, while the convexity passes
     Stroke("convexity_pressure", "Pa", lambda h: peaks(h, features.centre_pressure), wavy),
     Stroke("convexity_energy", "Pa", lambda h: peaks(h, energy_at(RECEPTOR_DEPTH)), wavy),
     # from one of the two peaks 560 um under the centre to the other; NaN where there are not two
     Stroke("energy_peaks_apart", "mm", lambda h: _double_peaks(h, energy_at(SHALLOW)), in_full),
-    Stroke("rate_peaks_apart", "mm", lambda h, runs: _double_peaks(h, partial(_rate_at_560_um, runs=runs)), in_full, beside=True),
+    Stroke(
+        "rate_peaks_apart",
+        "mm",
+        lambda h, runs: _double_peaks(h, partial(_rate_at_560_um, runs=runs)),
+        in_full,
+        beside=True,
+    ),
     *(
         Stroke(name, unit, lambda h, column=column: burst_values(h, column), waves)
         for name, unit, column in (
@@ -404,9 +454,17 @@ TRACES = (
     # of the centre pressure behind that of the stepped surface, and their correlation when shifted
     Stroke("lag_of_stepped", "mm", lambda h, runs: 1e3 * _lag(h, runs)[0], only_ten, beside=True),
     Stroke("likeness_of_stepped", "1", lambda h, runs: _lag(h, runs)[1], only_ten, beside=True),
-    Stroke("energy_by_eq_4_4", "Pa", lambda h, runs: _by_eq_4_4(h, runs)[1].max(), in_full, beside=True),
+    Stroke(
+        "energy_by_eq_4_4", "Pa", lambda h, runs: _by_eq_4_4(h, runs)[1].max(), in_full, beside=True
+    ),
     # the constant shift with which Eq 4-4 comes closest to the stroke at 10 mm/s
-    Stroke("receptor_shift", "mm", lambda h, runs: 1e3 * runs.once(stroke_law)[1], named([FULL["10"]]), beside=True),
+    Stroke(
+        "receptor_shift",
+        "mm",
+        lambda h, runs: 1e3 * runs.once(stroke_law)[1],
+        named([FULL["10"]]),
+        beside=True,
+    ),
 )
 
 PLATES = (

@@ -68,7 +68,9 @@ class Q(str):
 
 TIME = Q("time", "s", "time (s)", lambda h: h["time"].values, False, 1e-5)
 STROKE_TIME = TIME.reading(strokes.time_of)
-DISTANCE = Q("stroke_distance", "mm", "distance (mm)", lambda h: strokes.distance(h) * 1e3, False, 1e-4)
+DISTANCE = Q(
+    "stroke_distance", "mm", "distance (mm)", lambda h: strokes.distance(h) * 1e3, False, 1e-4
+)
 SPEED = Q("velocity", "mm/s", "velocity (mm/s)", tolerance=1e-6)
 X = Q("x", "mm", "x (mm)", tolerance=1e-3)
 Y = Q("y", "mm", "y (mm)", tolerance=1e-3)
@@ -87,22 +89,61 @@ DOUBT = Q("surface_may_be", "1/m", tolerance=1e-4)
 
 FORCE = Q("force", "gf", "force (gf)", features.force_gf, False, 1e-5)
 NEWTON = Q("force", "N", "force (N)", steady.force_N, tolerance=2e-3)
-DEPTH = Q("indentation_depth", "mm", "indentation depth (mm)", lambda h: features.depth(h) * 1e3, tolerance=1e-3)
-WIDTH = Q("contact_width", "mm", "contact width (mm)", lambda h: features.width(h) * 1e3, tolerance=3e-3)
-INVERSE_WIDTH = Q("inverse_contact_width", "1/mm", "1 / contact width (1/mm)", lambda h: 1e-3 / features.width(h), tolerance=3e-3)
+DEPTH = Q(
+    "indentation_depth",
+    "mm",
+    "indentation depth (mm)",
+    lambda h: features.depth(h) * 1e3,
+    tolerance=1e-3,
+)
+WIDTH = Q(
+    "contact_width", "mm", "contact width (mm)", lambda h: features.width(h) * 1e3, tolerance=3e-3
+)
+INVERSE_WIDTH = Q(
+    "inverse_contact_width",
+    "1/mm",
+    "1 / contact width (1/mm)",
+    lambda h: 1e-3 / features.width(h),
+    tolerance=3e-3,
+)
 LENGTH = Q("contact_length", "mm", "contact length (mm)", tolerance=1e-2)
 P = Q("contact_pressure", "Pa", "contact pressure (Pa)", tolerance=5e-3)
-P_CENTRE = Q("centre_pressure", "Pa", "contact pressure at the centre (Pa)", features.centre_pressure, tolerance=3e-3)
-P_PEAK = Q("peak_pressure", "Pa", "peak contact pressure (Pa)", features.peak_pressure, tolerance=3e-3)
+P_CENTRE = Q(
+    "centre_pressure",
+    "Pa",
+    "contact pressure at the centre (Pa)",
+    features.centre_pressure,
+    tolerance=3e-3,
+)
+P_PEAK = Q(
+    "peak_pressure", "Pa", "peak contact pressure (Pa)", features.peak_pressure, tolerance=3e-3
+)
 MEAN_P = Q("mean_centre_pressure", "Pa", tolerance=3e-3)
-P_SCALED = Q("scaled_centre_pressure", "Pa", read=lambda h: features.PRESSURE_SCALE * features.centre_pressure(h), tolerance=3e-3)
+P_SCALED = Q(
+    "scaled_centre_pressure",
+    "Pa",
+    read=lambda h: features.PRESSURE_SCALE * features.centre_pressure(h),
+    tolerance=3e-3,
+)
 P_LAW = Q("pressure_by_law", "Pa", tolerance=5e-3)
-EDGE_DISTANCE, BELOW_EDGE, NODE_SPEED = (Q("edge_distance", "mm"), Q("displacement_below_edge", "mm"), Q("speed", "mm/s"))
+EDGE_DISTANCE, BELOW_EDGE, NODE_SPEED = (
+    Q("edge_distance", "mm"),
+    Q("displacement_below_edge", "mm"),
+    Q("speed", "mm/s"),
+)
 DOWN = Q("vertical_displacement", "mm", "vertical displacement (mm)", tolerance=1e-3)
 DEFLECTION = Q("deflection", "mm", "surface deflection (mm)", tolerance=1e-3)
-LATERAL = Q("lateral_displacement", "mm", "lateral displacement (mm)", lambda h: strokes.lateral(h) * 1e3, tolerance=2e-3)
+LATERAL = Q(
+    "lateral_displacement",
+    "mm",
+    "lateral displacement (mm)",
+    lambda h: strokes.lateral(h) * 1e3,
+    tolerance=2e-3,
+)
 SKIN_CURVATURE = Q("skin_curvature", "1/mm", "skin curvature (1/mm)", tolerance=2e-2)
-SCALED_CURVATURE = Q("scaled_skin_curvature", "Pa", read=strokes.scaled_curvature, checked=False, tolerance=1e-2)
+SCALED_CURVATURE = Q(
+    "scaled_skin_curvature", "Pa", read=strokes.scaled_curvature, checked=False, tolerance=1e-2
+)
 
 # --- receptors -------------------------------------------------------------------------------------------
 
@@ -112,7 +153,9 @@ RATE = Q("strain_energy_rate", "Pa/s", "strain energy rate (Pa/s)", tolerance=5e
 IMPULSE_RATE = Q("predicted_rate", "impulses/s", "predicted rate (impulses/s)", tolerance=1e-2)
 STATIC = Q("rate_from_energy", "impulses/s", tolerance=1e-2)
 DYNAMIC = Q("rate_from_energy_rate", "impulses/s")
-FREQUENCY = Q("predicted_frequency", "impulses/s", "instantaneous frequency (impulses/s)", tolerance=1e-2)
+FREQUENCY = Q(
+    "predicted_frequency", "impulses/s", "instantaneous frequency (impulses/s)", tolerance=1e-2
+)
 IMPULSE = Q("impulse_time", "s", tolerance=1e-3)
 GIVEN_RATE = Q("impulse_rate", "impulses/s", "mean rate of the hold (impulses/s)", tolerance=1e-2)
 STEADY_RATE = Q("steady_rate", "impulses/s", "steady rate (impulses/s)", tolerance=1e-2)

@@ -48,7 +48,14 @@ from fingerpad.measures.kept import kept
 from fingerpad.measures.measure import speed_of, waves
 from fingerpad.measures.skin import skin_curvature
 from fingerpad.measures.strokes import FULL, convexities, distance, loaded, passage, place
-from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, pressure_terms, rate_by_leg, time_above
+from fingerpad.receptors.laws import (
+    THESIS_RATE,
+    ImpulseRate,
+    SpatialSum,
+    pressure_terms,
+    rate_by_leg,
+    time_above,
+)
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.receptors.spikes import VARIATION, binned_rate, instantaneous_frequency, trains
 from fingerpad.results import scene_of
@@ -90,7 +97,9 @@ def strokes(histories: Histories) -> dict[str, xr.Dataset]:
     """Histories of strokes over the wavy surface at a speed, by scene: those over most of it first, the slowest first."""
     scenes = {name: scene_of(history) for name, history in histories.items()}
     found = [name for name, scene in scenes.items() if waves(scene)]
-    order = {name: (-len(scenes[name].stimulus.curvatures), speed_of(scenes[name])) for name in found}
+    order = {
+        name: (-len(scenes[name].stimulus.curvatures), speed_of(scenes[name])) for name in found
+    }
     return {name: histories[name] for name in sorted(found, key=order.get)}
 
 
@@ -114,11 +123,19 @@ def sunk(history: xr.Dataset) -> np.ndarray:
     return -history["skin_displacement_y"].values[:, centre_node(history)]
 
 
-def skin_sample(history: xr.Dataset, depth: float, reference: np.ndarray | float = 0.0) -> SkinSample:
+def skin_sample(
+    history: xr.Dataset, depth: float, reference: np.ndarray | float = 0.0
+) -> SkinSample:
     """Pressure on the skin and strain energy at a depth (m) under its centre, for Eq 4-4."""
     nodes = upper_skin(history)
     x, _ = skin_at(history)
-    return SkinSample(x[:, nodes], history[PRESSURE].values[:, nodes], sunk(history), energy(history, depth), reference)
+    return SkinSample(
+        x[:, nodes],
+        history[PRESSURE].values[:, nodes],
+        sunk(history),
+        energy(history, depth),
+        reference,
+    )
 
 
 def skin_shift(history: xr.Dataset) -> np.ndarray:
@@ -140,14 +157,22 @@ def stroke_law(histories: Histories, depth: float = RECEPTOR_DEPTH) -> tuple[Spa
     return law, constant_shift(law, skin_sample(histories[FULL["10"]], depth))
 
 
-def energy_from_pressure(history: xr.Dataset, depth: float, law: SpatialSum, shift: np.ndarray | float = 0.0) -> pd.DataFrame:
+def energy_from_pressure(
+    history: xr.Dataset, depth: float, law: SpatialSum, shift: np.ndarray | float = 0.0
+) -> pd.DataFrame:
     """Strain energy density at a depth (m) as simulated and by Eq 4-4 (Figs 4-22 and 5-14).
 
     shift: m, of the receptor to the side: a constant, or `skin_shift`.
     """
     sample = skin_sample(history, depth)
-    frame = pd.DataFrame({TIME: history["time"].values, SED: sample.energy, SED_LAW: sample.by(law, shift)})
-    return frame.assign(**{DISTANCE: history["stroke_distance"].values * 1e3}) if is_stroke(history) else frame
+    frame = pd.DataFrame(
+        {TIME: history["time"].values, SED: sample.energy, SED_LAW: sample.by(law, shift)}
+    )
+    return (
+        frame.assign(**{DISTANCE: history["stroke_distance"].values * 1e3})
+        if is_stroke(history)
+        else frame
+    )
 
 
 # -- nodes in contact, for Eqs 4-1 to 4-3 ------------------------------------------------------------------------------
@@ -179,14 +204,22 @@ def contact_nodes(history: xr.Dataset, count: int | None = None) -> pd.DataFrame
     def at_places(values: np.ndarray) -> np.ndarray:
         return np.array([np.interp(x_rest, skin, row) for row in values])
 
-    everywhere, sunk = skin_at(history)[0][:, nodes], -history["skin_displacement_y"].values[:, nodes]
+    everywhere, sunk = (
+        skin_at(history)[0][:, nodes],
+        -history["skin_displacement_y"].values[:, nodes],
+    )
     x, down, pressure = map(at_places, (everywhere, sunk, history[PRESSURE].values[:, nodes]))
     time, top = history["time"].values, ramp_end(history)
     speed = np.concatenate(
-        [np.gradient(down[: top + 1], time[: top + 1], axis=0), np.gradient(down[top:], time[top:], axis=0)[1:]]
+        [
+            np.gradient(down[: top + 1], time[: top + 1], axis=0),
+            np.gradient(down[top:], time[top:], axis=0)[1:],
+        ]
     )
     edge = history["contact_width"].values / 2
-    at_edge = np.array([np.interp(e, row, d) for e, row, d in zip(edge, everywhere, sunk, strict=True)])
+    at_edge = np.array(
+        [np.interp(e, row, d) for e, row, d in zip(edge, everywhere, sunk, strict=True)]
+    )
     rows = []
     for node in range(len(x_rest)):
         on = np.flatnonzero((pressure[:, node] > 0) & (edge - x[:, node] >= NODE_SPACING))
@@ -246,7 +279,10 @@ def fit_nodes(law: str, nodes: pd.DataFrame) -> np.ndarray:
 
 @kept
 def predicted_rate(
-    history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, offset: float = 0.0
+    history: xr.Dataset,
+    depth: float = RECEPTOR_DEPTH,
+    law: ImpulseRate = THESIS_RATE,
+    offset: float = 0.0,
 ) -> pd.DataFrame:
     """Impulse rate of a slowly adapting receptor by Eq 4-5 or 5-1 at a depth (m) under the centre, or at an offset (m) beside.
 
@@ -260,9 +296,18 @@ def predicted_rate(
 def _rate_frame(history: xr.Dataset, values: np.ndarray, law: ImpulseRate) -> pd.DataFrame:
     time, values, rate = rate_by_leg(history["time"].values, values, history["leg"].values)
     static, dynamic = law.terms(values, rate)
-    columns = {TIME: time, SED: values, RATE: rate, STATIC: static, DYNAMIC: dynamic, IMPULSE_RATE: law(values, rate)}
+    columns = {
+        TIME: time,
+        SED: values,
+        RATE: rate,
+        STATIC: static,
+        DYNAMIC: dynamic,
+        IMPULSE_RATE: law(values, rate),
+    }
     if is_stroke(history):
-        columns[DISTANCE] = np.interp(time, history["time"].values, history["stroke_distance"].values) * 1e3
+        columns[DISTANCE] = (
+            np.interp(time, history["time"].values, history["stroke_distance"].values) * 1e3
+        )
     return pd.DataFrame(columns)
 
 
@@ -274,28 +319,48 @@ def rapidly_adapting_rate(
     Args:
         stimulus: "curvature" (1/m, of the deformed skin) or "energy" (Pa, strain energy density at `depth`, m).
     """
-    values = skin_curvature(history, centre_node(history)) if stimulus == "curvature" else energy(history, depth)
+    values = (
+        skin_curvature(history, centre_node(history))
+        if stimulus == "curvature"
+        else energy(history, depth)
+    )
     time, values, rate = rate_by_leg(history["time"].values, values, history["leg"].values)
     unit = "1/m" if stimulus == "curvature" else "Pa"
     return pd.DataFrame(
-        {TIME: time, f"{stimulus} ({unit})": values, f"{stimulus}_rate ({unit}/s)": rate, IMPULSE_RATE: law(rate)}
+        {
+            TIME: time,
+            f"{stimulus} ({unit})": values,
+            f"{stimulus}_rate ({unit}/s)": rate,
+            IMPULSE_RATE: law(rate),
+        }
     )
 
 
-def raster(frame: pd.DataFrame, repetitions: int, seed: int, variation: float = VARIATION) -> pd.DataFrame:
+def raster(
+    frame: pd.DataFrame, repetitions: int, seed: int, variation: float = VARIATION
+) -> pd.DataFrame:
     """Predicted impulses of repeated trials at a predicted rate: one row an impulse, columns trial (from 1), time, stroke
     distance."""
     time = frame[TIME].to_numpy()
     parts = [
         pd.DataFrame({"trial": trial, TIME: train})
-        for trial, train in enumerate(trains(time, frame[IMPULSE_RATE].to_numpy(), repetitions, seed, variation), start=1)
+        for trial, train in enumerate(
+            trains(time, frame[IMPULSE_RATE].to_numpy(), repetitions, seed, variation), start=1
+        )
     ]
     out = pd.concat(parts, ignore_index=True)
-    return out.assign(**{DISTANCE: np.interp(out[TIME], time, frame[DISTANCE])}) if DISTANCE in frame else out
+    return (
+        out.assign(**{DISTANCE: np.interp(out[TIME], time, frame[DISTANCE])})
+        if DISTANCE in frame
+        else out
+    )
 
 
 def impulses_of(
-    history: xr.Dataset, repetitions: int, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE
+    history: xr.Dataset,
+    repetitions: int,
+    depth: float = RECEPTOR_DEPTH,
+    law: ImpulseRate = THESIS_RATE,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Predicted rate of a stroke from where it begins to slide, and the impulses of some repetitions of it."""
     frame = predicted_rate(loaded(history), depth, law)
@@ -308,7 +373,9 @@ def plate_rate(stroke: xr.Dataset, offset: float = ASIDE) -> pd.DataFrame:
     return rate.assign(**{DISTANCE: rate[DISTANCE].abs()})
 
 
-def stroke_histogram(frame: pd.DataFrame, impulses: pd.DataFrame, repetitions: int, bin_width: float = BIN) -> pd.DataFrame:
+def stroke_histogram(
+    frame: pd.DataFrame, impulses: pd.DataFrame, repetitions: int, bin_width: float = BIN
+) -> pd.DataFrame:
     """Mean rate of a raster in bins of the stroke distance (m): columns stroke_distance (of the bin's middle), predicted_rate.
 
     Only whole bins while the surface slides. frame: of `predicted_rate`. impulses: of `raster`, of so many `repetitions`.
@@ -323,7 +390,10 @@ def stroke_histogram(frame: pd.DataFrame, impulses: pd.DataFrame, repetitions: i
 
 def mean_frequency(impulses: pd.DataFrame, repetitions: int, at: np.ndarray) -> pd.DataFrame:
     """Instantaneous frequency of a raster, mean over its trials, at times `at` (s): columns time, predicted_frequency."""
-    values = [instantaneous_frequency(train[TIME].to_numpy(), at) for _, train in impulses.groupby("trial")]
+    values = [
+        instantaneous_frequency(train[TIME].to_numpy(), at)
+        for _, train in impulses.groupby("trial")
+    ]
     return pd.DataFrame({TIME: at, FREQUENCY: np.sum(values, axis=0) / repetitions})
 
 
@@ -347,13 +417,18 @@ def windowed(history: xr.Dataset, time, values, window: str) -> float:
     top, end = history.variables["time"].values[[ramp_end(history), -1]].tolist()
     if window == "peak":
         return float(values.max())
-    start, stop = {"hold": (top, end), "steady": ((top + end) / 2, end), "first second": (0.0, 1.0), "first 200 ms": (0.0, 0.2)}[
-        window
-    ]
+    start, stop = {
+        "hold": (top, end),
+        "steady": ((top + end) / 2, end),
+        "first second": (0.0, 1.0),
+        "first 200 ms": (0.0, 0.2),
+    }[window]
     return time_mean(time, values, start, min(stop, end))
 
 
-def rate_in(history: xr.Dataset, window: str, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE) -> float:
+def rate_in(
+    history: xr.Dataset, window: str, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE
+) -> float:
     """Predicted impulse rate (impulses/s) in a window of `cysyk1999.receptors.recordings.WINDOWS`."""
     frame = predicted_rate(history, depth, law)
     return windowed(history, frame[TIME], frame[IMPULSE_RATE], window)
@@ -369,7 +444,9 @@ def mean_pressure(history: xr.Dataset, window: str = "hold") -> float:
     return windowed(history, history["time"].values, centre_pressure(history), window)
 
 
-def shallow_law(histories: Mapping[str, xr.Dataset], depth: float = SHALLOW_DEPTH) -> tuple[ImpulseRate, float]:
+def shallow_law(
+    histories: Mapping[str, xr.Dataset], depth: float = SHALLOW_DEPTH
+) -> tuple[ImpulseRate, float]:
     """Eq 5-1 for another depth (m) than the thesis's, and the factor its energies are multiplied by; histories: of the nine.
 
     The thesis's constants belong to 915 um and it prints none for 560 or 600 um. Energies there are scaled by one number, with
@@ -382,7 +459,12 @@ def shallow_law(histories: Mapping[str, xr.Dataset], depth: float = SHALLOW_DEPT
     )
     factor, law = float(deep / shallow), THESIS_RATE
     return (
-        ImpulseRate(law.per_energy * factor, law.per_rate * factor, law.threshold / factor, law.rate_threshold / factor),
+        ImpulseRate(
+            law.per_energy * factor,
+            law.per_rate * factor,
+            law.threshold / factor,
+            law.rate_threshold / factor,
+        ),
         factor,
     )
 
@@ -398,7 +480,10 @@ def straight_line(x, y) -> tuple[float, float, float]:
 
 @kept
 def bursts(
-    history: xr.Dataset, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE, threshold: float | None = None
+    history: xr.Dataset,
+    depth: float = RECEPTOR_DEPTH,
+    law: ImpulseRate = THESIS_RATE,
+    threshold: float | None = None,
 ) -> pd.DataFrame:
     """The burst that each convexity of a stroked surface makes (Figs 5-2 to 5-4, 5-16 and 5-17).
 
@@ -469,7 +554,11 @@ CANDIDATES = {
     "compressive strain": ("compressive_strain", "1", True),
     "tensile strain": ("tensile_strain", "1", True),
     "von Mises stress": ("von_mises_stress", "Pa", True),
-    "hydrostatic pressure": ("hydrostatic_pressure", "Pa", True),  # and dilatation, which is a fixed multiple of it
+    "hydrostatic pressure": (
+        "hydrostatic_pressure",
+        "Pa",
+        True,
+    ),  # and dilatation, which is a fixed multiple of it
     "contact pressure, centre": ("centre_pressure", "Pa", False),
     "contact pressure, peak": ("peak_pressure", "Pa", False),
     "indentation depth": ("indentation_depth", "m", False),

@@ -12,7 +12,10 @@ from fingerpad.measures.strokes import FULL, STEPPED, SUB
 
 CYLINDERS = SURFACES[1:]
 """Of the nine surfaces all but the flat plate."""
-WITHIN_350, WITHIN_400 = (tuple(label for label in SURFACES if label == "flat" or float(label) <= most) for most in (350, 400))
+WITHIN_350, WITHIN_400 = (
+    tuple(label for label in SURFACES if label == "flat" or float(label) <= most)
+    for most in (350, 400)
+)
 """Surfaces as curved as the stroked one, with the flat plate, on the thesis's axes of Figs 5-17 and 5-18."""
 
 
@@ -61,7 +64,11 @@ class Runs:
     @property
     def companion_scenes(self) -> tuple[str, ...]:
         """Scenes whose coarse companions are read."""
-        return tuple(scene for name, scene in self.scenes.items() if self.companions is None or name in self.companions)
+        return tuple(
+            scene
+            for name, scene in self.scenes.items()
+            if self.companions is None or name in self.companions
+        )
 
 
 def surfaces(programme: str, labels: Iterable[str] = SURFACES) -> Runs:
@@ -77,7 +84,9 @@ def by_speed(scenes: Mapping[str, str]) -> Runs:
 NINE, FAST, RIDGED_NINE = (surfaces(programme) for programme in ("ramp40", "ramp150", "ridged_40"))
 """The nine surfaces pressed to 20 gram-weight: at 40 gf/s, at 150 gf/s, and on a pad with inner ridges."""
 
-LOWER = {force: surfaces(f"press{force}", ("flat", "79", "158", "315", "630")) for force in (10, 15)}
+LOWER = {
+    force: surfaces(f"press{force}", ("flat", "79", "158", "315", "630")) for force in (10, 15)
+}
 """Five surfaces pressed to less, by force in gram-weight."""
 
 PADS = Runs("pad", {"homogeneous": "homogeneous_flat", "layered": "ramp40_flat"})
@@ -90,7 +99,12 @@ STEPPED_OVER = Runs("series", {"stepped": STEPPED}, stroke=True)
 """The first two convexities stepped over the pad."""
 
 PLAIN, RIDGED = (
-    Runs("panel", {way: f"{pad}_stroke_{way}" for way in ("right", "left")}, stroke=True, companions=("right",))
+    Runs(
+        "panel",
+        {way: f"{pad}_stroke_{way}" for way in ("right", "left")},
+        stroke=True,
+        companions=("right",),
+    )
     for pad in ("plate", "ridged")
 )
 """A flat plate stroked both ways over a plain pad and one with inner ridges. The two are mirror images of each other: the

@@ -11,8 +11,17 @@ LINE = "steady_line"
 BAR = "steady_bar_1_16_inch"
 PLATE = "calibration_plate"
 RAMP_HOLD = "calibration_ramp_hold"
-PROFILES = {"line load": LINE, "cylinder 3.17 mm": "steady_cylinder_1_8_inch", "cylinder 9.52 mm": "steady_cylinder_3_8_inch"}
-DEPTH_SCENES = {"0.5": "ramp_hold_0_5_mm", "1.0": RAMP_HOLD, "1.5": "ramp_hold_1_5_mm", "2.0": "ramp_hold_2_0_mm"}
+PROFILES = {
+    "line load": LINE,
+    "cylinder 3.17 mm": "steady_cylinder_1_8_inch",
+    "cylinder 9.52 mm": "steady_cylinder_3_8_inch",
+}
+DEPTH_SCENES = {
+    "0.5": "ramp_hold_0_5_mm",
+    "1.0": RAMP_HOLD,
+    "1.5": "ramp_hold_1_5_mm",
+    "2.0": "ramp_hold_2_0_mm",
+}
 """Scenes of Fig 3-8, by final depth in mm."""
 SPEED_SCENES = {"2": RAMP_HOLD, "8": "ramp_hold_8_mm_per_s", "32": "ramp_hold_32_mm_per_s"}
 """Scenes of Fig 3-9, by speed in mm/s."""

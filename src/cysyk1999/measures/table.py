@@ -30,7 +30,11 @@ INSTEAD = ("mesh_companion", "sparse_mesh_companion", "companion", "sparse")
 left with coarser steps, with these steps, and of every second output of the histories themselves."""
 COLUMNS = ("scene", "quantity", "condition", "unit", "value", *INSTEAD)
 
-MEASURES: dict[str, Measure] = {**measures_of(of_scenes), **measures_of(of_presses), **measures_of(of_strokes)}
+MEASURES: dict[str, Measure] = {
+    **measures_of(of_scenes),
+    **measures_of(of_presses),
+    **measures_of(of_strokes),
+}
 """Every measure of the table, by its name."""
 
 
@@ -117,7 +121,12 @@ class Instead:
         own, mesh, *others = map(Measures.of, (histories, *_instead(histories, coarse)))
 
         def find(quantity: str, scene: str) -> Mapping[str, float]:
-            return _coarser(coarse[scene], histories[scene], own.find(quantity, scene), mesh.find(quantity, scene))
+            return _coarser(
+                coarse[scene],
+                histories[scene],
+                own.find(quantity, scene),
+                mesh.find(quantity, scene),
+            )
 
         return cls(Measures(find), *others)
 
@@ -140,9 +149,13 @@ def _number(number: Callable[[Measures], float], measures: Measures) -> float:
         return float("nan")
 
 
-def _coarser(companion: Companion, history: xr.Dataset, own: Mapping[str, float], other: Mapping[str, float]) -> dict[str, float]:
+def _coarser(
+    companion: Companion, history: xr.Dataset, own: Mapping[str, float], other: Mapping[str, float]
+) -> dict[str, float]:
     """A measure on a mesh with edges half as long again, of what it is on the run's own and on its companion's."""
-    return {at: companion.number(history, own[at], value) for at, value in other.items() if at in own}
+    return {
+        at: companion.number(history, own[at], value) for at, value in other.items() if at in own
+    }
 
 
 def _instead(histories: Histories, coarse: Companions) -> tuple[Histories, ...]:
@@ -161,12 +174,18 @@ def _instead(histories: Histories, coarse: Companions) -> tuple[Histories, ...]:
 
 def measures_table(histories: Histories, coarse: Companions, meshes: Meshes) -> pd.DataFrame:
     """Every measure of every scene, columns `COLUMNS`; empty where nothing was simulated on a coarser mesh, or that shows it."""
-    fine, others, rows = Together(histories), [Together(each) for each in _instead(histories, coarse)], []
+    fine, others, rows = (
+        Together(histories),
+        [Together(each) for each in _instead(histories, coarse)],
+        [],
+    )
     for scene in histories:
         for measure in MEASURES.values():
             values = _read(measure, scene, fine, meshes)
             solved = measure.of in ("history", "stroke") and values
-            found = [_read(measure, scene, runs, {}, said=False) if solved else {} for runs in others]
+            found = [
+                _read(measure, scene, runs, {}, said=False) if solved else {} for runs in others
+            ]
             if found[0]:
                 found[0] = _coarser(coarse[scene], histories[scene], values, found[0])
             for condition, value in values.items():
@@ -175,12 +194,18 @@ def measures_table(histories: Histories, coarse: Companions, meshes: Meshes) -> 
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def _read(measure: Measure, scene: str, runs: Together, meshes: Meshes, said: bool = True) -> dict[str, float]:
+def _read(
+    measure: Measure, scene: str, runs: Together, meshes: Meshes, said: bool = True
+) -> dict[str, float]:
     try:
         return read(measure, scene, runs, meshes)
     except KeyError:
         return {}
-    except (ValueError, IndexError, ZeroDivisionError) as error:  # a scene unlike the thesis's must not cost all tables
+    except (
+        ValueError,
+        IndexError,
+        ZeroDivisionError,
+    ) as error:  # a scene unlike the thesis's must not cost all tables
         if said:
             warnings.warn(f"measure {measure.name} is left out of {scene}: {error}", stacklevel=2)
         return {}
@@ -194,5 +219,7 @@ def write_measures(table: pd.DataFrame, path: str | PathLike) -> None:
 def read_measures(path: str | PathLike) -> pd.DataFrame:
     """The table that `write_measures` wrote."""
     table = pd.read_csv(path, dtype=str, keep_default_na=False)
-    numbers = {column: [float(v) if v else np.nan for v in table[column]] for column in ("value", *INSTEAD)}
+    numbers = {
+        column: [float(v) if v else np.nan for v in table[column]] for column in ("value", *INSTEAD)
+    }
     return table.assign(**numbers)

@@ -24,16 +24,24 @@ def shared_fonts() -> Iterator[None]:
     from matplotlib.backends import _backend_pdf_ps as embedding
 
     # to place glyphs is over by then: these tables are half of what embedding takes, and no reader of a PDF looks at them
-    unread = [table for table in ("GDEF", "GPOS", "GSUB") if table not in Options._drop_tables_default]
+    unread = [
+        table for table in ("GDEF", "GPOS", "GSUB") if table not in Options._drop_tables_default
+    ]
     Options._drop_tables_default.extend(unread)
     own = subset, as_file = embedding.get_glyphs_subset, embedding.font_as_file
 
     def shared(file: Any, glyphs: Iterable[int]) -> AbstractContextManager:
         common = _common(file, subset, as_file)
-        return nullcontext(common) if common.glyph_index_map.keys() >= set(glyphs) else subset(file, glyphs)
+        return (
+            nullcontext(common)
+            if common.glyph_index_map.keys() >= set(glyphs)
+            else subset(file, glyphs)
+        )
 
     embedding.get_glyphs_subset = shared
-    embedding.font_as_file = lambda font: io.BytesIO(font) if isinstance(font, bytes) else as_file(font)
+    embedding.font_as_file = lambda font: (
+        io.BytesIO(font) if isinstance(font, bytes) else as_file(font)
+    )
     try:
         yield
     finally:
@@ -47,4 +55,6 @@ def _common(file: Any, subset: Any, as_file: Any) -> SimpleNamespace:
 
     numbers = FT2Font(file).get_charmap()
     with subset(file, {numbers[ord(each)] for each in CHARACTERS if ord(each) in numbers}) as found:
-        return SimpleNamespace(font=as_file(found.font).getvalue(), glyph_index_map=dict(found.glyph_index_map))
+        return SimpleNamespace(
+            font=as_file(found.font).getvalue(), glyph_index_map=dict(found.glyph_index_map)
+        )

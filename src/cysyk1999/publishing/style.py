@@ -34,18 +34,53 @@ HIGHLIGHT = "#00785a"
 """The second of two curves, whatever it is: no surface, speed or force is green."""
 
 RC = {
-    "font.family": "DejaVu Sans", "font.size": 7, "axes.titlesize": 7, "axes.labelsize": 7, "xtick.labelsize": 6.5,
-    "ytick.labelsize": 6.5, "legend.fontsize": 6.5, "legend.title_fontsize": 6.5, "axes.edgecolor": INK, "axes.labelcolor": INK,
-    "text.color": INK, "xtick.color": INK, "ytick.color": INK, "axes.linewidth": 0.6, "axes.spines.top": False,
-    "axes.spines.right": False, "axes.titlelocation": "left", "axes.titlepad": 5, "axes.labelpad": 3, "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6, "xtick.major.size": 2.5, "ytick.major.size": 2.5, "xtick.minor.size": 1.5, "ytick.minor.size": 1.5,
-    "xtick.major.pad": 2.5, "ytick.major.pad": 2.5, "lines.linewidth": 1.1, "lines.markersize": 4,
-    "lines.solid_capstyle": "round", "legend.frameon": False, "figure.facecolor": "white", "savefig.facecolor": "white",
-    "axes.formatter.limits": (-4, 5), "pdf.fonttype": 42, "mathtext.fontset": "dejavusans", "hatch.linewidth": 0.4,
+    "font.family": "DejaVu Sans",
+    "font.size": 7,
+    "axes.titlesize": 7,
+    "axes.labelsize": 7,
+    "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5,
+    "legend.fontsize": 6.5,
+    "legend.title_fontsize": 6.5,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 5,
+    "axes.labelpad": 3,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "xtick.minor.size": 1.5,
+    "ytick.minor.size": 1.5,
+    "xtick.major.pad": 2.5,
+    "ytick.major.pad": 2.5,
+    "lines.linewidth": 1.1,
+    "lines.markersize": 4,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "axes.formatter.limits": (-4, 5),
+    "pdf.fonttype": 42,
+    "mathtext.fontset": "dejavusans",
+    "hatch.linewidth": 0.4,
     "errorbar.capsize": 1.5,
-}  # fmt: skip
+}
 
-SOLID, DASHED, DOTTED, DASH_DOT, LONG = "-", (0, (4, 1.8)), (0, (1, 1.4)), (0, (4, 1.5, 1, 1.5)), (0, (8, 2))
+SOLID, DASHED, DOTTED, DASH_DOT, LONG = (
+    "-",
+    (0, (4, 1.8)),
+    (0, (1, 1.4)),
+    (0, (4, 1.5, 1, 1.5)),
+    (0, (8, 2)),
+)
 LINES = (SOLID, DASHED, DOTTED, DASH_DOT, LONG, (0, (2.5, 1)))
 MARKERS = "os^Dv<>P"
 Look = Mapping[str, object]
@@ -53,17 +88,33 @@ Look = Mapping[str, object]
 # --- what colours mean -------------------------------------------------------------------------------------
 
 COLOURS = {
-    "flat": "#01287b", "26": "#422a79", "39": "#5d2b77", "52": "#712d73", "79": "#8d306d", "105": "#9c3367", "158": "#b0385c",
-    "210": "#bc3e55", "315": "#c74c49", "420": "#cc573f", "630": "#d06731", "1260": "#ca8605",
-}  # fmt: skip
+    "flat": "#01287b",
+    "26": "#422a79",
+    "39": "#5d2b77",
+    "52": "#712d73",
+    "79": "#8d306d",
+    "105": "#9c3367",
+    "158": "#b0385c",
+    "210": "#bc3e55",
+    "315": "#c74c49",
+    "420": "#cc573f",
+    "630": "#d06731",
+    "1260": "#ca8605",
+}
 """Of curvatures in 1/m: lightness from 20 to 61, where a line on white still has a contrast of 3, even in their logarithm."""
 CATEGORIES = ("#0072b2", "#d55e00", "#009e73", "#b5588f", "#7a6000", "#404040")
 """Okabe and Ito's blue, vermilion and green; their purple and yellow as dark as a line needs; and grey."""
 
 
-def _looks(names: Sequence[str], colours: Sequence[str] = CATEGORIES, lines: Sequence = LINES) -> dict[str, Look]:
+def _looks(
+    names: Sequence[str], colours: Sequence[str] = CATEGORIES, lines: Sequence = LINES
+) -> dict[str, Look]:
     return {
-        name: {"color": colours[k % len(colours)], "ls": lines[k % len(lines)], "marker": MARKERS[k % len(MARKERS)]}
+        name: {
+            "color": colours[k % len(colours)],
+            "ls": lines[k % len(lines)],
+            "marker": MARKERS[k % len(MARKERS)],
+        }
         for k, name in enumerate(names)
     }
 
@@ -71,27 +122,56 @@ def _looks(names: Sequence[str], colours: Sequence[str] = CATEGORIES, lines: Seq
 MEANINGS: Mapping[str, Mapping[str, Look]] = {
     "curvature (1/m)": {name: {"color": colour} for name, colour in COLOURS.items()},
     "speed (mm/s)": _looks(
-        ("1", "5", "10", "20", "40"), ("#00233d", "#004164", "#00608e", "#157fb2", "#3b9bd3"),
+        ("1", "5", "10", "20", "40"),
+        ("#00233d", "#004164", "#00608e", "#157fb2", "#3b9bd3"),
         (DOTTED, (0, (3, 1, 1, 1)), SOLID, LONG, DASHED),
     ),
-    "force (gf)": _looks(("10", "15", "20"), ("#3d2163", "#704f97", "#a081c1"), (DOTTED, DASHED, SOLID)),
-    "depth": _looks(("first", "second", "third", "fourth"), ("#402613", "#6c4428", "#99633b", "#c48151"),
-                    (DOTTED, DASH_DOT, DASHED, SOLID)),
+    "force (gf)": _looks(
+        ("10", "15", "20"), ("#3d2163", "#704f97", "#a081c1"), (DOTTED, DASHED, SOLID)
+    ),
+    "depth": _looks(
+        ("first", "second", "third", "fourth"),
+        ("#402613", "#6c4428", "#99633b", "#c48151"),
+        (DOTTED, DASH_DOT, DASHED, SOLID),
+    ),
     "subject": _looks(("1", "2", "3", "4", "mean"), (*CATEGORIES[:4], INK)),
-    "energy": _looks(("instantaneous elastic", "long-term moduli", "half stress × strain", "recoverable", "long-term network")),
+    "energy": _looks(
+        (
+            "instantaneous elastic",
+            "long-term moduli",
+            "half stress × strain",
+            "recoverable",
+            "long-term network",
+        )
+    ),
     "element": _looks(("Q2P1", "Q1P0", "P2B", "elastic half-plane", "water bed")),
     "accuracy": _looks(("draft", "0.05", "0.02")),
-    "boundary": _looks(("corneum", "dermis", "fat"), ("#402613", "#0072b2", "#7a6000"), (SOLID, DASH_DOT, DOTTED)),
-    "verdict": _looks(("inside", "plausible", "holds", "outside", "fails", "not judged"),
-                      ("#0072b2", "#0072b2", "#0072b2", "#d55e00", "#d55e00", "#737373"), (SOLID,)),
-    "origin": _looks(("stated", "inferred", "assumed"), ("#0072b2", "#7a6000", "#d55e00"), (SOLID, DASHED, DOTTED)),
-}  # fmt: skip
+    "boundary": _looks(
+        ("corneum", "dermis", "fat"), ("#402613", "#0072b2", "#7a6000"), (SOLID, DASH_DOT, DOTTED)
+    ),
+    "verdict": _looks(
+        ("inside", "plausible", "holds", "outside", "fails", "not judged"),
+        ("#0072b2", "#0072b2", "#0072b2", "#d55e00", "#d55e00", "#737373"),
+        (SOLID,),
+    ),
+    "origin": _looks(
+        ("stated", "inferred", "assumed"),
+        ("#0072b2", "#7a6000", "#d55e00"),
+        (SOLID, DASHED, DOTTED),
+    ),
+}
 """What is told apart -> its values, and how each looks. A test measures contrasts and distances, colour-blind ones too."""
 
 SPEED_COLOURS = {name: look["color"] for name, look in MEANINGS["speed (mm/s)"].items()}
 SPEED_LINES = {name: look["ls"] for name, look in MEANINGS["speed (mm/s)"].items()}
 SHADES = CATEGORIES
-LAYER_COLOURS = {"stratum corneum": "#8c6d52", "epidermis": "#c49a78", "dermis": "#e3b7a8", "fat": "#f6e7c4", "bone": "#b9bec4"}
+LAYER_COLOURS = {
+    "stratum corneum": "#8c6d52",
+    "epidermis": "#c49a78",
+    "dermis": "#e3b7a8",
+    "fat": "#f6e7c4",
+    "bone": "#b9bec4",
+}
 """Areas, always outlined: their lightness falls from the outside in but for the bone, which is grey."""
 FIELD = "cividis"
 """Map of strain energy and other fields: even for colour-blind readers."""
@@ -109,9 +189,13 @@ def look_of(meaning: str, name: str, *parts: str) -> dict[str, object]:
 def curvature_colour(curvature: float) -> str:
     """Colour of any curvature (1/m; a plate: 0) on the sequence of `COLOURS`, linear in its logarithm between these."""
     known = np.array([13.0, *(float(name) for name in COLOURS if name != "flat")])
-    channels = np.array([[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in COLOURS.values()])
+    channels = np.array(
+        [[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in COLOURS.values()]
+    )
     at = np.log(np.clip(curvature, known[0], known[-1]))
-    return "#" + "".join(f"{round(np.interp(at, np.log(known), channel)):02x}" for channel in channels.T)
+    return "#" + "".join(
+        f"{round(np.interp(at, np.log(known), channel)):02x}" for channel in channels.T
+    )
 
 
 def ordered(meaning: str, names: Iterable[str]) -> dict[str, Look]:
@@ -187,19 +271,29 @@ def sheet(
     if laid_out:
         top, bottom = (0.11 + 0.125 * lines + header) / height, (0.125 * len(note) + 0.07) / height
         pads = {"w_pad": 0.04, "hspace": 0.04} if number else {"w_pad": 0.05}
-        fig.get_layout_engine().set(rect=(0.005, bottom, 0.99, 1 - top - bottom), h_pad=0.04, **pads)
+        fig.get_layout_engine().set(
+            rect=(0.005, bottom, 0.99, 1 - top - bottom), h_pad=0.04, **pads
+        )
     left, place = 0.08 / width, {"y": 1 - 0.07 / height, "ha": "left", "va": "top"}
     fig.text(left, s=whose or title, fontweight="bold", **place)
     if aside:
         fig.text(left + 1.66 / width, s=title, **place)
     elif number:
         fig.text(left, s="\n".join(titled), **place | {"y": 1 - 0.2 / height})
-    small = {"ha": "left", "va": "bottom", "fontsize": NOTE_SIZE, "color": GREY, "linespacing": 1.35}
+    small = {
+        "ha": "left",
+        "va": "bottom",
+        "fontsize": NOTE_SIZE,
+        "color": GREY,
+        "linespacing": 1.35,
+    }
     fig.text(left, 0.05 / height, "\n".join(note), **small)
     return fig
 
 
-def study_figure(title: str, note: Sequence[str], height: float, header: float = 0.0, width: float = PAGE_WIDTH) -> Figure:
+def study_figure(
+    title: str, note: Sequence[str], height: float, header: float = 0.0, width: float = PAGE_WIDTH
+) -> Figure:
     """`sheet` of a study: a bold title, the note's paragraphs wrapped."""
     return sheet(title, wrapped(note, note_width(width)), height, header=header, width=width)
 
@@ -217,13 +311,27 @@ def letter(fig: Figure) -> None:
     places: dict[tuple, Axes] = {}
     for ax in fig.axes:
         spec = ax.get_subplotspec()
-        if spec is not None and ax.get_visible() and ax.axison and ax.get_label() not in ("<colorbar>", "twin"):
+        if (
+            spec is not None
+            and ax.get_visible()
+            and ax.axison
+            and ax.get_label() not in ("<colorbar>", "twin")
+        ):
             places.setdefault((id(spec.get_gridspec()), spec.num1, spec.num2), ax)
     if not 2 <= len(places) <= 26:
         return
     for tag, ax in zip("abcdefghijklmnopqrstuvwxyz", places.values(), strict=False):
-        ax.annotate(tag, (0, 1), (-4, 5), "axes fraction", "offset points", ha="right", va="baseline", fontweight="bold",
-                    annotation_clip=False)  # fmt: skip
+        ax.annotate(
+            tag,
+            (0, 1),
+            (-4, 5),
+            "axes fraction",
+            "offset points",
+            ha="right",
+            va="baseline",
+            fontweight="bold",
+            annotation_clip=False,
+        )
 
 
 def set_powers(fig: Figure) -> None:
@@ -274,7 +382,9 @@ def spread(values: Sequence[float], gap: float, low: float, high: float) -> np.n
     return out
 
 
-def label_ends(ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, heading: str = "") -> None:
+def label_ends(
+    ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, heading: str = ""
+) -> None:
     """Label the trace of each surface directly at `x_label` (data units), joined to its end by a hairline.
 
     `ends` maps a surface label to the (x, y) of the trace's last point. Axis limits must be set already.
@@ -282,11 +392,25 @@ def label_ends(ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, h
     low, high = ax.get_ylim()
     gap = (high - low) * 0.115 / _axes_height(ax)
     labels = list(ends)
-    positions = spread([ends[k][1] for k in labels], gap, low + gap * 0.4, high - gap * (1.6 if heading else 0.5))
+    positions = spread(
+        [ends[k][1] for k in labels], gap, low + gap * 0.4, high - gap * (1.6 if heading else 0.5)
+    )
     for label, position in zip(labels, positions, strict=True):
         x, y = ends[label]
-        ax.plot([x, x_label], [y, position], lw=0.7, clip_on=False, **look_of("curvature (1/m)", label, "color"))
-        ax.text(x_label, position, f" {'flat plate' if label == 'flat' else label}", va="center", fontsize=6.5)
+        ax.plot(
+            [x, x_label],
+            [y, position],
+            lw=0.7,
+            clip_on=False,
+            **look_of("curvature (1/m)", label, "color"),
+        )
+        ax.text(
+            x_label,
+            position,
+            f" {'flat plate' if label == 'flat' else label}",
+            va="center",
+            fontsize=6.5,
+        )
     if heading:
         ax.text(x_label, positions.max() + gap * 1.1, heading, va="center", ha="left", fontsize=6.5)
 
@@ -319,8 +443,19 @@ def header_legend(fig: Figure, handles: Sequence[Line2D | Sequence[Line2D]], **k
     by side, those that look alike as one."""
     from matplotlib.legend_handler import HandlerTuple
 
-    entries = [tuple({h.get_color(): h for h in each}.values()) if isinstance(each, list) else (each,) for each in handles]
-    kwargs |= {"labels": [entry[0].get_label() for entry in entries], "handler_map": {tuple: HandlerTuple(None, pad=0.0)}}
+    entries = [
+        tuple({h.get_color(): h for h in each}.values()) if isinstance(each, list) else (each,)
+        for each in handles
+    ]
+    kwargs |= {
+        "labels": [entry[0].get_label() for entry in entries],
+        "handler_map": {tuple: HandlerTuple(None, pad=0.0)},
+    }
     kwargs = {"handlelength": 2.6, "handletextpad": 0.4, "borderaxespad": 0.0} | kwargs
     place = {"loc": "upper left", "bbox_to_anchor": (0.012, 1 - 0.22 / fig.get_figheight())}
-    fig.legend(handles=[entry if len(entry) > 1 else entry[0] for entry in entries], ncols=len(entries), **place, **kwargs)
+    fig.legend(
+        handles=[entry if len(entry) > 1 else entry[0] for entry in entries],
+        ncols=len(entries),
+        **place,
+        **kwargs,
+    )

@@ -27,7 +27,17 @@ SOME = 64
 FLOAT_FORMAT = "%.6g"
 VECTORS = "FINGERPAD_VECTORS"
 """Environment variable that names the folder PDFs are written to; the workflow sets it."""
-TEXT_COLUMNS = ("source", "surface", "phase", "layer", "panel", "series", "quantity", "pad", "convexity")
+TEXT_COLUMNS = (
+    "source",
+    "surface",
+    "phase",
+    "layer",
+    "panel",
+    "series",
+    "quantity",
+    "pad",
+    "convexity",
+)
 
 
 def without_round_off(frame: pd.DataFrame, least: float = 1e-11) -> pd.DataFrame:
@@ -40,7 +50,9 @@ def without_round_off(frame: pd.DataFrame, least: float = 1e-11) -> pd.DataFrame
 
 def write_frame(frame: pd.DataFrame, path: Path) -> None:
     """Write a frame as CSV, six significant digits."""
-    write_atomically(path, lambda p: frame.to_csv(p, index=False, float_format=FLOAT_FORMAT, lineterminator="\n"))
+    write_atomically(
+        path, lambda p: frame.to_csv(p, index=False, float_format=FLOAT_FORMAT, lineterminator="\n")
+    )
 
 
 def read_frame(path: Path) -> pd.DataFrame:
@@ -96,9 +108,13 @@ def in_few_colours(pixels: np.ndarray) -> Image:
     if len(found) > COLOURS - 1:
         counts = np.minimum(counts[EXACT:], SOME)
         rest = Image.fromarray(np.repeat(palette[EXACT:], counts, axis=0)[None])
-        few = rest.quantize(COLOURS - 1 - EXACT, Image.Quantize.MEDIANCUT, kmeans=1, dither=Image.Dither.NONE)
+        few = rest.quantize(
+            COLOURS - 1 - EXACT, Image.Quantize.MEDIANCUT, kmeans=1, dither=Image.Dither.NONE
+        )
         entries[EXACT:] = EXACT + np.asarray(few)[0, np.cumsum(counts) - 1].astype(int)
-        palette = np.concatenate([palette[:EXACT], np.array(few.getpalette(), np.uint8).reshape(-1, 3)])
+        palette = np.concatenate(
+            [palette[:EXACT], np.array(few.getpalette(), np.uint8).reshape(-1, 3)]
+        )
     entry_of = np.zeros(1 << 24, np.uint8)
     entry_of[found] = entries + 1
     places = np.zeros(inked.shape, np.uint8)
@@ -140,7 +156,9 @@ def markdown(frame: pd.DataFrame) -> str:
         return "" if value is None or value is pd.NA else str(value)
 
     lines = ["| " + " | ".join(frame.columns) + " |", "|" + " --- |" * len(frame.columns)]
-    lines += ["| " + " | ".join(cell(v) for v in row) + " |" for row in frame.itertuples(index=False)]
+    lines += [
+        "| " + " | ".join(cell(v) for v in row) + " |" for row in frame.itertuples(index=False)
+    ]
     return "\n".join(lines) + "\n"
 
 

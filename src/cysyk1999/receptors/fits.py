@@ -30,12 +30,16 @@ class SkinSample:
     indentation: np.ndarray
     energy: np.ndarray
     reference: np.ndarray | float = 0.0
-    _weighted: dict[float, np.ndarray] = field(default_factory=dict, init=False, repr=False, compare=False)
+    _weighted: dict[float, np.ndarray] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def weighted(self, r: float) -> np.ndarray:
         """Integral (time) Pa m of Eq 4-4 with a spatial constant r (m); kept, for fits that leave groups out ask for it again."""
         if r not in self._weighted:
-            self._weighted[r] = SpatialSum(r, 0.0, 1.0).weighted_pressure(self.x, self.pressure, self.reference)
+            self._weighted[r] = SpatialSum(r, 0.0, 1.0).weighted_pressure(
+                self.x, self.pressure, self.reference
+            )
         return self._weighted[r]
 
     def by(self, law: SpatialSum, shift: np.ndarray | float = 0.0) -> np.ndarray:
@@ -49,7 +53,11 @@ def linear(terms: np.ndarray, data: np.ndarray) -> np.ndarray:
     return np.linalg.lstsq(terms / scale, data, rcond=None)[0] / scale
 
 
-def spatial_sum(samples: Sequence[SkinSample], with_depth: bool = True, bounds: tuple[float, float] = (2e-5, 2e-2)) -> SpatialSum:
+def spatial_sum(
+    samples: Sequence[SkinSample],
+    with_depth: bool = True,
+    bounds: tuple[float, float] = (2e-5, 2e-2),
+) -> SpatialSum:
     """Eq 4-4 closest to the strain energies of several histories: r by search, A1 and A2 exactly at every r.
 
     Args:
@@ -61,7 +69,11 @@ def spatial_sum(samples: Sequence[SkinSample], with_depth: bool = True, bounds: 
         columns = []
         for sample in samples:
             weighted = sample.weighted(float(np.exp(log_r)))
-            columns.append(np.column_stack([weighted * sample.indentation, weighted] if with_depth else [weighted]))
+            columns.append(
+                np.column_stack(
+                    [weighted * sample.indentation, weighted] if with_depth else [weighted]
+                )
+            )
         terms = np.vstack(columns)
         return terms, linear(terms, data)
 
@@ -69,15 +81,21 @@ def spatial_sum(samples: Sequence[SkinSample], with_depth: bool = True, bounds: 
         terms, constants = at(log_r)
         return float(((data - terms @ constants) ** 2).sum())
 
-    grid = np.linspace(*np.log(bounds), 15)  # the misfit may have more than one dip; the search starts in the deepest
+    grid = np.linspace(
+        *np.log(bounds), 15
+    )  # the misfit may have more than one dip; the search starts in the deepest
     best = int(np.argmin([misfit(log_r) for log_r in grid]))
     around = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
     log_r = _least(misfit, around, 1e-5)
     constants = at(log_r)[1]
-    return SpatialSum(float(np.exp(log_r)), float(constants[0]) if with_depth else 0.0, float(constants[-1]))
+    return SpatialSum(
+        float(np.exp(log_r)), float(constants[0]) if with_depth else 0.0, float(constants[-1])
+    )
 
 
-def constant_shift(law: SpatialSum, sample: SkinSample, bounds: tuple[float, float] = (-3e-3, 3e-3)) -> float:
+def constant_shift(
+    law: SpatialSum, sample: SkinSample, bounds: tuple[float, float] = (-3e-3, 3e-3)
+) -> float:
     """The one lateral shift (m) of a receptor with which a law comes closest to the strain energy of a stroke."""
 
     def misfit(shift: float) -> float:
@@ -89,13 +107,19 @@ def constant_shift(law: SpatialSum, sample: SkinSample, bounds: tuple[float, flo
     return _least(misfit, around, 1e-7)
 
 
-def _least(misfit: Callable[[float], float], bounds: tuple[float, float], tolerance: float) -> float:
+def _least(
+    misfit: Callable[[float], float], bounds: tuple[float, float], tolerance: float
+) -> float:
     from scipy.optimize import minimize_scalar  # here, for it is slow to import
 
-    return float(minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": tolerance}).x)
+    return float(
+        minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": tolerance}).x
+    )
 
 
-def jackknife(fit: Callable[[Sequence[Any]], np.ndarray], groups: Sequence[Any], level: float = 0.95) -> np.ndarray:
+def jackknife(
+    fit: Callable[[Sequence[Any]], np.ndarray], groups: Sequence[Any], level: float = 0.95
+) -> np.ndarray:
     """Estimates and confidence intervals (p, 3), low and high last, from fits that leave out one group each.
 
     Args:
@@ -161,7 +185,9 @@ def gain_and_threshold(stimulus: np.ndarray, rate: np.ndarray) -> GainAndThresho
     return best
 
 
-def _rising_lines(stimulus: np.ndarray, rate: np.ndarray, least_range: float, least_gain: float) -> list[GainAndThreshold]:
+def _rising_lines(
+    stimulus: np.ndarray, rate: np.ndarray, least_range: float, least_gain: float
+) -> list[GainAndThreshold]:
     """Lines through all stimuli, all but the weakest, and so on, by least squares; those that rise, of stimuli that differ."""
     order = np.argsort(stimulus, kind="stable")
     s, y = stimulus[order] - stimulus.mean(), rate[order]
@@ -172,12 +198,19 @@ def _rising_lines(stimulus: np.ndarray, rate: np.ndarray, least_range: float, le
     gains = apart @ y / (apart**2).sum(axis=1)
     rising = gains > least_gain
     thresholds = stimulus.mean() + middle[rising] - mean[rising] / gains[rising]
-    return [GainAndThreshold(*each) for each in zip(gains[rising].tolist(), thresholds.tolist(), strict=True)]
+    return [
+        GainAndThreshold(*each)
+        for each in zip(gains[rising].tolist(), thresholds.tolist(), strict=True)
+    ]
 
 
 def leave_one_out(stimulus: np.ndarray, rate: np.ndarray, groups: np.ndarray) -> np.ndarray:
     """Rates (n,) predicted by the gain and threshold that the other groups give. groups: (n,) labels, such as curvatures."""
-    stimulus, rate, groups = np.asarray(stimulus, float), np.asarray(rate, float), np.asarray(groups)
+    stimulus, rate, groups = (
+        np.asarray(stimulus, float),
+        np.asarray(rate, float),
+        np.asarray(groups),
+    )
     predicted = np.empty(len(rate))
     for label in np.unique(groups):
         out = groups == label

@@ -52,19 +52,34 @@ def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         ReferenceDataError: a file is wrong; a recording has the same rate twice; a burst is of a pressed surface or another of
         a stroked one.
     """
-    files = [file for path in map(Path, paths) for file in (sorted(path.glob("*.csv")) if path.is_dir() else [path])]
+    files = [
+        file
+        for path in map(Path, paths)
+        for file in (sorted(path.glob("*.csv")) if path.is_dir() else [path])
+    ]
     frames = []
     for file in dict.fromkeys(files):
         frame = read_table(file, RATES)
         stroked = frame["speed_mm_per_s"] > 0
         for row in frame.index[stroked != (frame["window"] == "burst")]:
             allowed = "burst" if stroked[row] else ", ".join(w for w in WINDOWS if w != "burst")
-            raise ReferenceDataError(f"{file}: row {row}, column window: '{frame.loc[row, 'window']}'; allowed: {allowed}")
+            raise ReferenceDataError(
+                f"{file}: row {row}, column window: '{frame.loc[row, 'window']}'; allowed: {allowed}"
+            )
         frames.append(frame.assign(file=file.name))
     if not frames:
         return pd.DataFrame(columns=[*RATES, "file"])
     together = pd.concat(frames, ignore_index=True)
-    key = ["recording", "receptor", "stimulus", "curvature_per_m", "force_gf", "ramp_gf_per_s", "speed_mm_per_s", "window"]
+    key = [
+        "recording",
+        "receptor",
+        "stimulus",
+        "curvature_per_m",
+        "force_gf",
+        "ramp_gf_per_s",
+        "speed_mm_per_s",
+        "window",
+    ]
     for row in together.index[together.duplicated(key)]:
         entry = together.loc[row]
         what = f"{entry['window']} of {entry['recording']} at {entry['curvature_per_m']:g} 1/m, {entry['force_gf']:g} gf"

@@ -60,7 +60,9 @@ class TactileSensor:
             time: (frames,) s, increasing. pressure: (frames, n) Pa. indentation: (frames,) m.
         """
         pressure = np.asarray(pressure, float)
-        scale = np.broadcast_to(self.law.per_depth * np.asarray(indentation, float) + self.law.constant, len(pressure))
+        scale = np.broadcast_to(
+            self.law.per_depth * np.asarray(indentation, float) + self.law.constant, len(pressure)
+        )
         energy = (self.weights @ pressure.T * scale).T
         change = np.zeros_like(energy)
         change[1:] = (np.diff(energy, axis=0).T / np.diff(np.asarray(time, float))).T
@@ -75,10 +77,16 @@ def taxel_pressure(x, pressure, edges) -> np.ndarray:
     """
     x, pressure = np.asarray(x, float), np.asarray(pressure, float)
     spacing, inside = np.diff(x), np.clip(edges, x[..., :1], x[..., -1:])
-    carried = np.insert(np.cumsum(spacing * (pressure[..., 1:] + pressure[..., :-1]) / 2, axis=-1), 0, 0.0, axis=-1)
-    before = np.stack([(x[..., 1:-1] <= edge[..., None]).sum(axis=-1) for edge in np.moveaxis(inside, -1, 0)], axis=-1)
+    carried = np.insert(
+        np.cumsum(spacing * (pressure[..., 1:] + pressure[..., :-1]) / 2, axis=-1), 0, 0.0, axis=-1
+    )
+    before = np.stack(
+        [(x[..., 1:-1] <= edge[..., None]).sum(axis=-1) for edge in np.moveaxis(inside, -1, 0)],
+        axis=-1,
+    )
     left, there, slope, up_to = (
-        np.take_along_axis(values, before, axis=-1) for values in (x, pressure, np.diff(pressure) / spacing, carried)
+        np.take_along_axis(values, before, axis=-1)
+        for values in (x, pressure, np.diff(pressure) / spacing, carried)
     )
     past = inside - left
     return np.diff(up_to + past * (there + slope * past / 2), axis=-1) / np.diff(edges)

@@ -29,7 +29,16 @@ from fingerpad.mechanics.linear_solver import condensation  # noqa: E402
 from fingerpad.planning.plan import plan  # noqa: E402
 from fingerpad.receptors.laws import SpatialSum  # noqa: E402
 from fingerpad.results import provenance, states_found  # noqa: E402
-from fingerpad.scenes.scene import Cylinder, Discretisation, Flat, Layer, Layers, PressToForce, Scene, load_scene  # noqa: E402
+from fingerpad.scenes.scene import (
+    Cylinder,
+    Discretisation,
+    Flat,
+    Layer,
+    Layers,
+    PressToForce,
+    Scene,
+    load_scene,
+)  # noqa: E402
 from fingerpad.simulation import Simulation, simulate  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -80,7 +89,15 @@ def newton_iteration(repeats: int = 15) -> list[list]:
     ratio, schur_ratio = statistics.median(ratios), statistics.median(schur)
     return [
         ["Newton iteration / (factor + solve)", ratio, "1", "<= 1.8", ratio <= 1.8, repeats, how],
-        ["factor with Schur complement / plain factor", schur_ratio, "1", "<= 1.25", schur_ratio <= 1.25, repeats, how],
+        [
+            "factor with Schur complement / plain factor",
+            schur_ratio,
+            "1",
+            "<= 1.25",
+            schur_ratio <= 1.25,
+            repeats,
+            how,
+        ],
         ["factor + solve", 1e3 * seconds(factor_and_solve, repeats)[1], "ms", "", "", repeats, how],
     ]
 
@@ -105,14 +122,25 @@ def ridges(repeats: int = 3) -> list[list]:
     plans = [plan(scene) for scene in scenes]
     ratios = []
     for _ in range(repeats):  # in pairs, so that a busy machine slows both
-        plain, ridged = (seconds(lambda s=s, p=p: simulate(s, p), 1)[1] for s, p in zip(scenes, plans, strict=True))
+        plain, ridged = (
+            seconds(lambda s=s, p=p: simulate(s, p), 1)[1]
+            for s, p in zip(scenes, plans, strict=True)
+        )
         ratios.append(ridged / plain)
     nodes = plans[1].nodes / plans[0].nodes
     ratio = statistics.median(ratios) / nodes
-    how = (
-        f"ramp and hold, flat: {plans[0].nodes} and {plans[1].nodes} nodes (half pad), {ratio * nodes:.2f} times the process time"
-    )
-    return [["inner ridges, cost a node over the plain pad's", ratio, "1", "<= 3", ratio <= 3, repeats, how]]
+    how = f"ramp and hold, flat: {plans[0].nodes} and {plans[1].nodes} nodes (half pad), {ratio * nodes:.2f} times the process time"
+    return [
+        [
+            "inner ridges, cost a node over the plain pad's",
+            ratio,
+            "1",
+            "<= 3",
+            ratio <= 3,
+            repeats,
+            how,
+        ]
+    ]
 
 
 def strokes() -> list[list]:
@@ -127,7 +155,8 @@ def strokes() -> list[list]:
         plain, data, right = _plain(Simulation(scene, chosen, None).body)
         ratios.append(spent / seconds(partial(_factor_and_solve, plain, data, right), 5)[1])
     steps, iterations, cuts = (
-        sum(int(f(h)) for h in histories) for f in (states_found, lambda h: h.newton_iterations.sum(), lambda h: h.cutbacks.sum())
+        sum(int(f(h)) for h in histories)
+        for f in (states_found, lambda h: h.newton_iterations.sum(), lambda h: h.cutbacks.sum())
     )
     outputs = np.diff(histories[0].stroke_distance.values).max() * 1e3
     nodes = " and ".join(map(str, sorted({chosen.nodes for chosen in plans})))
@@ -144,7 +173,15 @@ def strokes() -> list[list]:
             1,
             f"{how}; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; on its own mesh, in double precision",
         ],
-        ["iterations a step of a stroke", iterations / steps, "1", "<= 3", iterations <= 3 * steps, 1, how],
+        [
+            "iterations a step of a stroke",
+            iterations / steps,
+            "1",
+            "<= 3",
+            iterations <= 3 * steps,
+            1,
+            how,
+        ],
     ]
 
 
@@ -156,7 +193,11 @@ def _factor_and_solve(plain, data, right) -> None:
 def _plain(body):
     """A solver without any condensation, the tangent's coefficients and a right-hand side of a body as it is."""
     data, force = body.tangent()
-    return condensation(body.space.pattern, np.zeros(0, dtype=np.int64)), data.copy(), body.space.to_equations(force)
+    return (
+        condensation(body.space.pattern, np.zeros(0, dtype=np.int64)),
+        data.copy(),
+        body.space.to_equations(force),
+    )
 
 
 def one_step() -> list[list]:
@@ -168,15 +209,30 @@ def one_step() -> list[list]:
             history = simulate(_steady(base, stimulus, nu))
             count, cuts = int(history.newton_iterations.sum()), int(history.cutbacks.sum())
             how = f"20 gram-weight, {label}, nu = {nu}, {cuts} cuts"
-            rows.append(["full load in one step", count, "iterations", "<= 6", count <= 6 and not cuts, 1, how])
+            rows.append(
+                [
+                    "full load in one step",
+                    count,
+                    "iterations",
+                    "<= 6",
+                    count <= 6 and not cuts,
+                    1,
+                    how,
+                ]
+            )
     return rows
 
 
 def _steady(base: Scene, stimulus, nu: float) -> Scene:
-    layers = Layers(**{
-        name: Layer(youngs_modulus=layer.youngs_modulus, poisson_ratio=nu)
-        for name, layer in ((name, getattr(base.specimen.layers, name)) for name in ("epidermis", "dermis", "fat"))
-    })  # fmt: skip
+    layers = Layers(
+        **{
+            name: Layer(youngs_modulus=layer.youngs_modulus, poisson_ratio=nu)
+            for name, layer in (
+                (name, getattr(base.specimen.layers, name))
+                for name in ("epidermis", "dermis", "fat")
+            )
+        }
+    )
     return base.varied(
         {
             "specimen.layers": layers,
@@ -206,7 +262,10 @@ def overhead(repeats: int = 5) -> list[list]:
 def tactile_sensor(frames: int = 20_000, repeats: int = 5) -> list[list]:
     """Impulse rates from contact pressure, Eqs 4-4 and 5-1: a sample of one receptor, frame by frame and as a whole recording."""
     x = np.linspace(-4e-3, 4e-3, 113)
-    time, pressure = np.arange(frames) * 1e-3, 1e4 * np.random.default_rng(0).random((frames, len(x)))
+    time, pressure = (
+        np.arange(frames) * 1e-3,
+        1e4 * np.random.default_rng(0).random((frames, len(x))),
+    )
     sensor = TactileSensor(x, SpatialSum(r=0.475e-3, per_depth=3.38e4, constant=9.85))
 
     def step_by_step():
@@ -215,9 +274,22 @@ def tactile_sensor(frames: int = 20_000, repeats: int = 5) -> list[list]:
             sensor.step(t, frame, 1e-3)
 
     rows = []
-    for way, call in (("step by step", step_by_step), ("whole recording", lambda: sensor.rates(time, pressure, 1e-3))):
+    for way, call in (
+        ("step by step", step_by_step),
+        ("whole recording", lambda: sensor.rates(time, pressure, 1e-3)),
+    ):
         median = 1e6 * seconds(call, repeats)[1] / frames
-        rows.append([f"tactile sensor, {way}", median, "us per sample", "", "", repeats, f"{len(x)} pressures, {frames} frames"])
+        rows.append(
+            [
+                f"tactile sensor, {way}",
+                median,
+                "us per sample",
+                "",
+                "",
+                repeats,
+                f"{len(x)} pressures, {frames} frames",
+            ]
+        )
     return rows
 
 
@@ -227,31 +299,45 @@ def workflow() -> list[list]:
     start = time.perf_counter()
     subprocess.run([*command, "--forceall", "--cores", "2", "--quiet"], check=True, cwd=ROOT)
     wall = time.perf_counter() - start
-    return [["make figures, after set-up", wall, "s", "", "", 1, "wall time, 2 cores, every job rerun"]]
+    return [
+        ["make figures, after set-up", wall, "s", "", "", 1, "wall time, 2 cores, every job rerun"]
+    ]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--workflow", action="store_true", help="also time the default workflow target from nothing")
+    parser.add_argument(
+        "--workflow", action="store_true", help="also time the default workflow target from nothing"
+    )
     parser.add_argument("--out", type=Path, default=ROOT / "figures" / "tables" / "speed.csv")
     options = parser.parse_args()
     with threadpool_limits(1):
-        rows = [*newton_iteration(), *ramp_and_hold(), *ridges(), *strokes(), *one_step(), *tactile_sensor()]
+        rows = [
+            *newton_iteration(),
+            *ramp_and_hold(),
+            *ridges(),
+            *strokes(),
+            *one_step(),
+            *tactile_sensor(),
+        ]
     rows += overhead()
     if options.workflow:
         rows += workflow()
     table = pd.DataFrame(rows, columns=COLUMNS)
     table["value"] = [float(f"{value:.4g}") for value in table["value"]]
     made_by = provenance()
-    machine = f"{made_by['processor']}, {os.cpu_count()} cores, 1 thread, python {made_by['python']}, " + ", ".join(
-        f"{name} {made_by['packages'][name]}" for name in ("numpy", "numba", "mkl")
+    machine = (
+        f"{made_by['processor']}, {os.cpu_count()} cores, 1 thread, python {made_by['python']}, "
+        + ", ".join(f"{name} {made_by['packages'][name]}" for name in ("numpy", "numba", "mkl"))
     )
     table["machine"] = machine
     print(table.drop(columns="machine").to_markdown(index=False))
     print(machine)
     write_atomically(options.out, lambda path: table.to_csv(path, index=False))
     text = f"{table.drop(columns='machine').to_markdown(index=False)}\n\nMedians, process time unless wall is said; {machine}.\n"
-    write_atomically(options.out.with_suffix(".md"), lambda path: path.write_text(text, encoding="utf-8"))
+    write_atomically(
+        options.out.with_suffix(".md"), lambda path: path.write_text(text, encoding="utf-8")
+    )
 
 
 if __name__ == "__main__":

@@ -35,23 +35,40 @@ def frame_convention() -> pd.DataFrame:
 @style.styled
 def fig_convention(frame: pd.DataFrame) -> Figure:
     """The solid above its points, the pad below, axes, and what lies beyond the ends by each rule."""
-    (x, y), (skin, pad) = (frame[frame.series == name][["x (mm)", "y (mm)"]].values.T for name in ("profile", "pad"))
+    (x, y), (skin, pad) = (
+        frame[frame.series == name][["x (mm)", "y (mm)"]].values.T for name in ("profile", "pad")
+    )
     fig = style.study_figure(
         "How the points of a sampled profile are read",
-        ["x = 0 comes down on the apex of the pad; of y only differences matter, for the profile moves down until it touches."],
+        [
+            "x = 0 comes down on the apex of the pad; of y only differences matter, for the profile moves down until it touches."
+        ],
         height=3.1,
         header=0.16,
     )
     ax = fig.subplots()
     ax.fill_between(x, y, 2.3, color=style.PALE, lw=0)
-    ax.plot(x, y, ".-", color=style.INK, ms=4, lw=1, label="points of the file: lower surface of the solid")
+    ax.plot(
+        x,
+        y,
+        ".-",
+        color=style.INK,
+        ms=4,
+        lw=1,
+        label="points of the file: lower surface of the solid",
+    )
     ax.fill_between(skin, pad, -3.2, color=style.LAYER_COLOURS["epidermis"], lw=0)
     ax.plot(skin, pad, color=style.INK, lw=1)
     for ends, line in (("level", style.DASHED), ("slope", style.DOTTED)):
         profile = Sampled(x=1e-3 * x, y=1e-3 * y, ends=ends)
         height = y.min()
         for far in (np.array([x[0] - 1.3, x[0]]), np.array([x[-1], x[-1] + 1.3])):
-            look = {"color": style.INK, "ls": line, "lw": 1.0, "label": f"ends: {ends}" if far[0] < 0 else None}
+            look = {
+                "color": style.INK,
+                "ls": line,
+                "lw": 1.0,
+                "label": f"ends: {ends}" if far[0] < 0 else None,
+            }
             ax.plot(far, 1e3 * profile.outline(1e-3 * far) + height, **look)
     ax.axvline(0, color=style.GREY, lw=0.8, ls=style.DASH_DOT)
     ax.annotate("solid", (1.2, 1.7), ha="center")

@@ -42,10 +42,14 @@ DEPTHS = {"600 um": 600e-6, "915 um": 915e-6}
 SHOWN = "915 um"
 CHANGE = "change_in_hold (%)"
 MARKS = {
-    panel: style.look_of("energy", panel, "color", "marker") | {"ms": 3.5, "lw": 1.0, "zorder": 9 - k}
+    panel: style.look_of("energy", panel, "color", "marker")
+    | {"ms": 3.5, "lw": 1.0, "zorder": 9 - k}
     for k, panel in enumerate(MEANINGS)
 }
-MARKS["long-term moduli"] |= {"ms": 7, "mfc": "none"}  # around others: at 600 um it changes as the first does
+MARKS["long-term moduli"] |= {
+    "ms": 7,
+    "mfc": "none",
+}  # around others: at 600 um it changes as the first does
 LINES = {"600 um": "--", "915 um": "-"}
 FALLS = {"fc": "white", "ec": "0.88", "hatch": "\\\\\\", "lw": 0, "zorder": 0}
 
@@ -58,9 +62,17 @@ def frame_meanings(histories: Histories, coarse: Companions) -> pd.DataFrame:
             for series, depth in DEPTHS.items():
                 read = partial(energy, depth=depth, name=variable)
                 values, top = read(history), ramp_end(history)
-                rows = {"source": SIMULATED, "panel": panel, "series": series, "surface": label, TIME: history["time"].values}
+                rows = {
+                    "source": SIMULATED,
+                    "panel": panel,
+                    "series": series,
+                    "surface": label,
+                    TIME: history["time"].values,
+                }
                 rows |= {SED: values, CHANGE: 100 * (values / values[top] - 1)}
-                errors = curve_errors(history, coarse.get(scene_name("ramp40", label)), over_time(read))
+                errors = curve_errors(
+                    history, coarse.get(scene_name("ramp40", label)), over_time(read)
+                )
                 parts.append(pd.DataFrame(rows | errors.columns))
     return pd.concat(parts, ignore_index=True)
 
@@ -90,7 +102,12 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
             ax.plot(rows[TIME], 1 + rows[CHANGE] / 100, **axs.look(label))
             ends[label] = (rows[TIME].iloc[-1], 1 + rows[CHANGE].iloc[-1] / 100)
         ax.axhspan(0, 1, **FALLS)
-        ax.set(title=titled(panel), xlabel="time (s)", xlim=(0, 2.5), ylim=(0, 1.08 * (1 + shown[CHANGE].max() / 100)))
+        ax.set(
+            title=titled(panel),
+            xlabel="time (s)",
+            xlim=(0, 2.5),
+            ylim=(0, 1.08 * (1 + shown[CHANGE].max() / 100)),
+        )
         ax.tick_params(labelleft=ax is axes[0])
     axes[0].set_ylabel(f"energy over that at the top\nof the ramp, {SHOWN.replace('um', 'µm')}")
     style.label_ends(axes[-1], ends, 2.62, "curvature (1/m)")
@@ -103,10 +120,17 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
             ax.plot(place, rows[CHANGE], line, **MARKS[panel])
     ax.axhline(0, color=style.INK, lw=0.7)
     ax.axhspan(min(0.0, 1.2 * last[CHANGE].min()), 0, **FALLS)
-    ax.set(ylabel="change over the hold (%)", xlabel="curvature (1/m)", xlim=(-0.3, len(SURFACES) - 0.7))
+    ax.set(
+        ylabel="change over the hold (%)",
+        xlabel="curvature (1/m)",
+        xlim=(-0.3, len(SURFACES) - 0.7),
+    )
     ax.set_xticks(range(len(SURFACES)), ["flat plate", *SURFACES[1:]])
     ax.set_ylim(top=ax.get_ylim()[0] + 1.3 * np.ptp(ax.get_ylim()))
     handles = [style.handle(panel, **MARKS[panel]) for panel in MEANINGS]
-    handles += [style.handle(series.replace("um", "µm"), color=style.INK, ls=line) for series, line in LINES.items()]
+    handles += [
+        style.handle(series.replace("um", "µm"), color=style.INK, ls=line)
+        for series, line in LINES.items()
+    ]
     ax.legend(handles=handles, loc="upper left", ncols=3)
     return fig

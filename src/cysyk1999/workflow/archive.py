@@ -24,19 +24,37 @@ from cysyk1999.workflow.products import COMPANIONS, PARTS, Job, Products
 from fingerpad.documents import SceneError, read_yaml
 from fingerpad.files import write_text
 
-CODE = ("Snakefile", "workflow", "profiles", "src", "setup.py", "pyproject.toml", "requirements.lock", "Makefile")
+CODE = (
+    "Snakefile",
+    "workflow",
+    "profiles",
+    "src",
+    "setup.py",
+    "pyproject.toml",
+    "requirements.lock",
+    "Makefile",
+)
 ABOUT = ("README.md", "LICENSE", "CITATION.cff")
 PROFILES = {
     "https://w3id.org/ro/wfrun/process/0.5": ("Process Run Crate", "0.5"),
     "https://w3id.org/ro/wfrun/workflow/0.5": ("Workflow Run Crate", "0.5"),
     "https://w3id.org/workflowhub/workflow-ro-crate/1.0": ("Workflow RO-Crate", "1.0"),
 }
-CONTEXT = ["https://w3id.org/ro/crate/1.1/context", {"sha256": "https://w3id.org/ro/terms/workflow-run#sha256"}]
+CONTEXT = [
+    "https://w3id.org/ro/crate/1.1/context",
+    {"sha256": "https://w3id.org/ro/terms/workflow-run#sha256"},
+]
 SNAKEMAKE = "https://w3id.org/workflowhub/workflow-ro-crate#snakemake"
 LICENSE = "https://spdx.org/licenses/GPL-3.0-or-later"
 BIOSCHEMAS = "https://bioschemas.org/profiles/{}/1.0-RELEASE"
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "*.pyc")
-KINDS = {".csv": "text/csv", ".png": "image/png", ".gif": "image/gif", ".md": "text/markdown", ".yaml": "application/yaml"}
+KINDS = {
+    ".csv": "text/csv",
+    ".png": "image/png",
+    ".gif": "image/gif",
+    ".md": "text/markdown",
+    ".yaml": "application/yaml",
+}
 
 
 class NotRun(ValueError):
@@ -56,12 +74,16 @@ def archive(file: str | Path, out: str | Path) -> Path:
     shutil.rmtree(partial, ignore_errors=True)
     for path in (*CODE, *ABOUT, "config"):
         _take(Path(path), partial)
-    placed = {path: _place(path, partial, config.results) for _, _, paths in finished for path in paths}
+    placed = {
+        path: _place(path, partial, config.results) for _, _, paths in finished for path in paths
+    }
     costs = _costs(finished)
     write_frame(costs, partial / "costs.csv")
     graph = list(_graph(str(file), finished, placed, partial))
     crate = {"@context": CONTEXT, "@graph": graph}
-    write_text(partial / "ro-crate-metadata.json", json.dumps(crate, indent=1, ensure_ascii=False) + "\n")
+    write_text(
+        partial / "ro-crate-metadata.json", json.dumps(crate, indent=1, ensure_ascii=False) + "\n"
+    )
     shutil.rmtree(out, ignore_errors=True)
     partial.rename(out)
     return Path(out)
@@ -72,7 +94,10 @@ def archive(file: str | Path, out: str | Path) -> Path:
 
 def _finished(products: Products) -> list[tuple[Job, Mapping, list[str]]]:
     """Jobs of the default target in the order they ended: with Snakemake's record of each, and what it made."""
-    default = {*products.targets("catalogue", *PARTS, figures=""), *products.histories(products.config.scenes)}
+    default = {
+        *products.targets("catalogue", *PARTS, figures=""),
+        *products.histories(products.config.scenes),
+    }
     makers = {path: job for job in products.jobs() for path in _made(job)}
     todo, jobs = sorted(default), {}
     while todo:
@@ -87,7 +112,9 @@ def _finished(products: Products) -> list[tuple[Job, Mapping, list[str]]]:
             raise NotRun(f"{missing[0]} is not there; run the workflow first")
         record = _record(made[0])
         if record is None:
-            raise NotRun(f"{made[0]} was not made by the workflow here (no record of its job); run the workflow first")
+            raise NotRun(
+                f"{made[0]} was not made by the workflow here (no record of its job); run the workflow first"
+            )
         found.append((job, record, made))
     return sorted(found, key=lambda each: each[1]["endtime"])
 
@@ -112,14 +139,28 @@ def _costs(finished: Iterable[tuple[Job, Mapping, list[str]]]) -> pd.DataFrame:
     """What every job took, and of simulations what each scene did."""
     rows = []
     for job, record, made in finished:
-        took = {"job": job.name, "started": _time(record["starttime"]), "ended": _time(record["endtime"])}
+        took = {
+            "job": job.name,
+            "started": _time(record["starttime"]),
+            "ended": _time(record["endtime"]),
+        }
         rows.append(took | {"wall time (s)": record["endtime"] - record["starttime"]})
         for path in made:
             if path.endswith("summary.json"):
                 run = json.loads(Path(path).read_text(encoding="utf-8"))["run"]
-                scene = {"job": job.name, "scene": "/".join(Path(path).parts[-3:-1]), "wall time (s)": run["wall_s"]}
-                scene |= {"process time (s)": run["cpu_s"], "memory (MB)": run["peak_rss_MB"], "nodes (1)": run["nodes"]}
-                rows.append(scene | {"steps (1)": run["steps"], "iterations (1)": run["newton_iterations"]})
+                scene = {
+                    "job": job.name,
+                    "scene": "/".join(Path(path).parts[-3:-1]),
+                    "wall time (s)": run["wall_s"],
+                }
+                scene |= {
+                    "process time (s)": run["cpu_s"],
+                    "memory (MB)": run["peak_rss_MB"],
+                    "nodes (1)": run["nodes"],
+                }
+                rows.append(
+                    scene | {"steps (1)": run["steps"], "iterations (1)": run["newton_iterations"]}
+                )
     return pd.DataFrame(rows)
 
 
@@ -155,10 +196,20 @@ def _ref(*ids: str) -> list[dict[str, str]]:
     return [{"@id": each} for each in dict.fromkeys(ids)]
 
 
-def _graph(file: str, finished: list[tuple[Job, Mapping, list[str]]], placed: Mapping[str, str], folder: Path) -> Iterator[dict]:
+def _graph(
+    file: str,
+    finished: list[tuple[Job, Mapping, list[str]]],
+    placed: Mapping[str, str],
+    folder: Path,
+) -> Iterator[dict]:
     about = yaml.safe_load((folder / "CITATION.cff").read_text(encoding="utf-8"))
-    ended, started = finished[-1][1]["endtime"], min(record["starttime"] for _, record, _ in finished)
-    inputs = sorted(p.relative_to(folder).as_posix() for p in (folder / "config").rglob("*") if p.is_file())
+    ended, started = (
+        finished[-1][1]["endtime"],
+        min(record["starttime"] for _, record, _ in finished),
+    )
+    inputs = sorted(
+        p.relative_to(folder).as_posix() for p in (folder / "config").rglob("*") if p.is_file()
+    )
     code = [path for path in (*CODE, *ABOUT) if (folder / path).is_file() and path != "Snakefile"]
     folders = [f"{path}/" for path in CODE if (folder / path).is_dir()]
     outputs = list(dict.fromkeys(placed.values()))
@@ -169,7 +220,9 @@ def _graph(file: str, finished: list[tuple[Job, Mapping, list[str]]], placed: Ma
         "@id": "ro-crate-metadata.json",
         "@type": "CreativeWork",
         "about": {"@id": "./"},
-        "conformsTo": _ref("https://w3id.org/ro/crate/1.1", "https://w3id.org/workflowhub/workflow-ro-crate/1.0"),
+        "conformsTo": _ref(
+            "https://w3id.org/ro/crate/1.1", "https://w3id.org/workflowhub/workflow-ro-crate/1.0"
+        ),
     }
     yield {
         "@id": "./",
@@ -187,8 +240,14 @@ def _graph(file: str, finished: list[tuple[Job, Mapping, list[str]]], placed: Ma
     }
     for profile, (name, version) in PROFILES.items():
         yield {"@id": profile, "@type": "CreativeWork", "name": name, "version": version}
-    yield {"@id": LICENSE, "@type": "CreativeWork", "name": about["license"], "url": LICENSE, "identifier": about["license"],
-           "description": "GNU General Public License, version 3 or later"}  # fmt: skip
+    yield {
+        "@id": LICENSE,
+        "@type": "CreativeWork",
+        "name": about["license"],
+        "url": LICENSE,
+        "identifier": about["license"],
+        "description": "GNU General Public License, version 3 or later",
+    }
     yield {"@id": "#developers", "@type": "Organization", "name": about["authors"][0]["name"]}
     yield from _workflow(file, about)
     yield {
@@ -221,13 +280,28 @@ def _graph(file: str, finished: list[tuple[Job, Mapping, list[str]]], placed: Ma
             "result": _ref(*(placed[path] for path in made)),
         }
     for path in jobs:
-        yield {"@id": path, "@type": ["File", "SoftwareSourceCode"], "name": Path(path).name, "encodingFormat": "text/x-python",
-               "version": about["version"], "description": f"What jobs of the kind {Path(path).stem} do"}  # fmt: skip
+        yield {
+            "@id": path,
+            "@type": ["File", "SoftwareSourceCode"],
+            "name": Path(path).name,
+            "encodingFormat": "text/x-python",
+            "version": about["version"],
+            "description": f"What jobs of the kind {Path(path).stem} do",
+        }
     for path in folders:
-        yield {"@id": path, "@type": "Dataset", "name": path, "description": f"Code of the workflow: {path}"}
+        yield {
+            "@id": path,
+            "@type": "Dataset",
+            "name": path,
+            "description": f"Code of the workflow: {path}",
+        }
     for path in (*inputs, *code, *outputs):
-        yield _data(path, folder, {file: {"exampleOfWork": {"@id": "#configuration"}}}.get(path, {}))
-    yield _data("costs.csv", folder, {"exampleOfWork": {"@id": "#costs"}}) | {"description": "What every job and scene took"}
+        yield _data(
+            path, folder, {file: {"exampleOfWork": {"@id": "#configuration"}}}.get(path, {})
+        )
+    yield _data("costs.csv", folder, {"exampleOfWork": {"@id": "#costs"}}) | {
+        "description": "What every job and scene took"
+    }
 
 
 def _workflow(file: str, about: Mapping) -> Iterator[dict]:
@@ -246,22 +320,53 @@ def _workflow(file: str, about: Mapping) -> Iterator[dict]:
         "input": _ref("#configuration"),
         "output": _ref("#costs"),
     }
-    yield {"@id": SNAKEMAKE, "@type": "ComputerLanguage", "name": "Snakemake", "url": {"@id": "https://snakemake.readthedocs.io"},
-           "identifier": {"@id": "https://doi.org/10.1093/bioinformatics/bts480"}}  # fmt: skip
-    for name, what, example in (("configuration", "What is simulated and drawn", file), ("costs", "What it took", "costs.csv")):
-        yield {"@id": f"#{name}", "@type": "FormalParameter", "name": name, "description": what, "additionalType": "File",
-               "workExample": {"@id": example}, "conformsTo": {"@id": BIOSCHEMAS.format("FormalParameter")}}  # fmt: skip
+    yield {
+        "@id": SNAKEMAKE,
+        "@type": "ComputerLanguage",
+        "name": "Snakemake",
+        "url": {"@id": "https://snakemake.readthedocs.io"},
+        "identifier": {"@id": "https://doi.org/10.1093/bioinformatics/bts480"},
+    }
+    for name, what, example in (
+        ("configuration", "What is simulated and drawn", file),
+        ("costs", "What it took", "costs.csv"),
+    ):
+        yield {
+            "@id": f"#{name}",
+            "@type": "FormalParameter",
+            "name": name,
+            "description": what,
+            "additionalType": "File",
+            "workExample": {"@id": example},
+            "conformsTo": {"@id": BIOSCHEMAS.format("FormalParameter")},
+        }
 
 
 def _data(path: str, folder: Path, more: Mapping) -> dict:
     """The entity of an input or output."""
     if path.endswith("/"):
-        return {"@id": path, "@type": "Dataset", "name": path, "description": f"Results: {path}"} | more
+        return {
+            "@id": path,
+            "@type": "Dataset",
+            "name": path,
+            "description": f"Results: {path}",
+        } | more
     kind = KINDS.get(Path(path).suffix, "text/plain")
     data = (folder / path).read_bytes()
     described = {"README.md": {"about": {"@id": "./"}}}.get(path, {})
-    return {"@id": path, "@type": "File", "name": Path(path).name, "description": path, "encodingFormat": kind,
-            "contentSize": str(len(data)), "sha256": hashlib.sha256(data).hexdigest()} | described | more  # fmt: skip
+    return (
+        {
+            "@id": path,
+            "@type": "File",
+            "name": Path(path).name,
+            "description": path,
+            "encodingFormat": kind,
+            "contentSize": str(len(data)),
+            "sha256": hashlib.sha256(data).hexdigest(),
+        }
+        | described
+        | more
+    )
 
 
 def main(words: list[str]) -> int:

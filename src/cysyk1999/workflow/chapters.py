@@ -53,7 +53,9 @@ def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
         kept = {"key": key, **_read()}
         write_text(path, json.dumps(kept, indent=1, ensure_ascii=False) + "\n")
     figures = {
-        number: Figure(number, **{k: tuple(v) if isinstance(v, list) else v for k, v in entry.items()})
+        number: Figure(
+            number, **{k: tuple(v) if isinstance(v, list) else v for k, v in entry.items()}
+        )
         for number, entry in kept["figures"].items()
     }
     return kept | {"figures": figures}
@@ -81,7 +83,9 @@ def _read() -> dict[str, Any]:
             "companions": list(spec.read_companions),
             "measured": MEASURED[spec.measured][0].split() if spec.measured else [],
         }
-        for spec, module in sorted(found, key=lambda pair: [int(n) for n in pair[0].number.split("-")])
+        for spec, module in sorted(
+            found, key=lambda pair: [int(n) for n in pair[0].number.split("-")]
+        )
     }
     offers = {"OUTSIDE": list(OUTSIDE), "CLASSES": list(CLASSES), "METHODS": dict(PARTS)}
     simulated = [name for name in READINGS if name not in READ_ONLY]

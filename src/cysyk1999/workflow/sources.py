@@ -18,7 +18,9 @@ PACKAGES = ("fingerpad", "cysyk1999")
 
 @cache
 def _imports() -> grimp.ImportGraph:
-    return grimp.build_graph(*PACKAGES, exclude_type_checking_imports=True, cache_dir=".snakemake/grimp")
+    return grimp.build_graph(
+        *PACKAGES, exclude_type_checking_imports=True, cache_dir=".snakemake/grimp"
+    )
 
 
 @cache

@@ -81,7 +81,9 @@ class Assigned:
         return Assigned(self.law, self.constants[index], self.elements[index])
 
 
-def assign(choices: Sequence[tuple[Law, Sequence[float]]], region: np.ndarray) -> tuple[Assigned, ...]:
+def assign(
+    choices: Sequence[tuple[Law, Sequence[float]]], region: np.ndarray
+) -> tuple[Assigned, ...]:
     """Each law once, with the elements of the regions that chose it.
 
     Args:
@@ -89,7 +91,9 @@ def assign(choices: Sequence[tuple[Law, Sequence[float]]], region: np.ndarray) -
     """
     out = []
     for law in dict.fromkeys(law for law, _ in choices):
-        table = np.array([given if own is law else [0.0] * len(law.constants) for own, given in choices], float)
+        table = np.array(
+            [given if own is law else [0.0] * len(law.constants) for own, given in choices], float
+        )
         here = np.array([own is law for own, _ in choices])[region]
         if here.any():
             out.append(Assigned(law, table.reshape(len(choices), len(law.constants))[region], here))

@@ -22,9 +22,12 @@ def tangent(i1, jac, mu, constants):
     bend = mu * (constants[0] + 3.0 * x * constants[1])
     turn = -2.0 * j / (3.0 * jac)
     return (
-        m, i1, 4.0 * bend * j * j, -2.0 * m / (3.0 * jac) + 2.0 * bend * j * turn * i1,
+        m,
+        i1,
+        4.0 * bend * j * j,
+        -2.0 * m / (3.0 * jac) + 2.0 * bend * j * turn * i1,
         5.0 * m * i1 / (9.0 * jac * jac) + bend * (turn * i1) * (turn * i1),
-    )  # fmt: skip
+    )
 
 
 LAW = Law(

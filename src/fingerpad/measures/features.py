@@ -66,7 +66,10 @@ def phase_indices(history: xr.Dataset) -> list[tuple[int, str]]:
     """Outputs shown in profile figures: a few during the ramp, its top, and the last one."""
     time = history.variables["time"].values
     top = ramp_end(history)
-    during = {int(np.argmin(abs(time[: top + 1] - f * time[top]))) for f in RAMP_FRACTIONS} - {0, top}
+    during = {int(np.argmin(abs(time[: top + 1] - f * time[top]))) for f in RAMP_FRACTIONS} - {
+        0,
+        top,
+    }
     return [(i, PHASES[0]) for i in sorted(during)] + [(top, TOP), (len(time) - 1, STEADY)]
 
 
@@ -78,7 +81,10 @@ def force_gf(history: xr.Dataset) -> np.ndarray:
 
 def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> int:
     """Index of the receptor at `depth` and `offset` (m). Raises KeyError if the scene has none there."""
-    miss = np.hypot(history.variables["receptor_depth"].values - depth, history.variables["receptor_offset"].values - offset)
+    miss = np.hypot(
+        history.variables["receptor_depth"].values - depth,
+        history.variables["receptor_offset"].values - offset,
+    )
     index = int(miss.argmin())
     if miss[index] > 1e-6:
         raise KeyError(f"no receptor at depth {depth * 1e6:g} um, offset {offset * 1e3:g} mm")
@@ -91,7 +97,9 @@ def receptors_at(history: xr.Dataset, depth: float) -> np.ndarray:
     return row[np.argsort(history.variables["receptor_offset"].values[row])]
 
 
-def energy(history: xr.Dataset, depth: float, offset: float = 0.0, name: str = "strain_energy_density") -> np.ndarray:
+def energy(
+    history: xr.Dataset, depth: float, offset: float = 0.0, name: str = "strain_energy_density"
+) -> np.ndarray:
     """Strain energy density (time) in Pa at one receptor."""
     return history.variables[name].values[:, receptor_index(history, depth, offset)]
 
@@ -102,13 +110,19 @@ def energy_rate(history: xr.Dataset, depth: float) -> pd.DataFrame:
     Taken leg by leg (see `rate_by_leg`), so that the jump at the top of the ramp stays a jump: that time appears twice, once
     with the rate of each leg.
     """
-    time, _, rate = rate_by_leg(history.variables["time"].values, energy(history, depth), history.variables["leg"].values)
+    time, _, rate = rate_by_leg(
+        history.variables["time"].values, energy(history, depth), history.variables["leg"].values
+    )
     return pd.DataFrame({"time (s)": time, "strain_energy_rate (Pa/s)": rate})
 
 
 def skin_at(history: xr.Dataset, index: int | slice = slice(None)) -> tuple[np.ndarray, np.ndarray]:
     """Deformed positions x, y (m) of the skin nodes at one output (skin_node), or at all of them (time, skin_node)."""
-    x, y = (history.variables[f"skin_{k}"].values + history.variables[f"skin_displacement_{k}"].values[index] for k in "xy")
+    x, y = (
+        history.variables[f"skin_{k}"].values
+        + history.variables[f"skin_displacement_{k}"].values[index]
+        for k in "xy"
+    )
     return x, y
 
 
@@ -121,7 +135,9 @@ def pressure_at(history: xr.Dataset, place: float) -> np.ndarray:
     """Pressure (time) in Pa at a place (m) along the upper side of the skin at rest, straight between nodes."""
     upper = history.variables["skin_y"].values > 0
     x = history.variables["skin_x"].values[upper]
-    return np.array([np.interp(place, x, row) for row in history.variables[PRESSURE].values[:, upper]])
+    return np.array(
+        [np.interp(place, x, row) for row in history.variables[PRESSURE].values[:, upper]]
+    )
 
 
 def in_contact(history: xr.Dataset, index: int, margin: int = 1) -> np.ndarray:

@@ -13,7 +13,9 @@ Further = ParamSpec("Further")
 Made = TypeVar("Made")
 
 
-def kept(make: Callable[Concatenate[xr.Dataset, Further], Made]) -> Callable[Concatenate[xr.Dataset, Further], Made]:
+def kept(
+    make: Callable[Concatenate[xr.Dataset, Further], Made],
+) -> Callable[Concatenate[xr.Dataset, Further], Made]:
     """The function, which makes something of a history, not called again for the same one: neither of the two is changed."""
     made: dict[tuple, Made] = {}
 

@@ -30,4 +30,7 @@ def known(names: Iterable[str]) -> Mapping[str, Measure]:
 
 def plugins() -> list[Path]:
     """Folders of the packages that add measures."""
-    return [Path(find_spec(plugin.module.split(".")[0]).origin).parent for plugin in entry_points(group=GROUP)]
+    return [
+        Path(find_spec(plugin.module.split(".")[0]).origin).parent
+        for plugin in entry_points(group=GROUP)
+    ]

@@ -75,10 +75,16 @@ class Measure:
     of: Literal["scene", "mesh", "history", "stroke"] = "history"
     beside: bool = False
 
-    def __call__(self, subject: Scene | PadMesh | xr.Dataset, runs: Together | None = None) -> dict[str, float]:
+    def __call__(
+        self, subject: Scene | PadMesh | xr.Dataset, runs: Together | None = None
+    ) -> dict[str, float]:
         subject = loaded(subject) if self.of == "stroke" else subject
         found = self.read(subject, runs) if self.beside else self.read(subject)
-        return {k: float(v) for k, v in found.items()} if isinstance(found, Mapping) else {"": float(found)}
+        return (
+            {k: float(v) for k, v in found.items()}
+            if isinstance(found, Mapping)
+            else {"": float(found)}
+        )
 
 
 def measure(

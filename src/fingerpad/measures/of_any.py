@@ -20,9 +20,13 @@ def _two(values: np.ndarray) -> dict[str, float]:
     return {"end": values[-1], "highest": values[np.argmax(np.abs(values))]}
 
 
-def _of_receptors(history: xr.Dataset, each: np.ndarray, conditions: tuple[str, ...] = ("end", "highest")) -> dict[str, float]:
+def _of_receptors(
+    history: xr.Dataset, each: np.ndarray, conditions: tuple[str, ...] = ("end", "highest")
+) -> dict[str, float]:
     """Values (time, receptor) at the end and at their highest, by place."""
-    places = zip(history["receptor_depth"].values * 1e6, history["receptor_offset"].values * 1e3, strict=True)
+    places = zip(
+        history["receptor_depth"].values * 1e6, history["receptor_offset"].values * 1e3, strict=True
+    )
     out = {}
     for k, (depth, offset) in enumerate(places):
         place = f"{depth:.6g} um" + (f" at {offset:.6g} mm" if offset else "")
@@ -57,7 +61,9 @@ RECEPTORS = (
 @measure("impulses/s", timed)
 def predicted_rate(history):
     """Impulse rate of slowly adapting receptors by Eq 5-1 with the thesis's constants."""
-    at, energy, change = rate_by_leg(history["time"].values, history["strain_energy_density"].values, history["leg"].values)
+    at, energy, change = rate_by_leg(
+        history["time"].values, history["strain_energy_density"].values, history["leg"].values
+    )
     return _of_receptors(history, THESIS_RATE(energy, change))
 
 

@@ -44,7 +44,9 @@ def _way(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.concatenate([np.zeros((*steps.shape[:-1], 1)), np.cumsum(steps, axis=-1)], axis=-1)
 
 
-def _curvature(x: np.ndarray, y: np.ndarray, way: np.ndarray, node: int, window: float) -> np.ndarray:
+def _curvature(
+    x: np.ndarray, y: np.ndarray, way: np.ndarray, node: int, window: float
+) -> np.ndarray:
     """`local_curvature` of a line with its arc length."""
     arc = way - way[..., node, None]
     needed = np.maximum(-arc[..., node - LEAST_NODES], arc[..., node + LEAST_NODES])

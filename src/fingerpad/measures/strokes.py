@@ -92,7 +92,9 @@ def lateral(stroke: xr.Dataset) -> np.ndarray:
 def place(stroke: xr.Dataset) -> np.ndarray:
     """Point of the surface (time), m along it, that the centre node lies under."""
     node = centre_node(stroke)
-    at_rest, moved = (stroke.variables[name].values[..., node] for name in ("skin_x", "skin_displacement_x"))
+    at_rest, moved = (
+        stroke.variables[name].values[..., node] for name in ("skin_x", "skin_displacement_x")
+    )
     return distance(stroke) + at_rest + moved
 
 
@@ -120,10 +122,17 @@ def centre_curvature(stroke: xr.Dataset) -> np.ndarray:
     return skin_curvature(stroke, centre_node(stroke))
 
 
-def scaled(values: np.ndarray, onto: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, float, float, float]:
+def scaled(
+    values: np.ndarray, onto: np.ndarray, where: np.ndarray
+) -> tuple[np.ndarray, float, float, float]:
     """A linear function A1 * values + A2 closest to `onto` at the outputs `where`: its values, A1, A2 and the correlation."""
     slope, offset = np.polyfit(values[where], onto[where], 1)
-    return slope * values + offset, float(slope), float(offset), float(np.corrcoef(values[where], onto[where])[0, 1])
+    return (
+        slope * values + offset,
+        float(slope),
+        float(offset),
+        float(np.corrcoef(values[where], onto[where])[0, 1]),
+    )
 
 
 def scaled_curvature(stroke: xr.Dataset) -> np.ndarray:
@@ -147,16 +156,23 @@ def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
         within[k] = (1 if inside[k] else -1) * _inside(x, pressure[k], centre)
     d = distance(stroke)
     fine = np.arange(d[0], d[-1], FINE)
-    return np.interp(fine, d, place(stroke)), np.interp(fine, d, np.where(inside, within, -within)) > 0
+    return np.interp(fine, d, place(stroke)), np.interp(
+        fine, d, np.where(inside, within, -within)
+    ) > 0
 
 
 def _inside(x: np.ndarray, pressure: np.ndarray, place: float) -> float:
     """How far (m) a place is from the nearest edge of the contact, below zero outside; x, pressure of ascending nodes."""
     on, spacing, deepest = np.flatnonzero(pressure > 0), np.gradient(x), -np.inf
     for run in np.split(on, np.flatnonzero(np.diff(on) > 1) + 1):
-        left, right = place - x[run[0]], x[run[-1]] - place  # to the last nodes, from which the edges are not far
+        left, right = (
+            place - x[run[0]],
+            x[run[-1]] - place,
+        )  # to the last nodes, from which the edges are not far
         if left < right + _FAR * spacing[run[0]]:
-            left += edge_of(-x[run[::-1]], pressure[run[::-1]], spacing[run[0]], _ON_EDGE) + x[run[0]]
+            left += (
+                edge_of(-x[run[::-1]], pressure[run[::-1]], spacing[run[0]], _ON_EDGE) + x[run[0]]
+            )
         if right < left + _FAR * spacing[run[-1]]:
             right += edge_of(x[run], pressure[run], spacing[run[-1]], _ON_EDGE) - x[run[-1]]
         deepest = max(deepest, min(left, right))
@@ -166,7 +182,10 @@ def _inside(x: np.ndarray, pressure: np.ndarray, place: float) -> float:
 def contact_lengths(stroke: xr.Dataset) -> dict[str, float]:
     """Stroke distance (m) over which the centre node touches each convexity, by the convexity's label."""
     under, touches = _finely(stroke)
-    return {k: FINE * float(np.sum(touches & (under >= a.start) & (under < a.end))) for k, a in convexities(stroke).items()}
+    return {
+        k: FINE * float(np.sum(touches & (under >= a.start) & (under < a.end)))
+        for k, a in convexities(stroke).items()
+    }
 
 
 def passage(stroke: xr.Dataset, convexity: Segment, beyond: float = 0.0) -> tuple[float, float]:
@@ -198,10 +217,16 @@ def lost_contacts(stroke: xr.Dataset) -> list[tuple[float, float]]:
     """Stretches of the surface, m along it, that the centre node passes under without touching; the ends left out."""
     under, touches = _finely(stroke)
     changes = np.flatnonzero(np.diff(touches.astype(int)))
-    return [(float(under[i]), float(under[j])) for i, j in zip(changes, changes[1:], strict=False) if touches[i]]
+    return [
+        (float(under[i]), float(under[j]))
+        for i, j in zip(changes, changes[1:], strict=False)
+        if touches[i]
+    ]
 
 
-def lag(x: np.ndarray, later: np.ndarray, at: np.ndarray, earlier: np.ndarray, most: float = 3e-3) -> tuple[float, float]:
+def lag(
+    x: np.ndarray, later: np.ndarray, at: np.ndarray, earlier: np.ndarray, most: float = 3e-3
+) -> tuple[float, float]:
     """Shift (m) along x by which one trace follows another most closely, and their correlation when shifted by it.
 
     Positive where `later` (sampled at `x`, m) lies further right: later(at + shift) ~ earlier(at). The earlier trace is
@@ -209,7 +234,9 @@ def lag(x: np.ndarray, later: np.ndarray, at: np.ndarray, earlier: np.ndarray, m
     """
     inside = (at >= x[0] + most) & (at <= x[-1] - most)
     shifts = np.arange(-most, most, 0.02e-3)
-    likeness = [np.corrcoef(np.interp(at[inside] + s, x, later), earlier[inside])[0, 1] for s in shifts]
+    likeness = [
+        np.corrcoef(np.interp(at[inside] + s, x, later), earlier[inside])[0, 1] for s in shifts
+    ]
     best = int(np.argmax(likeness))
     return float(shifts[best]), float(likeness[best])
 

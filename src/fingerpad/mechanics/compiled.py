@@ -14,7 +14,9 @@ _KERNELS = sources(Path(__file__).with_name("kernels.py"))
 def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     """:func:`kernels.loops`."""
     made = ("assemble_tangent", "internal_force", "commit", "energies")
-    return SimpleNamespace(**{name: _loop("loops", (law, nodes, points, modes), name) for name in made})
+    return SimpleNamespace(
+        **{name: _loop("loops", (law, nodes, points, modes), name) for name in made}
+    )
 
 
 @cache

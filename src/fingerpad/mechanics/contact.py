@@ -56,7 +56,9 @@ class Zone:
         of = np.argsort(self.shape == 0, axis=1, kind="stable")[:, :used]
         free = equation[of] >= 0
         values = np.take_along_axis(self.shape, of, axis=1)
-        self._columns = np.where(free, np.searchsorted(self.condensed, np.maximum(equation[of], 0)), 0)
+        self._columns = np.where(
+            free, np.searchsorted(self.condensed, np.maximum(equation[of], 0)), 0
+        )
         self._values = np.where(free, values[:, :, None], 0.0)
 
     def __len__(self) -> int:
@@ -69,12 +71,18 @@ class Zone:
     def along(self, directions: list[np.ndarray], matrix: np.ndarray) -> np.ndarray:
         """Components along each of the directions (nz, 2) at the points, of the columns (nc, n) of a matrix: (nd nz, n)."""
         out = np.empty((len(directions) * len(self), matrix.shape[1]))
-        compiled.at_points(self._columns, self._values, np.stack(directions), np.ascontiguousarray(matrix), out)
+        compiled.at_points(
+            self._columns, self._values, np.stack(directions), np.ascontiguousarray(matrix), out
+        )
         return out
 
     def spread(self, forces: np.ndarray) -> np.ndarray:
         """What forces (nz, 2) at the points are on the condensed degrees of freedom (nc,)."""
-        return np.bincount(self._columns.ravel(), (self._values * forces[:, None]).ravel(), minlength=len(self.condensed))
+        return np.bincount(
+            self._columns.ravel(),
+            (self._values * forces[:, None]).ravel(),
+            minlength=len(self.condensed),
+        )
 
     def bend(self, matrix: np.ndarray, direction: np.ndarray, weight: np.ndarray) -> np.ndarray:
         """A matrix (nc, nc) less ``weight`` (nz,) times the square of the displacement along ``direction`` (nz, 2)."""
@@ -98,16 +106,24 @@ class Zone:
         nodes = (self.shape[rows] != 0).any(axis=0)
         out.nodes, out.shape = self.nodes[nodes], self.shape[rows][:, nodes]
         if self.softness is not None:
-            out.softness, out.softness_along = (each[rows, rows] for each in (self.softness, self.softness_along))
+            out.softness, out.softness_along = (
+                each[rows, rows] for each in (self.softness, self.softness_along)
+            )
         return out
 
     def doubled(self, which: np.ndarray) -> Zone:
         """The zone with a second row for some of its points (k,), after all others."""
         rows = np.concatenate([np.arange(len(self)), which])
         out = copy(self)
-        out.shape, out._columns, out._values = self.shape[rows], self._columns[rows], self._values[rows]
+        out.shape, out._columns, out._values = (
+            self.shape[rows],
+            self._columns[rows],
+            self._values[rows],
+        )
         if self.softness is not None:
-            out.softness, out.softness_along = (each[np.ix_(rows, rows)] for each in (self.softness, self.softness_along))
+            out.softness, out.softness_along = (
+                each[np.ix_(rows, rows)] for each in (self.softness, self.softness_along)
+            )
         return out
 
 
@@ -131,7 +147,11 @@ class Rows:
     @property
     def points(self) -> int:
         """How many points of the zone they are of."""
-        return len(self.gap) if self.partner is None else len(self.gap) - int(np.sum(self.partner >= 0)) // 2
+        return (
+            len(self.gap)
+            if self.partner is None
+            else len(self.gap) - int(np.sum(self.partner >= 0)) // 2
+        )
 
     def of_points(self, values: np.ndarray) -> np.ndarray:
         """Sum (nz, ...) over the rows (nr, ...) of each point."""
@@ -156,8 +176,12 @@ class ContactStep:
     active: np.ndarray  # (nz,) bool
     pivots: int
     flexible: Flexibility  # that it was found with
-    softened: bool = False  # part of the gaps' second derivative was left out: the state was not stable with it
-    stiffness: float | None = None  # N/m^2, of the force against the depth while the same nodes touch
+    softened: bool = (
+        False  # part of the gaps' second derivative was left out: the state was not stable with it
+    )
+    stiffness: float | None = (
+        None  # N/m^2, of the force against the depth while the same nodes touch
+    )
 
 
 Step = TypeVar("Step", bound=ContactStep)
@@ -233,11 +257,15 @@ class Response:
     def displacement(self, multipliers: np.ndarray, depth_change: float) -> np.ndarray:
         """(nc,) condensed displacement."""
         each = multipliers.reshape(len(self._directions), -1, 1)
-        out = self._unloaded + self._inverse @ self._zone.spread(np.sum(each * self._directions, axis=0))
+        out = self._unloaded + self._inverse @ self._zone.spread(
+            np.sum(each * self._directions, axis=0)
+        )
         return out if self._bend is None else out - self._bend * depth_change
 
 
-def respond(zone: Zone, flexible: Flexibility, right: np.ndarray, directions: list[np.ndarray]) -> Response:
+def respond(
+    zone: Zone, flexible: Flexibility, right: np.ndarray, directions: list[np.ndarray]
+) -> Response:
     """Response of the zone to forces on its points.
 
     Args:
@@ -260,11 +288,19 @@ def respond(zone: Zone, flexible: Flexibility, right: np.ndarray, directions: li
         lever = lever - zone.along(directions, bend[:, None])[:, 0]
         corner -= float(flexible.border @ bend)
         load_shift = float(flexible.border @ unloaded)
-    return Response(compliance, free, lever, corner, load_shift, zone, directions, inverse, unloaded, bend)
+    return Response(
+        compliance, free, lever, corner, load_shift, zone, directions, inverse, unloaded, bend
+    )
 
 
 def until_stable(
-    attempt: Callable[[Flexibility], Step], zone, schur, gradient, curvature, previous_force, flexible: Flexibility | None
+    attempt: Callable[[Flexibility], Step],
+    zone,
+    schur,
+    gradient,
+    curvature,
+    previous_force,
+    flexible: Flexibility | None,
 ) -> Step:
     """What ``attempt`` finds with the ``flexible`` of before if there is one, or else with that of now; and as long as that has
     no stable solution, with less and less of what makes it unstable. Arguments as in :func:`solve_contact`.
@@ -338,15 +374,21 @@ def solve_contact(
             f, on, pivots = _pivot(answer.compliance, offset + answer.lever * dd, active)
         else:
             load = force - answer.load_shift
-            f, dd, on, pivots = _pivot_with_depth(answer.compliance, offset, answer.lever, answer.corner, load, active)
+            f, dd, on, pivots = _pivot_with_depth(
+                answer.compliance, offset, answer.lever, answer.corner, load, active
+            )
         require_stable(flexible, answer.compliance, on)
         yields = pressing_stiffness(answer, answer.compliance[np.ix_(on, on)], np.flatnonzero(on))
-        return ContactStep(answer.displacement(f, dd), dd, f, on, pivots, flexible, stiffness=yields)
+        return ContactStep(
+            answer.displacement(f, dd), dd, f, on, pivots, flexible, stiffness=yields
+        )
 
     return until_stable(attempt, zone, schur, gradient, curvature, previous_force, flexible)
 
 
-def pressing_stiffness(answer: Response, system: np.ndarray, rows: np.ndarray, share: np.ndarray | None = None) -> float | None:
+def pressing_stiffness(
+    answer: Response, system: np.ndarray, rows: np.ndarray, share: np.ndarray | None = None
+) -> float | None:
     """N/m^2, of the force against the depth while all nodes stay as they are; None where one yields to no force.
 
     Args:
@@ -387,7 +429,9 @@ def _pivot(compliance, offset, active):
             f[on] = np.linalg.solve(compliance[np.ix_(on, on)], -offset[on])
         return f, 0.0
 
-    f, _, active, pivots = _principal_pivoting(solve, lambda f, _: offset + compliance @ f, offset, active)
+    f, _, active, pivots = _principal_pivoting(
+        solve, lambda f, _: offset + compliance @ f, offset, active
+    )
     return f, active, pivots
 
 
@@ -410,7 +454,9 @@ def _pivot_with_depth(compliance, offset, lever, corner, load, active):
         f[k] = solution[:-1]
         return f, solution[-1]
 
-    return _principal_pivoting(solve, lambda f, dd: offset + compliance @ f + lever * dd, offset, active, keep_one=True)
+    return _principal_pivoting(
+        solve, lambda f, dd: offset + compliance @ f + lever * dd, offset, active, keep_one=True
+    )
 
 
 def _principal_pivoting(solve, gap_of, offset, active, keep_one=False):

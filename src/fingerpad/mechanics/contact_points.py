@@ -25,7 +25,10 @@ SMOOTHING = 0.01
 _SHARP = 0.1
 """Curvature times spacing above which there is less smoothing: a contact of a point or two must not give way."""
 PER_NODE = 2
-_RULES = {1: ((-0.5, 0.5), (1.0, 1.0)), 2: ((-0.75, -0.25, 0.25, 0.75), (13 / 24, 11 / 24, 11 / 24, 13 / 24))}
+_RULES = {
+    1: ((-0.5, 0.5), (1.0, 1.0)),
+    2: ((-0.75, -0.25, 0.25, 0.75), (13 / 24, 11 / 24, 11 / 24, 13 / 24)),
+}
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,13 @@ class ContactPoints:
 
     @classmethod
     def on(
-        cls, points: np.ndarray, chain: np.ndarray, edges: np.ndarray, shear: np.ndarray, mirrored=False, convexity=0.0
+        cls,
+        points: np.ndarray,
+        chain: np.ndarray,
+        edges: np.ndarray,
+        shear: np.ndarray,
+        mirrored=False,
+        convexity=0.0,
     ) -> ContactPoints:
         """Those of the skin.
 

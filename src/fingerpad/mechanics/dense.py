@@ -55,20 +55,36 @@ class _OfMkl:
         self._library = library
 
     def potrf(self, matrix: np.ndarray) -> bool:
-        return self._library.LAPACKE_dpotrf(_COLUMNS, ctypes.c_char(b"U"), len(matrix), _pointer(matrix), len(matrix)) == 0
+        return (
+            self._library.LAPACKE_dpotrf(
+                _COLUMNS, ctypes.c_char(b"U"), len(matrix), _pointer(matrix), len(matrix)
+            )
+            == 0
+        )
 
     def potri(self, factor: np.ndarray) -> None:
-        self._library.LAPACKE_dpotri(_COLUMNS, ctypes.c_char(b"U"), len(factor), _pointer(factor), len(factor))
+        self._library.LAPACKE_dpotri(
+            _COLUMNS, ctypes.c_char(b"U"), len(factor), _pointer(factor), len(factor)
+        )
 
     def potrs(self, factor: np.ndarray, right: np.ndarray) -> np.ndarray:
         out, n = np.array(right, float, order="F"), len(factor)
         columns = out.size // n
-        self._library.LAPACKE_dpotrs(_COLUMNS, ctypes.c_char(b"U"), n, columns, _pointer(factor), n, _pointer(out), n)
+        self._library.LAPACKE_dpotrs(
+            _COLUMNS, ctypes.c_char(b"U"), n, columns, _pointer(factor), n, _pointer(out), n
+        )
         return out
 
     def sytrf(self, matrix: np.ndarray) -> np.ndarray:
         pivots = np.zeros(len(matrix), np.int32)
-        given = _COLUMNS, ctypes.c_char(b"U"), len(matrix), _pointer(matrix), len(matrix), _pointer(pivots)
+        given = (
+            _COLUMNS,
+            ctypes.c_char(b"U"),
+            len(matrix),
+            _pointer(matrix),
+            len(matrix),
+            _pointer(pivots),
+        )
         self._library.LAPACKE_dsytrf(*given)
         return pivots
 

@@ -67,10 +67,14 @@ _QUAD9 = np.vstack([_QUAD4, [[0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]]
 _TRI7 = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5], [1 / 3, 1 / 3]])
 
 
-def _build(name: str, kind: str, rule: tuple[np.ndarray, np.ndarray], modes: int | None, nodes: np.ndarray) -> ReferenceElement:
+def _build(
+    name: str, kind: str, rule: tuple[np.ndarray, np.ndarray], modes: int | None, nodes: np.ndarray
+) -> ReferenceElement:
     points, weights = rule
     values, gradients = SHAPES[kind](points)
-    return ReferenceElement(name, kind, points, weights, values, gradients, modes or len(weights), nodes)
+    return ReferenceElement(
+        name, kind, points, weights, values, gradients, modes or len(weights), nodes
+    )
 
 
 ELEMENTS = {

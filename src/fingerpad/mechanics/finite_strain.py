@@ -58,13 +58,21 @@ class FiniteStrainBody:
         self.lagged = lagged
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
         self._loops = [
-            (compiled.loops(part.law, *space.sizes), np.ascontiguousarray(part.constants.T), space.blocks(part.elements))
+            (
+                compiled.loops(part.law, *space.sizes),
+                np.ascontiguousarray(part.constants.T),
+                space.blocks(part.elements),
+            )
             for part in self.laws
         ]
         self._volume = np.zeros((len(space.cells), space.psi.shape[2]))
         self._dilatation = self._volume.copy()
         self._about = self.u, self._volume.copy()
-        undeformed = blocked(np.tile([[1.0], [1.0], [0.0], [0.0]], (*space.weight.shape[:1], 1, space.weight.shape[1])))
+        undeformed = blocked(
+            np.tile(
+                [[1.0], [1.0], [0.0], [0.0]], (*space.weight.shape[:1], 1, space.weight.shape[1])
+            )
+        )
         self.branches = Branches(prony, undeformed.shape) if prony else None
         self._factor, self._history = 1.0, None
         self.branch_work = 0.0
@@ -95,11 +103,20 @@ class FiniteStrainBody:
         force = np.zeros_like(self.u)
         self.smallest_jacobian = min(
             loops.internal_force(
-                self.u, self.space.mesh, self.shear, self.bulk, *part, self._history, self._factor, self._pointwise,
-                self._dilatation if self.lagged else self._volume, self._volume, force,
+                self.u,
+                self.space.mesh,
+                self.shear,
+                self.bulk,
+                *part,
+                self._history,
+                self._factor,
+                self._pointwise,
+                self._dilatation if self.lagged else self._volume,
+                self._volume,
+                force,
             )
             for loops, *part in self._loops
-        )  # fmt: skip
+        )
         if not self.lagged:
             self._dilatation = self._volume.copy()
         return force
@@ -113,11 +130,22 @@ class FiniteStrainBody:
         force = np.zeros_like(self.u)
         self.smallest_jacobian = min(
             loops.assemble_tangent(
-                self.u, self.space.mesh, self.shear, self.bulk, *part, self._dilatation if self.lagged else self._volume,
-                self._volume, self._history, self._factor, self._pointwise, self.space.pattern.scatter, self._data, force,
+                self.u,
+                self.space.mesh,
+                self.shear,
+                self.bulk,
+                *part,
+                self._dilatation if self.lagged else self._volume,
+                self._volume,
+                self._history,
+                self._factor,
+                self._pointwise,
+                self.space.pattern.scatter,
+                self._data,
+                force,
             )
             for loops, *part in self._loops
-        )  # fmt: skip
+        )
         self._about = self.u, self._volume.copy()
         return self._data, force
 
@@ -130,7 +158,9 @@ class FiniteStrainBody:
         """The force (n, 2) that goes with the tangent that was factored last, wherever that was, of the ``internal`` one here."""
         force = internal.copy()
         amiss = self._volume - self._dilatation
-        compiled.volume_loop(*self.space.sizes)(self._about[0], amiss, self.space.mesh, self.bulk, force)
+        compiled.volume_loop(*self.space.sizes)(
+            self._about[0], amiss, self.space.mesh, self.bulk, force
+        )
         return force
 
     def advance(self, du: np.ndarray, share: float = 1.0) -> None:
@@ -144,7 +174,9 @@ class FiniteStrainBody:
     def volume_amiss(self) -> tuple[float, float]:
         """What the displacement's dilatation and its own differ by, and its own, as norms of pressures (N)."""
         bulk = self.bulk[:, None]
-        return float(np.linalg.norm(bulk * (self._volume - self._dilatation))), float(np.linalg.norm(bulk * self._dilatation))
+        return float(np.linalg.norm(bulk * (self._volume - self._dilatation))), float(
+            np.linalg.norm(bulk * self._dilatation)
+        )
 
     def commit(self) -> None:
         """The step has converged: let the branches move on, and add up the work that was done on them."""
@@ -153,9 +185,19 @@ class FiniteStrainBody:
             before = branches.q, branches.last, self._stretch
             after = [np.empty_like(each) for each in before]
             for each in after:
-                each[..., -1, :, :, :] = 0.0  # the last block may have room for more elements than there are
+                each[..., -1, :, :, :] = (
+                    0.0  # the last block may have room for more elements than there are
+                )
             self.branch_work += sum(
-                loops.commit(self.u, self.space.mesh, self.shear, *part, *branches.coefficients, *before, *after)
+                loops.commit(
+                    self.u,
+                    self.space.mesh,
+                    self.shear,
+                    *part,
+                    *branches.coefficients,
+                    *before,
+                    *after,
+                )
                 for loops, *part in self._loops
             )
             branches.restore(after[:2])
@@ -188,15 +230,21 @@ class FiniteStrainBody:
         Branch work less spring energy is what the dashpots have dissipated. The work is the integral of the branches' second
         Piola-Kirchhoff stress over the Green strain, by the trapezoidal rule, so a hold of any length adds none.
         """
-        springs = (None, None) if self.branches is None else (self.branches.prony.beta, self.branches.q)
+        springs = (
+            (None, None) if self.branches is None else (self.branches.prony.beta, self.branches.q)
+        )
         network, spring = np.sum(
             [
-                loops.energies(self.u, self.space.mesh, self.shear, *part, self._pointwise, *springs)
+                loops.energies(
+                    self.u, self.space.mesh, self.shear, *part, self._pointwise, *springs
+                )
                 for loops, *part in self._loops
             ],
             axis=0,
         )
-        volumetric = self.bulk @ np.sum(self._dilatation * (self._volume - 0.5 * self._dilatation), axis=1)
+        volumetric = self.bulk @ np.sum(
+            self._dilatation * (self._volume - 0.5 * self._dilatation), axis=1
+        )
         return float(network + volumetric), float(spring), self.branch_work
 
 
@@ -219,7 +267,10 @@ def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.nd
 
 def isochoric_energy(laws: tuple[Assigned, ...], f: np.ndarray, shear: np.ndarray) -> np.ndarray:
     """Energy density of shape (ne, ...), Pa, at deformation gradients (ne, ..., 2, 2); shear: (ne,) or (ne, 1), Pa."""
-    i1, jac = np.sum(f * f, axis=(-2, -1)) + 1, f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0]
+    i1, jac = (
+        np.sum(f * f, axis=(-2, -1)) + 1,
+        f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0],
+    )
     out = np.zeros(i1.shape)
     for part in laws:
         here = part.elements
@@ -232,8 +283,15 @@ def push_forward(f: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Kirchhoff stress F S F^T (..., 4) of a second Piola-Kirchhoff stress (..., 4: 11, 22, 12, 33) in plane strain."""
     f11, f12, f21, f22 = f[..., 0, 0], f[..., 0, 1], f[..., 1, 0], f[..., 1, 1]
     s11, s22, s12, s33 = np.moveaxis(s, -1, 0)
-    a11, a12, a21, a22 = f11 * s11 + f12 * s12, f11 * s12 + f12 * s22, f21 * s11 + f22 * s12, f21 * s12 + f22 * s22
-    return np.stack([a11 * f11 + a12 * f12, a21 * f21 + a22 * f22, a11 * f21 + a12 * f22, s33], axis=-1)
+    a11, a12, a21, a22 = (
+        f11 * s11 + f12 * s12,
+        f11 * s12 + f12 * s22,
+        f21 * s11 + f22 * s12,
+        f21 * s12 + f22 * s22,
+    )
+    return np.stack(
+        [a11 * f11 + a12 * f12, a21 * f21 + a22 * f22, a11 * f21 + a12 * f22, s33], axis=-1
+    )
 
 
 def deviator_square(t: np.ndarray) -> np.ndarray:

@@ -72,7 +72,11 @@ class Coulomb:
 
     def restore(self, saved) -> None:
         """Come back to a saved state."""
-        self.tangential, self.state, self._pull, self.dissipated = saved[0].copy(), saved[1].copy(), *saved[2:]
+        self.tangential, self.state, self._pull, self.dissipated = (
+            saved[0].copy(),
+            saved[1].copy(),
+            *saved[2:],
+        )
         self._before = saved[0].copy()
 
     def release(self) -> None:
@@ -80,9 +84,23 @@ class Coulomb:
         self.tangential[:], self._before[:], self.state[:], self._pull = 0, 0, 0, 0 * self._pull
 
     def solve(
-        self, zone: Zone, part: slice, schur, right, gap, gradient, curvature, previous_force, active, motion, *,
-        partner=None, force: float | None = None, depth_change: float | None = None, flexible: Flexibility | None = None,
-    ) -> FrictionStep:  # fmt: skip
+        self,
+        zone: Zone,
+        part: slice,
+        schur,
+        right,
+        gap,
+        gradient,
+        curvature,
+        previous_force,
+        active,
+        motion,
+        *,
+        partner=None,
+        force: float | None = None,
+        depth_change: float | None = None,
+        flexible: Flexibility | None = None,
+    ) -> FrictionStep:
         """Solve the linearised unilateral and frictional problem exactly; arguments as of :func:`contact.solve_contact`.
 
         Args:
@@ -111,7 +129,9 @@ class Coulomb:
             require_stable(flexible, answer.compliance[: len(gap), : len(gap)], on)
             dd = depth_change if depth_change is not None else dd
             du = answer.displacement(np.concatenate([f, tau]), dd)
-            return FrictionStep(du, dd, f, on, pivots, flexible, stiffness=yields, tangential=tau, state=state)
+            return FrictionStep(
+                du, dd, f, on, pivots, flexible, stiffness=yields, tangential=tau, state=state
+            )
 
         return until_stable(attempt, zone, schur, gradient, curvature, previous_force, flexible)
 
@@ -124,7 +144,14 @@ class Coulomb:
         """(nz, 2) N/m tangential force on the points of the zone, whose gap gradients (nz, 2) are."""
         return self.tangential[part, None] * tangents(gradient)
 
-    def creep(self, part: slice, active: np.ndarray, gradient: np.ndarray, motion: np.ndarray, softness=None) -> float:
+    def creep(
+        self,
+        part: slice,
+        active: np.ndarray,
+        gradient: np.ndarray,
+        motion: np.ndarray,
+        softness=None,
+    ) -> float:
         """Record the slip; returns the largest one (m) of a point that should stick. softness: along the skin, of the zone."""
         self.slip[:] = 0
         slip = np.einsum("ni,ni->n", motion, tangents(gradient))
@@ -178,20 +205,26 @@ def _solve(mu, answer, offset, load, active, state, partner=None):
     """
     for entering_sticks in (False, True):
         try:
-            return _exchange(mu, answer, offset, load, active, state, entering_sticks, partner=partner)
+            return _exchange(
+                mu, answer, offset, load, active, state, entering_sticks, partner=partner
+            )
         except _Cycling:
             pass
     f, bound = _exchange(0.0, answer, offset, load, active, 0 * state, partner=partner)[0], None
     for _ in range(60):
         bound = mu * f if bound is None else 0.5 * (bound + mu * f)
-        *found, active, state, pivots, yields = _exchange(mu, answer, offset, load, active, state, bound=bound, partner=partner)
+        *found, active, state, pivots, yields = _exchange(
+            mu, answer, offset, load, active, state, bound=bound, partner=partner
+        )
         f, tau, dd = found
         if np.abs(mu * f - bound).max() <= 1e-6 * mu * f.max():
             return f, tau, dd, active, state, pivots, yields
     raise _Cycling("stick and slip keep cycling")
 
 
-def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bound=None, partner=None):
+def _exchange(
+    mu, answer, offset, load, active, state, entering_sticks=False, bound=None, partner=None
+):
     """Exchange states until all are consistent; ``bound``: (nz,) N/m of the friction, instead of mu times the normal force.
 
     A node that leans on both sides of a valley is held by them: it cannot slip, so no friction is asked of it.
@@ -202,8 +235,12 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
     if not active.any() and load is not None:
         nearest = np.argmin(offset[:n])
         active[nearest], state[nearest] = True, -np.sign(offset[n + nearest])
-    yielding = np.abs(np.diag(a)[n:])  # below zero where a load on a sharp curve outweighs the body: it yields all the same
-    held = yielding <= 1e-12 * yielding.max(initial=0.0)  # cannot move along the tangent: a wall carries its friction
+    yielding = np.abs(
+        np.diag(a)[n:]
+    )  # below zero where a load on a sharp curve outweighs the body: it yields all the same
+    held = yielding <= 1e-12 * yielding.max(
+        initial=0.0
+    )  # cannot move along the tangent: a wall carries its friction
     state[held] = -np.sign(offset[n:][held])
     stiffness = 0.5 / np.where(held, np.inf, yielding)
     scale = max(np.abs(offset).max(), 1e-12)
@@ -240,17 +277,29 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
         wrong = np.where(active, f < -tiny, gap < -1e-11 * scale)
         sliding = active & (state != STICK) & ~wrong & ~held & free
         most = mu * np.maximum(f, 0) if bound is None else bound
-        slides = active & (state == STICK) & ~wrong & free & (np.abs(tau) > most * (1 + 1e-10) + tiny)
+        slides = (
+            active & (state == STICK) & ~wrong & free & (np.abs(tau) > most * (1 + 1e-10) + tiny)
+        )
         sticks = sliding & (state * slip > 1e-11 * scale)
         count = int(wrong.sum() + slides.sum() + sticks.sum())
         if not count:
             f[~active] = tau[~active] = 0
-            state = np.where(free | (state != STICK), state, 1)  # held fast, though it may have come a long way in this step
+            state = np.where(
+                free | (state != STICK), state, 1
+            )  # held fast, though it may have come a long way in this step
             if load is None:
                 yields = pressing_stiffness(answer, system, np.concatenate([on, n + stick]), share)
             else:  # what is left of the depth's own equation: the second solution is of a unit of it
                 yields = 1 / solution[-1, 1] if solution[-1, 1] else None
-            return np.maximum(f, 0), tau, dd, active, np.where(active, state, 0).astype(np.int8), pivots, yields
+            return (
+                np.maximum(f, 0),
+                tau,
+                dd,
+                active,
+                np.where(active, state, 0).astype(np.int8),
+                pivots,
+                yields,
+            )
         key = (active.tobytes(), state.tobytes())
         if count < best:
             best, patience = count, 10
@@ -266,11 +315,15 @@ def _exchange(mu, answer, offset, load, active, state, entering_sticks=False, bo
         seen.add(key)
         reverse = sticks & (stiffness * state * slip > 2 * most)
         entering = wrong & ~active
-        state = np.where(slides, np.sign(tau), np.where(reverse, -state, np.where(sticks, STICK, state))).astype(int)
+        state = np.where(
+            slides, np.sign(tau), np.where(reverse, -state, np.where(sticks, STICK, state))
+        ).astype(int)
         state = np.where(entering, 0 if entering_sticks else -np.sign(slip), state).astype(int)
         flipped = active ^ wrong
         if load is not None and not flipped.any():
-            only = np.argmax(np.where(active, f, -np.inf))  # someone must carry the force, if not in this state then in the next
+            only = np.argmax(
+                np.where(active, f, -np.inf)
+            )  # someone must carry the force, if not in this state then in the next
             flipped[only], state[only] = True, (state[only] + 2) % 3 - 1
         active = flipped
     raise _Cycling("stick and slip keep cycling")

@@ -34,7 +34,11 @@ from numba.extending import intrinsic, overload, register_jitable
 from fingerpad.laws import Law
 from fingerpad.laws.law import isochoric
 
-_JIT = {"fastmath": {"contract", "nsz", "reassoc", "arcp"}, "error_model": "numpy", "boundscheck": False}
+_JIT = {
+    "fastmath": {"contract", "nsz", "reassoc", "arcp"},
+    "error_model": "numpy",
+    "boundscheck": False,
+}
 _INLINE = _JIT | {"inline": "always"}
 
 _LANES = 8
@@ -44,13 +48,17 @@ _LANES = 8
 @intrinsic
 def _bits(context, number):
     """A double's bits as an integer."""
-    return types.int64(types.float64), lambda context, builder, signature, given: builder.bitcast(given[0], ir.IntType(64))
+    return types.int64(types.float64), lambda context, builder, signature, given: builder.bitcast(
+        given[0], ir.IntType(64)
+    )
 
 
 @intrinsic
 def _from_bits(context, number):
     """The double of these bits."""
-    return types.float64(types.int64), lambda context, builder, signature, given: builder.bitcast(given[0], ir.DoubleType())
+    return types.float64(types.int64), lambda context, builder, signature, given: builder.bitcast(
+        given[0], ir.DoubleType()
+    )
 
 
 _THIRDS = 4.0 / 3.0 * 2.0**52 * (1023.0 - 0.051)
@@ -75,7 +83,12 @@ def _isochoric_factor(jac):
 def _isochoric(mod, t, i1, c11, c22, c12, jac):
     """Isochoric second Piola-Kirchhoff stress m (I - t/3 C^-1), free of mean: 11, 22, 12, 33."""
     s = t / (3.0 * jac * jac)
-    return mod * (1.0 - s * c22), mod * (1.0 - s * c11), mod * s * c12, mod * ((1.0 - t / 3.0) + (t - i1))
+    return (
+        mod * (1.0 - s * c22),
+        mod * (1.0 - s * c11),
+        mod * s * c12,
+        mod * ((1.0 - t / 3.0) + (t - i1)),
+    )
 
 
 @njit(**_INLINE)
@@ -106,7 +119,9 @@ def bend(matrix, columns, values, direction, weight):
                 here = weight[k] * values[k, a, i] * direction[k, i]
                 for b in range(columns.shape[1]):
                     for j in range(2):
-                        matrix[columns[k, a, i], columns[k, b, j]] -= here * values[k, b, j] * direction[k, j]
+                        matrix[columns[k, a, i], columns[k, b, j]] -= (
+                            here * values[k, b, j] * direction[k, j]
+                        )
 
 
 @njit(**_JIT)
@@ -192,8 +207,18 @@ def _common(nodes: int, points: int, modes: int) -> tuple:
         for q in range(points):
             low = np.inf
             for k in range(first, last):
-                i11, i12, i21, i22 = inverse[0, q, k], inverse[1, q, k], inverse[2, q, k], inverse[3, q, k]
-                x1, x2, y1, y2 = drawn[0, q, k], drawn[0, points + q, k], drawn[1, q, k], drawn[1, points + q, k]
+                i11, i12, i21, i22 = (
+                    inverse[0, q, k],
+                    inverse[1, q, k],
+                    inverse[2, q, k],
+                    inverse[3, q, k],
+                )
+                x1, x2, y1, y2 = (
+                    drawn[0, q, k],
+                    drawn[0, points + q, k],
+                    drawn[1, q, k],
+                    drawn[1, points + q, k],
+                )
                 f11, f12 = 1.0 + i11 * x1 + i12 * x2, i21 * x1 + i22 * x2
                 f21, f22 = i11 * y1 + i12 * y2, 1.0 + i21 * y1 + i22 * y2
                 jac = f11 * f22 - f12 * f21
@@ -245,16 +270,29 @@ def dilatation_loop(nodes: int, points: int, modes: int):
         cells, reference, inverses, weights, all_psi = mesh
         together = weights.shape[2]
         local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
-        f, d, theta = np.empty((5, points, together)), np.empty((5, points, together)), np.empty((modes, together))
+        f, d, theta = (
+            np.empty((5, points, together)),
+            np.empty((5, points, together)),
+            np.empty((modes, together)),
+        )
         for block in range(len(weights)):
             begin = block * together
-            start, first, last = np.uint64(begin), np.uint64(0), np.uint64(min(together, len(cells) - begin))
+            start, first, last = (
+                np.uint64(begin),
+                np.uint64(0),
+                np.uint64(min(together, len(cells) - begin)),
+            )
             deform(u, cells, reference, inverses[block], start, first, last, local, drawn, f)
             deform(du, cells, reference, inverses[block], start, first, last, local, drawn, d)
             for q in range(points):
                 for k in range(first, last):
                     d11, d22 = d[0, q, k] - 1.0, d[3, q, k] - 1.0
-                    f[4, q, k] += f[3, q, k] * d11 - f[2, q, k] * d[1, q, k] - f[1, q, k] * d[2, q, k] + f[0, q, k] * d22
+                    f[4, q, k] += (
+                        f[3, q, k] * d11
+                        - f[2, q, k] * d[1, q, k]
+                        - f[1, q, k] * d[2, q, k]
+                        + f[0, q, k] * d22
+                    )
             project(weights[block], all_psi[block], first, last, f, theta)
             for m in range(modes):
                 for k in range(first, last):
@@ -276,10 +314,18 @@ def volume_loop(nodes: int, points: int, modes: int):
         """
         cells, reference, inverses, weights, all_psi = mesh
         together = weights.shape[2]
-        local, drawn, f = np.empty((2, nodes, together)), np.empty((2, 2 * points, together)), np.empty((5, points, together))
+        local, drawn, f = (
+            np.empty((2, nodes, together)),
+            np.empty((2, 2 * points, together)),
+            np.empty((5, points, together)),
+        )
         for block in range(len(weights)):
             begin = block * together
-            start, first, last = np.uint64(begin), np.uint64(0), np.uint64(min(together, len(cells) - begin))
+            start, first, last = (
+                np.uint64(begin),
+                np.uint64(0),
+                np.uint64(min(together, len(cells) - begin)),
+            )
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
             deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
             for q in range(points):
@@ -288,7 +334,12 @@ def volume_loop(nodes: int, points: int, modes: int):
                     for m in range(modes):
                         p += psi[m, q, k] * dilatation[start + k, m]
                     p *= kappa[start + k] * weight[q, k]
-                    i11, i12, i21, i22 = inverse[0, q, k], inverse[1, q, k], inverse[2, q, k], inverse[3, q, k]
+                    i11, i12, i21, i22 = (
+                        inverse[0, q, k],
+                        inverse[1, q, k],
+                        inverse[2, q, k],
+                        inverse[3, q, k],
+                    )
                     f11, f12, f21, f22 = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k]
                     drawn[0, q, k] = p * (f22 * i11 - f21 * i21)
                     drawn[0, points + q, k] = p * (f22 * i12 - f21 * i22)
@@ -316,7 +367,20 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
 
     @njit(**_JIT)
     def assemble_tangent(
-        u, mesh, mu, kappa, constants, blocks, dilatation, volume, history, factor, pointwise, scatter, data, force
+        u,
+        mesh,
+        mu,
+        kappa,
+        constants,
+        blocks,
+        dilatation,
+        volume,
+        history,
+        factor,
+        pointwise,
+        scatter,
+        data,
+        force,
     ):
         """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``, its pressures being of its volume.
 
@@ -334,19 +398,28 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         local, found = np.empty((2, nodes, together)), np.empty((18, points, together))
         drawn, cofactor, moduli = found[:4].reshape(2, 2 * points, together), found[4:8], found[8:]
         f, theta = np.empty((5, points, together)), np.empty((modes, together))
-        lag, answer, part = np.empty((modes, together)), np.empty((6, together)), np.empty((2, 2 * points, together))
+        lag, answer, part = (
+            np.empty((modes, together)),
+            np.empty((6, together)),
+            np.empty((2, 2 * points, together)),
+        )
         modal, own = np.empty((modes, 2, nodes, together)), np.empty((10, points))
         # K = left^T right: the gradients of the virtual displacements, x and y, and below them their dilatation modes; and how
         # stresses answer to all degrees of freedom, the second time only to those along y
         left = np.empty((2, nodes, 2 * points + modes))
         left[:, :, : 2 * points] = reference
-        right_x, right_y = np.zeros((2 * points + modes, wide_x)), np.zeros((2 * points + modes, wide_y))
+        right_x, right_y = (
+            np.zeros((2 * points + modes, wide_x)),
+            np.zeros((2 * points + modes, wide_y)),
+        )
         row = np.empty(wide_x)
         smallest = np.inf
         for block, first, last in blocks:
             start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
-            smallest = min(smallest, deform(u, cells, reference, inverse, start, first, last, local, drawn, f))
+            smallest = min(
+                smallest, deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+            )
             if smallest <= 0.0:
                 return smallest
             project(weight, psi, first, last, f, theta)
@@ -358,13 +431,21 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
-                    f11, f12, f21, f22, jac = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k]
+                    f11, f12, f21, f22, jac = (
+                        f[0, q, k],
+                        f[1, q, k],
+                        f[2, q, k],
+                        f[3, q, k],
+                        f[4, q, k],
+                    )
                     p = plag = 0.0
                     for m in range(modes):
                         p += psi[m, q, k] * theta[m, k]
                         plag += psi[m, q, k] * lag[m, k]
                     i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
-                    mod, t, fold, alpha, beta = law_tangent(i1, jac, factor * mu[e], constants[:, e])
+                    mod, t, fold, alpha, beta = law_tangent(
+                        i1, jac, factor * mu[e], constants[:, e]
+                    )
                     s = mod * t / (3.0 * jac)
                     p = kappa[e] * p - s
                     cross = kappa[e] * plag - s
@@ -386,7 +467,12 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                         l11 += history[block, 0, q, k]
                         l22 += history[block, 1, q, k]
                         l12 += history[block, 2, q, k]
-                    i11, i12, i21, i22 = inverse[0, q, k], inverse[1, q, k], inverse[2, q, k], inverse[3, q, k]
+                    i11, i12, i21, i22 = (
+                        inverse[0, q, k],
+                        inverse[1, q, k],
+                        inverse[2, q, k],
+                        inverse[3, q, k],
+                    )
                     # rows of F, its cofactor and (m I + H) J^-T on the reference cell
                     fx1, fx2 = f11 * i11 + f12 * i21, f11 * i12 + f12 * i22
                     fy1, fy2 = f21 * i11 + f22 * i21, f21 * i12 + f22 * i22
@@ -408,7 +494,11 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     ay1, ay2 = alpha * cy1 + fold * fy1, alpha * cy2 + fold * fy2
                     bx1, bx2 = alpha * fx1 + beta * cx1, alpha * fx2 + beta * cx2
                     by1, by2 = alpha * fy1 + beta * cy1, alpha * fy2 + beta * cy2
-                    lap11, lap12, lap22 = i11 * n11 + i21 * n21, i11 * n12 + i21 * n22, i12 * n12 + i22 * n22
+                    lap11, lap12, lap22 = (
+                        i11 * n11 + i21 * n21,
+                        i11 * n12 + i21 * n22,
+                        i12 * n12 + i22 * n22,
+                    )
                     found[8, q, k] = lap11 + fx1 * ax1 + cx1 * bx1
                     found[9, q, k] = lap12 + fx1 * ax2 + cx1 * bx2
                     found[10, q, k] = lap22 + fx2 * ax2 + cx2 * bx2
@@ -473,7 +563,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         return smallest
 
     @njit(**_JIT)
-    def internal_force(u, mesh, mu, kappa, constants, blocks, history, factor, pointwise, dilatation, volume, force):
+    def internal_force(
+        u, mesh, mu, kappa, constants, blocks, history, factor, pointwise, dilatation, volume, force
+    ):
         """Internal force (n, 2) of the pressures kappa times ``dilatation`` (ne, nm), accumulated in ``force``.
 
         Fills ``volume`` (ne, nm), the dilatation of ``u``; it may be the same array, then pressures are of it. Returns the
@@ -487,7 +579,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         for block, first, last in blocks:
             start = block * np.uint64(together)
             inverse, weight, psi = inverses[block], weights[block], all_psi[block]
-            smallest = min(smallest, deform(u, cells, reference, inverse, start, first, last, local, drawn, f))
+            smallest = min(
+                smallest, deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
+            )
             if smallest <= 0.0:
                 return smallest
             project(weight, psi, first, last, f, theta)
@@ -499,7 +593,13 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
-                    f11, f12, f21, f22, jac = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k]
+                    f11, f12, f21, f22, jac = (
+                        f[0, q, k],
+                        f[1, q, k],
+                        f[2, q, k],
+                        f[3, q, k],
+                        f[4, q, k],
+                    )
                     p = 0.0
                     for m in range(modes):
                         p += psi[m, q, k] * theta[m, k]
@@ -517,7 +617,12 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     p11, p12 = f11 * l11 + f12 * l12 + p * f22, f11 * l12 + f12 * l22 - p * f21
                     p21, p22 = f21 * l11 + f22 * l12 - p * f12, f21 * l12 + f22 * l22 + p * f11
                     w = weight[q, k]
-                    i11, i12, i21, i22 = inverse[0, q, k], inverse[1, q, k], inverse[2, q, k], inverse[3, q, k]
+                    i11, i12, i21, i22 = (
+                        inverse[0, q, k],
+                        inverse[1, q, k],
+                        inverse[2, q, k],
+                        inverse[3, q, k],
+                    )
                     drawn[0, q, k] = w * (p11 * i11 + p12 * i21)
                     drawn[0, points + q, k] = w * (p11 * i12 + p12 * i22)
                     drawn[1, q, k] = w * (p21 * i11 + p22 * i21)
@@ -527,7 +632,21 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         return smallest
 
     @njit(**_JIT)
-    def commit(u, mesh, mu, constants, blocks, decay, gain, branches, stress, stretch, new_branches, new_stress, new_stretch):
+    def commit(
+        u,
+        mesh,
+        mu,
+        constants,
+        blocks,
+        decay,
+        gain,
+        branches,
+        stress,
+        stretch,
+        new_branches,
+        new_stress,
+        new_stretch,
+    ):
         """Branch stresses, isochoric stress and C 11, 22, 12 after a step, into the new.
 
         Shapes: branches (nb, blocks, 4, nq, together); stress (blocks, 4, nq, together); stretch (blocks, 3, nq, together).
@@ -545,23 +664,41 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             deform(u, cells, reference, inverse, start, first, last, local, drawn, f)
             for q in range(points):
                 for k in range(first, last):
-                    f11, f12, f21, f22, jac = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k]
-                    c11, c22, c12 = f11 * f11 + f21 * f21, f12 * f12 + f22 * f22, f11 * f12 + f21 * f22
+                    f11, f12, f21, f22, jac = (
+                        f[0, q, k],
+                        f[1, q, k],
+                        f[2, q, k],
+                        f[3, q, k],
+                        f[4, q, k],
+                    )
+                    c11, c22, c12 = (
+                        f11 * f11 + f21 * f21,
+                        f12 * f12 + f22 * f22,
+                        f11 * f12 + f21 * f22,
+                    )
                     i1 = c11 + c22 + 1.0
                     mod, t = law_stress(i1, jac, mu[start + k], constants[:, start + k])
-                    now[0, k], now[1, k], now[2, k], now[3, k] = _isochoric(mod, t, i1, c11, c22, c12, jac)
+                    now[0, k], now[1, k], now[2, k], now[3, k] = _isochoric(
+                        mod, t, i1, c11, c22, c12, jac
+                    )
                     now[4, k], now[5, k], now[6, k] = c11, c22, c12
                 for c in range(4):
                     # the mean of a branch's stress before and after, times the way: 12 counts twice, and C is twice E
                     share = 0.0 if c == 3 else 0.5 if c == 2 else 0.25
                     for b in range(len(decay)):
                         for k in range(first, last):
-                            after = decay[b] * branches[b, block, c, q, k] + gain[b] * (now[c, k] - stress[block, c, q, k])
+                            after = decay[b] * branches[b, block, c, q, k] + gain[b] * (
+                                now[c, k] - stress[block, c, q, k]
+                            )
                             new_branches[b, block, c, q, k] = after
                         if c < 3:
                             for k in range(first, last):
-                                way = share * weight[q, k] * (now[4 + c, k] - stretch[block, c, q, k])
-                                work += (branches[b, block, c, q, k] + new_branches[b, block, c, q, k]) * way
+                                way = (
+                                    share * weight[q, k] * (now[4 + c, k] - stretch[block, c, q, k])
+                                )
+                                work += (
+                                    branches[b, block, c, q, k] + new_branches[b, block, c, q, k]
+                                ) * way
                     for k in range(first, last):
                         new_stress[block, c, q, k] = now[c, k]
                     if c < 3:
@@ -587,7 +724,13 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             for q in range(points):
                 for k in range(first, last):
                     e = start + k
-                    f11, f12, f21, f22, jac = f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], f[4, q, k]
+                    f11, f12, f21, f22, jac = (
+                        f[0, q, k],
+                        f[1, q, k],
+                        f[2, q, k],
+                        f[3, q, k],
+                        f[4, q, k],
+                    )
                     i1 = f11 * f11 + f12 * f12 + f21 * f21 + f22 * f22 + 1.0
                     w = weight[q, k]
                     network += w * law_energy(i1, jac, mu[e], constants[:, e])
@@ -599,11 +742,18 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                             e = start + k
                             s11, s22 = branches[b, block, 0, q, k], branches[b, block, 1, q, k]
                             s12, s33 = branches[b, block, 2, q, k], branches[b, block, 3, q, k]
-                            square = _spring(f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], s11, s22, s12, s33)
+                            square = _spring(
+                                f[0, q, k], f[1, q, k], f[2, q, k], f[3, q, k], s11, s22, s12, s33
+                            )
                             springs += weight[q, k] * square / (4.0 * beta[b] * mu[e])
         return network, springs
 
-    return SimpleNamespace(assemble_tangent=assemble_tangent, internal_force=internal_force, commit=commit, energies=energies)
+    return SimpleNamespace(
+        assemble_tangent=assemble_tangent,
+        internal_force=internal_force,
+        commit=commit,
+        energies=energies,
+    )
 
 
 @cache

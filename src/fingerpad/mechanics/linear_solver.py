@@ -49,7 +49,10 @@ class SymmetricPattern:
         low, high = np.divmod(keys, nodes)
         # in the rows of a node stand its own equations, then those of its higher neighbours
         ends = np.concatenate([[0], np.cumsum(count[high])])
-        first, last = ends[np.searchsorted(low, np.arange(nodes))], ends[np.searchsorted(low, np.arange(nodes), side="right")]
+        first, last = (
+            ends[np.searchsorted(low, np.arange(nodes))],
+            ends[np.searchsorted(low, np.arange(nodes), side="right")],
+        )
         if (last - first < count).any():
             raise FactorisationError("some nodes belong to no element")
         lengths = ((last - first)[:, None] - rank)[free]
@@ -57,17 +60,29 @@ class SymmetricPattern:
         self.nonzeros = int(self.indptr[-1])
 
         number = np.zeros((cells.shape[1],) * 2, dtype=np.int64)
-        number[rows, cols] = number[cols, rows] = np.arange(len(rows))  # of a pair of an element's nodes
-        at = np.concatenate([equation[cells, c] for c in range(components)], axis=1).astype(np.int32)
+        number[rows, cols] = number[cols, rows] = np.arange(
+            len(rows)
+        )  # of a pair of an element's nodes
+        at = np.concatenate([equation[cells, c] for c in range(components)], axis=1).astype(
+            np.int32
+        )
         rows, cols = np.triu_indices(at.shape[1])
         i, j = at[:, rows], at[:, cols]
         row, col = np.minimum(i, j), np.maximum(i, j)
         rank = rank[free]
         # equations of a node's lower neighbours, in its rows
         before = (ends[:-1] - first[low]).astype(np.int32)[pair.reshape(a.shape)]
-        place = (self.indptr[:-1] - rank)[row] + before[:, number[rows % cells.shape[1], cols % cells.shape[1]]] + rank[col]
-        place = np.where(row >= 0, place, np.int32(self.nonzeros))  # the extra slot swallows prescribed entries
-        self.scatter = np.ascontiguousarray(place)  # an element's entries side by side, as the loops run through them
+        place = (
+            (self.indptr[:-1] - rank)[row]
+            + before[:, number[rows % cells.shape[1], cols % cells.shape[1]]]
+            + rank[col]
+        )
+        place = np.where(
+            row >= 0, place, np.int32(self.nonzeros)
+        )  # the extra slot swallows prescribed entries
+        self.scatter = np.ascontiguousarray(
+            place
+        )  # an element's entries side by side, as the loops run through them
         self.indices = np.empty(self.nonzeros + 1, dtype=np.int32)
         self.indices[self.scatter] = col
         self.indices = self.indices[:-1].copy()
@@ -113,21 +128,56 @@ class PardisoCondensation:
         self._perm[self.condensed] = 1
         self._handle, self._parameters = np.zeros(64, np.int64), np.zeros(64, np.int32)
         # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia; precision; Schur complement, factors
-        for i, value in {1: 1, 2: 2, 10: 8, 21: 1, 24: 1, 28: int(single), 36: 2 if len(self.condensed) else 0}.items():
+        for i, value in {
+            1: 1,
+            2: 2,
+            10: 8,
+            21: 1,
+            24: 1,
+            28: int(single),
+            36: 2 if len(self.condensed) else 0,
+        }.items():
             self._parameters[i - 1] = value
         self._call(11, self._dummy, np.zeros(pattern.size, self._real))
 
     def _call(self, phase: int, right: np.ndarray, out: np.ndarray) -> int:
         """One phase of PARDISO, of one real symmetric indefinite matrix (-2) and one right-hand side, without a report."""
         error = ctypes.c_int32(0)
-        numbers = (ctypes.byref(ctypes.c_int32(value)) for value in (1, 1, -2, phase, self._pattern.size, 1, 0))
+        numbers = (
+            ctypes.byref(ctypes.c_int32(value))
+            for value in (1, 1, -2, phase, self._pattern.size, 1, 0)
+        )
         factors, matrix, kind, phase_, size, sides, report = numbers
         handle, data, ia, ja, perm, parameters, b, x = (
             ctypes.c_void_p(array.ctypes.data)
-            for array in (self._handle, self._data, self._ia, self._ja, self._perm, self._parameters, right, out)
+            for array in (
+                self._handle,
+                self._data,
+                self._ia,
+                self._ja,
+                self._perm,
+                self._parameters,
+                right,
+                out,
+            )
         )
         self._library.pardiso(
-            handle, factors, matrix, kind, phase_, size, data, ia, ja, perm, sides, parameters, report, b, x, ctypes.byref(error)
+            handle,
+            factors,
+            matrix,
+            kind,
+            phase_,
+            size,
+            data,
+            ia,
+            ja,
+            perm,
+            sides,
+            parameters,
+            report,
+            b,
+            x,
+            ctypes.byref(error),
         )
         if error.value == _NO_MEMORY:
             raise MemoryError(f"{self._pattern.size} equations are too many for PARDISO")
@@ -154,7 +204,9 @@ class PardisoCondensation:
     def forward(self, right: np.ndarray) -> np.ndarray:
         """Reduced right-hand side (nc,) for the condensed degrees of freedom; keeps the rest for :meth:`backward`."""
         self._reduced = np.zeros(self._pattern.size, self._real)
-        self._call(331 if len(self.condensed) else 33, np.array(right, dtype=self._real), self._reduced)
+        self._call(
+            331 if len(self.condensed) else 33, np.array(right, dtype=self._real), self._reduced
+        )
         return self._reduced[self.condensed].astype(float)
 
     def backward(self, condensed_values: np.ndarray) -> np.ndarray:
@@ -188,11 +240,15 @@ class SuperLUCondensation:
         matrix = self._pattern.matrix(data).tocsc()
         i, c = self._interior, self.condensed
         try:
-            self._lu = splu(matrix[i][:, i], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+            self._lu = splu(
+                matrix[i][:, i], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}
+            )
         except RuntimeError as error:
             raise FactorisationError("the tangent is singular") from error
         self._coupling = matrix[c][:, i]
-        schur = matrix[c][:, c].toarray() - self._coupling @ self._lu.solve(self._coupling.T.toarray())
+        schur = matrix[c][:, c].toarray() - self._coupling @ self._lu.solve(
+            self._coupling.T.toarray()
+        )
         return (schur + schur.T) / 2
 
     def forward(self, right: np.ndarray) -> np.ndarray:
@@ -202,7 +258,9 @@ class SuperLUCondensation:
     def backward(self, condensed_values: np.ndarray) -> np.ndarray:
         out = np.empty(self._pattern.size)
         out[self.condensed] = condensed_values
-        out[self._interior] = self._interior_solution - self._lu.solve(self._coupling.T @ condensed_values)
+        out[self._interior] = self._interior_solution - self._lu.solve(
+            self._coupling.T @ condensed_values
+        )
         return out
 
 
@@ -254,4 +312,8 @@ class Narrowed:
 
 def condensation(pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):
     """The best available solver for this pattern, condensing onto the given equations (nc,); ``single``: precision will do."""
-    return PardisoCondensation(pattern, condensed, single) if pardiso_available() else SuperLUCondensation(pattern, condensed)
+    return (
+        PardisoCondensation(pattern, condensed, single)
+        if pardiso_available()
+        else SuperLUCondensation(pattern, condensed)
+    )

@@ -47,13 +47,17 @@ def contact_edges(x, pressure, spacing, mirrored: bool = False) -> tuple[float, 
     """
     if mirrored:
         x, pressure, spacing = (
-            np.concatenate([sign * each[::-1], each]) for sign, each in ((-1, x), (1, pressure), (1, spacing))
+            np.concatenate([sign * each[::-1], each])
+            for sign, each in ((-1, x), (1, pressure), (1, spacing))
         )
     on = np.flatnonzero(pressure > 0)
     if not len(on):
         return np.nan, np.nan
     run = np.split(on, np.flatnonzero(np.diff(on) > 1) + 1)
     left, right = run[0][::-1], run[-1]
-    ends = (-x[left], pressure[left], spacing[left[-1]]), (x[right], pressure[right], spacing[right[-1]])
+    ends = (
+        (-x[left], pressure[left], spacing[left[-1]]),
+        (x[right], pressure[right], spacing[right[-1]]),
+    )
     begin, end = (edge_of(*beside, _ON_EDGE) for beside in ends)
     return -begin, end

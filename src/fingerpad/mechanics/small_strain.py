@@ -35,7 +35,12 @@ class SmallStrainBody:
         prony: Prony | None = None,
         laws: tuple[Assigned, ...] | None = None,
     ):
-        self.space, self.shear, self.bulk, self.prony = space, np.asarray(shear, float), np.asarray(bulk, float), prony
+        self.space, self.shear, self.bulk, self.prony = (
+            space,
+            np.asarray(shear, float),
+            np.asarray(bulk, float),
+            prony,
+        )
         self.laws = laws or everywhere_neo_hooke(len(space.cells))
         self.u = np.zeros(space.points.shape)
         self.v = np.zeros((len(prony.tau) if prony else 0, *self.u.shape))
@@ -57,9 +62,21 @@ class SmallStrainBody:
         for part in self.laws:
             constants, blocks = np.ascontiguousarray(part.constants.T), space.blocks(part.elements)
             compiled.loops(part.law, *space.sizes).assemble_tangent(
-                zero, space.mesh, deviatoric * self.shear, volumetric * self.bulk,
-                constants, blocks, no_lag, volume, None, 1.0, None, each, out, zero.copy(),
-            )  # fmt: skip
+                zero,
+                space.mesh,
+                deviatoric * self.shear,
+                volumetric * self.bulk,
+                constants,
+                blocks,
+                no_lag,
+                volume,
+                None,
+                1.0,
+                None,
+                each,
+                out,
+                zero.copy(),
+            )
         return out.reshape(each.shape)
 
     def _everything(self, upper):
@@ -82,7 +99,10 @@ class SmallStrainBody:
         if self.prony:
             self._decay, self._gamma, factor = step_coefficients(self.prony, dt)
             beta = self.prony.beta
-            branch = np.tensordot(beta * self._decay, self.v, axes=1) - np.sum(beta * self._gamma) * self._last
+            branch = (
+                np.tensordot(beta * self._decay, self.v, axes=1)
+                - np.sum(beta * self._gamma) * self._last
+            )
             self._begin(factor, branch)
 
     def displace(self, u: np.ndarray, dilatation=None) -> np.ndarray:
@@ -92,7 +112,9 @@ class SmallStrainBody:
     def internal_force(self) -> np.ndarray:
         """(n, 2) N/m at the current displacement."""
         answering = (self._factor * self.u + self._history).ravel()
-        return (self._deviatoric @ answering + self._volumetric @ self.u.ravel()).reshape(self.u.shape)
+        return (self._deviatoric @ answering + self._volumetric @ self.u.ravel()).reshape(
+            self.u.shape
+        )
 
     def stiffness(self) -> np.ndarray:
         """Coefficients of the pattern (nonzeros + 1,) of the step begun last."""

@@ -22,7 +22,9 @@ def blocked(values: np.ndarray) -> np.ndarray:
     count = -(-len(values) // TOGETHER)
     filled = np.zeros((count * TOGETHER, *values.shape[1:]))
     filled[: len(values)] = values
-    return np.ascontiguousarray(np.moveaxis(filled.reshape(count, TOGETHER, *values.shape[1:]), 1, -1))
+    return np.ascontiguousarray(
+        np.moveaxis(filled.reshape(count, TOGETHER, *values.shape[1:]), 1, -1)
+    )
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,11 @@ class Space:
     """
 
     def __init__(self, points, cells, kind, fixed, element=None, measure=None):
-        points, cells, fixed = np.asarray(points, float), np.asarray(cells, np.int32), np.asarray(fixed, bool)
+        points, cells, fixed = (
+            np.asarray(points, float),
+            np.asarray(cells, np.int32),
+            np.asarray(fixed, bool),
+        )
         self.element = ELEMENTS[element or DEFAULT_ELEMENT[kind]]
         self.measure = measure or PlaneStrain()
         if kind == "tri6" and self.element.nodes_per_element == 7:
@@ -74,7 +80,10 @@ class Space:
             raise ValueError(f"element {self.element.name} does not fit a mesh of {kind}")
         self.points, self.cells, self.fixed = points, cells, fixed
         x = points[cells]
-        (a, b), (c, d) = ([along @ x[..., i].T for i in (0, 1)] for along in np.moveaxis(self.element.gradients, -1, 0))
+        (a, b), (c, d) = (
+            [along @ x[..., i].T for i in (0, 1)]
+            for along in np.moveaxis(self.element.gradients, -1, 0)
+        )
         det = (a * d - b * c).T  # of the Jacobian, each of whose components is (nq, ne)
         if det.min() <= 0:
             raise ValueError(f"element {int(det.min(1).argmin())} is inverted")
@@ -87,7 +96,9 @@ class Space:
         gram = (self.weight[..., None] * modes).swapaxes(1, 2) @ modes
         self._orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
         self.psi = np.ascontiguousarray(modes @ self._orthonormal.swapaxes(1, 2))
-        reference = np.concatenate([self.element.gradients[..., 0], self.element.gradients[..., 1]]).T
+        reference = np.concatenate(
+            [self.element.gradients[..., 0], self.element.gradients[..., 1]]
+        ).T
         parts = (self._inverse.swapaxes(1, 2), self.weight, self.psi.swapaxes(1, 2))
         self.mesh = (cells, np.ascontiguousarray(reference), *map(blocked, parts))
         self.sizes = (cells.shape[1], *self.psi.shape[1:])
@@ -139,7 +150,9 @@ class Space:
         runs = [
             (begin // TOGETHER, begin % TOGETHER, begin % TOGETHER + end - begin)
             for start, stop in change.reshape(-1, 2)
-            for begin, end in pairwise(sorted({start, stop, *range(-(-start // TOGETHER) * TOGETHER, stop, TOGETHER)}))
+            for begin, end in pairwise(
+                sorted({start, stop, *range(-(-start // TOGETHER) * TOGETHER, stop, TOGETHER)})
+            )
         ]
         return np.array(runs, dtype=np.uint64).reshape(-1, 3)
 

@@ -134,11 +134,15 @@ class Record:
     smallest_jacobian: float
     energy_error: float
     work: float
-    energies: tuple[float, float, float]  # J/m, of the network and what the points of contact give way; springs; work on branches
+    energies: tuple[
+        float, float, float
+    ]  # J/m, of the network and what the points of contact give way; springs; work on branches
     dissipated: float
     distance: float = 0.0
     frictional: float = 0.0
-    tangential: np.ndarray | None = None  # (ns,) N/m along the tangent; the three only with friction
+    tangential: np.ndarray | None = (
+        None  # (ns,) N/m along the tangent; the three only with friction
+    )
     slip: np.ndarray | None = None  # (ns,) m, of the skin over the profile in this step
     state: np.ndarray | None = None  # (ns,) 0 open, 1 sticks, 2 slips
     passed: tuple[Step, ...] = ()  # outputs since the state before, at which none was found
@@ -157,7 +161,13 @@ class _Past:
     def plus(self, weights, others):
         """Linear combination of this state and others."""
         states, parts = [self, *others], ("u", "pressed", "force", "depth")
-        return _Past(self.dt, *(sum(w * getattr(s, part) for w, s in zip(weights, states, strict=True)) for part in parts))
+        return _Past(
+            self.dt,
+            *(
+                sum(w * getattr(s, part) for w, s in zip(weights, states, strict=True))
+                for part in parts
+            ),
+        )
 
 
 def first_touch(skin: np.ndarray, profile) -> float:
@@ -186,7 +196,14 @@ class QuasiStatic:
     """
 
     def __init__(
-        self, body, skin: Skin, profile, settings: NewtonSettings | None = None, observers=(), external=None, friction=None
+        self,
+        body,
+        skin: Skin,
+        profile,
+        settings: NewtonSettings | None = None,
+        observers=(),
+        external=None,
+        friction=None,
     ):
         self.body, self.skin, self.profile = body, skin, profile
         self.settings = settings or NewtonSettings()
@@ -195,17 +212,29 @@ class QuasiStatic:
         self.external = external
         self.points = body.space.points
         stiffest = np.zeros(len(self.points))
-        np.maximum.at(stiffest, body.space.cells.ravel(), np.repeat(body.shear, body.space.cells.shape[1]))
+        np.maximum.at(
+            stiffest, body.space.cells.ravel(), np.repeat(body.shear, body.space.cells.shape[1])
+        )
         along, across = body.space.equation[skin.nodes[0]]
-        mirrored = along < 0 <= across and abs(self.points[skin.nodes[0], 0]) < 1e-9 * np.ptp(self.points[:, 0])
+        mirrored = along < 0 <= across and abs(self.points[skin.nodes[0], 0]) < 1e-9 * np.ptp(
+            self.points[:, 0]
+        )
         self.places = ContactPoints.on(
-            self.points, skin.nodes, skin.edges, stiffest[skin.edges].min(axis=1), bool(mirrored), profile.convexity
+            self.points,
+            skin.nodes,
+            skin.edges,
+            stiffest[skin.edges].min(axis=1),
+            bool(mirrored),
+            profile.convexity,
         )
         self._valleys, places = None, len(self.places)
         if profile.valleys:
             from fingerpad.mechanics.valleys import Valleys
 
-            self._valleys, places = Valleys(profile, places, skin.spacing / PER_NODE, friction or 0.0), 2 * places
+            self._valleys, places = (
+                Valleys(profile, places, skin.spacing / PER_NODE, friction or 0.0),
+                2 * places,
+            )
         self.contact_force = np.zeros(places)
         self.active = np.zeros(places, bool)
         self.depth = self.distance = 0.0
@@ -218,7 +247,9 @@ class QuasiStatic:
             from fingerpad.mechanics.friction import Coulomb
 
             self.friction = Coulomb(friction, places)
-        self._factors = self._flexible = self._stiffness = self._found = self._nodal = self._touched = None
+        self._factors = self._flexible = self._stiffness = self._found = self._nodal = (
+            self._touched
+        ) = None
         self._served: list[int] = []  # iterations of the steps that the factors have served
         self._set_zone(*(PER_NODE * end for end in skin.start))
         self.height = self._first_touch()
@@ -228,7 +259,9 @@ class QuasiStatic:
         self._touches: list[Touch] = []  # the last two states'
         self._quadratic = False
         self.total_iterations = self.total_halvings = self.factorisations = self._spent = 0
-        self.wavered = 0  # attempts that ended going to and fro between states that are nearly in equilibrium
+        self.wavered = (
+            0  # attempts that ended going to and fro between states that are nearly in equilibrium
+        )
 
     # -- geometry ---------------------------------------------------------------------------------------------------
 
@@ -238,14 +271,19 @@ class QuasiStatic:
         nodes, shape = self.places.shape(self._outer)
         softness = self.places.soft(self._outer), self.places.soft(self._outer, odd=True)
         self._wide = Zone(nodes, self.body.space.equation, shape, *softness)
-        self.solver, self._schur = condensation(self.body.space.pattern, self._wide.condensed, self._single), None
+        self.solver, self._schur = (
+            condensation(self.body.space.pattern, self._wide.condensed, self._single),
+            None,
+        )
         self._narrow(first, last)
 
     def _narrow(self, first, last):
         """Let contact be solved for on some points of those that are condensed onto."""
         first, last = max(first, self._outer.start), min(last, self._outer.stop)
         self._range = self.places.whole(first, last)
-        self.zone = self._wide.part(slice(self._range.start - self._outer.start, self._range.stop - self._outer.start))
+        self.zone = self._wide.part(
+            slice(self._range.start - self._outer.start, self._range.stop - self._outer.start)
+        )
         self._narrowed = Narrowed(self.solver, self.zone.condensed)
         if self._schur is not None:
             self._take(self._schur)
@@ -311,12 +349,16 @@ class QuasiStatic:
 
     def _position(self, which):
         """(k, 2) m, of some points of the skin in the profile's frame."""
-        return self.places.at(self.points + self.body.u, which) - np.array([-self.distance, self.height - self.depth])
+        return self.places.at(self.points + self.body.u, which) - np.array(
+            [-self.distance, self.height - self.depth]
+        )
 
     def _rows(self) -> Rows:
         """The constraints of the zone, worked out once where the body and the profile are."""
         where = self.zone, self.body.u, self.height, self.depth, self.distance
-        if self._found is None or not all(a is b for a, b in zip(where, self._found[0], strict=True)):
+        if self._found is None or not all(
+            a is b for a, b in zip(where, self._found[0], strict=True)
+        ):
             zone, points = self.zone, self._position(self._range)
             single = self.profile.evaluate(points)
             if self._valleys is None:
@@ -333,7 +375,11 @@ class QuasiStatic:
         skin = np.concatenate([self.points[self.skin.nodes], self.places.at(self.points)])
         height = first_touch(skin + np.array([self.distance, 0.0]), self.profile)
         if np.isnan(height):
-            raise NonConvergence(self.time, f"the stimulus left the pad at {self.distance * 1e3:.3g} mm", "a shorter way")
+            raise NonConvergence(
+                self.time,
+                f"the stimulus left the pad at {self.distance * 1e3:.3g} mm",
+                "a shorter way",
+            )
         return height
 
     def touching_depth(self) -> float:
@@ -345,12 +391,23 @@ class QuasiStatic:
     def save(self):
         """The state to come back to: body, contact forces, active nodes, depth, distance, friction."""
         friction = self.friction and self.friction.save()
-        return self.body.save(), self.contact_force.copy(), self.active.copy(), self.depth, self.distance, friction
+        return (
+            self.body.save(),
+            self.contact_force.copy(),
+            self.active.copy(),
+            self.depth,
+            self.distance,
+            friction,
+        )
 
     def restore(self, state):
         """Come back to a saved state."""
         self.body.restore(state[0])
-        self.contact_force, self.active, self.depth, self.distance = state[1].copy(), state[2].copy(), *state[3:5]
+        self.contact_force, self.active, self.depth, self.distance = (
+            state[1].copy(),
+            state[2].copy(),
+            *state[3:5],
+        )
         if self.friction is not None:
             self.friction.restore(state[5])
         self._factors = None
@@ -367,7 +424,9 @@ class QuasiStatic:
             observe(self.body, STEADY)
         self.force = self._tangential = 0.0
         # what was put in has come out again: the balance goes on from here
-        self.work = self._gross = self._most_work = 0.0 if self.friction is None else self.friction.dissipated
+        self.work = self._gross = self._most_work = (
+            0.0 if self.friction is None else self.friction.dissipated
+        )
         self._energies = (0.0, 0.0, 0.0)
         self._factors = self._stiffness = None
         self._past.clear()
@@ -397,13 +456,22 @@ class QuasiStatic:
                 raise _StepFailure("the residual is not finite")
             if residual <= 1.0 and not self._zone_is_tight(1) and not self._touches_elsewhere():
                 self._served.append(iteration)
-                if self._softened or sum(self._served) - len(self._served) * min(self._served) >= settings.patience:
+                if (
+                    self._softened
+                    or sum(self._served) - len(self._served) * min(self._served)
+                    >= settings.patience
+                ):
                     self._factors = None
                 return iteration, residual
             if guessed and residual > before:
                 raise _StepFailure("the state that was guessed is a bad one")
             ahead = residual * (residual / before) ** settings.outlook
-            keep = residual <= settings.chord and ahead <= 1.0 and not self._softened and self._factors_fit()
+            keep = (
+                residual <= settings.chord
+                and ahead <= 1.0
+                and not self._softened
+                and self._factors_fit()
+            )
             before = residual
         self.wavered += self._softened
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
@@ -413,7 +481,8 @@ class QuasiStatic:
         return (
             self._factors is not None
             and self._factors[0] is self.solver
-            and abs(self.body.factor - self._factors[1]) <= self.settings.stiffening * self.body.factor
+            and abs(self.body.factor - self._factors[1])
+            <= self.settings.stiffening * self.body.factor
         )
 
     def iterate(self, control, target, reuse=False):
@@ -433,16 +502,34 @@ class QuasiStatic:
             self.factorisations += 1
             self._factors, self._served = (self.solver, body.factor), []
         load = -internal if self.external is None else self.external - internal
-        rows, schur, reduced = self._rows(), self._narrowed.schur, self._narrowed.forward(space.to_equations(load))
+        rows, schur, reduced = (
+            self._rows(),
+            self._narrowed.schur,
+            self._narrowed.forward(space.to_equations(load)),
+        )
         goal = {"force": target} if control == "force" else {"depth_change": target - self.depth}
-        known = schur, reduced, rows.gap, rows.gradient, rows.curvature, self.contact_force[rows.place], self.active[rows.place]
+        known = (
+            schur,
+            reduced,
+            rows.gap,
+            rows.gradient,
+            rows.curvature,
+            self.contact_force[rows.place],
+            self.active[rows.place],
+        )
         # the geometric term of the gaps is part of the tangent, and kept as long as the rest of it
-        same = self._flexible is not None and self._flexible[0] is rows.zone and self._flexible[1] is schur
+        same = (
+            self._flexible is not None
+            and self._flexible[0] is rows.zone
+            and self._flexible[1] is schur
+        )
         goal["flexible"] = self._flexible[2] if same else None
         if self.friction is None:
             step = solve_contact(rows.zone, *known, **goal)
         else:
-            step = self.friction.solve(rows.zone, rows.place, *known, self._motion(rows.zone), partner=rows.partner, **goal)
+            step = self.friction.solve(
+                rows.zone, rows.place, *known, self._motion(rows.zone), partner=rows.partner, **goal
+            )
         self._flexible = None if step.softened else (rows.zone, schur, step.flexible)
         self._softened |= step.softened
         self._stiff = step.stiffness
@@ -469,16 +556,23 @@ class QuasiStatic:
         rows, stuck = self._rows(), 0.0
         active = self.active[rows.place]
         if self.friction is not None:
-            stuck = self.friction.creep(rows.place, active, rows.gradient, self._motion(rows.zone), rows.zone.softness_along)
+            stuck = self.friction.creep(
+                rows.place, active, rows.gradient, self._motion(rows.zone), rows.zone.softness_along
+            )
         push, _ = self._forces()
         unbalanced = -internal if self.external is None else self.external - internal
         unbalanced[self.zone.nodes] += self.zone.shape.T @ push
-        scale = max(step.force.sum(), np.abs(self.external).sum() if self.external is not None else 0.0)
+        scale = max(
+            step.force.sum(), np.abs(self.external).sum() if self.external is not None else 0.0
+        )
         scale = max(scale, settings.least_scale * self._most_force)
         if scale == 0:  # nothing touches: the body must come back to rest
             scale = body.space.measure.out_of_plane_stretch * np.abs(internal).sum() + 1e-30
         unbalanced[space.fixed] = 0.0
-        equilibrium, whole = np.linalg.norm(unbalanced) / scale, np.linalg.norm(unbalanced.sum(axis=0)) / scale
+        equilibrium, whole = (
+            np.linalg.norm(unbalanced) / scale,
+            np.linalg.norm(unbalanced.sum(axis=0)) / scale,
+        )
         gap = rows.closing(self.contact_force[rows.place])
         opening = np.abs(gap[active]).max(initial=0.0)
         penetration = max(0.0, -gap.min(initial=0.0))
@@ -500,7 +594,9 @@ class QuasiStatic:
     def _motion(self, zone):
         """(nz, 2) m: how far the points of a zone have moved over the profile since the step began."""
         u, depth, distance = self._begin
-        return zone.shape @ (self.body.u - u)[zone.nodes] + np.array([self.distance - distance, self.depth - depth])
+        return zone.shape @ (self.body.u - u)[zone.nodes] + np.array(
+            [self.distance - distance, self.depth - depth]
+        )
 
     def _touches_elsewhere(self):
         """Does skin outside the zone penetrate the profile? Then the zone has grown to it."""
@@ -530,7 +626,9 @@ class QuasiStatic:
 
         Small steps of a stroke (``moved``) have no such excuse: what goes missing in them, where nodes jump over edges, adds up.
         """
-        if self.external is not None:  # dead loads, put on at once, do twice the work that is stored
+        if (
+            self.external is not None
+        ):  # dead loads, put on at once, do twice the work that is stored
             return
         change = energies[0] + energies[2] - self._energies[0] - self._energies[2] + lost
         share = self.settings.energy_share
@@ -559,7 +657,9 @@ class QuasiStatic:
             way = np.sign(way) * max(abs(way) - clearance, 0.0)
             power = slope * abs(way) / most if slope and most else 1.0
             return most * way / (1 + max(power, 0.0))
-        return trapezoidal - (0.0 if self._stiffness is None else way**2 / 12 * (stiffness - self._stiffness))
+        return trapezoidal - (
+            0.0 if self._stiffness is None else way**2 / 12 * (stiffness - self._stiffness)
+        )
 
     def _advance(self, dt, control, target, distance, predict, good=None):
         """One substep with predictor, check and commit. ``good``: asked of the contact that was found, before it is accepted."""
@@ -581,7 +681,12 @@ class QuasiStatic:
                 self.contact_force, self.depth = np.maximum(guess.force, 0), guess.depth
             iterations, residual = self._attempt(control, target, bool(guesses))
             if guesses:
-                self._quadratic = np.argmin([np.linalg.norm((body.u - guess.u)[self.zone.nodes]) for guess in guesses]) > 0
+                self._quadratic = (
+                    np.argmin(
+                        [np.linalg.norm((body.u - guess.u)[self.zone.nodes]) for guess in guesses]
+                    )
+                    > 0
+                )
             push, pull = self._forces()
             tangential, force = 0.0 - push.sum(0)
             if force < -1e-9 * self.contact_force.sum():
@@ -593,10 +698,17 @@ class QuasiStatic:
             clearance = clearance if force else self._clearance()
             work = self._pressing_work(force, self.depth - state[3], stiffness, clearance)
             work += 0.5 * (self._tangential + tangential) * (distance - state[4])
-            lost = self.friction.commit(self._range, pull, self._motion(self.zone)) if self.friction else 0.0
+            lost = (
+                self.friction.commit(self._range, pull, self._motion(self.zone))
+                if self.friction
+                else 0.0
+            )
             network, *others = self.body.energies()
             rows, pressing = self._rows(), self.contact_force[self._rows().place]
-            energies = (network + 0.5 * float(pressing @ (rows.closing(pressing) - rows.gap)), *others)
+            energies = (
+                network + 0.5 * float(pressing @ (rows.closing(pressing) - rows.gap)),
+                *others,
+            )
             self._check_energy(work, energies, lost, distance != state[4])
         except _StepFailure:
             self.restore(state)
@@ -606,7 +718,10 @@ class QuasiStatic:
         self.force, self._tangential, self._stiffness = float(force), float(tangential), stiffness
         self.work += float(work)
         self._gross += abs(float(work))
-        self._most_force, self._most_work = max(self._most_force, self.force), max(self._most_work, abs(self.work))
+        self._most_force, self._most_work = (
+            max(self._most_force, self.force),
+            max(self._most_work, abs(self.work)),
+        )
         self._energies = energies
         self._past = [past, *self._past[:1]]
         return iterations, residual
@@ -633,7 +748,10 @@ class QuasiStatic:
         return found
 
     def run(
-        self, steps: Iterable[Step], on_step: Callable[[Record], None] | None = None, between: Between | None = None
+        self,
+        steps: Iterable[Step],
+        on_step: Callable[[Record], None] | None = None,
+        between: Between | None = None,
     ) -> list[Record]:
         """Walk the schedule; returns one record per state that was found: of every step or, where it says that none needs to be
         found and ``between`` how good what lies between must be, of as many as it takes.
@@ -648,7 +766,9 @@ class QuasiStatic:
         while (following := strides.next()) is not None:
             step, passed = following
             try:
-                iterations, halvings, residual = self._complete(step, last, records, strides if between else None)
+                iterations, halvings, residual = self._complete(
+                    step, last, records, strides if between else None
+                )
             except _TooFar:
                 strides.shorten()
                 continue
@@ -682,7 +802,13 @@ class QuasiStatic:
         start = self.distance
         # a steady press goes in strides as long as its way: what the last one did is no guide to the next
         pressed = step.dt >= STEADY and step.distance == self.distance
-        smooth = last is not None and last.leg == step.leg and last.dt > 0 and not step.fresh and not pressed
+        smooth = (
+            last is not None
+            and last.leg == step.leg
+            and last.dt > 0
+            and not step.fresh
+            and not pressed
+        )
         done, size, iterations, halvings = 0.0, 1.0, 0, 0
         self._spent = 0
         if not smooth:
@@ -697,7 +823,9 @@ class QuasiStatic:
             place = step.distance if whole else start + (done + size) * (step.distance - start)
             judged = partial(self._good, strides) if strides and size == 1.0 else None
             try:
-                used, residual = self._advance(size * step.dt, control, goal, place, predict and size == 1.0, judged)
+                used, residual = self._advance(
+                    size * step.dt, control, goal, place, predict and size == 1.0, judged
+                )
             except _TooFar:
                 raise
             except _StepFailure as failure:
@@ -734,7 +862,17 @@ class QuasiStatic:
         drag, press = push.sum(0)
         stuck = self.contact_force[self.friction.state == 0].sum() if self.friction else 0.0
         share = float(stuck / max(self.contact_force.sum(), 1e-300))
-        self._touched = rows, Touch(x, force / length, edges, self.distance, float(drag / press) if press else 0.0, share)
+        self._touched = (
+            rows,
+            Touch(
+                x,
+                force / length,
+                edges,
+                self.distance,
+                float(drag / press) if press else 0.0,
+                share,
+            ),
+        )
         return self._touched[1]
 
     def _give_up_if_vain(self, failure, size, halvings, records):
@@ -779,13 +917,17 @@ class QuasiStatic:
         push[part] = rows.of_points(self.contact_force[rows.place][:, None] * rows.gradient)
         normal = np.hypot(*push.T)
         nodal, force = places.of_nodes(push), places.of_nodes(normal)
-        gradient = np.divide(nodal, np.hypot(*nodal.T)[:, None], out=np.zeros_like(nodal), where=force[:, None] > 0)
+        gradient = np.divide(
+            nodal, np.hypot(*nodal.T)[:, None], out=np.zeros_like(nodal), where=force[:, None] > 0
+        )
         position = self.points + self.body.u
         # the linear theory knows no deformed lengths
         length = places.lengths(self.points if self.body.geometrically_linear else position)
         pressure = normal[part] / length[part]
         mirrored = part.start == 0 and places.mirrored
-        edges = contact_edges(places.at(position, part)[:, 0], pressure, places.spacing[part], mirrored)
+        edges = contact_edges(
+            places.at(position, part)[:, 0], pressure, places.spacing[part], mirrored
+        )
         self._nodal = rows, (force, gradient, places.of_nodes(length), edges)
         return self._nodal[1]
 
@@ -799,11 +941,31 @@ class QuasiStatic:
         friction = self.friction
         frictional = friction.dissipated if friction else 0.0
         # a body that is let go gives the work back: there is nothing left to relate an error to
-        balance = abs(self.work - network - branch_work - frictional) / max(abs(self.work), 0.1 * self._most_work, 1e-300)
+        balance = abs(self.work - network - branch_work - frictional) / max(
+            abs(self.work), 0.1 * self._most_work, 1e-300
+        )
         return Record(
-            step.leg, step.time, self.depth, self.force, self._tangential, force, gradient, length, edges,
-            self.body.u.copy(), iterations, halvings, residual * self.settings.force_tolerance,
-            float(slack.sum() / (total * self.skin.spacing)), float(self.body.smallest_jacobian),
-            float(balance) if self.work else 0.0, self.work, self._energies, branch_work - spring, self.distance, frictional,
-            *(friction.record(self.active, self.places) if friction else ()), passed=passed,
-        )  # fmt: skip
+            step.leg,
+            step.time,
+            self.depth,
+            self.force,
+            self._tangential,
+            force,
+            gradient,
+            length,
+            edges,
+            self.body.u.copy(),
+            iterations,
+            halvings,
+            residual * self.settings.force_tolerance,
+            float(slack.sum() / (total * self.skin.spacing)),
+            float(self.body.smallest_jacobian),
+            float(balance) if self.work else 0.0,
+            self.work,
+            self._energies,
+            branch_work - spring,
+            self.distance,
+            frictional,
+            *(friction.record(self.active, self.places) if friction else ()),
+            passed=passed,
+        )

@@ -62,7 +62,10 @@ class Touch:
             return np.zeros((0, 2))
         found = []
         for run in np.split(on, np.flatnonzero(np.diff(on) > 1) + 1):
-            for last, inside, beyond in ((run[0], run[:2][-1], run[0] - 1), (run[-1], run[-2:][0], run[-1] + 1)):
+            for last, inside, beyond in (
+                (run[0], run[:2][-1], run[0] - 1),
+                (run[-1], run[-2:][0], run[-1] + 1),
+            ):
                 room = x[min(max(beyond, 0), len(x) - 1)] - x[last]
                 fall = square[inside] - square[last]
                 way = square[last] / fall * (x[last] - x[inside]) if fall > 0 else room / 2
@@ -94,7 +97,9 @@ class Passage:
         if anchors is None or not np.all(np.diff(x[window]) > 0):
             return cls(first, last, share, window, None)
         now = (1 - share) * anchors[0] + share * anchors[1]
-        return cls(first, last, share, window, np.stack([_along(x[window], now, each) for each in anchors]))
+        return cls(
+            first, last, share, window, np.stack([_along(x[window], now, each) for each in anchors])
+        )
 
     def pressure(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """(ns,) Pa, of pressures (ns,) in either state."""
@@ -111,13 +116,18 @@ class Passage:
         if self.origin is None:
             return values
         moved = [np.zeros(len(each)) for each in values]
-        for out, each, touch, at in zip(moved, values, (self.first, self.last), self.origin, strict=True):
+        for out, each, touch, at in zip(
+            moved, values, (self.first, self.last), self.origin, strict=True
+        ):
             x, known = touch.x[self.window], each[self.window]
             if falls:
                 edges = np.sort(touch.patches.ravel())
                 beyond = np.searchsorted(x, edges).clip(1, len(x) - 1)
                 between = (known[beyond] > 0) != (known[beyond - 1] > 0)
-                x, known = np.insert(x, beyond[between], edges[between]), np.insert(known, beyond[between], 0.0)
+                x, known = (
+                    np.insert(x, beyond[between], edges[between]),
+                    np.insert(known, beyond[between], 0.0),
+                )
             out[self.window] = np.interp(at, x, known)
         return moved
 
@@ -138,7 +148,9 @@ def _anchors(first: Touch, last: Touch) -> np.ndarray | None:
 
     A piece of the contact that has come or gone has no edges in the other state, and fades where it is.
     """
-    along = first.distance - last.distance  # the surface goes as the pad comes along it the other way
+    along = (
+        first.distance - last.distance
+    )  # the surface goes as the pad comes along it the other way
     pieces, pieces_then = first.patches, last.patches
     lefts, rights = (_same(pieces[:, side], pieces_then[:, side], along) for side in (0, 1))
     found = [(pieces[i, 0], pieces_then[j, 0]) for i, j in lefts.items()]
@@ -148,7 +160,10 @@ def _anchors(first: Touch, last: Touch) -> np.ndarray | None:
             (left, right), (left_then, right_then) = pieces[i], pieces_then[lefts[i]]
             beside = _BESIDE * max(abs(left_then - left - along), abs(right_then - right - along))
             if right - left > 2 * beside > 0:
-                found += [(left + beside, left + beside + along), (right - beside, right - beside + along)]
+                found += [
+                    (left + beside, left + beside + along),
+                    (right - beside, right - beside + along),
+                ]
     out = np.array(sorted(found)).reshape(-1, 2).T
     return out if out.size and np.all(np.diff(out) > 0) else None
 
@@ -157,7 +172,10 @@ def _same(edges: np.ndarray, then: np.ndarray, along: float) -> dict[int, int]:
     """Which edges (k,) m, all left or all right, are which then: nearest to one another and, if the surface moves, not far."""
     if not len(edges) or not len(then):
         return {}
-    apart, far = np.abs(then - edges[:, None] - along / 2), _NOT_FAR * abs(along) if along else np.inf
+    apart, far = (
+        np.abs(then - edges[:, None] - along / 2),
+        _NOT_FAR * abs(along) if along else np.inf,
+    )
     nearest, back = apart.argmin(axis=1), apart.argmin(axis=0)
     return {i: int(j) for i, j in enumerate(nearest) if back[j] == i and apart[i, j] <= far}
 
@@ -219,14 +237,18 @@ class Strides:
         if self._between is None:
             return True
         off = missed(before, middle, found) / self._between.tolerance
-        turning = any(_FEW < touch.sticks < 1 - _FEW for touch in (middle, found))  # from stick to slip, or back
+        turning = any(
+            _FEW < touch.sticks < 1 - _FEW for touch in (middle, found)
+        )  # from stick to slip, or back
         if (off > _TOO_FAR or turning) and self._taken > 1:
             return False
         if turning:
             self._wanted = 0.0
             return True
         way = abs(found.distance - middle.distance)
-        self._wanted = min(way * float(np.clip(off**-0.5 if off else 2.0, 0.5, 2.0)), self._between.longest)
+        self._wanted = min(
+            way * float(np.clip(off**-0.5 if off else 2.0, 0.5, 2.0)), self._between.longest
+        )
         return True
 
     def shorten(self) -> bool:

@@ -31,7 +31,9 @@ class Valleys:
         self.flat = SHARE * np.arctan(friction)
         self._corner = np.full(count, -1)
 
-    def rows(self, zone: Zone, part: slice, points: np.ndarray, single: tuple, kept: list[np.ndarray]) -> Rows:
+    def rows(
+        self, zone: Zone, part: slice, points: np.ndarray, single: tuple, kept: list[np.ndarray]
+    ) -> Rows:
         """The constraints of a zone whose points are at ``points`` (nz, 2) m in the profile's frame.
 
         Args:
@@ -66,7 +68,9 @@ class Valleys:
         point = part.start + changed
         for values in kept:
             one, other = values[point], values[self.count + point]
-            both = one + other if values.dtype == float else np.where(one, one, other)  # forces add up, states do not
+            both = (
+                one + other if values.dtype == float else np.where(one, one, other)
+            )  # forces add up, states do not
             values[point] = np.where(after[changed], 0, both)
             values[self.count + point] = np.where(after[changed], both, 0)
         self._corner[part] = now

@@ -20,7 +20,11 @@ class PlanError(ValueError):
 def check_size(scene: Scene, size: MeshSize, ridges: Any, rules: Rules) -> None:
     """Refuses meshes of more nodes than are allowed, from above and before anything is allocated."""
     outline = scene.specimen.outline
-    fine = scene.specimen.soft_thickness if outline is None else outline.epidermis_thickness + outline.dermis_thickness
+    fine = (
+        scene.specimen.soft_thickness
+        if outline is None
+        else outline.epidermis_thickness + outline.dermis_thickness
+    )
     rows = fine / size.layer_edge + 4
     nodes = 8 * rows * (size.fine_half_width / size.skin_edge + len(size.focus))
     if nodes > rules.most_nodes:
@@ -47,7 +51,9 @@ def check_memory(scene: Scene, nodes: int, steps: int, rules: Rules) -> None:
     (memory, limited), receptors = _memory(), receptors_of(scene)
     needed = {
         "accuracy": nodes * rules.bytes_node,
-        "accuracy.steps" if getattr(scene.accuracy, "steps", None) else "motion": nodes * steps * rules.bytes_step,
+        "accuracy.steps" if getattr(scene.accuracy, "steps", None) else "motion": nodes
+        * steps
+        * rules.bytes_step,
         "outputs.receptors": receptors * (steps + 1) * _RECEPTOR_BYTES,
     }
     if nodes > rules.most_nodes:
@@ -68,7 +74,9 @@ def _memory() -> tuple[float, str]:
     machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if limit == resource.RLIM_INFINITY or limit - _PROGRAM_BYTES >= machine:
         return machine, ""
-    return max(limit - _PROGRAM_BYTES, 0.0), f", where a limit leaves {limit / 1e9:.2g} GB to all of the program (ulimit -v)"
+    return max(
+        limit - _PROGRAM_BYTES, 0.0
+    ), f", where a limit leaves {limit / 1e9:.2g} GB to all of the program (ulimit -v)"
 
 
 def receptors_of(scene: Scene) -> int:

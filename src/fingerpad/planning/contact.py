@@ -50,7 +50,9 @@ def check_over_pad(scene: Scene, external: PadMesh | None) -> None:
         )
 
 
-def worst_contact(scene: Scene, pad: PadEstimate, profile: Profile, curvature: float) -> ContactEstimate:
+def worst_contact(
+    scene: Scene, pad: PadEstimate, profile: Profile, curvature: float
+) -> ContactEstimate:
     """The deepest contact of the motion with a surface of ``curvature`` 1/m."""
     specimen = scene.specimen
     # at a kept depth the surface comes as much deeper as it reaches below its start
@@ -82,7 +84,9 @@ def least_half_width(
     elif profile.irregular:
         low, high = way_of(scene)
         force = pressing_force(scene, pad, contact)
-        bump = pad.least_piece(force, profile.outline, low - contact.half_width, high + contact.half_width)
+        bump = pad.least_piece(
+            force, profile.outline, low - contact.half_width, high + contact.half_width
+        )
         least = min(least, bump if bump < _FLATTER * contact.half_width else np.inf)
     if scene.specimen.ridges is not None and scene.specimen.ridges.outer is not None:
         period = scene.specimen.ridges.outer.period or scene.specimen.ridges.inner.pitch
@@ -109,9 +113,15 @@ def pressing_force(scene: Scene, pad: PadEstimate, contact: ContactEstimate) -> 
     return max(forces) / scene.specimen.contact_length if forces else pad.force_of(contact.depth)
 
 
-def rounding_of(scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate) -> float:
+def rounding_of(
+    scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate
+) -> float:
     """Length (m) of the contact on the rounded edges of a face."""
-    return pad.on_rounding(pressing_force(scene, pad, contact), profile.reach[1] - profile.edge_radius, profile.edge_radius)
+    return pad.on_rounding(
+        pressing_force(scene, pad, contact),
+        profile.reach[1] - profile.edge_radius,
+        profile.edge_radius,
+    )
 
 
 def check_width(scene: Scene, pad: PadEstimate, contact: ContactEstimate, rules: Rules) -> None:

@@ -29,7 +29,11 @@ _STAGE = 2.0**0.25  # by how much finer a mesh is in a contact, if at all
 
 
 def preset_for(
-    scene: Scene, rules: Rules, contact: ContactEstimate, tolerance: float | None, stroke: Stroke | None
+    scene: Scene,
+    rules: Rules,
+    contact: ContactEstimate,
+    tolerance: float | None,
+    stroke: Stroke | None,
 ) -> tuple[Preset, Discretisation | None]:
     """The discretisation asked for: a named one, the cheapest that meets a tolerance, or one by hand."""
     accuracy = scene.accuracy
@@ -37,14 +41,18 @@ def preset_for(
     if isinstance(accuracy, str):
         return _in_size(rules.presets[accuracy], scene), None
     if scene.tolerance is not None:
-        return _cheapest(scene, min(scene.tolerance, tolerance or 1.0), contact, rules, stroke), by_hand
+        return _cheapest(
+            scene, min(scene.tolerance, tolerance or 1.0), contact, rules, stroke
+        ), by_hand
     thesis = rules.presets["thesis"]
     if edges_chosen(scene):
         return thesis, by_hand
     edge = accuracy.skin_edge
     error = estimated_error(edge, max(contact.half_width, 1e-5), rules=rules)
     scale = edge / thesis.skin_edge
-    return replace(thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error), by_hand
+    return replace(
+        thesis, skin_edge=edge, layer_edge=thesis.layer_edge * scale, tolerance=error
+    ), by_hand
 
 
 def _in_size(preset: Preset, scene: Scene) -> Preset:
@@ -52,16 +60,25 @@ def _in_size(preset: Preset, scene: Scene) -> Preset:
     stack = scene.specimen.stack
     share = 1.0 if stack is None else min(1.0, sum(stack.thicknesses) / _THIN)
     step = preset.slide_step and share * preset.slide_step
-    return replace(preset, skin_edge=share * preset.skin_edge, layer_edge=share * preset.layer_edge, slide_step=step)
+    return replace(
+        preset,
+        skin_edge=share * preset.skin_edge,
+        layer_edge=share * preset.layer_edge,
+        slide_step=step,
+    )
 
 
-def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules, stroke: Stroke | None) -> Preset:
+def _cheapest(
+    scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules, stroke: Stroke | None
+) -> Preset:
     """Of the measured meshes and steps those of least nodes times steps that meet it or, if none does, come near the least error.
 
     A mesh that suffices for the widest contact measured is refined under a narrower one that stays where it is.
     """
     thesis, known = rules.presets["thesis"], rules.errors
-    timed = bool(scene.specimen.prony) and any(duration is not None for duration in leg_durations(scene))
+    timed = bool(scene.specimen.prony) and any(
+        duration is not None for duration in leg_durations(scene)
+    )
     moves, half_width = moves_along(scene), earliest_half_width(scene, contact, timed)
     still = not moves and scene.specimen.mesh is None and _only_inner(scene)
     bumpy = scene.stimulus.irregular
@@ -69,7 +86,10 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     found = []
     least_steps = rules.least_steps_stroked if moves else rules.least_steps
     for rows, steps in product(known.mesh, (n for n in known.time if n >= least_steps)):
-        edge, growth = known.edge * THESIS_ROWS / rows, min(thesis.growth ** (THESIS_ROWS / rows), 3.0)
+        edge, growth = (
+            known.edge * THESIS_ROWS / rows,
+            min(thesis.growth ** (THESIS_ROWS / rows), 3.0),
+        )
         time = steps if timed or moves else None
         for finer in 2 ** np.arange(0, _FINEST_FOCUS, 0.5) if still else (1,):
             # the right half has about 7 columns and 4 rows an element across the epidermis
@@ -77,7 +97,9 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
             wide = 1.2 * contact_reach(scene, contact) / edge * (finer - 1)
             if finer > 1 and (edge / finer < rules.least_edge or wide > _MOST_COLUMNS):
                 break
-            error = estimated_error(edge / finer / outer, half_width, time, stroke, edge, rules=rules, bumpy=bumpy)
+            error = estimated_error(
+                edge / finer / outer, half_width, time, stroke, edge, rules=rules, bumpy=bumpy
+            )
             work = (7 * rows + more + wide) * (4 * rows + more) * steps
             found.append((error, work, edge / finer, edge, growth, steps))
     least = min(found)[0]
@@ -88,7 +110,15 @@ def _cheapest(scene: Scene, tolerance: float, contact: ContactEstimate, rules: R
     layer_edge = thesis.layer_edge * edge / thesis.skin_edge
     if outline is not None:
         layer_edge = min(layer_edge, outline.epidermis_thickness * edge / known.edge / THESIS_ROWS)
-    return Preset(edge, layer_edge, steps, growth, tolerance, slide_step, focus=focus if focus < edge else None)
+    return Preset(
+        edge,
+        layer_edge,
+        steps,
+        growth,
+        tolerance,
+        slide_step,
+        focus=focus if focus < edge else None,
+    )
 
 
 def usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
@@ -96,7 +126,10 @@ def usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
     if external is not None:
         return apex_edge(external)
     by_hand = getattr(scene.accuracy, "skin_edge", None)
-    return by_hand or rules.presets[scene.accuracy if isinstance(scene.accuracy, str) else "thesis"].skin_edge
+    return (
+        by_hand
+        or rules.presets[scene.accuracy if isinstance(scene.accuracy, str) else "thesis"].skin_edge
+    )
 
 
 def element_for(by_hand: Discretisation | None, external: PadMesh | None) -> str:
@@ -118,7 +151,10 @@ def element_for(by_hand: Discretisation | None, external: PadMesh | None) -> str
 
 
 def raised_for(
-    by_hand: Discretisation | None, external: PadMesh, tolerance: float, error: Callable[[PadMesh], float]
+    by_hand: Discretisation | None,
+    external: PadMesh,
+    tolerance: float,
+    error: Callable[[PadMesh], float],
 ) -> tuple[PadMesh, str]:
     """An external mesh, its linear quads raised to quadratic ones where the accuracy needs it, and why it was ("": it was not).
 
@@ -129,7 +165,10 @@ def raised_for(
         return external, ""
     asked = by_hand.element if by_hand else None
     if asked == "Q2P1":
-        return external.raised(), "linear quads raised to quadratic ones of the same corners: asked for in the scene"
+        return (
+            external.raised(),
+            "linear quads raised to quadratic ones of the same corners: asked for in the scene",
+        )
     if asked or (by_hand and by_hand.tolerance is None) or error(external) <= tolerance:
         return external, ""
     raised = external.raised()
@@ -139,10 +178,14 @@ def raised_for(
     )
 
 
-def wander_of(scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, rules: Rules) -> float:
+def wander_of(
+    scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, rules: Rules
+) -> float:
     """How far (m) a stroke takes the contact from the middle of the pad: to where the pad is as steep as the surface."""
     way = np.cumsum([leg.along for leg in scene.motion])
-    return min(profile.steepness * pad.apex_radius, np.abs(way).max()) + rules.skin_stretch * friction
+    return (
+        min(profile.steepness * pad.apex_radius, np.abs(way).max()) + rules.skin_stretch * friction
+    )
 
 
 def mesh_size_for(
@@ -160,9 +203,14 @@ def mesh_size_for(
     focus, radial = (), None
     edges = max(preset.edges if _only_inner(scene) else 0.0, rules.edges_per_half_width)
     if preset.focus is not None:
-        focus, radial = all_over(_WIDER * min(half_width, contact_reach(scene, contact)), preset.focus), preset.focus
+        focus, radial = (
+            all_over(_WIDER * min(half_width, contact_reach(scene, contact)), preset.focus),
+            preset.focus,
+        )
     if profile.edges:
-        edge = _edge_size(profile, preset, None if scene.tolerance is None else preset.tolerance, rounding, rules)
+        edge = _edge_size(
+            profile, preset, None if scene.tolerance is None else preset.tolerance, rounding, rules
+        )
         places = {abs(x) for x in profile.edges}
         if scene.tolerance is not None:
             # where the face ends pressure is largest
@@ -173,7 +221,8 @@ def mesh_size_for(
     elif (
         preset.focus is None
         and _refined_at_apex(scene)
-        and (edge := _staged(max(contact.half_width / edges, rules.least_edge), np.floor)) <= preset.skin_edge / _STAGE
+        and (edge := _staged(max(contact.half_width / edges, rules.least_edge), np.floor))
+        <= preset.skin_edge / _STAGE
     ):
         # its edge passes from node to node, and the curves of a narrow contact show how far these are apart: along the skin alone
         focus = all_over(_WIDER * _staged(contact_reach(scene, contact), np.ceil), edge)
@@ -181,7 +230,9 @@ def mesh_size_for(
         radial = max(edge, _staged(contact.half_width / rows, np.floor))
     elif _stroked(scene) and scene.specimen.ridges is None:
         # what is read of a stroke is read there: centre pressure and what it does to receptors
-        focus = all_over(_WIDER * max(rules.stroked_middle, offsets), rules.stroked_share * preset.skin_edge)
+        focus = all_over(
+            _WIDER * max(rules.stroked_middle, offsets), rules.stroked_share * preset.skin_edge
+        )
     return MeshSize(
         skin_edge=preset.skin_edge,
         fine_half_width=min(fine, 0.9 * scene.specimen.half_width),
@@ -194,7 +245,11 @@ def mesh_size_for(
 
 def _growth(scene: Scene, preset: Preset, rules: Rules) -> float:
     """From one edge to the next: of a preset larger where the contact moves, whose mesh is mostly away from it."""
-    return max(preset.growth, min(preset.growth**2, rules.stroked_growth)) if _stroked(scene) else preset.growth
+    return (
+        max(preset.growth, min(preset.growth**2, rules.stroked_growth))
+        if _stroked(scene)
+        else preset.growth
+    )
 
 
 def _stroked(scene: Scene) -> bool:
@@ -222,9 +277,15 @@ def _only_inner(scene: Scene) -> bool:
     return scene.specimen.ridges is None or scene.specimen.ridges.outer is None
 
 
-def _edge_size(profile: Profile, preset: Preset, asked: float | None, rounding: float, rules: Rules) -> float:
+def _edge_size(
+    profile: Profile, preset: Preset, asked: float | None, rounding: float, rules: Rules
+) -> float:
     """Element edge (m) at the profile's own edges: as presets have it, and finer where a tolerance asks for that."""
-    edge = min(preset.skin_edge / 4, profile.edge_radius / 2) if profile.edge_radius else preset.skin_edge / 4
+    edge = (
+        min(preset.skin_edge / 4, profile.edge_radius / 2)
+        if profile.edge_radius
+        else preset.skin_edge / 4
+    )
     if asked is None:
         return edge
     if profile.unbounded:
@@ -240,14 +301,20 @@ def edges_error(profile: Profile, edge: float, rounding: float, rules: Rules) ->
         return 0.0, ""
     if peak_is_unbounded(profile, edge, rounding, rules):
         error = max(rules.edge_error * edge / profile.reach[1], rules.edge_floor)
-        return error, "at a true edge the skin is held or is not, by a node; a fillet that is resolved converges"
+        return (
+            error,
+            "at a true edge the skin is held or is not, by a node; a fillet that is resolved converges",
+        )
     said = f"edges of {micrometres(edge)} um on {micrometres(rounding)} um of a rounded edge"
     return rules.fillet_error * (edge / rounding) ** rules.fillet_order, said
 
 
 def peak_is_unbounded(profile: Profile, edge: float, rounding: float, rules: Rules) -> bool:
     """Whether the pressure at the profile's edges is the mesh's: they are true ones, or roundings that ``edge`` m cannot tell."""
-    return bool(profile.unbounded or (profile.edges and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1))
+    return bool(
+        profile.unbounded
+        or (profile.edges and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1)
+    )
 
 
 def height_at_receptors(scene: Scene, external: PadMesh) -> float | None:

@@ -49,7 +49,10 @@ class StrokeErrors:
     def on(self, way: float, table: Mapping[int, tuple[float, float]]) -> Mapping[int, float]:
         """A table's errors over a way (m): as long as those drawn it may be the worst of them, longer it has many in it."""
         share = min(1.0, self.way / way)
-        return {n: float(np.sqrt(share * largest**2 + (1 - share) * mean**2)) for n, (largest, mean) in table.items()}
+        return {
+            n: float(np.sqrt(share * largest**2 + (1 - share) * mean**2))
+            for n, (largest, mean) in table.items()
+        }
 
 
 @dataclass(frozen=True)
@@ -114,11 +117,23 @@ class MeasuredErrors:
     strokes: Mapping[str, StrokeErrors] = field(
         default_factory=lambda: {
             PLATES: StrokeErrors(
-                {2: (0.059, 0.025), 4: (0.026, 0.014), 7: (0.019, 0.011), 10: (0.015, 0.0081), 14: (0.0077, 0.0038)},
+                {
+                    2: (0.059, 0.025),
+                    4: (0.026, 0.014),
+                    7: (0.019, 0.011),
+                    10: (0.015, 0.0081),
+                    14: (0.0077, 0.0038),
+                },
                 {10: (1e-4, 4.4e-4), 20: (1e-4, 1e-4), 40: (1e-4, 1e-4)},
             ),
             WAVES: StrokeErrors(
-                {2: (0.39, 0.13), 4: (0.16, 0.051), 7: (0.031, 0.016), 10: (0.017, 0.0096), 14: (0.017, 0.0062)},
+                {
+                    2: (0.39, 0.13),
+                    4: (0.16, 0.051),
+                    7: (0.031, 0.016),
+                    10: (0.017, 0.0096),
+                    14: (0.017, 0.0062),
+                },
                 {10: (0.011, 0.0024), 20: (0.0033, 1.9e-4), 40: (0.0033, 1.9e-4)},
             ),
         }
@@ -160,7 +175,9 @@ class OwnErrors:
             },
         }
     )
-    height: Mapping[str, float] = field(default_factory=lambda: {"Q1P0": 0.2, "Q2P1": 0.06, "P2B": 0.08})
+    height: Mapping[str, float] = field(
+        default_factory=lambda: {"Q1P0": 0.2, "Q2P1": 0.06, "P2B": 0.08}
+    )
 
 
 def own_errors(
@@ -183,7 +200,11 @@ def own_errors(
     """
     known, share = rules.own, edge / half_width
     factor = rules.safety * (rules.bumps if bumpy else 1.0)
-    time = 0.0 if steps is None else factor * _at(half_width, rules.errors, steps, rules.errors.time, rules.time_order)
+    time = (
+        0.0
+        if steps is None
+        else factor * _at(half_width, rules.errors, steps, rules.errors.time, rules.time_order)
+    )
     out = {}
     for quantity, errors in known.table.get(element, known.table["Q1P0"]).items():
         inside = np.clip(share, known.shares[0], known.shares[-1])
@@ -224,22 +245,50 @@ def estimated_error(
     """
     factor = rules.safety * (rules.bumps if bumpy else 1.0)
     found = [_measured_error(edge, half_width, steps, stroke, rules, factor)]
-    if stroke is None:  # on the way along a surface edges pass over many nodes, which is in what was measured
+    if (
+        stroke is None
+    ):  # on the way along a surface edges pass over many nodes, which is in what was measured
         found.append(factor * rules.edge_share * edge / half_width)
     if body_edge is not None and body_edge > edge:
         known = rules.errors
-        found.append(_measured_error(body_edge, known.half_widths[-1], steps, stroke, rules, factor))
-        found.append(factor * _at(half_width, known, known.edge * THESIS_ROWS / body_edge, known.energy, rules.mesh_order))
+        found.append(
+            _measured_error(body_edge, known.half_widths[-1], steps, stroke, rules, factor)
+        )
+        found.append(
+            factor
+            * _at(
+                half_width,
+                known,
+                known.edge * THESIS_ROWS / body_edge,
+                known.energy,
+                rules.mesh_order,
+            )
+        )
     return float(max(found))
 
 
-def _at(half_width: float, known: MeasuredErrors, count: float, table: Mapping[int, tuple[float, ...]], order: float) -> float:
+def _at(
+    half_width: float,
+    known: MeasuredErrors,
+    count: float,
+    table: Mapping[int, tuple[float, ...]],
+    order: float,
+) -> float:
     """Relative error at a ``count`` by a ``table`` of it, for a contact of ``half_width`` m between those measured."""
-    columns = [_read(count, tuple(table), column, order) for column in zip(*table.values(), strict=True)]
+    columns = [
+        _read(count, tuple(table), column, order) for column in zip(*table.values(), strict=True)
+    ]
     return float(np.exp(np.interp(np.log(half_width), np.log(known.half_widths), np.log(columns))))
 
 
-def _measured_error(edge: float, half_width: float, steps: int | None, stroke: Stroke | None, rules: Any, factor: float) -> float:
+def _measured_error(
+    edge: float,
+    half_width: float,
+    steps: int | None,
+    stroke: Stroke | None,
+    rules: Any,
+    factor: float,
+) -> float:
     known = rules.errors
     # narrower contacts than were measured are similar to the narrowest one on a coarser mesh
     alike = edge * max(known.half_widths[0] / half_width, 1.0)

@@ -67,12 +67,21 @@ class PadEstimate:
             # the shift stands for the bone: contacts much wider than the epidermis feel a finite thickness
             wavenumber = self.epidermis_thickness / half_width + 0.65
             modulus = self.stiff / layer_kernel(ratio, wavenumber)
-            before, half_width = half_width, 0.5 * (half_width + np.sqrt(4 * force * radius / (np.pi * modulus)))
+            before, half_width = (
+                half_width,
+                0.5 * (half_width + np.sqrt(4 * force * radius / (np.pi * modulus))),
+            )
             if abs(half_width - before) <= _CLOSE * half_width:
                 break
-        depth = force / (2 * np.pi * self.soft) * (max(np.log(self.soft_thickness / half_width), 0.0) + 2.5)
+        depth = (
+            force
+            / (2 * np.pi * self.soft)
+            * (max(np.log(self.soft_thickness / half_width), 0.0) + 2.5)
+        )
         return ContactEstimate(
-            float(half_width), float(depth), float(max(0.65 * half_width / radius, depth / self.soft_thickness))
+            float(half_width),
+            float(depth),
+            float(max(0.65 * half_width / radius, depth / self.soft_thickness)),
         )
 
     def pressed_to(self, depth: float, curvature: float) -> ContactEstimate:
@@ -84,7 +93,9 @@ class PadEstimate:
         low, high = (1e-6, 1e6) if depth > self.pressed(1e-6, curvature).depth else (1e-30, 1e-6)
         while high > (1 + _CLOSE) * low:
             middle = np.sqrt(low * high)
-            low, high = (middle, high) if self.pressed(middle, curvature).depth < depth else (low, middle)
+            low, high = (
+                (middle, high) if self.pressed(middle, curvature).depth < depth else (low, middle)
+            )
         return float(np.sqrt(low * high))
 
     def on_rounding(self, force: float, flat: float, radius: float) -> float:
@@ -99,7 +110,9 @@ class PadEstimate:
         if flat < 1e-3 * radius:
             return float(min(np.sqrt(2 * load / np.pi), radius))
 
-        def excess(angle):  # between the edge of the face and that of the contact, seen on the circle over it
+        def excess(
+            angle,
+        ):  # between the edge of the face and that of the contact, seen on the circle over it
             return flat**2 * (angle / np.cos(angle) ** 2 - np.tan(angle)) - load
 
         top = np.arccos(flat / (flat + radius))
@@ -108,7 +121,9 @@ class PadEstimate:
         angle = root(excess, 0.0, top)
         return float(flat * (1 / np.cos(angle) - 1))
 
-    def least_piece(self, force: float, outline: Callable[[np.ndarray], np.ndarray], low: float, high: float) -> float:
+    def least_piece(
+        self, force: float, outline: Callable[[np.ndarray], np.ndarray], low: float, high: float
+    ) -> float:
         """Half-width (m) of the narrowest piece of a contact somewhere in ``low`` to ``high`` m along a surface.
 
         A surface bulges the more the smaller the length over which that is asked. A bump that is wider than the contact it would
@@ -122,7 +137,9 @@ class PadEstimate:
         for scale in widest * 0.5 ** np.arange(0.0, 12.0, 0.5):
             middles = np.linspace(low, high, int(np.clip(4 * (high - low) / scale, 3, 4000)) | 1)
             sides = np.stack([outline(middles + shift) for shift in (-scale, 0.0, scale)])
-            slope = (sides[2] - sides[0]) / (2 * scale)  # a steep flank is no sharper for being steep
+            slope = (sides[2] - sides[0]) / (
+                2 * scale
+            )  # a steep flank is no sharper for being steep
             bends = (sides[0] + sides[2] - 2 * sides[1]) / (scale**2 * (1 + slope**2) ** 1.5)
             bend = np.nanmax(np.where(np.isnan(bends), -np.inf, bends))
             alone = self.pressed(force, float(max(bend, 0.0))).half_width

@@ -26,13 +26,17 @@ def _found(scene: Scene) -> Iterator[str]:
     layers = list(scene.specimen.materials.values())
     moduli = [layer.youngs_modulus for layer in layers]
     if max(moduli) > _UNLIKE * min(moduli):
-        yield f"layers up to {max(moduli) / min(moduli):.0e} times as stiff as others".replace("e+0", "e")
+        yield f"layers up to {max(moduli) / min(moduli):.0e} times as stiff as others".replace(
+            "e+0", "e"
+        )
     elif len(moduli) > 1 and moduli[0] < _ALIKE * min(moduli[1:]):
         yield "a skin hardly stiffer than what is below it"
     ratio = max(layer.poisson_ratio for layer in layers)
     if ratio > _INCOMPRESSIBLE:
         yield f"a Poisson's ratio of {ratio:g}"
-    force, depth = (max(getattr(leg, name) or 0.0 for leg in scene.motion) for name in ("force", "depth"))
+    force, depth = (
+        max(getattr(leg, name) or 0.0 for leg in scene.motion) for name in ("force", "depth")
+    )
     if force > _FORCE:
         yield f"a force of {format_quantity(force, 'force')}"
     if depth > _DEPTH:

@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fingerpad.planning.bounds import PlanError, check_memory, check_size, micrometres, percent, receptors_of
+from fingerpad.planning.bounds import (
+    PlanError,
+    check_memory,
+    check_size,
+    micrometres,
+    percent,
+    receptors_of,
+)
 from fingerpad.planning.contact import (
     check_over_pad,
     check_width,
@@ -49,7 +56,13 @@ from fingerpad.planning.rules import RULES, Rules
 from fingerpad.planning.schedule import BETWEEN, NEWTON, expected_states, schedule
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.planning.surface import Surface, surface_of
-from fingerpad.planning.unbounded import OF_STROKES, Unbounded, ends_unbounded, in_words, seen_corners
+from fingerpad.planning.unbounded import (
+    OF_STROKES,
+    Unbounded,
+    ends_unbounded,
+    in_words,
+    seen_corners,
+)
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import counted, shortest_edge
 from fingerpad.specimen.element_kinds import KINDS
@@ -137,7 +150,9 @@ class Plan:
         nodes = self.nodes * (2 if self.effects["symmetry"].on else 1)
         each_time = 8 * (20 + 7 * _SKIN_NODES * nodes**0.5 + 13 * receptors_of(scene))
         snapshots = len(scene.outputs.snapshots) or int(fields)
-        return 3e5 + (self.outputs + 1) * each_time + (snapshots + 1) * nodes * (200 if fields else 40)
+        return (
+            3e5 + (self.outputs + 1) * each_time + (snapshots + 1) * nodes * (200 if fields else 40)
+        )
 
     @property
     def stepping(self) -> tuple[int, bool, float | None, int, int]:
@@ -155,7 +170,11 @@ class Plan:
 
         The latter is the mesh's, whatever the stride: twice as much hides bumps that bear little of the load.
         """
-        return (self.slide_step * self.stride, BETWEEN * self.contact_edge) if self.strokes and self.slide_step else None
+        return (
+            (self.slide_step * self.stride, BETWEEN * self.contact_edge)
+            if self.strokes and self.slide_step
+            else None
+        )
 
     @property
     def newton_tolerance(self) -> float | None:
@@ -225,18 +244,43 @@ class Plan:
         size = data["mesh_size_SI"]
         if size is not None:
             size = MeshSize(**size | {"focus": tuple(tuple(pair) for pair in size["focus"])})
-        known, places = data["discretisation"], data.get("unbounded_at", ["an edge"] if data["unbounded_peak"] else [])
+        known, places = (
+            data["discretisation"],
+            data.get("unbounded_at", ["an edge"] if data["unbounded_peak"] else []),
+        )
         unbounded = Unbounded(tuple(places), data.get("unbounded_at_centre", False))
         return cls(
-            {name: Effect(**effect) for name, effect in data["effects"].items()}, data["moduli_state"], known["element"], size,
-            ContactEstimate(**data["contact_estimate_SI"]), data["steps_per_leg"], data["slide_step_SI"], known["steps"],
-            data["timed"], known["nodes"], data["smallest_edge_SI"], data["inertia_ratio"], data["contact_edge_SI"],
-            data["estimated_error"], data["predicted_cost_s"], data["small_strain_error"], data["least_error"],
-            data["error_from"], data["asked_error"], data["once"], unbounded, tuple(data["specimen"]),
-            Surface(**data["surface_SI"]), data["stride"], data.get("strokes", False), known.get("outputs", known["steps"]),
-            data.get("every", 1), data.get("unresolved_edge", False), data.get("errors_by_quantity", {}),
+            {name: Effect(**effect) for name, effect in data["effects"].items()},
+            data["moduli_state"],
+            known["element"],
+            size,
+            ContactEstimate(**data["contact_estimate_SI"]),
+            data["steps_per_leg"],
+            data["slide_step_SI"],
+            known["steps"],
+            data["timed"],
+            known["nodes"],
+            data["smallest_edge_SI"],
+            data["inertia_ratio"],
+            data["contact_edge_SI"],
+            data["estimated_error"],
+            data["predicted_cost_s"],
+            data["small_strain_error"],
+            data["least_error"],
+            data["error_from"],
+            data["asked_error"],
+            data["once"],
+            unbounded,
+            tuple(data["specimen"]),
+            Surface(**data["surface_SI"]),
+            data["stride"],
+            data.get("strokes", False),
+            known.get("outputs", known["steps"]),
+            data.get("every", 1),
+            data.get("unresolved_edge", False),
+            data.get("errors_by_quantity", {}),
             data.get("receptor_height"),
-        )  # fmt: skip
+        )
 
     def write(self, path: str | Path) -> None:
         """Write plan.json, whole or not at all."""
@@ -271,7 +315,9 @@ def plan(
     pad = pad_estimate(scene.specimen, external, measured.face)
     moves, stroke = moves_along(scene), stroke_of(scene, profile.uneven)
     # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
-    contact = worst_contact(scene, pad, profile, profile.convexity if moves or not profile.uneven else 0.0)
+    contact = worst_contact(
+        scene, pad, profile, profile.convexity if moves or not profile.uneven else 0.0
+    )
     contact = replace(contact, narrowest=least_half_width(scene, pad, profile, contact, found))
     check_width(scene, pad, contact, rules)
     inertia, fastest = inertia_ratio_of(scene, contact)
@@ -280,12 +326,19 @@ def plan(
             f"motion[{fastest}]: so fast that inertia matters (rho v^2 / mu = {inertia:.2g}); "
             f"allowed: up to {rules.inertia_limit:g}"
         )
-    rounding = rounding_of(scene, pad, profile, contact) if profile.edges and not profile.unbounded else 0.0
+    rounding = (
+        rounding_of(scene, pad, profile, contact)
+        if profile.edges and not profile.unbounded
+        else 0.0
+    )
     preset, by_hand = preset_for(scene, rules, contact, tolerance, stroke)
     tolerance = preset.tolerance
     case = Case(scene, profile, pad, contact, external, moves, tolerance, rules, {})
     effects = _decided(case)
-    ridges, state = scene.specimen.ridges if effects["ridges"].on else None, viscoelasticity.moduli_state(case)
+    ridges, state = (
+        scene.specimen.ridges if effects["ridges"].on else None,
+        viscoelasticity.moduli_state(case),
+    )
     timed = effects["viscoelasticity"].on
     steps_per_leg, slide_step, every = preset.steps, preset.slide_step, 1
     if by_hand and by_hand.steps:
@@ -295,14 +348,25 @@ def plan(
         every = steps_per_leg // preset.steps
     scheduled = list(schedule(scene, steps_per_leg, timed, slide_step, every=every))
     outputs, steps = len(scheduled), expected_states(scheduled, slide_step)
-    time, narrowest, raised = steps_per_leg / every if timed or moves else None, earliest_half_width(scene, contact, timed), ""
+    time, narrowest, raised = (
+        steps_per_leg / every if timed or moves else None,
+        earliest_half_width(scene, contact, timed),
+        "",
+    )
     bumpy = scene.stimulus.irregular
     if external is not None:
         own = partial(own_errors, rules=rules, bumpy=bumpy)
 
         def on_mesh(mesh: PadMesh) -> float:
             edge = apex_edge(mesh)
-            found = own(KINDS[mesh.element].solved, edge, narrowest, height_at_receptors(scene, mesh), time, stroke)
+            found = own(
+                KINDS[mesh.element].solved,
+                edge,
+                narrowest,
+                height_at_receptors(scene, mesh),
+                time,
+                stroke,
+            )
             return max(*found.values(), edges_error(profile, edge, rounding, rules)[0])
 
         external, raised = raised_for(by_hand, external, tolerance, on_mesh)
@@ -313,25 +377,46 @@ def plan(
         # on its way over a surface the contact is also flat
         widest = worst_contact(scene, pad, profile, 0.0) if moves and profile.uneven else contact
         wander = wander_of(scene, pad, profile, effects["friction"].on, rules) if moves else 0.0
-        size = mesh_size_for(scene, preset, profile, contact, widest.half_width, wander, rounding, rules)
+        size = mesh_size_for(
+            scene, preset, profile, contact, widest.half_width, wander, rounding, rules
+        )
         # a contact that moves leaves the middle, where a stroked pad is finer
-        edge = size.skin_edge if moves else min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
+        edge = (
+            size.skin_edge
+            if moves
+            else min([size.skin_edge, *(edge for x, edge in size.focus if x == 0)])
+        )
         at_focus = min([edge, *(each for _, each in size.focus)])
         if ridges is not None:
-            size, at_receptors = ridge_effect.meshed(scene, size, tolerance if edges_chosen(scene) else None, moves, rules)
+            size, at_receptors = ridge_effect.meshed(
+                scene, size, tolerance if edges_chosen(scene) else None, moves, rules
+            )
         check_size(scene, size, ridges, rules)
         nodes, smallest = counted(scene.specimen, size, ridges)
         if ridges is not None:
-            layered = scene.specimen.outline, size, ridges, scene.specimen.layers.stratum_corneum is not None
+            layered = (
+                scene.specimen.outline,
+                size,
+                ridges,
+                scene.specimen.layers.stratum_corneum is not None,
+            )
             effects["ridges"], edge = ridge_effect.resolved(effects["ridges"], layered, edge)
     else:
-        size, nodes, at_receptors, height = None, len(external.points), 0.0, height_at_receptors(scene, external)
+        size, nodes, at_receptors, height = (
+            None,
+            len(external.points),
+            0.0,
+            height_at_receptors(scene, external),
+        )
         smallest, edge = shortest_edge(external), apex_edge(external)
     if effects["symmetry"].on:
         nodes = nodes // 2 + 1
     check_memory(scene, nodes, outputs, rules)
     may_change = rules.profile_share * tolerance
-    pressed, force = partial(worst_contact, scene, pad, profile), pressing_force(scene, pad, contact)
+    pressed, force = (
+        partial(worst_contact, scene, pad, profile),
+        pressing_force(scene, pad, contact),
+    )
     surface = surface_of(measured, edge, way_of(scene), pad, pressed, force, may_change)
     around = None if size is None else size.skin_edge
     at_edge = edge if size is None else min(edge, at_focus)
@@ -340,13 +425,20 @@ def plan(
         at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
     at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
     if external is None:
-        in_contact = estimated_error(edge, narrowest, time, stroke, around, rules=rules, bumpy=bumpy)
+        in_contact = estimated_error(
+            edge, narrowest, time, stroke, around, rules=rules, bumpy=bumpy
+        )
     else:
         errors = own(element, edge, narrowest, height, time, stroke)
         in_contact = max(errors.values())
     mesh = surface.error + max(in_contact, at_edges, at_receptors)
     linear = 0.0 if effects["finite_strain"].on else finite_strain.small_strain_error(case)
-    if linear and scene.tolerance is not None and "finite_strain" not in scene.effects and linear + mesh > scene.tolerance:
+    if (
+        linear
+        and scene.tolerance is not None
+        and "finite_strain" not in scene.effects
+        and linear + mesh > scene.tolerance
+    ):
         effects["finite_strain"], linear = finite_strain.beside_mesh(case, mesh), 0.0
     sources = {
         f"edges of {micrometres(edge)} um in a contact of {micrometres(narrowest)} um to either side": in_contact,
@@ -357,13 +449,38 @@ def plan(
     }
     unresolved = not profile.unbounded and peak_is_unbounded(profile, at_edge, rounding, rules)
     return Plan(
-        effects, state, element, size, contact, steps_per_leg, slide_step, steps, timed, nodes, smallest, inertia, edge,
-        linear + mesh, _cost(nodes, steps, effects, rules), linear, max(at_edges, at_receptors),
-        max(sources, key=sources.get), scene.tolerance, scene.once,
-        _unbounded(scene, measured.at(surface.smoothing, edge), external, pad, contact, edge, unresolved),
-        (*specimen_said(scene.specimen, external), *filter(None, [raised]), *measured.notes), surface, strokes=moves,
-        outputs=outputs, every=every, unresolved_edge=unresolved, errors=errors, receptor_height=height,
-    )  # fmt: skip
+        effects,
+        state,
+        element,
+        size,
+        contact,
+        steps_per_leg,
+        slide_step,
+        steps,
+        timed,
+        nodes,
+        smallest,
+        inertia,
+        edge,
+        linear + mesh,
+        _cost(nodes, steps, effects, rules),
+        linear,
+        max(at_edges, at_receptors),
+        max(sources, key=sources.get),
+        scene.tolerance,
+        scene.once,
+        _unbounded(
+            scene, measured.at(surface.smoothing, edge), external, pad, contact, edge, unresolved
+        ),
+        (*specimen_said(scene.specimen, external), *filter(None, [raised]), *measured.notes),
+        surface,
+        strokes=moves,
+        outputs=outputs,
+        every=every,
+        unresolved_edge=unresolved,
+        errors=errors,
+        receptor_height=height,
+    )
 
 
 def _unbounded(scene, profile, external, pad, contact, edge: float, unresolved: bool) -> Unbounded:
@@ -371,7 +488,9 @@ def _unbounded(scene, profile, external, pad, contact, edge: float, unresolved: 
     half_width, (low, high) = contact.half_width, way_of(scene)
     pressure = 2 / np.pi * pressing_force(scene, pad, contact) / half_width
     corners = (
-        np.array(profile.edges) if unresolved else seen_corners(profile.corners(), pad.stiff, pressure, edge / 2, half_width)
+        np.array(profile.edges)
+        if unresolved
+        else seen_corners(profile.corners(), pad.stiff, pressure, edge / 2, half_width)
     )
     corners = corners[(corners >= low - half_width) & (corners <= high + half_width)]
     places, friction = list(in_words(profile, corners)), scene.friction > 0
@@ -383,7 +502,14 @@ def _unbounded(scene, profile, external, pad, contact, edge: float, unresolved: 
     return Unbounded(tuple(places), bool(centre))
 
 
-def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: int = 1, rules: Rules | None = None) -> Plan | str:
+def refined(
+    scene: Scene,
+    before: Plan,
+    error: float,
+    narrowest: float,
+    runs: int = 1,
+    rules: Rules | None = None,
+) -> Plan | str:
     """The plan of another run of a scene that was solved as ``before`` says, or why there is none ("" where none is wanted).
 
     Args:
@@ -397,7 +523,12 @@ def refined(scene: Scene, before: Plan, error: float, narrowest: float, runs: in
     if runs >= rules.most_runs:
         return f"after {runs} runs"
     # what misses by some share is aimed at by as much below
-    finer = plan(scene, rules, narrowest, before.asked_error * min(_WORTH, max(before.asked_error / error, 0.25)))
+    finer = plan(
+        scene,
+        rules,
+        narrowest,
+        before.asked_error * min(_WORTH, max(before.asked_error / error, 0.25)),
+    )
     if finer.estimated_error > _WORTH * error:
         return "a finer mesh would not help"
     if finer.nodes > rules.most_nodes_again:
@@ -410,7 +541,9 @@ def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER
 
     An external mesh keeps its edges: linear quads are solved as quadratic ones and the other way round, all others as they are.
     """
-    scheduled = list(schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride, own.every))
+    scheduled = list(
+        schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride, own.every)
+    )
     steps = expected_states(scheduled, own.slide_step, stride)
     out = replace(own, stride=stride, steps=steps, outputs=len(scheduled))
     if own.mesh_size is not None:
@@ -419,11 +552,20 @@ def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER
         nodes, smallest = counted(scene.specimen, size, ridges)
         nodes = nodes // 2 + 1 if own.effects["symmetry"].on else nodes
         edge, error = coarser * own.contact_edge, coarser * own.estimated_error
-        out = replace(out, mesh_size=size, nodes=nodes, smallest_edge=smallest, contact_edge=edge, estimated_error=error)
+        out = replace(
+            out,
+            mesh_size=size,
+            nodes=nodes,
+            smallest_edge=smallest,
+            contact_edge=edge,
+            estimated_error=error,
+        )
     elif (external := external_mesh(scene)).element == "quad4":
         element = "Q1P0" if own.element == "Q2P1" else "Q2P1"
         nodes = len(external.elevated(element).points)
-        out = replace(out, element=element, nodes=nodes // 2 + 1 if own.effects["symmetry"].on else nodes)
+        out = replace(
+            out, element=element, nodes=nodes // 2 + 1 if own.effects["symmetry"].on else nodes
+        )
     return replace(out, predicted_cost_s=_cost(out.nodes, steps, out.effects, RULES))
 
 
@@ -440,14 +582,21 @@ def _decided(case: Case) -> dict[str, Effect]:
         effect, wanted = each.decide(now), case.scene.effects.get(each.name)
         if wanted is not None and wanted != effect.on:
             if wanted and not each.possible(now):
-                raise PlanError(f"{case.scene.name}: effects.{each.name}: on, but {effect.why}; allowed: off or auto")
-            effect = Effect(wanted, f"asked for in the scene (the planner: {'on' if effect.on else 'off'}, {effect.why})")
+                raise PlanError(
+                    f"{case.scene.name}: effects.{each.name}: on, but {effect.why}; allowed: off or auto"
+                )
+            effect = Effect(
+                wanted,
+                f"asked for in the scene (the planner: {'on' if effect.on else 'off'}, {effect.why})",
+            )
         found[each.name] = effect
     return {name: found[name] for name in EFFECTS}
 
 
 def _cost(nodes: int, steps: int, effects: dict[str, Effect], rules: Rules) -> float:
-    nodes = nodes * float(np.prod([EFFECTS[name].dearer(rules) for name, effect in effects.items() if effect.on]))
+    nodes = nodes * float(
+        np.prod([EFFECTS[name].dearer(rules) for name, effect in effects.items() if effect.on])
+    )
     if effects["finite_strain"].on:
         work = rules.seconds_finite * rules.iterations_finite
     else:

@@ -54,7 +54,10 @@ def schedule(
         snapshots=scene.outputs.snapshots,
         present=present,
         slide_step=slide_step,
-        increments=min(steps_per_leg, _MOST_INCREMENTS if on_the_way else _ROUND_EDGES if scene.stimulus.singular else 1),
+        increments=min(
+            steps_per_leg,
+            _MOST_INCREMENTS if on_the_way else _ROUND_EDGES if scene.stimulus.singular else 1,
+        ),
         parts=partial(_parts, scene, slide_step) if slide_step else None,
         stride=stride,
         every=every,

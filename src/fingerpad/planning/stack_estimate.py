@@ -38,12 +38,23 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
         lines.append(_where_met(external))
     elif specimen.stack is not None:
         stack = specimen.stack
-        layers = ", ".join(f"{name} {thick * 1e3:.3g} mm" for name, thick in zip(stack.names, stack.thicknesses, strict=True))
+        layers = ", ".join(
+            f"{name} {thick * 1e3:.3g} mm"
+            for name, thick in zip(stack.names, stack.thicknesses, strict=True)
+        )
         if stack.radius is None:
-            lines.append(f"a slab {stack.width * 1e3:.3g} mm wide: {layers}; held: base; free: {SKIN}, sides")
+            lines.append(
+                f"a slab {stack.width * 1e3:.3g} mm wide: {layers}; held: base; free: {SKIN}, sides"
+            )
         else:
-            core = "" if stack.solid else f" and the core of radius {(stack.radius - stack.soft_thickness) * 1e3:.3g} mm"
-            lines.append(f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; free: {SKIN}")
+            core = (
+                ""
+                if stack.solid
+                else f" and the core of radius {(stack.radius - stack.soft_thickness) * 1e3:.3g} mm"
+            )
+            lines.append(
+                f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; free: {SKIN}"
+            )
     return (*lines, *(f"not given: {left_out}" for left_out in specimen.assumed))
 
 
@@ -75,16 +86,29 @@ def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> P
         return known[name].youngs_modulus / (1 - known[name].poisson_ratio ** 2)
 
     if external is not None:
-        radius, half_width = measures.apex_radius(external), 0.5 * float(np.ptp(external.points[external.curves["skin"], 0]))
+        radius, half_width = (
+            measures.apex_radius(external),
+            0.5 * float(np.ptp(external.points[external.curves["skin"], 0])),
+        )
         below = measures.layers_below(external)
     elif specimen.stack is not None:
         stack = specimen.stack
-        radius, half_width, below = stack.radius or 1e3, stack.half_width, list(zip(stack.names, stack.thicknesses, strict=True))
+        radius, half_width, below = (
+            stack.radius or 1e3,
+            stack.half_width,
+            list(zip(stack.names, stack.thicknesses, strict=True)),
+        )
     if specimen.outline is None and not (
-        external is not None and {*REGIONS} <= {*external.regions} and "bone" in external.curves and radius < _FLAT * half_width
+        external is not None
+        and {*REGIONS} <= {*external.regions}
+        and "bone" in external.curves
+        and radius < _FLAT * half_width
     ):
         layers = [(thickness, specimen.material(name)) for name, thickness in below]
-        first, softest = layers[0], min(layer.youngs_modulus / (1 - layer.poisson_ratio**2) for _, layer in layers)
+        first, softest = (
+            layers[0],
+            min(layer.youngs_modulus / (1 - layer.poisson_ratio**2) for _, layer in layers),
+        )
         return StackEstimate(
             radius,
             first[0],
@@ -92,14 +116,27 @@ def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> P
             relax * first[1].youngs_modulus / (1 - first[1].poisson_ratio ** 2),
             relax * softest,
             min(half_width, reach),
-            tuple((thickness, relax * layer.youngs_modulus, layer.poisson_ratio) for thickness, layer in layers),
+            tuple(
+                (thickness, relax * layer.youngs_modulus, layer.poisson_ratio)
+                for thickness, layer in layers
+            ),
         )
     if external is None:
         outline = specimen.outline
-        radius, epidermis, soft = outline.apex_radius, outline.epidermis_thickness, outline.soft_thickness
+        radius, epidermis, soft = (
+            outline.apex_radius,
+            outline.epidermis_thickness,
+            outline.soft_thickness,
+        )
     else:
         radius, epidermis, soft = measures.apex_measures(external)
-    return PadEstimate(radius, epidermis, soft, relax * plane("epidermis"), relax * min(plane("dermis"), plane("fat")))
+    return PadEstimate(
+        radius,
+        epidermis,
+        soft,
+        relax * plane("epidermis"),
+        relax * min(plane("dermis"), plane("fat")),
+    )
 
 
 @dataclass(frozen=True)
@@ -160,10 +197,17 @@ class StackEstimate(PadEstimate):
             depth = wanted if which else self._curved(narrowest, curvature)[1]
         else:
             half_width = np.exp(
-                root(lambda a: self._curved(np.exp(a), curvature)[which] - wanted, np.log(narrowest), np.log(limit), 1e-8)
+                root(
+                    lambda a: self._curved(np.exp(a), curvature)[which] - wanted,
+                    np.log(narrowest),
+                    np.log(limit),
+                    1e-8,
+                )
             )
             depth = self._curved(half_width, curvature)[1]
-        return ContactEstimate(float(half_width), float(depth), float(max(0.65 * half_width * bend, depth / thick)))
+        return ContactEstimate(
+            float(half_width), float(depth), float(max(0.65 * half_width * bend, depth / thick))
+        )
 
     def pressed(self, force: float, curvature: float) -> ContactEstimate:
         """Contact under ``force`` N/m by a profile of ``curvature`` 1/m at its lowest point."""

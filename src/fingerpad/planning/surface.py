@@ -42,14 +42,20 @@ class Surface:
         """What a person should know of it."""
         out = []
         if self.smoothing:
-            moved = f"up to {self.moved * 1e6:.2g} um" if self.moved > _FELT_BY_NOBODY else "less than 0.05 um"
+            moved = (
+                f"up to {self.moved * 1e6:.2g} um"
+                if self.moved > _FELT_BY_NOBODY
+                else "less than 0.05 um"
+            )
             said = (
                 f"the profile was smoothed at {self.smoothing * 1e6:.3g} um, which moved it by {moved}; "
                 f"what is left of its roughness may change the pressure by {percent(self.error)}"
             )
             out.append(said + (_LESS_ROUGH if self.error > _ROUGH else ""))
         if self.end is not None:
-            out.append(f"contact is expected to reach the end of the profile's points at x = {self.end * 1e3:.3g} mm")
+            out.append(
+                f"contact is expected to reach the end of the profile's points at x = {self.end * 1e3:.3g} mm"
+            )
         return out
 
 
@@ -88,7 +94,13 @@ def surface_of(
         curvature = max(felt.bulge(way[0], contact.half_width), 0.0)
     half = contact.half_width
     first, last = way[0] - 1.2 * half, way[1] + 1.2 * half
-    ends = [end for end, over in zip(profile.known, (profile.known[0] - first, last - profile.known[1]), strict=True) if over > 0]
+    ends = [
+        end
+        for end, over in zip(
+            profile.known, (profile.known[0] - first, last - profile.known[1]), strict=True
+        )
+        if over > 0
+    ]
     end = min(ends, key=abs, default=None)
     cutoffs = profile.cutoffs(edge)
     if cutoffs == [0.0]:
@@ -97,7 +109,9 @@ def surface_of(
 
     def smoothed(cutoff):
         felt, longer = profile.at(cutoff, edge), max(2 * cutoff, WAVE * edge)
-        x = np.linspace(*np.clip([first, last], *profile.known), int((last - first) / (longer / 2) * 16) + 33)
+        x = np.linspace(
+            *np.clip([first, last], *profile.known), int((last - first) / (longer / 2) * 16) + 33
+        )
         fine = finer_than(x, felt.outline(x), longer)
         slope, steep = np.abs(np.gradient(fine, x)).max(), np.std(np.gradient(felt.outline(x), x))
         pressure = nominal / touching_share(nominal, pad.stiff, float(steep))

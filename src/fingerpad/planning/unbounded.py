@@ -50,7 +50,9 @@ class Unbounded:
         return f"depth, width, {centre}strain energy; pressure is unbounded at {self.text}"
 
 
-def seen_corners(corners: np.ndarray, modulus: float, pressure: float, node: float, half_width: float) -> np.ndarray:
+def seen_corners(
+    corners: np.ndarray, modulus: float, pressure: float, node: float, half_width: float
+) -> np.ndarray:
     """Places x (k,) m of corners that nodes see as corners.
 
     Parameters
@@ -82,7 +84,10 @@ def in_words(profile: Profile, x: np.ndarray) -> tuple[str, ...]:
     if not len(x):
         return ()
     at_end = np.isin(x, profile.reach) & (not profile.edges)
-    kinds = {"end of the profile's points": x[at_end], "edge" if profile.edges else "corner": x[~at_end]}
+    kinds = {
+        "end of the profile's points": x[at_end],
+        "edge" if profile.edges else "corner": x[~at_end],
+    }
     out = []
     for name, places in kinds.items():
         mm = np.unique(np.round(places * 1e3, 4)) + 0.0

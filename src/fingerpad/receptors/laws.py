@@ -74,7 +74,9 @@ def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np
     s = np.asarray(x, float) - np.asarray(reference, float)[..., None]
     far = np.abs(s)
     fallen = r * np.expm1(-far / r)
-    once = -np.sign(s[..., [0, -1]]) * fallen[..., [0, -1]]  # integral of the kernel at the ends, and the integral of that
+    once = (
+        -np.sign(s[..., [0, -1]]) * fallen[..., [0, -1]]
+    )  # integral of the kernel at the ends, and the integral of that
     twice = r * (far + fallen)
     slope = np.diff(twice, axis=-1) / np.diff(s, axis=-1)
     return np.diff(slope, axis=-1, prepend=once[..., :1], append=once[..., 1:])
@@ -99,8 +101,14 @@ class SpatialSum:
         """The integral (...), Pa m. x, pressure: (..., n) m, Pa. reference: (...) m, where the receptor is, shift included."""
         x, pressure = np.asarray(x, float), np.asarray(pressure, float)
         on = np.flatnonzero(np.any(pressure != 0, axis=tuple(range(pressure.ndim - 1))))
-        touched = slice(max(on[0] - 1, 0), on[-1] + 2) if len(on) else slice(0, 2)  # weights beyond it meet no pressure
-        return np.einsum("...n,...n->...", kernel_weights(x[..., touched], reference, self.r), pressure[..., touched])
+        touched = (
+            slice(max(on[0] - 1, 0), on[-1] + 2) if len(on) else slice(0, 2)
+        )  # weights beyond it meet no pressure
+        return np.einsum(
+            "...n,...n->...",
+            kernel_weights(x[..., touched], reference, self.r),
+            pressure[..., touched],
+        )
 
     def strain_energy(self, x, pressure, indentation=0.0, reference=0.0) -> np.ndarray:
         """Strain energy density (...), Pa.
@@ -109,7 +117,9 @@ class SpatialSum:
             x: (..., n) m, places of the pressures, deformed. pressure: (..., n) Pa. indentation: (...) m, of the skin over the
             receptor. reference: (...) m, lateral place of the receptor: where it is at rest plus what it has shifted by.
         """
-        return self.weighted_pressure(x, pressure, reference) * (self.per_depth * np.asarray(indentation) + self.constant)
+        return self.weighted_pressure(x, pressure, reference) * (
+            self.per_depth * np.asarray(indentation) + self.constant
+        )
 
 
 def rectified(values) -> np.ndarray:
@@ -138,7 +148,9 @@ class ImpulseRate:
     def terms(self, energy, energy_rate) -> tuple[np.ndarray, np.ndarray]:
         """What the energy and its rate contribute, impulses/s each."""
         static = self.per_energy * rectified(np.asarray(energy, float) - self.threshold)
-        return static, self.per_rate * rectified(np.asarray(energy_rate, float) - self.rate_threshold)
+        return static, self.per_rate * rectified(
+            np.asarray(energy_rate, float) - self.rate_threshold
+        )
 
     def __call__(self, energy, energy_rate) -> np.ndarray:
         """Impulse rate, impulses/s. energy: Pa. energy_rate: Pa/s."""
@@ -166,7 +178,11 @@ def rate_by_leg(time, values, leg) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """
     time, values, leg = np.asarray(time, float), np.asarray(values, float), np.asarray(leg)
     ends = np.flatnonzero(np.diff(leg) > 0)
-    pieces = [slice(a, b + 1) for a, b in zip([0, *ends], [*ends, len(time) - 1], strict=True) if time[b] - time[a] > NO_TIME]
+    pieces = [
+        slice(a, b + 1)
+        for a, b in zip([0, *ends], [*ends, len(time) - 1], strict=True)
+        if time[b] - time[a] > NO_TIME
+    ]
     rates = [np.gradient(values[piece], time[piece], axis=0) for piece in pieces]
     return (
         np.concatenate([time[piece] for piece in pieces]),

@@ -11,16 +11,26 @@ disagree even in trend (see :func:`strain_energies`).
 
 import numpy as np
 
-from fingerpad.mechanics.finite_strain import deviator_square, isochoric_energy, isochoric_stress, push_forward
+from fingerpad.mechanics.finite_strain import (
+    deviator_square,
+    isochoric_energy,
+    isochoric_stress,
+    push_forward,
+)
 from fingerpad.mechanics.viscoelasticity import Branches
 from fingerpad.receptors.recovery import Location, recovery
 
 
 def _layers(body):
     """(ne,) number of the material that each element is of: its shear modulus and its law."""
-    laws = [part.elements[:, None] * np.column_stack([np.ones(len(part.constants)), part.constants]) for part in body.laws]
+    laws = [
+        part.elements[:, None] * np.column_stack([np.ones(len(part.constants)), part.constants])
+        for part in body.laws
+    ]
     layer = np.zeros(len(body.shear), int)
-    for each in np.column_stack([body.shear, *laws]).T:  # one by one, for that is faster than whole rows
+    for each in np.column_stack(
+        [body.shear, *laws]
+    ).T:  # one by one, for that is faster than whole rows
         values, number = np.unique(each, return_inverse=True)
         layer = np.unique(layer * len(values) + number, return_inverse=True)[1]
     return layer
@@ -38,7 +48,9 @@ class MaterialPoints:
         ReceptorError: a point lies outside the mesh.
     """
 
-    def __init__(self, body, points: np.ndarray, shear_instantaneous: np.ndarray, mirrored: bool = False):
+    def __init__(
+        self, body, points: np.ndarray, shear_instantaneous: np.ndarray, mirrored: bool = False
+    ):
         recovered = recovery(body.space, _layers(body), np.atleast_2d(points), mirrored)
         self._place(body, *recovered, shear_instantaneous)
 
@@ -61,7 +73,9 @@ class MaterialPoints:
         self.psi = space.pressure_modes(element, np.einsum("na,nai->ni", values, nodes))
         self.shear, self.bulk = body.shear[element], body.bulk[element]
         self.laws = tuple(part.at(element) for part in body.laws)
-        self.shear_instantaneous = None if shear_instantaneous is None else np.asarray(shear_instantaneous)[element]
+        self.shear_instantaneous = (
+            None if shear_instantaneous is None else np.asarray(shear_instantaneous)[element]
+        )
         self._linear = body.geometrically_linear
         prony = body.prony if self._linear else body.branches and body.branches.prony
         self.branches = Branches(prony, (len(element), 4)) if prony else None
@@ -77,7 +91,9 @@ class MaterialPoints:
             return (
                 2
                 * self.shear[:, None]
-                * np.stack([strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], -mean], axis=1)
+                * np.stack(
+                    [strain[:, 0, 0] - mean, strain[:, 1, 1] - mean, strain[:, 0, 1], -mean], axis=1
+                )
             )
         return isochoric_stress(self.laws, body.u, self.cells, self.grad, self.shear)
 
@@ -97,9 +113,17 @@ class MaterialPoints:
         """
         gradient, dilatation = self._gradient(body), self._dilatation(body)
         stress = self._isochoric(body)
-        branch = [] if self.branches is None else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
+        branch = (
+            []
+            if self.branches is None
+            else list(zip(self.branches.prony.beta, self.branches.q, strict=True))
+        )
         if self._linear:
-            f, jac, strain = np.broadcast_to(np.eye(2), gradient.shape), 1.0, 0.5 * (gradient + gradient.swapaxes(1, 2))
+            f, jac, strain = (
+                np.broadcast_to(np.eye(2), gradient.shape),
+                1.0,
+                0.5 * (gradient + gradient.swapaxes(1, 2)),
+            )
             network = deviator_square(stress) / (4 * self.shear)
             stretch = 1 + np.linalg.eigvalsh(strain)
         else:
@@ -108,7 +132,9 @@ class MaterialPoints:
             network = isochoric_energy(self.laws, f, self.shear)
             stretch, strain = np.linalg.svd(f, compute_uv=False)[:, ::-1], logarithmic_strain(f)
         volumetric = 0.5 * self.bulk * dilatation**2
-        found = strain_energies(f, strain, stress, branch, network, self.shear, self.shear_instantaneous, volumetric)
+        found = strain_energies(
+            f, strain, stress, branch, network, self.shear, self.shear_instantaneous, volumetric
+        )
         total = stress + sum((q for _, q in branch), np.zeros_like(stress))
         found |= {
             "compressive_strain": np.maximum(1 - stretch[:, 0], 0),
@@ -119,8 +145,14 @@ class MaterialPoints:
         }
         if self.recovery is None:
             return found
-        least = {"hydrostatic_pressure": -np.inf, "dilatation": -np.inf}  # all others are sizes, which a fit near zero may miss
-        return {name: np.maximum(self.recovery(values), least.get(name, 0.0)) for name, values in found.items()}
+        least = {
+            "hydrostatic_pressure": -np.inf,
+            "dilatation": -np.inf,
+        }  # all others are sizes, which a fit near zero may miss
+        return {
+            name: np.maximum(self.recovery(values), least.get(name, 0.0))
+            for name, values in found.items()
+        }
 
     def stress_and_strain(self, body) -> dict[str, np.ndarray]:
         """``cauchy_stress`` (samples, 4: xx, yy, xy, zz) Pa, ``principal_strains`` (samples, 2: stretches less one, rising)."""
@@ -132,7 +164,9 @@ class MaterialPoints:
             f = np.eye(2) + gradient
             jac, strains = np.linalg.det(f), np.linalg.svd(f, compute_uv=False)[:, ::-1] - 1
         total = self._isochoric(body) + (0.0 if self.branches is None else self.branches.q.sum(0))
-        stress = push_forward(f, total) / jac[:, None] + (self.bulk * self._dilatation(body))[:, None] * [1, 1, 0, 1]
+        stress = push_forward(f, total) / jac[:, None] + (self.bulk * self._dilatation(body))[
+            :, None
+        ] * [1, 1, 0, 1]
         return {"cauchy_stress": stress, "principal_strains": strains}
 
     def _dilatation(self, body):
@@ -176,7 +210,10 @@ def strain_energies(f, strain, stress, branches, network, shear, shear_instantan
         tau = push_forward(f, total)
         square, mean = deviator_square(tau), (tau[:, 0] + tau[:, 1] + tau[:, 3]) / 3
         instantaneous, long_term = square / (4 * shear_instantaneous), square / (4 * shear)
-        half = 0.5 * ((tau[:, 0] - mean) * strain[:, 0, 0] + (tau[:, 1] - mean) * strain[:, 1, 1]) + tau[:, 2] * strain[:, 0, 1]
+        half = (
+            0.5 * ((tau[:, 0] - mean) * strain[:, 0, 0] + (tau[:, 1] - mean) * strain[:, 1, 1])
+            + tau[:, 2] * strain[:, 0, 1]
+        )
     energies = {
         "strain_energy_density": instantaneous,
         "strain_energy_long_term_moduli": long_term,

@@ -30,7 +30,9 @@ class RapidlyAdapting:
 
     def __call__(self, rate) -> np.ndarray:
         """Impulse rate, impulses/s, of a stimulus's rate of change."""
-        return self.highest * -np.expm1(-rectified(np.abs(np.asarray(rate, float)) - self.threshold) / self.scale)
+        return self.highest * -np.expm1(
+            -rectified(np.abs(np.asarray(rate, float)) - self.threshold) / self.scale
+        )
 
 
 ASSUMED_RATE = RapidlyAdapting(threshold=100.0, scale=500.0, highest=100.0)

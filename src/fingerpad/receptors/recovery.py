@@ -10,7 +10,11 @@ from fingerpad.specimen.shapes import square_rule, triangle_rule
 
 _EXACT = 1e-7
 """What polynomials may be off by in their own fit."""
-FITTED = {"Q2P1": (square_rule(2)[0], 3), "Q1P0": (square_rule(1)[0], 2), "P2B": (triangle_rule(5)[0], 3)}
+FITTED = {
+    "Q2P1": (square_rule(2)[0], 3),
+    "Q1P0": (square_rule(1)[0], 2),
+    "P2B": (triangle_rule(5)[0], 3),
+}
 """By element, the points of the reference cell that are sampled, and the degree of the polynomial fitted to what is there."""
 _RADII = (1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8)
 """Of the patch it is fitted on, in lengths of the element in the middle: the first that will do."""
@@ -61,12 +65,16 @@ def containing(space, points, tolerance=1e-6):
     centres = space.centres
     near = nearest(points, centres, 24)
     parts = [_among(space, points, near, tolerance)]
-    for k in np.setdiff1d(np.arange(len(points)), parts[0][0]):  # beside a row of many narrow elements a long one is farther off
+    for k in np.setdiff1d(
+        np.arange(len(points)), parts[0][0]
+    ):  # beside a row of many narrow elements a long one is farther off
         every = np.argsort(np.hypot(*(centres - points[k]).T), kind="stable")[None]
         owner, element, xi = _among(space, points[[k]], every, tolerance)
         if not len(owner):
             x, y = points[k] * 1e3
-            raise ReceptorError(f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue")
+            raise ReceptorError(
+                f"receptor at x = {x:.3f} mm, y = {y:.3f} mm lies outside the soft tissue"
+            )
         parts.append((owner + k, element, xi))
     owner, element, xi = (np.concatenate(part) for part in zip(*parts, strict=True))
     order = np.argsort(owner, kind="stable")
@@ -78,7 +86,9 @@ def _among(space, points, candidates, tolerance):
     nodes = space.points[space.cells[candidates]]
     low, high = nodes.min(2), nodes.max(2)
     # a quadratic side bulges beyond the box round its nodes by an eighth of it at most
-    owner, column = np.nonzero((np.abs(points[:, None] - (low + high) / 2) <= 0.65 * (high - low)).all(2))
+    owner, column = np.nonzero(
+        (np.abs(points[:, None] - (low + high) / 2) <= 0.65 * (high - low)).all(2)
+    )
     element = candidates[owner, column]
     xi = _inverse_map(space.element, nodes[owner, column], points[owner])
     inside = (xi >= -tolerance).all(1)
@@ -95,7 +105,9 @@ def _inverse_map(element, nodes, points):
         residual = points[moving] - np.einsum("na,nai->ni", values, nodes[moving])
         (a, b), (c, d) = np.einsum("nai,naj->ijn", nodes[moving], gradients)
         with np.errstate(all="ignore"):
-            step = np.stack([d * residual[:, 0] - b * residual[:, 1], a * residual[:, 1] - c * residual[:, 0]]) / (a * d - b * c)
+            step = np.stack(
+                [d * residual[:, 0] - b * residual[:, 1], a * residual[:, 1] - c * residual[:, 0]]
+            ) / (a * d - b * c)
         before = xi[moving]
         xi[moving] = np.clip(np.nan_to_num(before + step.T), -2.0, 3.0)
         moving = moving[np.abs(xi[moving] - before).max(1) > 1e-12]
@@ -134,21 +146,28 @@ def recovery(space, layers, points, mirrored):
     if not len(points):
         return Location(np.zeros(0, int), np.zeros((0, 2))), None
     found, owner, share = _mean_of_neighbours(space, layers, points)
-    fits = _fits(space, layers, points, owner, found, mirrored) if space.element.name in FITTED else {}
+    fits = (
+        _fits(space, layers, points, owner, found, mirrored) if space.element.name in FITTED else {}
+    )
     if not fits and len(owner) == len(points):
         return found, None
     plain = ~np.isin(owner, list(fits))
     rule = FITTED[space.element.name][0] if fits else np.zeros((1, 2))
     used = np.unique(np.concatenate([sample for sample, _ in fits.values()] or [np.zeros(0, int)]))
     location = Location(
-        np.concatenate([used // len(rule), found.element[plain]]), np.concatenate([rule[used % len(rule)], found.xi[plain]])
+        np.concatenate([used // len(rule), found.element[plain]]),
+        np.concatenate([rule[used % len(rule)], found.xi[plain]]),
     )
-    index = [np.searchsorted(used, sample) for sample, _ in fits.values()] + [len(used) + np.arange(np.count_nonzero(plain))]
+    index = [np.searchsorted(used, sample) for sample, _ in fits.values()] + [
+        len(used) + np.arange(np.count_nonzero(plain))
+    ]
     weights = [weight for _, weight in fits.values()] + [share[plain]]
     whose = [np.full(len(sample), k) for k, (sample, _) in fits.items()] + [owner[plain]]
     index, weights, whose = (np.concatenate(each) for each in (index, weights, whose))
     order = np.argsort(whose, kind="stable")
-    return location, Sums(weights[order], index[order], np.unique(whose[order], return_index=True)[1])
+    return location, Sums(
+        weights[order], index[order], np.unique(whose[order], return_index=True)[1]
+    )
 
 
 def _fits(space, layers, points, owner, found, mirrored):
@@ -167,7 +186,9 @@ def _fits(space, layers, points, owner, found, mirrored):
         sample = (len(values) * elements[:, None] + np.arange(len(values))).ravel()
         if mirrored:
             place, sample = np.concatenate([place, place * [-1, 1]]), np.tile(sample, 2)
-        away = (place - points[k]) @ inverse[own]  # in lengths of each of the elements that the point lies in
+        away = (place - points[k]) @ inverse[
+            own
+        ]  # in lengths of each of the elements that the point lies in
         square = (away**2).sum(axis=2).mean(axis=0)
         for radius in _RADII:
             on = square < radius**2
@@ -202,7 +223,9 @@ def _patches(space, layers, owner, element):
 
     @cache
     def around(elements):
-        near = np.concatenate([owners[ends[node] : ends[node + 1]] for node in np.unique(corners[list(elements)])])
+        near = np.concatenate(
+            [owners[ends[node] : ends[node + 1]] for node in np.unique(corners[list(elements)])]
+        )
         return tuple(np.unique(near[layers[near] == layers[elements[0]]]))
 
     for own in np.split(np.arange(len(owner)), np.flatnonzero(np.diff(owner)) + 1):

@@ -12,17 +12,27 @@ from fingerpad.receptors.rapidly_adapting import ASSUMED_RATE, RapidlyAdapting
 from fingerpad.receptors.spikes import impulses
 from fingerpad.stimuli.motion import NO_TIME, apart
 
-AFFERENTS: dict[str, ImpulseRate | RapidlyAdapting] = {"slowly_adapting": THESIS_RATE, "rapidly_adapting": ASSUMED_RATE}
+AFFERENTS: dict[str, ImpulseRate | RapidlyAdapting] = {
+    "slowly_adapting": THESIS_RATE,
+    "rapidly_adapting": ASSUMED_RATE,
+}
 """Kinds of receptor and their laws: Eq 5-1 with the thesis's own constants; saturating in the rate, its constants assumed."""
 
 
-NAMES = {"SA-I": "slowly_adapting", "SA1": "slowly_adapting", "RA": "rapidly_adapting", "FA-I": "rapidly_adapting"}
+NAMES = {
+    "SA-I": "slowly_adapting",
+    "SA1": "slowly_adapting",
+    "RA": "rapidly_adapting",
+    "FA-I": "rapidly_adapting",
+}
 """Other names of these kinds, as physiologists and files of recordings have them."""
 
 
 def respond(
     history: xr.Dataset,
-    afferents: str | Iterable[str] | Mapping[str, ImpulseRate | RapidlyAdapting] = ("slowly_adapting",),
+    afferents: str | Iterable[str] | Mapping[str, ImpulseRate | RapidlyAdapting] = (
+        "slowly_adapting",
+    ),
     variation: float = 0.0,
     seed: int | None = None,
 ) -> xr.Dataset:
@@ -43,28 +53,60 @@ def respond(
         variability without a seed.
     """
     if not isinstance(history, xr.Dataset):
-        raise TypeError(f"a history is what simulate or read_history returns, not {type(history).__name__} {str(history)[:60]!r}")
+        raise TypeError(
+            f"a history is what simulate or read_history returns, not {type(history).__name__} {str(history)[:60]!r}"
+        )
     afferents = [afferents] if isinstance(afferents, str) else afferents
-    laws = dict(afferents) if isinstance(afferents, Mapping) else {NAMES.get(n, n): _law(NAMES.get(n, n)) for n in afferents}
+    laws = (
+        dict(afferents)
+        if isinstance(afferents, Mapping)
+        else {NAMES.get(n, n): _law(NAMES.get(n, n)) for n in afferents}
+    )
     time, leg = history["time"].values, history["leg"].values
     if not time[-1] - time[0] > NO_TIME:
-        raise ValueError("nothing in this history takes time, so it has no rates: give a leg a rate, a speed or a hold")
+        raise ValueError(
+            "nothing in this history takes time, so it has no rates: give a leg a rate, a speed or a hold"
+        )
     at, energy, change = rate_by_leg(time, history["strain_energy_density"].values, leg)
-    rates = np.array([law(energy, change) if isinstance(law, ImpulseRate) else law(change) for law in laws.values()])
+    rates = np.array(
+        [
+            law(energy, change) if isinstance(law, ImpulseRate) else law(change)
+            for law in laws.values()
+        ]
+    )
     children = iter(np.random.SeedSequence(seed).spawn(rates.shape[0] * rates.shape[2]))
     trains = [
-        [impulses(at, rate, variation, None if seed is None else np.random.default_rng(next(children))) for rate in each.T]
+        [
+            impulses(
+                at, rate, variation, None if seed is None else np.random.default_rng(next(children))
+            )
+            for rate in each.T
+        ]
         for each in rates
     ]
     most = max((len(train) for each in trains for train in each), default=0)
     times = np.full((*rates.shape[::2], most), np.nan)
-    for place, train in zip(np.ndindex(times.shape[:2]), (train for each in trains for train in each), strict=True):
+    for place, train in zip(
+        np.ndindex(times.shape[:2]), (train for each in trains for train in each), strict=True
+    ):
         times[place][: len(train)] = train
     return xr.Dataset(
         {
-            "impulse_rate": (("afferent", "response_time", "receptor"), rates, _named("1/s", "predicted impulse rate")),
-            "impulses": (("afferent", "receptor"), np.isfinite(times).sum(2), _named("1", "predicted number of impulses")),
-            "impulse_time": (("afferent", "receptor", "impulse"), times, _named("s", "times of the predicted impulses")),
+            "impulse_rate": (
+                ("afferent", "response_time", "receptor"),
+                rates,
+                _named("1/s", "predicted impulse rate"),
+            ),
+            "impulses": (
+                ("afferent", "receptor"),
+                np.isfinite(times).sum(2),
+                _named("1", "predicted number of impulses"),
+            ),
+            "impulse_time": (
+                ("afferent", "receptor", "impulse"),
+                times,
+                _named("s", "times of the predicted impulses"),
+            ),
         },
         {
             "afferent": list(laws),

@@ -23,7 +23,9 @@ def integrated(time, rate) -> np.ndarray:
     return np.concatenate([[0.0], np.cumsum(np.diff(time) * (rate[1:] + rate[:-1]) / 2)])
 
 
-def impulses(time, rate, variation: float = 0.0, seed: int | np.random.Generator | None = None) -> np.ndarray:
+def impulses(
+    time, rate, variation: float = 0.0, seed: int | np.random.Generator | None = None
+) -> np.ndarray:
     """Times (m,) s of impulses at an instantaneous rate.
 
     Args:
@@ -49,7 +51,9 @@ def impulses(time, rate, variation: float = 0.0, seed: int | np.random.Generator
     dt, need, a = time[after] - time[before], due - grown[before], rate[before]
     slope = np.divide(rate[after] - a, dt, out=np.zeros_like(dt), where=dt > 0)
     root = a + np.sqrt(np.maximum(a**2 + 2 * slope * need, 0))
-    return time[before] + np.minimum(np.divide(2 * need, root, out=np.zeros_like(need), where=root > 0), dt)
+    return time[before] + np.minimum(
+        np.divide(2 * need, root, out=np.zeros_like(need), where=root > 0), dt
+    )
 
 
 def _thresholds(total: float, variation: float, seed) -> np.ndarray:
@@ -59,14 +63,18 @@ def _thresholds(total: float, variation: float, seed) -> np.ndarray:
     if seed is None:
         raise ValueError("variability needs a seed, so that the impulses can be made again")
     random, shape = np.random.default_rng(seed), variation**-2
-    due = np.array([random.uniform() * random.gamma(shape + 1, 1 / shape)])  # a place in the interval that is under way
+    due = np.array(
+        [random.uniform() * random.gamma(shape + 1, 1 / shape)]
+    )  # a place in the interval that is under way
     while due[-1] <= total:
         more = random.gamma(shape, 1 / shape, size=int(1.2 * total) + 16)
         due = np.concatenate([due, due[-1] + np.cumsum(more)])
     return due[due <= total]
 
 
-def trains(time, rate, repetitions: int, seed: int, variation: float = VARIATION) -> list[np.ndarray]:
+def trains(
+    time, rate, repetitions: int, seed: int, variation: float = VARIATION
+) -> list[np.ndarray]:
     """Impulse times (s) of several repetitions, each with a variability of its own; the first ones do not depend on how many."""
     return [
         impulses(time, rate, variation, child)

@@ -19,7 +19,9 @@ def stick_ratio(tangential_force, normal_force, friction):
     positive(normal_force=normal_force, friction=friction)
     share = np.asarray(tangential_force, dtype=float) / (friction * normal_force)
     if np.any((share < 0) | (share > 1)):
-        raise ValueError("the tangential force must lie between 0 and friction times the normal force")
+        raise ValueError(
+            "the tangential force must lie between 0 and friction times the normal force"
+        )
     return np.sqrt(1 - share)
 
 
@@ -33,7 +35,11 @@ def traction(x, half_width, peak_pressure, friction, stick_ratio):
     if not 0 <= stick_ratio <= 1:
         raise ValueError("stick_ratio must lie in [0, 1]")
     s = np.asarray(x, dtype=float) / half_width
-    return friction * peak_pressure * (np.sqrt(np.maximum(0, 1 - s**2)) - np.sqrt(np.maximum(0, stick_ratio**2 - s**2)))
+    return (
+        friction
+        * peak_pressure
+        * (np.sqrt(np.maximum(0, 1 - s**2)) - np.sqrt(np.maximum(0, stick_ratio**2 - s**2)))
+    )
 
 
 def returned_traction(x, half_width, peak_pressure, friction, turn, tangential_force, normal_force):
@@ -44,7 +50,8 @@ def returned_traction(x, half_width, peak_pressure, friction, turn, tangential_f
     """
     inner = stick_ratio((turn - tangential_force) / 2, normal_force, friction)
     first, back = (
-        traction(x, half_width, peak_pressure, friction, ratio) for ratio in (stick_ratio(turn, normal_force, friction), inner)
+        traction(x, half_width, peak_pressure, friction, ratio)
+        for ratio in (stick_ratio(turn, normal_force, friction), inner)
     )
     if tangential_force < -turn:
         raise ValueError("the tangential force must not go beyond the opposite of the turn")

@@ -46,7 +46,9 @@ def peak_pressure(force, half_width):
 def pressure(x, half_width, peak_pressure):
     """Contact pressure p0 sqrt(1 - x^2/a^2), zero outside, Pa, shape of ``x`` (Johnson 1985, Eq. 4.44)."""
     positive(half_width=half_width)
-    return peak_pressure * np.sqrt(np.maximum(0.0, 1 - (np.asarray(x, dtype=float) / half_width) ** 2))
+    return peak_pressure * np.sqrt(
+        np.maximum(0.0, 1 - (np.asarray(x, dtype=float) / half_width) ** 2)
+    )
 
 
 def load_fraction(x, half_width):
@@ -84,9 +86,13 @@ def axis_stresses(z, half_width, peak_pressure, poisson):
     ``von_mises``. Raises ``ValueError`` for nu outside (-1, 0.5].
     """
     poisson_ratio(poisson=poisson)
-    sigma_x, sigma_z, _ = stresses(np.zeros_like(np.asarray(z, dtype=float)), z, half_width, peak_pressure)
+    sigma_x, sigma_z, _ = stresses(
+        np.zeros_like(np.asarray(z, dtype=float)), z, half_width, peak_pressure
+    )
     sigma_y = poisson * (sigma_x + sigma_z)
-    von_mises = np.sqrt(((sigma_x - sigma_z) ** 2 + (sigma_z - sigma_y) ** 2 + (sigma_y - sigma_x) ** 2) / 2)
+    von_mises = np.sqrt(
+        ((sigma_x - sigma_z) ** 2 + (sigma_z - sigma_y) ** 2 + (sigma_y - sigma_x) ** 2) / 2
+    )
     return {
         "sigma_x": sigma_x,
         "sigma_z": sigma_z,
@@ -107,4 +113,6 @@ def approach_to_depth(force, half_width, modulus, poisson, depth):
     poisson_ratio(poisson=poisson)
     if not np.all(np.asarray(depth) > half_width):
         raise ValueError("depth must be greater than the half width")
-    return force / (np.pi * modulus) * (2 * np.log(2 * depth / half_width) - poisson / (1 - poisson))
+    return (
+        force / (np.pi * modulus) * (2 * np.log(2 * depth / half_width) - poisson / (1 - poisson))
+    )

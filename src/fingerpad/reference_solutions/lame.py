@@ -17,7 +17,9 @@ def _constants(inner, outer, internal, external):
     return mean, (internal - external) * inner**2 * outer**2 / area
 
 
-def radial_displacement(r, inner_radius, outer_radius, youngs_modulus, poisson, internal=0.0, external=0.0):
+def radial_displacement(
+    r, inner_radius, outer_radius, youngs_modulus, poisson, internal=0.0, external=0.0
+):
     """Radial displacement u_r(r) = (1 + nu)/E [(1 - 2 nu) A r + B/r], m, of the shape of ``r``.
 
     A = (p_i a^2 - p_o b^2)/(b^2 - a^2), B = (p_i - p_o) a^2 b^2/(b^2 - a^2). Pressures in Pa, nu up to and

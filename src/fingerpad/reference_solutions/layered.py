@@ -23,13 +23,17 @@ def thin_layer_half_width(force, radius, thickness, youngs_modulus):
 
 def thin_layer_force(half_width, radius, thickness, youngs_modulus):
     """Force P = 2 E a^5/(45 R b^3), N/m."""
-    positive(half_width=half_width, radius=radius, thickness=thickness, youngs_modulus=youngs_modulus)
+    positive(
+        half_width=half_width, radius=radius, thickness=thickness, youngs_modulus=youngs_modulus
+    )
     return 2 * youngs_modulus * half_width**5 / (45 * radius * thickness**3)
 
 
 def thin_layer_pressure(x, half_width, radius, thickness, youngs_modulus):
     """Pressure p = E (a^2 - x^2)^2/(24 R b^3), zero outside, Pa, of the shape of ``x``."""
-    positive(half_width=half_width, radius=radius, thickness=thickness, youngs_modulus=youngs_modulus)
+    positive(
+        half_width=half_width, radius=radius, thickness=thickness, youngs_modulus=youngs_modulus
+    )
     square = np.maximum(0.0, half_width**2 - np.asarray(x, dtype=float) ** 2)
     return youngs_modulus * square**2 / (24 * radius * thickness**3)
 
@@ -111,11 +115,17 @@ def stack_compliance(wavenumber, layers):
         raise ValueError("wavenumber must not be negative")
     if wavenumber == 0:
         return sum(
-            layer.thickness * (1 - 2 * layer.poisson_ratio) / (2 * layer.shear_modulus * (1 - layer.poisson_ratio))
+            layer.thickness
+            * (1 - 2 * layer.poisson_ratio)
+            / (2 * layer.shear_modulus * (1 - layer.poisson_ratio))
             for layer in layers
         )
     tops = [_mode(layer, wavenumber, 0.0) for layer in layers]
-    bottoms = [_mode(layer, wavenumber, layer.thickness) for layer in layers if np.isfinite(layer.thickness)]
+    bottoms = [
+        _mode(layer, wavenumber, layer.thickness)
+        for layer in layers
+        if np.isfinite(layer.thickness)
+    ]
     starts = np.cumsum([0] + [top.shape[1] for top in tops])
     matrix = np.zeros((starts[-1], starts[-1]))
     load = np.zeros(starts[-1])

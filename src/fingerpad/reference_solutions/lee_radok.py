@@ -70,5 +70,12 @@ def force_by_quadrature(t, width_squared_rate, radius, relaxation_modulus):
     float.
     """
     positive(t=t, radius=radius)
-    integral, _ = quad(lambda s: relaxation_modulus(t - s) * width_squared_rate(s), 0, t, epsabs=0, epsrel=1e-11, limit=200)
+    integral, _ = quad(
+        lambda s: relaxation_modulus(t - s) * width_squared_rate(s),
+        0,
+        t,
+        epsabs=0,
+        epsrel=1e-11,
+        limit=200,
+    )
     return np.pi / radius * integral

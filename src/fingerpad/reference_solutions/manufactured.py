@@ -93,13 +93,20 @@ def _trigonometric(amplitude, k, curl):
         return np.stack([component(p, i, 0, 0) for i in range(2)], -1)
 
     def gradient(p):
-        return np.stack([np.stack([component(p, i, *orders[j]) for j in range(2)], -1) for i in range(2)], -2)
+        return np.stack(
+            [np.stack([component(p, i, *orders[j]) for j in range(2)], -1) for i in range(2)], -2
+        )
 
     def second(p):
         return np.stack(
             [
                 np.stack(
-                    [np.stack([component(p, i, *np.add(orders[j], orders[m])) for m in range(2)], -1) for j in range(2)],
+                    [
+                        np.stack(
+                            [component(p, i, *np.add(orders[j], orders[m])) for m in range(2)], -1
+                        )
+                        for j in range(2)
+                    ],
                     -2,
                 )
                 for i in range(2)
@@ -175,7 +182,10 @@ def finite_strain_energy(field, points, shear_modulus, bulk_modulus):
     """Energy psi (...), J/m^3. Raises ``ValueError`` where det F <= 0, as all finite-strain ones."""
     deformation, volume, _ = _kinematics(field, points)
     invariant = (deformation**2).sum((-1, -2)) + 1
-    return shear_modulus / 2 * (volume ** (-2 / 3) * invariant - 3) + bulk_modulus / 2 * (volume - 1) ** 2
+    return (
+        shear_modulus / 2 * (volume ** (-2 / 3) * invariant - 3)
+        + bulk_modulus / 2 * (volume - 1) ** 2
+    )
 
 
 def first_piola_stress(field, points, shear_modulus, bulk_modulus):
@@ -196,7 +206,9 @@ def finite_strain_body_force(field, points, shear_modulus, bulk_modulus):
     laplacian = np.einsum("...iJJ->...i", second)
     volume_rate = np.einsum("...kL,...kLJ->...J", inverse, second)  # (ln J),J
     invariant_rate = 2 * np.einsum("...kL,...kLJ->...J", deformation, second)
-    inverse_divergence = -np.einsum("...iL,...kJ,...kLJ->...i", inverse, inverse, second)  # (F^-T)_iJ,J
+    inverse_divergence = -np.einsum(
+        "...iL,...kJ,...kLJ->...i", inverse, inverse, second
+    )  # (F^-T)_iJ,J
 
     def rows(matrix, vector):
         return np.einsum("...iJ,...J->...i", matrix, vector)

@@ -28,7 +28,9 @@ def strip_stresses(x, z, edges, pressures):
     if len(edges) != len(pressures) + 1 or not (np.diff(edges) > 0).all():
         raise ValueError("edges must ascend and be one more than pressures")
     angle = np.arctan2(z[..., None], x[..., None] - edges)
-    opened, sine, cosine = (np.diff(values, axis=-1) for values in (angle, np.sin(2 * angle), np.cos(2 * angle)))
+    opened, sine, cosine = (
+        np.diff(values, axis=-1) for values in (angle, np.sin(2 * angle), np.cos(2 * angle))
+    )
     scale = -pressures / (2 * np.pi)
     return (
         (scale * (2 * opened + sine)).sum(-1),

@@ -69,7 +69,9 @@ def press(force, tension, radius, half_width, curvature=0.0):
 def _arc(centre, radius, start, end):
     """Twice the area swept about the origin and the length of an arc between two angles."""
     (x0, y0), (x1, y1) = (centre + radius * np.array([np.cos(t), np.sin(t)]) for t in (start, end))
-    return radius**2 * (end - start) + centre[0] * (y1 - y0) - centre[1] * (x1 - x0), radius * abs(end - start)
+    return radius**2 * (end - start) + centre[0] * (y1 - y0) - centre[1] * (x1 - x0), radius * abs(
+        end - start
+    )
 
 
 def _shape(contact, height, half_width, curvature):
@@ -77,7 +79,9 @@ def _shape(contact, height, half_width, curvature):
     theta = contact if curvature else 0.0
     reach = np.sin(theta) / curvature if curvature else contact
     touch = np.array([reach, height + (1 - np.cos(theta)) / curvature if curvature else height])
-    toward = np.array([np.sin(theta), -np.cos(theta)])  # from the contact's end to the centre of the free arc
+    toward = np.array(
+        [np.sin(theta), -np.cos(theta)]
+    )  # from the contact's end to the centre of the free arc
     chord = touch - [half_width, 0.0]
     radius = chord @ chord / (-2 * chord @ toward)
     centre = touch + radius * toward
@@ -85,7 +89,9 @@ def _shape(contact, height, half_width, curvature):
     end = np.arctan2(*([half_width, 0.0] - centre)[::-1])
     free, length = _arc(centre, radius, start, end - 2 * np.pi * (end > start))
     if curvature:
-        under, more = _arc(np.array([0.0, height + 1 / curvature]), 1 / curvature, -np.pi / 2, theta - np.pi / 2)
+        under, more = _arc(
+            np.array([0.0, height + 1 / curvature]), 1 / curvature, -np.pi / 2, theta - np.pi / 2
+        )
     else:
         under, more = -height * reach, reach
     return -(free + under) / 2, length + more, radius
@@ -106,4 +112,10 @@ def _state(contact, tension, radius, half_width, curvature) -> Pressed | None:
     _, length, free = _shape(contact, height, half_width, curvature)
     pressure = tension * (1 / free + curvature)
     reach = np.sin(contact) / curvature if curvature else contact
-    return Pressed(float(rest - height), float(reach), float(pressure), float(2 * reach * pressure), float(2 * length))
+    return Pressed(
+        float(rest - height),
+        float(reach),
+        float(pressure),
+        float(2 * reach * pressure),
+        float(2 * length),
+    )

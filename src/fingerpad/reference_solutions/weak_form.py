@@ -102,7 +102,11 @@ def deformation_gradient(w):
 
 
 def stress(f, w, slopes):
-    return w.a * isochoric_stress(f, slopes) + (w.p + w.k * (determinant(f) - 1)) * cofactor(f) + product(f, w.h)
+    return (
+        w.a * isochoric_stress(f, slopes)
+        + (w.p + w.k * (determinant(f) - 1)) * cofactor(f)
+        + product(f, w.h)
+    )
 
 
 def internal_force(slopes):
@@ -164,7 +168,9 @@ class WeakForm:
         quad, linear = "Q" in self.element, shape is ElementQuad1
         corners = self.cells[:, : 4 if quad else 3]
         used, numbered = np.unique(corners, return_inverse=True)
-        mesh = (MeshQuad1 if quad else MeshTri1)(self.points[used].T, numbered.reshape(corners.shape).T, sort_t=False)
+        mesh = (MeshQuad1 if quad else MeshTri1)(
+            self.points[used].T, numbered.reshape(corners.shape).T, sort_t=False
+        )
         if not linear:
             mesh = (MeshQuad2 if quad else MeshTri2).from_mesh(mesh)
             numbers = mesh.dofs.element_dofs
@@ -183,7 +189,10 @@ class WeakForm:
         """Pressure modes at the quadrature points, (ne, nq) each: 1, x and y about the element's middle, or one a point."""
         count, x = ELEMENTS[self.element][2], self.basis.global_coordinates()
         if count is None:
-            return [np.broadcast_to(point, self.basis.dx.shape) for point in np.eye(self.basis.dx.shape[1])]
+            return [
+                np.broadcast_to(point, self.basis.dx.shape)
+                for point in np.eye(self.basis.dx.shape[1])
+            ]
         local = np.asarray(x) - np.asarray(x).mean(2, keepdims=True)
         return [np.ones(self.basis.dx.shape), *(local / np.abs(local).max())][:count]
 
@@ -203,12 +212,22 @@ class WeakForm:
     def theta(self, u: np.ndarray) -> np.ndarray:
         """Projected dilatation at the quadrature points (ne, nq) of finite strain."""
         pressure, inverse = self._pressure
-        moments = np.array([dilatation.assemble(pressure, u=self.field(u), mode=mode) for mode in self.modes])
+        moments = np.array(
+            [dilatation.assemble(pressure, u=self.field(u), mode=mode) for mode in self.modes]
+        )
         return np.einsum("aeq,eab,be->eq", np.array(self.modes), inverse, moments)
 
     def _fields(self, u, theta, history):
-        field, pointwise = self.field(u), np.broadcast_to(self.pointwise, len(self.cells))[:, None] + 0 * theta
-        return {"u": field, "p": self.kappa[:, None] * theta, "k": pointwise, "h": history + 0 * field.grad}
+        field, pointwise = (
+            self.field(u),
+            np.broadcast_to(self.pointwise, len(self.cells))[:, None] + 0 * theta,
+        )
+        return {
+            "u": field,
+            "p": self.kappa[:, None] * theta,
+            "k": pointwise,
+            "h": history + 0 * field.grad,
+        }
 
     def _projected(self, form, **fields):
         """sum_ab kappa G^-1_ab B_a B_b of the form B that gives the moments of a dilatation."""
@@ -221,12 +240,20 @@ class WeakForm:
             for b, right in enumerate(moments)
         )
 
-    def force(self, u: np.ndarray, slopes: Callable, factor: float = 1.0, history: np.ndarray | float = 0.0) -> np.ndarray:
+    def force(
+        self,
+        u: np.ndarray,
+        slopes: Callable,
+        factor: float = 1.0,
+        history: np.ndarray | float = 0.0,
+    ) -> np.ndarray:
         """Internal force (n, 2) of finite strain; history: (2, 2, ne, nq) Pa."""
         fields = self._fields(u, self.theta(u), history)
         return internal_force(slopes).assemble(self.basis, **fields, a=factor)[self.numbers]
 
-    def stiffness(self, u, slopes, lag: np.ndarray, factor: float = 1.0, history: np.ndarray | float = 0.0) -> np.ndarray:
+    def stiffness(
+        self, u, slopes, lag: np.ndarray, factor: float = 1.0, history: np.ndarray | float = 0.0
+    ) -> np.ndarray:
         """Tangent (2n, 2n: x and y of each node) of finite strain; lag: (ne, nq), the dilatation that was predicted."""
         fields = self._fields(u, lag, history)
         shape = tangent(slopes).assemble(self.basis, **fields, a=factor)
@@ -235,7 +262,8 @@ class WeakForm:
     def linear_stiffness(self, mu: np.ndarray, factor: float = 1.0) -> np.ndarray:
         """Tangent (2n, 2n) of small strain; mu: (ne,) Pa."""
         return self._numbered(
-            linear_shape.assemble(self.basis, mu=factor * mu[:, None] + 0 * self.basis.dx) + self._projected(linear_dilatation)
+            linear_shape.assemble(self.basis, mu=factor * mu[:, None] + 0 * self.basis.dx)
+            + self._projected(linear_dilatation)
         )
 
     def _numbered(self, matrix):

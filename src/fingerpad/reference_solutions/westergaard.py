@@ -24,7 +24,10 @@ def mean_pressure(half_width, amplitude, wavelength, modulus):
     half_width = np.asarray(half_width, dtype=float)
     if np.any((half_width < 0) | (half_width > wavelength / 2)):
         raise ValueError("half_width must lie between 0 and half the wavelength")
-    return full_contact_pressure(amplitude, wavelength, modulus) * np.sin(np.pi * half_width / wavelength) ** 2
+    return (
+        full_contact_pressure(amplitude, wavelength, modulus)
+        * np.sin(np.pi * half_width / wavelength) ** 2
+    )
 
 
 def half_width(mean_pressure, amplitude, wavelength, modulus):

@@ -53,7 +53,11 @@ def read_scene(path: str | Path) -> Written:
     if path.stem in members:
         return members[path.stem]
     example = path.with_name(f"{next(iter(members))}.yaml")
-    what = f"is a family of {len(members)} scenes" if home == path else f"is not a scene of {home.name}"
+    what = (
+        f"is a family of {len(members)} scenes"
+        if home == path
+        else f"is not a scene of {home.name}"
+    )
     raise SceneError(f"{path}: {what}; allowed: one of {', '.join(members)}, as in {example}")
 
 
@@ -71,7 +75,9 @@ def read_family(path: str | Path) -> dict[str, Written]:
         member = common
         for axis, word in tags.items():
             member = merged(member, axes[axis][word])
-        members["_".join((path.stem, *words))] = Written(member, {"family": path.stem, **tags}, files)
+        members["_".join((path.stem, *words))] = Written(
+            member, {"family": path.stem, **tags}, files
+        )
     return members
 
 
@@ -126,24 +132,45 @@ def _extended(path: Path, seen: tuple[Path, ...]) -> tuple[Any, tuple[Path, ...]
         return document, (path,)
     named = document["extends"]
     if not isinstance(named, str):
-        raise _wrong(path, ("extends",), named, "is not a path", "the path of a scene or family, relative to this file")
+        raise _wrong(
+            path,
+            ("extends",),
+            named,
+            "is not a path",
+            "the path of a scene or family, relative to this file",
+        )
     base = path.parent / named
     if not is_file(base) or base.resolve() in (each.resolve() for each in (path, *seen)):
         problem = "extends itself" if is_file(base) else "is not an existing file"
-        raise _wrong(path, ("extends",), named, problem, "the path of a scene or family, relative to this file")
+        raise _wrong(
+            path,
+            ("extends",),
+            named,
+            problem,
+            "the path of a scene or family, relative to this file",
+        )
     if len(seen) >= MOST_EXTENDED:
-        raise _wrong(path, ("extends",), named, "is one file too many", f"up to {MOST_EXTENDED} that extend each other")
+        raise _wrong(
+            path,
+            ("extends",),
+            named,
+            "is one file too many",
+            f"up to {MOST_EXTENDED} that extend each other",
+        )
     below, files = _extended(base, (*seen, path))
     for where, part in ((path, document), (base, below)):
         if not isinstance(part, Mapping) or not isinstance(part.get("over") or {}, Mapping):
             over = part.get("over") if isinstance(part, Mapping) else HIDE
             key = ("over",) if isinstance(part, Mapping) else ()
-            raise _wrong(where, key, over, "is not a mapping of keys", "keys, with a value for each")
+            raise _wrong(
+                where, key, over, "is not a mapping of keys", "keys, with a value for each"
+            )
     own = {key: value for key, value in document.items() if key not in ("extends", "over")}
     whole = merged({key: value for key, value in below.items() if key != "over"}, own)
     given = {str(axis): words for axis, words in below.get("over", {}).items()}
     over = {
-        str(axis): _taken(path, str(axis), given.get(str(axis)), words) for axis, words in (document.get("over") or {}).items()
+        str(axis): _taken(path, str(axis), given.get(str(axis)), words)
+        for axis, words in (document.get("over") or {}).items()
     }
     over |= {axis: words for axis, words in given.items() if axis not in over}
     return whole | ({"over": over} if over else {}), (path, *files)
@@ -154,11 +181,17 @@ def _taken(path: Path, axis: str, below: Any, words: Any) -> Any:
     if isinstance(words, Mapping):
         words = {str(word): change for word, change in words.items()}
     if not isinstance(words, list) or below is None:
-        return words if below is None else merged({str(word): change for word, change in below.items()}, words)
+        return (
+            words
+            if below is None
+            else merged({str(word): change for word, change in below.items()}, words)
+        )
     known = {str(word): change for word, change in below.items()}
     for word in words:
         if str(word) not in known:
-            raise _wrong(path, ("over", axis), word, "is not in the file that is extended", ", ".join(known))
+            raise _wrong(
+                path, ("over", axis), word, "is not in the file that is extended", ", ".join(known)
+            )
     return {str(word): known[str(word)] for word in words}
 
 
@@ -172,12 +205,22 @@ def _axes(path: Path, over: Any) -> dict[str, dict[str, Any]]:
     for axis, words in over.items():
         if not isinstance(words, Mapping) or not words or str(axis) == "family":
             raise _wrong(path, ("over", str(axis)), words, "is not a mapping of words", allowed)
-        axes[str(axis)] = {str(word): {} if change is None else change for word, change in words.items()}
+        axes[str(axis)] = {
+            str(word): {} if change is None else change for word, change in words.items()
+        }
         for word, change in axes[str(axis)].items():
             if "/" in word or not word.isprintable():
-                raise _wrong(path, ("over", str(axis), word), HIDE, "cannot be part of the name of a file", "a word such as flat")
+                raise _wrong(
+                    path,
+                    ("over", str(axis), word),
+                    HIDE,
+                    "cannot be part of the name of a file",
+                    "a word such as flat",
+                )
             if not isinstance(change, Mapping):
-                raise _wrong(path, ("over", str(axis), word), change, "is not a mapping", "keys of a scene")
+                raise _wrong(
+                    path, ("over", str(axis), word), change, "is not a mapping", "keys of a scene"
+                )
         count *= len(words)
     if count > MOST:
         raise _wrong(path, ("over",), HIDE, f"makes {count} scenes", f"up to {MOST}")

@@ -51,17 +51,45 @@ from fingerpad.stimuli.shapes import Bar, Cylinder, Flat, Line, Sampled, Stimulu
 from fingerpad.units import QuantityError, format_quantity, parse_number
 
 __all__ = [
-    "Bar", "Cylinder", "Discretisation", "Flat", "HalfRound", "Hold", "Layer", "Layers", "Lift", "Line", "Outline",
-    "Outputs", "PressToDepth", "PressToForce", "PronyTerm", "Receptors", "Sampled", "Scene", "SceneError", "Slab", "Slide",
-    "Specimen", "SpecimenFile", "StepAndRepeat", "Wavy", "load_scene", "recorded_scene", "scene_json_schema",
+    "Bar",
+    "Cylinder",
+    "Discretisation",
+    "Flat",
+    "HalfRound",
+    "Hold",
+    "Layer",
+    "Layers",
+    "Lift",
+    "Line",
+    "Outline",
+    "Outputs",
+    "PressToDepth",
+    "PressToForce",
+    "PronyTerm",
+    "Receptors",
+    "Sampled",
+    "Scene",
+    "SceneError",
+    "Slab",
+    "Slide",
+    "Specimen",
+    "SpecimenFile",
+    "StepAndRepeat",
+    "Wavy",
+    "load_scene",
+    "recorded_scene",
+    "scene_json_schema",
     "specimen_json_schema",
-]  # fmt: skip
+]
 
 LEVELS = ("draft", "thesis", "fine")
 MAXIMUM_SNAPSHOTS = 1000
 
 
-_TAGS = frozenset(f"<{key}>" for key in (*LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own"))
+_TAGS = frozenset(
+    f"<{key}>"
+    for key in (*LEGS, "level", "tolerance", "discretisation", "times", "every", "finger", "own")
+)
 
 
 # --- outputs, accuracy, effects -------------------------------------------------------------------
@@ -104,7 +132,9 @@ def _read_responses(value: Any) -> Any:
         return known[:1] if value else ()
     for i, name in enumerate(listed(value)):
         if name not in known:
-            raise Problem(f"is not a kind of receptor{nearest(name, known)}", ", ".join(known), (i,))
+            raise Problem(
+                f"is not a kind of receptor{nearest(name, known)}", ", ".join(known), (i,)
+            )
     return tuple(dict.fromkeys(value))
 
 
@@ -115,12 +145,17 @@ class Outputs(Strict):
     """Where strain energy is recorded."""
     snapshots: Annotated[
         Annotated[_Times, Tag("<times>")] | Annotated[Every, Tag("<every>")],
-        Discriminator(lambda value: "<every>" if isinstance(value, (Mapping, Every)) else "<times>"),
+        Discriminator(
+            lambda value: "<every>" if isinstance(value, (Mapping, Every)) else "<times>"
+        ),
     ] = ()
     """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
     per_leg: whole(1, MAXIMUM_SNAPSHOTS) | None = None
     """Least number of outputs in each press and hold that takes time; left out, as many as the accuracy takes steps."""
-    responses: Annotated[tuple[Afferent, ...], BeforeValidator(_read_responses, json_schema_input_type=_ResponsesSurface)] = ()
+    responses: Annotated[
+        tuple[Afferent, ...],
+        BeforeValidator(_read_responses, json_schema_input_type=_ResponsesSurface),
+    ] = ()
     """Impulses predicted for the receptors: true (slowly adapting), or a list of slowly_adapting and rapidly_adapting."""
 
     @classmethod
@@ -158,14 +193,14 @@ class Discretisation(Strict):
     def _check(self) -> Discretisation:
         for key in ("skin_edge", "steps"):
             if self.tolerance is not None and getattr(self, key) is not None:
-                raise Problem("is given beside a tolerance, which chooses it", "one of both", (key,))
+                raise Problem(
+                    "is given beside a tolerance, which chooses it", "one of both", (key,)
+                )
         return self
 
 
 Level = Literal["draft", "thesis", "fine"]
-_ACCURACY = (
-    f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, or a mapping of tolerance and once, or element, skin_edge, steps"
-)
+_ACCURACY = f"{', '.join(LEVELS)}, a tolerance above 0 and below 1, or a mapping of tolerance and once, or element, skin_edge, steps"
 
 
 def _check_accuracy(value: Any) -> Any:
@@ -203,7 +238,9 @@ def _read_effects(value: Any) -> dict[str, bool]:
     effects = {}
     for key, switch in value.items():
         if key not in EFFECTS:
-            raise Problem(f"is not a known effect{nearest(key, EFFECTS)}", choices, (str(key)[:60],), HIDE)
+            raise Problem(
+                f"is not a known effect{nearest(key, EFFECTS)}", choices, (str(key)[:60],), HIDE
+            )
         try:
             effects[key] = _switch(switch)
         except Problem:
@@ -212,7 +249,9 @@ def _read_effects(value: Any) -> dict[str, bool]:
 
 
 _EffectsSurface = Literal["auto"] | dict[Literal[tuple(EFFECTS)], _Switch]  # type: ignore[valid-type]
-Effects = Annotated[dict[str, bool], BeforeValidator(_read_effects, json_schema_input_type=_EffectsSurface)]
+Effects = Annotated[
+    dict[str, bool], BeforeValidator(_read_effects, json_schema_input_type=_EffectsSurface)
+]
 
 
 # --- scene ----------------------------------------------------------------------------------------
@@ -250,8 +289,15 @@ class Scene(Strict):
         data.setdefault("outputs", {})
         depths = _middles(data["specimen"], context)
         outputs = data["outputs"]
-        if depths and isinstance(outputs, Mapping) and isinstance(receptors := outputs.get("receptors", {}), Mapping):
-            data["outputs"] = {**outputs, "receptors": {"depths": [SI(depth) for depth in depths], **receptors}}
+        if (
+            depths
+            and isinstance(outputs, Mapping)
+            and isinstance(receptors := outputs.get("receptors", {}), Mapping)
+        ):
+            data["outputs"] = {
+                **outputs,
+                "receptors": {"depths": [SI(depth) for depth in depths], **receptors},
+            }
         return data
 
     @model_validator(mode="after")
@@ -264,11 +310,17 @@ class Scene(Strict):
             self._check_inside()
         end = self.end_time
         if self.outputs.responses and end == 0:
-            raise Problem("needs a motion that takes time", "a rate, a speed or a hold in it", ("outputs", "responses"))
+            raise Problem(
+                "needs a motion that takes time",
+                "a rate, a speed or a hold in it",
+                ("outputs", "responses"),
+            )
         if isinstance(self.outputs.snapshots, Every):
             # the model is frozen, and only here is the motion known
             times = self._times(self.outputs.snapshots.every)
-            object.__setattr__(self, "outputs", self.outputs.model_copy(update={"snapshots": times}))
+            object.__setattr__(
+                self, "outputs", self.outputs.model_copy(update={"snapshots": times})
+            )
         for i, time in enumerate(self.outputs.snapshots):
             if end is not None and time > end * (1 + 1e-9):
                 raise Problem(
@@ -295,7 +347,9 @@ class Scene(Strict):
         below = f"above 0 mm and below the {format_quantity(thickness, 'length')} from the skin to the {self._ground}"
         for i, leg in enumerate(self.motion):
             if leg.depth is not None and leg.depth >= thickness:
-                raise Problem(f"presses to the {self._ground}", below, ("motion", i, "press_to_depth"))
+                raise Problem(
+                    f"presses to the {self._ground}", below, ("motion", i, "press_to_depth")
+                )
         for i, depth in enumerate(self.outputs.receptors.depths):
             if depth >= thickness:
                 raise Problem("is outside the skin", below, ("outputs", "receptors", "depths", i))
@@ -323,7 +377,9 @@ class Scene(Strict):
     @property
     def tolerance(self) -> float | None:
         """Relative error asked for; None for a preset or a discretisation by hand."""
-        asked = self.accuracy.tolerance if isinstance(self.accuracy, Discretisation) else self.accuracy
+        asked = (
+            self.accuracy.tolerance if isinstance(self.accuracy, Discretisation) else self.accuracy
+        )
         return asked if isinstance(asked, float) else None
 
     @property
@@ -343,7 +399,9 @@ class Scene(Strict):
         """
         data: Any = self
         for key, value in changes.items():
-            path = tuple(int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", key))
+            path = tuple(
+                int(part) if part.isdigit() else part for part in re.findall(r"[^.\[\]]+", key)
+            )
             data = _changed(data, path, value, f"{self.name}: {key}")
         if data is self:
             return self
@@ -404,11 +462,16 @@ def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> 
     key, *rest = path
     if isinstance(part, Strict):
         follows = type(part).follows.get(key, ())
-        part = {name: getattr(part, name) for name in type(part).model_fields if name not in follows}
+        part = {
+            name: getattr(part, name) for name in type(part).model_fields if name not in follows
+        }
     if isinstance(part, (list, tuple)):
         if not isinstance(key, int) or key >= len(part):
             raise SceneError(f"{where}: there is no such entry; allowed: 0 to {len(part) - 1}")
-        return tuple(_changed(item, tuple(rest), value, where) if i == key else item for i, item in enumerate(part))
+        return tuple(
+            _changed(item, tuple(rest), value, where) if i == key else item
+            for i, item in enumerate(part)
+        )
     if not isinstance(part, Mapping):
         raise SceneError(f"{where}: there is no such key")
     if rest and key not in part:
@@ -419,7 +482,9 @@ def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> 
 def _middles(specimen: Any, context: Any) -> tuple[float, ...]:
     """Where receptors of a slab or a half-round are unless the scene says: in the middles of its layers, m."""
     shapes = {"slab": Slab, "half_round": HalfRound}
-    given = specimen.get if isinstance(specimen, Mapping) else lambda key: getattr(specimen, key, None)
+    given = (
+        specimen.get if isinstance(specimen, Mapping) else lambda key: getattr(specimen, key, None)
+    )
     for key, model in shapes.items():
         if given(key) is not None:
             try:
@@ -466,18 +531,38 @@ def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scen
 def scene_json_schema() -> dict[str, Any]:
     """JSON schema of a scene document as people write it (text with units, names of specimens)."""
     schema = Scene.model_json_schema(mode="validation")
-    for name in ("Outline", "Layers", "Layer", "Ridges", "InnerRidges", "OuterRidges", "Receptors", "Outputs", "Specimen"):
+    for name in (
+        "Outline",
+        "Layers",
+        "Layer",
+        "Ridges",
+        "InnerRidges",
+        "OuterRidges",
+        "Receptors",
+        "Outputs",
+        "Specimen",
+    ):
         schema["$defs"][name].pop("required", None)
     one = {"type": "object", "minProperties": 1}
     schema["properties"] |= {
-        "extends": {"type": "string", "description": "Scene or family to start from; what stands here is merged over it."},
+        "extends": {
+            "type": "string",
+            "description": "Scene or family to start from; what stands here is merged over it.",
+        },
         "over": one
         | {
             "description": "A family: for each key its words, and for each word what is special to the scenes so called.",
-            "additionalProperties": {"anyOf": [one | {"additionalProperties": {"type": ["object", "null"]}}, {"type": "array"}]},
+            "additionalProperties": {
+                "anyOf": [
+                    one | {"additionalProperties": {"type": ["object", "null"]}},
+                    {"type": "array"},
+                ]
+            },
         },
     }
-    schema["anyOf"] = [{"required": keys} for keys in (["stimulus", "motion"], ["extends"], ["over"])]
+    schema["anyOf"] = [
+        {"required": keys} for keys in (["stimulus", "motion"], ["extends"], ["over"])
+    ]
     schema.pop("required", None)
     return _published(schema, "A fingerpad scene")
 
@@ -488,7 +573,11 @@ def specimen_json_schema() -> dict[str, Any]:
 
 
 def _published(schema: dict[str, Any], title: str) -> dict[str, Any]:
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": title, **_tidy(schema)}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": title,
+        **_tidy(schema),
+    }
 
 
 def _tidy(schema: Any) -> Any:

@@ -80,7 +80,11 @@ class Outline(Strict):
                 ("bone_centre_height",),
             )
         if layers >= self.soft_thickness:
-            key = "epidermis_thickness" if self.epidermis_thickness >= self.dermis_thickness else "dermis_thickness"
+            key = (
+                "epidermis_thickness"
+                if self.epidermis_thickness >= self.dermis_thickness
+                else "dermis_thickness"
+            )
             raise Problem(
                 f"makes the layers thicker than the pad: epidermis and dermis together are {mm(layers)}",
                 f"less than the {mm(self.soft_thickness)} from the skin to the bone",
@@ -99,7 +103,9 @@ class Outline(Strict):
                 ("bone_half_height",),
             )
         if self.nail_half_width > self.half_width:
-            raise Problem("is wider than the section", f"up to {mm(self.half_width)}", ("nail_half_width",))
+            raise Problem(
+                "is wider than the section", f"up to {mm(self.half_width)}", ("nail_half_width",)
+            )
         return self
 
 
@@ -116,7 +122,11 @@ class ChosenLaw(Strict):
 
     @model_serializer
     def _as_read(self) -> Any:
-        return {"name": self.name, **dict(zip(self.law.constants, self.constants, strict=True))} if self.constants else self.name
+        return (
+            {"name": self.name, **dict(zip(self.law.constants, self.constants, strict=True))}
+            if self.constants
+            else self.name
+        )
 
 
 def _read_law(value: Any) -> Any:
@@ -126,18 +136,26 @@ def _read_law(value: Any) -> Any:
     given = dict(value) if isinstance(value, Mapping) else {"name": value}
     name, key = given.pop("name", None), ("name",) if isinstance(value, Mapping) else ()
     if not isinstance(name, str) or name not in LAWS:
-        raise Problem("is not the name of a law" if name is not None else "is missing", ", ".join(LAWS), key)
+        raise Problem(
+            "is not the name of a law" if name is not None else "is missing", ", ".join(LAWS), key
+        )
     known, constants = LAWS[name].constants, []
     for key in given:
         if key not in known:
-            raise Problem(f"is no constant of {name}", ", ".join(known) or "none", (str(key)[:60],), HIDE)
+            raise Problem(
+                f"is no constant of {name}", ", ".join(known) or "none", (str(key)[:60],), HIDE
+            )
     for key, constant in known.items():
         try:
             value = parse_number(given.get(key, constant.default))
         except QuantityError as error:
             raise Problem(error.problem, error.allowed, (key,)) from None
         if not constant.low <= value <= constant.high:
-            raise Problem("is outside the range", f"a number from {constant.low:g} to {constant.high:g}", (key,))
+            raise Problem(
+                "is outside the range",
+                f"a number from {constant.low:g} to {constant.high:g}",
+                (key,),
+            )
         constants.append(value)
     return ChosenLaw(name=name, constants=tuple(constants))
 
@@ -146,7 +164,9 @@ _LAW_SURFACE = (
     Literal[tuple(LAWS)]
     | Annotated[
         dict[str, float | str],
-        Field(description="name of a law and its constants, such as {name: yeoh, second: 0.5, third: 0.1}"),
+        Field(
+            description="name of a law and its constants, such as {name: yeoh, second: 0.5, third: 0.1}"
+        ),
     ]
 )
 
@@ -154,13 +174,17 @@ _LAW_SURFACE = (
 class Layer(Strict):
     """Isotropic elasticity of one layer."""
 
-    hints: ClassVar = {"thickness": "is not a key of a layer, the outline has epidermis_thickness and dermis_thickness"}
+    hints: ClassVar = {
+        "thickness": "is not a key of a layer, the outline has epidermis_thickness and dermis_thickness"
+    }
 
     youngs_modulus: quantity("pressure")
     """Young's modulus, in the state named by `moduli`."""
     poisson_ratio: number("a number above -1 and below 0.5", -1.0, 0.5)
     """Poisson's ratio, in the state named by `moduli`."""
-    law: Annotated[ChosenLaw, BeforeValidator(_read_law, json_schema_input_type=_LAW_SURFACE)] = ChosenLaw(name="neo_hooke")
+    law: Annotated[ChosenLaw, BeforeValidator(_read_law, json_schema_input_type=_LAW_SURFACE)] = (
+        ChosenLaw(name="neo_hooke")
+    )
     """How it stiffens when strained: the name of a law, or keys name and its constants; neo_hooke unless given."""
 
     @model_serializer(mode="wrap")
@@ -188,7 +212,13 @@ class Layers(Strict):
         """Keys that the stratum corneum leaves out are the epidermis's."""
         if isinstance(data.get("stratum_corneum"), Mapping):
             below = data.get("epidermis")
-            below = _si(below) if isinstance(below, Layer) else below if isinstance(below, Mapping) else {}
+            below = (
+                _si(below)
+                if isinstance(below, Layer)
+                else below
+                if isinstance(below, Mapping)
+                else {}
+            )
             data["stratum_corneum"] = {**below, **data["stratum_corneum"]}
         return data
 
@@ -210,7 +240,12 @@ class Material(Layer):
 
 
 def _name(value: Any) -> Any:
-    if not isinstance(value, str) or not 0 < len(value) <= 40 or not value.isprintable() or value != value.strip():
+    if (
+        not isinstance(value, str)
+        or not 0 < len(value) <= 40
+        or not value.isprintable()
+        or value != value.strip()
+    ):
         raise Problem("is not a name", "a word such as cover")
     return value
 
@@ -260,9 +295,13 @@ class Stack(Strict):
         """Names differ, and thicknesses are given but for the last ``optional`` layers."""
         for i, layer in enumerate(self.layers):
             if layer.name in self.names[:i]:
-                raise Problem("is the name of two layers", "a name of its own for each", ("layers", i, "name"))
+                raise Problem(
+                    "is the name of two layers", "a name of its own for each", ("layers", i, "name")
+                )
             if layer.thickness is None and i < len(self.layers) - optional:
-                raise Problem("is missing", "a length such as '1 mm'", ("layers", i, "thickness"), HIDE)
+                raise Problem(
+                    "is missing", "a length such as '1 mm'", ("layers", i, "thickness"), HIDE
+                )
 
 
 class Slab(Stack):
@@ -299,7 +338,11 @@ class HalfRound(Stack):
     def thicknesses(self) -> tuple[float, ...]:
         """Of the layers, m."""
         given = [layer.thickness for layer in self.layers]
-        return tuple(given) if given[-1] is not None else (*given[:-1], self.radius - math.fsum(given[:-1]))
+        return (
+            tuple(given)
+            if given[-1] is not None
+            else (*given[:-1], self.radius - math.fsum(given[:-1]))
+        )
 
     @property
     def solid(self) -> bool:
@@ -310,10 +353,15 @@ class HalfRound(Stack):
     def _check(self) -> HalfRound:
         self._check_layers(1)
         given = math.fsum(layer.thickness or 0.0 for layer in self.layers)
-        if given > self.radius * (1 + 1e-9) or (self.layers[-1].thickness is None and given >= self.radius):
+        if given > self.radius * (1 + 1e-9) or (
+            self.layers[-1].thickness is None and given >= self.radius
+        ):
             thick = format_quantity(given, "length")
             raise Problem(
-                f"are {thick} thick together", f"up to the radius, {format_quantity(self.radius, 'length')}", ("layers",), HIDE
+                f"are {thick} thick together",
+                f"up to the radius, {format_quantity(self.radius, 'length')}",
+                ("layers",),
+                HIDE,
             )
         return self
 
@@ -339,7 +387,11 @@ class InnerRidges(Strict):
     def _check(self) -> InnerRidges:
         if not isinstance(self.phase, str) and abs(self.phase) > self.pitch / 2:
             half = format_quantity(self.pitch / 2, "length")
-            raise Problem("is farther off than the nearest ridge tip can be", f"up to half a pitch, {half}", ("phase",))
+            raise Problem(
+                "is farther off than the nearest ridge tip can be",
+                f"up to half a pitch, {half}",
+                ("phase",),
+            )
         return self
 
 
@@ -436,7 +488,11 @@ class Source:
     def specimen_files(self) -> dict[str, Path]:
         """The specimen files by name; one in a nearer folder hides one of the same name farther away."""
         folders = [folder for folder in self._folders() if folder.is_dir()]
-        return {file.stem: file for folder in reversed(folders) for file in sorted(folder.glob("*.yaml"))}
+        return {
+            file.stem: file
+            for folder in reversed(folders)
+            for file in sorted(folder.glob("*.yaml"))
+        }
 
     def specimen(self, name: str, key: tuple = ()) -> SpecimenFile:
         """The specimen file called `name`; raises `Problem` at `key` when there is none."""
@@ -444,7 +500,11 @@ class Source:
             found = self.specimen_files()
             if name not in found:
                 names = ", ".join(sorted(found)) or "none found"
-                raise Problem("is not the name of a specimen", f"names of files in config/specimens ({names})", key)
+                raise Problem(
+                    "is not the name of a specimen",
+                    f"names of files in config/specimens ({names})",
+                    key,
+                )
             self._files[name] = _read_specimen(found[name], self)
         return self._files[name]
 
@@ -472,7 +532,11 @@ def _read_specimen(path: Path, source: Source) -> SpecimenFile:
 def _si(model: Strict) -> dict[str, Any]:
     """Fields of a model of SI floats, marked so that a document may hold them beside text."""
     values = ((name, getattr(model, name)) for name in type(model).model_fields)
-    return {name: SI(value) if isinstance(value, float) else value for name, value in values if value is not None}
+    return {
+        name: SI(value) if isinstance(value, float) else value
+        for name, value in values
+        if value is not None
+    }
 
 
 def _named(part: str, surface: Any) -> BeforeValidator:
@@ -486,15 +550,24 @@ def _named(part: str, surface: Any) -> BeforeValidator:
             return listed(value)
         if isinstance(value, Mapping) and not isinstance(value, _Own):
             default = _si(source.part(DEFAULT_SPECIMEN, part))
-            return {**default, **{key: _merge(default.get(key), item) for key, item in value.items()}}
+            return {
+                **default,
+                **{key: _merge(default.get(key), item) for key, item in value.items()},
+            }
         return value
 
-    name = Annotated[str, Field(pattern=r"^[^\s/.][^\s/]*$", description="name in config/specimens")]
+    name = Annotated[
+        str, Field(pattern=r"^[^\s/.][^\s/]*$", description="name in config/specimens")
+    ]
     return BeforeValidator(read, json_schema_input_type=name | surface)
 
 
 def _merge(default: Any, given: Any) -> Any:
-    return {**_si(default), **given} if isinstance(default, Strict) and isinstance(given, Mapping) else given
+    return (
+        {**_si(default), **given}
+        if isinstance(default, Strict) and isinstance(given, Mapping)
+        else given
+    )
 
 
 _RIDGES = Literal["none", "inner", "inner_and_outer"]
@@ -509,7 +582,10 @@ def _read_ridges(value: Any, info: ValidationInfo) -> Any:
     if value in ("inner", "inner_and_outer"):
         value = {} if value == "inner" else {"outer": {}}
     if not isinstance(value, Mapping):
-        raise Problem("is not the kind of ridges", "none, inner, inner_and_outer, or keys inner, outer, half_width")
+        raise Problem(
+            "is not the kind of ridges",
+            "none, inner, inner_and_outer, or keys inner, outer, half_width",
+        )
     default = _si(source_of(info.context).part(DEFAULT_SPECIMEN, "ridges"))
     filled = {**default, **{key: _merge(default.get(key), item) for key, item in value.items()}}
     if "outer" not in value:
@@ -522,7 +598,11 @@ class _Own(dict):
 
 
 def _layers_tag(value: Any) -> str:
-    read = isinstance(value, dict) and value and all(isinstance(layer, Material) for layer in value.values())
+    read = (
+        isinstance(value, dict)
+        and value
+        and all(isinstance(layer, Material) for layer in value.values())
+    )
     return "<own>" if isinstance(value, _Own) or read else "<finger>"
 
 
@@ -561,7 +641,9 @@ class Specimen(Strict):
     """State that the moduli of `layers` describe."""
     prony: Annotated[tuple[PronyTerm, ...], _named("prony", tuple[PronyTerm, ...])]
     """Relaxation of shear, normalised by the instantaneous modulus: a name, a list of terms, or none."""
-    ridges: Annotated[Ridges | None, BeforeValidator(_read_ridges, json_schema_input_type=Ridges | _RIDGES)] = None
+    ridges: Annotated[
+        Ridges | None, BeforeValidator(_read_ridges, json_schema_input_type=Ridges | _RIDGES)
+    ] = None
     """Ridges of epidermis and skin: none, inner, inner_and_outer, or keys; keys left out are the thesis file's."""
     contact_length: Length
     """Out-of-plane length that turns newtons into newtons per metre."""
@@ -577,7 +659,11 @@ class Specimen(Strict):
         given = {key for key, value in data.items() if value is not None}
         shapes = [key for key in _SHAPES if key in given]
         if len(shapes) > 1:
-            raise Problem(f"is given beside {_article(shapes[0])}", f"one of {' and '.join(shapes)}", (shapes[-1],))
+            raise Problem(
+                f"is given beside {_article(shapes[0])}",
+                f"one of {' and '.join(shapes)}",
+                (shapes[-1],),
+            )
         if shapes != ["mesh"]:
             for key in ("fixed", "free"):
                 if data.get(key):
@@ -591,15 +677,25 @@ class Specimen(Strict):
             in_document = context is not None or isinstance(data["mesh"], str)
             data["mesh"] = source.resolve(data["mesh"]) if in_document else Path(data["mesh"])
             if in_document and not is_file(data["mesh"]):
-                raise Problem("is not an existing file", "the path of a .msh file, relative to the scene", ("mesh",))
+                raise Problem(
+                    "is not an existing file",
+                    "the path of a .msh file, relative to the scene",
+                    ("mesh",),
+                )
             layers = data.get("layers")
             if isinstance(layers, Mapping) and not set(layers) <= set(_FINGER):
                 data["layers"] = _Own(layers)
-                left_out = [f"poisson_ratio of {name}: 0.48" for name, layer in layers.items() if _lacks(layer, "poisson_ratio")]
+                left_out = [
+                    f"poisson_ratio of {name}: 0.48"
+                    for name, layer in layers.items()
+                    if _lacks(layer, "poisson_ratio")
+                ]
                 return cls._fill_plain(data, left_out, source)
         else:
             data.setdefault("outline", DEFAULT_SPECIMEN)
-        taken = [key for key in ("layers", "outline", "prony", "contact_length") if key not in given]
+        taken = [
+            key for key in ("layers", "outline", "prony", "contact_length") if key not in given
+        ]
         if shapes == ["mesh"]:
             taken.remove("outline")
         if isinstance(data.get("layers"), Mapping):
@@ -610,7 +706,9 @@ class Specimen(Strict):
         data.setdefault("prony", DEFAULT_SPECIMEN)
         if "moduli" not in data:
             named = data["layers"] if isinstance(data["layers"], str) else DEFAULT_SPECIMEN
-            data["moduli"] = source.specimen(named, ("layers",)).moduli or source.part(DEFAULT_SPECIMEN, "moduli")
+            data["moduli"] = source.specimen(named, ("layers",)).moduli or source.part(
+                DEFAULT_SPECIMEN, "moduli"
+            )
         if "contact_length" not in data:
             data["contact_length"] = SI(source.part(DEFAULT_SPECIMEN, "contact_length"))
         return data
@@ -620,15 +718,30 @@ class Specimen(Strict):
         """What a slab or a half-round leaves out; nothing but the contact length is the thesis's."""
         for key in ("layers", "ridges"):
             if data.get(key) not in (None, "none"):
-                raise Problem(f"is given beside {_article(shape)}, which has its own layers", f"{shape}.layers", (key,), HIDE)
+                raise Problem(
+                    f"is given beside {_article(shape)}, which has its own layers",
+                    f"{shape}.layers",
+                    (key,),
+                    HIDE,
+                )
         stack = data[shape]
         layers = (stack.get("layers") if isinstance(stack, Mapping) else None) or ()
-        named = [layer for layer in layers if isinstance(layer, Mapping)] if isinstance(layers, (list, tuple)) else []
-        left_out = [f"poisson_ratio of {layer.get('name')}: 0.48" for layer in named if _lacks(layer, "poisson_ratio")]
+        named = (
+            [layer for layer in layers if isinstance(layer, Mapping)]
+            if isinstance(layers, (list, tuple))
+            else []
+        )
+        left_out = [
+            f"poisson_ratio of {layer.get('name')}: 0.48"
+            for layer in named
+            if _lacks(layer, "poisson_ratio")
+        ]
         return cls._fill_plain(data, left_out, source)
 
     @classmethod
-    def _fill_plain(cls, data: dict[str, Any], left_out: list[str], source: Source) -> dict[str, Any]:
+    def _fill_plain(
+        cls, data: dict[str, Any], left_out: list[str], source: Source
+    ) -> dict[str, Any]:
         """Layers under names of their own do not relax unless told, and their moduli are then those of the long term."""
         if data.get("prony") is None:
             data["prony"] = ()
@@ -638,7 +751,9 @@ class Specimen(Strict):
         data.setdefault("moduli", "long_term")
         if data.get("contact_length") is None:
             data["contact_length"] = SI(source.part(DEFAULT_SPECIMEN, "contact_length"))
-            left_out.append(f"contact_length: {format_quantity(data['contact_length'], 'length')}, {DEFAULT_SPECIMEN}")
+            left_out.append(
+                f"contact_length: {format_quantity(data['contact_length'], 'length')}, {DEFAULT_SPECIMEN}"
+            )
         data.setdefault("assumed", tuple(left_out))
         return data
 
@@ -657,13 +772,17 @@ class Specimen(Strict):
         if self.stack is not None:
             return {layer.name: layer for layer in self.stack.layers}
         if isinstance(self.layers, Layers):
-            return {name: layer for name in _FINGER if (layer := getattr(self.layers, name)) is not None}
+            return {
+                name: layer for name in _FINGER if (layer := getattr(self.layers, name)) is not None
+            }
         return self.layers
 
     def material(self, name: str) -> Layer:
         """Material of a layer; an external mesh may part the stratum corneum where the scene does not."""
         known = self.materials
-        return known["epidermis"] if name == "stratum_corneum" and name not in known else known[name]
+        return (
+            known["epidermis"] if name == "stratum_corneum" and name not in known else known[name]
+        )
 
     @property
     def soft_thickness(self) -> float | None:
@@ -679,13 +798,21 @@ class Specimen(Strict):
 
     @model_validator(mode="after")
     def _check(self) -> Specimen:
-        if sum(getattr(self, shape) is not None for shape in _SHAPES) != 1 or (self.layers is None) != (self.stack is not None):
-            raise Problem("is missing", "one of outline, mesh, slab and half_round", ("outline",), HIDE)
+        if sum(getattr(self, shape) is not None for shape in _SHAPES) != 1 or (
+            self.layers is None
+        ) != (self.stack is not None):
+            raise Problem(
+                "is missing", "one of outline, mesh, slab and half_round", ("outline",), HIDE
+            )
         if self.outline is not None and self.layers.stratum_corneum is not None:
             outline = self.outline
             if outline.stratum_corneum_thickness > outline.epidermis_thickness:
                 allowed = f"up to {format_quantity(outline.epidermis_thickness, 'length')}"
-                raise Problem("is more than the epidermis it belongs to", allowed, ("outline", "stratum_corneum_thickness"))
+                raise Problem(
+                    "is more than the epidermis it belongs to",
+                    allowed,
+                    ("outline", "stratum_corneum_thickness"),
+                )
         _check_prony(self.prony)
         if self.ridges is not None:
             self._check_ridges()
@@ -695,7 +822,9 @@ class Specimen(Strict):
     def _without_nothing(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         data = handler(self)
         return {
-            key: value for key, value in data.items() if value or key not in ("slab", "half_round", "fixed", "free", "layers")
+            key: value
+            for key, value in data.items()
+            if value or key not in ("slab", "half_round", "fixed", "free", "layers")
         }
 
     @field_serializer("ridges", mode="wrap")
@@ -706,11 +835,17 @@ class Specimen(Strict):
         if self.outline is None:
             raise Problem("are given beside a mesh, which has its own", "none", ("ridges",), HIDE)
         inner, outline = self.ridges.inner, self.outline
-        room = outline.epidermis_thickness - (outline.stratum_corneum_thickness if self.layers.stratum_corneum else 0.0)
+        room = outline.epidermis_thickness - (
+            outline.stratum_corneum_thickness if self.layers.stratum_corneum else 0.0
+        )
         room = min(room, outline.dermis_thickness)
         if inner.height >= 0.7 * room:
-            allowed = f"less than {format_quantity(0.7 * room, 'length')}, 0.7 of epidermis and dermis"
+            allowed = (
+                f"less than {format_quantity(0.7 * room, 'length')}, 0.7 of epidermis and dermis"
+            )
             raise Problem("is too high for the layers", allowed, ("ridges", "inner", "height"))
         if self.ridges.half_width + inner.pitch >= outline.half_width:
             allowed = f"less than {format_quantity(outline.half_width - inner.pitch, 'length')}"
-            raise Problem("and a pitch are wider than the section", allowed, ("ridges", "half_width"))
+            raise Problem(
+                "and a pitch are wider than the section", allowed, ("ridges", "half_width")
+            )

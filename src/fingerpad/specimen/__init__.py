@@ -47,7 +47,9 @@ def counted(specimen, size, ridges) -> tuple[int, float]:
 
         mesh = build_stack_mesh(specimen.stack, size)
         return len(mesh.points), shortest_edge(mesh)
-    return _counted_layers(specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None)
+    return _counted_layers(
+        specimen.outline, size, ridges, specimen.layers.stratum_corneum is not None
+    )
 
 
 def mesh_for(scene, plan):
@@ -69,4 +71,6 @@ def mesh_for(scene, plan):
 
     specimen = scene.specimen
     ridges = specimen.ridges if plan.effects["ridges"].on else None
-    return build_pad_mesh(specimen.outline, plan.mesh_size, ridges, specimen.layers.stratum_corneum is not None)
+    return build_pad_mesh(
+        specimen.outline, plan.mesh_size, ridges, specimen.layers.stratum_corneum is not None
+    )

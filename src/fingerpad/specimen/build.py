@@ -45,18 +45,27 @@ def _kept_quads(columns: int, bands: tuple[int, ...]) -> np.ndarray:
     if folder is None:
         return ask("rectangle", columns, bands)
     kept = folder / f"gmsh{version('gmsh')}-{columns}-{'-'.join(map(str, bands))}.npz"
-    with suppress(OSError, ValueError, LookupError, EOFError, BadZipFile, zlib.error):  # cut short, or somebody else's
+    with suppress(
+        OSError, ValueError, LookupError, EOFError, BadZipFile, zlib.error
+    ):  # cut short, or somebody else's
         with np.load(kept) as file:
             steps = file["steps"].astype(np.int64)
-        if steps.shape == (columns * sum(bands), 9, 2) and steps.max(axis=(0, 1)).tolist() == [2 * columns, 2 * sum(bands)]:
+        if steps.shape == (columns * sum(bands), 9, 2) and steps.max(axis=(0, 1)).tolist() == [
+            2 * columns,
+            2 * sum(bands),
+        ]:
             return steps
     steps = ask("rectangle", columns, bands)
     with suppress(OSError):
-        write_atomically(kept, lambda partial: np.savez_compressed(partial, steps=steps.astype(np.int32)))
+        write_atomically(
+            kept, lambda partial: np.savez_compressed(partial, steps=steps.astype(np.int32))
+        )
     return steps
 
 
-def build_pad_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False) -> PadMesh:
+def build_pad_mesh(
+    outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False
+) -> PadMesh:
     """Mesh the pad with second-order quads (quad9), mirror-symmetric to the last bit where the pad is symmetric.
 
     Parameters
@@ -84,7 +93,9 @@ def build_pad_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | No
     rows, (epidermis_rows, skin_rows), fat_rows, fat_edge = rows_of(curve, size)
     right = node_positions(curve, columns, rows, fat_rows, fat_edge)
     wide, deep = right.shape[:2]
-    steps, region = _reference_quads(len(columns) - 1, (epidermis_rows, skin_rows - epidermis_rows, fat_rows))
+    steps, region = _reference_quads(
+        len(columns) - 1, (epidermis_rows, skin_rows - epidermis_rows, fat_rows)
+    )
 
     # columns of the whole ring, clockwise from the apex; the right half's come first, bottom included
     ring = 2 * (wide - 1)
@@ -97,7 +108,9 @@ def build_pad_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | No
     cells = number(steps[..., 0], steps[..., 1])
     mirror = number(-steps[..., 0], steps[..., 1])[:, KINDS["quad9"].mirrored]
 
-    by_layer = np.argsort(np.concatenate((region, region)), kind="stable")  # as a .msh file keeps them
+    by_layer = np.argsort(
+        np.concatenate((region, region)), kind="stable"
+    )  # as a .msh file keeps them
 
     def chain(first: int, last: int, row: int, step: int = 2) -> np.ndarray:
         start = np.arange(first, last, step)
@@ -119,11 +132,15 @@ def build_pad_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | No
     try:
         check_orientation(mesh, "outline")
     except MeshError as error:
-        raise MeshError(f"{error}; thicker fat beside the bone or a smaller skin_edge is allowed") from None
+        raise MeshError(
+            f"{error}; thicker fat beside the bone or a smaller skin_edge is allowed"
+        ) from None
     return mesh
 
 
-def count_nodes(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False) -> int:
+def count_nodes(
+    outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False
+) -> int:
     """Number of nodes of `build_pad_mesh` with these arguments, without building it (and without gmsh)."""
     if ridges or corneum:
         from fingerpad.specimen.layered import count_layered_nodes
@@ -135,7 +152,9 @@ def count_nodes(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None 
     return 4 * (len(columns) - 1) * (2 * (skin_rows + fat_rows) + 1)
 
 
-def smallest_edge(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False) -> float:
+def smallest_edge(
+    outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False
+) -> float:
     """Shortest element edge (m, corner to corner) of `build_pad_mesh` with these arguments (without gmsh)."""
     if ridges or corneum:
         return shortest_edge(build_pad_mesh(outline, size, ridges, corneum))
@@ -143,4 +162,6 @@ def smallest_edge(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | Non
     columns, _ = columns_of(curve, size)
     rows, _, fat_rows, fat_edge = rows_of(curve, size)
     corners = node_positions(curve, columns, rows, fat_rows, fat_edge)[::2, ::2]
-    return float(min(np.hypot(*np.moveaxis(np.diff(corners, axis=axis), -1, 0)).min() for axis in (0, 1)))
+    return float(
+        min(np.hypot(*np.moveaxis(np.diff(corners, axis=axis), -1, 0)).min() for axis in (0, 1))
+    )

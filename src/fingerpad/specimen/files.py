@@ -22,7 +22,16 @@ from fingerpad.specimen.element_kinds import KINDS, LINES
 from fingerpad.specimen.gmsh_worker import GmshError, ask
 from fingerpad.specimen.judge import check_joined, check_skin
 from fingerpad.specimen.near import same_place, twins
-from fingerpad.specimen.pad import HELD, OPTIONAL, REGIONS, SKIN, UNNAMED, MeshError, PadMesh, element_edges
+from fingerpad.specimen.pad import (
+    HELD,
+    OPTIONAL,
+    REGIONS,
+    SKIN,
+    UNNAMED,
+    MeshError,
+    PadMesh,
+    element_edges,
+)
 from fingerpad.specimen.quality import check_orientation, counter_clockwise
 
 _ELEMENTS = {KINDS[name].gmsh: name for name in ("tri3", "tri6", "quad4", "quad8", "quad9")}
@@ -43,9 +52,14 @@ def write_pad(mesh: PadMesh, path: str | Path) -> None:
 
 
 def _write(mesh: PadMesh, partial: Path, path: str | Path) -> None:
-    curves = [(name, LINES[facets.shape[1]], facets.ravel() + 1) for name, facets in mesh.curves.items()]
+    curves = [
+        (name, LINES[facets.shape[1]], facets.ravel() + 1) for name, facets in mesh.curves.items()
+    ]
     kind, layers = KINDS[mesh.element].gmsh, range(len(mesh.regions))
-    surfaces = [(mesh.regions[layer], kind, mesh.cells[mesh.region == layer].ravel() + 1) for layer in layers]
+    surfaces = [
+        (mesh.regions[layer], kind, mesh.cells[mesh.region == layer].ravel() + 1)
+        for layer in layers
+    ]
     try:
         ask("write", str(partial.absolute()), mesh.points * 1e3, curves, surfaces)
     except GmshError as error:
@@ -59,7 +73,9 @@ def _require_mesh(path: Path) -> None:
     try:
         content = read_input(path, "mesh")
     except (OSError, ValueError) as error:
-        raise MeshError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}") from None
+        raise MeshError(
+            f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}"
+        ) from None
     if not content.startswith(b"$MeshFormat"):
         raise MeshError(f"{path}: is not a gmsh mesh; a .msh file of version 2.2 or 4.1 is allowed")
     for section, most in MOST.items():
@@ -72,11 +88,17 @@ def _count(content: bytes, section: str) -> int:
     """How many nodes or elements a .msh file says that it has; 0 where it says nothing that can be read."""
     mark = f"\n${section}".encode()
     start = content.find(mark)
-    line = content[start + len(mark) : start + len(mark) + 200].lstrip(b"\r").removeprefix(b"\n") if start >= 0 else b""
+    line = (
+        content[start + len(mark) : start + len(mark) + 200].lstrip(b"\r").removeprefix(b"\n")
+        if start >= 0
+        else b""
+    )
     try:
         numbers = [int(word) for word in line.split(b"\n", 1)[0].split()]
     except ValueError:
-        numbers = [int(word) for word in np.frombuffer(line[:32], "<u8")] if len(line) >= 32 else []  # binary, 4.1
+        numbers = (
+            [int(word) for word in np.frombuffer(line[:32], "<u8")] if len(line) >= 32 else []
+        )  # binary, 4.1
     return max(numbers[:2], default=0)
 
 
@@ -88,7 +110,9 @@ def _layers(path: Path, surfaces: dict, wanted: Sequence[str]) -> tuple[str, ...
     """Names of the layers: the wanted ones, or else a finger's, or else all there are."""
     for name in wanted:
         if name not in surfaces:
-            raise MeshError(f"{path}: layer {name} is no surface of the mesh; its physical surfaces are {_listed(surfaces)}")
+            raise MeshError(
+                f"{path}: layer {name} is no surface of the mesh; its physical surfaces are {_listed(surfaces)}"
+            )
     if not surfaces:
         raise MeshError(f"{path}: no surface is named; each layer must be a physical surface")
     finger = all(name in surfaces for name in REGIONS)
@@ -99,12 +123,18 @@ def _layers(path: Path, surfaces: dict, wanted: Sequence[str]) -> tuple[str, ...
 def _held(path: Path, curves: dict, fixed: Sequence[str], free: Sequence[str]) -> tuple[str, ...]:
     """Names of the curves that are held."""
     if SKIN not in curves:
-        raise MeshError(f"{path}: curve {SKIN} is missing; a physical curve {SKIN} must be there, among {_listed(curves)}")
+        raise MeshError(
+            f"{path}: curve {SKIN} is missing; a physical curve {SKIN} must be there, among {_listed(curves)}"
+        )
     for key, names in (("fixed", fixed), ("free", free)):
         for name in names:
             if name not in curves:
-                raise MeshError(f"{path}: {key}: {name} is no curve of the mesh; its physical curves are {_listed(curves)}")
-    held = tuple(dict.fromkeys([*(name for name in HELD if name in curves and name not in free), *fixed]))
+                raise MeshError(
+                    f"{path}: {key}: {name} is no curve of the mesh; its physical curves are {_listed(curves)}"
+                )
+    held = tuple(
+        dict.fromkeys([*(name for name in HELD if name in curves and name not in free), *fixed])
+    )
     if not held:
         others = _listed(name for name in curves if name != SKIN)
         raise MeshError(
@@ -114,7 +144,9 @@ def _held(path: Path, curves: dict, fixed: Sequence[str], free: Sequence[str]) -
     return held
 
 
-def _gather_cells(path: Path, surfaces: dict, regions: tuple[str, ...], count: int) -> tuple[str, np.ndarray, np.ndarray]:
+def _gather_cells(
+    path: Path, surfaces: dict, regions: tuple[str, ...], count: int
+) -> tuple[str, np.ndarray, np.ndarray]:
     """Element kind, node tags (elements, nodes) and region (elements,) of all layers."""
     kinds, cells, numbers, region = set(), [], [], []
     for index, name in enumerate(regions):
@@ -129,12 +161,18 @@ def _gather_cells(path: Path, surfaces: dict, regions: tuple[str, ...], count: i
             numbers.append(tags)
             region.append(np.full(len(tags), index, dtype=np.int8))
     if not cells:
-        raise MeshError(f"{path}: no element is in {_listed(regions)}; each layer must be a physical surface with elements")
+        raise MeshError(
+            f"{path}: no element is in {_listed(regions)}; each layer must be a physical surface with elements"
+        )
     if len(kinds) > 1:
-        raise MeshError(f"{path}: mixes {' and '.join(sorted(kinds))}; one kind of element is allowed")
+        raise MeshError(
+            f"{path}: mixes {' and '.join(sorted(kinds))}; one kind of element is allowed"
+        )
     tags = np.concatenate(numbers)
     if len(np.unique(tags)) < len(tags):
-        raise MeshError(f"{path}: an element is in two of {', '.join(regions)}; one layer each is allowed")
+        raise MeshError(
+            f"{path}: an element is in two of {', '.join(regions)}; one layer each is allowed"
+        )
     if len(tags) < count:
         others = [name for name in surfaces if name not in regions]
         more = f" (the mesh also has {', '.join(others)})" if others else ""
@@ -186,7 +224,12 @@ def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str
         free[chosen] = False
         curves[name] = facets(chosen)
     if free.any():
-        _require_joined(path, mesh, np.column_stack(np.divmod(boundary[free], n)), lambda pair: place(pair[0] * n + pair[1]))
+        _require_joined(
+            path,
+            mesh,
+            np.column_stack(np.divmod(boundary[free], n)),
+            lambda pair: place(pair[0] * n + pair[1]),
+        )
         curves[UNNAMED] = facets(np.flatnonzero(free))
     return curves
 
@@ -259,15 +302,24 @@ def read_specimen_mesh(specimen) -> PadMesh:
     mesh = read_pad_mesh(specimen.mesh, own, specimen.fixed, specimen.free)
     bare = [name for name in mesh.regions if name not in (*names, *OPTIONAL)]
     if bare:
-        raise MeshError(f"{specimen.mesh}: no material for {', '.join(bare)}; specimen.layers must name each surface of the mesh")
+        raise MeshError(
+            f"{specimen.mesh}: no material for {', '.join(bare)}; specimen.layers must name each surface of the mesh"
+        )
     for name in specimen.stated:
         if name not in mesh.regions:
             known = ", ".join(mesh.regions)
-            raise MeshError(f"{specimen.mesh}: layer {name} is no surface of the mesh; its physical surfaces are {known}")
+            raise MeshError(
+                f"{specimen.mesh}: layer {name} is no surface of the mesh; its physical surfaces are {known}"
+            )
     return mesh
 
 
-def read_pad_mesh(path: str | Path, layers: Sequence[str] = (), fixed: Sequence[str] = (), free: Sequence[str] = ()) -> PadMesh:
+def read_pad_mesh(
+    path: str | Path,
+    layers: Sequence[str] = (),
+    fixed: Sequence[str] = (),
+    free: Sequence[str] = (),
+) -> PadMesh:
     """Read a pad from a gmsh .msh file (mm).
 
     Parameters
@@ -291,11 +343,23 @@ def read_pad_mesh(path: str | Path, layers: Sequence[str] = (), fixed: Sequence[
     if not is_file(path):
         raise MeshError(f"{path}: there is no such mesh file; a gmsh .msh file is allowed")
     state = path.stat()
-    return _read(path, (state.st_mtime_ns, state.st_size, state.st_ino), tuple(layers), tuple(fixed), tuple(free))
+    return _read(
+        path,
+        (state.st_mtime_ns, state.st_size, state.st_ino),
+        tuple(layers),
+        tuple(fixed),
+        tuple(free),
+    )
 
 
 @lru_cache(maxsize=1)  # a plan looks at the mesh before it is solved on
-def _read(path: Path, state: tuple[int, ...], layers: tuple[str, ...], fixed: tuple[str, ...], free: tuple[str, ...]) -> PadMesh:
+def _read(
+    path: Path,
+    state: tuple[int, ...],
+    layers: tuple[str, ...],
+    fixed: tuple[str, ...],
+    free: tuple[str, ...],
+) -> PadMesh:
     """`read_pad_mesh` of a file in a `state`."""
     _require_mesh(path)
     try:
@@ -313,22 +377,32 @@ def _read(path: Path, state: tuple[int, ...], layers: tuple[str, ...], fixed: tu
     if not np.isfinite(places).all() or np.ptp(places[:, 2]) > _SAME_PLACE * size:
         raise MeshError(f"{path}: nodes must be finite and lie in one plane, z = constant")
     _require_mm(path, places)
-    points = places[:, :2].astype(float) / 1e3  # gmsh marks the order of bytes, of which netCDF4 would warn
+    points = (
+        places[:, :2].astype(float) / 1e3
+    )  # gmsh marks the order of bytes, of which netCDF4 would warn
     cells = np.searchsorted(used, cell_tags).astype(np.int32)
     if element == "quad8":
         points, cells = _with_centre(points, cells)
         element = "quad9"
 
-    mesh = counter_clockwise(PadMesh(points, cells, element, region, {}, symmetric=False, regions=regions, fixed=held))
+    mesh = counter_clockwise(
+        PadMesh(points, cells, element, region, {}, symmetric=False, regions=regions, fixed=held)
+    )
     check_orientation(mesh, str(path))
     pairs = {}
     for name in dict.fromkeys((SKIN, *held, *free)):
         if not lines[name]:
-            raise MeshError(f"{path}: curve {name} has no edges; a curve along the elements' edges must be there")
-        ends = np.concatenate([nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]])
+            raise MeshError(
+                f"{path}: curve {name} has no edges; a curve along the elements' edges must be there"
+            )
+        ends = np.concatenate(
+            [nodes.reshape(len(facets), -1)[:, :2] for _, facets, nodes in lines[name]]
+        )
         stray = ~np.isin(ends, used)
         if stray.any():
-            raise MeshError(f"{path}: curve {name} has an edge of no element; curves follow the elements' edges")
+            raise MeshError(
+                f"{path}: curve {name} has an edge of no element; curves follow the elements' edges"
+            )
         pairs[name] = np.searchsorted(used, ends)
     curves = _facets(path, mesh, pairs)
     curves[SKIN] = _in_order(path, curves[SKIN])

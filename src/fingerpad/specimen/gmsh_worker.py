@@ -65,7 +65,9 @@ class _Worker:
             except (EOFError, OSError, pickle.UnpicklingError):
                 self._end()
                 raise GmshError(f"it ended with code {process.returncode}") from None
-            except BaseException:  # an interrupt: what is still to come of the answer would be taken for another's
+            except (
+                BaseException
+            ):  # an interrupt: what is still to come of the answer would be taken for another's
                 self._end()
                 raise
         if kind != "done":
@@ -81,7 +83,8 @@ class _Worker:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 start_new_session=True,  # Ctrl-C is for the caller
-                env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OMP_NUM_THREADS": "1"},
+                env=os.environ
+                | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "OMP_NUM_THREADS": "1"},
             )
         return self._process
 
@@ -132,17 +135,30 @@ def rectangle(gmsh, columns: int, bands: tuple[int, ...]) -> np.ndarray:
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 0)
             ends = np.concatenate(([0], np.cumsum(bands)))
-            corners = [(geometry.add_point((0.0, -float(y))), geometry.add_point((float(columns), -float(y)))) for y in ends]
+            corners = [
+                (
+                    geometry.add_point((0.0, -float(y))),
+                    geometry.add_point((float(columns), -float(y))),
+                )
+                for y in ends
+            ]
             across = [geometry.add_line(left, right) for left, right in corners]
             for line in across:
                 geometry.set_transfinite_curve(line, columns + 1, "Progression", 1.0)
             for band, count in enumerate(bands):
                 upper, lower = corners[band], corners[band + 1]
-                left, right = geometry.add_line(upper[0], lower[0]), geometry.add_line(lower[1], upper[1])
+                left, right = (
+                    geometry.add_line(upper[0], lower[0]),
+                    geometry.add_line(lower[1], upper[1]),
+                )
                 for line in (left, right):
                     geometry.set_transfinite_curve(line, count + 1, "Progression", 1.0)
-                surface = geometry.add_plane_surface(geometry.add_curve_loop([left, across[band + 1], right, -across[band]]))
-                geometry.set_transfinite_surface(surface, "Left", [upper[0], lower[0], lower[1], upper[1]])
+                surface = geometry.add_plane_surface(
+                    geometry.add_curve_loop([left, across[band + 1], right, -across[band]])
+                )
+                geometry.set_transfinite_surface(
+                    surface, "Left", [upper[0], lower[0], lower[1], upper[1]]
+                )
                 geometry.set_recombined_surfaces([surface])
                 geometry.add_physical(surface, f"band {band}")
             grid = geometry.generate_mesh(dim=2, order=2)

@@ -65,7 +65,10 @@ def columns_of(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
     else:
         breaks = sorted([*breaks, fine])
     half_width = curve.outline.half_width
-    focus = [(float(curve.arc_length(curve.theta_at_x(min(abs(x), half_width)))[0]), edge) for x, edge in size.focus]
+    focus = [
+        (float(curve.arc_length(curve.theta_at_x(min(abs(x), half_width)))[0]), edge)
+        for x, edge in size.focus
+    ]
 
     smallest = min([size.skin_edge, *(edge for _, edge in focus)])
     grid = _grid_along(curve.length, smallest, [s for s, _ in focus])
@@ -80,7 +83,10 @@ def columns_of(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
         edge = np.where(grid == s, np.minimum(edge, wanted), edge)
     edge = limit_growth(grid, edge, size.growth)
 
-    parts = [divide(grid, edge, low, high, np.ceil if low <= fine else np.round) for low, high in pairwise(breaks)]
+    parts = [
+        divide(grid, edge, low, high, np.ceil if low <= fine else np.round)
+        for low, high in pairwise(breaks)
+    ]
     columns = np.concatenate([part[:-1] for part in parts] + [[curve.length]])
     return columns, int(np.searchsorted(columns, nail))
 
@@ -102,7 +108,11 @@ def rows_of(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, tuple[int,
     reached = min(first + np.log(size.growth) * middle, size.layer_edge)
     dermis = _layer_rows(middle, inner, reached, size)
     rows = np.concatenate((epidermis[:-1], dermis))
-    return rows, (len(epidermis) - 1, len(rows) - 1), *fat_rows_of(curve, size, dermis[-1] - dermis[-2])
+    return (
+        rows,
+        (len(epidermis) - 1, len(rows) - 1),
+        *fat_rows_of(curve, size, dermis[-1] - dermis[-2]),
+    )
 
 
 def fat_rows_of(curve: OutlineCurve, size: MeshSize, above: float) -> tuple[int, float]:
@@ -138,7 +148,9 @@ def with_middles(values: np.ndarray) -> np.ndarray:
     return refined
 
 
-def node_positions(curve: OutlineCurve, columns: np.ndarray, rows: np.ndarray, fat_rows: int, fat_edge: float):
+def node_positions(
+    curve: OutlineCurve, columns: np.ndarray, rows: np.ndarray, fat_rows: int, fat_edge: float
+):
     """Positions of the right half's nodes, shape (2 columns + 1, 2 rows + 1, 2), in m."""
     theta = curve.theta_at(with_middles(columns))
     skin = [curve.point(theta, depth) for depth in with_middles(rows)]

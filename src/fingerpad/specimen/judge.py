@@ -24,7 +24,9 @@ def check_joined(mesh: PadMesh, name: str) -> None:
     """
     edges = element_edges(mesh.cells, mesh.element)
     owner = np.tile(np.arange(len(mesh.cells)), len(edges) // len(mesh.cells))
-    _, number, uses = np.unique(np.sort(edges[:, :2], axis=1), axis=0, return_inverse=True, return_counts=True)
+    _, number, uses = np.unique(
+        np.sort(edges[:, :2], axis=1), axis=0, return_inverse=True, return_counts=True
+    )
     number = number.reshape(-1)
     order = np.argsort(number, kind="stable")
     shared = order[uses[number[order]] == 2].reshape(-1, 2)
@@ -44,7 +46,11 @@ def _check_pieces(mesh: PadMesh, name: str, neighbours: np.ndarray) -> None:
     layers = ", ".join(mesh.regions[k] for k in np.unique(mesh.region[piece == least]))
     x, y = np.round(mesh.points[cells].mean(axis=(0, 1)) * 1e3, 3) + 0.0
     by_nodes = np.intersect1d(cells, mesh.cells[piece != least])
-    how = f"hangs on the rest by {len(by_nodes)} single nodes" if len(by_nodes) else "shares no node with the rest"
+    how = (
+        f"hangs on the rest by {len(by_nodes)} single nodes"
+        if len(by_nodes)
+        else "shares no node with the rest"
+    )
     raise MeshError(
         f"{name}: is in {pieces} pieces: the one around ({x:.3f}, {y:.3f}) mm, {len(cells)} elements of layer {layers}, {how}; "
         + _JOIN
@@ -66,7 +72,9 @@ def _check_boundary(mesh: PadMesh, name: str, edges: np.ndarray, owner: np.ndarr
     if wrong.any():
         k = int(np.argmax(wrong))
         x, y = ends[[first[k], second[k]]].mean(axis=(0, 1)) * 1e3
-        layers = " and ".join(dict.fromkeys(mesh.regions[mesh.region[owner[i]]] for i in (first[k], second[k])))
+        layers = " and ".join(
+            dict.fromkeys(mesh.regions[mesh.region[owner[i]]] for i in (first[k], second[k]))
+        )
         raise MeshError(
             f"{name}: boundary edges of layer {layers} lie on each other at ({x:.3f}, {y:.3f}) mm "
             f"({int(wrong.sum())} such pairs): a node of one element is on an edge of another; {_JOIN}"
@@ -84,7 +92,9 @@ def _near(ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     first = np.repeat(np.arange(len(order)), count)
     second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count)
     first, second = order[first], order[second]
-    meet = (low[first, 1 - along] <= high[second, 1 - along]) & (low[second, 1 - along] <= high[first, 1 - along])
+    meet = (low[first, 1 - along] <= high[second, 1 - along]) & (
+        low[second, 1 - along] <= high[first, 1 - along]
+    )
     return first[meet], second[meet]
 
 
@@ -95,13 +105,18 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 def _touch(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Whether segments (n, 2, 2) without a common node cross, or one's end lies on the other."""
     wa, wb = a[:, 1] - a[:, 0], b[:, 1] - b[:, 0]
-    sides = [_cross(wa, b[:, k] - a[:, 0]) for k in (0, 1)], [_cross(wb, a[:, k] - b[:, 0]) for k in (0, 1)]
+    sides = (
+        [_cross(wa, b[:, k] - a[:, 0]) for k in (0, 1)],
+        [_cross(wb, a[:, k] - b[:, 0]) for k in (0, 1)],
+    )
     out = (sides[0][0] * sides[0][1] < 0) & (sides[1][0] * sides[1][1] < 0)
     for way, start, points in ((wa, a[:, 0], b), (wb, b[:, 0], a)):
         square = (way**2).sum(axis=1)
         for k in (0, 1):
             share = np.clip(((points[:, k] - start) * way).sum(axis=1) / square, 0, 1)
-            out |= np.hypot(*(points[:, k] - start - share[:, None] * way).T) < _ON * np.sqrt(square)
+            out |= np.hypot(*(points[:, k] - start - share[:, None] * way).T) < _ON * np.sqrt(
+                square
+            )
     return out
 
 
@@ -143,7 +158,12 @@ def check_skin(mesh: PadMesh, name: str) -> None:
     if way[0] <= abs(way[1]) / 10:
         raise MeshError(f"{name}: {where} {_facing(way)}")
     for curve, facets in mesh.curves.items():
-        if curve != SKIN and (above := _heights(mesh.points[facets[:, :2]], 1e-6 * np.ptp(mesh.points[:, 0]))).size:
+        if (
+            curve != SKIN
+            and (
+                above := _heights(mesh.points[facets[:, :2]], 1e-6 * np.ptp(mesh.points[:, 0]))
+            ).size
+        ):
             if above.max() > height + 1e-6 * np.ptp(mesh.points[:, 1]):
                 raise MeshError(
                     f"{name}: {where} is covered at x = 0 by curve {curve} at y = {above.max() * 1e3:.4g} mm; "

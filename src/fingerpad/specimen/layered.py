@@ -23,7 +23,9 @@ PER_HEIGHT = 4  # rows within a ridge's height of the interface, unless the ridg
 _GROWTH = 1.25  # largest ratio of one row to the next between the templates
 _TEMPLATE = 0.9  # height of a row of templates, in columns of the plain mesh
 _C, _R = 6, 8  # lattice steps of a column and of a row
-_COARSE, _FINE, _NARROWS, _WIDENS = range(4)  # kinds of rows; a row of templates narrows or widens the columns above it
+_COARSE, _FINE, _NARROWS, _WIDENS = range(
+    4
+)  # kinds of rows; a row of templates narrows or widens the columns above it
 
 
 def _quad(*corners: tuple[int, int]) -> np.ndarray:
@@ -44,7 +46,9 @@ _CELLS = {
     _COARSE: np.array([_quad((0, 8), (6, 8), (6, 0), (0, 0))]),
     _FINE: np.array([_quad((x, 8), (x + 2, 8), (x + 2, 0), (x, 0)) for x in (0, 2, 4)]),
     _WIDENS: np.array(_WIDENING),
-    _NARROWS: np.array([(cell * (1, -1) + (0, 8))[[3, 2, 1, 0, 6, 5, 4, 7, 8]] for cell in _WIDENING]),
+    _NARROWS: np.array(
+        [(cell * (1, -1) + (0, 8))[[3, 2, 1, 0, 6, 5, 4, 7, 8]] for cell in _WIDENING]
+    ),
 }
 
 
@@ -54,7 +58,9 @@ class _Grid:
 
     columns: np.ndarray
     nail: int
-    zone: int  # columns from the apex within which rows are of their kind; elsewhere they are coarse
+    zone: (
+        int  # columns from the apex within which rows are of their kind; elsewhere they are coarse
+    )
     rows: np.ndarray
     kinds: np.ndarray
     region: np.ndarray  # of each row of skin and fat
@@ -69,7 +75,12 @@ def ridge_column(size: MeshSize, ridged: RidgedPad) -> float:
 
 def apex_column(outline: OutlineLike, size: MeshSize, ridges: RidgesLike) -> float:
     """Edge (m) along the skin of the columns at the apex from which the ridges' are made: these are a third as wide."""
-    return min([ridge_column(size, RidgedPad(outline, ridges)), *(edge for x, edge in size.focus if x == 0)])
+    return min(
+        [
+            ridge_column(size, RidgedPad(outline, ridges)),
+            *(edge for x, edge in size.focus if x == 0),
+        ]
+    )
 
 
 def skin_edge(outline: OutlineLike, size: MeshSize, ridges: RidgesLike, edge: float) -> float:
@@ -106,10 +117,18 @@ def _skin_rows(curve: OutlineCurve, size: MeshSize, ridged: RidgedPad | None, co
         if rest < 0.3 * size.layer_edge:
             below = bottom - template
             ends, kinds = [interface, below, bottom], [_FINE, _FINE, _WIDENS]
-        if below < ridged.below - 1e-9 and below - interface < 1.5 * (1.0 - ridged.mean) * ridged.inner.height:
-            raise MeshError("ridges: the dermis is too thin to mesh them; a thicker dermis or lower ridges are allowed")
+        if (
+            below < ridged.below - 1e-9
+            and below - interface < 1.5 * (1.0 - ridged.mean) * ridged.inner.height
+        ):
+            raise MeshError(
+                "ridges: the dermis is too thin to mesh them; a thicker dermis or lower ridges are allowed"
+            )
         if ridged.outer is None and ridged.above - template - corneum > 0.5 * size.layer_edge:
-            ends, kinds = [ridged.above - template, ridged.above, *ends], [_COARSE, _NARROWS, *kinds]
+            ends, kinds = (
+                [ridged.above - template, ridged.above, *ends],
+                [_COARSE, _NARROWS, *kinds],
+            )
         fixed[interface] = _interface_edge(column / 3, growth, ridged)
         if ridged.outer is not None:
             fixed[0.0] = min(first, column / 6)
@@ -141,13 +160,19 @@ def _grid(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corne
     curve = curve_of(outline)
     thick = outline.stratum_corneum_thickness if corneum else 0.0
     if thick >= outline.epidermis_thickness:
-        raise MeshError("outline: the stratum corneum leaves no epidermis below it; less than epidermis_thickness is allowed")
+        raise MeshError(
+            "outline: the stratum corneum leaves no epidermis below it; less than epidermis_thickness is allowed"
+        )
     ridged = RidgedPad(outline, ridges, thick) if ridges else None
     if ridged is not None:
         if ridged.extent > float(curve.arc_length(0.5 * np.pi)[0]):
-            raise MeshError("ridges: half_width and a pitch reach beyond the pad's widest place; less is allowed")
+            raise MeshError(
+                "ridges: half_width and a pitch reach beyond the pad's widest place; less is allowed"
+            )
         edge = ridge_column(size, ridged)
-        size = replace(size, skin_edge=edge, fine_half_width=max(size.fine_half_width, ridged.extent))
+        size = replace(
+            size, skin_edge=edge, fine_half_width=max(size.fine_half_width, ridged.extent)
+        )
     columns, nail = columns_of(curve, size)
     zone = int(np.searchsorted(columns, ridged.extent - 1e-9)) if ridged else 0
     rows, kinds = _skin_rows(curve, size, ridged, thick)
@@ -155,7 +180,20 @@ def _grid(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corne
     middle = 0.5 * (rows[1:] + rows[:-1])
     bounds = [*([thick] if corneum else []), *curve.layer_depths]
     region = np.concatenate((np.searchsorted(bounds, middle), np.full(fat, len(bounds))))
-    return _Grid(columns, nail, zone, rows, np.concatenate((kinds, np.full(fat, _COARSE))), region, fat, fat_edge), curve, ridged
+    return (
+        _Grid(
+            columns,
+            nail,
+            zone,
+            rows,
+            np.concatenate((kinds, np.full(fat, _COARSE))),
+            region,
+            fat,
+            fat_edge,
+        ),
+        curve,
+        ridged,
+    )
 
 
 def _right_cells(grid: _Grid) -> tuple[np.ndarray, np.ndarray]:
@@ -170,7 +208,9 @@ def _right_cells(grid: _Grid) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(cells), np.concatenate(region)
 
 
-def _places(grid: _Grid, curve: OutlineCurve, ridged: RidgedPad | None, column: np.ndarray, row: np.ndarray) -> np.ndarray:
+def _places(
+    grid: _Grid, curve: OutlineCurve, ridged: RidgedPad | None, column: np.ndarray, row: np.ndarray
+) -> np.ndarray:
     """Positions (n, 2) in m of lattice points; columns left of the apex are negative."""
     index = np.arange(len(grid.columns)) * float(_C)
     s = np.interp(np.abs(column), index, grid.columns)
@@ -183,12 +223,16 @@ def _places(grid: _Grid, curve: OutlineCurve, ridged: RidgedPad | None, column: 
     unique, back = np.unique(s[skin], return_inverse=True)
     points[skin] = curve.point(curve.theta_at(unique)[back], depth)
     fat = node_positions(curve, grid.columns, grid.rows[-1:], grid.fat, grid.fat_edge)
-    points[deep] = fat[2 * np.abs(column[deep]) // _C, 2 * (row[deep] - _R * (len(grid.rows) - 1)) // _R]
+    points[deep] = fat[
+        2 * np.abs(column[deep]) // _C, 2 * (row[deep] - _R * (len(grid.rows) - 1)) // _R
+    ]
     points[column < 0, 0] *= -1.0
     return points
 
 
-def build_layered_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corneum: bool) -> PadMesh:
+def build_layered_mesh(
+    outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corneum: bool
+) -> PadMesh:
     """The pad with ridges or a layer ``stratum_corneum``; see :func:`fingerpad.specimen.build.build_pad_mesh`."""
     grid, curve, ridged = _grid(outline, size, ridges, corneum)
     steps, region = _right_cells(grid)
@@ -198,7 +242,9 @@ def build_layered_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike 
     key = steps[..., 0] % ring * deep + steps[..., 1]
     known, cells = np.unique(key, return_inverse=True)
     column = known // deep
-    points = _places(grid, curve, ridged, np.where(column > half, column - ring, column), known % deep)
+    points = _places(
+        grid, curve, ridged, np.where(column > half, column - ring, column), known % deep
+    )
 
     def chain(marks: np.ndarray, row: int) -> np.ndarray:
         ends = np.column_stack((marks[:-1], marks[1:], (marks[:-1] + marks[1:]) // 2))
@@ -225,11 +271,15 @@ def build_layered_mesh(outline: OutlineLike, size: MeshSize, ridges: RidgesLike 
     try:
         check_orientation(mesh, "outline")
     except MeshError as error:
-        raise MeshError(f"{error}; lower ridges, thicker layers or a smaller skin_edge are allowed") from None
+        raise MeshError(
+            f"{error}; lower ridges, thicker layers or a smaller skin_edge are allowed"
+        ) from None
     return mesh
 
 
-def count_layered_nodes(outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corneum: bool) -> int:
+def count_layered_nodes(
+    outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corneum: bool
+) -> int:
     """Number of nodes of :func:`build_layered_mesh`, from its lattice alone."""
     grid = _grid(outline, size, ridges, corneum)[0]
     steps = _right_cells(grid)[0]
@@ -238,7 +288,9 @@ def count_layered_nodes(outline: OutlineLike, size: MeshSize, ridges: RidgesLike
     return 2 * len(column) - int(np.count_nonzero((column == 0) | (column == half)))
 
 
-def ridge_resolution(outline: OutlineLike, size: MeshSize, ridges: RidgesLike, corneum: bool = False) -> tuple[float, int]:
+def ridge_resolution(
+    outline: OutlineLike, size: MeshSize, ridges: RidgesLike, corneum: bool = False
+) -> tuple[float, int]:
     """Elements from one inner ridge to the next, and rows within a ridge's height of the interface, the fewest of each.
 
     The rows are counted above and below the tip and the valley nearest to x = 0.

@@ -45,7 +45,9 @@ class Prony:
     def relaxation(self, time):
         """G(t)/G_0 at ``time`` (s, any shape)."""
         time = np.asarray(time, dtype=float)
-        return 1.0 - sum(g * -np.expm1(-time / tau) for g, tau in zip(self.g, self.tau, strict=True))
+        return 1.0 - sum(
+            g * -np.expm1(-time / tau) for g, tau in zip(self.g, self.tau, strict=True)
+        )
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,9 @@ class Moduli:
     bulk: np.ndarray
 
 
-def moduli(youngs_modulus, poisson_ratio, prony: Prony, described_state: str = "long_term") -> Moduli:
+def moduli(
+    youngs_modulus, poisson_ratio, prony: Prony, described_state: str = "long_term"
+) -> Moduli:
     """Long-term and instantaneous moduli of regions whose E (Pa) and nu describe one of the two states.
 
     Raises:

@@ -28,7 +28,9 @@ def touched_side(y: np.ndarray) -> np.ndarray:
 def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
     """Nodes at which the skin ends, and the angle (rad) between it and the boundary that goes on, through the material."""
     skin = mesh.curves["skin"][:, :2]
-    others = np.concatenate([facets[:, :2] for name, facets in mesh.curves.items() if name != "skin"])
+    others = np.concatenate(
+        [facets[:, :2] for name, facets in mesh.curves.items() if name != "skin"]
+    )
     before, after = dict(others[:, ::-1].tolist()), dict(others.tolist())
     found = []
     for node, back, ahead in (
@@ -37,7 +39,9 @@ def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
     ):
         if back is not None and ahead is not None and not (mesh.half and node == skin[0, 0]):
             one, two = (mesh.points[each] - mesh.points[node] for each in (back, ahead))
-            angle = np.arctan2(one[0] * two[1] - one[1] * two[0], one @ two)  # material lies to the right of the way
+            angle = np.arctan2(
+                one[0] * two[1] - one[1] * two[0], one @ two
+            )  # material lies to the right of the way
             found.append((node, float(angle % (2 * np.pi))))
     return found
 
@@ -50,13 +54,17 @@ def layers_below(mesh: PadMesh) -> list[tuple[str, float]]:
     """
     x, y = mesh.points[skin_chain(mesh)].T
     if not (x.min() <= 0 <= x.max()):
-        raise MeshError("mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0")
+        raise MeshError(
+            "mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0"
+        )
     at = 1e-6 * np.ptp(mesh.points[:, 0])  # beside the middle, where nodes often are
     start, end = mesh.points[element_edges(mesh.cells, mesh.element)[:, :2].T]
     count = len(mesh.cells)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (at - start[:, 0]) / (end[:, 0] - start[:, 0])
-    height = np.where((share >= 0) & (share <= 1), start[:, 1] + share * (end[:, 1] - start[:, 1]), np.nan).reshape(-1, count)
+    height = np.where(
+        (share >= 0) & (share <= 1), start[:, 1] + share * (end[:, 1] - start[:, 1]), np.nan
+    ).reshape(-1, count)
     crossed = np.count_nonzero(np.isfinite(height), axis=0) >= 2
     low, high = np.nanmin(height[:, crossed], axis=0), np.nanmax(height[:, crossed], axis=0)
     near = 1e-6 * np.ptp(mesh.points[:, 1])
@@ -90,23 +98,33 @@ def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
     chain = skin_chain(mesh)
     x, y = mesh.points[chain].T
     if not (x.min() <= 0 <= x.max()):
-        raise MeshError("mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0")
+        raise MeshError(
+            "mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0"
+        )
     reach = 0.15 * np.ptp(x) / (1 if mesh.half else 2)
     top = y[np.abs(x) < max(reach, 3 * np.abs(np.diff(x)).min())].max()
     bone = mesh.points[np.unique(mesh.curves["bone"])]
     under = bone[(np.abs(bone[:, 0]) <= np.abs(bone[:, 0]).min() + reach) & (bone[:, 1] < top)]
     if not len(under):
-        raise MeshError("mesh: there is no bone below x = 0; allowed: a curve named bone under the apex")
+        raise MeshError(
+            "mesh: there is no bone below x = 0; allowed: a curve named bone under the apex"
+        )
     soft = top - under[:, 1].max()
     layer = mesh.points[np.unique(mesh.cells[mesh.region < mesh.regions.index("dermis")])]
     column = layer[np.abs(layer[:, 0]) < reach]
-    return apex_radius(mesh), float(top - column[:, 1].min() if len(column) else soft / 4), float(soft)
+    return (
+        apex_radius(mesh),
+        float(top - column[:, 1].min() if len(column) else soft / 4),
+        float(soft),
+    )
 
 
 def apex_edge(mesh: PadMesh) -> float:
     """Length (m) of the skin's element edges around x = 0 on the side that is touched."""
     ends = mesh.points[mesh.curves["skin"][:, :2]]
-    high = ends[..., 1].mean(1) >= ends[..., 1].max() - 0.5 * np.ptp(ends[..., 1])  # of a flat skin: all
+    high = ends[..., 1].mean(1) >= ends[..., 1].max() - 0.5 * np.ptp(
+        ends[..., 1]
+    )  # of a flat skin: all
     lengths = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     nearest = np.argsort(np.where(high, np.abs(ends[..., 0].mean(1)), np.inf))[:4]
     return float(lengths[nearest].mean())
@@ -121,7 +139,9 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     Raises:
         MeshError: no point of that depth exists at that offset.
     """
-    depths, offsets = np.broadcast_arrays(np.atleast_1d(np.asarray(depths, float)), np.asarray(offsets, float))
+    depths, offsets = np.broadcast_arrays(
+        np.atleast_1d(np.asarray(depths, float)), np.asarray(offsets, float)
+    )
     if not depths.size:
         return np.zeros((0, 2))
     skin = _fine_skin(mesh)
@@ -137,8 +157,12 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     high = np.interp(offsets, upper[:, 0], upper[:, 1])
 
     # of the skin (k,) all that may be as near as that, the same number (w) for every point
-    first, last = (np.searchsorted(skin[order, 0], offsets + side * 1.01 * depths) for side in (-1, 1))
-    x, y = skin[order[np.minimum(first[:, None] + np.arange(max(1, np.max(last - first))), len(skin) - 1)]].transpose(2, 0, 1)
+    first, last = (
+        np.searchsorted(skin[order, 0], offsets + side * 1.01 * depths) for side in (-1, 1)
+    )
+    x, y = skin[
+        order[np.minimum(first[:, None] + np.arange(max(1, np.max(last - first))), len(skin) - 1)]
+    ].transpose(2, 0, 1)
 
     def below(height):
         return np.hypot(x - offsets[:, None], y - height[:, None]).min(axis=1)
@@ -146,7 +170,9 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     low, high = bisect(lambda height: below(height) > depths, high - 4 * depths, high)
     found = (low + high) / 2
     if np.any(np.abs(below(found) - depths) > 1e-3 * depths):
-        raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")
+        raise MeshError(
+            "receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue"
+        )
     return np.column_stack([offsets, found])
 
 
@@ -158,12 +184,19 @@ def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray)
     Raises:
         MeshError: no point of that depth exists at that offset.
     """
-    depths, offsets = (np.ravel(each) for each in np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float)))
+    depths, offsets = (
+        np.ravel(each)
+        for each in np.broadcast_arrays(np.asarray(depths, float), np.asarray(offsets, float))
+    )
     curve = curve_of(outline)
     _, high = bisect(
-        lambda theta: curve.point(theta, depths)[:, 0] < np.abs(offsets), np.zeros(len(depths)), np.full(len(depths), np.pi / 2)
+        lambda theta: curve.point(theta, depths)[:, 0] < np.abs(offsets),
+        np.zeros(len(depths)),
+        np.full(len(depths), np.pi / 2),
     )
     found = curve.point(np.where(offsets == 0, 0.0, high), depths)
     if np.any(np.abs(found[:, 0] - np.abs(offsets)) > 1e-9):
-        raise MeshError("receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue")
+        raise MeshError(
+            "receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue"
+        )
     return found * np.column_stack((np.where(offsets < 0, -1.0, 1.0), np.ones(len(depths))))

@@ -44,4 +44,6 @@ def nearest(points: np.ndarray, others: np.ndarray, number: int) -> np.ndarray:
     x, y = points[:, :1] - others[:, 0], points[:, 1:] - others[:, 1]
     distance = x * x + y * y
     few = np.argpartition(distance, number - 1, axis=1)[:, :number]
-    return np.take_along_axis(few, np.argsort(np.take_along_axis(distance, few, axis=1), axis=1, kind="stable"), axis=1)
+    return np.take_along_axis(
+        few, np.argsort(np.take_along_axis(distance, few, axis=1), axis=1, kind="stable"), axis=1
+    )

@@ -84,13 +84,17 @@ class OutlineCurve:
         )
         self._check_shape()
         self._theta = np.linspace(0.0, np.pi, _INTERVALS + 1)
-        self._arc = np.concatenate(([0.0], np.cumsum(self._interval(self._theta[:-1], self._theta[1:]))))
+        self._arc = np.concatenate(
+            ([0.0], np.cumsum(self._interval(self._theta[:-1], self._theta[1:])))
+        )
         self._check_layers()
 
     # -- the skin --------------------------------------------------------------------------------------------
 
     def _height(self, theta: np.ndarray) -> np.ndarray:
-        return np.where(np.abs(theta) <= 0.5 * np.pi, self.outline.apex_height, self.outline.depth_below)
+        return np.where(
+            np.abs(theta) <= 0.5 * np.pi, self.outline.apex_height, self.outline.depth_below
+        )
 
     def _tangent(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         sine, cosine = np.sin(theta), np.cos(theta)
@@ -109,7 +113,12 @@ class OutlineCurve:
         """Points (n, 2) in m at the angles theta (n,), `depth` m below the skin along the normal."""
         theta = np.atleast_1d(np.asarray(theta, dtype=float))
         sine = np.sin(theta)
-        skin = np.column_stack((self.scale * sine * (1.0 + self.widening * sine**2), self._height(theta) * np.cos(theta)))
+        skin = np.column_stack(
+            (
+                self.scale * sine * (1.0 + self.widening * sine**2),
+                self._height(theta) * np.cos(theta),
+            )
+        )
         points = skin - np.asarray(depth, dtype=float).reshape(-1, 1) * self.normal(theta)
         points[(theta == 0.0) | (np.abs(theta) == np.pi), 0] = 0.0  # exactly on the axis
         return points
@@ -146,7 +155,9 @@ class OutlineCurve:
         target = np.abs(arc_length)
         index = np.clip(np.searchsorted(self._arc, target, side="right") - 1, 0, _INTERVALS - 1)
         low, high = self._theta[index], self._theta[index + 1]
-        theta = low + (high - low) * (target - self._arc[index]) / (self._arc[index + 1] - self._arc[index])
+        theta = low + (high - low) * (target - self._arc[index]) / (
+            self._arc[index + 1] - self._arc[index]
+        )
         for _ in range(4):
             rate = np.hypot(*self._tangent(theta))
             theta = theta - (self._arc[index] + self._interval(low, theta) - target) / rate
@@ -174,7 +185,9 @@ class OutlineCurve:
         phi = np.atleast_1d(np.asarray(phi, dtype=float))
         outline = self.outline
         x = np.where(np.abs(phi) == np.pi, 0.0, outline.bone_half_width * np.sin(phi))
-        return np.column_stack((x, outline.bone_centre_height + outline.bone_half_height * np.cos(phi)))
+        return np.column_stack(
+            (x, outline.bone_centre_height + outline.bone_half_height * np.cos(phi))
+        )
 
     def bone_foot(self, points: np.ndarray) -> np.ndarray:
         """Angles phi (n,) of the bone's points nearest to `points` (n, 2), x >= 0, outside the bone."""
@@ -210,20 +223,27 @@ class OutlineCurve:
         theta = np.linspace(0.0, np.pi, _SAMPLES)
         radius = 1.0 / self.curvature(theta).max()
         if not 0.0 < thickness < radius:
-            raise OutlineError(f"{keys} must be above 0 and below the skin's smallest radius, {_mm(radius)}")
+            raise OutlineError(
+                f"{keys} must be above 0 and below the skin's smallest radius, {_mm(radius)}"
+            )
         skin = self.point(theta)
         outline = self.outline
         inside = np.hypot(
             skin[:, 0] / outline.bone_half_width,
             (skin[:, 1] - outline.bone_centre_height) / outline.bone_half_height,
         )
-        if inside.min() <= 1.0 or not -outline.depth_below < outline.bone_centre_height < outline.apex_height:
+        if (
+            inside.min() <= 1.0
+            or not -outline.depth_below < outline.bone_centre_height < outline.apex_height
+        ):
             raise OutlineError(
                 "outline: the bone (bone_centre_height, bone_half_width, bone_half_height) must lie inside the skin"
             )
         room = np.hypot(*(skin - self.bone_point(self.bone_foot(skin))).T).min()
         if thickness >= room:
-            raise OutlineError(f"{keys} reaches the bone, which leaves room for less than {_mm(room)}")
+            raise OutlineError(
+                f"{keys} reaches the bone, which leaves room for less than {_mm(room)}"
+            )
 
 
 @lru_cache(maxsize=16)  # of a sweep every finger may be another one

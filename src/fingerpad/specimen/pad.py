@@ -23,7 +23,9 @@ class MeshError(ValueError):
 
 def all_over(reach: float, edge: float) -> tuple[tuple[float, float], ...]:
     """A mesh size's ``focus`` with that ``edge`` (m) from the apex to so far (m) to either side of it."""
-    return tuple((float(x), edge) for x in np.linspace(0.0, reach, max(2, round(reach / edge / 2) + 1)))
+    return tuple(
+        (float(x), edge) for x in np.linspace(0.0, reach, max(2, round(reach / edge / 2) + 1))
+    )
 
 
 @dataclass(frozen=True)
@@ -61,9 +63,13 @@ class MeshSize:
             if length is not None and not 0.0 < length < np.inf:
                 raise MeshError(f"mesh size: {key} is {length!r} m; it must be above 0")
         if not 0.0 <= self.fine_half_width < np.inf:
-            raise MeshError(f"mesh size: fine_half_width is {self.fine_half_width!r} m; it must be 0 or more")
+            raise MeshError(
+                f"mesh size: fine_half_width is {self.fine_half_width!r} m; it must be 0 or more"
+            )
         if not 1.0 < self.growth <= 3.0:
-            raise MeshError(f"mesh size: growth is {self.growth!r}; it must be above 1 and at most 3")
+            raise MeshError(
+                f"mesh size: growth is {self.growth!r}; it must be above 1 and at most 3"
+            )
 
     def coarser(self, ratio: float) -> MeshSize:
         """The size of a mesh whose edges are so many times as long everywhere, as nearly as growth up to 3 has it."""
@@ -118,7 +124,9 @@ class PadMesh:
         if self.half:
             return self
         if not self.symmetric:
-            raise MeshError("mesh: no right half, for the mesh is not its own mirror image in x = 0")
+            raise MeshError(
+                "mesh: no right half, for the mesh is not its own mirror image in x = 0"
+            )
         kept = self.points[self.cells[:, : KINDS[self.element].corners], 0].mean(axis=1) > 0.0
         nodes = np.unique(self.cells[kept])
         number = np.full(len(self.points), -1, dtype=np.int32)
@@ -132,12 +140,20 @@ class PadMesh:
             facets = number[facets]
             curves[name] = facets[(facets >= 0).all(axis=1)]
         rim = element_edges(cells, self.element)
-        curves["symmetry"] = rim[on_axis[rim[:, :2]].all(axis=1)][:, [1, 0, *range(2, rim.shape[1])]]
-        return replace(self, points=points, cells=cells, region=self.region[kept], curves=curves, half=True)
+        curves["symmetry"] = rim[on_axis[rim[:, :2]].all(axis=1)][
+            :, [1, 0, *range(2, rim.shape[1])]
+        ]
+        return replace(
+            self, points=points, cells=cells, region=self.region[kept], curves=curves, half=True
+        )
 
     def elevated(self, solved: str | None = None) -> PadMesh:
         """The mesh with mid-side nodes where it needs some: of linear triangles always, of quads for the element "Q2P1"."""
-        return self.raised() if self.element == "tri3" or (self.element == "quad4" and solved == "Q2P1") else self
+        return (
+            self.raised()
+            if self.element == "tri3" or (self.element == "quad4" and solved == "Q2P1")
+            else self
+        )
 
     def raised(self) -> PadMesh:
         """The same elements with mid-side nodes (tri3 -> tri6), and quads with a centre node (quad4 -> quad9).
@@ -151,7 +167,10 @@ class PadMesh:
         pairs, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
         first, count = len(self.points), len(self.cells)
         middle = first + index.reshape(-1).astype(np.int32)
-        parts, cells = [self.points, self.points[pairs].mean(axis=1)], [self.cells, middle.reshape(-1, count).T]
+        parts, cells = (
+            [self.points, self.points[pairs].mean(axis=1)],
+            [self.cells, middle.reshape(-1, count).T],
+        )
         if self.element == "quad4":
             parts.append(self.points[self.cells].mean(axis=1))
             cells.append(first + len(pairs) + np.arange(count, dtype=np.int32)[:, None])
@@ -162,12 +181,16 @@ class PadMesh:
         owner[index.reshape(-1)] = np.arange(len(edges)) % count
         parts[1][sides] += _bulge(self.points[skin], _areas(self.points[self.cells[owner[sides]]]))
         curves = {
-            name: np.array([(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32).reshape(-1, 3)
+            name: np.array(
+                [(a, b, known[min(a, b), max(a, b)]) for a, b in facets.tolist()], dtype=np.int32
+            ).reshape(-1, 3)
             for name, facets in self.curves.items()
         }
         element = "tri6" if self.element == "tri3" else "quad9"
         cells = np.column_stack(cells).astype(np.int32)
-        return replace(self, points=np.concatenate(parts), cells=cells, element=element, curves=curves)
+        return replace(
+            self, points=np.concatenate(parts), cells=cells, element=element, curves=curves
+        )
 
 
 def _areas(corners: np.ndarray) -> np.ndarray:
@@ -185,7 +208,9 @@ def _bulge(ends: np.ndarray, areas: np.ndarray) -> np.ndarray:
     chord = ends[:, 1] - ends[:, 0]
     length = np.hypot(*chord.T)
     turn = np.diff(np.unwrap(np.arctan2(chord[:, 1], chord[:, 0])))
-    bend = np.where(np.abs(turn) <= np.radians(30), turn / (0.5 * (length[1:] + length[:-1])), np.nan)
+    bend = np.where(
+        np.abs(turn) <= np.radians(30), turn / (0.5 * (length[1:] + length[:-1])), np.nan
+    )
     both = np.stack([np.append(np.nan, bend), np.append(bend, np.nan)])
     bend = np.where(np.isnan(both), 0.0, both).sum(0) / np.maximum(np.isfinite(both).sum(0), 1)
     rise = np.clip(-bend * length**2 / 8, -areas / length / 4, areas / length / 4)

@@ -17,7 +17,9 @@ from fingerpad.specimen.shapes import SHAPES
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-_SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5), (0.5, 0.5)])
+_SQUARE = np.array(
+    [(0, 0), (1, 0), (1, 1), (0, 1), (0.5, 0), (1, 0.5), (0.5, 1), (0, 0.5), (0.5, 0.5)]
+)
 _TRIANGLE = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
 _GAUSS = 0.5 + np.sqrt(0.6) * (_SQUARE - 0.5)
 _TRIANGLE_POINTS = np.array([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)])  # three-point rule
@@ -32,7 +34,9 @@ def sample_points(element: str) -> tuple[np.ndarray, np.ndarray]:
 
 def jacobians(mesh: PadMesh, at: np.ndarray) -> np.ndarray:
     """Jacobian matrices (elements, m, 2, 2) in m at reference points (m, 2); [..., k, :] is tangent k."""
-    return np.moveaxis(np.tensordot(mesh.points[mesh.cells], SHAPES[mesh.element](at)[1], axes=(1, 1)), 1, -1)
+    return np.moveaxis(
+        np.tensordot(mesh.points[mesh.cells], SHAPES[mesh.element](at)[1], axes=(1, 1)), 1, -1
+    )
 
 
 def _determinant(tangents: np.ndarray) -> np.ndarray:

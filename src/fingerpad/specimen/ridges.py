@@ -13,7 +13,10 @@ import numpy as np
 
 from fingerpad.specimen.outline import OutlineLike, curve_of
 
-_POWER = {"smooth": 1, "sharp": 2}  # of cos(pi u)^2: a sharp tip has half a smooth one's radius of curvature
+_POWER = {
+    "smooth": 1,
+    "sharp": 2,
+}  # of cos(pi u)^2: a sharp tip has half a smooth one's radius of curvature
 _MEAN = {"smooth": 1 / 2, "sharp": 3 / 8}
 _REACH = 0.25  # pitches by which the mesh still follows the ridges above their valleys and below their tips
 
@@ -76,14 +79,19 @@ class RidgedPad:
         else:
             self.tip = float(self.curve.arc_length(self.curve.theta_at_x(inner.phase))[0])
         self.period = (self.outer and self.outer.period) or self.pitch
-        halves = [2.0 * self.tip / length for length in (self.pitch, *([self.period] if self.outer else []))]
+        halves = [
+            2.0 * self.tip / length
+            for length in (self.pitch, *([self.period] if self.outer else []))
+        ]
         self.symmetric = all(abs(half - round(half)) < 1e-12 for half in halves)
         self.mean = mean_shape(inner.shape, inner.limiting)
         self.interface = self.curve.layer_depths[0]
         reach = _REACH * self.pitch
         room = 0.75 * (self.interface - corneum)
         self.above = self.interface - min(self.mean * inner.height + reach, room)
-        self.below = min(self.interface + (1.0 - self.mean) * inner.height + reach, self.curve.layer_depths[1])
+        self.below = min(
+            self.interface + (1.0 - self.mean) * inner.height + reach, self.curve.layer_depths[1]
+        )
 
     def _window(self, s: np.ndarray) -> np.ndarray:
         faded = np.clip((np.abs(s) - self.half_width) / self.pitch, 0.0, 1.0)
@@ -112,7 +120,9 @@ class RidgedPad:
         d = np.asarray(d, dtype=float)
         with_skin = np.clip((self.above - d) / (self.above - self.corneum), 0.0, 1.0)
         with_interface = np.clip((d - self.above) / (self.interface - self.above), 0.0, 1.0)
-        with_interface = np.minimum(with_interface, np.clip((self.below - d) / (self.below - self.interface), 0.0, 1.0))
+        with_interface = np.minimum(
+            with_interface, np.clip((self.below - d) / (self.below - self.interface), 0.0, 1.0)
+        )
         return d + self.skin_shift(s) * with_skin + self.interface_shift(s) * with_interface
 
     def nearest(self, which: str) -> tuple[float, float]:

@@ -40,10 +40,14 @@ def _serendipity(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Those of nine nodes, the centre's shared out: -1/4 to each corner, 1/2 to each middle of a side."""
     values, gradients = _quad(2, _QUAD9)(at)
     share = np.array([-0.25] * 4 + [0.5] * 4)
-    return values[:, :8] + values[:, 8:] * share, gradients[:, :8] + gradients[:, 8:] * share[:, None]
+    return values[:, :8] + values[:, 8:] * share, gradients[:, :8] + gradients[:, 8:] * share[
+        :, None
+    ]
 
 
-_TOWARDS = np.array([(-1.0, -1.0), (1.0, 0.0), (0.0, 1.0)])  # derivatives of a triangle's areal coordinates
+_TOWARDS = np.array(
+    [(-1.0, -1.0), (1.0, 0.0), (0.0, 1.0)]
+)  # derivatives of a triangle's areal coordinates
 
 
 def _areal(at: np.ndarray) -> np.ndarray:
@@ -67,11 +71,15 @@ def _triangle7(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Those of six nodes and a cubic bubble, made nodal at the centroid."""
     values, gradients = _triangle6(at)
     areal = _areal(at)
-    others = np.stack([areal[:, 1] * areal[:, 2], areal[:, 0] * areal[:, 2], areal[:, 0] * areal[:, 1]], axis=1)
+    others = np.stack(
+        [areal[:, 1] * areal[:, 2], areal[:, 0] * areal[:, 2], areal[:, 0] * areal[:, 1]], axis=1
+    )
     bubble, slope = 27 * areal.prod(axis=1, keepdims=True), 27 * others @ _TOWARDS
     centroid = np.array([-1 / 9] * 3 + [4 / 9] * 3)
     values = np.hstack([values - bubble * centroid, bubble])
-    return values, np.concatenate([gradients - slope[:, None] * centroid[:, None], slope[:, None]], axis=1)
+    return values, np.concatenate(
+        [gradients - slope[:, None] * centroid[:, None], slope[:, None]], axis=1
+    )
 
 
 SHAPES: dict[str, Shape] = {
@@ -95,7 +103,10 @@ def square_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
 def triangle_rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
     """Points (6 or 7, 2) of the reference triangle and weights, exact for polynomials of degree 4 or 5 (Dunavant 1985)."""
     if degree == 4:
-        a, share = np.array([0.445948490915965, 0.091576213509771]), np.array([0.223381589678011, 0.109951743655322])
+        a, share = (
+            np.array([0.445948490915965, 0.091576213509771]),
+            np.array([0.223381589678011, 0.109951743655322]),
+        )
         centre = np.zeros((0, 3))
     else:
         root = np.sqrt(15.0) * np.array([1.0, -1.0])

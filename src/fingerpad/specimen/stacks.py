@@ -48,22 +48,38 @@ def _columns(stack, size: MeshSize) -> np.ndarray:
         largest = min(largest, _TURN * stack.radius)
 
     def arc(x):
-        return abs(x) if stack.radius is None else stack.radius * np.arcsin(min(abs(x) / stack.radius, 1.0))
+        return (
+            abs(x)
+            if stack.radius is None
+            else stack.radius * np.arcsin(min(abs(x) / stack.radius, 1.0))
+        )
 
     focus = [(float(arc(x)), edge) for x, edge in size.focus if arc(x) < length]
     ends = [0.0, length] if fine == length else [0.0, fine, length]
-    return _graded(length, ends, lambda s: np.where(s <= fine, min(skin_edge, largest), largest), focus, size.growth)
+    return _graded(
+        length,
+        ends,
+        lambda s: np.where(s <= fine, min(skin_edge, largest), largest),
+        focus,
+        size.growth,
+    )
 
 
 def _rows(stack, size: MeshSize, depth: float) -> tuple[np.ndarray, np.ndarray]:
     """Depths of the row boundaries from the surface to ``depth``, and the layer of each row."""
     bounds = np.cumsum(stack.thicknesses)
     layer_edge = max(size.layer_edge, depth / _MOST)
-    first, slope, fine = min(size.skin_radial_edge or layer_edge, layer_edge), np.log(size.growth), 0.5 * size.fine_half_width
+    first, slope, fine = (
+        min(size.skin_radial_edge or layer_edge, layer_edge),
+        np.log(size.growth),
+        0.5 * size.fine_half_width,
+    )
     ends = [0.0, *(float(bound) for bound in bounds if bound < depth * (1 - 1e-9)), depth]
 
     def wanted(d):
-        edge = np.minimum(first + slope * d, layer_edge) + np.clip(slope * (d - fine), 0.0, _COARSEST * layer_edge)
+        edge = np.minimum(first + slope * d, layer_edge) + np.clip(
+            slope * (d - fine), 0.0, _COARSEST * layer_edge
+        )
         for low, high in pairwise(ends):
             edge = np.where((d >= low) & (d <= high), np.minimum(edge, (high - low) / _ROWS), edge)
         return edge
@@ -76,7 +92,9 @@ def _rows(stack, size: MeshSize, depth: float) -> tuple[np.ndarray, np.ndarray]:
 def _quads(columns: int, rows: int) -> np.ndarray:
     """Half steps (elements, 9, 2) of column and row, row after row; rows count downwards, nodes run counter-clockwise."""
     shape = np.array([(0, 2), (2, 2), (2, 0), (0, 0), (1, 2), (2, 1), (1, 0), (0, 1), (1, 1)])
-    start = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), indexing="xy"), axis=-1).reshape(-1, 1, 2)
+    start = np.stack(
+        np.meshgrid(np.arange(columns), np.arange(rows), indexing="xy"), axis=-1
+    ).reshape(-1, 1, 2)
     return 2 * start + shape
 
 
@@ -87,7 +105,10 @@ def _chain(nodes: np.ndarray) -> np.ndarray:
 
 def _slab(stack, size: MeshSize):
     """Points, cells, layer of each cell and curves of a slab's right half."""
-    x, (depth, layer) = with_middles(_columns(stack, size)), _rows(stack, size, sum(stack.thicknesses))
+    x, (depth, layer) = (
+        with_middles(_columns(stack, size)),
+        _rows(stack, size, sum(stack.thicknesses)),
+    )
     y = -with_middles(depth)
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     number = np.arange(len(points)).reshape(len(x), len(y))
@@ -113,7 +134,12 @@ def _half_round(stack, size: MeshSize):
         steps = _quads(wide, len(depth) - 1)
         base = np.concatenate((number[-1, :-1], number[::-1, -1]))
         curves = {"skin": number[:, 0], "base": base}
-        return points.reshape(-1, 2), number[steps[..., 0], steps[..., 1]], np.repeat(layer, wide), curves
+        return (
+            points.reshape(-1, 2),
+            number[steps[..., 0], steps[..., 1]],
+            np.repeat(layer, wide),
+            curves,
+        )
 
     # between the innermost circle and a block whose corner lies on the column nearest to 45 degrees
     inner = radius - ring
@@ -124,7 +150,9 @@ def _half_round(stack, size: MeshSize):
     side = np.clip((along - s[corner]) / (s[-1] - s[corner]), 0.0, 1.0)
     block = np.stack((cx * top, cy * (1.0 - side)), axis=-1)
     room = np.hypot(*(points[:, -1] - block).T).mean()
-    rings = max(2, int(np.ceil(room / max(depth[-1] - depth[-2], inner * np.diff(s).min() / radius))))
+    rings = max(
+        2, int(np.ceil(room / max(depth[-1] - depth[-2], inner * np.diff(s).min() / radius)))
+    )
     rings = min(rings, max(4, wide // 2))
     share = np.linspace(0.0, 1.0, 2 * rings + 1)[1:, None]
     between = (1.0 - share) * points[:, -1][:, None, :] + share * block[:, None, :]
@@ -139,13 +167,20 @@ def _half_round(stack, size: MeshSize):
     grid = np.empty((across, down), dtype=int)
     grid[:, 0], grid[-1, :] = number[:across, -1], number[2 * corner :, -1]
     grid[:-1, 1:] = number.size + np.arange((across - 1) * (down - 1)).reshape(across - 1, down - 1)
-    inside = np.stack(np.meshgrid(block[: across - 1, 0], block[2 * corner + 1 :, 1], indexing="ij"), axis=-1)
+    inside = np.stack(
+        np.meshgrid(block[: across - 1, 0], block[2 * corner + 1 :, 1], indexing="ij"), axis=-1
+    )
     steps = _quads(corner, wide - corner)
     cells.append(grid[steps[..., 0], steps[..., 1]])
     layer.append(np.full(len(steps), last))
     base = np.concatenate((number[-1, :-1], grid[::-1, -1]))
     points = np.concatenate((points.reshape(-1, 2), inside.reshape(-1, 2)))
-    return points, np.concatenate(cells), np.concatenate(layer), {"skin": number[:, 0], "base": base}
+    return (
+        points,
+        np.concatenate(cells),
+        np.concatenate(layer),
+        {"skin": number[:, 0], "base": base},
+    )
 
 
 def build_stack_mesh(stack, size: MeshSize) -> PadMesh:
@@ -165,7 +200,9 @@ def build_stack_mesh(stack, size: MeshSize) -> PadMesh:
     ------
     MeshError : when an element would be inverted.
     """
-    points, cells, region, curves = _slab(stack, size) if stack.radius is None else _half_round(stack, size)
+    points, cells, region, curves = (
+        _slab(stack, size) if stack.radius is None else _half_round(stack, size)
+    )
     on_axis = points[:, 0] == 0.0
     mirror = np.arange(len(points))
     mirror[~on_axis] = len(points) + np.arange(np.count_nonzero(~on_axis))
@@ -180,7 +217,9 @@ def build_stack_mesh(stack, size: MeshSize) -> PadMesh:
 
     mesh = PadMesh(
         points=np.concatenate((points, points[~on_axis] * (-1.0, 1.0))),
-        cells=np.concatenate((cells, mirror[cells][:, KINDS["quad9"].mirrored]))[by_layer].astype(np.int32),
+        cells=np.concatenate((cells, mirror[cells][:, KINDS["quad9"].mirrored]))[by_layer].astype(
+            np.int32
+        ),
         element="quad9",
         region=np.concatenate((region, region))[by_layer].astype(np.int8),
         curves={name: whole(name, line) for name, line in curves.items()},

@@ -18,7 +18,9 @@ NOISE = 8.0
 """Standard deviations of the noise, by which they may be off where that is more: from one extreme to the other."""
 MOST_PIECES = 2000
 """Of a course."""
-_COLUMN = re.compile(r"\s*(time|depth|force)(?:\s*[(\[](.*)[)\]]|\s*/\s*(.*)|_(.*))\s*", re.IGNORECASE)
+_COLUMN = re.compile(
+    r"\s*(time|depth|force)(?:\s*[(\[](.*)[)\]]|\s*/\s*(.*)|_(.*))\s*", re.IGNORECASE
+)
 _DIMENSIONS = {"time": "time", "depth": "length", "force": "force"}
 _ALLOWED = "the columns 'time (s)' and 'depth (mm)', or 'time (s)' and 'force (gf)'"
 
@@ -48,35 +50,53 @@ def read_course(path: str | Path) -> Course:
     if "time" not in columns:
         raise TableError(f"has no column 'time (s)', but {', '.join(table.header)[:60]}", _ALLOWED)
     kept = "depth" if "depth" in columns else "force"
-    times, values = (np.array(table.numbers(k)) * factor for k, factor in (columns["time"], columns[kept]))
+    times, values = (
+        np.array(table.numbers(k)) * factor for k, factor in (columns["time"], columns[kept])
+    )
     if len(times) < 2:
         raise TableError("has fewer than two rows", "a row for each sample")
     late = np.flatnonzero(np.diff(times) <= 0)
     if len(late):
-        raise TableError(f"has a time in row {table.lines[late[0] + 1]} that is not later than the one before", "times that rise")
+        raise TableError(
+            f"has a time in row {table.lines[late[0] + 1]} that is not later than the one before",
+            "times that rise",
+        )
     if not values.max() > 0:
         raise TableError(f"has no {kept} above zero", f"a {kept} that presses")
     if values.min() < -0.2 * values.max():
         row = table.lines[int(np.argmin(values))]
-        raise TableError(f"has a {kept} far below zero in row {row}: it presses the other way", "pressing is positive")
+        raise TableError(
+            f"has a {kept} far below zero in row {row}: it presses the other way",
+            "pressing is positive",
+        )
     values = np.maximum(values, 0.0)
     within = max(EXACT * values.max(), NOISE * _noise(values))
     corners = corners_of(times - times[0], values, within)
     if len(corners) > MOST_PIECES:
-        raise TableError(f"has {len(corners)} pieces that differ by more than its noise", f"up to {MOST_PIECES}; a shorter one")
+        raise TableError(
+            f"has {len(corners)} pieces that differ by more than its noise",
+            f"up to {MOST_PIECES}; a shorter one",
+        )
     times = times - times[0]
-    return Course(tuple(times[corners].tolist()), tuple(_fitted(times, values, corners).tolist()), kept)
+    return Course(
+        tuple(times[corners].tolist()), tuple(_fitted(times, values, corners).tolist()), kept
+    )
 
 
 def _columns(table: Table) -> dict[str, tuple[int, float]]:
     found = {}
     for k, name in enumerate(table.header):
         if match := _COLUMN.fullmatch(name):
-            unit, what = next(part for part in match.groups()[1:] if part is not None), match[1].lower()
+            unit, what = (
+                next(part for part in match.groups()[1:] if part is not None),
+                match[1].lower(),
+            )
             try:
                 found[what] = k, parse_quantity(f"1 {unit}", _DIMENSIONS[what])
             except QuantityError as error:
-                raise TableError(f"has the column '{name[:40]}', which {error.problem}", _ALLOWED) from None
+                raise TableError(
+                    f"has the column '{name[:40]}', which {error.problem}", _ALLOWED
+                ) from None
     return found
 
 

@@ -45,30 +45,48 @@ class Curve(Profile):
 
     def __init__(self, x, y, curvature):
         self.x, self.y, self.bend = (np.asarray(values, float) for values in (x, y, curvature))
-        if not 2 <= len(self.x) == len(self.y) == len(self.bend) + 1 or not np.all(np.diff(self.x) > 0):
+        if not 2 <= len(self.x) == len(self.y) == len(self.bend) + 1 or not np.all(
+            np.diff(self.x) > 0
+        ):
             raise ValueError("a profile needs at least two points with strictly increasing x")
         ends = np.column_stack([self.x, self.y])
         chord = np.diff(ends, axis=0)
         length = np.hypot(*chord.T)
-        slope, turn = np.arctan2(chord[:, 1], chord[:, 0]), np.arcsin(np.clip(self.bend * length / 2, -1, 1))
+        slope, turn = (
+            np.arctan2(chord[:, 1], chord[:, 0]),
+            np.arcsin(np.clip(self.bend * length / 2, -1, 1)),
+        )
         if self.bend[0] or self.bend[-1] or np.any(np.abs(slope) + np.abs(turn) >= np.pi / 2):
             raise ValueError("a profile starts and ends with lines, and its arcs are single-valued")
         slopes = np.tan(np.abs(slope) + np.abs(turn))
         self._steepest, self.steepness = float(slopes.max()), float(slopes[self.own].max())
         self._tangent = chord / length[:, None]
-        self._side = np.where(self.bend < 0, -1.0, 1.0)  # of the skin, seen from the centre of an arc
+        self._side = np.where(
+            self.bend < 0, -1.0, 1.0
+        )  # of the skin, seen from the centre of an arc
         self._line = self.bend == 0
-        self._radius = np.abs(np.divide(1.0, self.bend, out=np.zeros(len(length)), where=~self._line))
+        self._radius = np.abs(
+            np.divide(1.0, self.bend, out=np.zeros(len(length)), where=~self._line)
+        )
         to_chord = self._side * self._radius * np.cos(turn)
         self._centre = np.where(
-            self._line[:, None], ends[:-1], (ends[:-1] + ends[1:]) / 2 - to_chord[:, None] * _normal(self._tangent)
+            self._line[:, None],
+            ends[:-1],
+            (ends[:-1] + ends[1:]) / 2 - to_chord[:, None] * _normal(self._tangent),
         )  # of a line: its start
         self._reach = np.where(self._line, length, np.abs(turn))
         before, after = (slope + turn)[:-1], (slope - turn)[1:]
         self._kink = np.concatenate([[0.0], after - before])  # at the start of each piece
         self._bisector = np.concatenate([[0.0], (before + after) / 2])
         self._ends = self.x, self.y, self._kink, self._bisector
-        self._pieces = self._centre, self._tangent, self._side, self._radius, self._line, self._reach
+        self._pieces = (
+            self._centre,
+            self._tangent,
+            self._side,
+            self._radius,
+            self._line,
+            self._reach,
+        )
         self._valleys = np.flatnonzero(self._kink < -self.flat)
         self.valleys = len(self._valleys) > 0
         near = {"rtol": 0, "atol": 1e-9 * np.ptp(self.x)}
@@ -81,13 +99,18 @@ class Curve(Profile):
     @property
     def segments(self) -> list[Segment]:
         """The pieces from left to right; the first and the last go on beyond their ends."""
-        return [Segment(*map(float, piece)) for piece in zip(self.x, self.x[1:], self.bend, strict=False)]
+        return [
+            Segment(*map(float, piece))
+            for piece in zip(self.x, self.x[1:], self.bend, strict=False)
+        ]
 
     @property
     def dip(self):
         ends = self.x[:-1], self.x[1:]
         bottom = np.where(self.bend > 0, np.clip(self._centre[:, 0], *ends), self.x[:-1])
-        return float(self._height(np.array([0.0]))[0] - min(self._height(bottom).min(), self.y.min()))
+        return float(
+            self._height(np.array([0.0]))[0] - min(self._height(bottom).min(), self.y.min())
+        )
 
     @property
     def convexity(self):
@@ -99,7 +122,9 @@ class Curve(Profile):
     def corners(self):
         chord = np.diff(self.x)
         here = 1 + np.flatnonzero(self._kink[1:] > 0)
-        return np.column_stack([self.x[here], self._kink[here], np.minimum(chord[here - 1], chord[here])])
+        return np.column_stack(
+            [self.x[here], self._kink[here], np.minimum(chord[here - 1], chord[here])]
+        )
 
     def outline(self, x):
         return self._height(x)
@@ -112,7 +137,12 @@ class Curve(Profile):
 
     def _from_piece(self, points, piece):
         """Signed distance to a piece going on beyond its ends, with gradient and curvature."""
-        arm, tangent, side, line = points - self._centre[piece], self._tangent[piece], self._side[piece], self._line[piece]
+        arm, tangent, side, line = (
+            points - self._centre[piece],
+            self._tangent[piece],
+            self._side[piece],
+            self._line[piece],
+        )
         across, length = np.einsum("ni,ni->n", arm, _normal(tangent)), np.hypot(*arm.T)
         distance = np.where(line, across, side * (length - self._radius[piece]))
         bend = side / np.maximum(length, 1e-15)
@@ -123,7 +153,9 @@ class Curve(Profile):
         at, last = self._valleys[self._kink[self._valleys] < -flat], len(self.bend) - 1
         if not len(at):
             return super().walls(points, reach, flat)
-        chord = np.where((np.arange(last + 1) == 0) | (np.arange(last + 1) == last), np.inf, np.diff(self.x))
+        chord = np.where(
+            (np.arange(last + 1) == 0) | (np.arange(last + 1) == last), np.inf, np.diff(self.x)
+        )
         room = np.minimum(reach, np.minimum(chord[at - 1], chord[at]))
         behind = np.clip(np.searchsorted(self.x[at], points[:, 0]), 1, max(len(at) - 1, 1))
         beside = np.minimum(np.stack([behind - 1, behind]), len(at) - 1)
@@ -144,9 +176,23 @@ class Curve(Profile):
         x, y = points.T
         height = self._height(x)
         within = self._farthest(x, y, height) * (1 + 1e-9) + 2 * self.overlap
-        distance, gradient, curvature = np.empty(len(points)), np.empty(points.shape), np.empty(len(points))
+        distance, gradient, curvature = (
+            np.empty(len(points)),
+            np.empty(points.shape),
+            np.empty(len(points)),
+        )
         limits = self.overlap, self.touch
-        _closest(points, y > height, within, self._ends, self._pieces, limits, distance, gradient, curvature)
+        _closest(
+            points,
+            y > height,
+            within,
+            self._ends,
+            self._pieces,
+            limits,
+            distance,
+            gradient,
+            curvature,
+        )
         return distance, gradient, curvature
 
 

@@ -74,5 +74,9 @@ def closest(points, below, within, ends, pieces, limits, distance, gradient, cur
             distance[k], curvature[k] = side[on] * (length - radius[on]), bend
             gradient[k, 0], gradient[k, 1] = bend * arm_x, bend * arm_y
         if to_corner < touch and abs(kink[at]) > 1e-9:
-            gradient[k, 0], gradient[k, 1], curvature[k] = sin(bisector[at]), -cos(bisector[at]), 0.0
+            gradient[k, 0], gradient[k, 1], curvature[k] = (
+                sin(bisector[at]),
+                -cos(bisector[at]),
+                0.0,
+            )
     return looked

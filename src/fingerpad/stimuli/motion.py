@@ -91,7 +91,9 @@ class Stepping(NamedTuple):
         if self.parts is None:
             return ends[1:]
         parts = self.parts((ends[1:] + ends[:-1]) / 2)
-        return np.concatenate([np.linspace(a, b, n + 1)[1:] for a, b, n in zip(ends, ends[1:], parts, strict=False)])
+        return np.concatenate(
+            [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(ends, ends[1:], parts, strict=False)]
+        )
 
 
 class Outlook(NamedTuple):
@@ -141,7 +143,9 @@ class Leg(Strict):
         """Value of its key."""
         return getattr(self, self.key)
 
-    def path(self, at: Goal, last: float | None, reached: Reached, how: Stepping) -> tuple[np.ndarray, list[Goal], float | None]:
+    def path(
+        self, at: Goal, last: float | None, reached: Reached, how: Stepping
+    ) -> tuple[np.ndarray, list[Goal], float | None]:
         """Durations (s) of its steps and what each reaches, and the last of these durations (None: steady).
 
         Args:
@@ -166,7 +170,9 @@ _EARLY = 0.25
 """Of a press, in which the contact grows as the root of what has passed, and a curve through few of its states would be off."""
 
 
-def _ramp(start: float, end: float, speed: float | None, how: Stepping) -> tuple[list[float], np.ndarray, float | None]:
+def _ramp(
+    start: float, end: float, speed: float | None, how: Stepping
+) -> tuple[list[float], np.ndarray, float | None]:
     """Values from start to end, durations and the last of these; steady without a speed."""
     count = how.increments if speed is None else how.steps
     last = None if speed is None else abs(end - start) / speed / count
@@ -199,7 +205,9 @@ class PressToForce(Leg):
 
     def path(self, at, last, reached, how):
         rate = self.rate and self.rate / how.contact_length
-        values, sizes, last = _ramp(reached.force, self.press_to_force / how.contact_length, rate, how)
+        values, sizes, last = _ramp(
+            reached.force, self.press_to_force / how.contact_length, rate, how
+        )
         return sizes, [Goal(value, None, at.distance) for value in values], last
 
     def ahead(self, outlook):
@@ -251,7 +259,11 @@ class Hold(Leg):
 
     def path(self, at, last, reached, how):
         even = self.hold / how.steps
-        sizes = geometric(self.hold, how.steps, min(last or even, even)) if how.timed else np.array([self.hold])
+        sizes = (
+            geometric(self.hold, how.steps, min(last or even, even))
+            if how.timed
+            else np.array([self.hold])
+        )
         return sizes, [at] * len(sizes), last
 
     def ahead(self, outlook):
@@ -276,8 +288,12 @@ class Lift(Leg):
         return sizes, [Goal(None, value, at.distance) for value in values], last
 
     def ahead(self, outlook):
-        left = math.nan if outlook.moved else 0.0  # where the skin is touched depends on the surface there
-        return outlook._replace(time=outlook.time + _taking(outlook.depth - left, self.speed), force=0.0, depth=left)
+        left = (
+            math.nan if outlook.moved else 0.0
+        )  # where the skin is touched depends on the surface there
+        return outlook._replace(
+            time=outlook.time + _taking(outlook.depth - left, self.speed), force=0.0, depth=left
+        )
 
     def leaves(self, target):
         return None
@@ -303,11 +319,17 @@ class Follow(Leg):
         if "course" not in data:
             if not isinstance(data.get("table"), (str, Path)):
                 raise Problem("is not a path", "the path of a CSV file", ("table",))
-            path = expanded(data["table"]).absolute() if context is None else context.resolve(data["table"])
+            path = (
+                expanded(data["table"]).absolute()
+                if context is None
+                else context.resolve(data["table"])
+            )
             try:
                 data |= {"table": path, "course": read_course(path)}
             except FileNotFoundError:
-                raise Problem("is not an existing file", "the path of a CSV file", ("table",)) from None
+                raise Problem(
+                    "is not an existing file", "the path of a CSV file", ("table",)
+                ) from None
             except TableError as error:
                 raise Problem(error.problem, error.allowed, ("table",)) from None
             except (OSError, ValueError) as error:
@@ -356,9 +378,16 @@ class Follow(Leg):
                 sizes += geometric(end - start, count, min(first, (end - start) / count)).tolist()
             else:
                 sizes += [(end - start) / count] * count
-            ends += [before + (value - before) * k / count for k in range(1, count)] + [float(value)]
+            ends += [before + (value - before) * k / count for k in range(1, count)] + [
+                float(value)
+            ]
             before = value
-        goals = [Goal(end, None, at.distance) if self.course.kept == "force" else Goal(None, end, at.distance) for end in ends]
+        goals = [
+            Goal(end, None, at.distance)
+            if self.course.kept == "force"
+            else Goal(None, end, at.distance)
+            for end in ends
+        ]
         return np.array(sizes), goals, sizes[-1]
 
     def ahead(self, outlook):
@@ -413,7 +442,9 @@ class Slide(Leg):
 
     def ahead(self, outlook):
         kept = {"force": math.nan, "depth": math.nan} | {self.keep: getattr(outlook, self.keep)}
-        return outlook._replace(time=outlook.time + _taking(self.slide, self.speed), moved=True, **kept)
+        return outlook._replace(
+            time=outlook.time + _taking(self.slide, self.speed), moved=True, **kept
+        )
 
     def leaves(self, target):
         return target if target and target[0] == f"press_to_{self.keep}" else None
@@ -438,9 +469,13 @@ class StepAndRepeat(Leg):
         if count < 1 - 1e-9:
             raise Problem("is more than the whole distance", f"up to {whole}", ("every",))
         if count > MAXIMUM_STEPS:
-            raise Problem(f"makes more than {MAXIMUM_STEPS} indentations", "a larger distance", ("every",))
+            raise Problem(
+                f"makes more than {MAXIMUM_STEPS} indentations", "a larger distance", ("every",)
+            )
         if abs(count - round(count)) > 1e-6 * count:
-            raise Problem("does not divide the whole distance", f"a whole fraction of {whole}", ("every",))
+            raise Problem(
+                "does not divide the whole distance", f"a whole fraction of {whole}", ("every",)
+            )
         return self
 
     @property
@@ -450,7 +485,10 @@ class StepAndRepeat(Leg):
 
     def path(self, at, last, reached, how):
         count = round(abs(self.step) / self.every)
-        goals = [Goal(at.force, at.depth, at.distance + self.step * k / count) for k in range(1, count + 1)]
+        goals = [
+            Goal(at.force, at.depth, at.distance + self.step * k / count)
+            for k in range(1, count + 1)
+        ]
         return np.full(count, STEADY), goals, None
 
     def ahead(self, outlook):
@@ -470,7 +508,9 @@ def _check_leg(value: Any) -> Any:
             near = nearest(first, LEGS) if isinstance(first, str) else ""
             raise Problem(f"is not a known leg{near}", f"a leg of {', '.join(LEGS)}")
         if len(kinds) > 1:
-            raise Problem(f"is two legs in one: {' and '.join(kinds)}", "one of them in each entry of motion")
+            raise Problem(
+                f"is two legs in one: {' and '.join(kinds)}", "one of them in each entry of motion"
+            )
     elif not isinstance(value, Leg):
         raise Problem("is not a leg", LEG_EXAMPLE)
     return value
@@ -503,25 +543,49 @@ Motion = Annotated[_Motion, BeforeValidator(_check_motion, json_schema_input_typ
 def check_programme(legs: Sequence[Leg], length: float = math.inf) -> None:
     """Refuses legs that make no sense one after the other, on a surface of `length` m; `Problem` with the key below motion."""
     if not legs[0].presses:
-        raise Problem("comes before anything is pressed", "a press_to_force or press_to_depth leg first", (0, legs[0].key))
+        raise Problem(
+            "comes before anything is pressed",
+            "a press_to_force or press_to_depth leg first",
+            (0, legs[0].key),
+        )
     last: tuple[str, float] | None = None
     way, pressed = 0.0, False
     for i, leg in enumerate(legs):
         if leg.needs_contact and not pressed:
-            raise Problem("comes when nothing is pressed any more", "a press before it, or a hold", (i, leg.key))
+            raise Problem(
+                "comes when nothing is pressed any more",
+                "a press before it, or a hold",
+                (i, leg.key),
+            )
         way += leg.along
         if abs(leg.along) > MAXIMUM_STROKE:
             raise Problem("is too long a way", f"up to {MAXIMUM_STROKE:g} m", (i, leg.key))
         if leg.along and math.isfinite(length) and not -1e-9 <= way <= length + 1e-9:
             end = format_quantity(length, "length")
-            raise Problem("leads off the surface", f"to stay from 0 mm to {end} along it", (i, leg.key))
+            raise Problem(
+                "leads off the surface", f"to stay from 0 mm to {end} along it", (i, leg.key)
+            )
         if leg.presses and (leg.key, leg.target) == last:
-            raise Problem("is where the leg before ended", "another target, or a hold", (i, leg.key))
-        if leg.starts is not None and (i == 0 or (last and last[0] == f"press_to_{leg.course.kept}")):
-            before, quantity = 0.0 if i == 0 else last[1], "length" if leg.course.kept == "depth" else "force"
+            raise Problem(
+                "is where the leg before ended", "another target, or a hold", (i, leg.key)
+            )
+        if leg.starts is not None and (
+            i == 0 or (last and last[0] == f"press_to_{leg.course.kept}")
+        ):
+            before, quantity = (
+                0.0 if i == 0 else last[1],
+                "length" if leg.course.kept == "depth" else "force",
+            )
             if abs(leg.starts - before) > _APART * max(leg.course.values):
-                starts, there = format_quantity(leg.starts, quantity), format_quantity(before, quantity)
-                raise Problem(f"starts at {starts}, where the finger is at {there}", f"a first row at {there}", (i, leg.key))
+                starts, there = (
+                    format_quantity(leg.starts, quantity),
+                    format_quantity(before, quantity),
+                )
+                raise Problem(
+                    f"starts at {starts}, where the finger is at {there}",
+                    f"a first row at {there}",
+                    (i, leg.key),
+                )
         last = leg.leaves(last)
         pressed = leg.presses or (pressed and not leg.releases)
 
@@ -587,14 +651,23 @@ def programme(
         passes = leg.strokes and parts is not None
         for count, (dt, goal) in enumerate(zip(sizes, goals, strict=True), start=1):
             begin, time = time, time + (float(dt) if dt < STEADY else 0.0)
-            for cut in wanted[bisect_right(wanted, begin + 1e-9 * time) : bisect_left(wanted, time * (1 - 1e-9))]:
+            for cut in wanted[
+                bisect_right(wanted, begin + 1e-9 * time) : bisect_left(wanted, time * (1 - 1e-9))
+            ]:
                 at = _between(at, goal, (cut - begin) / (time - begin))
                 yield Step(number, cut, cut - begin, *at)
                 begin = cut
             left, early = len(goals) - count, count <= leg.early * len(goals)
             needed = not left if passes else early or dt >= STEADY or left % every == 0
             solved = bool(needed or among(wanted, time))
-            yield Step(number, time, time - begin if dt < STEADY else STEADY, *goal, fresh=leg.fresh, solved=solved)
+            yield Step(
+                number,
+                time,
+                time - begin if dt < STEADY else STEADY,
+                *goal,
+                fresh=leg.fresh,
+                solved=solved,
+            )
             at = goal
 
 
@@ -621,4 +694,9 @@ def _joined(sizes: np.ndarray, goals: list[Goal], stride: int) -> tuple[np.ndarr
 
 
 def _between(before: Goal, after: Goal, share: float) -> Goal:
-    return Goal(*(None if b is None else b if a is None else a + share * (b - a) for a, b in zip(before, after, strict=True)))
+    return Goal(
+        *(
+            None if b is None else b if a is None else a + share * (b - a)
+            for a, b in zip(before, after, strict=True)
+        )
+    )

@@ -72,7 +72,13 @@ class Profile:
 
         What turns by less than ``flat`` (rad) is no valley.
         """
-        return Walls(np.zeros(0, int), np.zeros(0, int), np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2)))
+        return Walls(
+            np.zeros(0, int),
+            np.zeros(0, int),
+            np.zeros((0, 2)),
+            np.zeros((0, 2, 2)),
+            np.zeros((0, 2)),
+        )
 
     def corners(self) -> np.ndarray:
         """Corners that bulge at the skin, (k, 3): x (m), the angle by which the surface turns (rad), the room beside it (m)."""

@@ -30,17 +30,27 @@ def run_batch(todo: Path, records: Path) -> None:
     spec = json.loads(todo.read_text(encoding="utf-8"))
     base = scene_of_record(spec["base"])
     unfinished = records.with_suffix(UNFINISHED)
-    before = signal.signal(signal.SIGTERM, _stop)  # whoever ends this process in order is not the scene's fault
+    before = signal.signal(
+        signal.SIGTERM, _stop
+    )  # whoever ends this process in order is not the scene's fault
     write, watch = Writer(unfinished), _Watch(records.with_suffix(".at"))
     try:
         for number, key, changes in spec["scenes"]:
             if key in write.known:
                 continue
             if (deaths := watch.deaths(key)) >= MOST_DEATHS:
-                record = _failed(f"its process was killed {deaths} times while it ran; is there memory enough?")
+                record = _failed(
+                    f"its process was killed {deaths} times while it ran; is there memory enough?"
+                )
             else:
                 with watch.over(key):
-                    record = _one(base, number, changes, spec, records.parent.parent / "histories" / f"{key}.nc")
+                    record = _one(
+                        base,
+                        number,
+                        changes,
+                        spec,
+                        records.parent.parent / "histories" / f"{key}.nc",
+                    )
             write({"key": key, "number": number} | record)
             write.known.add(key)
             print(number, key, record["diagnosis"] or "done", flush=True)
@@ -54,7 +64,9 @@ def _stop(*_: Any) -> None:
     raise KeyboardInterrupt
 
 
-def _one(base: Scene, number: int, changes: Mapping[str, Any], spec: Mapping[str, Any], file: Path) -> dict[str, Any]:
+def _one(
+    base: Scene, number: int, changes: Mapping[str, Any], spec: Mapping[str, Any], file: Path
+) -> dict[str, Any]:
     """The record of a scene, whatever becomes of it; OSError only if its history cannot be written."""
     started = time.perf_counter()
     try:
@@ -70,7 +82,11 @@ def _one(base: Scene, number: int, changes: Mapping[str, Any], spec: Mapping[str
 
 
 def _failed(diagnosis: str, wall: float = 0.0) -> dict[str, Any]:
-    return {"diagnosis": " ".join(diagnosis.split())[:500], "measures": [], "wall_s": round(wall, 4)}
+    return {
+        "diagnosis": " ".join(diagnosis.split())[:500],
+        "measures": [],
+        "wall_s": round(wall, 4),
+    }
 
 
 def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[str, Any]:

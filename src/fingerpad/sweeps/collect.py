@@ -19,7 +19,10 @@ from fingerpad.sweeps.records import read_records
 BLOCK = 500
 """Scenes that are held at once."""
 ABOUT = {
-    "estimated_error": ("1", "relative error that the run estimates of depth, width, pressure and strain energy"),
+    "estimated_error": (
+        "1",
+        "relative error that the run estimates of depth, width, pressure and strain energy",
+    ),
     "cpu_s": ("s", "process time of the simulation"),
     "nodes": ("1", "nodes of the mesh that was solved on"),
     "steps": ("1", "time steps or load increments"),
@@ -77,13 +80,18 @@ def _write(design: Mapping[str, Any], records: Iterable[Path], path: Path) -> No
                 for number in numbers.get(record["key"], ()):
                     if done[number] or (failed[number] and record["diagnosis"]):
                         continue  # once is enough, and a success counts more than a failure
-                    done[number], failed[number] = not record["diagnosis"], bool(record["diagnosis"])
+                    done[number], failed[number] = (
+                        not record["diagnosis"],
+                        bool(record["diagnosis"]),
+                    )
                     for name, value in _values(record, out):
                         columns.setdefault(name, {})[number] = value
             for name, values in columns.items():
                 out.write(name, values)
         if not (done | failed).all():
-            raise ValueError(f"{int((~(done | failed)).sum())} scenes have no record: run the sweep again")
+            raise ValueError(
+                f"{int((~(done | failed)).sum())} scenes have no record: run the sweep again"
+            )
         file.setncatts({"scenes": len(done), "failed": int(failed.sum())})
 
 
@@ -110,12 +118,19 @@ class _Out:
         self._file, self._shape = file, tuple(dimensions.values())
         self._names: dict[tuple[str, str], str] = {}
         self._variables: dict[str, Any] = {}
-        self._make("failed", "i1", {"long_name": "whether the scene could not be simulated", "units": "1"}, 0)
+        self._make(
+            "failed",
+            "i1",
+            {"long_name": "whether the scene could not be simulated", "units": "1"},
+            0,
+        )
         self._make("diagnosis", str, {"long_name": "why the scene could not be simulated"})
         for name, (unit, said) in ABOUT.items():
             self._make(name, "f8", {"units": unit, "long_name": said})
 
-    def _make(self, name: str, kind: Any, attributes: Mapping[str, str], fill: Any = np.nan) -> None:
+    def _make(
+        self, name: str, kind: Any, attributes: Mapping[str, str], fill: Any = np.nan
+    ) -> None:
         how = {} if kind is str else {"fill_value": fill, "zlib": True, "complevel": 1}
         if kind == "i1":
             how.pop("fill_value")
@@ -128,10 +143,16 @@ class _Out:
         if (quantity, condition) not in self._names:
             signed = re.sub(r"-(?=[\d.])", "minus ", f"{quantity} {condition}".strip())
             name = re.sub(r"\W+", "_", signed)
-            while name in self._file.variables:  # of a parameter, or of another measure: no table is lost for a name
+            while (
+                name in self._file.variables
+            ):  # of a parameter, or of another measure: no table is lost for a name
                 name += "_"
             said = f"{quantity.replace('_', ' ')}{', ' if condition else ''}{condition}"
-            self._make(name, "f8", {"units": unit, "long_name": said, "quantity": quantity, "condition": condition})
+            self._make(
+                name,
+                "f8",
+                {"units": unit, "long_name": said, "quantity": quantity, "condition": condition},
+            )
             self._names[quantity, condition] = name
         return self._names[quantity, condition]
 
@@ -153,7 +174,11 @@ def _coordinates(file: Any, parameters: list[Mapping[str, Any]]) -> None:
     for p in parameters:
         text = not p["unit"]
         variable = file.createVariable(p["name"], str if text else "f8", (p["dimension"],))
-        variable[:] = np.array([str(v) for v in p["values"]], object) if text else np.array(p["values"], float)
+        variable[:] = (
+            np.array([str(v) for v in p["values"]], object)
+            if text
+            else np.array(p["values"], float)
+        )
         attributes = {"long_name": p["key"], "units": p["unit"], "source": p["source"]}
         variable.setncatts({name: value for name, value in attributes.items() if value})
         if p["name"] != p["dimension"]:
@@ -172,7 +197,9 @@ def _tabulate(design: Mapping[str, Any], dataset: Path, path: Path) -> None:
         own = {p["name"] for p in design["parameters"]}
         last = ["estimated_error", "cpu_s", "nodes", "steps", "iterations", "failed", "diagnosis"]
         names = [*(name for name in file.variables if name not in own and name not in last), *last]
-        headers = [f"{p['name']} ({p['unit']})" if p["unit"] else p["name"] for p in design["parameters"]]
+        headers = [
+            f"{p['name']} ({p['unit']})" if p["unit"] else p["name"] for p in design["parameters"]
+        ]
         units = [getattr(file[name], "units", "") for name in names]
         heads = [
             f"{name} ({unit})" if unit and name not in ("failed", "diagnosis") else name
@@ -184,7 +211,12 @@ def _tabulate(design: Mapping[str, Any], dataset: Path, path: Path) -> None:
         inner = max(int(np.prod(shape[1:])), 1)
         slab = max(BLOCK // inner, 1)
         for start in range(0, shape[0], slab):
-            columns = [np.ma.filled(file[name][start : start + slab], np.nan if name != "diagnosis" else "") for name in names]
+            columns = [
+                np.ma.filled(
+                    file[name][start : start + slab], np.nan if name != "diagnosis" else ""
+                )
+                for name in names
+            ]
             columns = [np.asarray(column).reshape(-1) for column in columns]
             for k in range(len(columns[0])):
                 number = start * inner + k
@@ -198,7 +230,13 @@ def _cell(value: Any) -> Any:
     if isinstance(value, str):
         return value
     value = float(value)
-    return "" if np.isnan(value) else int(value) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    return (
+        ""
+        if np.isnan(value)
+        else int(value)
+        if value.is_integer() and abs(value) < 1e15
+        else repr(value)
+    )
 
 
 def open_sweep(folder: str | Path) -> Any:

@@ -44,7 +44,9 @@ def read(path: Path, accuracy: str | None) -> Read:
     try:
         return replace(found, base=found.base.with_accuracy(accuracy))
     except SceneError as error:
-        raise SceneError(str(error).replace(f"{found.base.name}: accuracy", "--accuracy", 1)) from None
+        raise SceneError(
+            str(error).replace(f"{found.base.name}: accuracy", "--accuracy", 1)
+        ) from None
 
 
 def plan(path: Path, accuracy: str | None, cores: int, as_json: bool) -> None:
@@ -83,24 +85,42 @@ def _print(design: Design, found: Forecast, cores: int) -> None:
     from rich.text import Text
 
     said, console = _said(design, found, cores), Console(highlight=False)
-    table = Table("key", "values", title=f"Sweep {said['sweep']}: {said['scenes']} scenes", title_justify="left")
+    table = Table(
+        "key",
+        "values",
+        title=f"Sweep {said['sweep']}: {said['scenes']} scenes",
+        title_justify="left",
+    )
     for p in design.parameters:
         unit = f" {p.unit}" if p.unit not in ("", "1") else ""
         shown = [
-            f"{v:.4g}" if isinstance(v, float) else str(v) for v in (sorted(p.values) if p.dimension != p.name else p.values)
+            f"{v:.4g}" if isinstance(v, float) else str(v)
+            for v in (sorted(p.values) if p.dimension != p.name else p.values)
         ]
         values = ", ".join(shown) if len(shown) <= 6 else f"{shown[0]} to {shown[-1]}"
-        table.add_row(Text(p.key), Text(f"{len(shown)}{' samples' if p.dimension != p.name else ''}: {values}{unit}"))
+        table.add_row(
+            Text(p.key),
+            Text(f"{len(shown)}{' samples' if p.dimension != p.name else ''}: {values}{unit}"),
+        )
     console.print(table)
-    effects = ", ".join(f"{name.replace('_', ' ')} in {n}" for name, n in found.effects.items()) or "none"
+    effects = (
+        ", ".join(f"{name.replace('_', ' ')} in {n}" for name, n in found.effects.items()) or "none"
+    )
     console.print(Text(f"effects: {effects} of {len(design)}"), soft_wrap=True)
     low, high = found.nodes
-    console.print(Text(f"nodes: {low}{f' to {high}' if high != low else ''}; largest expected error {found.worst_error:.1%}"))
+    console.print(
+        Text(
+            f"nodes: {low}{f' to {high}' if high != low else ''}; largest expected error {found.worst_error:.1%}"
+        )
+    )
     wall = _time(said["predicted_wall_s"])
     console.print(
-        Text(f"predicted cost: {_time(said['predicted_cost_s'])} of one core, {said['predicted_memory_MB']} MB a process; "
-             f"about {wall} on {cores} core{'s' if cores > 1 else ''}"), soft_wrap=True,
-    )  # fmt: skip
+        Text(
+            f"predicted cost: {_time(said['predicted_cost_s'])} of one core, {said['predicted_memory_MB']} MB a process; "
+            f"about {wall} on {cores} core{'s' if cores > 1 else ''}"
+        ),
+        soft_wrap=True,
+    )
 
 
 def _time(seconds: float) -> str:
@@ -164,12 +184,25 @@ def _watching(layout: Layout, quiet: bool) -> Iterator[Callable[[int, int], None
         yield None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
 
     columns = (
-        TextColumn(layout.name), BarColumn(), TextColumn("{task.completed} of {task.total} scenes"),
-        TextColumn("{task.fields[failed]} failed"), TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
-    )  # fmt: skip
-    with Progress(*columns, console=Console(stderr=True), transient=True, speed_estimate_period=120) as progress:
+        TextColumn(layout.name),
+        BarColumn(),
+        TextColumn("{task.completed} of {task.total} scenes"),
+        TextColumn("{task.fields[failed]} failed"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
+    with Progress(
+        *columns, console=Console(stderr=True), transient=True, speed_estimate_period=120
+    ) as progress:
         task = progress.add_task(layout.name, total=layout.missing, failed=0)
         yield lambda done, failed: progress.update(task, completed=done, failed=failed)

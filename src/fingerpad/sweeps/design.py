@@ -52,7 +52,9 @@ class Design:
         self._listed = [key for key in axes if key not in self._drawn]
         folder = read.file.absolute().parent
         said = [key for key in axes if not axes[key].drawn]
-        self._written = {key: [resolved(key, value, folder) for value in axes[key].written()] for key in said}
+        self._written = {
+            key: [resolved(key, value, folder) for value in axes[key].written()] for key in said
+        }
         self._values = {key: axes[key].labels() for key in said} | self._draws()
 
     def _draws(self) -> dict[str, list[float]]:
@@ -69,16 +71,23 @@ class Design:
 
             with warnings.catch_warnings():  # of samples that are no power of two
                 warnings.simplefilter("ignore")
-                shares = makers[sweep.design](len(drawn), rng=np.random.default_rng(sweep.seed)).random(sweep.samples)
+                shares = makers[sweep.design](
+                    len(drawn), rng=np.random.default_rng(sweep.seed)
+                ).random(sweep.samples)
         return {
-            key: [float(f"{value:.12g}") for value in quantiles(sweep.over[key], shares[:, k])] for k, key in enumerate(drawn)
+            key: [float(f"{value:.12g}") for value in quantiles(sweep.over[key], shares[:, k])]
+            for k, key in enumerate(drawn)
         }
 
     @cached_property
     def dimensions(self) -> dict[str, int]:
         """Dimension of the result -> its length: of the draws ("scene", "draw" where they are crossed), then of each axis."""
         names = self.read.names
-        draws = {"draw" if self._listed else "scene": len(self._values[self._drawn[0]])} if self._drawn else {}
+        draws = (
+            {"draw" if self._listed else "scene": len(self._values[self._drawn[0]])}
+            if self._drawn
+            else {}
+        )
         return draws | {names[key]: len(self._written[key]) for key in self._listed}
 
     @cached_property
@@ -90,7 +99,11 @@ class Design:
             name = self.read.names[key]
             dimension = next(iter(self.dimensions)) if key in self._drawn else name
             source = getattr(axis, "source", None) or ""
-            found.append(Parameter(name, key, unit.text if unit else "", dimension, self._values[key], source))
+            found.append(
+                Parameter(
+                    name, key, unit.text if unit else "", dimension, self._values[key], source
+                )
+            )
         return found
 
     def __len__(self) -> int:
@@ -109,7 +122,9 @@ class Design:
             if parameter.key in self._written:
                 out[parameter.key] = self._written[parameter.key][k]
             else:
-                out[parameter.key] = self.read.sweep.over[parameter.key].unit.written(parameter.values[k])
+                out[parameter.key] = self.read.sweep.over[parameter.key].unit.written(
+                    parameter.values[k]
+                )
         return out
 
     def said(self, number: int) -> str:
@@ -121,7 +136,9 @@ class Design:
         try:
             return self.read.base.varied(self.changes(number))
         except SceneError as error:
-            raise SceneError(f"{self.shown}: scene {number} ({self.said(number)}): {self.without_name(error)}") from None
+            raise SceneError(
+                f"{self.shown}: scene {number} ({self.said(number)}): {self.without_name(error)}"
+            ) from None
 
     @property
     def shown(self) -> str:

@@ -33,7 +33,11 @@ if TYPE_CHECKING:
     from fingerpad.scenes.scene import Scene
     from fingerpad.sweeps.language import Read
 
-RULES = next(p for p in (BUILT_IN / "sweeps.smk", BUILT_IN.parent / "workflow" / "rules" / "sweeps.smk") if p.exists())
+RULES = next(
+    p
+    for p in (BUILT_IN / "sweeps.smk", BUILT_IN.parent / "workflow" / "rules" / "sweeps.smk")
+    if p.exists()
+)
 """The rules of a sweep, which the project's Snakefile includes."""
 
 
@@ -88,7 +92,9 @@ def read_layout(folder: str | Path) -> Layout:
         raise SweepError(f"{folder}: holds no sweep; allowed: the folder of a sweep") from None
 
 
-def lay_out(read: Read, folder: Path, cores: int, force: bool = False, again: bool = False, progress=None) -> Layout:
+def lay_out(
+    read: Read, folder: Path, cores: int, force: bool = False, again: bool = False, progress=None
+) -> Layout:
     """Check and plan every scene of a sweep, and divide those that have no record yet into batches.
 
     Args:
@@ -106,7 +112,9 @@ def lay_out(read: Read, folder: Path, cores: int, force: bool = False, again: bo
     with contextlib.suppress(SweepError):
         before = read_layout(folder)
     if before and before.name != read.name and not force:
-        raise SweepError(f"--out: '{folder}' holds the sweep '{before.name}'; allowed: another --out, or --force to replace it")
+        raise SweepError(
+            f"--out: '{folder}' holds the sweep '{before.name}'; allowed: another --out, or --force to replace it"
+        )
     design = Design(read)
     design.check()
     keep, histories = read.sweep.keep, read.sweep.histories
@@ -138,7 +146,9 @@ def lay_out(read: Read, folder: Path, cores: int, force: bool = False, again: bo
             missing.append(number)
     needed = sum(expected.result_bytes[n] for n in missing)
     if folder.is_dir() and disk_is_full(folder, needed):
-        raise SweepError(f"--out: '{folder}' has no room for about {needed / 1e6:.2g} MB of results; allowed: a folder that has")
+        raise SweepError(
+            f"--out: '{folder}' has no room for about {needed / 1e6:.2g} MB of results; allowed: a folder that has"
+        )
     batches = {}
     for numbers in divided(missing, expected.cost_s, cores):
         name = _digest([keys[n] for n in numbers] + [again])[:12]
@@ -157,7 +167,14 @@ def lay_out(read: Read, folder: Path, cores: int, force: bool = False, again: bo
     wanted = set(keys)
     known = sorted({file for key, file in found.items() if key in wanted})
     write_text(folder / "design.json", json.dumps(about))
-    said = {"name": read.name, "digest": digest, "batches": batches, "known": known, "scenes": len(keys), "missing": len(missing)}
+    said = {
+        "name": read.name,
+        "digest": digest,
+        "batches": batches,
+        "known": known,
+        "scenes": len(keys),
+        "missing": len(missing),
+    }
     write_text(folder / "sweep.json", json.dumps(said, indent=1) + "\n")
     return Layout(folder, **said)
 
@@ -189,7 +206,10 @@ def _described(design: Any, keys: list[str]) -> dict[str, Any]:
 
     read = design.read
     said = read.sweep.model_dump(mode="json", exclude={"over", "scene"}, exclude_none=True)
-    over = {key: axis.model_dump(mode="json", exclude_none=True) for key, axis in read.sweep.over.items()}
+    over = {
+        key: axis.model_dump(mode="json", exclude_none=True)
+        for key, axis in read.sweep.over.items()
+    }
     about = {
         "title": f"fingerpad sweep {read.name}",
         "sweep": json.dumps(said | {"over": over}),
@@ -206,13 +226,17 @@ def _described(design: Any, keys: list[str]) -> dict[str, Any]:
 def held(folder: Path) -> Iterator[tuple[int, ...]]:
     """The folder of a sweep, for this process alone, by the descriptors yielded. Raises SweepError."""
     if (wrong := unusable(folder.absolute())) or set("{}") & set(str(folder.absolute())):
-        raise SweepError(f"--out: '{folder}' has {wrong or 'braces'} in its name; allowed: a folder without")
+        raise SweepError(
+            f"--out: '{folder}' has {wrong or 'braces'} in its name; allowed: a folder without"
+        )
     folder.mkdir(parents=True, exist_ok=True)
     with contextlib.ExitStack() as stack:
         try:
             lock = stack.enter_context(locked(folder))
         except BlockingIOError:
-            raise SweepError(f"'{folder}' is being written by another sweep; allowed: another folder, or later") from None
+            raise SweepError(
+                f"'{folder}' is being written by another sweep; allowed: another folder, or later"
+            ) from None
         yield lock
 
 
@@ -237,9 +261,15 @@ def run_layout(
     # started in the folder: Snakemake takes braces in names for wildcards
     words = [sys.executable, "-P", "-m", "snakemake", "--snakefile", str(RULES)]
     words += ["--rerun-incomplete", "--keep-going", "--nocolor"]
-    words += ["--workflow-profile", str(Path(profile).absolute())] if profile else ["--cores", str(cores), "--retries", "2"]
+    words += (
+        ["--workflow-profile", str(Path(profile).absolute())]
+        if profile
+        else ["--cores", str(cores), "--retries", "2"]
+    )
     (folder / ".snakemake" / "locks").mkdir(parents=True, exist_ok=True)
-    for lock in (folder / ".snakemake" / "locks").glob("*.lock"):  # the folder is ours, so whoever set them is dead
+    for lock in (folder / ".snakemake" / "locks").glob(
+        "*.lock"
+    ):  # the folder is ours, so whoever set them is dead
         lock.unlink()
     log = folder / "logs" / "snakemake.log"
     with log.open("w", encoding="utf-8") as said:
@@ -335,8 +365,14 @@ def sweep(
 
     base = load_scene(scene)
     with contextlib.ExitStack() as stack:
-        folder = Path(out) if out is not None else Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="fingerpad-")))
+        folder = (
+            Path(out)
+            if out is not None
+            else Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="fingerpad-")))
+        )
         lock = stack.enter_context(held(folder))
-        layout = lay_out(load_sweep({"over": over, **more}, folder.name if out else "sweep", base), folder, cores)
+        layout = lay_out(
+            load_sweep({"over": over, **more}, folder.name if out else "sweep", base), folder, cores
+        )
         run_layout(layout, cores, profile, lock=lock)
         return xr.load_dataset(folder / "sweep.nc", engine="netcdf4")

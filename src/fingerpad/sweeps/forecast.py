@@ -65,10 +65,16 @@ def forecast(design: Design, progress: Callable[[int], object] | None = None) ->
         try:
             how = plan(scene)
         except (PlanError, OutlineError, MeshError) as error:
-            raise SceneError(f"{design.shown}: scene {number} ({design.said(number)}): {design.without_name(error)}") from None
+            raise SceneError(
+                f"{design.shown}: scene {number} ({design.said(number)}): {design.without_name(error)}"
+            ) from None
         found.cost_s.append(SECONDS_SCENE + how.predicted_cost_s - RULES.seconds_start)
-        found.memory_MB.append(MEMORY_MB + 1e-6 * how.nodes * (RULES.bytes_node + RULES.bytes_step * how.steps))
-        found.result_bytes.append(RECORD_BYTES + (how.result_bytes(scene) if design.read.sweep.histories else 0.0))
+        found.memory_MB.append(
+            MEMORY_MB + 1e-6 * how.nodes * (RULES.bytes_node + RULES.bytes_step * how.steps)
+        )
+        found.result_bytes.append(
+            RECORD_BYTES + (how.result_bytes(scene) if design.read.sweep.histories else 0.0)
+        )
         found.effects.update(name for name, effect in how.effects.items() if effect.on)
         found.worst_error = max(found.worst_error, how.estimated_error)
         nodes.append(how.nodes)

@@ -52,7 +52,10 @@ class Unit:
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             return cls("1", "dimensionless", 1.0)
         if not isinstance(value, str):
-            raise Problem("is not a number with its unit", "text such as '15 kPa', or a number where none is needed")
+            raise Problem(
+                "is not a number with its unit",
+                "text such as '15 kPa', or a number where none is needed",
+            )
         try:
             text = unit_of(value) or "1"
         except QuantityError as error:
@@ -66,12 +69,20 @@ class Unit:
 
     def read(self, value: Any) -> float:
         """A quantity in this unit. Raises `Problem` if it is none, or of another dimension."""
-        if self.dimension == "dimensionless" and isinstance(value, (int, float)) and not isinstance(value, bool):
+        if (
+            self.dimension == "dimensionless"
+            and isinstance(value, (int, float))
+            and not isinstance(value, bool)
+        ):
             return float(value)
         try:
             found = parse_quantity(value, self.dimension)
             # a number in this unit as it is written, without a way through SI and back
-            return number_of(value) if unit_of(value) == self.text else float(f"{found / self.si:.12g}")
+            return (
+                number_of(value)
+                if unit_of(value) == self.text
+                else float(f"{found / self.si:.12g}")
+            )
         except QuantityError as error:
             raise Problem(error.problem, error.allowed) from None
 
@@ -97,8 +108,10 @@ def _pair(value: Any) -> Any:
 
 
 Pair = Annotated[
-    tuple[Quantity, Quantity], BeforeValidator(_pair), Field(json_schema_extra={"minItems": 2, "maxItems": 2})
-]  # fmt: skip
+    tuple[Quantity, Quantity],
+    BeforeValidator(_pair),
+    Field(json_schema_extra={"minItems": 2, "maxItems": 2}),
+]
 
 
 # --- what an axis can be ------------------------------------------------------------------------------------------------
@@ -153,7 +166,11 @@ class Values(Axis):
         return list(self.values)
 
     def labels(self):
-        return [self._unit.read(value) for value in self.values] if self._unit else [_word(value) for value in self.values]
+        return (
+            [self._unit.read(value) for value in self.values]
+            if self._unit
+            else [_word(value) for value in self.values]
+        )
 
 
 class Words(Axis):
@@ -170,7 +187,12 @@ class Words(Axis):
 
 
 def _pattern(value: Any) -> Any:
-    if not isinstance(value, str) or value in ("", ".", "..") or {"/", "\0"} & set(value) or "**" in value:
+    if (
+        not isinstance(value, str)
+        or value in ("", ".", "..")
+        or {"/", "\0"} & set(value)
+        or "**" in value
+    ):
         raise Problem("is not the pattern of a file's name", "one such as *.csv, without folders")
     return value
 
@@ -232,7 +254,11 @@ class Range(Axis):
         import numpy as np
 
         low, high = self.ends
-        steps = np.geomspace(low, high, self.count) if self.spacing == "logarithmic" else np.linspace(low, high, self.count)
+        steps = (
+            np.geomspace(low, high, self.count)
+            if self.spacing == "logarithmic"
+            else np.linspace(low, high, self.count)
+        )
         return [float(f"{value:.12g}") for value in steps]
 
     def written(self):
@@ -243,7 +269,11 @@ class Range(Axis):
         from scipy import stats
 
         low, high = sorted(self.ends)
-        return stats.loguniform(low, high) if self.spacing == "logarithmic" else stats.uniform(low, high - low)
+        return (
+            stats.loguniform(low, high)
+            if self.spacing == "logarithmic"
+            else stats.uniform(low, high - low)
+        )
 
 
 class Normal(Strict):
@@ -284,7 +314,13 @@ class Distribution(Axis):
 
     @property
     def unit(self):
-        return Unit.of(self.uniform[0] if self.uniform else self.normal.mean if self.normal else self.lognormal.median)
+        return Unit.of(
+            self.uniform[0]
+            if self.uniform
+            else self.normal.mean
+            if self.normal
+            else self.lognormal.median
+        )
 
     def distribution(self) -> Any:
         """The distribution of scipy's, in `unit`, not truncated. Raises `Problem`."""
@@ -297,7 +333,9 @@ class Distribution(Axis):
         if self.normal:
             sd = _at("normal", lambda value: _at("sd", unit.read, value), self.normal.sd)
             if not sd > 0:
-                raise Problem("is not above zero", "a standard deviation above zero", ("normal", "sd"))
+                raise Problem(
+                    "is not above zero", "a standard deviation above zero", ("normal", "sd")
+                )
             return stats.norm(unit.read(self.normal.mean), sd)
         median = unit.read(self.lognormal.median)
         if not median > 0:
@@ -312,7 +350,9 @@ def quantiles(axis: Range | Distribution, shares: Any) -> Any:
     if getattr(axis, "within", None):
         low, high = found.cdf(_rising("within", axis.within, axis.unit))
         if not high > low:
-            raise Problem("leaves nothing of the distribution", "a range that has some of it", ("within",))
+            raise Problem(
+                "leaves nothing of the distribution", "a range that has some of it", ("within",)
+            )
     return found.ppf(low + shares * (high - low))
 
 
@@ -331,9 +371,14 @@ def _at(key: str, do: Callable, value: Any) -> Any:
 
 
 _KINDS: dict[str, type[Axis]] = {
-    "values": Values, "words": Words, "folder": Folder, "range": Range,
-    "uniform": Distribution, "normal": Distribution, "lognormal": Distribution,
-}  # fmt: skip
+    "values": Values,
+    "words": Words,
+    "folder": Folder,
+    "range": Range,
+    "uniform": Distribution,
+    "normal": Distribution,
+    "lognormal": Distribution,
+}
 """Key that an axis is known by -> what it is."""
 
 
@@ -361,8 +406,14 @@ def _checked(kind: type[Axis], value: Mapping[str, Any], context: Any) -> Axis:
         first = error.errors()[0]
         cause = first.get("ctx", {}).get("error")
         problem = getattr(cause, "problem", None) or f"is not valid: {first['msg']}"
-        key = tuple(part for part in first["loc"] if part in value or isinstance(part, int) or part in ("mean", "sd", "median"))
-        raise Problem(problem, getattr(cause, "allowed", ""), key + getattr(cause, "key", ())) from None
+        key = tuple(
+            part
+            for part in first["loc"]
+            if part in value or isinstance(part, int) or part in ("mean", "sd", "median")
+        )
+        raise Problem(
+            problem, getattr(cause, "allowed", ""), key + getattr(cause, "key", ())
+        ) from None
     if axis.drawn:
         quantiles(axis, 0.5)
     elif not axis.labels():
@@ -372,7 +423,10 @@ def _checked(kind: type[Axis], value: Mapping[str, Any], context: Any) -> Axis:
 
 def _over(value: Any, info: ValidationInfo) -> dict[str, Axis]:
     if not isinstance(value, Mapping) or not value:
-        raise Problem("is not a mapping of keys", "keys of the scene such as stimulus.curvature, each with its values")
+        raise Problem(
+            "is not a mapping of keys",
+            "keys of the scene such as stimulus.curvature, each with its values",
+        )
     axes = {}
     for key, given in value.items():
         if key == "table":
@@ -400,7 +454,9 @@ def _columns(value: Any, info: ValidationInfo) -> dict[str, Column]:
                 raise TableError(f"has two columns of the key '{key[:60]}'", "each key once")
             found[key] = _checked(Column, {"values": values}, info.context) if values else None
     except FileNotFoundError:
-        raise Problem("is not an existing file", "the path of a CSV file, relative to the sweep") from None
+        raise Problem(
+            "is not an existing file", "the path of a CSV file, relative to the sweep"
+        ) from None
     except TableError as error:
         raise Problem(error.problem, error.allowed) from None
     except OSError as error:
@@ -429,7 +485,9 @@ def _keep(value: Any) -> Any:
             allowed = f"{', '.join(OF_ANY)}, and those of measures.csv"
             raise Problem(f"is not a measure{nearest(name, measures)}", allowed, (i,))
         if measures[name].beside or measures[name].of == "mesh":
-            raise Problem("is not a measure of one history", "measures of one history or of a scene", (i,))
+            raise Problem(
+                "is not a measure of one history", "measures of one history or of a scene", (i,)
+            )
     return tuple(dict.fromkeys(value))
 
 
@@ -459,7 +517,10 @@ class Sweep(Strict):
     histories: bool = False
     """Whether the history of every scene is kept, as a file."""
     accuracy: Any = Field(
-        default=None, json_schema_extra={"anyOf": [{"enum": list(LEVELS)}, {"type": "number"}, {"type": "object"}]}
+        default=None,
+        json_schema_extra={
+            "anyOf": [{"enum": list(LEVELS)}, {"type": "number"}, {"type": "object"}]
+        },
     )
     """Accuracy in place of what the scene says."""
 
@@ -481,14 +542,22 @@ class Read:
         for key, parts in keys.items():
             most = max(map(len, keys.values()))
             # a bare number says nothing
-            least = next((n for n in range(1, len(parts) + 1) if not parts[-n].isdigit()), len(parts))
+            least = next(
+                (n for n in range(1, len(parts) + 1) if not parts[-n].isdigit()), len(parts)
+            )
             others = [words for other, words in keys.items() if other != key]
-            enough = (n for n in range(least, most + 1) if not any(words[-n:] == parts[-n:] for words in others))
+            enough = (
+                n
+                for n in range(least, most + 1)
+                if not any(words[-n:] == parts[-n:] for words in others)
+            )
             found[key] = self.sweep.over[key].name or "_".join(parts[-next(enough, most) :])
         return found
 
 
-def load_sweep(source: str | Path | Mapping[str, Any], name: str = "sweep", scene: Scene | None = None) -> Read:
+def load_sweep(
+    source: str | Path | Mapping[str, Any], name: str = "sweep", scene: Scene | None = None
+) -> Read:
     """Read and check a sweep.
 
     Args:
@@ -520,7 +589,9 @@ def _base(scene: Any, path: Path) -> Scene:
     if isinstance(scene, Mapping):
         return load_scene(scene, str(path.with_suffix("")))
     if not isinstance(scene, str):
-        raise SceneError(f"{path}: scene: is not a scene; allowed: the path of a scene relative to this file, or a scene")
+        raise SceneError(
+            f"{path}: scene: is not a scene; allowed: the path of a scene relative to this file, or a scene"
+        )
     return load_scene(path.parent / expanded(scene))
 
 
@@ -534,9 +605,17 @@ def _check(read: Read, shown: Any) -> None:
 
     if drawn and sweep.design == "grid":
         more = "a count, or " if isinstance(axes[drawn[0]], Range) else ""
-        raise wrong(f"over.{drawn[0]}", "is drawn, but the design is a grid", f"{more}design: latin_hypercube or sobol")
+        raise wrong(
+            f"over.{drawn[0]}",
+            "is drawn, but the design is a grid",
+            f"{more}design: latin_hypercube or sobol",
+        )
     if not drawn and sweep.design != "grid":
-        raise wrong("design", f"{sweep.design} draws, but no key is a distribution", "a distribution, or design: grid")
+        raise wrong(
+            "design",
+            f"{sweep.design} draws, but no key is a distribution",
+            "a distribution, or design: grid",
+        )
     if drawn and sweep.samples is None:
         raise wrong("samples", "is missing", "how many points are drawn")
     if not drawn and sweep.samples is not None:
@@ -545,12 +624,22 @@ def _check(read: Read, shown: Any) -> None:
     for name in names:
         if names.count(name) > 1 or not name.replace("_", "").isalnum():
             raise wrong(
-                "over", f"the name {name!r} is {'given twice' if names.count(name) > 1 else 'not one word'}", "a name each"
+                "over",
+                f"the name {name!r} is {'given twice' if names.count(name) > 1 else 'not one word'}",
+                "a name each",
             )
     tabled = [len(axis.values) for axis in axes.values() if isinstance(axis, Column)]
     if tabled and drawn:
-        raise wrong(f"over.{drawn[0]}", "is drawn beside a table of samples", "a list, or a column of the table")
-    listed = math.prod(len(axis.labels()) for axis in axes.values() if not axis.drawn and not isinstance(axis, Column))
+        raise wrong(
+            f"over.{drawn[0]}",
+            "is drawn beside a table of samples",
+            "a list, or a column of the table",
+        )
+    listed = math.prod(
+        len(axis.labels())
+        for axis in axes.values()
+        if not axis.drawn and not isinstance(axis, Column)
+    )
     count = (sweep.samples or 1) * listed * (tabled[0] if tabled else 1)
     if count > MOST:
         raise wrong("over", f"makes {count} scenes", f"up to {MOST}")
@@ -568,7 +657,11 @@ def resolved(key: str, value: Any, folder: Path) -> Any:
 def _word(value: Any) -> str:
     if isinstance(value, Mapping):
         return ", ".join(f"{key} {_word(each)}" for key, each in value.items())
-    return Path(value).stem if isinstance(value, str) and value.endswith((".csv", ".msh")) else str(value)
+    return (
+        Path(value).stem
+        if isinstance(value, str) and value.endswith((".csv", ".msh"))
+        else str(value)
+    )
 
 
 def sweep_json_schema() -> dict[str, Any]:
@@ -580,13 +673,20 @@ def sweep_json_schema() -> dict[str, Any]:
         defs |= kind.pop("$defs", {})
     defs |= kinds
     anyof = [{"type": "array", "minItems": 1}, *({"$ref": f"#/$defs/{name}"} for name in kinds)]
-    table = {"type": "string", "description": "CSV file: a column for each key, its unit in brackets, and a row for each scene."}
+    table = {
+        "type": "string",
+        "description": "CSV file: a column for each key, its unit in brackets, and a row for each scene.",
+    }
     schema["properties"]["over"] |= {
         "properties": {"table": table},
         "additionalProperties": {"anyOf": anyof},
         "minProperties": 1,
     }
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_tidy(schema), "title": "A fingerpad sweep"}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **_tidy(schema),
+        "title": "A fingerpad sweep",
+    }
 
 
 def _tidy(schema: Any) -> Any:
@@ -595,5 +695,9 @@ def _tidy(schema: Any) -> Any:
         return [_tidy(item) for item in schema if item != {"type": "null"}]
     if not isinstance(schema, dict):
         return schema
-    tidy = {key: _tidy(value) for key, value in schema.items() if key != "title" and not (key == "default" and value is None)}
+    tidy = {
+        key: _tidy(value)
+        for key, value in schema.items()
+        if key != "title" and not (key == "default" and value is None)
+    }
     return tidy

@@ -24,13 +24,17 @@ def code() -> str:
     from fingerpad.results import provenance
 
     files = [code_digest(), *(code_digest(folder) for folder in plugins())]
-    libraries = {name: version for name, version in provenance()["packages"].items() if name != "fingerpad"}
+    libraries = {
+        name: version for name, version in provenance()["packages"].items() if name != "fingerpad"
+    }
     return hashlib.sha256(json.dumps([files, libraries], sort_keys=True).encode()).hexdigest()[:16]
 
 
 def key_of(scene: Scene, keep: tuple[str, ...], histories: bool) -> str:
     """What a scene's record is known by: a digest of its content, of what is kept of it, and of the code."""
-    content = {name: part for name, part in scene.canonical().items() if name not in ("name", "tags")}
+    content = {
+        name: part for name, part in scene.canonical().items() if name not in ("name", "tags")
+    }
     said = json.dumps([content, list(keep), histories, code()], sort_keys=True)
     return hashlib.sha256(said.encode()).hexdigest()[:20]
 

@@ -22,7 +22,11 @@ if "TRACE_DIRECTORY" in os.environ:
 
     def _write():
         files = {os.path.realpath(path) for path in opened}
-        files |= {os.path.realpath(module.__file__) for module in list(sys.modules.values()) if getattr(module, "__file__", None)}
+        files |= {
+            os.path.realpath(module.__file__)
+            for module in list(sys.modules.values())
+            if getattr(module, "__file__", None)
+        }
         inside = sorted(path[len(root) :] for path in files if path.startswith(root))
         with open(os.path.join(os.environ["TRACE_DIRECTORY"], f"{uuid.uuid4()}.json"), "w") as out:
             json.dump({"argv": sys.orig_argv[1:], "files": inside, "timers": len(timers)}, out)

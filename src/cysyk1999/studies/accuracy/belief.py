@@ -51,18 +51,28 @@ OUTSIDE: dict[str, dict[str, Any]] = {
     "plate_5_gf": {"stimulus": Flat(), "motion": _press(5.0)},
     "curvature_315_at_50_gf": _under(314.96, motion=_press(50.0)),
     "curvature_630_at_5_gf_in_33_ms": _under(629.92, motion=_press(5.0, rate=150.0)),
-    "curvature_157_stiff_epidermis": _under(157.48) | {LAYER("epidermis", "youngs_modulus"): 0.45e6},
-    "curvature_210_thin_epidermis": _under(209.97) | {"specimen.outline.epidermis_thickness": 0.5e-3},
+    "curvature_157_stiff_epidermis": _under(157.48)
+    | {LAYER("epidermis", "youngs_modulus"): 0.45e6},
+    "curvature_210_thin_epidermis": _under(209.97)
+    | {"specimen.outline.epidermis_thickness": 0.5e-3},
     "plate_soft_fat": {"stimulus": Flat(), LAYER("fat", "youngs_modulus"): 5e3},
-    "curvature_105_to_1_mm_at_8_mm_per_s": _under(104.99, motion=(PressToDepth(press_to_depth=1e-3, speed=8e-3), Hold(hold=1.0))),
+    "curvature_105_to_1_mm_at_8_mm_per_s": _under(
+        104.99, motion=(PressToDepth(press_to_depth=1e-3, speed=8e-3), Hold(hold=1.0))
+    ),
     "curvature_840_steady_10_gf": _under(840.0, motion=_press(10.0, rate=None, hold=None)),
-    "curvature_210_nearly_incompressible":
-        _under(209.97) | {LAYER(k, "poisson_ratio"): 0.4995 for k in ("epidermis", "dermis", "fat")},
-    "plate_10_gf_stroked_back":
-        {"stimulus": Flat(), "friction": 0.4, "motion": (*_press(10.0, hold=None), Slide(slide=-4e-3, speed=20e-3))},
-    "plate_30_gf_stroked_slowly":
-        {"stimulus": Flat(), "friction": 0.5, "motion": (*_press(30.0, hold=None), Slide(slide=3e-3, speed=5e-3))},
-}  # fmt: skip
+    "curvature_210_nearly_incompressible": _under(209.97)
+    | {LAYER(k, "poisson_ratio"): 0.4995 for k in ("epidermis", "dermis", "fat")},
+    "plate_10_gf_stroked_back": {
+        "stimulus": Flat(),
+        "friction": 0.4,
+        "motion": (*_press(10.0, hold=None), Slide(slide=-4e-3, speed=20e-3)),
+    },
+    "plate_30_gf_stroked_slowly": {
+        "stimulus": Flat(),
+        "friction": 0.5,
+        "motion": (*_press(30.0, hold=None), Slide(slide=3e-3, speed=5e-3)),
+    },
+}
 """Scenes outside the study by what is different in them. The last but one showed that errors of strokes add to those of presses;
 the last was added to check what the planner has made of that."""
 
@@ -74,10 +84,18 @@ def outside(base: Scene) -> dict[str, Scene]:
 
 STILL_FINER = 1.4
 """By how much the edges of a stroke's truth are shorter than the preset's, which is what a tight tolerance comes to itself."""
-QUANTITIES = ("indentation_depth", "contact_width", "centre_pressure", "peak_pressure", "strain_energy_density")
+QUANTITIES = (
+    "indentation_depth",
+    "contact_width",
+    "centre_pressure",
+    "peak_pressure",
+    "strain_energy_density",
+)
 
 
-def difference(found: xr.Dataset, truth: xr.Dataset, quantities: Iterable[str] = QUANTITIES) -> tuple[float, str]:
+def difference(
+    found: xr.Dataset, truth: xr.Dataset, quantities: Iterable[str] = QUANTITIES
+) -> tuple[float, str]:
     """Largest relative difference of two histories, and the quantity that has it.
 
     At the end of every leg; the pressure in the middle relative to the largest, for it may be next to nothing. Of a leg that
@@ -86,7 +104,10 @@ def difference(found: xr.Dataset, truth: xr.Dataset, quantities: Iterable[str] =
     """
     off = dict.fromkeys(quantities, 0.0)
     for leg in np.unique(truth.leg.values[1:]):
-        one, other = (history.isel(time=1 + np.flatnonzero(history.leg.values[1:] == leg)) for history in (found, truth))
+        one, other = (
+            history.isel(time=1 + np.flatnonzero(history.leg.values[1:] == leg))
+            for history in (found, truth)
+        )
         way, places = np.abs(one.stroke_distance.values), np.abs(other.stroke_distance.values)
         for name in quantities:
             values, exact = (np.atleast_2d(history[name].values.T) for history in (one, other))
@@ -95,7 +116,9 @@ def difference(found: xr.Dataset, truth: xr.Dataset, quantities: Iterable[str] =
                 there = np.stack([np.interp(way, places[order], curve[order]) for curve in exact])
                 error = np.sqrt(np.mean((values - there) ** 2, axis=1)) / np.abs(exact).max(axis=1)
             else:
-                largest = other.peak_pressure.values[-1] if name == "centre_pressure" else exact[:, -1]
+                largest = (
+                    other.peak_pressure.values[-1] if name == "centre_pressure" else exact[:, -1]
+                )
                 error = np.abs(values[:, -1] - exact[:, -1]) / np.abs(largest)
             off[name] = max(off[name], float(error.max()))
     worst = max(off, key=off.get)
@@ -105,14 +128,25 @@ def difference(found: xr.Dataset, truth: xr.Dataset, quantities: Iterable[str] =
 def record(history, error: float, worst: str, **more: Any) -> dict[str, Any]:
     """What a run believes, how wrong it is and in what, and what it took."""
     cost = json.loads(history.attrs["cost"])
-    believed = {"believed error (%)": 100 * float(history.attrs["estimated_error"]), "true error (%)": 100 * error}
-    took = {"nodes": cost["nodes"], "steps": states_found(history), "process time (s)": cost["cpu_s"]}
+    believed = {
+        "believed error (%)": 100 * float(history.attrs["estimated_error"]),
+        "true error (%)": 100 * error,
+    }
+    took = {
+        "nodes": cost["nodes"],
+        "steps": states_found(history),
+        "process time (s)": cost["cpu_s"],
+    }
     return believed | {"worst quantity": worst} | more | took
 
 
 def prepared(name: str, base: Scene) -> Scene:
     """One scene of :func:`outside` with the receptors that are looked at."""
-    looked = {"outputs.receptors.depths": DEPTHS, "outputs.receptors.offsets": (0.0,), "outputs.snapshots": ()}
+    looked = {
+        "outputs.receptors.depths": DEPTHS,
+        "outputs.receptors.offsets": (0.0,),
+        "outputs.snapshots": (),
+    }
     return outside(base)[name].varied(looked)
 
 
@@ -128,7 +162,13 @@ def finer(chosen: Plan, share: float) -> Plan:
         skin_radial_edge=size.skin_radial_edge and size.skin_radial_edge / share,
     )
     steps = round(chosen.steps_per_leg * (2 if chosen.timed else 1))
-    return replace(chosen, mesh_size=size, steps_per_leg=steps, slide_step=chosen.slide_step / 1.5, asked_error=None)
+    return replace(
+        chosen,
+        mesh_size=size,
+        steps_per_leg=steps,
+        slide_step=chosen.slide_step / 1.5,
+        asked_error=None,
+    )
 
 
 def finest(scene: Scene) -> Plan:
@@ -136,11 +176,18 @@ def finest(scene: Scene) -> Plan:
     chosen = plan(scene)
     if chosen.strokes:
         return finer(chosen, STILL_FINER)
-    edge, reach = min(chosen.mesh_size.skin_edge, chosen.contact.half_width / 20), 1.2 * chosen.contact.half_width
+    edge, reach = (
+        min(chosen.mesh_size.skin_edge, chosen.contact.half_width / 20),
+        1.2 * chosen.contact.half_width,
+    )
     if edge == chosen.mesh_size.skin_edge:
         return chosen
     focus = tuple((float(x), edge) for x in np.linspace(0.0, reach, 13))
-    return replace(chosen, mesh_size=replace(chosen.mesh_size, focus=focus, skin_radial_edge=edge), contact_edge=edge)
+    return replace(
+        chosen,
+        mesh_size=replace(chosen.mesh_size, focus=focus, skin_radial_edge=edge),
+        contact_edge=edge,
+    )
 
 
 def beliefs(scene: Scene, name: str, levels: tuple = LEVELS) -> list[dict[str, Any]]:

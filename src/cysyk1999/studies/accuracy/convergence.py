@@ -43,7 +43,11 @@ def fitted_order(sizes: Sequence[float], errors: Sequence[float]) -> float:
     """Slope of log error over log size, by least squares over all that are not zero; nan for fewer than two."""
     sizes, errors = np.asarray(sizes, float), np.abs(np.asarray(errors, float))
     known = np.isfinite(errors) & (errors > 0)
-    return float(np.polyfit(np.log(sizes[known]), np.log(errors[known]), 1)[0]) if known.sum() > 1 else np.nan
+    return (
+        float(np.polyfit(np.log(sizes[known]), np.log(errors[known]), 1)[0])
+        if known.sum() > 1
+        else np.nan
+    )
 
 
 def limit(sizes: Sequence[float], values: Sequence[float]) -> Limit:

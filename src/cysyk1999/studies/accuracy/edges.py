@@ -62,7 +62,10 @@ def kink(time: np.ndarray, values: np.ndarray) -> float:
 def kinks(history: xr.Dataset) -> dict[str, float]:
     """Largest kink (share of the range) of each curve of a ramp and hold, its onset and the corner between its legs left out."""
     time, leg = history["time"].values, history["leg"].values
-    curves = {name: (time, history[name].values) for name in ("contact_width", "peak_pressure", "centre_pressure")}
+    curves = {
+        name: (time, history[name].values)
+        for name in ("contact_width", "peak_pressure", "centre_pressure")
+    }
     for depth in DEPTHS:
         which = int(np.argmin(np.abs(history["receptor_depth"].values - depth)))
         when, _, rate = rate_by_leg(time, history["strain_energy_density"].values[:, which], leg)
@@ -71,7 +74,9 @@ def kinks(history: xr.Dataset) -> dict[str, float]:
     found = {}
     for name, (when, values) in curves.items():
         corner = int(np.argmin(np.abs(when - top)))
-        again = corner + 1 if np.isclose(when[min(corner + 1, len(when) - 1)], top) else corner  # a rate has two values there
+        again = (
+            corner + 1 if np.isclose(when[min(corner + 1, len(when) - 1)], top) else corner
+        )  # a rate has two values there
         legs = (slice(ONSET, corner + 1), slice(again, None))
         found[name] = max(kink(when[part], values[part]) for part in legs) / float(np.ptp(values))
     return found
@@ -85,16 +90,22 @@ def alternation(history: xr.Dataset) -> float:
     return float(np.abs(pressure[on] - near).max(initial=0.0) / pressure.max())
 
 
-def pressed(scene: Scene, share: float = 1.0, sized: Callable[[MeshSize], MeshSize] = lambda size: size) -> xr.Dataset:
+def pressed(
+    scene: Scene, share: float = 1.0, sized: Callable[[MeshSize], MeshSize] = lambda size: size
+) -> xr.Dataset:
     """The history of a ramp and hold with outputs that are close enough to see kinks, a state at each, for splines between states
     would hide some; on its own mesh or one of another size."""
     from fingerpad.scenes.scene import Receptors
 
     receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
-    made = scene.with_accuracy("thesis").varied({"outputs.receptors": receptors, "outputs.per_leg": OUTPUTS})
+    made = scene.with_accuracy("thesis").varied(
+        {"outputs.receptors": receptors, "outputs.per_leg": OUTPUTS}
+    )
     chosen = plan(made)
     with smoothed(share):
-        return simulate(made, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True, every=1))
+        return simulate(
+            made, replace(chosen, mesh_size=sized(chosen.mesh_size), once=True, every=1)
+        )
 
 
 def everywhere(size: MeshSize) -> MeshSize:
@@ -104,10 +115,16 @@ def everywhere(size: MeshSize) -> MeshSize:
 
 def into_the_skin(size: MeshSize) -> MeshSize:
     """As fine into the skin as along it."""
-    return replace(size, skin_radial_edge=min((edge for _, edge in size.focus), default=size.skin_edge))
+    return replace(
+        size, skin_radial_edge=min((edge for _, edge in size.focus), default=size.skin_edge)
+    )
 
 
-MESHES = {"own": lambda size: size, "not refined": everywhere, "refined into the skin too": into_the_skin}
+MESHES = {
+    "own": lambda size: size,
+    "not refined": everywhere,
+    "refined into the skin too": into_the_skin,
+}
 """Meshes of a surface; of one that is not refined the first two are one."""
 FINER = 1 / 3
 """Edges of the mesh whose pressures are compared with, over those of the own."""
@@ -132,7 +149,10 @@ def rows(surface: str, scene: Scene) -> list[dict[str, object]]:
     """Kinks, alternation and answers (per cent off the method's own) of a surface with each smoothing and on each mesh."""
     out, own = [], None
     truth = pressed(scene, sized=lambda size: size.coarser(FINER))
-    for mesh, share in (*(("own", share) for share in SHARES), *((mesh, 1.0) for mesh in list(MESHES)[1:])):
+    for mesh, share in (
+        *(("own", share) for share in SHARES),
+        *((mesh, 1.0) for mesh in list(MESHES)[1:]),
+    ):
         history = pressed(scene, share, MESHES[mesh])
         own = history if own is None else own
         row = {"surface": surface, "mesh": mesh, "smoothing (of the method's)": share}

@@ -51,12 +51,16 @@ def _limits(sizes, series) -> list[Limit]:
 def mesh_limits(records: Records, family: str, quantity: str) -> list[Limit]:
     """Limit in the mesh size of the default element, at the default's time steps, a moment each."""
     rows = [rows for rows in ROWS if Point(family, rows=rows).name in records]
-    return _limits(1 / np.array(rows), _series(records, [Point(family, rows=n) for n in rows], quantity))
+    return _limits(
+        1 / np.array(rows), _series(records, [Point(family, rows=n) for n in rows], quantity)
+    )
 
 
 def step_limits(records: Records, family: str, quantity: str) -> list[Limit]:
     """Limit in the step size on the default's mesh, a moment each."""
-    return _limits(1 / np.array(STEPS), _series(records, [Point(family, steps=n) for n in STEPS], quantity))
+    return _limits(
+        1 / np.array(STEPS), _series(records, [Point(family, steps=n) for n in STEPS], quantity)
+    )
 
 
 def interplay(records: Records, family: str, quantity: str) -> np.ndarray:
@@ -81,7 +85,9 @@ def references(records: Records, family: str) -> dict[str, tuple[np.ndarray, np.
         default = np.array(records[Point(family).name]["values"][quantity])
         mesh, steps = mesh_limits(records, family, quantity), step_limits(records, family, quantity)
         value = np.array([m.value + s.value for m, s in zip(mesh, steps, strict=True)]) - default
-        uncertainty = np.array([m.uncertainty + s.uncertainty for m, s in zip(mesh, steps, strict=True)])
+        uncertainty = np.array(
+            [m.uncertainty + s.uncertainty for m, s in zip(mesh, steps, strict=True)]
+        )
         found[quantity] = value, uncertainty + interplay(records, family, quantity)
     return found
 
@@ -102,29 +108,48 @@ def accuracy_table(records: Records, scenes: Mapping[str, Any]) -> pd.DataFrame:
     Args:
         records: by name. scenes: family -> its scene, whose specimen the historical models take their measures from.
     """
-    yardstick = statistics.median(s for record in records.values() for s in record["cost"]["yardstick_s"])
+    yardstick = statistics.median(
+        s for record in records.values() for s in record["cost"]["yardstick_s"]
+    )
     rows = []
     for family in FAMILY:
-        known = {name: record for name, record in records.items() if record["point"]["family"] == family}
+        known = {
+            name: record for name, record in records.items() if record["point"]["family"] == family
+        }
         if not known:
             continue
-        reference, default = references(records, family), seconds(records[Point(family).name], yardstick)
+        reference, default = (
+            references(records, family),
+            seconds(records[Point(family).name], yardstick),
+        )
         for record in known.values():
             rows.append(_row(record, reference, seconds(record, yardstick), default))
         if family in PRESSED:
             width = float(references(records, "flat")["width"][0][-1])
             for name, (_, fit) in MODELS.items():
-                rows.append(_historical(name, fit(scenes["flat"], width), family, scenes[family], reference, default))
-        uncertain = {f"{q} (%)": 100 * float(np.max(u / np.abs(v))) for q, (v, u) in reference.items()}
+                rows.append(
+                    _historical(
+                        name, fit(scenes["flat"], width), family, scenes[family], reference, default
+                    )
+                )
+        uncertain = {
+            f"{q} (%)": 100 * float(np.max(u / np.abs(v))) for q, (v, u) in reference.items()
+        }
         rows.append({"scene": family, "model": "uncertainty of the reference"} | uncertain)
     table = pd.DataFrame(rows)
-    table["machine"] = "; ".join(sorted({_machine(record["made_by"]) for record in records.values()}))
+    table["machine"] = "; ".join(
+        sorted({_machine(record["made_by"]) for record in records.values()})
+    )
     return table
 
 
 def _machine(made_by: Mapping[str, Any]) -> str:
-    versions = {"python": made_by["python"]} | {name: made_by["packages"][name] for name in ("numpy", "numba", "mkl", "gmsh")}
-    return ", ".join([made_by["processor"], *(f"{name} {version}" for name, version in versions.items())])
+    versions = {"python": made_by["python"]} | {
+        name: made_by["packages"][name] for name in ("numpy", "numba", "mkl", "gmsh")
+    }
+    return ", ".join(
+        [made_by["processor"], *(f"{name} {version}" for name, version in versions.items())]
+    )
 
 
 def _row(record, reference, cpu, default) -> dict[str, Any]:
@@ -133,7 +158,8 @@ def _row(record, reference, cpu, default) -> dict[str, Any]:
     return {
         "scene": point["family"],
         "model": FINITE_ELEMENTS,
-        "preset": point["preset"] or ("thesis" if record["name"] == Point(point["family"]).name else ""),
+        "preset": point["preset"]
+        or ("thesis" if record["name"] == Point(point["family"]).name else ""),
         "element": point["element"],
         "rows": "" if point["preset"] else point["rows"],
         "strain": "finite" if point["finite"] else "small",
@@ -172,7 +198,9 @@ def half_plane(scene, curvature: float, modulus: float) -> dict[str, float]:
     outline, poisson = specimen.outline, specimen.layers.dermis.poisson_ratio
     force = scene.motion[0].press_to_force / specimen.contact_length
     radius = 1 / (1 / outline.apex_radius + curvature)
-    depth, half_width, peak = phillips_johnson.press(force, radius, modulus, poisson, outline.soft_thickness)
+    depth, half_width, peak = phillips_johnson.press(
+        force, radius, modulus, poisson, outline.soft_thickness
+    )
     edges = half_width * np.sin(np.linspace(-np.pi / 2, np.pi / 2, 201))
     pressures = hertz.pressure((edges[1:] + edges[:-1]) / 2, half_width, peak)
     stress = phillips_johnson.strip_stresses(0.0, np.array(DEPTHS), edges, pressures)
@@ -180,8 +208,15 @@ def half_plane(scene, curvature: float, modulus: float) -> dict[str, float]:
     # as the headline's: the relaxed stress on instantaneous moduli
     instantaneous = shear / (1 - sum(term.g for term in specimen.prony))
     energies = phillips_johnson.strain_energy_density(*stress, instantaneous, bulk, poisson)
-    found = {"depth": depth, "width": 2 * half_width, "centre pressure": peak, "peak pressure": peak}
-    return found | {f"energy {z * 1e6:.0f} um": float(e) for z, e in zip(DEPTHS, energies, strict=True)}
+    found = {
+        "depth": depth,
+        "width": 2 * half_width,
+        "centre pressure": peak,
+        "peak pressure": peak,
+    }
+    return found | {
+        f"energy {z * 1e6:.0f} um": float(e) for z, e in zip(DEPTHS, energies, strict=True)
+    }
 
 
 def water_bed_tension(scene, width: float) -> float:
@@ -198,7 +233,9 @@ def water_bed(scene, curvature: float, tension: float) -> dict[str, float]:
     """What the water bed of ``tension`` (N/m) answers at the end of the hold."""
     outline = scene.specimen.outline
     force = scene.motion[0].press_to_force / scene.specimen.contact_length
-    half_width = min(outline.half_width, 0.999 * outline.apex_radius)  # a pad wider than the circle at its apex is half of it
+    half_width = min(
+        outline.half_width, 0.999 * outline.apex_radius
+    )  # a pad wider than the circle at its apex is half of it
     state = waterbed.press(force, tension, outline.apex_radius, half_width, curvature)
     pressures = dict.fromkeys(("centre pressure", "peak pressure"), state.pressure)
     return {"depth": state.depth, "width": 2 * state.half_width} | pressures
@@ -241,9 +278,14 @@ def orders_table(records: Records) -> pd.DataFrame:
             sizes = np.array([1 / p.steps if name == "time steps" else 1 / p.rows for p in sweep])
             for quantity in QUANTITIES:
                 series = _series(records, sweep, quantity)
-                known = (step_limits if name == "time steps" else mesh_limits)(records, family, quantity)
+                known = (step_limits if name == "time steps" else mesh_limits)(
+                    records, family, quantity
+                )
                 own = _limits(sizes, series)
-                worst = max(each.uncertainty / abs(column[-1]) for each, column in zip(own, series.T, strict=True))
+                worst = max(
+                    each.uncertainty / abs(column[-1])
+                    for each, column in zip(own, series.T, strict=True)
+                )
                 rows.append(
                     {
                         "scene": family,
@@ -251,7 +293,9 @@ def orders_table(records: Records) -> pd.DataFrame:
                         "element": "Q2P1" if name == "time steps" else name,
                         "quantity": quantity,
                         "order, three finest": own[-1].order,
-                        "order, fitted to all but the finest": fitted_order(sizes[:-1], series[:-1, -1] - known[-1].value),
+                        "order, fitted to all but the finest": fitted_order(
+                            sizes[:-1], series[:-1, -1] - known[-1].value
+                        ),
                         "grid convergence index (%)": 100 * worst,
                     }
                 )
@@ -285,7 +329,9 @@ def planner_table(records: Records) -> pd.DataFrame:
                 unsure = np.array([each.uncertainty for each in known])
                 for k, n in enumerate(counts):
                     floor = _at_most(unsure + extra * min(1.0, DEFAULT_ROWS / n), value)
-                    record = records.get((Point(family, steps=n) if kind == "steps" else Point(family, rows=n)).name)
+                    record = records.get(
+                        (Point(family, steps=n) if kind == "steps" else Point(family, rows=n)).name
+                    )
                     if record is None or not record["values"]:
                         worst[k] = np.nan
                         continue
@@ -293,7 +339,10 @@ def planner_table(records: Records) -> pd.DataFrame:
                     worst[k] = max(worst[k], off, floor)
             columns[family] = np.fmax.accumulate(worst[::-1])[::-1]
         for k, n in enumerate(counts):
-            rows.append({"kind": kind, "count": n} | {family: float(f"{column[k]:.2g}") for family, column in columns.items()})
+            rows.append(
+                {"kind": kind, "count": n}
+                | {family: float(f"{column[k]:.2g}") for family, column in columns.items()}
+            )
     return pd.DataFrame(rows)
 
 
@@ -305,9 +354,20 @@ def presets_table(table: pd.DataFrame) -> pd.DataFrame:
     """The named presets: discretisation, cost and errors, of :func:`accuracy_table`."""
     found = table[table["preset"].isin(["draft", "thesis", "fine"])].copy()
     found["preset"] = pd.Categorical(found["preset"], ["draft", "thesis", "fine"])
-    keep = ["preset", "scene", "nodes", "unknowns", "steps", "iterations", "memory (MB)", "process time (s)"]
+    keep = [
+        "preset",
+        "scene",
+        "nodes",
+        "unknowns",
+        "steps",
+        "iterations",
+        "memory (MB)",
+        "process time (s)",
+    ]
     keep += ["cost (1 = default)", "error (%)", *(f"{q} (%)" for q in QUANTITIES), "machine"]
-    return found.sort_values(["preset", "scene"])[keep].astype({"preset": str}).reset_index(drop=True)
+    return (
+        found.sort_values(["preset", "scene"])[keep].astype({"preset": str}).reset_index(drop=True)
+    )
 
 
 def pareto(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
@@ -324,7 +384,9 @@ def pareto(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
 def growth(nodes: np.ndarray, cost: np.ndarray, least: float = 3000) -> tuple[float, float]:
     """Factor and exponent of cost = factor nodes^exponent, least squares over meshes of ``least`` nodes and more."""
     large = np.asarray(nodes) >= least
-    exponent, intercept = np.polyfit(np.log(np.asarray(nodes)[large]), np.log(np.asarray(cost)[large]), 1)
+    exponent, intercept = np.polyfit(
+        np.log(np.asarray(nodes)[large]), np.log(np.asarray(cost)[large]), 1
+    )
     return float(np.exp(intercept)), float(exponent)
 
 
@@ -333,19 +395,26 @@ def error_frame(table: pd.DataFrame, scenes: Iterable[str]) -> pd.DataFrame:
     chosen = table[table["scene"].isin(list(scenes)) & table["error (%)"].notna()]
     keys = ["model", "preset", "element", "rows", "strain", "tolerance", "steps per leg"]
     chosen = chosen.assign(**{key: [_text(value) for value in chosen[key]] for key in keys})
-    whole = chosen.groupby(keys, sort=False)["scene"].transform("nunique") == chosen["scene"].nunique()
+    whole = (
+        chosen.groupby(keys, sort=False)["scene"].transform("nunique") == chosen["scene"].nunique()
+    )
     grouped = chosen[whole].groupby(keys, sort=False)
     rows = []
     for quantity in QUANTITIES:
-        frame = grouped.agg(**{
-            "cost (1 = default)": ("cost (1 = default)", "mean"), "error (%)": (f"{quantity} (%)", "max"),
-            "nodes": ("nodes", "max"),
-        }).reset_index()  # fmt: skip
+        frame = grouped.agg(
+            **{
+                "cost (1 = default)": ("cost (1 = default)", "mean"),
+                "error (%)": (f"{quantity} (%)", "max"),
+                "nodes": ("nodes", "max"),
+            }
+        ).reset_index()
         frame.insert(0, "quantity", quantity)
         frame["pareto"] = pareto(frame["cost (1 = default)"], frame["error (%)"])
         rows.append(frame)
     found = pd.concat(rows, ignore_index=True).assign(source="simulated")
-    uncertain = table[(table["model"] == "uncertainty of the reference") & table["scene"].isin(list(scenes))]
+    uncertain = table[
+        (table["model"] == "uncertainty of the reference") & table["scene"].isin(list(scenes))
+    ]
     found["uncertainty (%)"] = found["quantity"].map(lambda q: uncertain[f"{q} (%)"].max())
     return found
 
@@ -364,9 +433,13 @@ def growth_frame(table: pd.DataFrame) -> pd.DataFrame:
         & (table["strain"] == "finite")
         & (table["tolerance"] == 1e-4)
     ]
-    mean = plane.groupby(["element", "nodes"])[
-        ["process time (s)", "cost (1 = default)", "memory (MB)", "iterations"]
-    ].mean().reset_index()  # fmt: skip
+    mean = (
+        plane.groupby(["element", "nodes"])[
+            ["process time (s)", "cost (1 = default)", "memory (MB)", "iterations"]
+        ]
+        .mean()
+        .reset_index()
+    )
     rows = []
     for _, part in mean.groupby("element"):
         if (part["nodes"] >= 3000).sum() >= 2:
@@ -383,6 +456,8 @@ FRAMES = {
     "accuracy_belief": lambda table: table,
     "accuracy_drawn": lambda table: table,
     "accuracy_ridges": lambda table: table,
-    "accuracy_shown": lambda table: table.drop_duplicates(list(table.columns[2:])).reset_index(drop=True),
+    "accuracy_shown": lambda table: table.drop_duplicates(list(table.columns[2:])).reset_index(
+        drop=True
+    ),
 }
 """Figure name -> its data frame, of the table of accuracy, of beliefs, or of errors shown, of which each curve is drawn once."""

@@ -54,15 +54,29 @@ def measured(base: Scene, folder: Path) -> pd.DataFrame:
                 for kind in ("quad4", "tri6", "quad9"):
                     run = _on_split(base, stimulus, grams, edge, kind, folder)
                     own = edge / 2 if kind == "quad4" else edge
-                    errors = {name: 100 * difference(run, truth, read)[0] for name, read in QUANTITIES.items()}
-                    rows.append({"surface": surface, "force (gf)": grams, "element": KINDS[kind].solved,
-                                 "edge (um)": own * 1e6, "edge / half width": own / half_width}
-                                | {f"error of the {name} (%)": error for name, error in errors.items()})  # fmt: skip
+                    errors = {
+                        name: 100 * difference(run, truth, read)[0]
+                        for name, read in QUANTITIES.items()
+                    }
+                    rows.append(
+                        {
+                            "surface": surface,
+                            "force (gf)": grams,
+                            "element": KINDS[kind].solved,
+                            "edge (um)": own * 1e6,
+                            "edge / half width": own / half_width,
+                        }
+                        | {f"error of the {name} (%)": error for name, error in errors.items()}
+                    )
     return pd.DataFrame(rows)
 
 
 def _pressed(base: Scene, stimulus: Any, grams: float) -> Scene:
-    receptors = {"outputs.receptors.depths": DEPTHS, "outputs.receptors.offsets": (0.0,), "effects": {"finite_strain": True}}
+    receptors = {
+        "outputs.receptors.depths": DEPTHS,
+        "outputs.receptors.offsets": (0.0,),
+        "effects": {"finite_strain": True},
+    }
     return base.varied({"stimulus": stimulus, "motion": [force(grams)], **receptors})
 
 
@@ -71,12 +85,19 @@ def _on_split(base: Scene, stimulus: Any, grams: float, edge: float, kind: str, 
     from fingerpad.simulation import simulate
 
     scene = _pressed(base, stimulus, grams)
-    size = replace(plan(scene.with_accuracy("thesis")).mesh_size, skin_edge=edge, layer_edge=0.9 * edge, focus=())
+    size = replace(
+        plan(scene.with_accuracy("thesis")).mesh_size,
+        skin_edge=edge,
+        layer_edge=0.9 * edge,
+        focus=(),
+    )
     mesh = build_pad_mesh(scene.specimen.outline, replace(size, skin_radial_edge=None))
     path = folder / f"{kind}.msh"
     write_pad(mesh if kind == "quad9" else split(mesh, kind), path)
     accuracy = {"element": KINDS[kind].solved, "tolerance": 0.5, "once": True}
-    return simulate(scene.varied({"specimen.outline": None, "specimen.mesh": path, "accuracy": accuracy}))
+    return simulate(
+        scene.varied({"specimen.outline": None, "specimen.mesh": path, "accuracy": accuracy})
+    )
 
 
 def table(rows: pd.DataFrame) -> pd.DataFrame:
@@ -84,7 +105,9 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
     ends = pd.cut(rows["edge / half width"], SHARES, right=False)
     columns = [f"error of the {name} (%)" for name in QUANTITIES]
     found = rows.groupby([rows["element"], ends], observed=True)[columns].max().reset_index()
-    found["edge / half width"] = [f"{each.left:g} to {each.right:g}" for each in found["edge / half width"]]
+    found["edge / half width"] = [
+        f"{each.left:g} to {each.right:g}" for each in found["edge / half width"]
+    ]
     return found
 
 
@@ -93,11 +116,18 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
 
 def drawn_own(draw: np.random.Generator) -> dict[str, Any]:
     """A press on a mesh of one's own, in a document; how the mesh is made stands under ``own``."""
-    shape, kind, order = draw.choice(["slab", "ring"]), draw.choice(["tri", "tri", "quad"]), int(draw.integers(1, 3))
+    shape, kind, order = (
+        draw.choice(["slab", "ring"]),
+        draw.choice(["tri", "tri", "quad"]),
+        int(draw.integers(1, 3)),
+    )
     cover, foam = float(draw.uniform(0.5, 1.5)), float(draw.uniform(2, 4))
     flat = shape == "ring" and draw.integers(3) == 0
     layers = {
-        name: {"youngs_modulus": f"{draw.uniform(*moduli):.3g} kPa", "poisson_ratio": round(float(draw.uniform(0.3, 0.49)), 3)}
+        name: {
+            "youngs_modulus": f"{draw.uniform(*moduli):.3g} kPa",
+            "poisson_ratio": round(float(draw.uniform(0.3, 0.49)), 3),
+        }
         for name, moduli in (("cover", (30, 200)), ("foam", (15, 60)))
     }
     return {
@@ -111,9 +141,16 @@ def drawn_own(draw: np.random.Generator) -> dict[str, Any]:
             "radius": float(draw.uniform(6, 12)),
         },
         "specimen": {"fixed": ["base"], "layers": layers, "contact_length": "10 mm"},
-        "stimulus": FLAT if flat else cylinder(float(f"{np.exp(draw.uniform(np.log(20), np.log(400))):.3g}")),
+        "stimulus": FLAT
+        if flat
+        else cylinder(float(f"{np.exp(draw.uniform(np.log(20), np.log(400))):.3g}")),
         "motion": [force(float(f"{np.exp(draw.uniform(np.log(2), np.log(30))):.3g}"))],
-        "outputs": {"receptors": {"depths": [f"{cover / 2:.3g} mm", f"{cover + 0.3:.3g} mm"], "offsets": ["0 mm", "0.5 mm"]}},
+        "outputs": {
+            "receptors": {
+                "depths": [f"{cover / 2:.3g} mm", f"{cover + 0.3:.3g} mm"],
+                "offsets": ["0 mm", "0.5 mm"],
+            }
+        },
         "effects": {"finite_strain": "on"},
         "accuracy": "draft",
     }
@@ -136,9 +173,17 @@ def write_own(own: dict[str, Any], path: Path) -> None:
             (2, surfaces[:1], "cover"),
             (2, surfaces[1:], "foam"),
         ):
-            gmsh.model.setPhysicalName(dimension, gmsh.model.addPhysicalGroup(dimension, tags), name)
-        if own["kind"] == "quad":  # a simple recombination and a smoothing of what is left of triangles
-            for option, value in (("RecombineAll", 1), ("RecombinationAlgorithm", 2), ("Algorithm", 8)):
+            gmsh.model.setPhysicalName(
+                dimension, gmsh.model.addPhysicalGroup(dimension, tags), name
+            )
+        if (
+            own["kind"] == "quad"
+        ):  # a simple recombination and a smoothing of what is left of triangles
+            for option, value in (
+                ("RecombineAll", 1),
+                ("RecombinationAlgorithm", 2),
+                ("Algorithm", 8),
+            ):
                 gmsh.option.setNumber(f"Mesh.{option}", value)
         gmsh.model.mesh.generate(2)
         gmsh.model.mesh.setOrder(own["order"])
@@ -154,12 +199,22 @@ def _edges(own: dict[str, Any]) -> tuple[float, float, float]:
 
 
 def _slab(own):
-    geo, (top, middle, bottom), (cover, foam), half = gmsh.model.geo, _edges(own), own["thicknesses"], 8.0
+    geo, (top, middle, bottom), (cover, foam), half = (
+        gmsh.model.geo,
+        _edges(own),
+        own["thicknesses"],
+        8.0,
+    )
     high = cover + foam
     places = (
-        (-half, 0, bottom), (half, 0, bottom), (half, foam, middle), (half, high, top), (0, high, top), (-half, high, top),
+        (-half, 0, bottom),
+        (half, 0, bottom),
+        (half, foam, middle),
+        (half, high, top),
+        (0, high, top),
+        (-half, high, top),
         (-half, foam, middle),
-    )  # fmt: skip
+    )
     points = [geo.addPoint(x, y, 0, size) for x, y, size in places]
     lines = [geo.addLine(a, b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
     between = geo.addLine(points[2], points[6])
@@ -173,11 +228,17 @@ def _ring(own):
     centre, circles = geo.addPoint(0, 0, 0, 1.0), []
     for r, size in zip((radius, radius - cover, radius - cover - foam), _edges(own), strict=True):
         ends = [geo.addPoint(x, y, 0, size) for x, y in ((-r, 0), (0, r), (r, 0))]
-        circles.append((ends, [geo.addCircleArc(a, centre, b) for a, b in zip(ends, ends[1:], strict=False)]))
+        circles.append(
+            (ends, [geo.addCircleArc(a, centre, b) for a, b in zip(ends, ends[1:], strict=False)])
+        )
     surfaces = []
     for (outer, along), (inner, back) in zip(circles, circles[1:], strict=False):
         left, right = geo.addLine(outer[0], inner[0]), geo.addLine(outer[2], inner[2])
-        surfaces.append(geo.addPlaneSurface([geo.addCurveLoop([*along, right, *(-arc for arc in reversed(back)), -left])]))
+        surfaces.append(
+            geo.addPlaneSurface(
+                [geo.addCurveLoop([*along, right, *(-arc for arc in reversed(back)), -left])]
+            )
+        )
     return surfaces, circles[0][1], circles[2][1]
 
 

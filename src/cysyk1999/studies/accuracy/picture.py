@@ -10,7 +10,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from cysyk1999.publishing.style import CATEGORIES, GREY, INK, MARKERS, MEANINGS, haloed, look_of, study_figure, styled
+from cysyk1999.publishing.style import (
+    CATEGORIES,
+    GREY,
+    INK,
+    MARKERS,
+    MEANINGS,
+    haloed,
+    look_of,
+    study_figure,
+    styled,
+)
 
 COST, CHANGE, TIME = "cost (1 = default)", "error (%)", "process time (s)"
 COLOURS = {name: look["color"] for name, look in MEANINGS["element"].items()}
@@ -20,9 +30,13 @@ MODELS = {"elastic half-plane": "P", "water bed": "X"}
 EDGE = 0.012
 """Where models are drawn that cost less than the axis shows, in costs of the default."""
 KINDS = {
-    "Q2P1": "nine-node quads, mixed", "Q1P0": "four-node quads, mixed", "P2B": "triangles, mixed",
-    "Q1": "four-node quads, full", "Q2": "nine-node quads, full", "Q2R": "nine-node quads, reduced",
-}  # fmt: skip
+    "Q2P1": "nine-node quads, mixed",
+    "Q1P0": "four-node quads, mixed",
+    "P2B": "triangles, mixed",
+    "Q1": "four-node quads, full",
+    "Q2": "nine-node quads, full",
+    "Q2R": "nine-node quads, reduced",
+}
 """Words for the elements; the last three, displacements only with full or reduced integration, are for teaching."""
 
 
@@ -30,7 +44,13 @@ def _look(name: str, size: float = 3.6) -> dict[str, object]:
     """Of an element or a model."""
     colour = COLOURS.get(name, "0.55")
     marker = {**LOOKS, **MODELS}[name]
-    return {"marker": marker, "color": colour, "mfc": colour if name in COLOURS else "white", "ms": size, "mew": 0.7}
+    return {
+        "marker": marker,
+        "color": colour,
+        "mfc": colour if name in COLOURS else "white",
+        "ms": size,
+        "mew": 0.7,
+    }
 
 
 def _error(frame: pd.DataFrame, title: str, note: list[str]) -> Figure:
@@ -48,16 +68,33 @@ def _error(frame: pd.DataFrame, title: str, note: list[str]) -> Figure:
             part = rows[rows["preset"] == preset]
             ax.loglog(part[COST], part[CHANGE], "o", mfc="none", mec=INK, ms=8, mew=0.9)
             for x, y in zip(part[COST], part[CHANGE], strict=True):
-                ax.annotate(preset, (x, y), xytext=(5, 4), textcoords="offset points", fontsize=6.5, zorder=6, **haloed())
+                ax.annotate(
+                    preset,
+                    (x, y),
+                    xytext=(5, 4),
+                    textcoords="offset points",
+                    fontsize=6.5,
+                    zorder=6,
+                    **haloed(),
+                )
         front = rows[rows["pareto"] & here].sort_values(COST)
         ax.loglog(front[COST], front[CHANGE], color=INK, lw=0.9, drawstyle="steps-post", zorder=0)
         for model in MODELS:
             part = rows[rows["model"] == model].dropna(subset=[CHANGE])
             if len(part):
-                ax.loglog(np.full(len(part), EDGE), part[CHANGE], ls="none", clip_on=False, zorder=5, **_look(model, 6))
+                ax.loglog(
+                    np.full(len(part), EDGE),
+                    part[CHANGE],
+                    ls="none",
+                    clip_on=False,
+                    zorder=5,
+                    **_look(model, 6),
+                )
         ax.axhspan(1e-6, rows["uncertainty (%)"].iloc[0], color="0.93", lw=0, zorder=-1)
         ax.set_title(
-            quantity.replace("energy 6", "strain energy, 6").replace("energy 9", "strain energy, 9").replace(" um", " µm")
+            quantity.replace("energy 6", "strain energy, 6")
+            .replace("energy 9", "strain energy, 9")
+            .replace(" um", " µm")
         )
     values = frame.loc[frame[CHANGE] > 0, CHANGE]
     axes[0].set_ylim(max(values.min() / 2, 3e-3), values.max() * 2)
@@ -68,13 +105,21 @@ def _error(frame: pd.DataFrame, title: str, note: list[str]) -> Figure:
         ax.tick_params(labelbottom=True)
     axes[5].set_xlabel("process time (default preset: 1)")
     axes[7].axis("off")
-    looks = [Line2D([], [], ls="", label=KINDS[each], **_look(each)) for each in LOOKS if (frame["element"] == each).any()]
-    looks += [Line2D([], [], ls="", marker="+", color=GREY, label="small strain or other tolerance")]
+    looks = [
+        Line2D([], [], ls="", label=KINDS[each], **_look(each))
+        for each in LOOKS
+        if (frame["element"] == each).any()
+    ]
+    looks += [
+        Line2D([], [], ls="", marker="+", color=GREY, label="small strain or other tolerance")
+    ]
     looks += [Line2D([], [], color=INK, lw=0.9, label="Pareto front")]
     if not frame[~elements].empty:
         costs = frame[~elements].groupby("model")[COST].mean()
         for model, cost in costs.items():
-            looks.append(Line2D([], [], ls="", label=f"{model} (cost {cost:.1g})", **_look(model, 5)))
+            looks.append(
+                Line2D([], [], ls="", label=f"{model} (cost {cost:.1g})", **_look(model, 5))
+            )
     axes[7].legend(handles=looks, loc="upper left", fontsize=6.5, handletextpad=0.3)
     return fig
 
@@ -125,19 +170,30 @@ def growth(frame: pd.DataFrame) -> Figure:
         label = KINDS[element] + (f": {exponent.iloc[0]:.2f}" if len(exponent) else "")
         for ax, column in zip(axes, (TIME, "memory (MB)", "iterations"), strict=True):
             ax.plot(part["nodes"], part[column], label=label, lw=1, **_look(element, 4))
-    for ax, label in zip(axes, ("process time (s)", "peak memory (MB)", "Newton iterations of 40 steps"), strict=True):
+    for ax, label in zip(
+        axes, ("process time (s)", "peak memory (MB)", "Newton iterations of 40 steps"), strict=True
+    ):
         ax.set(xscale="log", xlabel="nodes", ylabel=label)
     axes[0].set_yscale("log")
     axes[1].set_ylim(0)
     axes[2].set_ylim(0)
-    axes[2].legend(fontsize=6.5, loc="lower right", handlelength=1.4, title="exponent of time", title_fontsize=6.5)
+    axes[2].legend(
+        fontsize=6.5,
+        loc="lower right",
+        handlelength=1.4,
+        title="exponent of time",
+        title_fontsize=6.5,
+    )
     return fig
 
 
 @styled
 def belief(frame: pd.DataFrame) -> Figure:
     """What runs believe of their error against what it is, scenes outside the study."""
-    asked, own = frame[frame["true error (%)"].notna()], frame.loc[frame["true error (%)"].isna(), "believed error (%)"]
+    asked, own = (
+        frame[frame["true error (%)"].notna()],
+        frame.loc[frame["true error (%)"].isna(), "believed error (%)"],
+    )
     covered = (asked["believed error (%)"] >= asked["true error (%)"]).sum()
     fig = study_figure(
         "Does a run know its error?",
@@ -157,7 +213,13 @@ def belief(frame: pd.DataFrame) -> Figure:
         believed, true = part["believed error (%)"], part["true error (%)"]
         name = accuracy if accuracy == "draft" else f"accuracy: {accuracy}"
         left.loglog(believed, true, marker, color=colour, ms=4.5, label=name)
-        right.semilogx(true / believed, [scenes.index(scene) for scene in part["scene"]], marker, color=colour, ms=4)
+        right.semilogx(
+            true / believed,
+            [scenes.index(scene) for scene in part["scene"]],
+            marker,
+            color=colour,
+            ms=4,
+        )
         if accuracy != "draft":
             left.axvline(100 * float(accuracy), color=colour, lw=0.6, ls=(0, (1, 2)))
     left.legend(loc="upper left")
@@ -205,9 +267,14 @@ def drawn(frame: pd.DataFrame) -> Figure:
         believed, true = part["believed error (%)"], part["true error (%)"]
         colour = CATEGORIES[place % len(CATEGORIES)]
         left.loglog(believed, true, marker, color=colour, ms=4.5, mfc="white", label=name)
-        right.semilogx(true / believed, np.full(len(part), place), marker, color=colour, ms=4, mfc="white")
+        right.semilogx(
+            true / believed, np.full(len(part), place), marker, color=colour, ms=4, mfc="white"
+        )
     left.legend(loc="upper left", fontsize=6.5)
-    counts = [f"{name} ({int(covers[asked['class'] == name].sum())} of {(asked['class'] == name).sum()})" for name in classes]
+    counts = [
+        f"{name} ({int(covers[asked['class'] == name].sum())} of {(asked['class'] == name).sum()})"
+        for name in classes
+    ]
     _named(right, counts)
     return fig
 
@@ -227,17 +294,38 @@ def ridges(frame: pd.DataFrame) -> Figure:
     axes = fig.subplots(1, frame["surface"].nunique(), sharey=True)
     across = "elements from ridge to ridge"
     for ax, (surface, here) in zip(axes, frame.groupby("surface", sort=False), strict=True):
-        for place, ((height, pitch), part) in enumerate(here.groupby(["height (mm)", "pitch (mm)"], sort=False)):
+        for place, ((height, pitch), part) in enumerate(
+            here.groupby(["height (mm)", "pitch (mm)"], sort=False)
+        ):
             usual, most = part["error of 19 places in 20 (%)"], part["largest error (%)"]
             beside, colour = part[across] * 1.03 ** (place - 2.5), CATEGORIES[place]
             ax.vlines(beside, usual, most, color=colour, lw=0.8)
-            ax.plot(beside, usual, MARKERS[place], color=colour, ms=4.5, mfc="white", label=f"{height:g} mm every {pitch:g} mm")
+            ax.plot(
+                beside,
+                usual,
+                MARKERS[place],
+                color=colour,
+                ms=4.5,
+                mfc="white",
+                label=f"{height:g} mm every {pitch:g} mm",
+            )
             ax.plot(part[across], part["expected error (%)"], color=colour, lw=0.9, zorder=0)
-        ax.set(xscale="log", yscale="log", xlabel=across, title="plate" if surface == "flat" else f"{surface} 1/m")
+        ax.set(
+            xscale="log",
+            yscale="log",
+            xlabel=across,
+            title="plate" if surface == "flat" else f"{surface} 1/m",
+        )
         ax.set_xticks(counts := sorted(frame[across].unique()), [str(count) for count in counts])
         ax.minorticks_off()
     axes[0].set_ylabel("error of strain energy (%)")
-    axes[-1].legend(fontsize=6.5, title="ridges", title_fontsize=6.5, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    axes[-1].legend(
+        fontsize=6.5,
+        title="ridges",
+        title_fontsize=6.5,
+        loc="upper left",
+        bbox_to_anchor=(1.0, 1.0),
+    )
     return fig
 
 
@@ -261,7 +349,14 @@ def shown(frame: pd.DataFrame) -> Figure:
     figures = list(frame["figure"].unique())
     for place, chapter in enumerate(("3", "4", "5")):
         part = frame[frame["figure"].str.startswith(chapter)]
-        look = {"color": CATEGORIES[place], "marker": MARKERS[place], "ls": "", "ms": 3.2, "mfc": "white", "mew": 0.7}
+        look = {
+            "color": CATEGORIES[place],
+            "marker": MARKERS[place],
+            "ls": "",
+            "ms": 3.2,
+            "mfc": "white",
+            "mew": 0.7,
+        }
         if len(part):
             left.plot(
                 part["stated error (%)"].clip(lower=0.1),

@@ -47,13 +47,28 @@ def ridged(base: Scene, height: float, pitch: float) -> Scene:
     """A scene pressed to its force on a pad with ridges (mm), and the thesis's edges but for what is varied."""
     height, pitch, border = 1e-3 * height, 1e-3 * pitch, base.specimen.outline.epidermis_thickness
     most = RULES.ridge_near * height
-    depths = border + np.arange(-np.floor(most / DEPTH_STEP), np.floor(most / DEPTH_STEP) + 1) * DEPTH_STEP
+    depths = (
+        border
+        + np.arange(-np.floor(most / DEPTH_STEP), np.floor(most / DEPTH_STEP) + 1) * DEPTH_STEP
+    )
     press = next(leg for leg in base.motion if isinstance(leg, PressToForce))
-    inner = {f"specimen.ridges.inner.{key}": value for key, value in {"height": height, "pitch": pitch, "phase": "tip"}.items()}
-    receptors = Receptors(depths=tuple(np.round(depths, 9)), offsets=tuple(np.round(np.array(PLACES) * pitch, 9)))
+    inner = {
+        f"specimen.ridges.inner.{key}": value
+        for key, value in {"height": height, "pitch": pitch, "phase": "tip"}.items()
+    }
+    receptors = Receptors(
+        depths=tuple(np.round(depths, 9)), offsets=tuple(np.round(np.array(PLACES) * pitch, 9))
+    )
     accuracy = Discretisation(skin_edge=RULES.presets["thesis"].skin_edge, steps=STEPS)
     made = base.varied({"specimen.ridges": "inner"}).varied(inner)
-    return made.varied({"motion": (press,), "outputs.receptors": receptors, "outputs.per_leg": None, "accuracy": accuracy})
+    return made.varied(
+        {
+            "motion": (press,),
+            "outputs.receptors": receptors,
+            "outputs.per_leg": None,
+            "accuracy": accuracy,
+        }
+    )
 
 
 def pressed(scene: Scene, elements: int) -> Arrays:
@@ -80,12 +95,20 @@ def rows(surface: str, base: Scene) -> list[dict[str, object]]:
         for elements in ELEMENTS:
             found = pressed(scene, elements)
             off = 100 * np.abs(found["strain_energy_density"].values[-1][counted] / truth - 1)
-            row = {"surface": surface, "height (mm)": height, "pitch (mm)": pitch, "elements from ridge to ridge": elements}
+            row = {
+                "surface": surface,
+                "height (mm)": height,
+                "pitch (mm)": pitch,
+                "elements from ridge to ridge": elements,
+            }
             row |= {
                 "nodes": json.loads(found.attrs["cost"])["nodes"],
                 "expected error (%)": 100 * error_beside(inner, elements, RULES),
             }
-            row |= {"error of 19 places in 20 (%)": np.percentile(off, 95), "largest error (%)": off.max()}
+            row |= {
+                "error of 19 places in 20 (%)": np.percentile(off, 95),
+                "largest error (%)": off.max(),
+            }
             out.append(row)
     return out
 

@@ -29,7 +29,12 @@ if TYPE_CHECKING:
 
     from fingerpad.scenes.scene import Scene
 
-FAMILY = {"flat": "ramp40_flat", "210": "ramp40_k210", "1260": "ramp40_k1260", "stroke": "accuracy_stroke"}
+FAMILY = {
+    "flat": "ramp40_flat",
+    "210": "ramp40_k210",
+    "1260": "ramp40_k1260",
+    "stroke": "accuracy_stroke",
+}
 """Name in the study -> scene."""
 PRESSED = ("flat", "210", "1260")
 EDGED = {"flat": "ramp40_flat", "105": "ramp40_k105", "210": "ramp40_k210", "1260": "ramp40_k1260"}
@@ -80,7 +85,9 @@ def points() -> dict[str, Point]:
         found += [Point(family, element, rows) for element in ELEMENTS for rows in ROWS]
         found += [Point(family, steps=steps) for steps in STEPS]
         found += [Point(family, tolerance=tolerance) for tolerance in TOLERANCES]
-        found += [Point(family, finite=False)] + [Point(family, preset=preset) for preset in ("draft", "fine")]
+        found += [Point(family, finite=False)] + [
+            Point(family, preset=preset) for preset in ("draft", "fine")
+        ]
     return {point.name: point for point in found}
 
 
@@ -99,7 +106,9 @@ def split(mesh: PadMesh, kind: str) -> PadMesh:
         parts = [(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]
         cells = np.concatenate([cells[:, part] for part in parts])
         curves = {
-            name: np.column_stack([facets[:, 0], facets[:, 2], facets[:, 2], facets[:, 1]]).reshape(-1, 2)
+            name: np.column_stack([facets[:, 0], facets[:, 2], facets[:, 2], facets[:, 1]]).reshape(
+                -1, 2
+            )
             for name, facets in curves.items()
         }
         region = np.tile(mesh.region, 4)
@@ -107,7 +116,12 @@ def split(mesh: PadMesh, kind: str) -> PadMesh:
         left = mesh.points[cells[:, 8], 0] < 0
         one = [(0, 1, 2, 4, 5, 8), (0, 2, 3, 8, 6, 7)]
         other = [(0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 6, 8)]
-        cells = np.concatenate([np.where(left[:, None], cells[:, b], cells[:, a]) for a, b in zip(one, other, strict=True)])
+        cells = np.concatenate(
+            [
+                np.where(left[:, None], cells[:, b], cells[:, a])
+                for a, b in zip(one, other, strict=True)
+            ]
+        )
         region = np.tile(mesh.region, 2)
     else:
         raise ValueError(f"quad9 cannot be split into {kind}; allowed: quad4, tri6")
@@ -120,7 +134,9 @@ def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
 
     receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
     effects = scene.effects | {"finite_strain": point.finite}
-    scene = scene.varied({"outputs.receptors": receptors, "effects": effects}).with_accuracy(point.preset or "thesis")
+    scene = scene.varied({"outputs.receptors": receptors, "effects": effects}).with_accuracy(
+        point.preset or "thesis"
+    )
     chosen = plan(scene)
     if point.preset:
         return scene, chosen
@@ -128,8 +144,12 @@ def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
     # growth from edge to edge in proportion, so that meshes are refined alike everywhere
     growth = min(RULES.presets["thesis"].growth ** scale, 3.0)
     thickness = scene.specimen.outline.epidermis_thickness
-    size = replace(size, skin_edge=size.skin_edge * scale, layer_edge=thickness / point.rows, growth=growth)
-    size = replace(size, focus=(), skin_radial_edge=None)  # uniform ones: what elements are worth, wherever they are
+    size = replace(
+        size, skin_edge=size.skin_edge * scale, layer_edge=thickness / point.rows, growth=growth
+    )
+    size = replace(
+        size, focus=(), skin_radial_edge=None
+    )  # uniform ones: what elements are worth, wherever they are
     slide_step = chosen.slide_step * DEFAULT_STEPS / point.steps
     update = {"element": point.element, "mesh_size": size, "contact_edge": size.skin_edge}
     return scene, replace(chosen, **update, steps_per_leg=point.steps, slide_step=slide_step)
@@ -138,7 +158,9 @@ def discretised(point: Point, scene: Scene) -> tuple[Scene, Plan]:
 def meshed(scene: Scene, chosen: Plan) -> PadMesh:
     """The whole pad's mesh for the plan's element."""
     mesh = build_pad_mesh(scene.specimen.outline, chosen.mesh_size)
-    kind = {"Q2P1": "quad9", "Q2": "quad9", "Q2R": "quad9", "P2B": "tri6"}.get(chosen.element, "quad4")
+    kind = {"Q2P1": "quad9", "Q2": "quad9", "Q2R": "quad9", "P2B": "tri6"}.get(
+        chosen.element, "quad4"
+    )
     return mesh if kind == "quad9" else split(mesh, kind)
 
 
@@ -158,7 +180,9 @@ def simulation(point: Point, scene: Scene, chosen: Plan, mesh: PadMesh):
     share = point.tolerance / DEFAULT_TOLERANCE
     default = NewtonSettings()
     run.stepper.settings = replace(
-        default, force_tolerance=default.force_tolerance * share, gap_tolerance=default.gap_tolerance * share
+        default,
+        force_tolerance=default.force_tolerance * share,
+        gap_tolerance=default.gap_tolerance * share,
     )
     return run
 
@@ -167,7 +191,9 @@ def _nearest_mode(space, elements, points):
     """Pointwise pressure modes (n, nq) at ``points`` (n, 2): those of the nearest quadrature point."""
     position = np.einsum("qa,nai->nqi", space.element.values, space.points[space.cells[elements]])
     nearest = np.sum((position - points[:, None]) ** 2, axis=2).argmin(1)
-    return np.where(np.arange(space.psi.shape[1]) == nearest[:, None], space.psi[elements, nearest], 0.0)
+    return np.where(
+        np.arange(space.psi.shape[1]) == nearest[:, None], space.psi[elements, nearest], 0.0
+    )
 
 
 def values(history: xr.Dataset) -> dict[str, list[float]]:
@@ -175,14 +201,20 @@ def values(history: xr.Dataset) -> dict[str, list[float]]:
 
     The peak rate of strain energy is one of the ramp, at each depth.
     """
-    top, way = int(np.flatnonzero(history.leg == history.leg[0])[-1]), history.stroke_distance.values
+    top, way = (
+        int(np.flatnonzero(history.leg == history.leg[0])[-1]),
+        history.stroke_distance.values,
+    )
     energies = history.strain_energy_density.values.T
     traces = {
         "depth": history.indentation_depth.values,
         "width": history.contact_width.values,
         "centre pressure": history.centre_pressure.values,
         "peak pressure": history.peak_pressure.values,
-    } | {f"energy {depth * 1e6:.0f} um": energy for depth, energy in zip(DEPTHS, energies, strict=True)}
+    } | {
+        f"energy {depth * 1e6:.0f} um": energy
+        for depth, energy in zip(DEPTHS, energies, strict=True)
+    }
 
     def looked_at(trace):
         if way[-1] == 0:
@@ -284,4 +316,6 @@ def _timed(call):
 def seconds(record: dict[str, Any], yardstick: float) -> float:
     """Median process time (s) of a record, each repeat scaled to a machine on which the yardstick takes ``yardstick`` s."""
     cost = record["cost"]
-    return yardstick * statistics.median(a / b for a, b in zip(cost["cpu_s"], cost["yardstick_s"], strict=True))
+    return yardstick * statistics.median(
+        a / b for a, b in zip(cost["cpu_s"], cost["yardstick_s"], strict=True)
+    )

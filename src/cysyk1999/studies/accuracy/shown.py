@@ -18,7 +18,17 @@ from fingerpad.measures.features import Histories, Meshes
 
 FINER = 0.5
 """Edges of the finer runs over those of the scenes."""
-MADE_FINER = ("stroke_", "ramp40_", "ramp150_", "press10_", "press15_", "step_sub", "plate_", "ridged_stroke_", "ridged_40_")
+MADE_FINER = (
+    "stroke_",
+    "ramp40_",
+    "ramp150_",
+    "press10_",
+    "press15_",
+    "step_sub",
+    "plate_",
+    "ridged_stroke_",
+    "ridged_40_",
+)
 """How names of scenes begin that are made finer: all that figures read but chapter 3's and the homogeneous pad."""
 STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"
 
@@ -60,9 +70,13 @@ def shown(
     for spec, measured in figures:
         if not spec.read_companions or not truth.keys() >= set(spec.read_companions):
             continue
-        stated, true = (spec.frame(histories, meshes, each, reference, *measured) for each in (coarse, truth))
+        stated, true = (
+            spec.frame(histories, meshes, each, reference, *measured) for each in (coarse, truth)
+        )
         named = [column for column in _SERIES if column in stated]
-        both = stated[named].fillna("").astype(str).agg(" ".join, axis=1).str.strip().to_frame("curve")
+        both = (
+            stated[named].fillna("").astype(str).agg(" ".join, axis=1).str.strip().to_frame("curve")
+        )
         both[STATED_MESH], both[STATED] = stated[MESH], stated[list(PARTS)].sum(axis=1, min_count=1)
         both[TRUE] = true[MESH]
         found = both[(both[STATED_MESH] > 0) & np.isfinite(both[TRUE])].drop_duplicates()

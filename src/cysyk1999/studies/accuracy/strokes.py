@@ -40,12 +40,19 @@ LARGEST, MEAN = "largest", "root mean square"
 
 def strokes(over: str, seeds: tuple[int, ...] = SEEDS) -> dict[str, Scene]:
     """The strokes over plates or over waves, by name: all as they are drawn, steady ones, and then all in time."""
-    drawn_ones = {f"{seed}_{name}": each for seed in seeds for name, kind, each in drawn(seed, COUNT) if kind == "wavy"}
+    drawn_ones = {
+        f"{seed}_{name}": each
+        for seed in seeds
+        for name, kind, each in drawn(seed, COUNT)
+        if kind == "wavy"
+    }
     change = {"stimulus": hard_cases.FLAT} if over == PLATES else {}
     found = {name: document | change for name, document in drawn_ones.items()}
     for (name, document), speed in zip(list(found.items()), cycle(SPEEDS), strict=False):
         press, slide = document["motion"]
-        found[f"{name}_timed"] = document | {"motion": [press | {"rate": RATE}, slide | {"speed": speed, "keep": "force"}]}
+        found[f"{name}_timed"] = document | {
+            "motion": [press | {"rate": RATE}, slide | {"speed": speed, "keep": "force"}]
+        }
     return {name: hard_cases.scene_of(document, name) for name, document in found.items()}
 
 
@@ -54,7 +61,9 @@ def discretised(scene: Scene, rows: int, steps: int) -> Plan:
     known = RULES.errors
     these = replace(known, mesh={rows: known.mesh[rows]}, time={steps: known.time[steps]})
     only = replace(RULES, errors=these, least_steps_stroked=steps)
-    return replace(plan(scene.with_accuracy({"tolerance": 0.05, "once": True}), only), asked_error=None)
+    return replace(
+        plan(scene.with_accuracy({"tolerance": 0.05, "once": True}), only), asked_error=None
+    )
 
 
 def stroke_errors(over: str, name: str, scene: Scene) -> Iterator[dict[str, object]]:
@@ -62,9 +71,18 @@ def stroke_errors(over: str, name: str, scene: Scene) -> Iterator[dict[str, obje
     from fingerpad.simulation import simulate
 
     truth = simulate(scene, discretised(scene, *FINEST))
-    for rows, steps in dict.fromkeys([*((n, DEFAULT_STEPS) for n in MESHES), *((DEFAULT_ROWS, n) for n in STEPS)]):
+    for rows, steps in dict.fromkeys(
+        [*((n, DEFAULT_STEPS) for n in MESHES), *((DEFAULT_ROWS, n) for n in STEPS)]
+    ):
         off, worst = difference(simulate(scene, discretised(scene, rows, steps)), truth)
-        yield {"over": over, "scene": name, "rows": rows, "steps": steps, "error": off, "worst quantity": worst}
+        yield {
+            "over": over,
+            "scene": name,
+            "rows": rows,
+            "steps": steps,
+            "error": off,
+            "worst quantity": worst,
+        }
 
 
 def strokes_table(found: pd.DataFrame) -> pd.DataFrame:
@@ -73,9 +91,17 @@ def strokes_table(found: pd.DataFrame) -> pd.DataFrame:
     found: of all scenes, as of :func:`stroke_errors`.
     """
     errors = found.groupby(["over", "rows", "steps"])["error"]
-    of_all = pd.DataFrame({LARGEST: errors.max(), MEAN: errors.agg(lambda each: np.sqrt(np.mean(each**2)))}).unstack("over")
+    of_all = pd.DataFrame(
+        {LARGEST: errors.max(), MEAN: errors.agg(lambda each: np.sqrt(np.mean(each**2)))}
+    ).unstack("over")
     mesh = of_all.xs(DEFAULT_STEPS, level="steps").rename_axis("count")
-    steps = (of_all.xs(DEFAULT_ROWS, level="rows") - mesh.loc[DEFAULT_ROWS]).clip(lower=0.0).rename_axis("count")
-    both = pd.concat({"mesh": mesh[::-1].cummax()[::-1], "steps": steps[::-1].cummax()[::-1]}, names=["kind"])
+    steps = (
+        (of_all.xs(DEFAULT_ROWS, level="rows") - mesh.loc[DEFAULT_ROWS])
+        .clip(lower=0.0)
+        .rename_axis("count")
+    )
+    both = pd.concat(
+        {"mesh": mesh[::-1].cummax()[::-1], "steps": steps[::-1].cummax()[::-1]}, names=["kind"]
+    )
     both.columns = [f"{over}, {which}" for which, over in both.columns]
     return both.map(lambda error: float(f"{error:.2g}")).reset_index()

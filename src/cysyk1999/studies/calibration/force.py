@@ -29,7 +29,19 @@ PLATE = "flat plate"
 MEAN = "mean"
 DEPTH, FORCE = "depth (mm)", "force (N)"
 
-ESTIMATE_COLUMNS = ("study", "subject", "quantity", "estimate", "low_95", "high_95", "units", "data", "rss (N2)", "aicc", "note")
+ESTIMATE_COLUMNS = (
+    "study",
+    "subject",
+    "quantity",
+    "estimate",
+    "low_95",
+    "high_95",
+    "units",
+    "data",
+    "rss (N2)",
+    "aicc",
+    "note",
+)
 
 
 @dataclass(frozen=True)
@@ -43,12 +55,16 @@ class ElasticCurve:
     @classmethod
     def from_history(cls, history: xr.Dataset) -> ElasticCurve:
         """The curve of a scene of steady presses to growing depths."""
-        return cls(history.indentation_depth.values, history.force.values, history.contact_width.values)
+        return cls(
+            history.indentation_depth.values, history.force.values, history.contact_width.values
+        )
 
     def _at(self, curve: PchipInterpolator, depth):
         depth = np.asarray(depth, float)
         if depth.size and not (depth.min() >= 0 and depth.max() <= self.depth[-1] * (1 + 1e-9)):
-            raise ValueError(f"a depth of {depth.max() * 1e3:g} mm is beyond the elastic curve, 0 to {self.depth[-1] * 1e3:g} mm")
+            raise ValueError(
+                f"a depth of {depth.max() * 1e3:g} mm is beyond the elastic curve, 0 to {self.depth[-1] * 1e3:g} mm"
+            )
         return curve(np.minimum(depth, self.depth[-1]))
 
     @cached_property
@@ -111,12 +127,23 @@ def plate_forces(data: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """
     chosen = data[(data["indenter"] == PLATE) & (data["speed_mm_per_s"] == 0)]
     if chosen.empty:
-        raise ValueError(f"no steady force (speed_mm_per_s 0) under a {PLATE} among the reference data")
-    out = {subject: group.sort_values("depth_mm") for subject, group in chosen.groupby("subject", sort=True)}
+        raise ValueError(
+            f"no steady force (speed_mm_per_s 0) under a {PLATE} among the reference data"
+        )
+    out = {
+        subject: group.sort_values("depth_mm")
+        for subject, group in chosen.groupby("subject", sort=True)
+    }
     for subject, group in out.items():
         if len(group) < 2:
-            raise ValueError(f"subject '{subject}' has one steady force under a {PLATE}; a fit needs at least two depths")
-    shared = chosen.groupby("depth_mm").agg(force_N=("force_N", "mean"), count=("subject", "size")).reset_index()
+            raise ValueError(
+                f"subject '{subject}' has one steady force under a {PLATE}; a fit needs at least two depths"
+            )
+    shared = (
+        chosen.groupby("depth_mm")
+        .agg(force_N=("force_N", "mean"), count=("subject", "size"))
+        .reset_index()
+    )
     shared = shared[shared["count"] == len(out)]
     if len(out) > 1 and len(shared) >= 2:
         out[MEAN] = shared
@@ -124,7 +151,14 @@ def plate_forces(data: pd.DataFrame) -> dict[str, pd.DataFrame]:
 
 
 def fit_constant(
-    curve: ElasticCurve, depth, force, length: float, *, start: float = 1.0, relative: bool = False, sigma: float | None = None
+    curve: ElasticCurve,
+    depth,
+    force,
+    length: float,
+    *,
+    start: float = 1.0,
+    relative: bool = False,
+    sigma: float | None = None,
 ) -> Fit:
     """The factor s on the moduli behind `curve`, contact length (m) given.
 
@@ -134,13 +168,22 @@ def fit_constant(
     """
     shape = length * curve.force_at(depth)
     weight = 1 / np.asarray(force, float) if relative else 1.0
-    return fit(lambda p: (p[0] * shape, shape[:, None]), force, {"s": start}, weight=weight, sigma=sigma)
+    return fit(
+        lambda p: (p[0] * shape, shape[:, None]), force, {"s": start}, weight=weight, sigma=sigma
+    )
 
 
-def fit_constant_and_length(curve: ElasticCurve, depth, force, start: dict[str, float], sigma: float | None = None) -> Fit:
+def fit_constant_and_length(
+    curve: ElasticCurve, depth, force, start: dict[str, float], sigma: float | None = None
+) -> Fit:
     """The factor s and the contact length (m) together, ``start = {"s": .., "length": ..}``: force tells their product only."""
     shape = curve.force_at(depth)
-    return fit(lambda p: (p[0] * p[1] * shape, np.column_stack([p[1] * shape, p[0] * shape])), force, start, sigma=sigma)
+    return fit(
+        lambda p: (p[0] * p[1] * shape, np.column_stack([p[1] * shape, p[0] * shape])),
+        force,
+        start,
+        sigma=sigma,
+    )
 
 
 def fit_length(curve: ElasticCurve, depth, force, model: str) -> Fit:
@@ -159,7 +202,10 @@ def fit_length(curve: ElasticCurve, depth, force, model: str) -> Fit:
 
 def ridge_correlation(found: Fit, factor: float = 10.0) -> float:
     """Correlation of the log parameters of a fit when each is known beforehand to within `factor` (one standard deviation)."""
-    information = found.jacobian.T @ found.jacobian / found.sigma**2 + np.eye(len(found.values)) / math.log(factor) ** 2
+    information = (
+        found.jacobian.T @ found.jacobian / found.sigma**2
+        + np.eye(len(found.values)) / math.log(factor) ** 2
+    )
     covariance = np.linalg.inv(information)
     return float(covariance[0, 1] / math.sqrt(covariance[0, 0] * covariance[1, 1]))
 
@@ -178,7 +224,9 @@ class Calibration:
     constants: dict[str, Fit]
 
 
-def calibrate(histories: Mapping[str, xr.Dataset], coarse: Mapping[str, xr.Dataset], data: pd.DataFrame) -> Calibration:
+def calibrate(
+    histories: Mapping[str, xr.Dataset], coarse: Mapping[str, xr.Dataset], data: pd.DataFrame
+) -> Calibration:
     """Calibrate every subject and the mean.
 
     Args:
@@ -189,16 +237,33 @@ def calibrate(histories: Mapping[str, xr.Dataset], coarse: Mapping[str, xr.Datas
     plate = histories["calibration_plate"]
     specimen = json.loads(plate.attrs["scene"])["specimen"]
     length = specimen["contact_length"]
-    curves = {name.removeprefix("calibration_"): ElasticCurve.from_history(h) for name, h in histories.items() if _steady(h)}
+    curves = {
+        name.removeprefix("calibration_"): ElasticCurve.from_history(h)
+        for name, h in histories.items()
+        if _steady(h)
+    }
     curve = curves["plate"]
     forces = plate_forces(data)
     constants = {who: fit_constant(curve, *_si(group), length) for who, group in forces.items()}
-    lengths = {(who, model): fit_length(curve, *_si(group), model) for who, group in forces.items() for model in LENGTHS}
+    lengths = {
+        (who, model): fit_length(curve, *_si(group), model)
+        for who, group in forces.items()
+        for model in LENGTHS
+    }
     return Calibration(
         _fit_frame(curves, forces, constants, length),
         _identifiability_frame(curve, forces, length),
         _residuals_frame(curve, forces, lengths),
-        _estimates(curves, forces, constants, lengths, length, specimen, plate, coarse.get("calibration_plate")),
+        _estimates(
+            curves,
+            forces,
+            constants,
+            lengths,
+            length,
+            specimen,
+            plate,
+            coarse.get("calibration_plate"),
+        ),
         constants,
     )
 
@@ -220,24 +285,54 @@ def _fit_frame(curves, forces, constants, length) -> pd.DataFrame:
     rows = []
     for who, group in forces.items():
         source = f"measured ({_cited(group)})" if who != MEAN else "measured, mean of the subjects"
-        points = {"panel": "subjects", "series": who, "source": source, DEPTH: group["depth_mm"], FORCE: group["force_N"]}
+        points = {
+            "panel": "subjects",
+            "series": who,
+            "source": source,
+            DEPTH: group["depth_mm"],
+            FORCE: group["force_N"],
+        }
         rows.append(pd.DataFrame(points))
     depth = curves["plate"].depth
     base = length * curves["plate"].force
     for who, found in constants.items():
         low, high = found.intervals()[0]
-        rows.append(_line("subjects", who, "simulated, fitted constant", depth, found.values[0] * base, low * base, high * base))
+        rows.append(
+            _line(
+                "subjects",
+                who,
+                "simulated, fitted constant",
+                depth,
+                found.values[0] * base,
+                low * base,
+                high * base,
+            )
+        )
     rows.append(_line("subjects", "thesis", "simulated, moduli stated in the thesis", depth, base))
-    for name, title in (("less_fat", "0.75 mm less fat"), ("plate", "default specimen"), ("more_fat", "0.75 mm more fat")):
+    for name, title in (
+        ("less_fat", "0.75 mm less fat"),
+        ("plate", "default specimen"),
+        ("more_fat", "0.75 mm more fat"),
+    ):
         if name in curves:
             line = constants[_last(forces)].values[0] * length * curves[name].force
-            rows.append(_line("bone", title, "simulated, constant of the default specimen", curves[name].depth, line))
+            rows.append(
+                _line(
+                    "bone",
+                    title,
+                    "simulated, constant of the default specimen",
+                    curves[name].depth,
+                    line,
+                )
+            )
     return pd.concat(rows, ignore_index=True)
 
 
 def _cited(group) -> str:
     """Author and year of the sources of a subject's rows: what stands before the first comma or the year."""
-    return "; ".join(dict.fromkeys(group["source"].str.replace(r"^(.*?\b\d{4}\b).*$", r"\1", regex=True)))
+    return "; ".join(
+        dict.fromkeys(group["source"].str.replace(r"^(.*?\b\d{4}\b).*$", r"\1", regex=True))
+    )
 
 
 def _line(panel, series, source, depth, force, low=np.nan, high=np.nan):
@@ -274,12 +369,34 @@ def _identifiability_frame(curve, forces, length) -> pd.DataFrame:
                 "rise (1)": rise(s * length * a),
             }
         )
-        for name in ("contact length", "modulus constant"):  # the other is refitted: their product stays
+        for name in (
+            "contact length",
+            "modulus constant",
+        ):  # the other is refitted: their product stays
             refitted = (s / a) * (length * a)
-            rows.append({"panel": "profile", "series": name, "relative (1)": a, "rise (1)": abs(rise(refitted))})
-    rows.append({"panel": "level", "series": f"95 % (t, {best.count - 1} degrees of freedom)", "rise (1)": best.quantile() ** 2})
+            rows.append(
+                {
+                    "panel": "profile",
+                    "series": name,
+                    "relative (1)": a,
+                    "rise (1)": abs(rise(refitted)),
+                }
+            )
+    rows.append(
+        {
+            "panel": "level",
+            "series": f"95 % (t, {best.count - 1} degrees of freedom)",
+            "rise (1)": best.quantile() ** 2,
+        }
+    )
     frame = pd.DataFrame(rows)
-    frame.insert(1, "source", "simulated, misfit to the measured mean" if MEAN in forces else "simulated, misfit to the subject")
+    frame.insert(
+        1,
+        "source",
+        "simulated, misfit to the measured mean"
+        if MEAN in forces
+        else "simulated, misfit to the subject",
+    )
     frame.loc[frame["rise (1)"] < 1e-6, "rise (1)"] = 0.0
     return frame
 
@@ -289,24 +406,44 @@ def _residuals_frame(curve, forces, lengths) -> pd.DataFrame:
     for who, group in forces.items():
         depth, force = _si(group)
         needed = force / curve.force_at(depth) * 1e3
-        rows.append(_length_rows(who, "measured force over simulated force per length", depth, needed))
+        rows.append(
+            _length_rows(who, "measured force over simulated force per length", depth, needed)
+        )
         for model in LENGTHS:
             found = lengths[who, model]
-            columns = {"panel": "residuals", "series": model, "subject": who, "source": "measured less simulated"}
+            columns = {
+                "panel": "residuals",
+                "series": model,
+                "subject": who,
+                "source": "measured less simulated",
+            }
             rows.append(
                 pd.DataFrame(
-                    columns | {DEPTH: depth * 1e3, "residual (N)": found.residual, "residual (%)": 100 * found.residual / force}
+                    columns
+                    | {
+                        DEPTH: depth * 1e3,
+                        "residual (N)": found.residual,
+                        "residual (%)": 100 * found.residual / force,
+                    }
                 )
             )
     depth = curve.depth[1:]
     for model, (length, *_) in LENGTHS.items():
         fitted = length(curve, depth, lengths[_last(forces), model].values[0]) * 1e3
-        rows.append(_length_rows(_last(forces), "simulated, fitted", depth, fitted).assign(series=model))
+        rows.append(
+            _length_rows(_last(forces), "simulated, fitted", depth, fitted).assign(series=model)
+        )
     return pd.concat(rows, ignore_index=True)
 
 
 def _length_rows(who, source, depth, length):
-    columns = {"panel": "length", "series": "needed", "subject": who, "source": source, DEPTH: depth * 1e3}
+    columns = {
+        "panel": "length",
+        "series": "needed",
+        "subject": who,
+        "source": source,
+        DEPTH: depth * 1e3,
+    }
     return pd.DataFrame(columns | {"effective_length (mm)": length})
 
 
@@ -321,47 +458,127 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
 
     def add(study, who, quantity, values, units, found=None, note=""):
         value, low, high = values if isinstance(values, tuple) else (values, np.nan, np.nan)
-        row = {"study": study, "subject": who, "quantity": quantity, "estimate": value, "low_95": low, "high_95": high}
+        row = {
+            "study": study,
+            "subject": who,
+            "quantity": quantity,
+            "estimate": value,
+            "low_95": low,
+            "high_95": high,
+        }
         row |= {"units": units, "note": note}
         if found is not None:
             row |= {"data": found.count, "rss (N2)": found.rss, "aicc": found.aicc}
         rows.append(row)
 
-    add("stated in the thesis", "mean", "modulus constant", 1.0, "1",
-        note=f"moduli {ratio}, epidermis {young / 1e6:g} MPa; {length * 1e3:g} mm contact length")  # fmt: skip
+    add(
+        "stated in the thesis",
+        "mean",
+        "modulus constant",
+        1.0,
+        "1",
+        note=f"moduli {ratio}, epidermis {young / 1e6:g} MPa; {length * 1e3:g} mm contact length",
+    )
     for who, found in constants.items():
         note = f"equal weights in N, {length * 1e3:g} mm contact length, moduli {ratio}; interval from the misfit, not from noise"
         add("constant", who, "modulus constant", _of(found), "1", found, note)
-        add("constant", who, "Young's modulus of the epidermis", tuple(young / 1e6 * v for v in _of(found)), "MPa")
+        add(
+            "constant",
+            who,
+            "Young's modulus of the epidermis",
+            tuple(young / 1e6 * v for v in _of(found)),
+            "MPa",
+        )
     subjects = [who for who in forces if who != MEAN]
     if len(subjects) > 1:
-        add("constant", "all", "modulus constant, geometric mean", group_interval([constants[w].values[0] for w in subjects]),
-            "1", note="interval from the scatter between subjects")  # fmt: skip
+        add(
+            "constant",
+            "all",
+            "modulus constant, geometric mean",
+            group_interval([constants[w].values[0] for w in subjects]),
+            "1",
+            note="interval from the scatter between subjects",
+        )
     weighted = fit_constant(curves["plate"], *_si(forces[last]), length, relative=True)
-    add("weights", last, "modulus constant", _of(weighted), "1", None,
-        "equal relative weights: what the choice of weights changes")  # fmt: skip
-    both = fit_constant_and_length(curves["plate"], *_si(forces[last]), {"s": 1.0, "length": length}, sigma=constants[last].sigma)
-    add("identifiability", last, "modulus constant x contact length", tuple(length * 1e3 * v for v in _of(constants[last])),
-        "mm", note="the only thing that force tells")  # fmt: skip
-    add("identifiability", last, "correlation of log constant and log length", ridge_correlation(both), "1",
-        note="each known beforehand within a factor 10; a pressure or a width under known force would part them")  # fmt: skip
-    add("identifiability", last, "rank of the sensitivities",
-        float(np.linalg.matrix_rank(both.jacobian, tol=1e-9 * abs(both.jacobian).max())), "1", both)  # fmt: skip
+    add(
+        "weights",
+        last,
+        "modulus constant",
+        _of(weighted),
+        "1",
+        None,
+        "equal relative weights: what the choice of weights changes",
+    )
+    both = fit_constant_and_length(
+        curves["plate"],
+        *_si(forces[last]),
+        {"s": 1.0, "length": length},
+        sigma=constants[last].sigma,
+    )
+    add(
+        "identifiability",
+        last,
+        "modulus constant x contact length",
+        tuple(length * 1e3 * v for v in _of(constants[last])),
+        "mm",
+        note="the only thing that force tells",
+    )
+    add(
+        "identifiability",
+        last,
+        "correlation of log constant and log length",
+        ridge_correlation(both),
+        "1",
+        note="each known beforehand within a factor 10; a pressure or a width under known force would part them",
+    )
+    add(
+        "identifiability",
+        last,
+        "rank of the sensitivities",
+        float(np.linalg.matrix_rank(both.jacobian, tol=1e-9 * abs(both.jacobian).max())),
+        "1",
+        both,
+    )
     depth, force = _si(forces[last])
     for d, needed in zip(depth, force / curves["plate"].force_at(depth), strict=True):
-        add("effective length", last, f"length needed at {d * 1e3:g} mm", needed * 1e3, "mm", note="with the thesis's moduli")
+        add(
+            "effective length",
+            last,
+            f"length needed at {d * 1e3:g} mm",
+            needed * 1e3,
+            "mm",
+            note="with the thesis's moduli",
+        )
     for (who, model), found in lengths.items():
         _, parameter, units, scale = LENGTHS[model]
-        add(model, who, parameter, tuple(scale * v for v in _of(found)), units, found,
-            f"with the thesis's moduli; force tells {_TOLD[model]} only")  # fmt: skip
+        add(
+            model,
+            who,
+            parameter,
+            tuple(scale * v for v in _of(found)),
+            units,
+            found,
+            f"with the thesis's moduli; force tells {_TOLD[model]} only",
+        )
     if "long_term" in curves:
         found = fit_constant(curves["long_term"], *_si(forces[last]), length)
-        add("moduli read as long-term", last, "modulus constant", _of(found), "1", found,
-            "all of the moduli is then left when the force is read")  # fmt: skip
         add(
-            "moduli read as long-term", last, "constant over that of the instantaneous reading",
-            found.values[0] / constants[last].values[0], "1", note="g_inf but for the bulk modulus, which does not relax",
-        )  # fmt: skip
+            "moduli read as long-term",
+            last,
+            "modulus constant",
+            _of(found),
+            "1",
+            found,
+            "all of the moduli is then left when the force is read",
+        )
+        add(
+            "moduli read as long-term",
+            last,
+            "constant over that of the instantaneous reading",
+            found.values[0] / constants[last].values[0],
+            "1",
+            note="g_inf but for the bulk modulus, which does not relax",
+        )
     for name, title in (("less_fat", "0.75 mm less fat"), ("more_fat", "0.75 mm more fat")):
         if name in curves:
             found = fit_constant(curves[name], *_si(forces[last]), length)
@@ -369,12 +586,30 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
     if coarse is not None:
         rough = ElasticCurve.from_history(coarse).force_at(depth)
         error = np.abs(rough / curves["plate"].force_at(depth) - 1).max()
-        add("cost", "", "discretisation error of the elastic curve", 100 * error, "%",
-            note="largest difference to twice the edge, at the measured depths")  # fmt: skip
-    add("cost", "", "finite element simulations for all fits of the constant", 1.0, "1",
-        note="readings of the moduli and bone positions take one more each")  # fmt: skip
-    add("cost", "", "Newton iterations of the elastic curve", float(plate.newton_iterations.sum()), "1",
-        note=f"{plate.sizes['time'] - 1} load increments")  # fmt: skip
+        add(
+            "cost",
+            "",
+            "discretisation error of the elastic curve",
+            100 * error,
+            "%",
+            note="largest difference to twice the edge, at the measured depths",
+        )
+    add(
+        "cost",
+        "",
+        "finite element simulations for all fits of the constant",
+        1.0,
+        "1",
+        note="readings of the moduli and bone positions take one more each",
+    )
+    add(
+        "cost",
+        "",
+        "Newton iterations of the elastic curve",
+        float(plate.newton_iterations.sum()),
+        "1",
+        note=f"{plate.sizes['time'] - 1} load increments",
+    )
     return pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)
 
 
@@ -405,7 +640,9 @@ def specimen_text(who: str, found: Fit, specimen: Mapping, data: pd.DataFrame) -
     for name in ("epidermis", "dermis", "fat"):
         layer = specimen["layers"][name]
         modulus = f'"{s * layer["youngs_modulus"] / 1e6:.6g} MPa"'
-        lines.append(f"  {name}: {{youngs_modulus: {modulus}, poisson_ratio: {layer['poisson_ratio']:g}}}")
+        lines.append(
+            f"  {name}: {{youngs_modulus: {modulus}, poisson_ratio: {layer['poisson_ratio']:g}}}"
+        )
     return "\n".join([*lines, f"moduli: {specimen['moduli']}"]) + "\n"
 
 
@@ -422,7 +659,9 @@ def specimen_names(subjects: Iterable[str]) -> dict[str, str]:
     return names
 
 
-def write_specimens(directory: str | Path, result: Calibration, specimen: Mapping, data: pd.DataFrame) -> list[Path]:
+def write_specimens(
+    directory: str | Path, result: Calibration, specimen: Mapping, data: pd.DataFrame
+) -> list[Path]:
     """Write the calibrated specimen of every subject and of the mean; returns the paths."""
     paths = [Path(directory) / f"{name}.yaml" for name in specimen_names(result.constants).values()]
     for path, (who, found) in zip(paths, result.constants.items(), strict=True):

@@ -61,13 +61,17 @@ def stretch(history: xr.Dataset) -> Stretch:
     start, end = surface.lead_in, surface.length - surface.run_out
     way, lateral = history.stroke_distance.values, history.centre_lateral_displacement.values
     if way[-1] < end * (1 - 1e-9):
-        raise ValueError(f"{scene.name} strokes {way[-1] * 1e3:.4g} mm, the waves end at {end * 1e3:.4g} mm")
+        raise ValueError(
+            f"{scene.name} strokes {way[-1] * 1e3:.4g} mm, the waves end at {end * 1e3:.4g} mm"
+        )
     way, first = np.unique(way, return_index=True)
     lateral = lateral[first]
     inside = (way > start) & (way < end)
     x = np.concatenate([[start], way[inside], [end]])
     u = np.interp(x, way, lateral)
-    return Stretch(scene.friction, float(np.trapezoid(u, x) / (end - start)), float(u.min()), float(u.max()))
+    return Stretch(
+        scene.friction, float(np.trapezoid(u, x) / (end - start)), float(u.min()), float(u.max())
+    )
 
 
 class StretchCurve:
@@ -84,11 +88,18 @@ class StretchCurve:
         self.points = sorted(points, key=lambda point: point.coefficient)
         self.coefficient = np.array([point.coefficient for point in self.points])
         if len(self.points) < 2 or not (np.diff(self.coefficient) > 0).all():
-            raise ValueError("a curve needs at least two different coefficients of friction, each once")
-        self.values = {name: np.array([getattr(p, name) for p in self.points]) for name in ("mean", "lowest", "highest")}
+            raise ValueError(
+                "a curve needs at least two different coefficients of friction, each once"
+            )
+        self.values = {
+            name: np.array([getattr(p, name) for p in self.points])
+            for name in ("mean", "lowest", "highest")
+        }
         for name, values in self.values.items():
             if not (np.diff(values) < 0).all():
-                raise ValueError(f"the {name} lateral displacement does not fall with every larger coefficient of friction")
+                raise ValueError(
+                    f"the {name} lateral displacement does not fall with every larger coefficient of friction"
+                )
 
     @cached_property
     def mean(self) -> PchipInterpolator:
@@ -104,7 +115,9 @@ class StretchCurve:
         values = self.values[name]
         if not values[-1] <= lateral <= values[0]:
             ends = f"{values[0] * 1e3:.3g} to {values[-1] * 1e3:.3g} mm"
-            raise ValueError(f"a {name} lateral displacement of {lateral * 1e3:.3g} mm is beyond the strokes, {ends}")
+            raise ValueError(
+                f"a {name} lateral displacement of {lateral * 1e3:.3g} mm is beyond the strokes, {ends}"
+            )
         curve = PchipInterpolator(self.coefficient, values - lateral)
         return float(curve.roots(extrapolate=False)[0])
 
@@ -134,9 +147,12 @@ def calibrate_friction(
     axis = tuple(1e-3 * stated.loc[AXIS, ["low", "high"]].astype(float))
     sweep = sorted(sweep, key=lambda history: scene_of(history).friction)
     curve = StretchCurve(map(stretch, sweep))
-    varied = {VARIATIONS[name]: stretch(histories[name]) for name in VARIATIONS if name in histories}
+    varied = {
+        VARIATIONS[name]: stretch(histories[name]) for name in VARIATIONS if name in histories
+    }
     return FrictionCalibration(
-        _frame(sweep, curve, varied, target, axis, published), _estimates(curve, varied, target, axis, published)
+        _frame(sweep, curve, varied, target, axis, published),
+        _estimates(curve, varied, target, axis, published),
     )
 
 
@@ -155,10 +171,14 @@ def _frame(sweep, curve, varied, target, axis, published) -> pd.DataFrame:
         rows.append(pd.DataFrame(course).iloc[sliding[0] - 1 :])
     stimulus = scene_of(sweep[0]).stimulus
     ends = [1e3 * stimulus.lead_in, 1e3 * (stimulus.length - stimulus.run_out)]
-    rows.append(pd.DataFrame({"panel": "waves", "series": "waves", "source": "simulated", DISTANCE: ends}))
+    rows.append(
+        pd.DataFrame({"panel": "waves", "series": "waves", "source": "simulated", DISTANCE: ends})
+    )
 
     def marks(panel, source, points):
-        values = [(k, s.coefficient, 1e3 * s.mean, 1e3 * s.lowest, 1e3 * s.highest) for k, s in points]
+        values = [
+            (k, s.coefficient, 1e3 * s.mean, 1e3 * s.lowest, 1e3 * s.highest) for k, s in points
+        ]
         frame = pd.DataFrame(values, columns=["series", COEFFICIENT, LATERAL, LOWEST, HIGHEST])
         return frame.assign(panel=panel, source=source)
 
@@ -168,19 +188,32 @@ def _frame(sweep, curve, varied, target, axis, published) -> pd.DataFrame:
         rows.append(marks("variations", "simulated", shown.items()))
     cysyk = "stated (Cysyk 1999)"
     about = Stretch(np.nan, target, target - ABOUT, target + ABOUT)
-    rows.append(marks("stated", cysyk, [("about 1 mm, Fig 5-6", about), ("axis of Fig 5-15", Stretch(np.nan, np.nan, *axis))]))
+    rows.append(
+        marks(
+            "stated",
+            cysyk,
+            [("about 1 mm, Fig 5-6", about), ("axis of Fig 5-15", Stretch(np.nan, np.nan, *axis))],
+        )
+    )
     chosen = published[published["quantity"] == "coefficient"]
     high = chosen["high"].fillna(chosen["low"])
     rows.append(
-        pd.DataFrame({
-            "panel": "published",
-            "series": np.where(chosen["kind"] == "measured", chosen["contact"], chosen["condition"]),
-            "source": chosen["kind"] + " (" + chosen["source"].str.replace(r"(\b\d{4}), .*", r"\1", regex=True) + ")",
-            COEFFICIENT: (chosen["low"] + high) / 2,
-            "lowest_coefficient (1)": chosen["low"],
-            "highest_coefficient (1)": high,
-        })
-    )  # fmt: skip
+        pd.DataFrame(
+            {
+                "panel": "published",
+                "series": np.where(
+                    chosen["kind"] == "measured", chosen["contact"], chosen["condition"]
+                ),
+                "source": chosen["kind"]
+                + " ("
+                + chosen["source"].str.replace(r"(\b\d{4}), .*", r"\1", regex=True)
+                + ")",
+                COEFFICIENT: (chosen["low"] + high) / 2,
+                "lowest_coefficient (1)": chosen["low"],
+                "highest_coefficient (1)": high,
+            }
+        )
+    )
     return pd.concat(rows, ignore_index=True)
 
 
@@ -191,7 +224,10 @@ def rounded(coefficient: float) -> float:
 
 def _estimate(curve: StretchCurve, target: float) -> Stretch:
     best = curve.coefficient_at(target)
-    ranges = (float(PchipInterpolator(curve.coefficient, curve.values[name])(best)) for name in ("lowest", "highest"))
+    ranges = (
+        float(PchipInterpolator(curve.coefficient, curve.values[name])(best))
+        for name in ("lowest", "highest")
+    )
     return Stretch(best, target, *ranges)
 
 
@@ -201,23 +237,62 @@ def _estimates(curve, varied, target, axis, published) -> pd.DataFrame:
     mean, about = f"{-1e3 * target:g} mm", 1e3 * ABOUT
 
     def add(study, quantity, value, units="1", note="", subject="thesis"):
-        row = {"study": study, "subject": subject, "quantity": quantity, "estimate": value, "units": units, "note": note}
+        row = {
+            "study": study,
+            "subject": subject,
+            "quantity": quantity,
+            "estimate": value,
+            "units": units,
+            "note": note,
+        }
         rows.append(row)
 
     study = "friction"
-    add(study, "coefficient", best.coefficient, note=f"the thesis states none; mean stretch over the waves at 10 mm/s {mean}")
-    add(study, "coefficient, rounded", rounded(best.coefficient),
-        note=f"to {STEP:g}: that of the scenes; interval: the next two rows")  # fmt: skip
+    add(
+        study,
+        "coefficient",
+        best.coefficient,
+        note=f"the thesis states none; mean stretch over the waves at 10 mm/s {mean}",
+    )
+    add(
+        study,
+        "coefficient, rounded",
+        rounded(best.coefficient),
+        note=f"to {STEP:g}: that of the scenes; interval: the next two rows",
+    )
     for side, shift in (("least", ABOUT), ("most", -ABOUT)):
         value = curve.coefficient_at(target + shift)
         note = f"mean stretch {-1e3 * (target + shift):.3g} mm; about is read as +-{about:g} mm, not a 95 % interval"
         add(study, f"{side} coefficient for about {mean}", value, note=note)
     for side, name, lateral in (("least", "highest", axis[1]), ("most", "lowest", axis[0])):
         note = f"the {name} displacement over the waves reaches {1e3 * lateral:g} mm, the end of the axis of Fig 5-15"
-        add(study, f"{side} coefficient within the axis of Fig 5-15", curve.coefficient_at(lateral, name), note=note)
-    add(study, "lowest displacement over the waves", 1e3 * best.lowest, "mm", "at the calibrated coefficient")
-    add(study, "highest displacement over the waves", 1e3 * best.highest, "mm", "at the calibrated coefficient")
-    add(study, "stretch per coefficient", -slope, "mm", "slope of the mean stretch at the calibrated coefficient")
+        add(
+            study,
+            f"{side} coefficient within the axis of Fig 5-15",
+            curve.coefficient_at(lateral, name),
+            note=note,
+        )
+    add(
+        study,
+        "lowest displacement over the waves",
+        1e3 * best.lowest,
+        "mm",
+        "at the calibrated coefficient",
+    )
+    add(
+        study,
+        "highest displacement over the waves",
+        1e3 * best.highest,
+        "mm",
+        "at the calibrated coefficient",
+    )
+    add(
+        study,
+        "stretch per coefficient",
+        -slope,
+        "mm",
+        "slope of the mean stretch at the calibrated coefficient",
+    )
     for name, point in varied.items():
         study, here = f"friction: {name}", float(curve.mean(point.coefficient))
         note = f"with {point.coefficient:g}, at which the curve gives {-1e3 * here:.4g} mm"
@@ -228,11 +303,21 @@ def _estimates(curve, varied, target, axis, published) -> pd.DataFrame:
             needed = curve.coefficient_at(target * here / point.mean)
         except ValueError:
             needed = np.nan
-        add(study, f"coefficient for {mean}", needed, note="were the whole curve scaled by the ratio of the two stretches")
+        add(
+            study,
+            f"coefficient for {mean}",
+            needed,
+            note="were the whole curve scaled by the ratio of the two stretches",
+        )
     if fine := varied.get(VARIATIONS[STROKE]):
         change = 100 * (fine.mean / float(curve.mean(fine.coefficient)) - 1)
-        add("friction", "change of the stretch by mesh and steps of the thesis's size", change, "%",
-            "the curve rests on coarser ones")  # fmt: skip
+        add(
+            "friction",
+            "change of the stretch by mesh and steps of the thesis's size",
+            change,
+            "%",
+            "the curve rests on coarser ones",
+        )
     for row in published.itertuples():
         value = f"{row.low:g}" if np.isnan(row.high) else f"{row.low:g} to {row.high:g}"
         middle = row.low if np.isnan(row.high) else (row.low + row.high) / 2

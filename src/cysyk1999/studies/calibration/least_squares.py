@@ -9,7 +9,9 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import norm, t
 
-_FAR = np.log(1e4)  # how many times more or less than at the start a parameter may be: beyond, a search has lost its way
+_FAR = np.log(
+    1e4
+)  # how many times more or less than at the start a parameter may be: beyond, a search has lost its way
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,9 @@ class Fit:
     @property
     def covariance(self) -> np.ndarray:
         """(p, p) covariance of the log parameters; entries grow without bound where the data do not tell parameters apart."""
-        return self.sigma**2 * np.linalg.pinv(self.jacobian.T @ self.jacobian, rcond=1e-13, hermitian=True)
+        return self.sigma**2 * np.linalg.pinv(
+            self.jacobian.T @ self.jacobian, rcond=1e-13, hermitian=True
+        )
 
     @property
     def correlation(self) -> np.ndarray:
@@ -57,11 +61,18 @@ class Fit:
         half = self.quantile(level) * np.sqrt(np.diag(self.covariance))
         return self.values[:, None] * np.exp(np.column_stack([-half, half]))
 
-    def derived(self, function: Callable[[np.ndarray], float], level: float = 0.95) -> tuple[float, float, float]:
+    def derived(
+        self, function: Callable[[np.ndarray], float], level: float = 0.95
+    ) -> tuple[float, float, float]:
         """Value and confidence interval of a positive function of the parameters (first order, in logarithms)."""
         value, step = function(self.values), 1e-6
         shift = np.exp(step * np.eye(len(self.values)))
-        slope = np.array([np.log(function(self.values * k) / function(self.values / k)) / (2 * step) for k in shift])
+        slope = np.array(
+            [
+                np.log(function(self.values * k) / function(self.values / k)) / (2 * step)
+                for k in shift
+            ]
+        )
         half = self.quantile(level) * float(np.sqrt(slope @ self.covariance @ slope))
         return value, value * float(np.exp(-half)), value * float(np.exp(half))
 
@@ -69,7 +80,11 @@ class Fit:
     def aicc(self) -> float:
         """Akaike's information criterion for small samples, the scatter counted as a parameter (Hurvich and Tsai 1989)."""
         n, k = self.count, len(self.values) + 1
-        return float(n * np.log(max(self.rss, 1e-300) / n) + 2 * k + 2 * k * (k + 1) / (n - k - 1)) if n > k + 1 else float("nan")
+        return (
+            float(n * np.log(max(self.rss, 1e-300) / n) + 2 * k + 2 * k * (k + 1) / (n - k - 1))
+            if n > k + 1
+            else float("nan")
+        )
 
 
 def fit(
@@ -95,7 +110,9 @@ def fit(
     if not (first > 0).all():
         raise ValueError("parameters must start from positive values")
     if sigma is None and len(data) <= len(names):
-        raise ValueError(f"{len(data)} data cannot give {len(names)} parameters and their intervals")
+        raise ValueError(
+            f"{len(data)} data cannot give {len(names)} parameters and their intervals"
+        )
     weight = np.broadcast_to(weight, data.shape)
     last: dict[str, np.ndarray] = {}
     count = 0
@@ -104,7 +121,11 @@ def fit(
         nonlocal count
         if not last or not np.array_equal(last["log"], log):
             value, slope = model(np.exp(log))
-            last.update(log=log.copy(), residual=weight * (value - data), jacobian=weight[:, None] * slope * np.exp(log))
+            last.update(
+                log=log.copy(),
+                residual=weight * (value - data),
+                jacobian=weight[:, None] * slope * np.exp(log),
+            )
             count += 1
         return last
 
@@ -126,9 +147,22 @@ def fit(
     end = evaluate(found.x)
     rss = float(end["residual"] @ end["residual"])
     # data without scatter would claim exactness; no force is known to a millionth
-    spread = max(float(np.sqrt(rss / (len(data) - len(names)))), 1e-6 * scale) if sigma is None else sigma
+    spread = (
+        max(float(np.sqrt(rss / (len(data) - len(names)))), 1e-6 * scale)
+        if sigma is None
+        else sigma
+    )
     # the same order as in `start`, data less model
-    return Fit(names, np.exp(found.x), end["jacobian"], -end["residual"] / weight, rss, spread, sigma is not None, count)
+    return Fit(
+        names,
+        np.exp(found.x),
+        end["jacobian"],
+        -end["residual"] / weight,
+        rss,
+        spread,
+        sigma is not None,
+        count,
+    )
 
 
 def group_interval(values: Sequence[float], level: float = 0.95) -> tuple[float, float, float]:

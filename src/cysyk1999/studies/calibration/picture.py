@@ -11,7 +11,18 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from cysyk1999.measures.quantities import DISTANCE, LATERAL
-from cysyk1999.publishing.style import CATEGORIES, DASHED, DOTTED, GREY, INK, SOLID, ordered, spread, study_figure, styled
+from cysyk1999.publishing.style import (
+    CATEGORIES,
+    DASHED,
+    DOTTED,
+    GREY,
+    INK,
+    SOLID,
+    ordered,
+    spread,
+    study_figure,
+    styled,
+)
 from fingerpad.measures.features import is_simulated
 
 DEPTH, FORCE, COEFFICIENT = "depth (mm)", "force (N)", "coefficient (1)"
@@ -53,19 +64,40 @@ def fit(frame: pd.DataFrame) -> Figure:
         line, points = rows[is_simulated(rows)], rows[~is_simulated(rows)]
         mean = who == "mean"
         ends = {"color": colours[who], "lw": 0.5, "ls": DOTTED}
-        for end in ("force_low (N)", "force_high (N)"):  # lines, for overlapping bands show seams that look like curves
+        for end in (
+            "force_low (N)",
+            "force_high (N)",
+        ):  # lines, for overlapping bands show seams that look like curves
             left.plot(line[DEPTH], line[end], **ends)
         left.plot(line[DEPTH], line[FORCE], color=colours[who], lw=1.8 if mean else 1.1)
         marker = "*" if mean else MARKERS[k % len(MARKERS)]
-        left.plot(points[DEPTH], points[FORCE], marker, color=colours[who], ms=8 if mean else 4.5, label=_title_of(who))
+        left.plot(
+            points[DEPTH],
+            points[FORCE],
+            marker,
+            color=colours[who],
+            ms=8 if mean else 4.5,
+            label=_title_of(who),
+        )
     stated = subjects[subjects["series"] == "thesis"]
     left.plot(stated[DEPTH], stated[FORCE], color=GREY, ls=DASHED)
     top = max(1.6, 1.1 * float(frame.loc[~simulated, FORCE].max()))
     inside = stated[stated[FORCE] < 0.93 * top].iloc[-1]
-    left.annotate("moduli stated\nin the thesis", (inside[DEPTH], inside[FORCE]), xytext=(-4, 0), textcoords="offset points",
-                  ha="right", va="center", color=GREY)  # fmt: skip
+    left.annotate(
+        "moduli stated\nin the thesis",
+        (inside[DEPTH], inside[FORCE]),
+        xytext=(-4, 0),
+        textcoords="offset points",
+        ha="right",
+        va="center",
+        color=GREY,
+    )
     left.set(
-        xlabel="indentation depth (mm)", ylabel="force (N)", title="each subject, and the mean", ylim=(0, top), xlim=(0, 2.5)
+        xlabel="indentation depth (mm)",
+        ylabel="force (N)",
+        title="each subject, and the mean",
+        ylim=(0, top),
+        xlim=(0, 2.5),
     )
     left.legend(title="measured", loc="upper left", alignment="left")
     bone = frame[frame["panel"] == "bone"]
@@ -74,7 +106,11 @@ def fit(frame: pd.DataFrame) -> Figure:
         right.plot(rows[DEPTH], rows[FORCE], color=INK, ls=style, lw=1.3, label=name)
     last = subjects[(subjects["series"] == names[-1]) & ~is_simulated(subjects)]
     right.plot(last[DEPTH], last[FORCE], "*" if names[-1] == "mean" else "o", color=INK, ms=8)
-    right.set(xlabel="indentation depth (mm)", title=f"{_title_of(names[-1])}, the bone moved, the same constant", xlim=(0, 2.5))
+    right.set(
+        xlabel="indentation depth (mm)",
+        title=f"{_title_of(names[-1])}, the bone moved, the same constant",
+        xlim=(0, 2.5),
+    )
     right.legend(loc="upper left", title="fat under the apex", alignment="left")
     return fig
 
@@ -94,24 +130,50 @@ def identifiability(frame: pd.DataFrame) -> Figure:
     fig = study_figure("Calibration: what force can tell", note, 3.7)
     left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
     ridge = frame[frame["panel"] == "ridge"]
-    grid = ridge.pivot(index="contact_length (mm)", columns="modulus_constant (1)", values="rise (1)")
+    grid = ridge.pivot(
+        index="contact_length (mm)", columns="modulus_constant (1)", values="rise (1)"
+    )
     filled = left.contourf(
-        grid.columns, grid.index, np.log10(grid.to_numpy() + 0.1), levels=np.linspace(-1, 3.2, 22), cmap="viridis_r", extend="max"
+        grid.columns,
+        grid.index,
+        np.log10(grid.to_numpy() + 0.1),
+        levels=np.linspace(-1, 3.2, 22),
+        cmap="viridis_r",
+        extend="max",
     )
     filled.set_edgecolor("face")
     lines = left.contour(
-        grid.columns, grid.index, grid.to_numpy(), levels=[3, 10, 30, 100, 300, 1000], colors="white", linewidths=0.6
+        grid.columns,
+        grid.index,
+        grid.to_numpy(),
+        levels=[3, 10, 30, 100, 300, 1000],
+        colors="white",
+        linewidths=0.6,
     )
     left.clabel(lines, lines.levels[1:], fmt="%g", fontsize=6.5)
     s, length = (np.sqrt(axis[0] * axis[-1]) for axis in (grid.columns, grid.index))
     left.plot(grid.columns, s * length / grid.columns, color=INK, lw=1.2)
     left.plot([1.0], [length], "X", color=CATEGORIES[1], ms=7, mec="white", mew=0.8)
-    left.annotate("stated in the thesis\n(the length inferred)", (1.0, length), xytext=(0.97, 0.95),
-                  textcoords="axes fraction", fontsize=6.5, color="white", ha="right", va="top",
-                  arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.6})  # fmt: skip
-    left.set(xscale="log", yscale="log", xlabel="modulus constant (1)", ylabel="contact length (mm)",
-             title="misfit over both; line: their best product", xlim=(grid.columns[0], grid.columns[-1]),
-             ylim=(grid.index[0], grid.index[-1]))  # fmt: skip
+    left.annotate(
+        "stated in the thesis\n(the length inferred)",
+        (1.0, length),
+        xytext=(0.97, 0.95),
+        textcoords="axes fraction",
+        fontsize=6.5,
+        color="white",
+        ha="right",
+        va="top",
+        arrowprops={"arrowstyle": "-", "color": "white", "lw": 0.6},
+    )
+    left.set(
+        xscale="log",
+        yscale="log",
+        xlabel="modulus constant (1)",
+        ylabel="contact length (mm)",
+        title="misfit over both; line: their best product",
+        xlim=(grid.columns[0], grid.columns[-1]),
+        ylim=(grid.index[0], grid.index[-1]),
+    )
     for axis in (left.xaxis, left.yaxis):
         axis.set_major_locator(mpl.ticker.LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
@@ -125,13 +187,28 @@ def identifiability(frame: pd.DataFrame) -> Figure:
     for name, (style, width) in styles.items():
         rows = profile[profile["series"] == name]
         colour = "0.75" if width > 2 else INK  # the two alone lie on one another
-        right.plot(rows["relative (1)"], rows["rise (1)"], color=colour, ls=style, lw=width, label=name)
+        right.plot(
+            rows["relative (1)"], rows["rise (1)"], color=colour, ls=style, lw=width, label=name
+        )
     for row in frame[frame["panel"] == "level"].itertuples():
         level = frame.loc[row.Index, "rise (1)"]
         right.axhline(level, color=GREY, lw=0.7)
-        right.text(1.49, level + 0.3, textwrap.fill(row.series, 16), color=GREY, fontsize=6.5, ha="right", va="bottom")
-    right.set(xlabel="value over best value (1)", ylabel="rise of the misfit (1)", title="profiles, the other refitted",
-              ylim=(-0.8, 25), xlim=(0.5, 1.5))  # fmt: skip
+        right.text(
+            1.49,
+            level + 0.3,
+            textwrap.fill(row.series, 16),
+            color=GREY,
+            fontsize=6.5,
+            ha="right",
+            va="bottom",
+        )
+    right.set(
+        xlabel="value over best value (1)",
+        ylabel="rise of the misfit (1)",
+        title="profiles, the other refitted",
+        ylim=(-0.8, 25),
+        xlim=(0.5, 1.5),
+    )
     right.text(1.0, 18, "modulus constant\nx contact length", ha="center", va="center")
     right.text(0.52, 0.5, "either alone", va="bottom")
     return fig
@@ -154,10 +231,20 @@ def residuals(frame: pd.DataFrame) -> Figure:
         for who, rows in residual[residual["series"] == model].groupby("subject"):
             mean = who == thick
             marker = "*" if mean else MARKERS[list(subjects).index(who) % len(MARKERS)]
-            left.plot(rows[DEPTH], 1e3 * rows["residual (N)"], color=colour, ls=style, lw=1.8 if mean else 0.6,
-                marker=marker, ms=4.5 if mean else 2.5, label=model if mean else None)  # fmt: skip
+            left.plot(
+                rows[DEPTH],
+                1e3 * rows["residual (N)"],
+                color=colour,
+                ls=style,
+                lw=1.8 if mean else 0.6,
+                marker=marker,
+                ms=4.5 if mean else 2.5,
+                label=model if mean else None,
+            )
     left.axhline(0, color=GREY, lw=0.7)
-    left.set(xlabel="indentation depth (mm)", ylabel="measured less simulated (mN)", title="residuals")
+    left.set(
+        xlabel="indentation depth (mm)", ylabel="measured less simulated (mN)", title="residuals"
+    )
     low, high = left.get_ylim()
     left.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
     left.legend(loc="upper left")
@@ -166,13 +253,24 @@ def residuals(frame: pd.DataFrame) -> Figure:
     colours = _colours(list(needed["subject"].unique()))
     for k, (who, rows) in enumerate(needed.groupby("subject", sort=False)):
         marker = "*" if who == "mean" else MARKERS[k % len(MARKERS)]
-        right.plot(rows[DEPTH], rows["effective_length (mm)"], marker, color=colours[who], ms=8 if who == "mean" else 4.5,
-                   label=_title_of(who))  # fmt: skip
+        right.plot(
+            rows[DEPTH],
+            rows["effective_length (mm)"],
+            marker,
+            color=colours[who],
+            ms=8 if who == "mean" else 4.5,
+            label=_title_of(who),
+        )
     for model, rows in fitted.groupby("series", sort=False):
         style, colour = MODEL_LINES[model]
         right.plot(rows[DEPTH], rows["effective_length (mm)"], color=colour, ls=style)
-    right.set(xlabel="indentation depth (mm)", ylabel="effective length (mm)",
-              title="measured force / simulated force per length", ylim=(0, None), xlim=(0, 2.5))  # fmt: skip
+    right.set(
+        xlabel="indentation depth (mm)",
+        ylabel="effective length (mm)",
+        title="measured force / simulated force per length",
+        ylim=(0, None),
+        xlim=(0, 2.5),
+    )
     right.legend(loc="upper left", ncols=2, fontsize=6.5)
     return fig
 
@@ -186,7 +284,11 @@ def prony(frame: pd.DataFrame) -> Figure:
     ]
     fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
     grid = fig.add_gridspec(2, 2, width_ratios=(1.35, 1), height_ratios=(1.5, 1))
-    top, below, right = fig.add_subplot(grid[0, 0]), fig.add_subplot(grid[1, 0]), fig.add_subplot(grid[:, 1])
+    top, below, right = (
+        fig.add_subplot(grid[0, 0]),
+        fig.add_subplot(grid[1, 0]),
+        fig.add_subplot(grid[:, 1]),
+    )
     force = frame[frame["panel"] == "force"]
     noisy = force[force["series"] == "with noise"]
     top.plot(noisy["time (s)"], noisy[FORCE], ".", color=GREY, ms=4, label="simulated, with noise")
@@ -199,7 +301,9 @@ def prony(frame: pd.DataFrame) -> Figure:
     for name, (style, colour) in styles.items():
         rows = force[force["series"] == name]
         top.plot(rows["time (s)"], rows[FORCE], color=colour, ls=style, lw=1.2, label=name)
-        below.plot(rows["time (s)"], rows["difference (% of the peak)"], color=colour, ls=style, lw=1.2)
+        below.plot(
+            rows["time (s)"], rows["difference (% of the peak)"], color=colour, ls=style, lw=1.2
+        )
     for ax in (top, below):
         ax.set(xscale="log", xlim=(0.015, 10.5))
         ax.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
@@ -210,10 +314,23 @@ def prony(frame: pd.DataFrame) -> Figure:
     below.set(xlabel="time (s)", ylabel="off the simulation\n(% of the peak)")
     told = frame[frame["panel"] == "amplitudes"]
     for marker, (speed, rows) in zip(MARKERS, told.groupby("series", sort=False), strict=False):
-        right.plot(rows["tau (s)"], rows["half_width (1)"], marker=marker, color=INK, lw=0.9, ms=5,
-                   mfc="white" if marker == "o" else INK, label=f"ramp of {speed}")  # fmt: skip
-    right.set(xscale="log", yscale="log", xlabel="time constant (s)",
-              ylabel="95 % half-width of an amplitude\nover the steady force (1)", title="error of an amplitude")  # fmt: skip
+        right.plot(
+            rows["tau (s)"],
+            rows["half_width (1)"],
+            marker=marker,
+            color=INK,
+            lw=0.9,
+            ms=5,
+            mfc="white" if marker == "o" else INK,
+            label=f"ramp of {speed}",
+        )
+    right.set(
+        xscale="log",
+        yscale="log",
+        xlabel="time constant (s)",
+        ylabel="95 % half-width of an amplitude\nover the steady force (1)",
+        title="error of an amplitude",
+    )
     right.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
     right.yaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
     right.legend(loc="upper right")
@@ -251,12 +368,25 @@ def friction(frame: pd.DataFrame) -> Figure:
     for x in (start, end):
         left.axvline(x, color=GREY, lw=0.6)
     left.text(
-        (start + end) / 2, 0.985, "waves", transform=left.get_xaxis_transform(), color=GREY, fontsize=6.5, ha="center", va="top"
+        (start + end) / 2,
+        0.985,
+        "waves",
+        transform=left.get_xaxis_transform(),
+        color=GREY,
+        fontsize=6.5,
+        ha="center",
+        va="top",
     )
-    left.set(xlabel="stroke distance (mm)", ylabel="lateral displacement of the centre (mm)",
-             title="strokes; number: coefficient of friction", xlim=(0, 1.1 * frame[DISTANCE].max()))  # fmt: skip
+    left.set(
+        xlabel="stroke distance (mm)",
+        ylabel="lateral displacement of the centre (mm)",
+        title="strokes; number: coefficient of friction",
+        xlim=(0, 1.1 * frame[DISTANCE].max()),
+    )
     curve, estimate = panels["stretch"], panels["estimate"].iloc[0]
-    right.fill_between(curve[COEFFICIENT], curve["lowest (mm)"], curve["highest (mm)"], color=INK, alpha=0.13, lw=0)
+    right.fill_between(
+        curve[COEFFICIENT], curve["lowest (mm)"], curve["highest (mm)"], color=INK, alpha=0.13, lw=0
+    )
     right.plot(curve[COEFFICIENT], curve[LATERAL], "o-", color=INK, ms=3, lw=1.2)
     right.plot(estimate[COEFFICIENT], estimate[LATERAL], "*", color=CATEGORIES[1], ms=8, zorder=4)
     variations = panels.get("variations", frame.iloc[:0])[:4]
@@ -265,10 +395,20 @@ def friction(frame: pd.DataFrame) -> Figure:
     names = spread(variations[LATERAL], 0.08 * (high - low), low, high) if len(variations) else ()
     for marker, row, place in zip("<>^v", variations.to_dict("records"), names, strict=False):
         right.plot([row[COEFFICIENT], 0.5], [row[LATERAL], place], color=GREY, lw=0.5, zorder=1)
-        right.plot(row[COEFFICIENT], row[LATERAL], marker, color=CATEGORIES[3], ms=4, mfc="white", ls="none")
+        right.plot(
+            row[COEFFICIENT],
+            row[LATERAL],
+            marker,
+            color=CATEGORIES[3],
+            ms=4,
+            mfc="white",
+            ls="none",
+        )
         right.text(0.51, place, row["series"], va="center", color=INK, fontsize=6.5, bbox=on_white)
     right.margins(y=0.1)
-    right.set(ylabel="displacement over the waves (mm)", title="mean and range; open: one thing changed")
+    right.set(
+        ylabel="displacement over the waves (mm)", title="mean and range; open: one thing changed"
+    )
     right.tick_params(labelbottom=False)
     for k, row in enumerate(published.iloc[::-1].to_dict("records")):
         measured = str(row["source"]).startswith("measured")
@@ -278,9 +418,18 @@ def friction(frame: pd.DataFrame) -> Figure:
         label = row["series"] if measured else "assumed in a model"
         below.text(0.02, k, label, transform=below.get_yaxis_transform(), fontsize=6.5, va="center")
     below.axvline(estimate[COEFFICIENT], color=CATEGORIES[1], lw=0.8)
-    below.text(estimate[COEFFICIENT] + 0.012, len(published) - 1, f"{estimate[COEFFICIENT]:.3f}", va="center")
+    below.text(
+        estimate[COEFFICIENT] + 0.012,
+        len(published) - 1,
+        f"{estimate[COEFFICIENT]:.3f}",
+        va="center",
+    )
     below.set(
-        xlabel="coefficient of friction (1)", title="published", yticks=[], ylim=(-0.7, len(published) - 0.3), xlim=(0, 1.12)
+        xlabel="coefficient of friction (1)",
+        title="published",
+        yticks=[],
+        ylim=(-0.7, len(published) - 0.3),
+        xlim=(0, 1.12),
     )
     return fig
 

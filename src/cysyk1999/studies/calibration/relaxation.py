@@ -40,7 +40,9 @@ SPEEDS = (2.0, 8.0, 32.0)
 FullForce = Callable[[Prony], np.ndarray]
 
 
-def relaxing_part(time: np.ndarray, elastic: np.ndarray, tau: float) -> tuple[np.ndarray, np.ndarray]:
+def relaxing_part(
+    time: np.ndarray, elastic: np.ndarray, tau: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Hereditary integral int exp(-(t - t')/tau) dF(t') of a force that is linear between samples, and its derivative by tau.
 
     Args:
@@ -69,7 +71,9 @@ def volume_share(curve: ElasticCurve, other: ElasticCurve, depth: float, ratio: 
     return (rise - 1) / (1 - rise * ratio)
 
 
-def force_terms(beta: Sequence[float], tau: Sequence[float], share: float) -> tuple[np.ndarray, np.ndarray]:
+def force_terms(
+    beta: Sequence[float], tau: Sequence[float], share: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Terms (b, theta) of the relaxation of force under a held depth, fastest last, from those of the shear modulus.
 
     The force's modulus over its steady value is ``(1 + k) G / (1 + k G)``, G(p) = 1 + sum beta p/(p + 1/tau) the shear modulus
@@ -82,7 +86,9 @@ def force_terms(beta: Sequence[float], tau: Sequence[float], share: float) -> tu
         above = np.polyadd(above, b * np.polymul([1.0, 0.0], np.poly(-np.delete(rate, k))))
     whole = np.polyadd(below, share * above)
     poles = -np.sort(-np.roots(whole).real)
-    strength = (1 + share) * np.polyval(above, poles) / (poles * np.polyval(np.polyder(whole), poles))
+    strength = (
+        (1 + share) * np.polyval(above, poles) / (poles * np.polyval(np.polyder(whole), poles))
+    )
     return strength, -1 / poles
 
 
@@ -97,8 +103,21 @@ class RampForce:
 
     refinement = 4
 
-    def __init__(self, curve: ElasticCurve, time, depth, length: float, share: float = 0.0, ratio: np.ndarray | float = 1.0):
-        self.curve, self.time, self.depth, self.length = curve, np.asarray(time), np.asarray(depth), length
+    def __init__(
+        self,
+        curve: ElasticCurve,
+        time,
+        depth,
+        length: float,
+        share: float = 0.0,
+        ratio: np.ndarray | float = 1.0,
+    ):
+        self.curve, self.time, self.depth, self.length = (
+            curve,
+            np.asarray(time),
+            np.asarray(depth),
+            length,
+        )
         self.share, self.ratio = share, ratio
         place = np.arange(len(self.time) * self.refinement - self.refinement + 1) / self.refinement
         self.fine = np.interp(place, np.arange(len(self.time)), self.time)
@@ -120,7 +139,9 @@ class RampForce:
     def force(self, prony: Prony) -> np.ndarray:
         """Force of a series on the long-term moduli of the elastic curve, N."""
         terms = zip(*force_terms(prony.beta, prony.tau, self.share), strict=True)
-        return self.base() + sum((b * self.branch(theta)[0] for b, theta in terms), start=np.zeros(len(self.time)))
+        return self.base() + sum(
+            (b * self.branch(theta)[0] for b, theta in terms), start=np.zeros(len(self.time))
+        )
 
     def model(self, parameters: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force and sensitivities to (s, beta_1, tau_1, beta_2, tau_2, ...) in one pass."""
@@ -135,8 +156,12 @@ class RampForce:
             value, change = self.branch(now[count + j])
             total += now[j] * value
             by_term[:, j], by_term[:, count + j] = value, now[j] * change
-        shift = 1e-6 * np.diag(parameters[1:])  # a few roots of a small polynomial, no evaluation of the integral
-        chain = np.array([(terms(parameters[1:] + h) - terms(parameters[1:] - h)) / (2 * h.sum()) for h in shift])
+        shift = 1e-6 * np.diag(
+            parameters[1:]
+        )  # a few roots of a small polynomial, no evaluation of the integral
+        chain = np.array(
+            [(terms(parameters[1:] + h) - terms(parameters[1:] - h)) / (2 * h.sum()) for h in shift]
+        )
         return s * total, np.column_stack([total, s * by_term @ chain.T])
 
 
@@ -168,7 +193,12 @@ class PronyFit:
 
 
 def fit_series(
-    model: RampForce, force: np.ndarray, full: FullForce, *, start: Mapping[str, float] = WRONG_START, sigma: float | None = None
+    model: RampForce,
+    force: np.ndarray,
+    full: FullForce,
+    *,
+    start: Mapping[str, float] = WRONG_START,
+    sigma: float | None = None,
 ) -> PronyFit:
     """Fit s and a Prony series to a force (N) at the samples of `model` (the first, unloaded, is left out).
 
@@ -200,7 +230,12 @@ def with_series(scene: Scene, prony: Prony) -> Scene:
 
 
 def amplitude_design(
-    curve: ElasticCurve, depth: float, speed: float, taus: Sequence[float], end: float = 10.0, samples: int = 30
+    curve: ElasticCurve,
+    depth: float,
+    speed: float,
+    taus: Sequence[float],
+    end: float = 10.0,
+    samples: int = 30,
 ):
     """Sensitivities (2 samples, 1 + terms) of a ramp-and-hold force over the held elastic force, to log s and to each beta.
 
@@ -228,7 +263,9 @@ class Relaxation:
     estimates: pd.DataFrame
 
 
-def study(plate: xr.Dataset, other: xr.Dataset, ramp: xr.Dataset, constants: pd.DataFrame, full: FullForce) -> Relaxation:
+def study(
+    plate: xr.Dataset, other: xr.Dataset, ramp: xr.Dataset, constants: pd.DataFrame, full: FullForce
+) -> Relaxation:
     """Fit the series to the simulated force of `ramp`, and say what it tells of the measured time constants.
 
     Args:
@@ -236,15 +273,24 @@ def study(plate: xr.Dataset, other: xr.Dataset, ramp: xr.Dataset, constants: pd.
         :func:`cysyk1999.reference_data.read_relaxation`. full: see :func:`fit_series`.
     """
     specimen = json.loads(ramp.attrs["scene"])["specimen"]
-    truth = Prony(tuple(t["g"] for t in specimen["prony"]), tuple(t["tau"] for t in specimen["prony"]))
+    truth = Prony(
+        tuple(t["g"] for t in specimen["prony"]), tuple(t["tau"] for t in specimen["prony"])
+    )
     length, curve = specimen["contact_length"], ElasticCurve.from_history(plate)
     time, depth, clean = ramp.time.values, ramp.indentation_depth.values, ramp.force.values * length
     states = [json.loads(h.attrs["scene"])["specimen"]["moduli"] for h in (plate, other)]
     ratio = {"long_term": 1.0, "instantaneous": truth.g_infinity}  # what is left of the moduli
-    share = volume_share(curve, ElasticCurve.from_history(other), float(depth.max()), ratio[states[1]] / ratio[states[0]])
+    share = volume_share(
+        curve,
+        ElasticCurve.from_history(other),
+        float(depth.max()),
+        ratio[states[1]] / ratio[states[0]],
+    )
     model = RampForce(curve, time, depth, length, share)
     sigma = NOISE * clean.max()
-    noisy = clean + np.concatenate([[0.0], np.random.default_rng(SEED).normal(0.0, sigma, len(clean) - 1)])
+    noisy = clean + np.concatenate(
+        [[0.0], np.random.default_rng(SEED).normal(0.0, sigma, len(clean) - 1)]
+    )
     found = fit_series(model, noisy, full, sigma=sigma)
     taus = constants.loc[constants["series"] == "pawluk_howe", "tau_s"].tolist()
     fixed = np.column_stack([model.base(), *(model.branch(tau)[0] for tau in taus)])[1:]
@@ -258,7 +304,13 @@ def study(plate: xr.Dataset, other: xr.Dataset, ramp: xr.Dataset, constants: pd.
     }
     rows = [
         pd.DataFrame(
-            {"panel": "force", "series": "with noise", "source": "simulated, noise added", "time (s)": time, "force (N)": noisy}
+            {
+                "panel": "force",
+                "series": "with noise",
+                "source": "simulated, noise added",
+                "time (s)": time,
+                "force (N)": noisy,
+            }
         )
     ]
     for name, force in curves.items():
@@ -302,12 +354,21 @@ def _told(curve, depth, taus, curve_peak) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _estimates(model, clean, truth, found, told, amplitudes, fixed, noisy, sigma, taus) -> pd.DataFrame:
+def _estimates(
+    model, clean, truth, found, told, amplitudes, fixed, noisy, sigma, taus
+) -> pd.DataFrame:
     rows = []
 
     def add(study, quantity, values, units, used=None, note="", subject="simulated force"):
         value, low, high = values if isinstance(values, tuple) else (values, np.nan, np.nan)
-        row = {"study": study, "subject": subject, "quantity": quantity, "estimate": value, "low_95": low, "high_95": high}
+        row = {
+            "study": study,
+            "subject": subject,
+            "quantity": quantity,
+            "estimate": value,
+            "low_95": low,
+            "high_95": high,
+        }
         row |= {"units": units, "note": note}
         if used is not None:
             row |= {"data": used.count, "rss (N2)": used.rss}
@@ -315,12 +376,15 @@ def _estimates(model, clean, truth, found, told, amplitudes, fixed, noisy, sigma
 
     for k, (g, tau) in enumerate(zip(truth.g, truth.tau, strict=True), start=1):
         add(
-            "Prony series: stated in the thesis", f"g_{k}", g, "1", note="the series behind the force fitted to", subject="thesis"
+            "Prony series: stated in the thesis",
+            f"g_{k}",
+            g,
+            "1",
+            note="the series behind the force fitted to",
+            subject="thesis",
         )
         add("Prony series: stated in the thesis", f"tau_{k}", tau, "s", subject="thesis")
-    note = (
-        f"force simulated with the thesis's series, noise {NOISE:.1%} of the peak (seed {SEED}); no measured time courses at hand"
-    )
+    note = f"force simulated with the thesis's series, noise {NOISE:.1%} of the peak (seed {SEED}); no measured time courses at hand"
     for title, used in (
         ("Prony series: hereditary integral alone", found.hereditary),
         ("Prony series: corrected by one simulation", found.corrected),
@@ -330,12 +394,27 @@ def _estimates(model, clean, truth, found, told, amplitudes, fixed, noisy, sigma
             note = ""
         order = np.argsort(-used.values[2::2])
         slow = [1 + 2 * order[0], 2 + 2 * order[0]]
-        add(title, "correlation of log beta_1 and log tau_1", float(used.correlation[slow[0], slow[1]]), "1")
-    add("Prony series: separability", "share of volume change", model.share, "1",
-        note="from the elastic curves of both readings of the moduli")  # fmt: skip
+        add(
+            title,
+            "correlation of log beta_1 and log tau_1",
+            float(used.correlation[slow[0], slow[1]]),
+            "1",
+        )
+    add(
+        "Prony series: separability",
+        "share of volume change",
+        model.share,
+        "1",
+        note="from the elastic curves of both readings of the moduli",
+    )
     worst = 100 * np.abs(model.force(truth) - clean).max() / clean.max()
-    add("Prony series: separability", "largest error of the hereditary integral", worst, "% of the peak",
-        note="against the full simulation with the same series")  # fmt: skip
+    add(
+        "Prony series: separability",
+        "largest error of the hereditary integral",
+        worst,
+        "% of the peak",
+        note="against the full simulation with the same series",
+    )
     misfit = float(np.sqrt(np.mean((noisy[1:] - fixed @ amplitudes) ** 2)) / sigma)
     for k, tau in enumerate(taus, start=1):
         add(
@@ -354,6 +433,12 @@ def _estimates(model, clean, truth, found, told, amplitudes, fixed, noisy, sigma
         share = record["largest share of force (1)"]
         note = f"for noise of {NOISE:.1%}; a branch of unit strength adds at most {share:.3g} of the held force"
         add(study, quantity, record["half_width (1)"], "1", note=note)
-    add("cost", "finite element simulations for the series", float(found.simulations), "1", note="beside the elastic curve",
-        subject="")  # fmt: skip
+    add(
+        "cost",
+        "finite element simulations for the series",
+        float(found.simulations),
+        "1",
+        note="beside the elastic curve",
+        subject="",
+    )
     return pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)

@@ -10,7 +10,16 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from cysyk1999.publishing.style import GREY, INK, NOTE_WIDTH, look_of, sheet, spread, styled, wrapped
+from cysyk1999.publishing.style import (
+    GREY,
+    INK,
+    NOTE_WIDTH,
+    look_of,
+    sheet,
+    spread,
+    styled,
+    wrapped,
+)
 from fingerpad.planning.effects import EFFECTS
 
 LEAST = 1e-6
@@ -30,14 +39,22 @@ class Look(NamedTuple):
 
 def looks() -> dict[str, Look]:
     """Every effect of the planner, registered when this is asked, and what else is switched in the study."""
-    titles = {name: (effect.title or name.replace("_", " "), effect.marker) for name, effect in EFFECTS.items()}
-    titles |= {"local refinement": ("local refinement", "P"), "full-field output": ("full-field output", "X")}
+    titles = {
+        name: (effect.title or name.replace("_", " "), effect.marker)
+        for name, effect in EFFECTS.items()
+    }
+    titles |= {
+        "local refinement": ("local refinement", "P"),
+        "full-field output": ("full-field output", "X"),
+    }
     return {name: Look(*said) for name, said in titles.items()}
 
 
 def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
     """Plotted rows: panel changes (of :func:`cysyk1999.studies.effects.run.study`) and panel planner (of ``verdicts``)."""
-    return pd.concat([pairs.assign(panel="changes"), found.assign(panel="planner")], ignore_index=True)
+    return pd.concat(
+        [pairs.assign(panel="changes"), found.assign(panel="planner")], ignore_index=True
+    )
 
 
 @styled
@@ -52,7 +69,14 @@ def effects(frame: pd.DataFrame) -> Figure:
     )
     fig = sheet("What effects change and cost", wrapped([note], NOTE_WIDTH), height, laid_out=False)
     grid = fig.add_gridspec(
-        1, 2, left=0.1, right=0.985, top=1 - 0.72 / height, bottom=0.85 / height, wspace=0.42, width_ratios=(1.35, 1)
+        1,
+        2,
+        left=0.1,
+        right=0.985,
+        top=1 - 0.72 / height,
+        bottom=0.85 / height,
+        wspace=0.42,
+        width_ratios=(1.35, 1),
     )
     _changes(fig.add_subplot(grid[0, 0]), frame[frame["panel"] == "changes"])
     _planner(fig.add_subplot(grid[0, 1]), frame[frame["panel"] == "planner"], scenes)
@@ -65,9 +89,14 @@ def _dot(label: str, **style) -> Line2D:
 
 def _legend(ax, handles: list[Line2D]) -> None:
     ax.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=(-0.02, 0.985), ncols=3, fontsize=6.5, handletextpad=0.1,
+        handles=handles,
+        loc="lower left",
+        bbox_to_anchor=(-0.02, 0.985),
+        ncols=3,
+        fontsize=6.5,
+        handletextpad=0.1,
         columnspacing=0.8,
-    )  # fmt: skip
+    )
 
 
 def _changes(ax, rows: pd.DataFrame) -> None:
@@ -75,14 +104,20 @@ def _changes(ax, rows: pd.DataFrame) -> None:
     change = rows["change"].clip(lower=LEAST)
     for row, y in zip(rows.to_dict("records"), change, strict=True):
         face = INK if str(row["planned"]) == "True" else "white"
-        ax.plot(row["cost ratio"], y, known[row["effect"]].marker, color=INK, mfc=face, ms=5, mew=0.9)
+        ax.plot(
+            row["cost ratio"], y, known[row["effect"]].marker, color=INK, mfc=face, ms=5, mew=0.9
+        )
     ax.axvline(1, color=GREY, lw=0.7)
     ax.axhline(DRAFT, color=GREY, lw=0.7, ls=(0, (4, 1.8)))
     ax.text(0.11, DRAFT * 1.15, "a draft's accuracy", fontsize=6, color=GREY)
     ax.set(
-        xscale="log", yscale="log", xlim=(0.1, 700), ylim=(LEAST / 2, 5), xlabel="cost with over cost without (1)",
+        xscale="log",
+        yscale="log",
+        xlim=(0.1, 700),
+        ylim=(LEAST / 2, 5),
+        xlabel="cost with over cost without (1)",
         ylabel="largest change of a headline quantity (1)",
-    )  # fmt: skip
+    )
     ax.set_title("on scenes where it matters, and where it does not", pad=18)
     _legend(ax, [_dot("planned"), _dot("not planned", mfc="white")])
     ax.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
@@ -95,13 +130,24 @@ def _changes(ax, rows: pd.DataFrame) -> None:
     for row, y, place in zip(rows.to_dict("records"), change, places, strict=True):
         ax.plot([row["cost ratio"], 12], [y, place], color=GREY, lw=0.4, zorder=0)
         name = known[row["effect"]].title.split(" (")[0]
-        ax.text(12.8, place, f"{name}: {row['scene']}", fontsize=5.6, va="center", color=INK, clip_on=False)
+        ax.text(
+            12.8,
+            place,
+            f"{name}: {row['scene']}",
+            fontsize=5.6,
+            va="center",
+            color=INK,
+            clip_on=False,
+        )
 
 
 def _floor(axis) -> None:
     """Powers of ten from LEAST, which stands for all below it, too."""
     ticks = np.arange(round(np.log10(LEAST)), 1, 2 if axis.axis_name == "x" else 1)
-    axis.set_ticks(10.0**ticks, labels=[("$\\leq$" if k == 0 else "") + f"$10^{{{tick}}}$" for k, tick in enumerate(ticks)])
+    axis.set_ticks(
+        10.0**ticks,
+        labels=[("$\\leq$" if k == 0 else "") + f"$10^{{{tick}}}$" for k, tick in enumerate(ticks)],
+    )
 
 
 def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
@@ -112,14 +158,34 @@ def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
             wrong = row["verdict"] in WRONG
             carried = "carried" in row["verdict"]
             ax.plot(
-                max(row["share"], LEAST), k + (0.2 if carried else -0.2) + shift.uniform(-0.13, 0.13), look.marker, ms=4,
-                mew=0.7, color=WARNING if wrong else INK, mfc=INK if carried and not wrong else "white", alpha=0.8,
-            )  # fmt: skip
+                max(row["share"], LEAST),
+                k + (0.2 if carried else -0.2) + shift.uniform(-0.13, 0.13),
+                look.marker,
+                ms=4,
+                mew=0.7,
+                color=WARNING if wrong else INK,
+                mfc=INK if carried and not wrong else "white",
+                alpha=0.8,
+            )
     ax.axvline(1, color=INK, lw=0.9)
     ax.axvline(0.1, color=GREY, lw=0.9, ls=(0, (4, 1.8)))
-    ax.set(xscale="log", xlim=(LEAST / 2, 200), ylim=(-0.6, len(known) - 0.4), xlabel="worth over accuracy (1)")
+    ax.set(
+        xscale="log",
+        xlim=(LEAST / 2, 200),
+        ylim=(-0.6, len(known) - 0.4),
+        xlabel="worth over accuracy (1)",
+    )
     _floor(ax.xaxis)
-    ax.set_yticks(range(len(known)), [look.title.replace(" (", "\n(") for look in known.values()], fontsize=7)
+    ax.set_yticks(
+        range(len(known)), [look.title.replace(" (", "\n(") for look in known.values()], fontsize=7
+    )
     ax.set_title(f"the planner's choices in {scenes} scenes", pad=18)
     wrong = int(rows["verdict"].isin(WRONG).sum())
-    _legend(ax, [_dot("carried"), _dot("left out", mfc="white"), _dot(f"wrong ({wrong})", color=WARNING, mfc="white")])
+    _legend(
+        ax,
+        [
+            _dot("carried"),
+            _dot("left out", mfc="white"),
+            _dot(f"wrong ({wrong})", color=WARNING, mfc="white"),
+        ],
+    )

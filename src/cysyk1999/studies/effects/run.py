@@ -16,7 +16,17 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cysyk1999.studies.stability.hard_cases import FLAT, RAMP, TWO_WAVES, cylinder, depth, force, hold, scene_of, slide
+from cysyk1999.studies.stability.hard_cases import (
+    FLAT,
+    RAMP,
+    TWO_WAVES,
+    cylinder,
+    depth,
+    force,
+    hold,
+    scene_of,
+    slide,
+)
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.planning.effect import OWN_PAIR
 from fingerpad.planning.effects import EFFECTS
@@ -57,7 +67,9 @@ def changes(one: xr.Dataset, other: xr.Dataset) -> dict[str, float]:
     """
     at, other_at = [], []
     for leg in np.unique(one.leg.values[1:]):
-        here, there = (1 + np.flatnonzero(history.leg.values[1:] == leg) for history in (one, other))
+        here, there = (
+            1 + np.flatnonzero(history.leg.values[1:] == leg) for history in (one, other)
+        )
         if len(here) != len(there):
             here, there = here[-1:], there[-1:]
         at.append(here)
@@ -77,9 +89,14 @@ def changes(one: xr.Dataset, other: xr.Dataset) -> dict[str, float]:
 
 def with_effects(chosen: Plan, state: str | None = None, **switched: bool) -> Plan:
     """A plan with effects switched, and the ``state`` of the moduli where viscosity is left out."""
-    effects = {name: replace(effect, on=switched.get(name, effect.on)) for name, effect in chosen.effects.items()}
+    effects = {
+        name: replace(effect, on=switched.get(name, effect.on))
+        for name, effect in chosen.effects.items()
+    }
     timed = effects["viscoelasticity"].on
-    return replace(chosen, effects=effects, timed=timed, state="long_term" if timed else state or chosen.state)
+    return replace(
+        chosen, effects=effects, timed=timed, state="long_term" if timed else state or chosen.state
+    )
 
 
 # -- on scenes where it matters and where it does not -------------------------------------------------------------------------
@@ -126,17 +143,29 @@ def _fields(scene: Scene, on: bool) -> tuple[Scene, Plan]:
 
 MIDDLE = cylinder(209.97)
 BESIDE = (
-    Pair("local refinement", "needle, 10,000 1/m", True, {"stimulus": cylinder(1e4), "motion": RAMP}, _focused),
+    Pair(
+        "local refinement",
+        "needle, 10,000 1/m",
+        True,
+        {"stimulus": cylinder(1e4), "motion": RAMP},
+        _focused,
+    ),
     Pair("local refinement", "210 1/m", False, {"stimulus": MIDDLE, "motion": RAMP}, _focused),
     Pair(
-        "full-field output", "at 2 times", False,
-        {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": ["0.5 s", "2.5 s"]}}, _fields,
+        "full-field output",
+        "at 2 times",
+        False,
+        {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": ["0.5 s", "2.5 s"]}},
+        _fields,
     ),
     Pair(
-        "full-field output", "every 0.05 s", False,
-        {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": {"every": "0.05 s"}}}, _fields,
+        "full-field output",
+        "every 0.05 s",
+        False,
+        {"stimulus": MIDDLE, "motion": RAMP, "outputs": {"snapshots": {"every": "0.05 s"}}},
+        _fields,
     ),
-)  # fmt: skip
+)
 """What is not an effect of the planner, but costs like one."""
 
 
@@ -165,7 +194,10 @@ def study(shown: Iterable[Pair] | None = None, repeats: int = 11) -> pd.DataFram
             histories = [simulate(*way) for way in ways]
             for history, taken in zip(histories, seconds, strict=True):
                 taken.append(cost_of(history)["cpu_s"])
-        found = changes(histories[0], simulate(flattened(scene), ways[0][1]) if pair.effect == "ridges" else histories[1])
+        found = changes(
+            histories[0],
+            simulate(flattened(scene), ways[0][1]) if pair.effect == "ridges" else histories[1],
+        )
         seconds = [taken[1:] for taken in seconds]
         with_it, without = map(statistics.median, seconds)
         ratio = statistics.median(one / other for one, other in zip(*seconds, strict=True))
@@ -173,12 +205,21 @@ def study(shown: Iterable[Pair] | None = None, repeats: int = 11) -> pd.DataFram
         unknowns = [cost_of(history)["unknowns"] for history in histories]
         rows.append(
             {
-                "effect": pair.effect, "scene": pair.label, "expected to matter": pair.matters,
-                "planned": planned(pair.effect, scene), "change": found[worst], "of": worst,
-                "cost ratio": ratio, "with (s)": with_it, "without (s)": without,
-                "unknowns with": unknowns[0], "unknowns without": unknowns[1], "repeats": repeats,
-            } | {f"change of {name}": value for name, value in found.items()}
-        )  # fmt: skip
+                "effect": pair.effect,
+                "scene": pair.label,
+                "expected to matter": pair.matters,
+                "planned": planned(pair.effect, scene),
+                "change": found[worst],
+                "of": worst,
+                "cost ratio": ratio,
+                "with (s)": with_it,
+                "without (s)": without,
+                "unknowns with": unknowns[0],
+                "unknowns without": unknowns[1],
+                "repeats": repeats,
+            }
+            | {f"change of {name}": value for name, value in found.items()}
+        )
         print(pair.effect, pair.label, f"{found[worst]:.2g} ({worst})", f"{ratio:.2f}", flush=True)
     return pd.DataFrame(rows)
 
@@ -217,7 +258,10 @@ def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
     made = 0
     while made < count:
         kind = pick("force", "force", "force", "depth", "stroke")
-        stimulus, friction = pick(FLAT, cylinder(between(20, 4000)), cylinder(between(20, 4000))), 0.0
+        stimulus, friction = (
+            pick(FLAT, cylinder(between(20, 4000)), cylinder(between(20, 4000))),
+            0.0,
+        )
         load, seconds = between(0.01, 30), pick(None, *(between(3e-3, 1e4) for _ in range(5)))
         if kind == "depth":
             target = between(5e-3, 1.0)
@@ -225,7 +269,11 @@ def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
         elif kind == "stroke":
             load, friction = between(2, 25), pick(0.0, between(0.02, 1.0), between(0.02, 1.0))
             stimulus = pick(FLAT, TWO_WAVES, cylinder(between(20, 200)))
-            way = {"slide": "3 mm", "keep": "force"} if seconds is None else slide(3, between(1e-3, 100))
+            way = (
+                {"slide": "3 mm", "keep": "force"}
+                if seconds is None
+                else slide(3, between(1e-3, 100))
+            )
             motion = [force(load, None if seconds is None else load / seconds), way]
         else:
             motion = [force(load, None if seconds is None else load / seconds)]
@@ -234,13 +282,22 @@ def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
             if seconds is not None and pick(True, False):
                 motion.append(hold(between(1e-2, 1e3)))
         share = pick(1.0, 1.0, 0.1, 0.01, 0.0)
-        prony = [{"g": share * g, "tau": f"{tau} s"} for g, tau in ((0.055, 3.25), (0.3691, 0.3414))] if share else "none"
+        prony = (
+            [{"g": share * g, "tau": f"{tau} s"} for g, tau in ((0.055, 3.25), (0.3691, 0.3414))]
+            if share
+            else "none"
+        )
         document = {
-            "stimulus": stimulus, "motion": motion, "friction": friction, "accuracy": pick(0.1, 0.05, 0.03, 0.02, 0.01, 0.005),
+            "stimulus": stimulus,
+            "motion": motion,
+            "friction": friction,
+            "accuracy": pick(0.1, 0.05, 0.03, 0.02, 0.01, 0.005),
             "specimen": {"prony": prony},
-        }  # fmt: skip
+        }
         if kind != "stroke" and made % RIDGED == 0:
-            document["specimen"]["ridges"] = {"inner": {"height": f"{between(0.5, 100):.3g} um", "phase": pick("tip", "valley")}}
+            document["specimen"]["ridges"] = {
+                "inner": {"height": f"{between(0.5, 100):.3g} um", "phase": pick("tip", "valley")}
+            }
         scene = scene_of(document, f"{kind} {made}")
         try:
             plan(scene)
@@ -267,17 +324,26 @@ def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
             edge = f"edge {chosen.contact_edge * 1e6:.3g} um, contact {chosen.contact.half_width * 1e6:.3g} um to either side"
             rows.append(
                 {
-                    "seed": seed, "scene": scene.name, "stimulus": scene.stimulus.shape, "accuracy": scene.accuracy,
-                    "effect": effect, "planned": "on" if on else "off", "worth": worth, "of": of,
-                    "share": worth / scene.accuracy, "verdict": verdict(dropped, worth / scene.accuracy),
+                    "seed": seed,
+                    "scene": scene.name,
+                    "stimulus": scene.stimulus.shape,
+                    "accuracy": scene.accuracy,
+                    "effect": effect,
+                    "planned": "on" if on else "off",
+                    "worth": worth,
+                    "of": of,
+                    "share": worth / scene.accuracy,
+                    "verdict": verdict(dropped, worth / scene.accuracy),
                     "why": chosen.effects[effect].why if effect in chosen.effects else edge,
                 }
-            )  # fmt: skip
+            )
             print(*list(rows[-1].values())[:-1], flush=True)
     return pd.DataFrame(rows)
 
 
-def trials(scene: Scene, chosen: Plan) -> Iterator[tuple[str, xr.Dataset, list[tuple[Scene, Plan]]]]:
+def trials(
+    scene: Scene, chosen: Plan
+) -> Iterator[tuple[str, xr.Dataset, list[tuple[Scene, Plan]]]]:
     """Each effect of a plan that can be had either way: its name, what is compared with, and the other ways."""
     draft = plan(scene.varied({"accuracy": "draft"}))
     draft = replace(draft, effects=chosen.effects, state=chosen.state, timed=chosen.timed)
@@ -317,7 +383,10 @@ def alternatives(scene: Scene, draft: Plan) -> dict[str, list[Plan]]:
     out = {"finite_strain": [with_effects(draft, finite_strain=not on["finite_strain"])]}
     if scene.specimen.prony:
         states = ["long_term", "instantaneous"] if on["viscoelasticity"] else [None]
-        out["viscoelasticity"] = [with_effects(draft, state, viscoelasticity=not on["viscoelasticity"]) for state in states]
+        out["viscoelasticity"] = [
+            with_effects(draft, state, viscoelasticity=not on["viscoelasticity"])
+            for state in states
+        ]
     if scene.friction:
         out["friction"] = [with_effects(draft, friction=not on["friction"])]
     if on["symmetry"]:
@@ -342,22 +411,34 @@ def evidence(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
 
     One row a chosen scene, then one an effect and choice with the number of drawn scenes and the extremes of worth over accuracy.
     """
-    chosen = pairs[["effect", "scene", "planned", "change", "of", "cost ratio"]].replace({"planned": {True: "on", False: "off"}})
+    chosen = pairs[["effect", "scene", "planned", "change", "of", "cost ratio"]].replace(
+        {"planned": {True: "on", False: "off"}}
+    )
     rows = []
     for (effect, choice), part in found.dropna(subset="share").groupby(["effect", "planned"]):
         worst = part.loc[part["share"].idxmax()]
         rows.append(
             {
-                "effect": effect, "scene": f"{len(part)} drawn at random", "planned": choice, "change": worst["worth"],
-                "of": worst["of"], "least worth / accuracy": part["share"].min(), "largest worth / accuracy": worst["share"],
+                "effect": effect,
+                "scene": f"{len(part)} drawn at random",
+                "planned": choice,
+                "change": worst["worth"],
+                "of": worst["of"],
+                "least worth / accuracy": part["share"].min(),
+                "largest worth / accuracy": worst["share"],
                 "wrongly left out": int((part["verdict"] == "wrongly left out").sum()),
                 "carried for nothing": int((part["verdict"] == "carried for nothing").sum()),
             }
-        )  # fmt: skip
+        )
     return pd.concat([chosen, pd.DataFrame(rows)], ignore_index=True)
 
 
-_DECLARED = {each.name: each.metadata for effect in EFFECTS.values() if effect.rules for each in fields(effect.rules)}
+_DECLARED = {
+    each.name: each.metadata
+    for effect in EFFECTS.values()
+    if effect.rules
+    for each in fields(effect.rules)
+}
 DECIDES = {
     **{name: declared["decides"] for name, declared in _DECLARED.items()},
     "presets": "discretisations by name",
@@ -422,7 +503,9 @@ WHERE = {
     "least_half_width": "chosen: two of the shortest edges",
     "most_nodes": "chosen: some 20 GB",
     "most_memory": "chosen",
-    **dict.fromkeys(("bytes_node", "bytes_step"), "figures/tables/accuracy.csv, on 1e5 nodes and in 176 steps"),
+    **dict.fromkeys(
+        ("bytes_node", "bytes_step"), "figures/tables/accuracy.csv, on 1e5 nodes and in 176 steps"
+    ),
     "most_runs": "chosen: the second run knows the contact",
     "most_nodes_again": "chosen: some minutes of one core",
     "least_steps": "chosen: fewer would do for the end of a leg, but a curve of fewer is none",
@@ -431,7 +514,9 @@ WHERE = {
     "skin_stretch": "skin trails by about 1 mm (figures/tables/calibration.md)",
     "rows_per_half_width": "figures/tables/accuracy_edges.csv",
     "stroked_growth": "figures/tables/accuracy_shown.csv: strokes are as near to finer ones as with the preset's own",
-    **dict.fromkeys(("stroked_share", "stroked_middle"), "figures/tables/accuracy_shown.csv, of strokes"),
+    **dict.fromkeys(
+        ("stroked_share", "stroked_middle"), "figures/tables/accuracy_shown.csv, of strokes"
+    ),
     "inertia_limit": "chosen: 1e-4 at 40 mm/s, a tenth of the elastic forces at the limit",
 }
 """Where the evidence is that is not of this study; costs are those of figures/tables/speed.md."""
@@ -443,33 +528,57 @@ def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) 
     def planner(effect: str) -> str:
         part = found[found["effect"] == effect]
         off, on = (part.loc[part["planned"] == choice, "share"] for choice in ("off", "on"))
-        said = [f"left out in {len(off)} scenes, worth up to {off.max():.2g} of the accuracy"] if len(off) else []
-        return "; ".join([*said, f"carried in {len(on)}, worth {on.min():.2g} of it or more"] if len(on) else said)
+        said = (
+            [f"left out in {len(off)} scenes, worth up to {off.max():.2g} of the accuracy"]
+            if len(off)
+            else []
+        )
+        return "; ".join(
+            [*said, f"carried in {len(on)}, worth {on.min():.2g} of it or more"]
+            if len(on)
+            else said
+        )
 
     def pair(effect: str) -> str:
         part = pairs[pairs["effect"] == effect]
         return "; ".join(
-            f"{row['scene']}: changes {row['change']:.1g}, costs {row['cost ratio']:.2g} times" for row in part.to_dict("records")
+            f"{row['scene']}: changes {row['change']:.1g}, costs {row['cost ratio']:.2g} times"
+            for row in part.to_dict("records")
         )
 
     own = {"edges_per_half_width": planner("local refinement")}
     for name, effect in EFFECTS.items():
         for each in fields(effect.rules) if effect.rules else ():
             said = each.metadata["evidence"]
-            own[each.name] = planner(name) if said == "" else pair(name) if said == OWN_PAIR else said
+            own[each.name] = (
+                planner(name) if said == "" else pair(name) if said == OWN_PAIR else said
+            )
     rows = []
     for name in (f.name for f in fields(Rules)):
         value = getattr(rules, name)
         if isinstance(value, Mapping):
-            value = ", ".join(f"{key}: {getattr(preset, 'skin_edge', np.nan) * 1e6:g} um" for key, preset in value.items())
+            value = ", ".join(
+                f"{key}: {getattr(preset, 'skin_edge', np.nan) * 1e6:g} um"
+                for key, preset in value.items()
+            )
         elif not isinstance(value, (float, int)):
             value = "table"
         evidence = own.get(name) or WHERE.get(name, "figures/tables/speed.md")
-        rows.append({"rule": name, "value": str(value), "decides": DECIDES.get(name, ""), "evidence": evidence})
+        rows.append(
+            {
+                "rule": name,
+                "value": str(value),
+                "decides": DECIDES.get(name, ""),
+                "evidence": evidence,
+            }
+        )
     fixed = {
         **{name: effect.always for name, effect in EFFECTS.items() if effect.always},
         "local refinement": "fine edges under the contact: presses whose tolerance they meet with less work",
         "full-field output": "full fields: at the times the scene names, no others",
     }
-    rows += [{"rule": name, "value": "", "decides": text, "evidence": pair(name)} for name, text in fixed.items()]
+    rows += [
+        {"rule": name, "value": "", "decides": text, "evidence": pair(name)}
+        for name, text in fixed.items()
+    ]
     return pd.DataFrame(rows)

@@ -52,7 +52,9 @@ class Reading:
 
     def of(self, scene: Scene, stroked: bool) -> Scene:
         """A scene read so."""
-        changes = {"accuracy": ACCURACY} | dict(self.everywhere) | (dict(self.stroked) if stroked else {})
+        changes = (
+            {"accuracy": ACCURACY} | dict(self.everywhere) | (dict(self.stroked) if stroked else {})
+        )
         if stroked and self.share != 1:
             press = scene.motion[0]
             changes |= {"motion[0].press_to_force": self.share * press.force}
@@ -61,7 +63,9 @@ class Reading:
             changes["motion[1].keep"] = self.keeps
         if self.deeper:
             depths = scene.outputs.receptors.depths
-            changes["outputs.receptors.depths"] = [f"{round(1e6 * (depth + self.deeper), 3):g} um" for depth in depths]
+            changes["outputs.receptors.depths"] = [
+                f"{round(1e6 * (depth + self.deeper), 3):g} um" for depth in depths
+            ]
         return scene.varied(changes)
 
     def runs(self) -> Reading:
@@ -70,7 +74,12 @@ class Reading:
 
     def called(self, history: xr.Dataset) -> xr.Dataset:
         """A history of it with receptors and energy by the names that the measures ask for."""
-        return history.assign({"receptor_depth": history["receptor_depth"] - self.deeper, ENERGIES[0]: history[self.energy]})
+        return history.assign(
+            {
+                "receptor_depth": history["receptor_depth"] - self.deeper,
+                ENERGIES[0]: history[self.energy],
+            }
+        )
 
 
 def _everywhere(words: str, **changes: Any) -> Reading:
@@ -81,30 +90,51 @@ CONTROL, PUBLISHED = "as it is", "as published"
 READINGS: dict[str, Reading] = {
     CONTROL: Reading("the comparison's own scenes", {}, {}),
     PUBLISHED: Reading("the comparison's own runs", {}, {}),
-    "long-term moduli": _everywhere("the printed moduli are long-term ones", specimen__moduli="long_term"),
-    "larger radius": _everywhere("apex radius 10.5 mm, of a published section", specimen__outline__apex_radius="10.5 mm"),
+    "long-term moduli": _everywhere(
+        "the printed moduli are long-term ones", specimen__moduli="long_term"
+    ),
+    "larger radius": _everywhere(
+        "apex radius 10.5 mm, of a published section", specimen__outline__apex_radius="10.5 mm"
+    ),
     "smaller radius": replace(
-        _everywhere("apex radius 7.9 mm, of the printed fan of nodes", specimen__outline__apex_radius="7.9 mm"), given=("T323",)
+        _everywhere(
+            "apex radius 7.9 mm, of the printed fan of nodes",
+            specimen__outline__apex_radius="7.9 mm",
+        ),
+        given=("T323",),
     ),
     "more fat": _everywhere(
         "5.65 mm of fat, the end of its interval",
         specimen__outline__bone_centre_height="-2.675 mm",
         specimen__outline__bone_half_height="1.325 mm",
     ),
-    "wider bone": _everywhere("bone half-width 4.87 mm, the end of its interval", specimen__outline__bone_half_width="4.87 mm"),
+    "wider bone": _everywhere(
+        "bone half-width 4.87 mm, the end of its interval",
+        specimen__outline__bone_half_width="4.87 mm",
+    ),
     "softer epidermis": _everywhere(
-        "half the printed modulus of the epidermis", specimen__layers__epidermis__youngs_modulus="75 kPa"
+        "half the printed modulus of the epidermis",
+        specimen__layers__epidermis__youngs_modulus="75 kPa",
     ),
     "stiffer epidermis": _everywhere(
-        "twice the printed modulus of the epidermis", specimen__layers__epidermis__youngs_modulus="300 kPa"
+        "twice the printed modulus of the epidermis",
+        specimen__layers__epidermis__youngs_modulus="300 kPa",
     ),
-    "longer contact": _everywhere("force spread over 20 mm, not 11.4 mm, of pad", specimen__contact_length="20 mm"),
-    "more friction": Reading("the wavy surface has twice the friction, 0.7, where it is stepped too", {}, {"friction": 0.7}),
+    "longer contact": _everywhere(
+        "force spread over 20 mm, not 11.4 mm, of pad", specimen__contact_length="20 mm"
+    ),
+    "more friction": Reading(
+        "the wavy surface has twice the friction, 0.7, where it is stepped too",
+        {},
+        {"friction": 0.7},
+    ),
     "no friction": Reading("the wavy surface slides without friction", {}, {"friction": 0.0}),
     "half the force": Reading("the wavy surface is pressed with 10 gram-weight", {}, {}, 0.5),
     "twice the force": Reading("the wavy surface is pressed with 40 gram-weight", {}, {}, 2.0),
     **{
-        f"energy: {name}": Reading(f"strain energy is that of {words}", {}, {}, energy=f"strain_energy_{variable}")
+        f"energy: {name}": Reading(
+            f"strain energy is that of {words}", {}, {}, energy=f"strain_energy_{variable}"
+        )
         for name, words, variable in (
             ("long-term", "the total stress on long-term moduli", "long_term_moduli"),
             ("stress x strain", "half of total stress times strain", "half_stress_strain"),
@@ -112,12 +142,25 @@ READINGS: dict[str, Reading] = {
             ("network", "the long-term network", "network"),
         )
     },
-    "receptors higher": Reading("receptors lie 80 um nearer the skin than they are called", {}, {}, deeper=-80e-6),
-    "receptors deeper": Reading("receptors lie 80 um deeper than they are called", {}, {}, deeper=80e-6),
-    "depth kept": Reading("the depth that 20 gram-weight press to is kept while the wavy surface slides", {}, {}, keeps="depth"),
+    "receptors higher": Reading(
+        "receptors lie 80 um nearer the skin than they are called", {}, {}, deeper=-80e-6
+    ),
+    "receptors deeper": Reading(
+        "receptors lie 80 um deeper than they are called", {}, {}, deeper=80e-6
+    ),
+    "depth kept": Reading(
+        "the depth that 20 gram-weight press to is kept while the wavy surface slides",
+        {},
+        {},
+        keeps="depth",
+    ),
 }
 """What the thesis leaves open, by name; and the controls."""
-READ_ONLY = tuple(name for name, each in READINGS.items() if name != CONTROL and each.runs() == READINGS[CONTROL].runs())
+READ_ONLY = tuple(
+    name
+    for name, each in READINGS.items()
+    if name != CONTROL and each.runs() == READINGS[CONTROL].runs()
+)
 """Readings of the published runs, their control among them; all others are simulated."""
 
 
@@ -128,21 +171,39 @@ def control_of(name: str) -> str:
 
 def simulated(scenes: Path, reading: Reading) -> dict[str, xr.Dataset]:
     """Histories of the presses and strokes, by scene, of a folder of scenes. Raises NonConvergence."""
-    return {name: simulate(reading.of(load_scene(scenes / f"{name}.yaml"), name in STROKED)) for name in (*PRESSED, *STROKED)}
+    return {
+        name: simulate(reading.of(load_scene(scenes / f"{name}.yaml"), name in STROKED))
+        for name in (*PRESSED, *STROKED)
+    }
 
 
-def verdicts(histories: Mapping[str, xr.Dataset], reading: Reading, reference_csv: str | PathLike) -> pd.DataFrame:
+def verdicts(
+    histories: Mapping[str, xr.Dataset], reading: Reading, reference_csv: str | PathLike
+) -> pd.DataFrame:
     """The comparison of a reading's histories: columns id, simulated, verdict; without what they do not tell."""
     nothing = Measures.of({})
     called = {name: reading.called(history) for name, history in histories.items()}
-    table = thesis_comparison(Measures.of(called), Instead(nothing, nothing, nothing, nothing), reference_csv)
+    table = thesis_comparison(
+        Measures.of(called), Instead(nothing, nothing, nothing, nothing), reference_csv
+    )
     return table.loc[table["verdict"] != "not_comparable", ["id", "simulated", "verdict"]]
 
 
-COLUMNS = ("id", "figure", "quantity", "condition", "simulated", "explained_by", "with_it", "not_by")
+COLUMNS = (
+    "id",
+    "figure",
+    "quantity",
+    "condition",
+    "simulated",
+    "explained_by",
+    "with_it",
+    "not_by",
+)
 
 
-def explanations(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference_csv: str | PathLike) -> pd.DataFrame:
+def explanations(
+    published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference_csv: str | PathLike
+) -> pd.DataFrame:
     """What was held out and does not hold in the published comparison, and the readings with which it holds.
 
     Args:
@@ -159,9 +220,17 @@ def explanations(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], ref
     rows = []
     for _, row in scored[~scored["verdict"].isin(AGREES)].iterrows():
         id_ = row["id"]
-        tried = {name: bool(held[id_]) for name, held in right.items() if name not in (CONTROL, PUBLISHED) and id_ in held}
+        tried = {
+            name: bool(held[id_])
+            for name, held in right.items()
+            if name not in (CONTROL, PUBLISHED) and id_ in held
+        }
         without = {name: right[control_of(name)].get(id_, True) for name in tried}
-        by = [name for name, holds in tried.items() if holds and not without[name] and id_ not in READINGS[name].given]
+        by = [
+            name
+            for name, holds in tried.items()
+            if holds and not without[name] and id_ not in READINGS[name].given
+        ]
         rows.append(
             {k: row[k] for k in ("id", "figure", "quantity", "condition", "simulated")}
             | {"explained_by": ", ".join(by), "with_it": values[by[0]][id_] if by else float("nan")}
@@ -174,13 +243,19 @@ def explanations(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], ref
 
 def _summary(scored: pd.DataFrame, table: pd.DataFrame, reference: pd.DataFrame) -> str:
     form = reference["form"]
-    kinds = scored["id"].map(form).map(lambda each: {"axis": "axes", "trend": "trends"}.get(each, "values and ranges"))
+    kinds = (
+        scored["id"]
+        .map(form)
+        .map(lambda each: {"axis": "axes", "trend": "trends"}.get(each, "values and ranges"))
+    )
     explained = scored["id"].isin(table.loc[table["explained_by"] != "", "id"])
     agrees = scored["verdict"].isin(AGREES)
     told = []
     for kind in ("values and ranges", "trends", "axes"):
         of = kinds == kind
-        told.append(f"{kind}: {(agrees & of).sum()} of {of.sum()} right, {(explained & of).sum()} more explained by a run")
+        told.append(
+            f"{kind}: {(agrees & of).sum()} of {of.sum()} right, {(explained & of).sum()} more explained by a run"
+        )
     counted = ~kinds.eq("axes")
     share = ((agrees | explained) & counted).sum() / counted.sum()
     return f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: {share:.0%}."
@@ -192,7 +267,9 @@ def _held_out(published: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
     return published[held_out & published["verdict"].ne("not_comparable")]
 
 
-def turned(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference_csv: str | PathLike) -> pd.DataFrame:
+def turned(
+    published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference_csv: str | PathLike
+) -> pd.DataFrame:
     """How many of the statements held out each reading makes hold that do not without it, and the other way round.
 
     Arguments as of :func:`explanations`. A row a reading, those first that make most hold for what they make fail.
@@ -204,8 +281,21 @@ def turned(published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference
         if name in (CONTROL, PUBLISHED):
             continue
         control = right[control_of(name)]
-        both = held.index.intersection(control.index).intersection(held_out).difference(READINGS[name].given)
+        both = (
+            held.index.intersection(control.index)
+            .intersection(held_out)
+            .difference(READINGS[name].given)
+        )
         gained, lost = (held[both] & ~control[both]).sum(), (~held[both] & control[both]).sum()
-        rows.append({"reading": name, "words": READINGS[name].words, "makes_hold": gained, "makes_fail": lost})
+        rows.append(
+            {
+                "reading": name,
+                "words": READINGS[name].words,
+                "makes_hold": gained,
+                "makes_fail": lost,
+            }
+        )
     table = pd.DataFrame(rows)
-    return table.iloc[(table["makes_fail"] - table["makes_hold"]).argsort(kind="stable")].reset_index(drop=True)
+    return table.iloc[
+        (table["makes_fail"] - table["makes_hold"]).argsort(kind="stable")
+    ].reset_index(drop=True)

@@ -50,7 +50,13 @@ def shares(table: pd.DataFrame) -> np.ndarray:
 def features(share: np.ndarray) -> np.ndarray:
     """Terms (n, k) of the polynomial at shares (n, d), in Legendre polynomials; the first share is curvature's."""
     x = 2 * np.asarray(share, float) - 1
-    p = [np.ones_like(x), x, (3 * x**2 - 1) / 2, (5 * x**3 - 3 * x) / 2, (35 * x**4 - 30 * x**2 + 3) / 8]
+    p = [
+        np.ones_like(x),
+        x,
+        (3 * x**2 - 1) / 2,
+        (5 * x**3 - 3 * x) / 2,
+        (35 * x**4 - 30 * x**2 + 3) / 8,
+    ]
     d = x.shape[1]
     terms = [p[0][:, 0], *p[1].T, *p[2].T, p[3][:, 0], p[4][:, 0]]
     terms += [p[1][:, i] * p[1][:, j] for i in range(d) for j in range(i + 1, d)]
@@ -80,7 +86,9 @@ def emulator(share: np.ndarray, values: np.ndarray) -> Emulator:
     fold = np.arange(len(target)) % FOLDS
     left_out = np.empty_like(target)
     for k in range(FOLDS):
-        left_out[fold == k] = terms[fold == k] @ np.linalg.lstsq(terms[fold != k], target[fold != k], rcond=None)[0]
+        left_out[fold == k] = (
+            terms[fold == k] @ np.linalg.lstsq(terms[fold != k], target[fold != k], rcond=None)[0]
+        )
     predicted = np.exp(left_out) if logarithmic else np.maximum(left_out, 0.0)
     q2 = 1 - ((values - predicted) ** 2).sum() / ((values - values.mean()) ** 2).sum()
     return Emulator(np.linalg.lstsq(terms, target, rcond=None)[0], logarithmic, float(q2))
@@ -88,7 +96,15 @@ def emulator(share: np.ndarray, values: np.ndarray) -> Emulator:
 
 def curvature_share(table: pd.DataFrame, curvature: float) -> float:
     """Share of the sweep's curvatures below one (1/m)."""
-    return float(np.clip(np.interp(curvature, np.sort(table[CURVATURE]), (np.arange(len(table)) + 0.5) / len(table)), 0, 1))
+    return float(
+        np.clip(
+            np.interp(
+                curvature, np.sort(table[CURVATURE]), (np.arange(len(table)) + 0.5) / len(table)
+            ),
+            0,
+            1,
+        )
+    )
 
 
 def indices(table: pd.DataFrame, curvatures: tuple[float, ...] = AT) -> pd.DataFrame:
@@ -97,7 +113,11 @@ def indices(table: pd.DataFrame, curvatures: tuple[float, ...] = AT) -> pd.DataF
     from SALib.sample import sobol as sample
 
     share, rows = shares(table), []
-    problem = {"num_vars": len(UNKNOWNS), "names": list(UNKNOWNS), "bounds": [[0.0, 1.0]] * len(UNKNOWNS)}
+    problem = {
+        "num_vars": len(UNKNOWNS),
+        "names": list(UNKNOWNS),
+        "bounds": [[0.0, 1.0]] * len(UNKNOWNS),
+    }
     points = sample.sample(problem, BASE, calc_second_order=False, seed=SEED)
     for column, measure in MEASURES.items():
         emulated = emulator(share, table[column].to_numpy(float))
@@ -105,18 +125,30 @@ def indices(table: pd.DataFrame, curvatures: tuple[float, ...] = AT) -> pd.DataF
             at = np.column_stack([np.full(len(points), curvature_share(table, curvature)), points])
             found = sobol.analyze(problem, emulated(at), calc_second_order=False, seed=SEED)
             for k, unknown in enumerate(UNKNOWNS.values()):
-                rows.append({
-                    "measure": measure, CURVATURE: curvature, "unknown": unknown,
-                    "first_order (1)": found["S1"][k], "first_order_95 (1)": found["S1_conf"][k],
-                    "total (1)": found["ST"][k], "total_95 (1)": found["ST_conf"][k], "q2 (1)": emulated.q2,
-                })  # fmt: skip
+                rows.append(
+                    {
+                        "measure": measure,
+                        CURVATURE: curvature,
+                        "unknown": unknown,
+                        "first_order (1)": found["S1"][k],
+                        "first_order_95 (1)": found["S1_conf"][k],
+                        "total (1)": found["ST"][k],
+                        "total_95 (1)": found["ST_conf"][k],
+                        "q2 (1)": emulated.q2,
+                    }
+                )
     return pd.DataFrame(rows)
 
 
-def bands(table: pd.DataFrame, column: str, quantiles: tuple[float, ...] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> pd.DataFrame:
+def bands(
+    table: pd.DataFrame, column: str, quantiles: tuple[float, ...] = (0.05, 0.25, 0.5, 0.75, 0.95)
+) -> pd.DataFrame:
     """Quantiles of a measure over fingers against curvature, of the emulator."""
     share = shares(table)
-    emulated, fingers = emulator(share, table[column].to_numpy(float)), np.random.default_rng(SEED).random((4000, len(UNKNOWNS)))
+    emulated, fingers = (
+        emulator(share, table[column].to_numpy(float)),
+        np.random.default_rng(SEED).random((4000, len(UNKNOWNS))),
+    )
     curvatures = np.geomspace(table[CURVATURE].min(), table[CURVATURE].max(), 40)
     rows = []
     for curvature in curvatures:

@@ -25,7 +25,20 @@ _BEND = 60.0
 
 def frame_of(table: pd.DataFrame) -> pd.DataFrame:
     """What is drawn, of the sweep's table: a row a scene, those that failed with their diagnosis."""
-    return table[["scene", K, FORCE, RATE, STRAIN, *COMPARED, IMPULSES, "estimated_error (1)", "failed", "diagnosis"]]
+    return table[
+        [
+            "scene",
+            K,
+            FORCE,
+            RATE,
+            STRAIN,
+            *COMPARED,
+            IMPULSES,
+            "estimated_error (1)",
+            "failed",
+            "diagnosis",
+        ]
+    ]
 
 
 def small_strain_changes(frame: pd.DataFrame) -> pd.DataFrame:
@@ -44,7 +57,9 @@ def _levels(grids: list[pd.DataFrame], steps: tuple[float, ...]) -> np.ndarray:
     """Round levels: `steps` of every power of ten within the values."""
     values = np.concatenate([grid.values.ravel() for grid in grids])
     values = values[np.isfinite(values) & (values > 0)]
-    powers = 10.0 ** np.arange(np.floor(np.log10(values.min())), np.ceil(np.log10(values.max())) + 1)
+    powers = 10.0 ** np.arange(
+        np.floor(np.log10(values.min())), np.ceil(np.log10(values.max())) + 1
+    )
     levels = np.array([s * p for p in powers for s in steps])
     return levels[(levels > values.min()) & (levels < values.max())]
 
@@ -79,7 +94,12 @@ def contours(frame: pd.DataFrame) -> Figure:
     for ax, column, title, factor in zip(
         axes[0],
         COMPARED,
-        ("indentation depth (mm)", "contact width (mm)", "peak pressure (kPa)", "energy at 915 µm (kPa)"),
+        (
+            "indentation depth (mm)",
+            "contact width (mm)",
+            "peak pressure (kPa)",
+            "energy at 915 µm (kPa)",
+        ),
         (1, 1, pa, pa),
         strict=True,
     ):
@@ -95,8 +115,20 @@ def contours(frame: pd.DataFrame) -> Figure:
     _contours(last, changes, np.array([5.0, 10, 20, 50, 100]), "small strain changes (%)")
     surfaces = sorted(frame[K].unique())
     for ax in axes.flat:
-        ax.plot(surfaces, [20.0] * len(surfaces), "o", ms=2.6, mfc="white", mec=INK, mew=0.5, ls="none", clip_on=False)
-        ax.set_xscale("function", functions=(lambda k: np.arcsinh(k / _BEND), lambda s: _BEND * np.sinh(s)))
+        ax.plot(
+            surfaces,
+            [20.0] * len(surfaces),
+            "o",
+            ms=2.6,
+            mfc="white",
+            mec=INK,
+            mew=0.5,
+            ls="none",
+            clip_on=False,
+        )
+        ax.set_xscale(
+            "function", functions=(lambda k: np.arcsinh(k / _BEND), lambda s: _BEND * np.sinh(s))
+        )
         ax.set_xticks(list(TICKS), list(TICKS.values()), rotation=60)
         ax.set_xticks([], minor=True)
         ax.set_yscale("log")

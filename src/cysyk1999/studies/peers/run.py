@@ -34,7 +34,10 @@ from fingerpad.specimen.materials import Prony, moduli
 
 INCREMENTS = (1, 2, 4, 8, 16)
 """Tried with each package until it converges."""
-PRESSES = {"plate": ({"shape": "flat"}, 0.8), "cylinder 1260 1/m": ({"shape": "cylinder", "curvature": "1260 1/m"}, 0.5)}
+PRESSES = {
+    "plate": ({"shape": "flat"}, 0.8),
+    "cylinder 1260 1/m": ({"shape": "cylinder", "curvature": "1260 1/m"}, 0.5),
+}
 """Stimulus and depth (mm)."""
 PATIENCE = 600.0
 """Seconds after which a process is taken to diverge."""
@@ -84,10 +87,18 @@ def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
     known = moduli(layer.youngs_modulus, layer.poisson_ratio, Prony(), "long_term")
     held = np.concatenate([mesh.curves[curve] for curve in ("bone", "nail")])
     np.savez(
-        folder / "problem.npz", points=mesh.points, cells=mesh.cells, skin=np.unique(mesh.curves["skin"]), held=np.unique(held),
-        skin_edges=mesh.curves["skin"], held_edges=held, mu=float(known.shear_long_term), bulk=float(known.bulk),
-        depth=depth * 1e-3, curvature=getattr(base.stimulus, "curvature", 0.0),
-    )  # fmt: skip
+        folder / "problem.npz",
+        points=mesh.points,
+        cells=mesh.cells,
+        skin=np.unique(mesh.curves["skin"]),
+        held=np.unique(held),
+        skin_edges=mesh.curves["skin"],
+        held_edges=held,
+        mu=float(known.shear_long_term),
+        bulk=float(known.bulk),
+        depth=depth * 1e-3,
+        curvature=getattr(base.stimulus, "curvature", 0.0),
+    )
     return folder / "same.yaml", folder / "own.yaml"
 
 
@@ -96,7 +107,9 @@ def timed(command: list[str]) -> dict[str, Any] | None:
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     threads = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     try:
-        done = subprocess.run(command, capture_output=True, text=True, env=os.environ | threads, timeout=PATIENCE)
+        done = subprocess.run(
+            command, capture_output=True, text=True, env=os.environ | threads, timeout=PATIENCE
+        )
     except subprocess.TimeoutExpired:
         return None
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -114,7 +127,11 @@ def own(scene: Path) -> dict[str, Any] | None:
         return None
     told = json.loads((out / "summary.json").read_text())
     last = told["legs"][-1]
-    run = {"iterations": told["run"]["newton_iterations"], "increments": told["run"]["steps"], "nodes": told["run"]["nodes"]}
+    run = {
+        "iterations": told["run"]["newton_iterations"],
+        "increments": told["run"]["steps"],
+        "nodes": told["run"]["nodes"],
+    }
     return found | {"force": last["force_N_per_m"]} | run
 
 
@@ -125,14 +142,21 @@ def peer(name: str, folder: Path) -> tuple[list[str], dict[str, Any]]:
         RuntimeError: none of :data:`INCREMENTS` is enough.
     """
     for increments in INCREMENTS:
-        command = [sys.executable, PEERS[name].__file__, str(folder / "problem.npz"), str(increments)]
+        command = [
+            sys.executable,
+            PEERS[name].__file__,
+            str(folder / "problem.npz"),
+            str(increments),
+        ]
         found = timed(command)
         if found is not None:
             return command, found | {"increments": increments}
     raise RuntimeError(f"{name} does not converge with {INCREMENTS[-1]} increments")
 
 
-def study(presses: tuple[str, ...] = tuple(PRESSES), repeats: int = 5, edge: str = "165 um") -> pd.DataFrame:
+def study(
+    presses: tuple[str, ...] = tuple(PRESSES), repeats: int = 5, edge: str = "165 um"
+) -> pd.DataFrame:
     """One row a press and package: force, medians and spreads of process times (s), ratios to this package on the same mesh."""
     rows = []
     installed = [name for name in PEERS if _version(name)]
@@ -147,15 +171,23 @@ def study(presses: tuple[str, ...] = tuple(PRESSES), repeats: int = 5, edge: str
                     commands[name], known[name] = peer(name, folder)
                 except RuntimeError as error:
                     print(f"{press}: {error}", flush=True)
-            calls = {"fingerpad": lambda same=same: own(same), "fingerpad, own mesh": lambda free=free: own(free)}
-            calls |= {name: (lambda command=command: timed(command)) for name, command in commands.items()}
+            calls = {
+                "fingerpad": lambda same=same: own(same),
+                "fingerpad, own mesh": lambda free=free: own(free),
+            }
+            calls |= {
+                name: (lambda command=command: timed(command)) for name, command in commands.items()
+            }
             runs: dict[str, list[dict[str, Any]]] = {name: [] for name in calls}
             for _ in range(repeats):
                 for name, call in calls.items():
                     runs[name].append(call())
             base = runs["fingerpad"]
             lines = {name: _lines(inspect.getsource(PEERS[name].press)) for name in installed}
-            lines |= {name: _lines(file.read_text()) for name, file in (("fingerpad", same), ("fingerpad, own mesh", free))}
+            lines |= {
+                name: _lines(file.read_text())
+                for name, file in (("fingerpad", same), ("fingerpad, own mesh", free))
+            }
             for name, found in runs.items():
                 package = f"{name} {_version(name)}" if name in installed else name
                 row = {
@@ -167,16 +199,35 @@ def study(presses: tuple[str, ...] = tuple(PRESSES), repeats: int = 5, edge: str
                 row["force off (1)"] = abs(found[0]["force"] / base[0]["force"] - 1)
                 for part in ("process", "loop"):
                     times = [run[part] for run in found]
-                    row |= {f"{part} (s)": statistics.median(times), f"{part} spread (s)": max(times) - min(times)}
-                    row[f"{part} ratio (1)"] = statistics.median([a[part] / b[part] for a, b in zip(found, base, strict=True)])
-                row |= {"iterations": found[0]["iterations"], "increments": (known.get(name) or found[0])["increments"]}
-                rows.append(row | {"lines": lines[name], "repeats": repeats, "machine": provenance()["processor"]})
+                    row |= {
+                        f"{part} (s)": statistics.median(times),
+                        f"{part} spread (s)": max(times) - min(times),
+                    }
+                    row[f"{part} ratio (1)"] = statistics.median(
+                        [a[part] / b[part] for a, b in zip(found, base, strict=True)]
+                    )
+                row |= {
+                    "iterations": found[0]["iterations"],
+                    "increments": (known.get(name) or found[0])["increments"],
+                }
+                rows.append(
+                    row
+                    | {
+                        "lines": lines[name],
+                        "repeats": repeats,
+                        "machine": provenance()["processor"],
+                    }
+                )
     return pd.DataFrame(rows)
 
 
 def _lines(text: str) -> int:
     """Lines that say something."""
-    return sum(1 for line in text.splitlines() if line.strip() and not line.strip().startswith(("#", '"""')))
+    return sum(
+        1
+        for line in text.splitlines()
+        if line.strip() and not line.strip().startswith(("#", '"""'))
+    )
 
 
 def _version(name: str) -> str:

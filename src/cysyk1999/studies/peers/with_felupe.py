@@ -18,7 +18,9 @@ def press(problem, increments):
     above = [0.0, problem["points"][:, 1].max() + radius]
     mesh = fem.Mesh(np.vstack([problem["points"], above]), problem["cells"], "quad")
     field = fem.FieldContainer([fem.FieldPlaneStrain(fem.RegionQuad(mesh), dim=2)])
-    solid = fem.SolidBodyNearlyIncompressible(fem.NeoHooke(mu=float(problem["mu"])), field, bulk=float(problem["bulk"]))
+    solid = fem.SolidBodyNearlyIncompressible(
+        fem.NeoHooke(mu=float(problem["mu"])), field, bulk=float(problem["bulk"])
+    )
     how = {"points": problem["skin"], "centerpoint": -1, "items": [solid]}
     if radius:
         contact = fem.ContactRigidCylinder(field, radius=radius, multiplier=STIFFNESS / 10, **how)
@@ -34,7 +36,9 @@ def press(problem, increments):
     ramp = {move: -problem["depth"] * np.linspace(0, 1, increments + 1)[1:]}
     step = fem.Step([solid, contact], ramp=ramp, boundaries=boundaries)
     start = time.process_time()
-    iterations = sum(done.iterations for done in step.generate(x0=field, solver=spsolve, tol=1e-6, verbose=0))
+    iterations = sum(
+        done.iterations for done in step.generate(x0=field, solver=spsolve, tol=1e-6, verbose=0)
+    )
     loop = time.process_time() - start
     return -contact.results.force.toarray().ravel()[2 * mesh.npoints - 1], iterations, loop
 

@@ -32,7 +32,11 @@ def press(problem, increments):
     top, radius = float(problem["points"][:, 1].max()), 1 / float(problem["curvature"] or np.inf)
     f = ngs.Id(2) + ngs.Grad(u)
     j = ngs.Det(f)
-    solid = mu / 2 * (j ** (-2 / 3) * (ngs.InnerProduct(f, f) + 1) - 3) + p * (j - 1) - p**2 / (2 * bulk)
+    solid = (
+        mu / 2 * (j ** (-2 / 3) * (ngs.InnerProduct(f, f) + 1) - 3)
+        + p * (j - 1)
+        - p**2 / (2 * bulk)
+    )
 
     def gap(u):
         if not radius:
@@ -42,18 +46,25 @@ def press(problem, increments):
     nodes = {ngs.SEGM: ngs.IntegrationRule([(0,), (1,)], [0.5, 0.5])}
     energy = ngs.BilinearForm(space, symmetric=True, condense=True)
     energy += ngs.Variation(solid.Compile() * ngs.dx)
-    energy += ngs.Variation(ngs.IfPos(-gap(u), STIFFNESS / 2 * gap(u) ** 2, 0).Compile() * ngs.ds("skin", intrules=nodes))
+    energy += ngs.Variation(
+        ngs.IfPos(-gap(u), STIFFNESS / 2 * gap(u) ** 2, 0).Compile()
+        * ngs.ds("skin", intrules=nodes)
+    )
     now, iterations = ngs.GridFunction(space), 0
     start = time.process_time()
     for k in range(1, increments + 1):
         down.Set(float(problem["depth"]) * k / increments)
-        failed, used = Newton(energy, now, inverse="sparsecholesky", maxerr=1e-6, maxit=40, printing=False)
+        failed, used = Newton(
+            energy, now, inverse="sparsecholesky", maxerr=1e-6, maxit=40, printing=False
+        )
         if failed:
             raise RuntimeError("Newton's method did not converge")
         iterations += used
     loop = time.process_time() - start
     found = gap(now.components[0])
-    upright = (top + radius - down - ngs.y - now.components[0][1]) / (found + radius) if radius else 1.0
+    upright = (
+        (top + radius - down - ngs.y - now.components[0][1]) / (found + radius) if radius else 1.0
+    )
     push = ngs.IfPos(-found, -STIFFNESS * found * upright, 0)
     return ngs.Integrate(push * ngs.ds("skin", intrules=nodes), mesh), iterations, loop
 

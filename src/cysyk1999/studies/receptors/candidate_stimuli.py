@@ -9,10 +9,22 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from cysyk1999.measures.responses import CANDIDATES, RECEPTOR_DEPTH, curvature_of, stimulus, windowed
+from cysyk1999.measures.responses import (
+    CANDIDATES,
+    RECEPTOR_DEPTH,
+    curvature_of,
+    stimulus,
+    windowed,
+)
 from cysyk1999.measures.runs import NINE
 from cysyk1999.receptors.fits import gain_and_threshold, leave_one_out, r_squared, rms
-from cysyk1999.studies.receptors.impulse_rates import across, assignments, kind, matched_histories, rate_sets
+from cysyk1999.studies.receptors.impulse_rates import (
+    across,
+    assignments,
+    kind,
+    matched_histories,
+    rate_sets,
+)
 from fingerpad.measures.features import Histories, ramp_end
 from fingerpad.measures.kept import kept
 
@@ -39,9 +51,13 @@ def candidate_stimuli(histories: Histories, rates: pd.DataFrame) -> pd.DataFrame
             continue
         choices = assignments(group)
         of_set = [
-            {"rates": title, "kind": kind(group), "candidate": name} | row | _held(surfaces, name, row["receptor_depth (um)"])
+            {"rates": title, "kind": kind(group), "candidate": name}
+            | row
+            | _held(surfaces, name, row["receptor_depth (um)"])
             for name, unit, depths, number in _candidates()
-            for row in _judged(matched, group, choices, unit, depths and _common_depths(matched), number)
+            for row in _judged(
+                matched, group, choices, unit, depths and _common_depths(matched), number
+            )
         ]
         frame = pd.DataFrame(of_set)
         error, third = frame["left_out_rms (impulses/s)"], frame["depth"] == BEST_DEPTH
@@ -54,8 +70,15 @@ def _held(surfaces: Mapping[str, xr.Dataset], name: str, depth: float) -> dict[s
     """Least and largest share of a candidate, over surfaces, that is left at the end of the hold; depth: um."""
     if name not in CANDIDATES or not surfaces:
         return {}
-    left = [values[-1] / values[ramp_end(h)] for h in surfaces.values() for values in [stimulus(h, name, depth * 1e-6)]]
-    return {"end of hold over its beginning, least": min(left), "end of hold over its beginning, most": max(left)}
+    left = [
+        values[-1] / values[ramp_end(h)]
+        for h in surfaces.values()
+        for values in [stimulus(h, name, depth * 1e-6)]
+    ]
+    return {
+        "end of hold over its beginning, least": min(left),
+        "end of hold over its beginning, most": max(left),
+    }
 
 
 def _candidates():
@@ -69,7 +92,9 @@ def _candidates():
 @kept
 def _average(history, window, depth, name):
     """Of a candidate over a window, as every reading of every set of rates asks for it."""
-    return windowed(history, history.variables["time"].values, stimulus(history, name, depth), window)
+    return windowed(
+        history, history.variables["time"].values, stimulus(history, name, depth), window
+    )
 
 
 def _common_depths(matched: Mapping[float, Sequence[xr.Dataset]]) -> list[float]:
@@ -78,18 +103,29 @@ def _common_depths(matched: Mapping[float, Sequence[xr.Dataset]]) -> list[float]
     def depths(history):
         return {
             round(float(z), 7)
-            for z, x in zip(history["receptor_depth"].values, history["receptor_offset"].values, strict=True)
+            for z, x in zip(
+                history["receptor_depth"].values, history["receptor_offset"].values, strict=True
+            )
             if abs(x) < 1e-7
         }
 
-    return sorted(set.intersection(*(depths(history) for histories in matched.values() for history in histories)))
+    return sorted(
+        set.intersection(
+            *(depths(history) for histories in matched.values() for history in histories)
+        )
+    )
 
 
 def _inverse_width(history, window, depth):
     """Inverse contact width, 1/m: over the hold, as in thesis Fig 4-9, since it has no bound at first touch; or the largest."""
     width = history["contact_width"].values
     touching = width > 0
-    return windowed(history, history["time"].values[touching], 1 / width[touching], "hold" if window != "peak" else window)
+    return windowed(
+        history,
+        history["time"].values[touching],
+        1 / width[touching],
+        "hold" if window != "peak" else window,
+    )
 
 
 def _judged(matched, group, choices, unit, depths, number) -> list[dict]:
@@ -106,7 +142,11 @@ def _judged(matched, group, choices, unit, depths, number) -> list[dict]:
         return out
 
     tried = {depth: judge(depth) for depth in depths or [None]}
-    chosen = [("at 915 um", min(depths, key=lambda z: abs(z - RECEPTOR_DEPTH)))] if depths else [("on the skin", None)]
+    chosen = (
+        [("at 915 um", min(depths, key=lambda z: abs(z - RECEPTOR_DEPTH)))]
+        if depths
+        else [("on the skin", None)]
+    )
     if len(tried) > 1:
         chosen.append((BEST_DEPTH, min(tried, key=lambda z: tried[z][0][0])))
     rows = []

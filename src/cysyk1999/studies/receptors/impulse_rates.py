@@ -14,7 +14,13 @@ import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
 from cysyk1999.measures.quantities import TIME
-from cysyk1999.measures.responses import IMPULSE_RATE, RECEPTOR_DEPTH, curvature_of, predicted_rate, windowed
+from cysyk1999.measures.responses import (
+    IMPULSE_RATE,
+    RECEPTOR_DEPTH,
+    curvature_of,
+    predicted_rate,
+    windowed,
+)
 from cysyk1999.measures.runs import surfaces
 from cysyk1999.receptors.fits import GainAndThreshold, gain_and_threshold, jackknife, linear
 from fingerpad.measures.features import Histories, energy, force_gf
@@ -40,13 +46,19 @@ def rate_sets(rates: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
             if len(part) >= 3:
                 yield f"{recording}, {window}", part
         if len(recordings) > 1 and group["species"].iloc[0] != "model":
-            yield f"{source.split(',')[0]} and others, {group['force_gf'].nunique()} forces, {window}", group
+            yield (
+                f"{source.split(',')[0]} and others, {group['force_gf'].nunique()} forces, {window}",
+                group,
+            )
 
 
 def assignments(group: pd.DataFrame) -> list[np.ndarray]:
     """Curvatures (n,) 1/m in every reading of rates whose surface is one of two; a surface has one rate, and rates rise with
     curvature."""
-    first, other = group["curvature_per_m"].to_numpy(float), group["or_curvature_per_m"].to_numpy(float)
+    first, other = (
+        group["curvature_per_m"].to_numpy(float),
+        group["or_curvature_per_m"].to_numpy(float),
+    )
     if np.isnan(other).all():
         return [first]
     options = [(a,) if np.isnan(b) else (a, b) for a, b in zip(first, other, strict=True)]
@@ -55,7 +67,9 @@ def assignments(group: pd.DataFrame) -> list[np.ndarray]:
     return [choice for choice in read if (np.diff(choice[order]) > 0).all()]
 
 
-def matched_histories(histories: Histories, group: pd.DataFrame) -> dict[float, list[xr.Dataset]] | None:
+def matched_histories(
+    histories: Histories, group: pd.DataFrame
+) -> dict[float, list[xr.Dataset]] | None:
     """Histories of pressed surfaces for every force (gf) of a set of rates, by rising curvature; None if a force has fewer than
     four.
 
@@ -64,10 +78,14 @@ def matched_histories(histories: Histories, group: pd.DataFrame) -> dict[float, 
     found = {}
     for force, rows in group.groupby("force_gf"):
         ramp = rows["ramp_gf_per_s"].iloc[0]
-        programmes = [f"ramp{ramp:g}", f"press{force:g}"] if ramp == ramp else ["ramp40", f"press{force:g}"]
+        programmes = (
+            [f"ramp{ramp:g}", f"press{force:g}"] if ramp == ramp else ["ramp40", f"press{force:g}"]
+        )
         for programme in programmes:
             chosen = [
-                h for h in surfaces(programme).histories(histories).values() if abs(float(force_gf(h)[-1]) / force - 1) < 0.01
+                h
+                for h in surfaces(programme).histories(histories).values()
+                if abs(float(force_gf(h)[-1]) / force - 1) < 0.01
             ]
             if len(chosen) >= 4:
                 found[force] = sorted(chosen, key=curvature_of)
@@ -77,7 +95,12 @@ def matched_histories(histories: Histories, group: pd.DataFrame) -> dict[float, 
     return found
 
 
-def across(matched: Mapping[float, Sequence[xr.Dataset]], group: pd.DataFrame, curvature: np.ndarray, number) -> np.ndarray:
+def across(
+    matched: Mapping[float, Sequence[xr.Dataset]],
+    group: pd.DataFrame,
+    curvature: np.ndarray,
+    number,
+) -> np.ndarray:
     """Numbers (n,) at the forces and curvatures of some rates: between simulated surfaces by a monotone cubic over curvature.
 
     number: history, window -> value.
@@ -85,13 +108,17 @@ def across(matched: Mapping[float, Sequence[xr.Dataset]], group: pd.DataFrame, c
     out = np.empty(len(group))
     force, windows = group["force_gf"].to_numpy(), group["window"].to_numpy()
     for f, window in dict.fromkeys(zip(force, windows, strict=True)):
-        curve = PchipInterpolator([curvature_of(h) for h in matched[f]], [number(h, window) for h in matched[f]])
+        curve = PchipInterpolator(
+            [curvature_of(h) for h in matched[f]], [number(h, window) for h in matched[f]]
+        )
         rows = (force == f) & (windows == window)
         out[rows] = curve(np.minimum(curvature[rows], curve.x[-1]))
     return out
 
 
-def rate_fit(matched, group: pd.DataFrame, curvature: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def rate_fit(
+    matched, group: pd.DataFrame, curvature: np.ndarray
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Every way of :data:`RATE_FITS` -> what it tells, with intervals over rates (k, 3), and the rates (n,) it predicts.
 
     curvature: (n,) 1/m, one reading of which surface each rate is of.
@@ -114,13 +141,22 @@ def rate_fit(matched, group: pd.DataFrame, curvature: np.ndarray) -> dict[str, t
     def factor(rows):
         return linear(np.column_stack([thesis[rows], np.ones(len(rows))]), data[rows])
 
-    def static(rows):  # of the energy's mean: as good as the mean of the law while the energy does not cross the threshold
+    def static(
+        rows,
+    ):  # of the energy's mean: as good as the mean of the law while the energy does not cross the threshold
         law = gain_and_threshold(held[rows], (data - dynamic)[rows])
         return np.array([law.gain, law.threshold])
 
     rows = list(range(len(data)))
-    constants = [jackknife(of, rows) for of in (lambda rows: [np.mean((thesis - data)[rows])], static, factor)]
-    predicted = thesis, GainAndThreshold(*constants[1][:, 0])(held) + dynamic, constants[2][:, 0] @ [thesis, np.ones(len(data))]
+    constants = [
+        jackknife(of, rows)
+        for of in (lambda rows: [np.mean((thesis - data)[rows])], static, factor)
+    ]
+    predicted = (
+        thesis,
+        GainAndThreshold(*constants[1][:, 0])(held) + dynamic,
+        constants[2][:, 0] @ [thesis, np.ones(len(data))],
+    )
     return dict(zip(RATE_FITS, zip(constants, predicted, strict=True), strict=True))
 
 

@@ -27,15 +27,34 @@ from cysyk1999.measures.responses import (
 )
 from cysyk1999.measures.runs import FAST, NINE
 from cysyk1999.receptors.fits import constant_shift, jackknife, r_squared, rms, spatial_sum
-from cysyk1999.studies.receptors.impulse_rates import RATE_FITS, assignments, kind, matched_histories, rate_fit, rate_sets
+from cysyk1999.studies.receptors.impulse_rates import (
+    RATE_FITS,
+    assignments,
+    kind,
+    matched_histories,
+    rate_fit,
+    rate_sets,
+)
 from fingerpad.measures.features import Histories, scene_name
 from fingerpad.measures.strokes import SUB
 from fingerpad.receptors.laws import NODE_TERMS, TERM_UNITS, THESIS_RATE, SpatialSum
 
 FIT_COLUMNS = (
-    "law", "scenes", "receptor_depth (um)", "quantity", "estimate", "low_95", "high_95", "units", "residual_rms",
-    "residual_units", "r_squared", "samples", "discretisation (%)", "note",
-)  # fmt: skip
+    "law",
+    "scenes",
+    "receptor_depth (um)",
+    "quantity",
+    "estimate",
+    "low_95",
+    "high_95",
+    "units",
+    "residual_rms",
+    "residual_units",
+    "r_squared",
+    "samples",
+    "discretisation (%)",
+    "note",
+)
 
 
 def receptor_fits(histories: Histories, coarse: Histories, rates: pd.DataFrame) -> pd.DataFrame:
@@ -49,11 +68,18 @@ def receptor_fits(histories: Histories, coarse: Histories, rates: pd.DataFrame) 
         Columns `FIT_COLUMNS`. Intervals are jackknife intervals over surfaces (Eq 4-1: over nodes, rates: over rates);
         "discretisation" is by how much the estimate differs when fitted to the companions.
     """
-    table = pd.DataFrame([*_simulated_laws(histories, intervals=True), *_rate_law(histories, rates)], columns=FIT_COLUMNS)
+    table = pd.DataFrame(
+        [*_simulated_laws(histories, intervals=True), *_rate_law(histories, rates)],
+        columns=FIT_COLUMNS,
+    )
     if len(NINE.histories(coarse)) == len(NINE.histories(histories)) > 1:
         rough = pd.DataFrame(_simulated_laws(coarse, intervals=False))
         key = ["law", "scenes", "receptor_depth (um)", "quantity"]
-        matched = table[key].merge(rough.drop_duplicates(key)[[*key, "estimate"]], on=key, how="left")["estimate"].to_numpy(float)
+        matched = (
+            table[key]
+            .merge(rough.drop_duplicates(key)[[*key, "estimate"]], on=key, how="left")["estimate"]
+            .to_numpy(float)
+        )
         off = 100 * np.abs(matched / table["estimate"].to_numpy(float) - 1)
         table["discretisation (%)"] = np.where(table["units"] == "%", np.nan, off)
     return table
@@ -65,19 +91,36 @@ def _simulated_laws(histories: Histories, intervals: bool) -> Iterator[dict]:
     yield from _sums(histories, surfaces, intervals)
 
 
-def _rows(law, scenes, names, units, found, data, predicted, note="", depth=np.nan) -> Iterator[dict]:
+def _rows(
+    law, scenes, names, units, found, data, predicted, note="", depth=np.nan
+) -> Iterator[dict]:
     """One row a constant; what the law leaves over and the note stand in the first."""
     for k, (name, unit) in enumerate(zip(names, units, strict=True)):
-        row = {"law": law, "scenes": scenes, "receptor_depth (um)": depth, "quantity": name, "units": unit}
+        row = {
+            "law": law,
+            "scenes": scenes,
+            "receptor_depth (um)": depth,
+            "quantity": name,
+            "units": unit,
+        }
         row |= dict(zip(("estimate", "low_95", "high_95"), found[k], strict=True))
         yield row | _left_over(data, predicted) | {"note": note} if k == 0 else row
 
 
-def _number(law, scenes, quantity, value, units, note="", depth=np.nan, low=np.nan, high=np.nan) -> dict:
+def _number(
+    law, scenes, quantity, value, units, note="", depth=np.nan, low=np.nan, high=np.nan
+) -> dict:
     return {
-        "law": law, "scenes": scenes, "receptor_depth (um)": depth, "quantity": quantity, "estimate": value, "low_95": low,
-        "high_95": high, "units": units, "note": note,
-    }  # fmt: skip
+        "law": law,
+        "scenes": scenes,
+        "receptor_depth (um)": depth,
+        "quantity": quantity,
+        "estimate": value,
+        "low_95": low,
+        "high_95": high,
+        "units": units,
+        "note": note,
+    }
 
 
 def _left_over(data, predicted, units: str = "Pa") -> dict:
@@ -88,7 +131,9 @@ def _left_over(data, predicted, units: str = "Pa") -> dict:
 
 def _relative(law, scenes, quantity, data, predicted, note="", depth=np.nan) -> dict:
     """Row of a residual relative to the data themselves, %."""
-    return _number(law, scenes, quantity, 100 * rms(data - predicted) / rms(data), "%", note, depth) | _left_over(data, predicted)
+    return _number(
+        law, scenes, quantity, 100 * rms(data - predicted) / rms(data), "%", note, depth
+    ) | _left_over(data, predicted)
 
 
 def _with_intervals(fitted, groups: Sequence, intervals: bool) -> np.ndarray:
@@ -100,7 +145,10 @@ def _with_intervals(fitted, groups: Sequence, intervals: bool) -> np.ndarray:
 
 
 def _node_laws(surfaces: dict[str, xr.Dataset], intervals: bool) -> Iterator[dict]:
-    names = {law: [f"A{k + 1}, {term}" for k, term in enumerate(terms)] for law, terms in NODE_TERMS.items()}
+    names = {
+        law: [f"A{k + 1}, {term}" for k, term in enumerate(terms)]
+        for law, terms in NODE_TERMS.items()
+    }
     units = {law: [TERM_UNITS[term] for term in terms] for law, terms in NODE_TERMS.items()}
 
     def fitted(law, groups, where, note):
@@ -113,27 +161,49 @@ def _node_laws(surfaces: dict[str, xr.Dataset], intervals: bool) -> Iterator[dic
         groups = [group for _, group in nodes.groupby(NODE)]
         where = f"{scene_name('ramp40', NODE_SURFACE)}, {len(groups)} nodes"
         for law in ("4-1", "4-1 read without an exponent"):
-            yield from fitted(law, groups, where, "one set for all nodes, each from its peak on; intervals over nodes")[1]
+            yield from fitted(
+                law,
+                groups,
+                where,
+                "one set for all nodes, each from its peak on; intervals over nodes",
+            )[1]
             alone = np.array([fit_nodes(law, group) for group in groups])
             each = [pressure_by_law(law, *pair) for pair in zip(groups, alone, strict=True)]
             shares = [r_squared(node[P], node[P_LAW]) for node in each]
             note = f"median and range over nodes, not an interval; R2 of the nodes {min(shares):.3f} to {max(shares):.3f}"
             for name, unit, values in zip(names[law], units[law], alone.T, strict=True):
                 ends = {"low": values.min(), "high": values.max()}
-                yield _number(f"{law}, a set for each node", where, name, float(np.median(values)), unit, note, **ends)
+                yield _number(
+                    f"{law}, a set for each node",
+                    where,
+                    name,
+                    float(np.median(values)),
+                    unit,
+                    note,
+                    **ends,
+                )
                 note = ""
     if len(surfaces) < 2:
         return
     nodes = {label: contact_nodes(history) for label, history in surfaces.items()}
     where = f"ramp40, {len(surfaces)} surfaces"
-    for law, which in (("4-2", "all nodes in contact up to the top of the ramp"), ("4-3", "each node from its peak on")):
+    for law, which in (
+        ("4-2", "all nodes in contact up to the top of the ramp"),
+        ("4-3", "each node from its peak on"),
+    ):
         found, rows = fitted(law, list(nodes.values()), where, f"intervals over surfaces; {which}")
         yield from rows
         for label in surfaces:
-            others = fit_nodes(law, pd.concat([rows for other, rows in nodes.items() if other != label]))
-            own, strange = (pressure_by_law(law, nodes[label], constants) for constants in (found[:, 0], others))
+            others = fit_nodes(
+                law, pd.concat([rows for other, rows in nodes.items() if other != label])
+            )
+            own, strange = (
+                pressure_by_law(law, nodes[label], constants) for constants in (found[:, 0], others)
+            )
             note = f"{100 * rms(strange[P] - strange[P_LAW]) / rms(strange[P]):.1f} % when fitted to the other surfaces"
-            yield _relative(law, where, f"residual over the pressure, K = {label}", own[P], own[P_LAW], note)
+            yield _relative(
+                law, where, f"residual over the pressure, K = {label}", own[P], own[P_LAW], note
+            )
 
 
 def _sums(histories: Histories, surfaces: dict[str, xr.Dataset], intervals: bool) -> Iterator[dict]:
@@ -153,11 +223,20 @@ def _sums(histories: Histories, surfaces: dict[str, xr.Dataset], intervals: bool
         both = [np.concatenate(side) for side in zip(*energies, strict=True)]
         title = "4-4" if with_depth else "4-4 without depth of indentation"
         names, units = ["r", "A2", "A1"][: 2 + with_depth], ["mm", "1/m", "1/m2"][: 2 + with_depth]
-        yield from _rows(title, where, names, units, found, *both, "intervals over surfaces", depth * 1e6)
+        yield from _rows(
+            title, where, names, units, found, *both, "intervals over surfaces", depth * 1e6
+        )
         if abs(depth - RECEPTOR_DEPTH) > 1e-9:
             continue
         for label, (own, predicted) in zip(surfaces, energies, strict=True):
-            yield _relative(title, where, f"residual over the energy, K = {label}", own, predicted, depth=depth * 1e6)
+            yield _relative(
+                title,
+                where,
+                f"residual over the energy, K = {label}",
+                own,
+                predicted,
+                depth=depth * 1e6,
+            )
         if with_depth:
             yield from _transferred(law, histories, depth)
 
@@ -170,7 +249,9 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterato
         own = np.concatenate([s.energy for s in fast])
         predicted = np.concatenate([s.by(law) for s in fast])
         yield _relative(title, f"ramp150, {len(fast)} surfaces", what, own, predicted, depth=um)
-    moving = {name: history for name, history in strokes(histories).items() if name not in SUB.values()}
+    moving = {
+        name: history for name, history in strokes(histories).items() if name not in SUB.values()
+    }
     if not moving:
         return
     chosen = "stroke_10" if "stroke_10" in moving else next(iter(moving))
@@ -187,7 +268,9 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterato
             ("the skin's shift", skin, ""),
             ("a share of the skin's shift", share * skin, f"{share:.2f} of it"),
         ):
-            yield _relative(title, name, f"{what}, {how}", sample.energy, sample.by(law, value), note, um)
+            yield _relative(
+                title, name, f"{what}, {how}", sample.energy, sample.by(law, value), note, um
+            )
 
 
 def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
@@ -201,7 +284,15 @@ def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
             best = predicted, law, shift
     predicted, law, shift = best
     note = f"r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m, shift {shift * 1e3:.2g} mm"
-    return _relative("4-4, fitted to the stroke", scene, "residual over the energy", sample.energy, predicted, note, depth * 1e6)
+    return _relative(
+        "4-4, fitted to the stroke",
+        scene,
+        "residual over the energy",
+        sample.energy,
+        predicted,
+        note,
+        depth * 1e6,
+    )
 
 
 def _share_of_skin(law: SpatialSum, sample, skin: np.ndarray) -> float:
@@ -224,11 +315,15 @@ def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
         ("threshold of the energy", THESIS_RATE.threshold, "Pa"),
         ("threshold of the rate", THESIS_RATE.rate_threshold, "Pa/s"),
     ):
-        yield _number(stated, "pressed and stroked", name, value, unit, "stated, Figs 5-20 and 5-21", um)
+        yield _number(
+            stated, "pressed and stroked", name, value, unit, "stated, Figs 5-20 and 5-21", um
+        )
     for title, group in rate_sets(rates[rates["receptor"] == "SA-I"]):
         matched = matched_histories(histories, group)
         if matched is None:
-            yield _number(stated, title, "not compared", np.nan, "", "fewer than four surfaces at its force")
+            yield _number(
+                stated, title, "not compared", np.nan, "", "fewer than four surfaces at its force"
+            )
             continue
         readings = [rate_fit(matched, group, curvature) for curvature in assignments(group)]
         data = group["rate_per_s"].to_numpy(float)
@@ -238,9 +333,7 @@ def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
             shares = [r_squared(data, reading[law][1]) for reading in readings]
             note = about
             if len(readings) > 1:
-                note += (
-                    f"; R2 {min(shares):.2f} to {max(shares):.2f} over {len(readings)} ways to read which surface a rate is of"
-                )
+                note += f"; R2 {min(shares):.2f} to {max(shares):.2f} over {len(readings)} ways to read which surface a rate is of"
             for k, (name, unit) in enumerate(names.items()):
                 value, low, high = constants[k]
                 row = _number(law, title, name, value, unit, note * (k == 0), um, low, high)

@@ -44,9 +44,18 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
     """
     surfaces = NINE.histories(histories)
     if not surfaces:
-        raise ValueError("the sensor's constants are fitted to scenes ramp40_*; there is none among the histories")
-    laws = {True: fit_sum(surfaces.values(), RECEPTOR_DEPTH), False: fit_sum(surfaces.values(), RECEPTOR_DEPTH, with_depth=False)}
-    chosen = {runs[k]: history for runs in (NINE, FAST, *LOWER.values()) for k, history in runs.histories(histories).items()}
+        raise ValueError(
+            "the sensor's constants are fitted to scenes ramp40_*; there is none among the histories"
+        )
+    laws = {
+        True: fit_sum(surfaces.values(), RECEPTOR_DEPTH),
+        False: fit_sum(surfaces.values(), RECEPTOR_DEPTH, with_depth=False),
+    }
+    chosen = {
+        runs[k]: history
+        for runs in (NINE, FAST, *LOWER.values())
+        for k, history in runs.histories(histories).items()
+    }
     chosen |= strokes(histories)
     shift = None
     if "stroke_10" in chosen:
@@ -57,12 +66,18 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
         full = predicted_rate(history)
         true = np.interp(time, full[TIME], full[IMPULSE_RATE])
         count = float(integrated(full[TIME], full[IMPULSE_RATE])[-1])
-        arrays = [("pressure and indentation", None), ("pressure", None), *(("pressure", pitch) for pitch in PITCHES)]
+        arrays = [
+            ("pressure and indentation", None),
+            ("pressure", None),
+            *(("pressure", pitch) for pitch in PITCHES),
+        ]
         if is_stroke(history) and shift is not None:
             arrays.insert(0, ("pressure, indentation and shift", None))
         for knows, pitch in arrays:
             where = shift if "shift" in knows else 0.0
-            rate = _sensed(sample, time, laws["indentation" in knows], "indentation" in knows, pitch, where)
+            rate = _sensed(
+                sample, time, laws["indentation" in knows], "indentation" in knows, pitch, where
+            )
             # the sensor's rate is that of the interval behind it
             middle = (time[1:] + time[:-1]) / 2
             own = np.interp(middle, full[TIME], full[IMPULSE_RATE])
@@ -72,9 +87,13 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
                     "scene": name,
                     "knows": knows,
                     "spacing (mm)": 1e3 * (pitch or float(np.median(np.diff(sample.x[0])))),
-                    "fitted to": "this and eight more" if name in NINE.scenes.values() else "ramp40",
+                    "fitted to": "this and eight more"
+                    if name in NINE.scenes.values()
+                    else "ramp40",
                     "rms_error (impulses/s)": _weighted_rms(off, time),
-                    "rms_error (% of the rms rate)": 100 * _weighted_rms(off, time) / max(_weighted_rms(own, time), 1e-12),
+                    "rms_error (% of the rms rate)": 100
+                    * _weighted_rms(off, time)
+                    / max(_weighted_rms(own, time), 1e-12),
                     "largest_error (impulses/s)": float(np.abs(off).max()),
                     "largest rate (impulses/s)": float(true.max()),
                     "impulses": float((rate[1:] * np.diff(time)).sum()),
@@ -89,21 +108,32 @@ def _weighted_rms(values, time) -> float:
     return float(np.sqrt((values**2 * np.diff(time)).sum() / (time[-1] - time[0])))
 
 
-def _sensed(sample, time, law: SpatialSum, with_depth: bool, pitch: float | None, shift: float) -> np.ndarray:
+def _sensed(
+    sample, time, law: SpatialSum, with_depth: bool, pitch: float | None, shift: float
+) -> np.ndarray:
     """Rates (time) of a sensor at the pad's nodes (they move: a new sensor a frame would be one), or of an array of a pitch
     (m)."""
     if pitch is None:
-        energy = law.strain_energy(sample.x, sample.pressure, sample.indentation if with_depth else 0.0, shift)
+        energy = law.strain_energy(
+            sample.x, sample.pressure, sample.indentation if with_depth else 0.0, shift
+        )
         change = np.concatenate([[0.0], np.diff(energy) / np.diff(time)])
         return THESIS_RATE(energy, change)
     reach = pitch * (np.ceil(np.abs(sample.x).max() / pitch) + 0.5)
     edges = np.arange(-reach, reach + pitch / 2, pitch)
     sensor = TactileSensor((edges[1:] + edges[:-1]) / 2, law)
-    return sensor.rates(time, taxel_pressure(sample.x, sample.pressure, edges), sample.indentation if with_depth else 0.0)
+    return sensor.rates(
+        time,
+        taxel_pressure(sample.x, sample.pressure, edges),
+        sample.indentation if with_depth else 0.0,
+    )
 
 
 RAPIDLY_ADAPTING = {
-    "curvature of the skin": ("curvature", RapidlyAdapting(threshold=500.0, scale=500.0, highest=100.0)),
+    "curvature of the skin": (
+        "curvature",
+        RapidlyAdapting(threshold=500.0, scale=500.0, highest=100.0),
+    ),
     "strain energy at 600 um": ("energy", ASSUMED_RATE),
 }
 """Stimulus whose rate drives the receptor -> its key and law; thresholds, scales and the highest rate are assumed, nothing at
@@ -125,7 +155,10 @@ def rapidly_adapting(histories: Histories) -> pd.DataFrame:
             time, rate = frame[TIME].to_numpy(), frame[IMPULSE_RATE].to_numpy()
             top = float(history["time"].values[ramp_end(history)])
             split = int(np.flatnonzero(time == top)[0]) + 1
-            counts = [float(integrated(time[part], rate[part])[-1]) for part in (slice(0, split), slice(split, None))]
+            counts = [
+                float(integrated(time[part], rate[part])[-1])
+                for part in (slice(0, split), slice(split, None))
+            ]
             last = np.flatnonzero(rate > 1e-6)
             ends = time[min(last[-1] + 1, len(time) - 1)] / top if len(last) else 0.0
             row = {
@@ -134,5 +167,11 @@ def rapidly_adapting(histories: Histories) -> pd.DataFrame:
                 "impulses in the ramp": counts[0],
                 "impulses in the hold": counts[1],
             }
-            rows.append(row | {"response ends (share of the ramp)": ends, "largest rate (impulses/s)": float(rate.max())})
+            rows.append(
+                row
+                | {
+                    "response ends (share of the ramp)": ends,
+                    "largest rate (impulses/s)": float(rate.max()),
+                }
+            )
     return pd.DataFrame(rows)

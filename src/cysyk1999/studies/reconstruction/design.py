@@ -24,7 +24,9 @@ FITTED = ("flat", "158", "420", "1260", pads.PLATE)
 UNKNOWNS = Path("config/reconstruction/unknowns.yaml")
 
 
-def run_design(known: Unknowns, records: Path, seconds: float = float("inf"), surfaces: Sequence[str] = FITTED) -> None:
+def run_design(
+    known: Unknowns, records: Path, seconds: float = float("inf"), surfaces: Sequence[str] = FITTED
+) -> None:
     """Simulate the pads that `records` does not know yet, until so much time of the process has gone."""
     started, drawn = time.process_time(), pd.DataFrame(known.draw())
     write = Writer(records)
@@ -51,13 +53,23 @@ def simulated(pad: Mapping[str, float], surfaces: Sequence[str]) -> dict[str, ob
         except Exception as error:  # noqa: BLE001 - one bad pad never stops the design
             diagnosis = " ".join(f"{surface}: {type(error).__name__}: {error}".split())[:300]
             break
-    return {"values": values, "diagnosis": diagnosis, "cpu_s": round(time.process_time() - started, 3)}
+    return {
+        "values": values,
+        "diagnosis": diagnosis,
+        "cpu_s": round(time.process_time() - started, 3),
+    }
 
 
 def table(records: Path) -> pd.DataFrame:
     """A row a pad: values of the axes, of what was read (NaN where it failed), diagnosis, process time."""
     rows = [
-        {"pad": r["number"], **r["pad"], **r["values"], "diagnosis": r["diagnosis"], "cpu_s": r["cpu_s"]}
+        {
+            "pad": r["number"],
+            **r["pad"],
+            **r["values"],
+            "diagnosis": r["diagnosis"],
+            "cpu_s": r["cpu_s"],
+        }
         for r in read_records(records)
     ]
     return pd.DataFrame(rows).sort_values("pad", ignore_index=True)

@@ -55,10 +55,14 @@ class Emulator:
         target = np.where(logarithmic, np.log(np.where(logarithmic, y, 1.0)), y)
         x = 2 * np.asarray(shares, float) - 1
         trend, rest, scale = _polynomial(x, target)
-        kernel = RBF(np.full(x.shape[1], 3.0), tuple(2 * v for v in LENGTHS)) + WhiteKernel(0.1, (1e-4, 1.0))
+        kernel = RBF(np.full(x.shape[1], 3.0), tuple(2 * v for v in LENGTHS)) + WhiteKernel(
+            0.1, (1e-4, 1.0)
+        )
         chosen = np.random.default_rng(seed).permutation(len(x))[:400]
         process = GaussianProcessRegressor(kernel, random_state=seed)
-        with warnings.catch_warnings():  # of length scales at their bounds: an unknown that hardly matters
+        with (
+            warnings.catch_warnings()
+        ):  # of length scales at their bounds: an unknown that hardly matters
             warnings.simplefilter("ignore", ConvergenceWarning)
             process.fit(x[chosen], rest[chosen] / scale)
         lengths, noise = process.kernel_.k1.length_scale, process.kernel_.k2.noise_level
@@ -66,7 +70,9 @@ class Emulator:
         fold = np.arange(len(x)) % FOLDS
         for k in range(FOLDS):
             out = fold == k
-            left_out[out] = cls._made([], logarithmic, x[~out], target[~out], lengths, noise)._raw(x[out])
+            left_out[out] = cls._made([], logarithmic, x[~out], target[~out], lengths, noise)._raw(
+                x[out]
+            )
         made = cls._made(list(values.columns), logarithmic, x, target, lengths, noise)
         missed = left_out - target
         made.error = np.sqrt((missed**2).mean(axis=0))
@@ -81,7 +87,9 @@ class Emulator:
         return cls(names, logarithmic, np.zeros(0), np.zeros(0), len(x), trend, lengths, x, weights)
 
     def _raw(self, x: np.ndarray) -> np.ndarray:
-        trend = _quadratic(x) @ self._trend.coef_.T + self._trend.intercept_  # a prediction of one pad is not to be checked twice
+        trend = (
+            _quadratic(x) @ self._trend.coef_.T + self._trend.intercept_
+        )  # a prediction of one pad is not to be checked twice
         return trend + _kernel(x, self._points, self._lengths) @ self._weights
 
     def __call__(self, shares: np.ndarray) -> np.ndarray:
@@ -111,11 +119,16 @@ class Emulator:
         surface, measure = zip(*(name.split(": ") for name in self.names), strict=True)
         error = np.where(self.logarithmic, 100 * self.error, np.nan)
         absolute = np.where(self.logarithmic, np.nan, self.error)
-        return pd.DataFrame({
-            "surface": surface, "measure": measure, "error of pads left out (%)": error,
-            "error of pads left out (own unit)": absolute,
-            "q2 (1)": self.q2, "pads": self.pads,
-        })  # fmt: skip
+        return pd.DataFrame(
+            {
+                "surface": surface,
+                "measure": measure,
+                "error of pads left out (%)": error,
+                "error of pads left out (own unit)": absolute,
+                "q2 (1)": self.q2,
+                "pads": self.pads,
+            }
+        )
 
 
 def _polynomial(x: np.ndarray, target: np.ndarray):

@@ -21,7 +21,15 @@ from cysyk1999.studies.reconstruction import pads
 
 EVIDENCE = Path("config/reference/reconstruction_evidence.csv")
 ROLES = ("fitted", "held_out", "apart")
-FAMILIES = ("plate", "depth", "width", "pressure", "time course", "dermal energy", "epidermal energy")
+FAMILIES = (
+    "plate",
+    "depth",
+    "width",
+    "pressure",
+    "time course",
+    "dermal energy",
+    "epidermal energy",
+)
 SEEN = 1.02
 """Least ratio of a pressure to another by which a picture tells that it is larger."""
 SURFACES = (pads.PLATE, *pads.SURFACES, *(f"{k}{pads.FAST}" for k in pads.SURFACES))
@@ -55,9 +63,13 @@ def read_evidence(path: str | Path) -> pd.DataFrame:
         unit = pads.units(record.surface).get(record.measure)
         expected = "N" if unit == "N/m" else unit
         if expected != record.unit:
-            raise ReferenceDataError(f"{path}: row {row}, column unit: '{record.unit}'; allowed: {expected or 'no such measure'}")
+            raise ReferenceDataError(
+                f"{path}: row {row}, column unit: '{record.unit}'; allowed: {expected or 'no such measure'}"
+            )
         if not record.low < record.high:
-            raise ReferenceDataError(f"{path}: row {row}, column high: '{record.high:g}'; allowed: more than {record.low:g}")
+            raise ReferenceDataError(
+                f"{path}: row {row}, column high: '{record.high:g}'; allowed: more than {record.low:g}"
+            )
     if not table["id"].is_unique:
         twice = table["id"][table["id"].duplicated()].iloc[0]
         raise ReferenceDataError(f"{path}: column id: '{twice}' is there twice; allowed: each once")
@@ -77,7 +89,9 @@ class Evidence:
     @cached_property
     def keys(self) -> list[str]:
         """What each row is read of."""
-        return [f"{s}: {m}" for s, m in zip(self.rows["surface"], self.rows["measure"], strict=True)]
+        return [
+            f"{s}: {m}" for s, m in zip(self.rows["surface"], self.rows["measure"], strict=True)
+        ]
 
     def of_role(self, *roles: str) -> Evidence:
         """The rows of some roles."""
@@ -89,7 +103,9 @@ class Evidence:
         Args:
             values: (..., rows) as simulated, of `keys`. soft: (...) factor on all moduli. plate_length: (...) mm, of chapter 3.
         """
-        return np.asarray(values) * self._scale(np.asarray(soft)[..., None], np.asarray(plate_length)[..., None])
+        return np.asarray(values) * self._scale(
+            np.asarray(soft)[..., None], np.asarray(plate_length)[..., None]
+        )
 
     def _scale(self, soft: np.ndarray, plate_length: np.ndarray) -> np.ndarray:
         factor, scaled, force = self._units
@@ -120,7 +136,9 @@ class Evidence:
         """Distance of one prediction (rows,) by family."""
         squared = self.departure(shown) ** 2
         families = self.rows["family"].to_numpy()
-        return {family: float(squared[families == family].sum()) for family in dict.fromkeys(families)}
+        return {
+            family: float(squared[families == family].sum()) for family in dict.fromkeys(families)
+        }
 
     def as_thesis(self, shown: np.ndarray) -> Evidence:
         """The evidence that a model would have left: intervals as wide, its own numbers (rows,) between ticks as far apart.
@@ -131,8 +149,14 @@ class Evidence:
         width = rows["high"] - rows["low"]
         one_sided = rows["low"].to_numpy() == 0
         low = np.floor((shown - rows["low"]) / width) * width + rows["low"]
-        sign = rows["family"].to_numpy() == "time course"  # of these only the sign, or the side of one, is told
-        ratio = sign & (rows["unit"].to_numpy() == "1") & rows["measure"].str.contains("over").to_numpy()
+        sign = (
+            rows["family"].to_numpy() == "time course"
+        )  # of these only the sign, or the side of one, is told
+        ratio = (
+            sign
+            & (rows["unit"].to_numpy() == "1")
+            & rows["measure"].str.contains("over").to_numpy()
+        )
         low = np.where(one_sided, 0.0, low)
         high = np.where(one_sided, np.maximum(1.3 * shown, 1e-9), low + width)
         for told, at, least, most in ((sign & ~ratio, 0.0, -1.0, 1.0), (ratio, SEEN, 0.0, 2.0)):

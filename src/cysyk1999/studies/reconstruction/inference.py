@@ -76,10 +76,17 @@ class Problem:
         found = dict(zip(self.names, np.moveaxis(np.asarray(values, float), -1, 0), strict=True))
         found.setdefault(SOFT, np.full(np.shape(values)[:-1], reading.soft[0]))
         if EPIDERMIS not in found:
-            found[EPIDERMIS] = found[SOFT] if reading.epidermis is None else np.full_like(found[SOFT], reading.epidermis[0])
+            found[EPIDERMIS] = (
+                found[SOFT]
+                if reading.epidermis is None
+                else np.full_like(found[SOFT], reading.epidermis[0])
+            )
         if reading.bulk_modulus is not None:
             found["bulk_modulus"] = np.full_like(found[SOFT], reading.bulk_modulus)
-        return found | {LOAD: found["line_load"] / found[SOFT], STIFFNESS: found[EPIDERMIS] / found[SOFT]}
+        return found | {
+            LOAD: found["line_load"] / found[SOFT],
+            STIFFNESS: found[EPIDERMIS] / found[SOFT],
+        }
 
     def shown(self, values: np.ndarray) -> np.ndarray:
         """What the thesis would show (n, rows) of pads (n, names)."""
@@ -90,7 +97,9 @@ class Problem:
     def log_likelihood(self, values: np.ndarray) -> np.ndarray:
         """(n,) of pads (n, names)."""
         shown = self.shown(values)
-        own = np.where(self.emulator.logarithmic, np.abs(shown) * self.emulator.error, self.emulator.error)
+        own = np.where(
+            self.emulator.logarithmic, np.abs(shown) * self.emulator.error, self.emulator.error
+        )
         found = -0.5 * (self.evidence.departure(shown, own) ** 2).sum(axis=-1)
         return np.where(self.can_be(values), found, -np.inf)
 
@@ -99,7 +108,10 @@ class Problem:
         if self.room is None:
             return np.ones(len(values), bool)
         pad = self.pad(values)
-        return self.room(self.known.to_unit({name: pad[name] for name in self.known.axes}))[:, 0] > LEAST_ROOM
+        return (
+            self.room(self.known.to_unit({name: pad[name] for name in self.known.axes}))[:, 0]
+            > LEAST_ROOM
+        )
 
 
 @dataclass(frozen=True)
@@ -125,9 +137,16 @@ class Posterior:
         tail, rows = (1 - INTERVAL) / 2, []
         for name in (*self.problem.known.unknowns, SOFT, EPIDERMIS):
             low, middle, high = np.quantile(pad[name], [tail, 0.5, 1 - tail])
-            unit = self.problem.known.unknowns[name].unit if name in self.problem.known.unknowns else "1"
+            unit = (
+                self.problem.known.unknowns[name].unit
+                if name in self.problem.known.unknowns
+                else "1"
+            )
             rows.append((self.problem.reading, name, unit, middle, low, high, float(best[name][0])))
-        return pd.DataFrame(rows, columns=["reading", "quantity", "unit", "median", "low 5 %", "high 95 %", "best pad"])
+        return pd.DataFrame(
+            rows,
+            columns=["reading", "quantity", "unit", "median", "low 5 %", "high 95 %", "best pad"],
+        )
 
 
 def infer(problem: Problem, draws: int = DRAWS, seed: int = 1999) -> Posterior:
@@ -135,15 +154,21 @@ def infer(problem: Problem, draws: int = DRAWS, seed: int = 1999) -> Posterior:
     rng = np.random.default_rng(seed)
     points = qmc.Sobol(len(problem.names), rng=rng).random(draws)
     values = problem.at(points)
-    log = np.concatenate([problem.log_likelihood(values[k : k + BLOCK]) for k in range(0, draws, BLOCK)])
+    log = np.concatenate(
+        [problem.log_likelihood(values[k : k + BLOCK]) for k in range(0, draws, BLOCK)]
+    )
     weight = np.exp(log - log.max())
     mean = weight.mean()
     pick = rng.choice(draws, size=SAMPLES, p=weight / weight.sum())
     best = values[int(np.argmax(log))]
     distance = float(problem.evidence.distance(problem.shown(best[None]))[0])
-    error = float(weight.std() / mean / np.sqrt(draws))  # of independent draws: Sobol points do better
+    error = float(
+        weight.std() / mean / np.sqrt(draws)
+    )  # of independent draws: Sobol points do better
     left = float(weight.sum() ** 2 / (weight**2).sum())
-    return Posterior(problem, values[pick], float(log.max() + np.log(mean)), error, left, best, distance)
+    return Posterior(
+        problem, values[pick], float(log.max() + np.log(mean)), error, left, best, distance
+    )
 
 
 def shares_of(posteriors: Iterable[Posterior]) -> pd.DataFrame:
@@ -151,11 +176,16 @@ def shares_of(posteriors: Iterable[Posterior]) -> pd.DataFrame:
     found = list(posteriors)
     logs = np.array([p.log_evidence for p in found])
     weight = np.exp(logs - logs.max())
-    return pd.DataFrame({
-        "reading": [p.problem.reading for p in found], "says": [p.problem.known.readings[p.problem.reading].says for p in found],
-        "log evidence (1)": logs, "its error (1)": [p.error for p in found], "probability (1)": weight / weight.sum(),
-        "least distance (1)": [p.least_distance for p in found],
-    })  # fmt: skip
+    return pd.DataFrame(
+        {
+            "reading": [p.problem.reading for p in found],
+            "says": [p.problem.known.readings[p.problem.reading].says for p in found],
+            "log evidence (1)": logs,
+            "its error (1)": [p.error for p in found],
+            "probability (1)": weight / weight.sum(),
+            "least distance (1)": [p.least_distance for p in found],
+        }
+    )
 
 
 def recovery(problem: Problem, trials: int, seed: int = 7, draws: int = DRAWS) -> pd.DataFrame:
@@ -169,12 +199,20 @@ def recovery(problem: Problem, trials: int, seed: int = 7, draws: int = DRAWS) -
         drawn = problem.at(rng.random((100, len(problem.names))))
         truth = drawn[problem.can_be(drawn)][0]
         shown = problem.shown(truth[None])[0]
-        own = np.where(problem.emulator.logarithmic, np.abs(shown) * problem.emulator.error, problem.emulator.error)
+        own = np.where(
+            problem.emulator.logarithmic,
+            np.abs(shown) * problem.emulator.error,
+            problem.emulator.error,
+        )
         left = problem.evidence.as_thesis(shown + own * rng.normal(size=len(own)))
         made = replace(problem, evidence=left)
         found = infer(made, draws, seed + trial)
         tail = (1 - INTERVAL) / 2
         low, high = np.quantile(found.samples, [tail, 1 - tail], axis=0)
         for k, name in enumerate(problem.names):
-            rows.append((trial, name, truth[k], low[k], high[k], bool(low[k] <= truth[k] <= high[k])))
-    return pd.DataFrame(rows, columns=["trial", "quantity", "truth", "low 5 %", "high 95 %", "covered"])
+            rows.append(
+                (trial, name, truth[k], low[k], high[k], bool(low[k] <= truth[k] <= high[k]))
+            )
+    return pd.DataFrame(
+        rows, columns=["trial", "quantity", "truth", "low 5 %", "high 95 %", "covered"]
+    )

@@ -20,9 +20,16 @@ from fingerpad.simulation import simulate
 from fingerpad.specimen.outline import OutlineCurve
 
 SURFACES = {
-    "flat": None, "79": 78.74, "105": 104.99, "158": 157.48, "210": 209.97, "315": 314.96, "420": 419.95, "630": 629.92,
+    "flat": None,
+    "79": 78.74,
+    "105": 104.99,
+    "158": 157.48,
+    "210": 209.97,
+    "315": 314.96,
+    "420": 419.95,
+    "630": 629.92,
     "1260": 1259.84,
-}  # fmt: skip
+}
 """Curvatures (1/m) of the nine surfaces."""
 PLATE, FAST = "plate", " at 150 gf/s"
 """The flat plate at 2 mm/s to 2 mm; what a surface is called at the faster ramp."""
@@ -42,13 +49,29 @@ ACCURACY = {"tolerance": 0.05, "once": True}
 SCALE_FREE = ("mm", "1")
 """Units of what does not change with a factor on all moduli and the load."""
 MEASURES: dict[str, str] = {
-    "depth_top": "mm", "depth_end": "mm", "width_top": "mm", "width_end": "mm", "peak": "Pa", "centre_peak": "Pa",
-    "centre_end": "Pa", "first_over_dip": "1", "top_over_dip": "1", "late_change": "1",
-    **{f"energy_{z}": "Pa" for z in DEPTHS}, **{f"energy_end_{z}": "Pa" for z in DEPTHS},
-    **{f"energy_915_{k.replace(' ', '_')}": "Pa" for k in ENERGIES}, "energy_rate_915": "Pa/s",
-}  # fmt: skip
+    "depth_top": "mm",
+    "depth_end": "mm",
+    "width_top": "mm",
+    "width_end": "mm",
+    "peak": "Pa",
+    "centre_peak": "Pa",
+    "centre_end": "Pa",
+    "first_over_dip": "1",
+    "top_over_dip": "1",
+    "late_change": "1",
+    **{f"energy_{z}": "Pa" for z in DEPTHS},
+    **{f"energy_end_{z}": "Pa" for z in DEPTHS},
+    **{f"energy_915_{k.replace(' ', '_')}": "Pa" for k in ENERGIES},
+    "energy_rate_915": "Pa/s",
+}
 """What is read of a ramp and hold, with its unit. top: the ramp's end; end: the hold's; energies are the highest unless "end"."""
-FORCES: dict[str, str] = {"force_05": "N/m", "force_10": "N/m", "force_15": "N/m", "force_20": "N/m", "force_held": "N/m"}
+FORCES: dict[str, str] = {
+    "force_05": "N/m",
+    "force_10": "N/m",
+    "force_15": "N/m",
+    "force_20": "N/m",
+    "force_held": "N/m",
+}
 """What is read of the plate: line loads on the way at 0.5 to 2 mm, and after the hold."""
 
 
@@ -60,12 +83,26 @@ def base(surface: str) -> Scene:
         document = {"stimulus": {"shape": "flat"}, "motion": motion}
     else:
         curvature = SURFACES[name]
-        stimulus = {"shape": "flat"} if curvature is None else {"shape": "cylinder", "curvature": f"{curvature} 1/m"}
-        motion = [{"press_to_force": "20 gf", "rate": "150 gf/s" if fast else "40 gf/s"}, {"hold": "2 s"}]
+        stimulus = (
+            {"shape": "flat"}
+            if curvature is None
+            else {"shape": "cylinder", "curvature": f"{curvature} 1/m"}
+        )
+        motion = [
+            {"press_to_force": "20 gf", "rate": "150 gf/s" if fast else "40 gf/s"},
+            {"hold": "2 s"},
+        ]
         receptors = {"receptors": {"depths": [f"{z} um" for z in DEPTHS]}}
         document = {"stimulus": stimulus, "motion": motion, "outputs": receptors}
-    specimen = {"outline": START, "layers": START, "prony": START, "contact_length": f"{1e3 * CHOSEN_LENGTH:g} mm"}
-    return load_scene(document | {"specimen": specimen, "accuracy": ACCURACY}, f"reconstruction_{surface}")
+    specimen = {
+        "outline": START,
+        "layers": START,
+        "prony": START,
+        "contact_length": f"{1e3 * CHOSEN_LENGTH:g} mm",
+    }
+    return load_scene(
+        document | {"specimen": specimen, "accuracy": ACCURACY}, f"reconstruction_{surface}"
+    )
 
 
 def poisson_for(bulk: float) -> float:
@@ -90,7 +127,9 @@ def changes(pad: Mapping[str, float]) -> dict[str, object]:
         "specimen.outline.bone_half_width": 1e-3 * pad["bone_half_width"],
         "specimen.outline.nail_half_width": 1e-3 * pad["nail_half_width"],
         "specimen.contact_length": FORCE / pad[LOAD],
-        **{f"specimen.layers.{layer}.poisson_ratio": nu for layer in ("epidermis", "dermis", "fat")},
+        **{
+            f"specimen.layers.{layer}.poisson_ratio": nu for layer in ("epidermis", "dermis", "fat")
+        },
         "specimen.layers.epidermis.youngs_modulus": pad[STIFFNESS] * soft * EPIDERMIS / SOFT,
         "specimen.layers.dermis.youngs_modulus": soft,
         "specimen.layers.fat.youngs_modulus": soft,
@@ -109,7 +148,9 @@ def clearance(pad: Mapping[str, float]) -> float:
     """Least thickness of fat anywhere round the bone, mm; a pad that cannot be has none, or less."""
     outline = scene(pad, PLATE).specimen.outline
     layers = outline.epidermis_thickness + outline.dermis_thickness
-    bare = OutlineCurve(outline.model_copy(update={"epidermis_thickness": 1e-5, "dermis_thickness": 1e-5}))
+    bare = OutlineCurve(
+        outline.model_copy(update={"epidermis_thickness": 1e-5, "dermis_thickness": 1e-5})
+    )
     skin = bare.point(np.linspace(0.0, np.pi, 121))
     return 1e3 * float(np.hypot(*(skin - bare.bone_point(bare.bone_foot(skin))).T).min() - layers)
 
@@ -118,7 +159,10 @@ def of_plate(history: xr.Dataset) -> dict[str, float]:
     """`FORCES` of a history."""
     depth, force = 1e3 * features.depth(history), history["force"].values
     top = features.ramp_end(history)
-    found = {f"force_{round(10 * d):02d}": float(np.interp(d, depth[: top + 1], force[: top + 1])) for d in (0.5, 1.0, 1.5, 2.0)}
+    found = {
+        f"force_{round(10 * d):02d}": float(np.interp(d, depth[: top + 1], force[: top + 1]))
+        for d in (0.5, 1.0, 1.5, 2.0)
+    }
     return found | {"force_held": float(force[-1])}
 
 
@@ -133,17 +177,27 @@ def of_press(history: xr.Dataset) -> dict[str, float]:
 
     dip = at(np.linspace(0.4, 0.8, 41)).min()
     out = {
-        "depth_top": depth[top], "depth_end": depth[-1], "width_top": width[top], "width_end": width[-1],
-        "peak": features.peak_pressure(history).max(), "centre_peak": centre.max(), "centre_end": centre[-1],
-        "first_over_dip": at(np.linspace(0.05, 0.4, 36)).max() / dip, "top_over_dip": centre[top] / dip,
+        "depth_top": depth[top],
+        "depth_end": depth[-1],
+        "width_top": width[top],
+        "width_end": width[-1],
+        "peak": features.peak_pressure(history).max(),
+        "centre_peak": centre.max(),
+        "centre_end": centre[-1],
+        "first_over_dip": at(np.linspace(0.05, 0.4, 36)).max() / dip,
+        "top_over_dip": centre[top] / dip,
         "late_change": centre[top] / at(0.9) - 1,
-    }  # fmt: skip
+    }
     for z in DEPTHS:
         energy = features.energy(history, z * 1e-6)
         out |= {f"energy_{z}": energy.max(), f"energy_end_{z}": energy[-1]}
     for name, variable in ENERGIES.items():
-        out[f"energy_915_{name.replace(' ', '_')}"] = features.energy(history, 915e-6, name=variable).max()
-    out["energy_rate_915"] = features.energy_rate(history, 915e-6)["strain_energy_rate (Pa/s)"].max()
+        out[f"energy_915_{name.replace(' ', '_')}"] = features.energy(
+            history, 915e-6, name=variable
+        ).max()
+    out["energy_rate_915"] = features.energy_rate(history, 915e-6)[
+        "strain_energy_rate (Pa/s)"
+    ].max()
     return {k: float(v) for k, v in out.items()}
 
 
@@ -159,7 +213,14 @@ def units(surface: str) -> dict[str, str]:
 
 
 CHOSEN = {
-    LOAD: FORCE / CHOSEN_LENGTH, STIFFNESS: 1.0, "apex_radius": 11.0, "fat_thickness": 3.8, "bone_half_width": 5.0,
-    "epidermis_thickness": 0.85, "bulk_modulus": 1.0, "nail_half_width": 5.0, "friction": 0.0,
-}  # fmt: skip
+    LOAD: FORCE / CHOSEN_LENGTH,
+    STIFFNESS: 1.0,
+    "apex_radius": 11.0,
+    "fat_thickness": 3.8,
+    "bone_half_width": 5.0,
+    "epidermis_thickness": 0.85,
+    "bulk_modulus": 1.0,
+    "nail_half_width": 5.0,
+    "friction": 0.0,
+}
 """The pad of `START`, chosen one size at a time, on the axes of the design."""

@@ -6,7 +6,16 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from cysyk1999.publishing.style import CATEGORIES, GREY, INK, TALLEST, handle, header_legend, study_figure, styled
+from cysyk1999.publishing.style import (
+    CATEGORIES,
+    GREY,
+    INK,
+    TALLEST,
+    handle,
+    header_legend,
+    study_figure,
+    styled,
+)
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.evidence import FAMILIES, Evidence
 from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT
@@ -14,10 +23,14 @@ from cysyk1999.studies.reconstruction.run import CHOSEN, SHOWN
 from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns
 
 LABELS = {
-    SCALED: "line load\n(N/m)", "plate_length": "plate length\n(mm)", "apex_radius": "apex radius\n(mm)",
-    "fat_thickness": "fat\n(mm)", "bone_half_width": "bone half-\nwidth (mm)", SOFT: "dermis, fat:\nfactor (1)",
+    SCALED: "line load\n(N/m)",
+    "plate_length": "plate length\n(mm)",
+    "apex_radius": "apex radius\n(mm)",
+    "fat_thickness": "fat\n(mm)",
+    "bone_half_width": "bone half-\nwidth (mm)",
+    SOFT: "dermis, fat:\nfactor (1)",
     EPIDERMIS: "epidermis:\nfactor (1)",
-}  # fmt: skip
+}
 BINS = 14
 BEST = "most probable pad"
 CLIP = (-2.0, 3.0)
@@ -28,16 +41,26 @@ ROLES = {"fitted": "fitted", "apart": "inside the epidermis (not fitted)", "held
 def posterior_frame(samples: pd.DataFrame, known: Unknowns) -> pd.DataFrame:
     """What is drawn: a row a sample, columns `SHOWN` with their units."""
     unit = {name: known.unknowns[name].unit if name in known.unknowns else "1" for name in SHOWN}
-    return samples[["reading", *SHOWN]].rename(columns={name: f"{name} ({unit[name]})" for name in SHOWN})
+    return samples[["reading", *SHOWN]].rename(
+        columns={name: f"{name} ({unit[name]})" for name in SHOWN}
+    )
 
 
 @styled
 def posterior_picture(frame: pd.DataFrame) -> Figure:
     """Histograms on the diagonal, densities of pairs below it, their correlations above it; a line for the pad chosen before."""
     columns = list(frame.columns[1:])
-    before = {**pads.CHOSEN, SCALED: pads.CHOSEN["load_over_state"], "plate_length": 10.0, SOFT: 1.0, EPIDERMIS: 1.0}
+    before = {
+        **pads.CHOSEN,
+        SCALED: pads.CHOSEN["load_over_state"],
+        "plate_length": 10.0,
+        SOFT: 1.0,
+        EPIDERMIS: 1.0,
+    }
     shares = frame["reading"].value_counts(normalize=True)
-    told = ", ".join(f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01)
+    told = ", ".join(
+        f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01
+    )
     note = [
         f"{len(frame)} samples; readings of the moduli: {told}. Factors: on the moduli as long-term ones, of instantaneous ones "
         "the series leaves 0.576. Numbers: rank correlations. Orange: the pad chosen before.",
@@ -54,7 +77,14 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
             if j > i:
                 ax.axis("off")
                 words = f"{rank[i, j]:+.2f}".replace("-", "−")
-                ax.text(0.5, 0.5, words, ha="center", va="center", color=INK if abs(rank[i, j]) >= 0.3 else GREY)
+                ax.text(
+                    0.5,
+                    0.5,
+                    words,
+                    ha="center",
+                    va="center",
+                    color=INK if abs(rank[i, j]) >= 0.3 else GREY,
+                )
                 continue
             if i == j:
                 ax.hist(values[row], bins=2 * BINS, color="0.6")
@@ -84,7 +114,21 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
 def evidence_frame(evidence: Evidence, shown: pd.DataFrame, best: str) -> pd.DataFrame:
     """A row a pad and row of the evidence: its interval, and where in it the number lies, 0 at the lower end, 1 at the upper."""
     rows = shown.merge(
-        evidence.rows[["id", "figure", "surface", "measure", "low", "high", "tolerance", "unit", "role", "family"]], on="id"
+        evidence.rows[
+            [
+                "id",
+                "figure",
+                "surface",
+                "measure",
+                "low",
+                "high",
+                "tolerance",
+                "unit",
+                "role",
+                "family",
+            ]
+        ],
+        on="id",
     )
     rows["pad"] = rows["pad"].replace(best, BEST)
     return rows.assign(place=(rows["shown"] - rows["low"]) / (rows["high"] - rows["low"]))
@@ -105,7 +149,10 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     fig = study_figure("The evidence, row by row", note, TALLEST, header=0.2)
     looks = {
         "drawn": (drawn, {"marker": "o", "ms": 2.4, "color": GREY, "alpha": 0.6}),
-        "chosen one at a time": (frame[frame["pad"] == CHOSEN], {"marker": "D", "ms": 3.2, "color": CATEGORIES[1]}),
+        "chosen one at a time": (
+            frame[frame["pad"] == CHOSEN],
+            {"marker": "D", "ms": 3.2, "color": CATEGORIES[1]},
+        ),
         BEST: (frame[frame["pad"] == BEST], {"marker": "o", "ms": 3.4, "color": CATEGORIES[0]}),
     }
     for ax, roles in zip(fig.subplots(1, 2), (("fitted", "apart"), ("held_out",)), strict=True):
@@ -116,11 +163,15 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
         for part, look in looks.values():
             part = part[np.isfinite(part["place"]) & part["id"].isin(rows["id"])]
             ax.plot(part["place"].clip(*CLIP), part["id"].map(at), ls="none", mec="none", **look)
-        names = [f"{r.figure}  {r.surface}: {r.measure.replace('_', ' ')}" for r in rows.itertuples()]
+        names = [
+            f"{r.figure}  {r.surface}: {r.measure.replace('_', ' ')}" for r in rows.itertuples()
+        ]
         ax.set_yticks(range(len(rows)), names, fontsize=5.6)
         ax.set(xlim=(CLIP[0] - 0.1, CLIP[1] + 0.1), ylim=(len(rows) - 0.3, -0.7))
         ax.set_title(" and ".join(ROLES[role] for role in roles))
         ax.set_xlabel("place in the interval, its ends at 0 and 1")
         ax.axhline((rows["role"] == roles[0]).sum() - 0.5, color=INK, lw=0.6)
-    header_legend(fig, [handle(name, ls="none", **look) for name, (_, look) in reversed(looks.items())])
+    header_legend(
+        fig, [handle(name, ls="none", **look) for name, (_, look) in reversed(looks.items())]
+    )
     return fig

@@ -27,7 +27,10 @@ from cysyk1999.studies.reconstruction.inference import (
 from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns
 
 CHOSEN = "chosen one at a time"
-ENERGIES = {"instantaneous elastic": "energy_915", "total stress on long-term moduli": "energy_915_long-term_moduli"}
+ENERGIES = {
+    "instantaneous elastic": "energy_915",
+    "total stress on long-term moduli": "energy_915_long-term_moduli",
+}
 """Definitions of the energy whose curves peak at the ramp's end, as those of the thesis do (trends TR20, TR21), by measure."""
 DRAWN, TRIALS, SEED = 12, 10, 1999
 """Pads of the posterior that are simulated; known pads that are to be found again."""
@@ -58,14 +61,20 @@ def emulated(known: Unknowns, evidence: Evidence, design: pd.DataFrame) -> Emula
     """An emulator of all that the fitted rows need, and of the energies by other definitions, from the pads that did not fail."""
     whole = design[design["diagnosis"].isna() | (design["diagnosis"] == "")]
     keys = [key for key in dict.fromkeys(evidence.keys) if key in whole]
-    keys += [c for c in whole if any(c.endswith(f": {m}") for m in ENERGIES.values()) and c not in keys]
-    return Emulator.fit(known.to_unit({name: whole[name].to_numpy() for name in known.axes}), whole[keys])
+    keys += [
+        c for c in whole if any(c.endswith(f": {m}") for m in ENERGIES.values()) and c not in keys
+    ]
+    return Emulator.fit(
+        known.to_unit({name: whole[name].to_numpy() for name in known.axes}), whole[keys]
+    )
 
 
 def roomy(known: Unknowns, count: int = 256) -> Emulator:
     """An emulator of the fat where it is thinnest, of the first pads of the design whatever became of them."""
     drawn = pd.DataFrame(known.draw()).head(count)
-    room = pd.DataFrame({"pad: clearance": [pads.clearance(pad) for pad in drawn.to_dict("records")]})
+    room = pd.DataFrame(
+        {"pad: clearance": [pads.clearance(pad) for pad in drawn.to_dict("records")]}
+    )
     return Emulator.fit(known.to_unit({name: drawn[name].to_numpy() for name in known.axes}), room)
 
 
@@ -82,7 +91,10 @@ def study(known: Unknowns, evidence: Evidence, design: pd.DataFrame, trials: int
     room, posteriors, tables = roomy(known), {}, []
     for definition, measure in ENERGIES.items():
         rows = defined_by(fitted, measure)
-        found = {name: infer(Problem(known, name, emulator.only(rows.keys), rows, room)) for name in known.readings}
+        found = {
+            name: infer(Problem(known, name, emulator.only(rows.keys), rows, room))
+            for name in known.readings
+        }
         print(definition, {name: round(p.log_evidence, 2) for name, p in found.items()}, flush=True)
         tables.append(shares_of(found.values()).assign(**{"strain energy": definition}))
         posteriors = posteriors or found  # of the headline's definition
@@ -122,24 +134,39 @@ def posterior_table(posteriors: Mapping[str, Posterior], samples: pd.DataFrame) 
 def recovery_table(recovered: pd.DataFrame) -> pd.DataFrame:
     """How often each quantity was covered, and all together."""
     by = recovered.groupby("quantity", sort=False)["covered"].agg(["sum", "count"]).reset_index()
-    whole = pd.DataFrame([{"quantity": "all", "sum": recovered["covered"].sum(), "count": len(recovered)}])
-    return pd.concat([by, whole], ignore_index=True).rename(columns={"sum": "covered", "count": "trials"})
+    whole = pd.DataFrame(
+        [{"quantity": "all", "sum": recovered["covered"].sum(), "count": len(recovered)}]
+    )
+    return pd.concat([by, whole], ignore_index=True).rename(
+        columns={"sum": "covered", "count": "trials"}
+    )
 
 
-def chosen_pads(posteriors: Mapping[str, Posterior], samples: pd.DataFrame, drawn: int = DRAWN) -> dict[str, dict[str, float]]:
+def chosen_pads(
+    posteriors: Mapping[str, Posterior], samples: pd.DataFrame, drawn: int = DRAWN
+) -> dict[str, dict[str, float]]:
     """Pads that are simulated under all surfaces: the one chosen before, the best of each reading, some drawn."""
-    chosen = dict(pads.CHOSEN) | {SCALED: pads.CHOSEN["load_over_state"], SOFT: 1.0, EPIDERMIS: 1.0, "plate_length": 10.0}
+    chosen = dict(pads.CHOSEN) | {
+        SCALED: pads.CHOSEN["load_over_state"],
+        SOFT: 1.0,
+        EPIDERMIS: 1.0,
+        "plate_length": 10.0,
+    }
     found = {CHOSEN: chosen}
     for name, posterior in posteriors.items():
         pad = posterior.problem.pad(posterior.best[None])
         found[f"best of {name}"] = {k: float(v[0]) for k, v in pad.items()}
-    pick = np.random.default_rng(SEED).choice(len(samples), size=min(drawn, len(samples)), replace=False)
+    pick = np.random.default_rng(SEED).choice(
+        len(samples), size=min(drawn, len(samples)), replace=False
+    )
     for k, row in enumerate(samples.iloc[pick].to_dict("records"), start=1):
         found[f"drawn {k}"] = {name: float(v) for name, v in row.items() if name != "reading"}
     return found
 
 
-def simulate_pads(evidence: Evidence, chosen: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
+def simulate_pads(
+    evidence: Evidence, chosen: Mapping[str, Mapping[str, float]]
+) -> dict[str, dict[str, float]]:
     """What is read of pads under all surfaces of the evidence; stated moduli of dermis and fat taken for long-term ones."""
     surfaces, out = list(dict.fromkeys(evidence.rows["surface"])), {}
     for name, pad in chosen.items():
@@ -150,7 +177,9 @@ def simulate_pads(evidence: Evidence, chosen: Mapping[str, Mapping[str, float]])
 
 
 def predicted(
-    evidence: Evidence, chosen: Mapping[str, Mapping[str, float]], found: Mapping[str, Mapping[str, float]]
+    evidence: Evidence,
+    chosen: Mapping[str, Mapping[str, float]],
+    found: Mapping[str, Mapping[str, float]],
 ) -> pd.DataFrame:
     """What pads show, row by row of the evidence; simulated, not emulated.
 
@@ -158,14 +187,25 @@ def predicted(
     """
     frames = []
     for name, pad in chosen.items():
-        shown = evidence.shown(values_of(found[name], evidence), np.array(pad[SOFT]), np.array(pad["plate_length"]))
+        shown = evidence.shown(
+            values_of(found[name], evidence), np.array(pad[SOFT]), np.array(pad["plate_length"])
+        )
         frames.append(
-            pd.DataFrame({"pad": name, "id": evidence.rows["id"], "shown": shown, "departure": evidence.departure(shown)})
+            pd.DataFrame(
+                {
+                    "pad": name,
+                    "id": evidence.rows["id"],
+                    "shown": shown,
+                    "departure": evidence.departure(shown),
+                }
+            )
         )
     return pd.concat(frames, ignore_index=True)
 
 
-def bands(chosen: Mapping[str, Mapping[str, float]], found: Mapping[str, Mapping[str, float]]) -> pd.DataFrame:
+def bands(
+    chosen: Mapping[str, Mapping[str, float]], found: Mapping[str, Mapping[str, float]]
+) -> pd.DataFrame:
     """How far the pads drawn from what is believed differ: a row a surface and measure of `BANDS`, lowest and highest of them."""
     rows = []
     drawn = {name: found[name] for name in chosen if name.startswith("drawn")}
@@ -178,14 +218,26 @@ def bands(chosen: Mapping[str, Mapping[str, float]], found: Mapping[str, Mapping
                 for name, values in drawn.items()
                 if key in values
             ]
-            row = {"surface": surface, "measure": measure, "unit": unit, "low": min(shown), "high": max(shown)}
+            row = {
+                "surface": surface,
+                "measure": measure,
+                "unit": unit,
+                "low": min(shown),
+                "high": max(shown),
+            }
             rows.append(
-                row | {"pads": len(shown), "source": "pads drawn from the posterior of snakemake reconstruction, simulated"}
+                row
+                | {
+                    "pads": len(shown),
+                    "source": "pads drawn from the posterior of snakemake reconstruction, simulated",
+                }
             )
     return pd.DataFrame(rows)
 
 
-def families(evidence: Evidence, found: pd.DataFrame, chosen: Mapping[str, Mapping[str, float]]) -> pd.DataFrame:
+def families(
+    evidence: Evidence, found: pd.DataFrame, chosen: Mapping[str, Mapping[str, float]]
+) -> pd.DataFrame:
     """Distance of each pad by family and role, rows inside, and the pad itself: a row a pad."""
     rows = found.merge(evidence.rows[["id", "role", "family"]], on="id")
     rows = rows.assign(squared=rows["departure"] ** 2, inside=rows["departure"] == 0)
@@ -198,7 +250,10 @@ def families(evidence: Evidence, found: pd.DataFrame, chosen: Mapping[str, Mappi
             row[f"inside, {role.replace('_', ' ')}"] = f"{int(of['inside'].sum())} of {len(of)}"
         row |= {
             f"{family} (1)": value
-            for family, value in each[each["role"] == "fitted"].groupby("family", sort=False)["squared"].sum().items()
+            for family, value in each[each["role"] == "fitted"]
+            .groupby("family", sort=False)["squared"]
+            .sum()
+            .items()
         }
         out.append(row)
     return pd.DataFrame(out)

@@ -55,35 +55,73 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
 
     def interval(name: str, scale: float = 1.0) -> str:
         low, high = scale * rows.loc[name, ["low 5 %", "high 95 %"]]
-        return f"inferred: {low:.3g} to {high:.3g}" if high > 1.0001 * low else "as the reading says"
+        return (
+            f"inferred: {low:.3g} to {high:.3g}" if high > 1.0001 * low else "as the reading says"
+        )
 
     nu = pads.poisson_for(value("bulk_modulus", 6))
-    moduli = [1e-6 * e * value(k) * (1 + nu) / (1 + pads.POISSON) for e, k in ((pads.EPIDERMIS, EPIDERMIS), (pads.SOFT, SOFT))]
+    moduli = [
+        1e-6 * e * value(k) * (1 + nu) / (1 + pads.POISSON)
+        for e, k in ((pads.EPIDERMIS, EPIDERMIS), (pads.SOFT, SOFT))
+    ]
     state, told = "long_term", (interval(EPIDERMIS, 0.15), interval(SOFT, 0.015))
     if reading == state or reading == "instantaneous":  # as printed
-        state, nu, moduli, told = reading, pads.POISSON, [1e-6 * pads.EPIDERMIS, 1e-6 * pads.SOFT], ("stated", "stated")
+        state, nu, moduli, told = (
+            reading,
+            pads.POISSON,
+            [1e-6 * pads.EPIDERMIS, 1e-6 * pads.SOFT],
+            ("stated", "stated"),
+        )
     skin, fat = 1e3 * pads.EPIDERMIS_THICKNESS, value("fat_thickness", 2)
     top = 1e3 * (pads.APEX - pads.BELOW) - skin - fat
     bottom = -1e3 * pads.BONE_BOTTOM
     length = 1e3 * pads.FORCE / value(SCALED)
     low, high = 1e3 * pads.FORCE / rows.loc[SCALED, ["high 95 %", "low 5 %"]]
-    layers = {"epidermis": (moduli[0], told[0]), "dermis": (moduli[1], told[1]), "fat": (moduli[1], told[1])}
+    layers = {
+        "epidermis": (moduli[0], told[0]),
+        "dermis": (moduli[1], told[1]),
+        "fat": (moduli[1], told[1]),
+    }
     sizes = (
         ("apex_height", 6.0, "stated: axis of Fig 3-5"),
-        ("apex_radius", value("apex_radius", 2), f"{interval('apex_radius')}; the fan of printed node positions: 7.8 to 8.0"),
-        ("half_width", 9.5, "assumed: within the axes of Fig 3-5; a published section: 9.75 (Wang and Gerling 2014)"),
+        (
+            "apex_radius",
+            value("apex_radius", 2),
+            f"{interval('apex_radius')}; the fan of printed node positions: 7.8 to 8.0",
+        ),
+        (
+            "half_width",
+            9.5,
+            "assumed: within the axes of Fig 3-5; a published section: 9.75 (Wang and Gerling 2014)",
+        ),
         ("depth_below", 6.2, "assumed: within the axes of Fig 3-5"),
-        ("epidermis_thickness", skin, f"stated: section 3.3, stratum corneum included; {interval('epidermis_thickness')}"),
+        (
+            "epidermis_thickness",
+            skin,
+            f"stated: section 3.3, stratum corneum included; {interval('epidermis_thickness')}",
+        ),
         ("dermis_thickness", 1e3 * pads.BELOW, "stated: section 3.3"),
-        ("stratum_corneum_thickness", 0.35, "stated: section 3.3, drawn in Fig 3-4c; no layer of its own"),
+        (
+            "stratum_corneum_thickness",
+            0.35,
+            "stated: section 3.3, drawn in Fig 3-4c; no layer of its own",
+        ),
         (
             "bone_centre_height",
             (top + bottom) / 2,
             f"leaves {fat:.3g} mm of fat; {interval('fat_thickness')}; published: 3.5 to 5.2",
         ),
         ("bone_half_width", value("bone_half_width", 2), interval("bone_half_width")),
-        ("bone_half_height", (top - bottom) / 2, "its bottom assumed 4 mm below the middle of the axes"),
-        ("nail_half_width", value("nail_half_width", 2), f"{interval('nail_half_width')}: the figures hardly tell"),
+        (
+            "bone_half_height",
+            (top - bottom) / 2,
+            "its bottom assumed 4 mm below the middle of the axes",
+        ),
+        (
+            "nail_half_width",
+            value("nail_half_width", 2),
+            f"{interval('nail_half_width')}: the figures hardly tell",
+        ),
     )
     lines = [
         "# yaml-language-server: $schema=../../workflow/schemas/specimen.schema.json",
@@ -98,7 +136,10 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
             _line(f'  {name}: {{youngs_modulus: "{e:.6g} MPa", poisson_ratio: {nu:.6g}}}', told)
             for name, (e, told) in layers.items()
         ),
-        _line(f"moduli: {state}", "inferred: odds against long-term ones in figures/tables/reconstruction_readings.md"),
+        _line(
+            f"moduli: {state}",
+            "inferred: odds against long-term ones in figures/tables/reconstruction_readings.md",
+        ),
         _line("prony:", "stated: Eq 3-1; shear, normalised by the instantaneous modulus"),
         '  - {g: 0.055, tau: "3.25 s"}',
         '  - {g: 0.3691, tau: "0.3414 s"}',

@@ -29,15 +29,21 @@ def _read(value: Any) -> tuple[float, str]:
     try:
         found = float(number)
     except ValueError:
-        raise Problem("is not a number with a unit", "a number, then one of " + ", ".join(UNITS)) from None
+        raise Problem(
+            "is not a number with a unit", "a number, then one of " + ", ".join(UNITS)
+        ) from None
     if unit not in UNITS or not np.isfinite(found):
-        raise Problem("is not a number with a known unit", "a number, then one of " + ", ".join(UNITS))
+        raise Problem(
+            "is not a number with a known unit", "a number, then one of " + ", ".join(UNITS)
+        )
     return found, unit
 
 
 def _pair(value: Any) -> tuple[tuple[float, str], tuple[float, str]]:
     if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise Problem("is not two values", 'two values, the lower one first, such as ["3 mm", "7 mm"]')
+        raise Problem(
+            "is not two values", 'two values, the lower one first, such as ["3 mm", "7 mm"]'
+        )
     low, high = (_read(each) for each in value)
     if low[1] != high[1] or not low[0] < high[0]:
         raise Problem("is not rising", "two values of one unit, the lower one first")
@@ -72,7 +78,11 @@ class Unknown(Strict):
     @model_validator(mode="after")
     def _one(self) -> Unknown:
         if (self.prior is None) == (self.normal is None):
-            raise Problem("says not one prior", "prior: uniform or logarithmic, or normal: {mean: ..., sd: ...}", ("prior",))
+            raise Problem(
+                "says not one prior",
+                "prior: uniform or logarithmic, or normal: {mean: ..., sd: ...}",
+                ("prior",),
+            )
         return self
 
     @property
@@ -103,12 +113,18 @@ class Unknown(Strict):
 
 def _factors(value: Any) -> tuple[float, ...]:
     found = tuple(float(v) for v in value) if isinstance(value, (list, tuple)) else (float(value),)
-    if not 1 <= len(found) <= 2 or not all(0 < v < 10 for v in found) or sorted(set(found)) != list(found):
+    if (
+        not 1 <= len(found) <= 2
+        or not all(0 < v < 10 for v in found)
+        or sorted(set(found)) != list(found)
+    ):
         raise Problem("is not a factor or two", "[1], or two rising factors such as [0.5, 1.1]")
     return found
 
 
-Factors = Annotated[tuple[float, ...], BeforeValidator(_factors, json_schema_input_type=list[float])]
+Factors = Annotated[
+    tuple[float, ...], BeforeValidator(_factors, json_schema_input_type=list[float])
+]
 
 
 class Reading(Strict):
@@ -151,9 +167,14 @@ class Unknowns(Strict):
     def axes(self) -> dict[str, tuple[float, float, bool]]:
         """Axes of the design: low, high, whether even in the logarithm. All that changes a simulation, not what scales it."""
         d = self.design
-        own = {LOAD: (*(v for v, _ in d.load_over_state), True), STIFFNESS: (*(v for v, _ in d.stiffness_over_state), True)}
+        own = {
+            LOAD: (*(v for v, _ in d.load_over_state), True),
+            STIFFNESS: (*(v for v, _ in d.stiffness_over_state), True),
+        }
         rest = {
-            k: (u.low, u.high, u.prior == "logarithmic") for k, u in self.unknowns.items() if k not in (SCALED, "plate_length")
+            k: (u.low, u.high, u.prior == "logarithmic")
+            for k, u in self.unknowns.items()
+            if k not in (SCALED, "plate_length")
         }
         return own | rest
 
@@ -162,7 +183,9 @@ class Unknowns(Strict):
         out = []
         for name, (low, high, logarithmic) in self.axes.items():
             v = np.asarray(values[name], float)
-            out.append(np.log(v / low) / np.log(high / low) if logarithmic else (v - low) / (high - low))
+            out.append(
+                np.log(v / low) / np.log(high / low) if logarithmic else (v - low) / (high - low)
+            )
         return np.stack(np.broadcast_arrays(*out), axis=-1)
 
     def from_unit(self, shares: np.ndarray) -> dict[str, np.ndarray]:

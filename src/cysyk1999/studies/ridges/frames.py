@@ -61,7 +61,11 @@ def specimen_of(history: xr.Dataset) -> tuple[Outline, Ridges | None]:
 def tip_of(history: xr.Dataset) -> float:
     """Lateral position (m) of the ridge's tip nearest to x = 0, at the thesis's depth."""
     outline, ridges = specimen_of(history)
-    return 0.0 if ridges is None or isinstance(ridges.inner.phase, str) else tip_at_depth(outline, ridges.inner.phase)
+    return (
+        0.0
+        if ridges is None or isinstance(ridges.inner.phase, str)
+        else tip_at_depth(outline, ridges.inner.phase)
+    )
 
 
 def boundary_of(history: xr.Dataset, x: float) -> float:
@@ -84,10 +88,14 @@ def frames(cases: Histories, strokes: Histories, coarse: Histories) -> dict[str,
     }
 
 
-def index_and_error(fine: xr.Dataset, coarse: xr.Dataset | None, *place: float) -> tuple[float, float]:
+def index_and_error(
+    fine: xr.Dataset, coarse: xr.Dataset | None, *place: float
+) -> tuple[float, float]:
     """Directional index at a place, and its difference to a companion's (NaN without)."""
     value = directional_index(fine, *place)
-    return value, abs(value - directional_index(coarse, *place)) if coarse is not None else float("nan")
+    return value, abs(value - directional_index(coarse, *place)) if coarse is not None else float(
+        "nan"
+    )
 
 
 def _of(cases: Histories, height: float, mesh: str) -> xr.Dataset:
@@ -97,7 +105,11 @@ def _of(cases: Histories, height: float, mesh: str) -> xr.Dataset:
 def offset_frame(cases: Histories) -> pd.DataFrame:
     """Index over depth and offset round a ridge on the fine mesh, the boundary, and the profile at the thesis's depth."""
     fine = _of(cases, KEY[0], "fine")
-    rows = [("map", "inner ridges", x, z, directional_index(fine, z, x)) for z in GRID[0] for x in GRID[1]]
+    rows = [
+        ("map", "inner ridges", x, z, directional_index(fine, z, x))
+        for z in GRID[0]
+        for x in GRID[1]
+    ]
     parts = [pd.DataFrame(rows, columns=["panel", "series", OFFSET, RECEPTOR, INDEX])]
     x = np.linspace(GRID[1][0], GRID[1][-1], 121)
     depths = [boundary(*specimen_of(fine), at) for at in x]
@@ -110,7 +122,9 @@ def offset_frame(cases: Histories) -> pd.DataFrame:
         rows = []
         for at in sorted({*GRID[1], -BESIDE, BESIDE}):
             right, left = both_ways(history, DEPTH, at)
-            rows.append((at, *index_and_error(history, companion, DEPTH, at), right.mean(), left.mean()))
+            rows.append(
+                (at, *index_and_error(history, companion, DEPTH, at), right.mean(), left.mean())
+            )
         profile_rows = pd.DataFrame(rows, columns=[OFFSET, INDEX, BAND, RIGHT, LEFT])
         parts.append(profile_rows.assign(panel="profile", series=series, **{RECEPTOR: DEPTH}))
     frame = pd.concat(parts, ignore_index=True)
@@ -124,14 +138,20 @@ def sweep_frame(cases: Histories, column: str) -> pd.DataFrame:
     rows = []
     for name, history in cases.items():
         case = Case.named(name)
-        at, other, fixed = (case.height, case.friction, KEY[1]) if column == HEIGHT else (case.friction, case.height, KEY[0])
+        at, other, fixed = (
+            (case.height, case.friction, KEY[1])
+            if column == HEIGHT
+            else (case.friction, case.height, KEY[0])
+        )
         if case.mesh != "thesis" or other != fixed:
             continue
         coarse = cases.get(str(replace(case, mesh="coarse")))
         for series, place in READ.items():
             depth, offset = place(history)
             layer = "epidermis" if depth < boundary_of(history, offset) else "dermis"
-            rows.append((SIMULATED, series, layer, at, *index_and_error(history, coarse, depth, offset)))
+            rows.append(
+                (SIMULATED, series, layer, at, *index_and_error(history, coarse, depth, offset))
+            )
     frame = pd.DataFrame(rows, columns=["source", "series", "layer", column, INDEX, BAND])
     return frame.sort_values(["series", column], ignore_index=True)
 
@@ -149,7 +169,9 @@ def mesh_frame(cases: Histories) -> pd.DataFrame:
         nodes = json.loads(history.attrs["cost"])["nodes"]
         index = directional_index(history, DEPTH, -BESIDE, tip=tip)
         rows.append((SIMULATED, panel, mesh, edge, nodes, right, left, index))
-    return pd.DataFrame(rows, columns=["source", "panel", "series", EDGE, NODES, RIGHT, LEFT, INDEX])
+    return pd.DataFrame(
+        rows, columns=["source", "panel", "series", EDGE, NODES, RIGHT, LEFT, INDEX]
+    )
 
 
 def outer_frame(strokes: Histories, coarse: Histories) -> pd.DataFrame:
@@ -159,14 +181,21 @@ def outer_frame(strokes: Histories, coarse: Histories) -> pd.DataFrame:
         stroke = loaded(strokes[name])
         way_mm = 1e3 * abs(stroke.stroke_distance.values)
         for x in (-BESIDE, 0.0, BESIDE):
-            rows = {"panel": way, "series": f"{x * 1e6:.0f} µm", DISTANCE: way_mm, SED: energy(stroke, DEPTH, x)}
+            rows = {
+                "panel": way,
+                "series": f"{x * 1e6:.0f} µm",
+                DISTANCE: way_mm,
+                SED: energy(stroke, DEPTH, x),
+            }
             parts.append(pd.DataFrame(rows))
     stroke = loaded(strokes[OUTER[0]])
     way_mm = 1e3 * abs(stroke.stroke_distance.values)
     for series, index in {"pressed": 0, "stroked by 50 mm": -1}.items():
         x, p = profile(stroke, index, PRESSURE)
         shown = (abs(x) < 4.5e-3) & (stroke.skin_y.values > 0)
-        parts.append(pd.DataFrame({"panel": "pressure", "series": series, X: 1e3 * x[shown], P: p[shown]}))
+        parts.append(
+            pd.DataFrame({"panel": "pressure", "series": series, X: 1e3 * x[shown], P: p[shown]})
+        )
     for series, history in {"simulated mesh": stroke, "companion": coarse.get(OUTER[0])}.items():
         if history is not None:
             one = loaded(history)

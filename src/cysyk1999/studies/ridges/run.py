@@ -32,7 +32,10 @@ DEPTH, BESIDE = 915e-6, 46e-6
 """The thesis's receptor depth and offset, m (not those of the figures, which would bring all of them in)."""
 FLANK, AWAY = 120e-6, 25e-6
 """Offset of a flank of the ridges, and how far from the boundary the receptors are that follow it, m."""
-GRID = tuple(np.round(np.arange(700, 1101, 20) * 1e-6, 9)), tuple(np.round(np.arange(-240, 241, 20) * 1e-6, 9))
+GRID = (
+    tuple(np.round(np.arange(700, 1101, 20) * 1e-6, 9)),
+    tuple(np.round(np.arange(-240, 241, 20) * 1e-6, 9)),
+)
 """Depths and offsets of a map round a ridge, m."""
 
 
@@ -79,7 +82,9 @@ def case_scene(base: Scene, case: Case) -> Scene:
     ridges, tip = None, tip_at_depth(outline, phase)
     if case.height:
         changes = {"height": case.height * 1e-6, "phase": phase or "tip"}
-        ridges = base.varied({f"specimen.ridges.inner.{key}": value for key, value in changes.items()}).specimen.ridges
+        ridges = base.varied(
+            {f"specimen.ridges.inner.{key}": value for key, value in changes.items()}
+        ).specimen.ridges
     flank = boundary(outline, ridges, tip + FLANK)
     depths = sorted({*GRID[0], DEPTH, round(flank - AWAY, 9), round(flank + AWAY, 9)})
     offsets = sorted({*GRID[1], -BESIDE, BESIDE})
@@ -90,7 +95,9 @@ def case_scene(base: Scene, case: Case) -> Scene:
             "specimen.ridges": ridges,
             "friction": case.friction,
             "motion": (press, Slide(slide=-WAY, speed=slide.speed)),
-            "outputs.receptors": Receptors(depths=tuple(depths), offsets=tuple(round(tip + x, 9) for x in offsets)),
+            "outputs.receptors": Receptors(
+                depths=tuple(depths), offsets=tuple(round(tip + x, 9) for x in offsets)
+            ),
             "accuracy": Discretisation(skin_edge=edge, steps=STEPS),
             "effects": {"ridges": False} if drawn else {},
         }
@@ -103,7 +110,9 @@ def run_case(base: Scene, case: Case) -> Arrays:
     chosen = plan(scene)
     mesh = mesh_for(scene, chosen)
     if case.mesh in AS_DRAWN:
-        mesh = ridges_drawn(mesh, scene.specimen.outline, scene.specimen.ridges, AS_DRAWN[case.mesh][0])
+        mesh = ridges_drawn(
+            mesh, scene.specimen.outline, scene.specimen.ridges, AS_DRAWN[case.mesh][0]
+        )
     return solve(scene, chosen, mesh=mesh)
 
 

@@ -77,7 +77,13 @@ def _grating() -> Points:
 
 def _graded(scene: Scene, plan: Plan) -> PadMesh:
     """Edges of 15 um under the apex that grow to about a hundred times as much."""
-    size = replace(plan.mesh_size, focus=((0.0, 15e-6),), skin_radial_edge=15e-6, growth=2.0, coarse_edge=1.8e-3)
+    size = replace(
+        plan.mesh_size,
+        focus=((0.0, 15e-6),),
+        skin_radial_edge=15e-6,
+        growth=2.0,
+        coarse_edge=1.8e-3,
+    )
     return build_pad_mesh(scene.specimen.outline, size)
 
 
@@ -95,8 +101,14 @@ def _aside(mesh: PadMesh) -> PadMesh:
     return replace(mesh, points=mesh.points + [0.7e-3, 0.0], symmetric=False)
 
 
-_RIDGES = {"inner": {"pitch": "0.8 mm"}, "half_width": "1.2 mm"}  # three or four of them, for few nodes
-_EDGE, _PEAKS = {"checkerboard": np.inf, "factorisations": 8.0}, {"checkerboard": 0.3, "factorisations": 8.0}
+_RIDGES = {
+    "inner": {"pitch": "0.8 mm"},
+    "half_width": "1.2 mm",
+}  # three or four of them, for few nodes
+_EDGE, _PEAKS = (
+    {"checkerboard": np.inf, "factorisations": 8.0},
+    {"checkerboard": 0.3, "factorisations": 8.0},
+)
 _STEADY = {"energy": 0.35, "factorisations": 8.0}
 _AT_ONCE = {"energy": np.inf, "factorisations": 16.0, "cuts": 6.0}
 
@@ -131,7 +143,12 @@ FACTORS: dict[str, dict[str, Level]] = {
         "distorted triangles": Level(of_built(lambda mesh: triangles(_distorted(mesh)))),
         "linear triangles": Level(of_built(lambda mesh: corners_only(triangles(mesh)))),
     },
-    "nu": {"0.48": Level(0.48), "0.3": Level(0.3), "0.4999": Level(0.4999), "0.49999": Level(0.49999)},
+    "nu": {
+        "0.48": Level(0.48),
+        "0.3": Level(0.3),
+        "0.4999": Level(0.4999),
+        "0.49999": Level(0.49999),
+    },
     "skin : fat": {
         "10 : 1": Level(("0.15 MPa", "15 kPa", "15 kPa")),
         "1 : 1": Level(("15 kPa", "15 kPa", "15 kPa")),
@@ -172,14 +189,32 @@ FACTORS: dict[str, dict[str, Level]] = {
 """Factor -> its levels, the easy one first. Half: where scene and mesh are mirror images; there a whole pad shows whether its
 state is one."""
 
-_SHARP = ("1260 1/m", "needle", "sharp bar", "filleted bar", "line", "steep flanks", "grating", "hole")
+_SHARP = (
+    "1260 1/m",
+    "needle",
+    "sharp bar",
+    "filleted bar",
+    "line",
+    "steep flanks",
+    "grating",
+    "hole",
+)
 APART: dict[tuple[tuple[str, str], tuple[str, str]], str] = {
     **{(("stimulus", name), ("load", "500 gf")): "goes through to the bone" for name in _SHARP},
-    **{(("stimulus", name), ("load", "3 mm")): "cuts the skin: depths of many times the radius" for name in ("needle", "line")},
-    **{(("skin : fat", "1 : 1e4"), ("load", name)): "the soft layers are 1.7 mm thick" for name in ("3 mm", "1 mm", "500 gf")},
+    **{
+        (("stimulus", name), ("load", "3 mm")): "cuts the skin: depths of many times the radius"
+        for name in ("needle", "line")
+    },
+    **{
+        (("skin : fat", "1 : 1e4"), ("load", name)): "the soft layers are 1.7 mm thick"
+        for name in ("3 mm", "1 mm", "500 gf")
+    },
     (("skin : fat", "1e4 : 1"), ("load", "0.01 gf")): "dents of nanometres",
     **{
-        (narrow, ("then", moving)): "narrower than the nodes of a mesh for a contact that moves, as the plan says"
+        (
+            narrow,
+            ("then", moving),
+        ): "narrower than the nodes of a mesh for a contact that moves, as the plan says"
         for narrow in (("stimulus", "needle"), ("stimulus", "line"), ("load", "0.01 gf"))
         for moving in ("a stroke", "there and back", "step and repeat")
     },
@@ -193,7 +228,11 @@ def allowed(row: Row) -> bool:
 
 
 def _legs(row: Row) -> list[dict[str, str]]:
-    (kind, target), how, steps = FACTORS["load"][row["load"]].sets, row["time"], FACTORS["time"][row["time"]].sets
+    (kind, target), how, steps = (
+        FACTORS["load"][row["load"]].sets,
+        row["time"],
+        FACTORS["time"][row["time"]].sets,
+    )
     lasts = None if steps is None else STEPS * steps * TAU
     if how == "1e-4 tau":  # inertia would matter beyond it
         press = force(target, min(4e3, target / 5e-3)) if kind == "force" else depth(target, 200)
@@ -221,9 +260,14 @@ def _specimen(row: Row) -> dict[str, Any]:
     layers = [{"youngs_modulus": modulus, "poisson_ratio": nu, "law": law} for modulus in moduli]
     if made in ("slab", "half_round"):
         names, thick = ("cover", "middle", "core"), ("0.85 mm", "0.85 mm", "4.3 mm")
-        stack = [{"name": n, "thickness": t} | layer for n, t, layer in zip(names, thick, layers, strict=True)]
+        stack = [
+            {"name": n, "thickness": t} | layer
+            for n, t, layer in zip(names, thick, layers, strict=True)
+        ]
         return {
-            made: {"width": "20 mm"} | {"layers": stack} if made == "slab" else {"radius": "6 mm", "layers": stack},
+            made: {"width": "20 mm"} | {"layers": stack}
+            if made == "slab"
+            else {"radius": "6 mm", "layers": stack},
             "prony": "thesis",
         }
     named = dict(zip(("epidermis", "dermis", "fat"), layers, strict=True))
@@ -246,14 +290,25 @@ def _case(number: int, row: Row) -> Case:
     if row["model"] == "whole":
         scene["effects"]["symmetry"] = "off"
     wide = [FACTORS[factor][level].limits for factor, level in row.items()]
-    limits = {name: max(limit[name] for limit in wide if name in limit) for name in {name for limit in wide for name in limit}}
+    limits = {
+        name: max(limit[name] for limit in wide if name in limit)
+        for name in {name for limit in wide for name in limit}
+    }
     return Case(
         f"{number}: {row['stimulus']}, {row['pad']}",
         row["stimulus"],
-        "; ".join(f"{factor} {level}" for factor, level in row.items() if factor != "stimulus" and level != easy(factor)),
+        "; ".join(
+            f"{factor} {level}"
+            for factor, level in row.items()
+            if factor != "stimulus" and level != easy(factor)
+        ),
         scene,
         Limits(**{"checkerboard": 0.15} | limits),
-        1 if row["time"] == "one step" else STEPS if scene["effects"].get("viscoelasticity") else None,
+        1
+        if row["time"] == "one step"
+        else STEPS
+        if scene["effects"].get("viscoelasticity")
+        else None,
         made if callable(made) else None,
         points=None if isinstance(stimulus, dict) else stimulus,
     )
@@ -266,7 +321,9 @@ def easy(factor: str) -> str:
 
 def combinations() -> list[Row]:
     """The rows of the covering array, by stimulus."""
-    rows = covering({factor: list(levels) for factor, levels in FACTORS.items()}, allowed, SEED, MOST)
+    rows = covering(
+        {factor: list(levels) for factor, levels in FACTORS.items()}, allowed, SEED, MOST
+    )
     return sorted(rows, key=lambda row: list(FACTORS["stimulus"]).index(row["stimulus"]))
 
 
@@ -278,8 +335,16 @@ _MOVING = {"slide", "step"}
 def _has_reference(case: Case) -> bool:
     """Whether a mesh of half the edges is cheap: a built one of a pad without ridges, pressed by a plate or a cylinder."""
     still = not any(_MOVING & set(leg) for leg in case.scene["motion"])
-    smooth = case.scene["stimulus"]["shape"] in ("flat", "cylinder") and "accuracy" not in case.scene
-    return still and smooth and case.mesh is None and not case.may_fail and "ridges" not in case.scene.get("specimen", {})
+    smooth = (
+        case.scene["stimulus"]["shape"] in ("flat", "cylinder") and "accuracy" not in case.scene
+    )
+    return (
+        still
+        and smooth
+        and case.mesh is None
+        and not case.may_fail
+        and "ridges" not in case.scene.get("specimen", {})
+    )
 
 
 HALVED = frozenset([*PICKED, *(case.name for case in COMBINED[::3])])
@@ -291,6 +356,8 @@ REFERENCE = frozenset([name for name, case in CATALOGUE.items() if _has_referenc
 FAST = tuple(
     case.name
     for case in COMBINED
-    if case.name.startswith(("56:", "59:", "63:", "66:", "70:", "73:", "80:", "83:", "89:", "97:", "177:", "192:"))
+    if case.name.startswith(
+        ("56:", "59:", "63:", "66:", "70:", "73:", "80:", "83:", "89:", "97:", "177:", "192:")
+    )
 )
 """Of the combinations, some that take no time: those that the tests run."""

@@ -11,7 +11,9 @@ Row = dict[str, str]
 _TRIED = 5  # rows drawn for each that is taken
 
 
-def covering(factors: Mapping[str, Sequence[str]], allowed: Callable[[Row], bool], seed: int, most: int) -> list[Row]:
+def covering(
+    factors: Mapping[str, Sequence[str]], allowed: Callable[[Row], bool], seed: int, most: int
+) -> list[Row]:
     """Rows, a level of every factor each, in which every pair of hard levels that may meet does; the same for the same seed.
 
     Each row is the best of a few drawn ones: it begins with a pair that has not met yet, and takes the level that makes most new
@@ -23,7 +25,9 @@ def covering(factors: Mapping[str, Sequence[str]], allowed: Callable[[Row], bool
     """
     levels = [(factor, level) for factor, names in factors.items() for level in names[1:]]
     draw, rows = random.Random(seed), []
-    fits = np.array([[f != g and allowed({f: one, g: other}) for g, other in levels] for f, one in levels])
+    fits = np.array(
+        [[f != g and allowed({f: one, g: other}) for g, other in levels] for f, one in levels]
+    )
     left = fits.copy()
 
     def drawn(waiting):
@@ -37,7 +41,11 @@ def covering(factors: Mapping[str, Sequence[str]], allowed: Callable[[Row], bool
 
     while left.any():
         waiting = np.argwhere(np.triu(left)).tolist()
-        best = max((drawn(waiting) for _ in range(_TRIED)), key=lambda row: left[np.ix_(row, row)].sum())
+        best = max(
+            (drawn(waiting) for _ in range(_TRIED)), key=lambda row: left[np.ix_(row, row)].sum()
+        )
         left[np.ix_(best, best)] = False
-        rows.append({factor: names[0] for factor, names in factors.items()} | dict(levels[k] for k in best))
+        rows.append(
+            {factor: names[0] for factor, names in factors.items()} | dict(levels[k] for k in best)
+        )
     return rows

@@ -48,12 +48,20 @@ class Limits:
     symmetry: float = limit(1e-3, "its own mirror image within {:g}")
     effort: float = limit(4, "up to {:g} times its easy neighbour's iterations")
     solver: float = limit(1e-3, "the other solver within {:g}")
-    reference: float = limit(1, "off a converged reference by up to {:g} times what it believes, or a draft may be")
+    reference: float = limit(
+        1, "off a converged reference by up to {:g} times what it believes, or a draft may be"
+    )
 
     def described(self) -> str:
         """Where these limits differ from those of all cases; "as all" where they do not."""
-        own = [f.metadata["text"].format(getattr(self, f.name)) for f in fields(self) if getattr(self, f.name) != f.default]
-        return "; ".join(text.replace("inf", "any").replace("nan", "any") for text in own) or "as all"
+        own = [
+            f.metadata["text"].format(getattr(self, f.name))
+            for f in fields(self)
+            if getattr(self, f.name) != f.default
+        ]
+        return (
+            "; ".join(text.replace("inf", "any").replace("nan", "any") for text in own) or "as all"
+        )
 
 
 @dataclass(frozen=True)
@@ -81,7 +89,11 @@ class Case:
     @property
     def stable(self) -> str:
         """What counts as stable, in words."""
-        return "a clean failure, or an estimated error of a half" if self.may_fail else self.limits.described()
+        return (
+            "a clean failure, or an estimated error of a half"
+            if self.may_fail
+            else self.limits.described()
+        )
 
     @property
     def steps_per_leg(self) -> int:
@@ -102,14 +114,25 @@ class Case:
     @property
     def neighbour(self) -> Case:
         """Its easy neighbour: the same motion of a plate (a cylinder, if nothing slides) without friction, on the usual pad."""
-        easy = {"specimen": {}, "stimulus": FLAT if self.strokes else cylinder(209.97), "friction": 0.0}
+        easy = {
+            "specimen": {},
+            "stimulus": FLAT if self.strokes else cylinder(209.97),
+            "friction": 0.0,
+        }
         return replace(self, scene=self.scene | easy, mesh=None, points=None)
 
     def written(self, folder: Path) -> dict[str, Any]:
         """The scene document, with the files that it names written into ``folder``: external mesh, points of the stimulus."""
         document, folder = self.document, Path(folder).absolute()
         if self.points is not None:
-            np.savetxt(folder / "points.csv", np.transpose(self.points), "%.9g", ",", header="x (mm),y (mm)", comments="")
+            np.savetxt(
+                folder / "points.csv",
+                np.transpose(self.points),
+                "%.9g",
+                ",",
+                header="x (mm),y (mm)",
+                comments="",
+            )
             document["stimulus"] = document["stimulus"] | {"csv": str(folder / "points.csv")}
         if self.mesh is not None:
             from fingerpad.planning.plan import plan
@@ -117,7 +140,9 @@ class Case:
 
             built = scene_of(document, self.name)
             write_pad(self.mesh(built, plan(built)), folder / "external.msh")
-            document["specimen"] = document.get("specimen", {}) | {"mesh": str(folder / "external.msh")}
+            document["specimen"] = document.get("specimen", {}) | {
+                "mesh": str(folder / "external.msh")
+            }
         return document
 
     def read(self, folder: Path) -> Scene:
@@ -143,8 +168,15 @@ def scene_of(document: dict[str, Any], name: str) -> Scene:
 FLAT, LINE = {"shape": "flat"}, {"shape": "line"}
 SHARP_BAR = {"shape": "bar", "width": "1/16 inch"}
 ROUNDED_BAR = SHARP_BAR | {"fillet": "0.03 mm"}
-TWO_WAVES = {"shape": "wavy", "curvatures": ["104.99 1/m", "209.97 1/m"], "lead_in": "4 mm", "run_out": "5 mm"}
-WIDE_HOLLOW = TWO_WAVES | {"curvatures": ["104.99 1/m", "78.74 1/m"]}  # its hollow is wider than the pad's apex
+TWO_WAVES = {
+    "shape": "wavy",
+    "curvatures": ["104.99 1/m", "209.97 1/m"],
+    "lead_in": "4 mm",
+    "run_out": "5 mm",
+}
+WIDE_HOLLOW = TWO_WAVES | {
+    "curvatures": ["104.99 1/m", "78.74 1/m"]
+}  # its hollow is wider than the pad's apex
 LAYERS = ("epidermis", "dermis", "fat")
 
 
@@ -198,51 +230,111 @@ def _picked():
         for name, stimulus in (("flat", FLAT), ("1260 1/m", cylinder(1259.84))):
             hard = f"bulk modulus {2 * (1 + ratio) / (3 * (1 - 2 * ratio)):.3g} times shear"
             scene = {"specimen": poisson(ratio), "stimulus": stimulus, "motion": RAMP}
-            yield Case(f"nu {ratio:g}, {name}", group, hard, scene, Limits(**NARROW) if name != "flat" else Limits())
+            yield Case(
+                f"nu {ratio:g}, {name}",
+                group,
+                hard,
+                scene,
+                Limits(**NARROW) if name != "flat" else Limits(),
+            )
 
     group = "sharp"
     for curvature in (2.5e3, 5e3, 1e4):
         hard = f"radius {1e3 / curvature:g} mm, of the order of a draft node spacing (0.13 mm) or below it"
         yield Case(
-            f"needle {curvature:g} 1/m", group, hard, {"stimulus": cylinder(curvature), "motion": RAMP}, Limits(checkerboard=0.3)
+            f"needle {curvature:g} 1/m",
+            group,
+            hard,
+            {"stimulus": cylinder(curvature), "motion": RAMP},
+            Limits(checkerboard=0.3),
         )
     by_hand = {"skin_edge": "268.8 um", "steps": 8}
     yield Case(
-        "needle on a mesh too coarse", group, "radius 0.1 mm between nodes 0.13 mm apart, on the user's insistence",
-        {"stimulus": cylinder(1e4), "motion": [force(20)], "accuracy": by_hand}, steps=8, may_fail=True,
-    )  # fmt: skip
+        "needle on a mesh too coarse",
+        group,
+        "radius 0.1 mm between nodes 0.13 mm apart, on the user's insistence",
+        {"stimulus": cylinder(1e4), "motion": [force(20)], "accuracy": by_hand},
+        steps=8,
+        may_fail=True,
+    )
     yield Case(
-        "needle through the pad", group, "radius 0.017 mm driven 4 mm deep: nodes pop round it and elements fold",
-        {"stimulus": cylinder(6e4), "motion": [depth(0.2, 1), depth(4, 1)], "specimen": poisson(0.4999)}, may_fail=True,
-    )  # fmt: skip
-    for name, stimulus in (("sharp bar", SHARP_BAR), ("bar, fillet 0.03 mm", ROUNDED_BAR), ("line load", LINE)):
+        "needle through the pad",
+        group,
+        "radius 0.017 mm driven 4 mm deep: nodes pop round it and elements fold",
+        {
+            "stimulus": cylinder(6e4),
+            "motion": [depth(0.2, 1), depth(4, 1)],
+            "specimen": poisson(0.4999),
+        },
+        may_fail=True,
+    )
+    for name, stimulus in (
+        ("sharp bar", SHARP_BAR),
+        ("bar, fillet 0.03 mm", ROUNDED_BAR),
+        ("line load", LINE),
+    ):
         for target in (1, 2):
             hard = "det F varies wildly within the element under an edge; nodes pop round it"
             limits = Limits(**STEADY, **EDGE, factorisations=8, cuts=2)
-            yield Case(f"{name}, {target} mm", group, hard, {"stimulus": stimulus, "motion": [depth(target)]}, limits)
+            yield Case(
+                f"{name}, {target} mm",
+                group,
+                hard,
+                {"stimulus": stimulus, "motion": [depth(target)]},
+                limits,
+            )
 
     group = "deep"
     for name, stimulus in (("flat", FLAT), ("210 1/m", cylinder(209.97))):
         for ratio in (0.48, 0.4999):
             hard = "3 mm into 5.5 mm of soft tissue: large strains, a contact as wide as the pad"
             scene = {"stimulus": stimulus, "motion": [depth(3)], "specimen": poisson(ratio)}
-            yield Case(f"3 mm, {name}, nu {ratio:g}", group, hard, scene, Limits(**STEADY, factorisations=6))
+            yield Case(
+                f"3 mm, {name}, nu {ratio:g}",
+                group,
+                hard,
+                scene,
+                Limits(**STEADY, factorisations=6),
+            )
 
     group = "layers"
     for name, modulus in (("soft skin, 1:10", "1.5 kPa"), ("stiff skin, 1e4:1", "150 MPa")):
-        scene = {"stimulus": FLAT, "motion": [force(2, 40), hold(2)], "specimen": stiff_skin(modulus)}
-        yield Case(name, group, "stiffnesses far apart in one matrix, and a skin that wrinkles or cannot be stretched", scene)
+        scene = {
+            "stimulus": FLAT,
+            "motion": [force(2, 40), hold(2)],
+            "specimen": stiff_skin(modulus),
+        }
+        yield Case(
+            name,
+            group,
+            "stiffnesses far apart in one matrix, and a skin that wrinkles or cannot be stretched",
+            scene,
+        )
     for kind in ("inner", "inner_and_outer"):
         scene = {"stimulus": FLAT, "motion": RAMP, "specimen": {"ridges": kind}}
-        hard = "a folded interface between stiff and soft" + ("; the contact is broken up" if kind != "inner" else "")
+        hard = "a folded interface between stiff and soft" + (
+            "; the contact is broken up" if kind != "inner" else ""
+        )
         yield Case(
-            f"ridges, {kind.replace('_', ' ')}", group, hard, scene, Limits(checkerboard=np.inf if "outer" in kind else 0.05)
+            f"ridges, {kind.replace('_', ' ')}",
+            group,
+            hard,
+            scene,
+            Limits(checkerboard=np.inf if "outer" in kind else 0.05),
         )
     scene = {
-        "stimulus": FLAT, "friction": 1, "motion": [PRESS, slide(2), slide(-1)],
+        "stimulus": FLAT,
+        "friction": 1,
+        "motion": [PRESS, slide(2), slide(-1)],
         "specimen": {"ridges": {"inner": {"height": "0.3 mm", "shape": "sharp"}}},
-    }  # fmt: skip
-    yield Case("ridges, sharp, stroked", group, "tips bent to and fro under full friction", scene, Limits(**NARROW))
+    }
+    yield Case(
+        "ridges, sharp, stroked",
+        group,
+        "tips bent to and fro under full friction",
+        scene,
+        Limits(**NARROW),
+    )
 
     group = "friction"
     for name, stimulus, legs in (
@@ -254,14 +346,17 @@ def _picked():
         hard = "unsymmetric law: stick and slip may cycle, nodes enter and leave, slip turns round"
         yield Case(f"friction {name}", group, hard, scene, Limits(**NARROW))
     yield Case(
-        "friction 0.33 pressed on a whole pad", group,
+        "friction 0.33 pressed on a whole pad",
+        group,
         "the load on a sharp curve outweighs the skin's stiffness along it; three or four nodes stick or slip",
         {
-            "stimulus": cylinder(1333), "friction": 0.33, "motion": [force(28, 1)],
+            "stimulus": cylinder(1333),
+            "friction": 0.33,
+            "motion": [force(28, 1)],
             "effects": {"finite_strain": "on", "symmetry": "off", "viscoelasticity": "off"},
         },
         Limits(**NARROW),
-    )  # fmt: skip
+    )
     for name, stimulus in (("plate", FLAT), ("cylinder", cylinder(104.99))):
         scene = {"stimulus": stimulus, "friction": 0, "motion": [PRESS, slide(6)]}
         hard = "no tangential stiffness holds the contact; the cylinder is pushed off by its slope"
@@ -270,27 +365,60 @@ def _picked():
     group = "loss of contact"
     for speed in (40, 400):
         scene = {
-            "stimulus": WIDE_HOLLOW, "friction": 0.7,
+            "stimulus": WIDE_HOLLOW,
+            "friction": 0.7,
             "motion": [depth(0.03, 1), slide(14, speed, "depth"), slide(-14, speed, "depth")],
-        }  # fmt: skip
+        }
         hard = "a hollow leaves the lightly pressed pad: forces vanish, their scale too, and contact returns"
-        yield Case(f"stroke at {speed} mm/s loses contact", group, hard, scene, Limits(energy=0.05, **NARROW))
+        yield Case(
+            f"stroke at {speed} mm/s loses contact",
+            group,
+            hard,
+            scene,
+            Limits(energy=0.05, **NARROW),
+        )
         motion = [depth(1, 2), hold(3), depth(0.05, speed), hold(0.2), depth(1, speed)]
         scene = {"stimulus": cylinder(209.97), "motion": motion}
         hard = "drawn back faster than the skin can follow, and pressed on again"
-        yield Case(f"unloaded to separation at {speed} mm/s", group, hard, scene, Limits(energy=0.05, **NARROW))
+        yield Case(
+            f"unloaded to separation at {speed} mm/s",
+            group,
+            hard,
+            scene,
+            Limits(energy=0.05, **NARROW),
+        )
     motion = [force(20), {"step": "6 mm", "every": "2 mm"}]
     yield Case(
-        "start with no contact, whole load at once", group, "nothing touches, no force gives a scale, the surface is not over it",
-        {"stimulus": TWO_WAVES, "motion": motion}, Limits(energy=0.35, factorisations=7, checkerboard=0.15), 4,
-    )  # fmt: skip
+        "start with no contact, whole load at once",
+        group,
+        "nothing touches, no force gives a scale, the surface is not over it",
+        {"stimulus": TWO_WAVES, "motion": motion},
+        Limits(energy=0.35, factorisations=7, checkerboard=0.15),
+        4,
+    )
     for name, stimulus in (("flat", FLAT), ("210 1/m", cylinder(209.97))):
         motion = [PRESS, force(0.01, 400), hold(0.5), PRESS]
         hard = "unloaded to 1/2000 of the force, a node or two in contact, and on again"
-        yield Case(f"almost to separation, {name}", group, hard, {"stimulus": stimulus, "motion": motion}, Limits(**NARROW))
+        yield Case(
+            f"almost to separation, {name}",
+            group,
+            hard,
+            {"stimulus": stimulus, "motion": motion},
+            Limits(**NARROW),
+        )
     # by hand, for a mesh that is made for so narrow a contact has many nodes in it
-    scene = {"stimulus": cylinder(209.97), "motion": [force(1e-4)], "accuracy": by_hand | {"steps": 4}}
-    yield Case("one node in contact", group, "a ten-thousandth of a gram-weight; no active set yet", scene, Limits(**STEADY))
+    scene = {
+        "stimulus": cylinder(209.97),
+        "motion": [force(1e-4)],
+        "accuracy": by_hand | {"steps": 4},
+    }
+    yield Case(
+        "one node in contact",
+        group,
+        "a ten-thousandth of a gram-weight; no active set yet",
+        scene,
+        Limits(**STEADY),
+    )
 
     group = "steps"
     for share in (1e-4, 1, 1e3):
@@ -300,7 +428,14 @@ def _picked():
     for name, stimulus in (("flat", FLAT), ("1260 1/m", cylinder(1259.84))):
         scene = {"stimulus": stimulus, "motion": [force(20)], "specimen": poisson(0.4999)}
         limits = Limits(energy=0.35, factorisations=6, **NARROW)
-        yield Case(f"one load step, {name}, nu 0.4999", group, "the whole load from nothing in one step", scene, limits, 1)
+        yield Case(
+            f"one load step, {name}, nu 0.4999",
+            group,
+            "the whole load from nothing in one step",
+            scene,
+            limits,
+            1,
+        )
     for rate in (1e-3, 1e4):
         scene = {
             "stimulus": cylinder(209.97),
@@ -308,7 +443,13 @@ def _picked():
             "effects": {"finite_strain": "on", "viscoelasticity": "on"},
         }
         hard = "a ramp of 2 ms" if rate > 1 else "a ramp of five hours"
-        yield Case(f"{rate:g} gf/s", group, f"{hard} against time constants of 0.34 and 3.25 s", scene, Limits(**NARROW))
+        yield Case(
+            f"{rate:g} gf/s",
+            group,
+            f"{hard} against time constants of 0.34 and 3.25 s",
+            scene,
+            Limits(**NARROW),
+        )
 
     group = "meshes"
     hand = {"stimulus": cylinder(209.97), "motion": RAMP}
@@ -321,12 +462,30 @@ def _picked():
         Limits(checkerboard=np.inf),
         mesh=of_built(lambda mesh: mesh),
     )
-    yield Case("distorted", group, "inner nodes moved by up to 0.3 of an edge", hand, Limits(**NARROW), mesh=of_built(distorted))
-    yield Case("triangles", group, "6-node triangles with a bubble", hand, Limits(**NARROW), mesh=of_built(triangles))
     yield Case(
-        "distorted linear triangles", group, "3-node triangles, moved, raised to 6 nodes", hand, Limits(**NARROW),
+        "distorted",
+        group,
+        "inner nodes moved by up to 0.3 of an edge",
+        hand,
+        Limits(**NARROW),
+        mesh=of_built(distorted),
+    )
+    yield Case(
+        "triangles",
+        group,
+        "6-node triangles with a bubble",
+        hand,
+        Limits(**NARROW),
+        mesh=of_built(triangles),
+    )
+    yield Case(
+        "distorted linear triangles",
+        group,
+        "3-node triangles, moved, raised to 6 nodes",
+        hand,
+        Limits(**NARROW),
         mesh=of_built(lambda mesh: corners_only(triangles(distorted(mesh)))),
-    )  # fmt: skip
+    )
 
 
 PICKED: dict[str, Case] = {case.name: case for case in _picked()}

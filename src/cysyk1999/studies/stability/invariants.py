@@ -25,12 +25,18 @@ class Held:
 
     def __call__(self, progress: Mapping[str, float]) -> None:
         body = self._made.body
-        self._found.append(np.where(body.space.fixed, body.internal_force(), 0.0).sum(0) / self._made.share)
+        self._found.append(
+            np.where(body.space.fixed, body.internal_force(), 0.0).sum(0) / self._made.share
+        )
 
     def balance(self, history: xr.Dataset) -> float:
         """Largest difference to what pushes it over the largest push; of half a pad, whose middle is held too, upwards only."""
-        pushed = np.column_stack([history.tangential_force, history.force])[history.interpolated.values == 0][1:]
-        apart = np.abs(np.array(self._found)[: len(pushed)] - pushed)[:, 1 if self._made.mesh.half else 0 :]
+        pushed = np.column_stack([history.tangential_force, history.force])[
+            history.interpolated.values == 0
+        ][1:]
+        apart = np.abs(np.array(self._found)[: len(pushed)] - pushed)[
+            :, 1 if self._made.mesh.half else 0 :
+        ]
         most = np.abs(pushed).max(initial=0.0)
         return float(apart.max() / most) if most else np.nan
 
@@ -52,11 +58,14 @@ def measures(history: xr.Dataset) -> dict[str, float]:
     ends = leg_ends(history)
     work = np.abs(history.external_work.values)
     kept = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
-    pressures = zip(ends.contact_pressure.values, ends.contact_pressure_smoothed.values, strict=True)
+    pressures = zip(
+        ends.contact_pressure.values, ends.contact_pressure_smoothed.values, strict=True
+    )
     boards = [checkerboard(pressure, smoothed) for pressure, smoothed in pressures]
     return {
         "cuts": float(history.cutbacks.sum()),
-        "factorisations": json.loads(history.attrs["cost"])["factorisations"] / max(states_found(history), 1),
+        "factorisations": json.loads(history.attrs["cost"])["factorisations"]
+        / max(states_found(history), 1),
         "energy": float(np.abs(history.external_work - kept).max() / max(work.max(), 1e-300)),
         "complementarity": float(history.complementarity_error.max()),
         "det_f": float(history.min_detF.min()),

@@ -42,13 +42,27 @@ MEASURES = {
 """Measure -> its name in the picture, and what it is. Checkerboard: r.m.s. of nodal pressure less its 5-point average over the
 peak, inside the contact. Half the step: largest change of force, depth, width, stored energy and tangential force at the ends of
 the legs."""
-OF_TEACHING = ("completed", "cuts", "factorisations", "energy", "complementarity", "det_f", "checkerboard", "off")
+OF_TEACHING = (
+    "completed",
+    "cuts",
+    "factorisations",
+    "energy",
+    "complementarity",
+    "det_f",
+    "checkerboard",
+    "off",
+)
 """What the teaching methods are shown by."""
 OUTCOMES = {
-    "stable": "stable", "labours": "right but laboured", "unsound": "outside limits", "wrong": "wrong",
-    "admits its error": "wrong and said so", "fails cleanly": "stopped and said why", "breaks off": "broke off",
+    "stable": "stable",
+    "labours": "right but laboured",
+    "unsound": "outside limits",
+    "wrong": "wrong",
+    "admits its error": "wrong and said so",
+    "fails cleanly": "stopped and said why",
+    "breaks off": "broke off",
     "not done": "not done",
-}  # fmt: skip
+}
 """How runs end, and in words for many."""
 OFF = 0.05
 """A method whose last depth or force is off the default's by more than this has not solved the case."""
@@ -84,7 +98,11 @@ def long(frame: pd.DataFrame) -> pd.DataFrame:
             elif name == "det_f":
                 share = limit / max(value, 1e-9)
             else:
-                share = value / max(limit, 0.5 if name == "cuts" else 1e-12) if np.isfinite(limit) else np.nan
+                share = (
+                    value / max(limit, 0.5 if name == "cuts" else 1e-12)
+                    if np.isfinite(limit)
+                    else np.nan
+                )
             rows.append(
                 {key: row[key] for key in ("group", "case", "method")}
                 | {"outcome": _outcome(row)}
@@ -115,7 +133,13 @@ def table(frame: pd.DataFrame) -> pd.DataFrame:
     out["how it ended"] = [_told(row) for row in out.to_dict("records")]
     out.insert(0, "case", out.index)
     out.insert(0, "no.", default["number"])
-    out.attrs["columns"] = ["no.", "case", "what makes it hard", "how it ended", "nearest to its limit"]
+    out.attrs["columns"] = [
+        "no.",
+        "case",
+        "what makes it hard",
+        "how it ended",
+        "nearest to its limit",
+    ]
     return out
 
 
@@ -141,7 +165,9 @@ def _ended(row: dict) -> str:
     """How a teaching method ended, in a few words."""
     said = row["message"] if isinstance(row["message"], str) else ""
     if _outcome(row) == "wrong":
-        return f"wrong: off by {row['off']:.0%}" + (f"; {said}" if row["outcome"] == "unsound" else "")
+        return f"wrong: off by {row['off']:.0%}" + (
+            f"; {said}" if row["outcome"] == "unsound" else ""
+        )
     return f"{row['outcome']}: {said}" if said else str(row["outcome"])
 
 
@@ -171,20 +197,44 @@ def heat_map(frame: pd.DataFrame) -> Figure:
         "measure of how the run went: its worst value over the worst that still counts\nas stable. The methods below differ "
         "from this package in one thing each."
     )
-    fig.text(0.012, 1 - 0.24 / height, intro, ha="left", va="top", fontsize=6, color=GREY, linespacing=1.35)
+    fig.text(
+        0.012,
+        1 - 0.24 / height,
+        intro,
+        ha="left",
+        va="top",
+        fontsize=6,
+        color=GREY,
+        linespacing=1.35,
+    )
     shown = {method: [name for name in MEASURES if name in OF_TEACHING] for method in METHODS}
     shown[DEFAULT] = [name for name in MEASURES if name != "off"]
     rows = sum(map(len, shown.values()))
     pitch, top = (height - _TOP - _BOTTOM - _GAP * len(TEACHING)) / rows, height - _TOP
     for method, names in shown.items():
         low = top - pitch * len(names)
-        box = (_LEFT / width, low / height, 1 - (_LEFT + _RIGHT) / width, pitch * len(names) / height)
+        box = (
+            _LEFT / width,
+            low / height,
+            1 - (_LEFT + _RIGHT) / width,
+            pitch * len(names) / height,
+        )
         ax, top = fig.add_axes(box), low - _GAP
         part = frame[frame["method"] == method]
         drawn = _panel(ax, part, cases, names)
         said = ", ".join(tally(part))
-        ax.annotate(METHODS[method], (0, 1), (0, 3), "axes fraction", "offset points", fontweight="bold", fontsize=6.2)
-        ax.annotate(said, (0.25, 1), (0, 3), "axes fraction", "offset points", fontsize=6, color=GREY)
+        ax.annotate(
+            METHODS[method],
+            (0, 1),
+            (0, 3),
+            "axes fraction",
+            "offset points",
+            fontweight="bold",
+            fontsize=6.2,
+        )
+        ax.annotate(
+            said, (0.25, 1), (0, 3), "axes fraction", "offset points", fontsize=6, color=GREY
+        )
         if method == DEFAULT:
             _groups(ax, cases)
     numbers = [1, *range(10, len(cases) + 1, 10)]
@@ -195,10 +245,17 @@ def heat_map(frame: pd.DataFrame) -> Figure:
 
 def _panel(ax: Axes, part: pd.DataFrame, cases: pd.Series, names: list[str]):
     """One method: its measures by cases; returns what its colours are of."""
-    share = part.pivot(index="measure", columns="case", values="share").reindex(index=names, columns=cases.index).to_numpy(float)
+    share = (
+        part.pivot(index="measure", columns="case", values="share")
+        .reindex(index=names, columns=cases.index)
+        .to_numpy(float)
+    )
     with np.errstate(divide="ignore"):
         image = np.ma.masked_invalid(np.log10(np.clip(share, 1e-3, 1e3)))
-    norm, colours = TwoSlopeNorm(0.0, -2.0, 1.0), mpl.colormaps["RdYlBu_r"].resampled(24).with_extremes(bad="0.88")
+    norm, colours = (
+        TwoSlopeNorm(0.0, -2.0, 1.0),
+        mpl.colormaps["RdYlBu_r"].resampled(24).with_extremes(bad="0.88"),
+    )
     drawn = ax.imshow(image, norm=norm, cmap=colours, aspect="auto", interpolation="none")
     for i, j in np.argwhere(np.isposinf(share)):
         ax.add_patch(mpl.patches.Rectangle((j - 0.5, i - 0.5), 1, 1, color="black", lw=0))
@@ -227,26 +284,45 @@ def _groups(ax: Axes, cases: pd.Series) -> None:
     for start, end in zip(starts, [*starts[1:], len(cases)], strict=True):
         middle = (start + end - 1) / 2
         ax.annotate(
-            cases.iloc[start], (middle, -0.5), (0, 13), "data", "offset points", ha="left", va="bottom", rotation=50, fontsize=6,
+            cases.iloc[start],
+            (middle, -0.5),
+            (0, 13),
+            "data",
+            "offset points",
+            ha="left",
+            va="bottom",
+            rotation=50,
+            fontsize=6,
             rotation_mode="anchor",
-        )  # fmt: skip
+        )
 
 
 def _legend(fig: Figure, drawn, height: float, width: float) -> None:
     """What a colour means, and what a row is."""
     bar = fig.colorbar(
-        drawn, cax=fig.add_axes((0.1 / width, 0.62 / height, 1.45 / width, 0.09 / height)), orientation="horizontal"
+        drawn,
+        cax=fig.add_axes((0.1 / width, 0.62 / height, 1.45 / width, 0.09 / height)),
+        orientation="horizontal",
     )
     bar.set_ticks([-2, -1, 0, 1], labels=["1 %", "10 %", "limit", "10 ×"], fontsize=6)
     bar.minorticks_off()
     bar.ax.set_title("share of the limit that is used up", fontsize=6)
     bar.outline.set_edgecolor(INK)
     kinds = {"black": "not completed", "0.88": "not judged", "white": "not tried, or no such mesh"}
-    patches = [mpl.patches.Patch(facecolor=colour, edgecolor=GREY, lw=0.4, label=text) for colour, text in kinds.items()]
+    patches = [
+        mpl.patches.Patch(facecolor=colour, edgecolor=GREY, lw=0.4, label=text)
+        for colour, text in kinds.items()
+    ]
     fig.legend(
-        handles=patches, loc="upper left", bbox_to_anchor=(0.08 / width, 0.42 / height), fontsize=6, handlelength=1,
-        handleheight=1, labelspacing=0.35, borderaxespad=0,
-    )  # fmt: skip
+        handles=patches,
+        loc="upper left",
+        bbox_to_anchor=(0.08 / width, 0.42 / height),
+        fontsize=6,
+        handlelength=1,
+        handleheight=1,
+        labelspacing=0.35,
+        borderaxespad=0,
+    )
     for k, (name, meaning) in enumerate(MEASURES.values()):
         column, row = divmod(k, (len(MEASURES) + 1) // 2)
         x, y = 1.8 + 2.75 * column, 0.82 - 0.108 * row

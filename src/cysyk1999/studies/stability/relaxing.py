@@ -23,7 +23,10 @@ def _loaded(share: float) -> Callable[[Case], Case]:
         return f"{share * float(value):g} {unit}"
 
     def change(case: Case) -> Case:
-        legs = [{key: less(value) if key in _TARGETS else value for key, value in leg.items()} for leg in case.scene["motion"]]
+        legs = [
+            {key: less(value) if key in _TARGETS else value for key, value in leg.items()}
+            for leg in case.scene["motion"]
+        ]
         return _with(case, motion=legs)
 
     return change
@@ -41,16 +44,24 @@ def _of_layers(**keys: Any) -> Callable[[Case], Case]:
         layers = specimen[part] if part == "layers" else specimen[part]["layers"]
         if isinstance(layers, dict):
             skin = {} if keys else {"epidermis": {"youngs_modulus": "0.15 MPa"}}
-            changed: Any = {name: layer | usual | skin.get(name, {}) for name, layer in layers.items()}
+            changed: Any = {
+                name: layer | usual | skin.get(name, {}) for name, layer in layers.items()
+            }
         else:
             changed = [layer | usual for layer in layers]
-        return _with(case, specimen=specimen | {part: changed if part == "layers" else specimen[part] | {"layers": changed}})
+        return _with(
+            case,
+            specimen=specimen
+            | {part: changed if part == "layers" else specimen[part] | {"layers": changed}},
+        )
 
     return change
 
 
 def _without(key: str) -> Callable[[Case], Case]:
-    return lambda case: replace(case, scene={k: v for k, v in case.scene.items() if k != key}, may_fail=False)
+    return lambda case: replace(
+        case, scene={k: v for k, v in case.scene.items() if k != key}, may_fail=False
+    )
 
 
 def _pressed_only(case: Case) -> Case:
@@ -79,7 +90,9 @@ def _with(case: Case, **keys: Any) -> Case:
 
 
 ADVICE: dict[str, tuple[tuple[str, Callable[[Case], Case]], ...]] = {
-    "smaller depth or force": tuple((f"load: {share:g} of it", _loaded(share)) for share in _SHARES),
+    "smaller depth or force": tuple(
+        (f"load: {share:g} of it", _loaded(share)) for share in _SHARES
+    ),
     "fillet": (("stimulus: rounded", _rounded),),
     "smoothing": (("stimulus: smoothed", _rounded),),
     "smaller steps": (("time: 8 times the steps", _steps),),
@@ -100,7 +113,10 @@ HARD: dict[str, tuple[str, Callable[[Case], Case]]] = {
     "corners or bumps": ("stimulus: rounded", _rounded),
     "friction": ("friction: none", _without("friction")),
     "the law": ("law: neo-Hooke", _of_layers(law="neo_hooke")),
-    "small strain": ("strain: finite", lambda case: _with(case, effects=case.scene["effects"] | {"finite_strain": "on"})),
+    "small strain": (
+        "strain: finite",
+        lambda case: _with(case, effects=case.scene["effects"] | {"finite_strain": "on"}),
+    ),
     "a stroke": ("motion: pressed only", _pressed_only),
     "not refined": ("mesh: planned for accuracy: thesis", _meshed("thesis")),
 }

@@ -26,7 +26,15 @@ from cysyk1999.studies.accuracy.belief import finer as finely
 from cysyk1999.studies.accuracy.meshes import quarters, triangles
 from cysyk1999.studies.stability.catalogue import CATALOGUE, HALVED, REFERENCE, SECOND_SOLVER
 from cysyk1999.studies.stability.hard_cases import Case
-from cysyk1999.studies.stability.invariants import ENDS, Held, difference, excess, iterations, measures, mirrored
+from cysyk1999.studies.stability.invariants import (
+    ENDS,
+    Held,
+    difference,
+    excess,
+    iterations,
+    measures,
+    mirrored,
+)
 from cysyk1999.studies.stability.relaxing import HERE, relaxed
 from fingerpad.mechanics.stepping import NonConvergence, hard_here
 from fingerpad.planning.hardness import hard_in
@@ -38,7 +46,13 @@ from fingerpad.specimen import mesh_for
 from fingerpad.specimen.pad import PadMesh
 
 METHODS = ("default", "full Q1", "plain P2", "plain Newton")
-STABLE, LABOURS, ADMITS, CLEAN, SILENT = "stable", "labours", "admits its error", "fails cleanly", "unsound"
+STABLE, LABOURS, ADMITS, CLEAN, SILENT = (
+    "stable",
+    "labours",
+    "admits its error",
+    "fails cleanly",
+    "unsound",
+)
 UNCLEAN, UNDONE = "breaks off", "not done"
 """Outcomes of a run. Labours: it completed and what it found is within all limits, but not what it took, or another run to
 compare it with did not complete; admits its error: the error that it estimates is a half or more, or it notes what is wrong;
@@ -88,7 +102,11 @@ class Teaching(Simulation):
         def counted(*args, **kwargs):
             self._left -= 1
             if self._left < 0:
-                raise NonConvergence(self.stepper.time, f"given up after {MOST_ITERATIONS} iterations", "another method")
+                raise NonConvergence(
+                    self.stepper.time,
+                    f"given up after {MOST_ITERATIONS} iterations",
+                    "another method",
+                )
             return iterate(*args, **kwargs)
 
         self.stepper.iterate = counted
@@ -104,7 +122,9 @@ def _split(mesh: PadMesh, element: str, change) -> PadMesh | None:
     return mesh if mesh.element == kind else change(mesh) if mesh.element == "quad9" else None
 
 
-def simulation(case: Case, method: str, folder: Path, refined: int = 1, finer: float = 1.0) -> Simulation | None:
+def simulation(
+    case: Case, method: str, folder: Path, refined: int = 1, finer: float = 1.0
+) -> Simulation | None:
     """A case ready to run by a method with its steps divided by ``refined`` and its edges by ``finer``; None where the method has
     no such mesh."""
     scene = case.read(folder)
@@ -174,7 +194,9 @@ def in_time(seconds: float = SLOWEST) -> Iterator[None]:
         signal.signal(signal.SIGPROF, before)
 
 
-def _simulate(case: Case, method: str = METHODS[0], refined: int = 1, finer: float = 1.0) -> tuple[xr.Dataset, float] | None:
+def _simulate(
+    case: Case, method: str = METHODS[0], refined: int = 1, finer: float = 1.0
+) -> tuple[xr.Dataset, float] | None:
     """History of a case and how well forces balanced in it; None where the method has no such mesh."""
     with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
         made = simulation(case, method, Path(folder), refined, finer)
@@ -197,11 +219,23 @@ def _run(case, method):
         made = _simulate(case, method)
     except NonConvergence as failure:
         kept = getattr(failure, "dataset", None)
-        diagnosed = bool(failure.reason and failure.advice) and (kept is None or _sound_so_far(kept))
-        return Run(kept, False, CLEAN if diagnosed else UNCLEAN, str(failure), measures(kept) if kept is not None else {})
+        diagnosed = bool(failure.reason and failure.advice) and (
+            kept is None or _sound_so_far(kept)
+        )
+        return Run(
+            kept,
+            False,
+            CLEAN if diagnosed else UNCLEAN,
+            str(failure),
+            measures(kept) if kept is not None else {},
+        )
     except Late:
         return Run(None, False, UNDONE, f"not done in {SLOWEST:g} s", {})
-    except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:  # what a user would see as a traceback
+    except (
+        ArithmeticError,
+        ValueError,
+        np.linalg.LinAlgError,
+    ) as error:  # what a user would see as a traceback
         return Run(None, False, UNCLEAN, f"{type(error).__name__}: {error}", {})
     if made is None:
         return None
@@ -211,7 +245,13 @@ def _run(case, method):
         measured["symmetry"] = mirrored(history)
     if case.may_fail:
         error = history.attrs["estimated_error"]
-        return Run(history, True, ADMITS if error >= 0.5 else SILENT, f"estimated error {error:.2g}", measured)
+        return Run(
+            history,
+            True,
+            ADMITS if error >= 0.5 else SILENT,
+            f"estimated error {error:.2g}",
+            measured,
+        )
     return judged(case, history, measured)
 
 
@@ -220,7 +260,9 @@ def _is_mirrored(case: Case) -> bool:
     effects = case.document["effects"]
     if effects.get("symmetry") != "off":
         return False
-    halved = replace(case, scene=case.scene | {"effects": {k: v for k, v in effects.items() if k != "symmetry"}})
+    halved = replace(
+        case, scene=case.scene | {"effects": {k: v for k, v in effects.items() if k != "symmetry"}}
+    )
     with tempfile.TemporaryDirectory() as folder:
         return plan(halved.read(Path(folder))).effects["symmetry"].on
 
@@ -236,7 +278,9 @@ def compared(case: Case, found: Run) -> Run:
     measured = dict(found.measured)
     if case.name in HALVED:
         measured["halving"] = _apart(case, found.history, refined=2)
-    measured["effort"] = iterations(found.history) / _effort(json.dumps(case.neighbour.document), case.neighbour)
+    measured["effort"] = iterations(found.history) / _effort(
+        json.dumps(case.neighbour.document), case.neighbour
+    )
     if case.name in SECOND_SOLVER:
         with second_solver():
             measured["solver"] = _apart(case, found.history)
@@ -246,7 +290,13 @@ def compared(case: Case, found: Run) -> Run:
     return judged(case, found.history, measured)
 
 
-def _apart(case: Case, history: xr.Dataset, names: Iterable[str] = ENDS, refined: int = 1, finer: float = 1.0) -> float:
+def _apart(
+    case: Case,
+    history: xr.Dataset,
+    names: Iterable[str] = ENDS,
+    refined: int = 1,
+    finer: float = 1.0,
+) -> float:
     """Difference to another run of a case; infinite where that is not completed, nan where it is not done in time."""
     try:
         return difference(_simulate(case, METHODS[0], refined, finer)[0], history, names)
@@ -271,14 +321,20 @@ def judged(case: Case, history: xr.Dataset, measured: Mapping[str, float]) -> Ru
     """A completed run with its outcome."""
     beyond, notes = excess(measured, case.limits), history.attrs["notes"]
     wrong = [name for name in beyond if name not in EFFORT and np.isfinite(measured[name])]
-    admitted = history.attrs["estimated_error"] >= 0.5 or all(name in NOTED and NOTED[name] in notes for name in wrong)
+    admitted = history.attrs["estimated_error"] >= 0.5 or all(
+        name in NOTED and NOTED[name] in notes for name in wrong
+    )
     outcome = STABLE if not beyond else LABOURS if not wrong else ADMITS if admitted else SILENT
     return Run(history, True, outcome, "; ".join(beyond.values()), measured)
 
 
 def _sound_so_far(kept: xr.Dataset) -> bool:
     """Is the last saved state one to look at?"""
-    return not kept.attrs["complete"] and bool(np.isfinite(kept.force).all()) and float(kept.complementarity_error.max()) < 1e-3
+    return (
+        not kept.attrs["complete"]
+        and bool(np.isfinite(kept.force).all())
+        and float(kept.complementarity_error.max()) < 1e-3
+    )
 
 
 def cured(case: Case, found: Run) -> str:
@@ -287,7 +343,14 @@ def cured(case: Case, found: Run) -> str:
     if HERE not in message:  # of a run that was completed a note says it
         with tempfile.TemporaryDirectory() as folder:
             message += f"; {hard_here(hard_in(case.read(Path(folder))))}"
-    return next((said for said, easier in relaxed(case, message) if run(easier, compare=False).outcome == STABLE), "")
+    return next(
+        (
+            said
+            for said, easier in relaxed(case, message)
+            if run(easier, compare=False).outcome == STABLE
+        ),
+        "",
+    )
 
 
 def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
@@ -299,7 +362,12 @@ def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
     """
     rows = []
     for number, case in list(enumerate(CATALOGUE.values(), start=1))[part - 1 :: parts]:
-        row: dict[str, Any] = {"number": number, "case": case.name, "group": case.group, "method": method}
+        row: dict[str, Any] = {
+            "number": number,
+            "case": case.name,
+            "group": case.group,
+            "method": method,
+        }
         row |= {"hard": case.hard, "stable": case.stable}
         if method != METHODS[0] and case.name not in HALVED:
             continue
@@ -309,13 +377,27 @@ def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
             continue
         saved = ""
         if not done.completed:
-            saved = "none had converged" if done.history is None else f"{states_found(done.history)} steps"
-        row |= {"outcome": done.outcome, "completed": float(done.completed), "message": done.message, "saved": saved}
+            saved = (
+                "none had converged"
+                if done.history is None
+                else f"{states_found(done.history)} steps"
+            )
+        row |= {
+            "outcome": done.outcome,
+            "completed": float(done.completed),
+            "message": done.message,
+            "saved": saved,
+        }
         if method == METHODS[0] and done.outcome != STABLE:
             row["relaxed"] = cured(case, done)
-        row |= dict(done.measured) | {f"limit {key}": getattr(case.limits, key) for key in done.measured}
+        row |= dict(done.measured) | {
+            f"limit {key}": getattr(case.limits, key) for key in done.measured
+        }
         if done.completed:
-            row |= {"depth_mm": 1e3 * done.history.indentation_depth.values[-1], "force_N_per_m": done.history.force.values[-1]}
+            row |= {
+                "depth_mm": 1e3 * done.history.indentation_depth.values[-1],
+                "force_N_per_m": done.history.force.values[-1],
+            }
         rows.append(row)
         print(f"{method}, {case.name}: {done.outcome} {done.message}", flush=True)
     return pd.DataFrame(rows)

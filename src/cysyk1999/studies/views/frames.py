@@ -10,7 +10,13 @@ import xarray as xr
 
 from cysyk1999.figures.geometry import boundaries, inward
 from cysyk1999.measures.quantities import DISTANCE, FORCE, IMPULSE, IMPULSE_RATE, SED, TIME, P, X, Y
-from cysyk1999.measures.responses import RECEPTOR_DEPTH, SEED, predicted_rate, rapidly_adapting_rate, raster
+from cysyk1999.measures.responses import (
+    RECEPTOR_DEPTH,
+    SEED,
+    predicted_rate,
+    rapidly_adapting_rate,
+    raster,
+)
 from cysyk1999.studies.receptors.sensing import RAPIDLY_ADAPTING
 from fingerpad.measures.features import PRESSURE, energy, force_gf, profile
 from fingerpad.measures.strokes import arcs, distance, loaded, place, profile_and_height
@@ -36,14 +42,23 @@ def output(history: xr.Dataset, time: float) -> int:
     return int(np.argmin(abs(history["time"].values - time)))
 
 
-def elements(history: xr.Dataset, snapshot: int, window: tuple[float, float, float, float]) -> pd.DataFrame:
+def elements(
+    history: xr.Dataset, snapshot: int, window: tuple[float, float, float, float]
+) -> pd.DataFrame:
     """Deformed elements within a window (left, right, low, high in mm): corners, layer, and strain energy density if there is
     one."""
     nodes = history["element_nodes"].values[:, : kind_of(history.sizes["element_node"]).corners]
-    points = 1e3 * (history["node_position"].values + history["snapshot_displacement"].values[snapshot])
+    points = 1e3 * (
+        history["node_position"].values + history["snapshot_displacement"].values[snapshot]
+    )
     left, right, low, high = window
     middle = points[nodes].mean(axis=1)
-    inside = (middle[:, 0] > left) & (middle[:, 0] < right) & (middle[:, 1] > low) & (middle[:, 1] < high)
+    inside = (
+        (middle[:, 0] > left)
+        & (middle[:, 0] < right)
+        & (middle[:, 1] > low)
+        & (middle[:, 1] < high)
+    )
     corners = points[nodes[inside]].reshape(inside.sum(), -1)
     rows = pd.DataFrame(corners.round(4), columns=CORNERS[: corners.shape[1]])
     rows.insert(0, "series", "element")
@@ -58,14 +73,21 @@ def lines(history: xr.Dataset, snapshot: int | None, corneum: bool = False) -> p
     points, cells = history["node_position"].values, history["element_nodes"].values
     region = history["element_region"].values
     moved = 0.0 if snapshot is None else history["snapshot_displacement"].values[snapshot]
-    found = boundaries(PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True), as_nodes=True)
+    found = boundaries(
+        PadMesh(points, cells, kind_of(cells.shape[1]).name, region, {}, True), as_nodes=True
+    )
     loops = {name: (points + moved)[found[name]] for name in LAYER_LINES}
     if corneum:
-        loops["corneum"] = inward(points[found["skin"]], scene_of(history).specimen.outline.stratum_corneum_thickness)
+        loops["corneum"] = inward(
+            points[found["skin"]], scene_of(history).specimen.outline.stratum_corneum_thickness
+        )
     if snapshot is not None:
         outline = history["snapshot_indenter"].values[snapshot]
         loops["surface"] = outline[np.isfinite(outline).all(axis=1)]
-    parts = [pd.DataFrame({"series": "line", "layer": k, X: 1e3 * v[:, 0], Y: 1e3 * v[:, 1]}) for k, v in loops.items()]
+    parts = [
+        pd.DataFrame({"series": "line", "layer": k, X: 1e3 * v[:, 0], Y: 1e3 * v[:, 1]})
+        for k, v in loops.items()
+    ]
     return pd.concat(parts, ignore_index=True).round(4)
 
 
@@ -80,8 +102,15 @@ def receptors(history: xr.Dataset, snapshot: int) -> pd.DataFrame:
     top = points[:, 1].max()
     where = np.column_stack([x, top - depth])
     where = where + LinearNDInterpolator(points[near], moved[near])(where)
-    felt = history["strain_energy_density"].values[output(history, float(history["snapshot_time"].values[snapshot]))]
-    rows = {"series": "receptor", "layer": [f"{1e3 * z:.0f} um" for z in depth], X: where[:, 0], Y: where[:, 1]}
+    felt = history["strain_energy_density"].values[
+        output(history, float(history["snapshot_time"].values[snapshot]))
+    ]
+    rows = {
+        "series": "receptor",
+        "layer": [f"{1e3 * z:.0f} um" for z in depth],
+        X: where[:, 0],
+        Y: where[:, 1],
+    }
     return pd.DataFrame(rows | {"felt (Pa)": felt})
 
 
@@ -110,8 +139,16 @@ def overview(histories: Histories) -> pd.DataFrame:
             "section": pd.concat([lines(history, snapshot), receptors(history, snapshot)]),
             "pressure": pressures(history, index, 2.6),
             "field": elements(history, snapshot, (-2.8, 2.8, 3.4, 6.2)),
-            "force": pd.DataFrame({"series": "force", TIME: history["time"].values, FORCE: force_gf(history)}),
-            "energy": pd.DataFrame({"series": "energy", TIME: history["time"].values, SED: energy(history, RECEPTOR_DEPTH)}),
+            "force": pd.DataFrame(
+                {"series": "force", TIME: history["time"].values, FORCE: force_gf(history)}
+            ),
+            "energy": pd.DataFrame(
+                {
+                    "series": "energy",
+                    TIME: history["time"].values,
+                    SED: energy(history, RECEPTOR_DEPTH),
+                }
+            ),
             "rate": rate[[TIME, IMPULSE_RATE]].assign(series="rate"),
             "impulses": pd.DataFrame({"series": "impulse", IMPULSE: ticks[TIME]}),
         }
@@ -145,7 +182,11 @@ def mesh_close_up(histories: Histories) -> pd.DataFrame:
             touching = pressures(history, last, max(half, 3.2 * (surface == "wavy")))
             touching["contact (1)"] = (touching[P] > 0).astype(int)
             shown = lines(history, k)
-            shown = shown[shown["layer"].isin(("skin", "surface")) & shown[X].abs().le(1.2 * half) & shown[Y].gt(low)]
+            shown = shown[
+                shown["layer"].isin(("skin", "surface"))
+                & shown[X].abs().le(1.2 * half)
+                & shown[Y].gt(low)
+            ]
             mesh = elements(history, k, (-half, half, low, 6.2))
             mesh.insert(1, "elements (1)", len(mesh))
             parts[f"{surface} {level}"] = pd.concat([mesh, shown, touching])
@@ -162,7 +203,9 @@ def ridges_both_ways(histories: Histories) -> pd.DataFrame:
         apex = 1e3 * history["node_position"].values
         carried = float(at_skin[np.argmin(np.hypot(apex[:, 0], apex[:, 1] - apex[:, 1].max()))])
         rows = elements(history, k, (carried - 1.2, carried + 0.9, 4.2, 6.1))
-        parts[panel] = pd.concat([rows, lines(history, k), receptors(history, k)]).assign(**{"carried (mm)": carried})
+        parts[panel] = pd.concat([rows, lines(history, k), receptors(history, k)]).assign(
+            **{"carried (mm)": carried}
+        )
     return _named(parts)
 
 
@@ -181,19 +224,35 @@ def space_time(histories: Histories) -> pd.DataFrame:
     skin = np.flatnonzero(stroke["skin_y"].values > 0)
     skin = skin[np.argsort(stroke["skin_x"].values[skin])]
     on = np.flatnonzero(np.diff(along, prepend=-1.0) > 0)[:: max(1, len(along) // 180)]
-    slipped = stroke["slip"].values[:, skin] / np.maximum(np.diff(time, prepend=time[0]), 1e-9)[:, None]  # of each step
+    slipped = (
+        stroke["slip"].values[:, skin] / np.maximum(np.diff(time, prepend=time[0]), 1e-9)[:, None]
+    )  # of each step
     parts, pressure = [], stroke[PRESSURE].values[:, skin]
     for k in on:
-        p, speed = (np.interp(x[order], stroke["skin_x"].values[skin], each[k]) for each in (pressure, slipped))
-        row = {DISTANCE: 1e3 * along[k], SKIN_X: 1e3 * x[order], P: p, SLIP: 1e3 * abs(speed) * (p > 0)}
+        p, speed = (
+            np.interp(x[order], stroke["skin_x"].values[skin], each[k])
+            for each in (pressure, slipped)
+        )
+        row = {
+            DISTANCE: 1e3 * along[k],
+            SKIN_X: 1e3 * x[order],
+            P: p,
+            SLIP: 1e3 * abs(speed) * (p > 0),
+        }
         parts.append(pd.DataFrame(row | {SED: stroke["strain_energy_density"].values[k, order]}))
     rows = pd.concat(parts, ignore_index=True).round(4).assign(series="map")
     shape = profile_and_height(stroke)[0]
     s = np.linspace(along[0] - 4e-3, along[-1] + 4e-3, 801)
-    surface = pd.DataFrame({"series": "surface", DISTANCE: 1e3 * s, "height (mm)": 1e3 * shape.outline(s)})
+    surface = pd.DataFrame(
+        {"series": "surface", DISTANCE: 1e3 * s, "height (mm)": 1e3 * shape.outline(s)}
+    )
     marks = pd.DataFrame(
         [
-            {"series": "convexity", "curvature (1/m)": arc.curvature, DISTANCE: 1e3 * (arc.start + arc.end) / 2}
+            {
+                "series": "convexity",
+                "curvature (1/m)": arc.curvature,
+                DISTANCE: 1e3 * (arc.start + arc.end) / 2,
+            }
             for arc in arcs(stroke)
             if arc.curvature > 0
         ]
@@ -203,7 +262,10 @@ def space_time(histories: Histories) -> pd.DataFrame:
 
 def _dragged(stroke: xr.Dataset, on: np.ndarray) -> pd.DataFrame:
     """The point of the surface over the receptor at the centre, which the surface drags along."""
-    where = {DISTANCE: 1e3 * distance(stroke)[on], "over_the_receptor (mm)": 1e3 * place(stroke)[on]}
+    where = {
+        DISTANCE: 1e3 * distance(stroke)[on],
+        "over_the_receptor (mm)": 1e3 * place(stroke)[on],
+    }
     return pd.DataFrame(where).assign(series="centre")
 
 
@@ -215,7 +277,12 @@ def stick_slip(histories: Histories) -> pd.DataFrame:
         k = int(np.argmin(abs(distance(stroke) - place_of)))
         x, p = profile(stroke, k)
         shown = (stroke["skin_y"].values > 0) & (abs(x) < 4e-3)
-        rows = {"series": "contact", SKIN_X: 1e3 * x[shown], P: p[shown], BOUND: friction * p[shown]}
+        rows = {
+            "series": "contact",
+            SKIN_X: 1e3 * x[shown],
+            P: p[shown],
+            BOUND: friction * p[shown],
+        }
         rows |= {TRACTION: abs(stroke["tangential_traction"].values[k, shown])}
         rows |= {STATE: stroke["contact_state"].values[k, shown]}
         parts[f"{1e3 * distance(stroke)[k]:.2f} mm"] = pd.DataFrame(rows)
@@ -224,7 +291,8 @@ def stick_slip(histories: Histories) -> pd.DataFrame:
             "series": "whole",
             DISTANCE: 1e3 * distance(stroke),
             STICKING: 100 * _share_sticking(stroke),
-            "ratio (1)": abs(stroke["tangential_force"].values) / np.maximum(stroke["force"].values, 1e-12),
+            "ratio (1)": abs(stroke["tangential_force"].values)
+            / np.maximum(stroke["force"].values, 1e-12),
         }
     )
     return _named(parts | {"whole": whole})
@@ -233,7 +301,9 @@ def stick_slip(histories: Histories) -> pd.DataFrame:
 def _share_sticking(stroke: xr.Dataset) -> np.ndarray:
     """Share of the load that is carried where the skin sticks."""
     p = stroke[PRESSURE].values
-    return np.where(stroke["contact_state"].values == STICKS, p, 0.0).sum(axis=1) / np.maximum(p.sum(axis=1), 1e-12)
+    return np.where(stroke["contact_state"].values == STICKS, p, 0.0).sum(axis=1) / np.maximum(
+        p.sum(axis=1), 1e-12
+    )
 
 
 # --- responses ---------------------------------------------------------------------------------------------
@@ -245,12 +315,17 @@ def adaptation(histories: Histories) -> pd.DataFrame:
     parts = {}
     for programme, words in (("ramp40", "40 gf/s"), ("ramp150", "150 gf/s")):
         history = histories[f"{programme}_k210"]
-        parts[f"force {words}"] = pd.DataFrame({"series": "force", TIME: history["time"].values, FORCE: force_gf(history)})
+        parts[f"force {words}"] = pd.DataFrame(
+            {"series": "force", TIME: history["time"].values, FORCE: force_gf(history)}
+        )
         slow, fast = predicted_rate(history), rapidly_adapting_rate(history, law, stimulus)
         for kind, rate in (("slowly adapting", slow), ("rapidly adapting", fast)):
             ticks = raster(rate, 5, SEED).rename(columns={TIME: IMPULSE, "trial": "trial (1)"})
             parts[f"{kind} {words}"] = pd.concat(
-                [rate[[TIME, IMPULSE_RATE]].assign(series="rate"), ticks[["trial (1)", IMPULSE]].assign(series="impulse")]
+                [
+                    rate[[TIME, IMPULSE_RATE]].assign(series="rate"),
+                    ticks[["trial (1)", IMPULSE]].assign(series="impulse"),
+                ]
             )
     return _named(parts)
 
@@ -267,7 +342,10 @@ def assumptions(histories: Histories) -> pd.DataFrame:
     top, half = mm * pad.apex_height, mm * pad.half_width
     epidermis, dermis = mm * pad.epidermis_thickness, mm * pad.dermis_thickness
     bone = mm * (pad.bone_centre_height + pad.bone_half_height)
-    fat, relaxed = top - epidermis - dermis - bone, 100 * sum(term.g for term in scene.specimen.prony)
+    fat, relaxed = (
+        top - epidermis - dermis - bone,
+        100 * sum(term.g for term in scene.specimen.prony),
+    )
 
     def modulus(name: str) -> str:
         return f"E {1e-3 * layers[name].youngs_modulus:g} kPa, ν {layers[name].poisson_ratio:g}"
@@ -283,17 +361,34 @@ def assumptions(histories: Histories) -> pd.DataFrame:
     )
     right = (
         ("inferred", f"radius of the skin at the apex {mm * pad.apex_radius:g} mm", 1.5, top - 0.1),
-        ("inferred", f"contact length {mm * scene.specimen.contact_length:g} mm\n(force per length)", 2.6, top - 0.3),
+        (
+            "inferred",
+            f"contact length {mm * scene.specimen.contact_length:g} mm\n(force per length)",
+            2.6,
+            top - 0.3,
+        ),
         ("assumed", "ramp and hold without friction;\nstrokes: μ calibrated", 3.4, top - 0.5),
-        ("inferred", f"width {2 * half:g} mm,\nheight {top + mm * pad.depth_below:.1f} mm", half * 0.86, 3.0),
-        ("inferred", f"fat under the apex {fat:.1f} mm:\nthe bone's place and size", 1.0, bone + 0.4),
+        (
+            "inferred",
+            f"width {2 * half:g} mm,\nheight {top + mm * pad.depth_below:.1f} mm",
+            half * 0.86,
+            3.0,
+        ),
+        (
+            "inferred",
+            f"fat under the apex {fat:.1f} mm:\nthe bone's place and size",
+            1.0,
+            bone + 0.4,
+        ),
         ("assumed", "bone and nail do not move", 4.6, -2.3),
         ("assumed", "plane strain, layers bonded,\nnearly incompressible", 6.5, -3.0),
     )
     told = [
         {"series": origin, "words": words, X: x, Y: float(y), "to_x (mm)": to_x, "to_y (mm)": to_y}
         for x, side in ((-13.0, left), (13.0, right))
-        for y, (origin, words, to_x, to_y) in zip(np.linspace(8.0, -6.0, len(side)), side, strict=True)
+        for y, (origin, words, to_x, to_y) in zip(
+            np.linspace(8.0, -6.0, len(side)), side, strict=True
+        )
     ]
     rows = pd.concat([lines(history, None, corneum=True), pd.DataFrame(told)], ignore_index=True)
     nail = mm * pad.nail_half_width
@@ -303,7 +398,10 @@ def assumptions(histories: Histories) -> pd.DataFrame:
 FRAMES = {
     "overview": (overview, ("fields_k210",)),
     "fields": (fields, ("fields_flat", "fields_k210", "fields_k1260")),
-    "mesh_close_up": (mesh_close_up, tuple(f"close_up_{s}_{level}" for s in ("k1260", "wavy") for level in LEVELS)),
+    "mesh_close_up": (
+        mesh_close_up,
+        tuple(f"close_up_{s}_{level}" for s in ("k1260", "wavy") for level in LEVELS),
+    ),
     "ridges_both_ways": (ridges_both_ways, ("ridged_press",)),
     "space_time": (space_time, (STROKE,)),
     "stick_slip": (stick_slip, (STROKE,)),

@@ -12,4 +12,6 @@ from fingerpad import load_scene
 def run(job):
     """`names` of the scenes, `scene` that they vary -> `rows` (CSV), one for each scene."""
     for name, path in zip(job.names, job.rows, strict=True):
-        write_frame(pd.DataFrame(beliefs(prepared(name, load_scene(job.scene[0])), name)), Path(path))
+        write_frame(
+            pd.DataFrame(beliefs(prepared(name, load_scene(job.scene[0])), name)), Path(path)
+        )

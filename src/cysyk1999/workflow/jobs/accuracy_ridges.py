@@ -7,4 +7,6 @@ from fingerpad import load_scene
 
 def run(job):
     """`scenes` in the order of SURFACES -> `table`."""
-    publish_table(table(dict(zip(SURFACES, map(load_scene, job.scenes), strict=True))), job.table[0])
+    publish_table(
+        table(dict(zip(SURFACES, map(load_scene, job.scenes), strict=True))), job.table[0]
+    )

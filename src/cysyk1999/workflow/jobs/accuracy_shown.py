@@ -13,5 +13,8 @@ def run(job):
     """`histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `table`, of the figures `numbers`."""
     folder = Path(job.reference[0]).parent
     figures = [(FIGURES[number], FIGURES[number].measurements(folder)) for number in job.numbers]
-    results, finer = read_results([*job.histories, *job.meshes, *job.coarse]), read_results(job.finer)[0]
+    results, finer = (
+        read_results([*job.histories, *job.meshes, *job.coarse]),
+        read_results(job.finer)[0],
+    )
     publish_table(shown(figures, results, finer, read_reference(job.reference[0])), job.table[0])

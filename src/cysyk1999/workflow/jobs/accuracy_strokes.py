@@ -11,5 +11,7 @@ from cysyk1999.studies.accuracy.strokes import stroke_errors, strokes
 def run(job):
     """`over`, what is stroked -> `rows` (CSV) of all strokes."""
     over = job.over[0]
-    rows = [row for name, scene in strokes(over).items() for row in stroke_errors(over, name, scene)]
+    rows = [
+        row for name, scene in strokes(over).items() for row in stroke_errors(over, name, scene)
+    ]
     write_frame(pd.DataFrame(rows), Path(job.rows[0]))

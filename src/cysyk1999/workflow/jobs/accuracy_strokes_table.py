@@ -10,4 +10,7 @@ from cysyk1999.studies.accuracy.strokes import strokes_table
 
 def run(job):
     """`parts` (CSV), one below the other -> `table`."""
-    publish_table(strokes_table(pd.concat([read_frame(Path(part)) for part in job.parts], ignore_index=True)), job.table[0])
+    publish_table(
+        strokes_table(pd.concat([read_frame(Path(part)) for part in job.parts], ignore_index=True)),
+        job.table[0],
+    )

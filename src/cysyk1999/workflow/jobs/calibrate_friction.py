@@ -13,6 +13,8 @@ from cysyk1999.studies.calibration.friction import calibrate_friction
 def run(job):
     """`sweep`, `histories`, the tables `thesis` and `published` -> `data`: friction, friction_estimates."""
     histories, sweep = read_results(job.histories)[0], read_results(job.sweep)[0].values()
-    result = calibrate_friction(sweep, histories, pd.read_csv(job.thesis[0]), read_friction(job.published[0]))
+    result = calibrate_friction(
+        sweep, histories, pd.read_csv(job.thesis[0]), read_friction(job.published[0])
+    )
     for path, frame in zip(job.data, (result.friction, result.estimates), strict=True):
         write_frame(without_round_off(frame), Path(path))

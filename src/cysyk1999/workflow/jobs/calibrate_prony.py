@@ -18,7 +18,10 @@ def run(job):
     how = plan(scene)
 
     def full(prony):
-        return simulate(with_series(scene, prony), how, mesh=mesh).force.values * scene.specimen.contact_length
+        return (
+            simulate(with_series(scene, prony), how, mesh=mesh).force.values
+            * scene.specimen.contact_length
+        )
 
     histories, _, _ = read_results(job.histories)
     plate, other, held = (histories[Path(path).parent.name] for path in job.histories)

@@ -12,5 +12,9 @@ def run(job):
     changes, choices = map(pd.read_csv, job.parts)
     frame = assemble(changes, choices)
     publish(effects(frame), frame, job.picture[0])
-    for table, path in zip((evidence(changes, choices), choices, rules_table(changes, choices)), job.tables, strict=True):
+    for table, path in zip(
+        (evidence(changes, choices), choices, rules_table(changes, choices)),
+        job.tables,
+        strict=True,
+    ):
         publish_table(table, path)

@@ -9,4 +9,7 @@ from cysyk1999.studies.explanations.run import READINGS, simulated, verdicts
 def run(job):
     """The reading `name` of the scenes in the folder `scenes`, the table `reference` -> `data`."""
     reading = READINGS[job.name[0]]
-    write_frame(verdicts(simulated(Path(job.scenes[0]), reading), reading, job.reference[0]), Path(job.data[0]))
+    write_frame(
+        verdicts(simulated(Path(job.scenes[0]), reading), reading, job.reference[0]),
+        Path(job.data[0]),
+    )

@@ -9,4 +9,6 @@ from cysyk1999.publishing.write import publish_table, read_frame
 
 def run(job):
     """`parts` (CSV), one below the other -> `table`."""
-    publish_table(pd.concat([read_frame(Path(part)) for part in job.parts], ignore_index=True), job.table[0])
+    publish_table(
+        pd.concat([read_frame(Path(part)) for part in job.parts], ignore_index=True), job.table[0]
+    )

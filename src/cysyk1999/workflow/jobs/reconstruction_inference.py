@@ -29,11 +29,17 @@ def run(job):
     found = study(read_unknowns(job.unknowns[0]), evidence, pd.read_csv(job.design[0]))
     chosen = chosen_pads(found.posteriors, found.samples)
     simulated = simulate_pads(evidence, chosen)
-    shown, posterior = predicted(evidence, chosen, simulated), posterior_table(found.posteriors, found.samples)
+    shown, posterior = (
+        predicted(evidence, chosen, simulated),
+        posterior_table(found.posteriors, found.samples),
+    )
     tables = (
-        posterior, found.readings, found.emulator, recovery_table(found.recovered),
+        posterior,
+        found.readings,
+        found.emulator,
+        recovery_table(found.recovered),
         families(evidence, shown, chosen),
-    )  # fmt: skip
+    )
     for table, path in zip(tables, job.tables, strict=True):
         publish_table(table, path)
     for part, path in zip((found.samples, shown, bands(chosen, simulated)), job.parts, strict=True):

@@ -4,7 +4,12 @@ import pandas as pd
 
 from cysyk1999.publishing.write import publish
 from cysyk1999.studies.reconstruction.evidence import Evidence, read_evidence
-from cysyk1999.studies.reconstruction.picture import evidence_frame, evidence_picture, posterior_frame, posterior_picture
+from cysyk1999.studies.reconstruction.picture import (
+    evidence_frame,
+    evidence_picture,
+    posterior_frame,
+    posterior_picture,
+)
 from cysyk1999.studies.reconstruction.specimen import most_probable
 from cysyk1999.studies.reconstruction.unknowns import read_unknowns
 

@@ -22,8 +22,16 @@ def _parts(source, title, judged):
     footer = f"<footer>{source}; data: {data if data.exists() else 'none'}<br>{CITE}</footer>"
     if source.suffix == ".csv":
         chapters = sorted(source.parent.glob(f"{source.stem}_chapter?.md"))
-        texts = [path.read_text(encoding="utf-8") for path in (source.with_suffix(".md"), *chapters)]
-        return *(of_markdown(re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", text)) for text in texts), footer
-    rows = [line for line in judged.splitlines() if line.startswith(f"| {source.stem.removeprefix('fig_')}: ")]
+        texts = [
+            path.read_text(encoding="utf-8") for path in (source.with_suffix(".md"), *chapters)
+        ]
+        return *(
+            of_markdown(re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", text)) for text in texts
+        ), footer
+    rows = [
+        line
+        for line in judged.splitlines()
+        if line.startswith(f"| {source.stem.removeprefix('fig_')}: ")
+    ]
     head = "## The thesis beside this\n\n| quantity | thesis | here | verdict | why |\n|---|---|---|---|---|\n"
     return picture(source, title), of_markdown(head + "\n".join(rows)) if rows else "", footer

@@ -13,6 +13,8 @@ def run(job):
     rows = []
     for path in map(Path, job.summaries):
         for number, leg in enumerate(json.loads(path.read_text(encoding="utf-8"))["legs"], start=1):
-            plain = {key: value for key, value in leg.items() if not isinstance(value, (list, dict))}
+            plain = {
+                key: value for key, value in leg.items() if not isinstance(value, (list, dict))
+            }
             rows.append({"scene": path.parent.name, "leg": number} | plain)
     publish_table(pd.DataFrame(rows), job.table[0])

@@ -14,7 +14,10 @@ def run(job):
     tables = {Path(path).stem: pd.read_csv(path) for path in job.tables}
     for path in job.pictures:
         if Path(path).stem == "scorecard":
-            frame, draw = views.scorecard_rows(tables["thesis_comparison"], read_reference(job.reference[0])), views.scorecard
+            frame, draw = (
+                views.scorecard_rows(tables["thesis_comparison"], read_reference(job.reference[0])),
+                views.scorecard,
+            )
         else:
             frame, draw = views.candidate_rows(tables["candidate_stimuli"]), views.candidate_stimuli
         publish(draw(frame), frame, path)

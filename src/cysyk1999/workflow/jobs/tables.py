@@ -19,4 +19,9 @@ def run(job):
         publish_table(TABLES[path.stem](*both, job.reference[0]), path)
         if path.stem == "thesis_comparison":
             for chapter, text in pages(path, read_reference(job.reference[0])).items():
-                write_text(path.with_name(f"{path.stem}_chapter{chapter}.md" if chapter else f"{path.stem}.md"), text)
+                write_text(
+                    path.with_name(
+                        f"{path.stem}_chapter{chapter}.md" if chapter else f"{path.stem}.md"
+                    ),
+                    text,
+                )

@@ -13,7 +13,8 @@ from fingerpad.planning.effects import finite_strain, friction, ridges, symmetry
 from fingerpad.scenes.effects import EFFECTS as NAMES
 
 EFFECTS: dict[str, PlannedEffect] = {
-    each.EFFECT.name: each.EFFECT for each in (symmetry, viscoelasticity, finite_strain, friction, ridges)
+    each.EFFECT.name: each.EFFECT
+    for each in (symmetry, viscoelasticity, finite_strain, friction, ridges)
 }
 """Name -> effect, in the order of the study."""
 

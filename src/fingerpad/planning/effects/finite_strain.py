@@ -12,7 +12,9 @@ from fingerpad.planning.effect import Case, Effect, PlannedEffect, Shown, rule
 class FiniteStrainRules:
     """Small strain is used where its error is within the accuracy."""
 
-    small_strain_error: float = rule(4.6, "finite strain: on when this times depth / soft thickness exceeds the accuracy")
+    small_strain_error: float = rule(
+        4.6, "finite strain: on when this times depth / soft thickness exceeds the accuracy"
+    )
 
 
 def small_strain_error(case: Case) -> float:
@@ -25,7 +27,9 @@ def small_strain_error(case: Case) -> float:
 
 
 def _laws(case: Case) -> float:
-    return max(departure(layer.law, layer.constants, case.contact.strain) for layer in _layers(case))
+    return max(
+        departure(layer.law, layer.constants, case.contact.strain) for layer in _layers(case)
+    )
 
 
 def _layers(case: Case) -> list:
@@ -43,7 +47,10 @@ def decide(case: Case) -> Effect:
 def beside_mesh(case: Case, mesh_error: float) -> Effect:
     """On where a tolerance has no room for both the error of small strain and that of the mesh."""
     error = small_strain_error(case)
-    return Effect(True, f"small strain would be wrong by up to {error:.1%} beside the mesh's {mesh_error:.1%}: too much for both")
+    return Effect(
+        True,
+        f"small strain would be wrong by up to {error:.1%} beside the mesh's {mesh_error:.1%}: too much for both",
+    )
 
 
 _RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]
@@ -55,9 +62,17 @@ EFFECT = PlannedEffect(
     decide=decide,
     rules=FiniteStrainRules,
     shown=(
-        Shown("20 gf, 1260 1/m", True, {"stimulus": {"shape": "cylinder", "curvature": "1259.84 1/m"}, "motion": _RAMP}),
+        Shown(
+            "20 gf, 1260 1/m",
+            True,
+            {"stimulus": {"shape": "cylinder", "curvature": "1259.84 1/m"}, "motion": _RAMP},
+        ),
         Shown("20 gf, flat", True, {"stimulus": {"shape": "flat"}, "motion": _RAMP}),
-        Shown("0.02 gf, 210 1/m", False, {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}, "motion": _LIGHT}),
+        Shown(
+            "0.02 gf, 210 1/m",
+            False,
+            {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}, "motion": _LIGHT},
+        ),
     ),
     title="finite strain",
     marker="^",

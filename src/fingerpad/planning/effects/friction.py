@@ -11,9 +11,15 @@ from fingerpad.planning.effect import OWN_PAIR, Case, Effect, PlannedEffect, Sho
 class FrictionRules:
     """Friction is left out of presses when what it changes is within the accuracy."""
 
-    pressing_friction: float = rule(2.0, "friction of a press: on when this times the coefficient exceeds the accuracy")
-    most_pressing_friction: float = rule(0.2, "friction of a press: what that product comes to at most", OWN_PAIR)
-    frictional: float = rule(1.2, "predicted cost: a step with friction over one without", "figures/tables/speed.md")
+    pressing_friction: float = rule(
+        2.0, "friction of a press: on when this times the coefficient exceeds the accuracy"
+    )
+    most_pressing_friction: float = rule(
+        0.2, "friction of a press: what that product comes to at most", OWN_PAIR
+    )
+    frictional: float = rule(
+        1.2, "predicted cost: a step with friction over one without", "figures/tables/speed.md"
+    )
 
 
 def decide(case: Case) -> Effect:
@@ -41,9 +47,17 @@ EFFECT = PlannedEffect(
     dearer=lambda rules: rules.frictional,
     always="friction: whenever the skin is stroked with a coefficient above 0",
     shown=(
-        Shown("stroke of a plate, 0.7", True, {"stimulus": _PLATE, "friction": 0.7, "motion": _STROKE}),
-        Shown("pressed only, flat, 0.7", True, {"stimulus": _PLATE, "friction": 0.7, "motion": _RAMP}),
-        Shown("pressed only, 210 1/m, 0.01", False, {"stimulus": _CYLINDER, "friction": 0.01, "motion": _RAMP}),
+        Shown(
+            "stroke of a plate, 0.7", True, {"stimulus": _PLATE, "friction": 0.7, "motion": _STROKE}
+        ),
+        Shown(
+            "pressed only, flat, 0.7", True, {"stimulus": _PLATE, "friction": 0.7, "motion": _RAMP}
+        ),
+        Shown(
+            "pressed only, 210 1/m, 0.01",
+            False,
+            {"stimulus": _CYLINDER, "friction": 0.01, "motion": _RAMP},
+        ),
     ),
     title="friction",
     marker="D",

@@ -21,27 +21,34 @@ _ROUND_OFF = 1e-12
 class RidgeRules:
     """Low inner ridges are left out of presses when what they change is within the accuracy."""
 
-    ridge_change: float = rule(3.0, "ridges, inner, pressed: on when this times height / pitch exceeds the accuracy")
+    ridge_change: float = rule(
+        3.0, "ridges, inner, pressed: on when this times height / pitch exceeds the accuracy"
+    )
     ridge_width: float = rule(
-        1 / 3, "half width of the contact, over the pitch, below which ridges change the more the narrower it is"
+        1 / 3,
+        "half width of the contact, over the pitch, below which ridges change the more the narrower it is",
     )
     ridge_contrast: float = rule(
-        11.0, "ridges: always on where the epidermis is stiffer than this times the dermis",
+        11.0,
+        "ridges: always on where the epidermis is stiffer than this times the dermis",
         "the thesis's moduli, 10; not studied beyond",
-    )  # fmt: skip
+    )
     ridge_error: float = rule(
-        7.0, "error of strain energies beside ridges: this times height / pitch, times (element / pitch) to a power",
+        7.0,
+        "error of strain energies beside ridges: this times height / pitch, times (element / pitch) to a power",
         "figures/tables/accuracy_ridges.csv",
-    )  # fmt: skip
+    )
     ridge_order: float = rule(1.5, "that power", "figures/tables/accuracy_ridges.csv")
     ridge_stroked: float = rule(
-        0.5, "share of a tolerance that strain energies beside ridges are meshed for in strokes, whose rates follow from them",
+        0.5,
+        "share of a tolerance that strain energies beside ridges are meshed for in strokes, whose rates follow from them",
         "figures/studies/accuracy_shown.csv",
-    )  # fmt: skip
+    )
     ridge_near: float = rule(
-        2.0, "receptors are beside ridges within so many heights of the depth at which the epidermis ends",
+        2.0,
+        "receptors are beside ridges within so many heights of the depth at which the epidermis ends",
         "figures/tables/accuracy_ridges.csv",
-    )  # fmt: skip
+    )
 
 
 def decide(case: Case) -> Effect:
@@ -64,13 +71,17 @@ def decide(case: Case) -> Effect:
     worth = rules.ridge_change * narrow * inner.height / inner.pitch
     if not known or worth > case.tolerance:
         return Effect(True, why)
-    return Effect(False, f"{why}: they change up to {worth:.1%} of a press, {case.tolerance:.1%} is allowed")
+    return Effect(
+        False, f"{why}: they change up to {worth:.1%} of a press, {case.tolerance:.1%} is allowed"
+    )
 
 
 def _felt(scene: Scene, rules: RidgeRules) -> bool:
     """Whether a receptor is beside ridges."""
     border, height = scene.specimen.outline.epidermis_thickness, scene.specimen.ridges.inner.height
-    return any(abs(depth - border) <= rules.ridge_near * height for depth in scene.outputs.receptors.depths)
+    return any(
+        abs(depth - border) <= rules.ridge_near * height for depth in scene.outputs.receptors.depths
+    )
 
 
 def error_beside(inner: Any, elements: float, rules: RidgeRules) -> float:
@@ -80,7 +91,9 @@ def error_beside(inner: Any, elements: float, rules: RidgeRules) -> float:
     return rules.ridge_error * inner.height / wave_of(inner) * elements**-rules.ridge_order
 
 
-def meshed(scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, rules: RidgeRules) -> tuple[MeshSize, float]:
+def meshed(
+    scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, rules: RidgeRules
+) -> tuple[MeshSize, float]:
     """The mesh made finer among ridges that receptors are beside, as a ``tolerance`` asks for, and the error that is left there.
 
     Args:
@@ -95,7 +108,12 @@ def meshed(scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, r
     ridges = scene.specimen.ridges
     wave, column = wave_of(ridges.inner), apex_column(scene.specimen.outline, size, ridges)
     allowed = np.inf if tolerance is None else tolerance * (rules.ridge_stroked if moves else 1.0)
-    wanted = 3 * wave * (allowed / error_beside(ridges.inner, 1.0, rules)) ** (1 / rules.ridge_order) * (1 - _ROUND_OFF)
+    wanted = (
+        3
+        * wave
+        * (allowed / error_beside(ridges.inner, 1.0, rules)) ** (1 / rules.ridge_order)
+        * (1 - _ROUND_OFF)
+    )
     if (wanted := max(wanted, rules.least_edge)) < column:
         reach = max(map(abs, scene.outputs.receptors.offsets), default=0.0) + ridges.inner.pitch
         size, column = replace(size, focus=(*size.focus, *all_over(reach, wanted))), wanted
@@ -110,7 +128,9 @@ def resolved(effect: Effect, layered: tuple, edge: float) -> tuple[Effect, float
     per_ridge, per_height = ridge_resolution(*layered)
     middle = wave_of(layered[2].inner) / (apex_column(*layered[:3]) / 3)
     said = f"{per_ridge:.1f} elements from ridge to ridge, {middle:.1f} in the middle, {per_height} rows within their height"
-    return replace(effect, why=f"{effect.why}: {said} of the interface"), skin_edge(*layered[:3], edge)
+    return replace(effect, why=f"{effect.why}: {said} of the interface"), skin_edge(
+        *layered[:3], edge
+    )
 
 
 _PRESS = {
@@ -127,7 +147,11 @@ EFFECT = PlannedEffect(
     always="ridges: in strokes, outer ones, and near receptors whenever the specimen has them",
     shown=(
         Shown("inner, 0.15 mm high", True, _PRESS | {"specimen": {"ridges": "inner"}}),
-        Shown("inner, 3 um high", False, _PRESS | {"specimen": {"ridges": {"inner": {"height": "3 um"}}}}),
+        Shown(
+            "inner, 3 um high",
+            False,
+            _PRESS | {"specimen": {"ridges": {"inner": {"height": "3 um"}}}},
+        ),
     ),
     title="ridges",
     marker="v",

@@ -18,11 +18,18 @@ def decide(case: Case) -> Effect:
 
         if not RidgedPad(case.scene.specimen.outline, case.scene.specimen.ridges).symmetric:
             return Effect(False, "the ridges are not their own mirror image in x = 0")
-    return Effect(True, "pad, stimulus and motion are mirror images in x = 0: half the unknowns suffice")
+    return Effect(
+        True, "pad, stimulus and motion are mirror images in x = 0: half the unknowns suffice"
+    )
 
 
 _RAMP = [{"press_to_force": "20 gf", "rate": "40 gf/s"}, {"hold": "2 s"}]
-_LOPSIDED = {"shape": "wavy", "curvatures": ["104.99 1/m", "209.97 1/m"], "lead_in": "1 mm", "run_out": "5 mm"}
+_LOPSIDED = {
+    "shape": "wavy",
+    "curvatures": ["104.99 1/m", "209.97 1/m"],
+    "lead_in": "1 mm",
+    "run_out": "5 mm",
+}
 
 EFFECT = PlannedEffect(
     name="symmetry",
@@ -33,7 +40,11 @@ EFFECT = PlannedEffect(
     always="half the pad: whenever pad, stimulus and motion are mirror images",
     shown=(
         Shown("lopsided wave", True, {"stimulus": _LOPSIDED, "motion": _RAMP}),
-        Shown("ramp and hold, 210 1/m", False, {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}, "motion": _RAMP}),
+        Shown(
+            "ramp and hold, 210 1/m",
+            False,
+            {"stimulus": {"shape": "cylinder", "curvature": "209.97 1/m"}, "motion": _RAMP},
+        ),
         Shown("ramp and hold, flat", False, {"stimulus": {"shape": "flat"}, "motion": _RAMP}),
     ),
     title="symmetry (half the pad)",

@@ -15,8 +15,12 @@ from fingerpad.specimen.materials import Prony
 class ViscoelasticityRules:
     """Shares of the accuracy; answers change by up to 2 and 7 times as much."""
 
-    relaxation_share: float = rule(0.4, "viscoelasticity: off when stress can relax by less than this share of the accuracy")
-    lag_share: float = rule(0.15, "viscoelasticity: off when stress lags behind by less than this share of the accuracy")
+    relaxation_share: float = rule(
+        0.4, "viscoelasticity: off when stress can relax by less than this share of the accuracy"
+    )
+    lag_share: float = rule(
+        0.15, "viscoelasticity: off when stress lags behind by less than this share of the accuracy"
+    )
 
 
 def moduli_state(case: Case) -> str:
@@ -31,7 +35,9 @@ def decide(case: Case) -> Effect:
 
 def _decide(case: Case) -> tuple[Effect, str]:
     scene, rules, tolerance = case.scene, case.rules, case.tolerance
-    prony = Prony(tuple(t.g for t in scene.specimen.prony), tuple(t.tau for t in scene.specimen.prony))
+    prony = Prony(
+        tuple(t.g for t in scene.specimen.prony), tuple(t.tau for t in scene.specimen.prony)
+    )
     if not prony:
         return Effect(False, "the specimen has no Prony series"), "long_term"
     durations = [
@@ -39,7 +45,9 @@ def _decide(case: Case) -> tuple[Effect, str]:
         for leg, duration in zip(scene.motion, leg_durations(scene), strict=True)
     ]
     if all(d is None for d in durations):
-        return Effect(False, "no leg names a rate: steady states need the long-term moduli only"), "long_term"
+        return Effect(
+            False, "no leg names a rate: steady states need the long-term moduli only"
+        ), "long_term"
     timed = [d for d in durations if d is not None]
     limit, relaxed = rules.relaxation_share * tolerance, 1 - float(prony.relaxation(sum(timed)))
     if None not in durations and relaxed < limit:
@@ -77,9 +85,16 @@ EFFECT = PlannedEffect(
     possible=lambda case: bool(case.scene.specimen.prony),
     rules=ViscoelasticityRules,
     shown=(
-        Shown("ramp of 0.5 s and hold", True, {"stimulus": _CYLINDER, "motion": [*_ramp("40 gf/s"), {"hold": "2 s"}]}),
         Shown(
-            "ramp of 3 ms, instantaneous moduli", False, {"stimulus": _CYLINDER, "motion": _ramp("6666.67 gf/s")}, "instantaneous"
+            "ramp of 0.5 s and hold",
+            True,
+            {"stimulus": _CYLINDER, "motion": [*_ramp("40 gf/s"), {"hold": "2 s"}]},
+        ),
+        Shown(
+            "ramp of 3 ms, instantaneous moduli",
+            False,
+            {"stimulus": _CYLINDER, "motion": _ramp("6666.67 gf/s")},
+            "instantaneous",
         ),
         Shown("ramp of 3 hours", False, {"stimulus": _CYLINDER, "motion": _ramp("0.002 gf/s")}),
     ),

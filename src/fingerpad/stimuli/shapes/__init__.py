@@ -12,5 +12,15 @@ from fingerpad.stimuli.shapes.shape import SHAPES, CurvedShape, Shape, Stimulus,
 from fingerpad.stimuli.shapes.wavy import Wavy
 
 __all__ = [
-    "SHAPES", "Bar", "CurvedShape", "Cylinder", "Flat", "Line", "Sampled", "Shape", "Stimulus", "Wavy", "shape_from",
-]  # fmt: skip
+    "SHAPES",
+    "Bar",
+    "CurvedShape",
+    "Cylinder",
+    "Flat",
+    "Line",
+    "Sampled",
+    "Shape",
+    "Stimulus",
+    "Wavy",
+    "shape_from",
+]

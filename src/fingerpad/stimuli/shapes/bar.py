@@ -38,7 +38,9 @@ class Rounded(Shape):
         x, y = np.abs(points[:, 0]), points[:, 1]
         sign = np.where(points[:, 0] < 0, -1.0, 1.0)
         dx, dy = x - half, self.fillet - y
-        outside = ((dx > 0) | (half == 0)) & (dy > 0)  # a full round has no flat between its corners
+        outside = ((dx > 0) | (half == 0)) & (
+            dy > 0
+        )  # a full round has no flat between its corners
         corner = np.maximum(np.hypot(dx, dy), 1e-15)
         side = ~outside & (dx > dy)
         distance = np.where(outside, corner, np.where(side, dx, dy)) - self.fillet

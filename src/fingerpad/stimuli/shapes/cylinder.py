@@ -33,7 +33,12 @@ class Cylinder(Shape):
         """The curvature is that of the radius or diameter given."""
         given = [key for key in ("curvature", "radius", "diameter") if data.get(key) is not None]
         if len(given) > 1:
-            raise Problem(f"is given beside {given[0]}", "one of curvature, radius and diameter", (given[1],), HIDE)
+            raise Problem(
+                f"is given beside {given[0]}",
+                "one of curvature, radius and diameter",
+                (given[1],),
+                HIDE,
+            )
         if given in (["radius"], ["diameter"]):
             length = read(Length, data[given[0]], given[0], context)
             data["curvature"] = SI((1 if given == ["radius"] else 2) / length)

@@ -56,12 +56,22 @@ class Sampled(CurvedShape):
         """Reads the points from the file."""
         if "x" not in data:
             if data.get("csv") is None:
-                raise Problem("is missing", "the path of a CSV file, or in Python x and y", ("csv",), HIDE)
+                raise Problem(
+                    "is missing", "the path of a CSV file, or in Python x and y", ("csv",), HIDE
+                )
             if not isinstance(data["csv"], (str, Path)):
                 raise Problem("is not a path", "the path of a CSV file", ("csv",))
-            data["csv"] = expanded(data["csv"]).absolute() if context is None else context.resolve(data["csv"])
+            data["csv"] = (
+                expanded(data["csv"]).absolute()
+                if context is None
+                else context.resolve(data["csv"])
+            )
             data["x"], data["y"], data["read_as"] = _read_profile(data["csv"])
-        return data | {key: tuple(map(float, data[key])) for key in "xy" if isinstance(data.get(key), np.ndarray)}
+        return data | {
+            key: tuple(map(float, data[key]))
+            for key in "xy"
+            if isinstance(data.get(key), np.ndarray)
+        }
 
     @cached_property
     def curve(self) -> Points:
@@ -91,26 +101,35 @@ def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...], tup
     Problem : they are no numbers, x does not increase, or their size is not believable.
     """
 
-    def wrong(problem: str, allowed: str = "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing") -> Problem:
+    def wrong(
+        problem: str,
+        allowed: str = "a CSV file with the columns 'x (mm)' and 'y (mm)', x strictly increasing",
+    ) -> Problem:
         return Problem(problem, allowed, ("csv",))
 
     try:
         table = read_table(path)
         found = _profile_columns(table.header)
-        x, y, *z = ([factor * number for number in table.numbers(k)] for k, factor in found.values())
+        x, y, *z = (
+            [factor * number for number in table.numbers(k)] for k, factor in found.values()
+        )
     except FileNotFoundError:
         raise wrong("is not an existing file") from None
     except TableError as error:
         raise wrong(error.problem, error.allowed) from None
     except (OSError, ValueError) as error:
-        raise wrong(f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})") from None
+        raise wrong(
+            f"cannot be read ({getattr(error, 'strerror', None) or type(error).__name__})"
+        ) from None
     notes, lines = list(table.notes), list(table.lines)
     if len(x) < 2:
         raise wrong("has fewer than two points")
     if z:
         x, y = _without_lateral(x, y, *z, wrong)
         notes.append(
-            "heights are read from z, for y does not move" if y is z[0] else "heights are read from y, for z does not move"
+            "heights are read from z, for y does not move"
+            if y is z[0]
+            else "heights are read from y, for z does not move"
         )
     if x[0] > x[-1]:
         x, y, lines = x[::-1], y[::-1], lines[::-1]
@@ -121,7 +140,10 @@ def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...], tup
     if not NARROWEST <= width <= WIDEST:
         size = f"{width:.3g} m" if width > WIDEST else f"{width * 1e6:.3g} um"
         name = table.header[next(iter(found.values()))[0]]
-        raise wrong(f"is {size} wide by its column '{name}'", "10 um to 10 m; is the unit another one, um, mm or m?")
+        raise wrong(
+            f"is {size} wide by its column '{name}'",
+            "10 um to 10 m; is the unit another one, um, mm or m?",
+        )
     return tuple(x), tuple(y), tuple(f"{path.name}: {note}" for note in notes)
 
 
@@ -134,11 +156,17 @@ def _profile_columns(header: tuple[str, ...]) -> dict[str, tuple[int, float]]:
             try:
                 found[match[1].lower()] = k, parse_quantity(f"1 {unit}", "length")
             except QuantityError as error:
-                raise TableError(f"has the column '{name}', which {error.problem}", "'x (mm)', 'y (mm)', or um, or m") from None
+                raise TableError(
+                    f"has the column '{name}', which {error.problem}",
+                    "'x (mm)', 'y (mm)', or um, or m",
+                ) from None
     for name in ("x", "y"):
         if name not in found and not (name == "y" and "z" in found):
             columns = ", ".join(f"'{name[:30]}'" for name in header[:6])
-            raise TableError(f"has no column '{name} (mm)', but {columns}", "the columns 'x (mm)' and 'y (mm)', or um, or m")
+            raise TableError(
+                f"has no column '{name} (mm)', but {columns}",
+                "the columns 'x (mm)' and 'y (mm)', or um, or m",
+            )
     return {name: found[name] for name in "xyz" if name in found}
 
 
@@ -148,7 +176,10 @@ def _without_lateral(x: list[float], y: list[float], z: list[float], wrong: Call
         return x, z
     if max(z) == min(z):
         return x, y
-    raise wrong("has columns x, y and z that all move", "a profile along one line: x and heights, y (or z) the same in all rows")
+    raise wrong(
+        "has columns x, y and z that all move",
+        "a profile along one line: x and heights, y (or z) the same in all rows",
+    )
 
 
 class Points(Curve):
@@ -178,7 +209,9 @@ class Points(Curve):
             left = self._end(-x[1::-1], y[1::-1], rounding)
             self.own = slice(len(left[0]), len(left[0]) + len(bend))
             x = np.concatenate([-np.array(left[0][::-1]), x, right[0]])
-            y, bend = (np.concatenate([left[k][::-1], inner, right[k]]) for k, inner in ((1, y), (2, bend)))
+            y, bend = (
+                np.concatenate([left[k][::-1], inner, right[k]]) for k, inner in ((1, y), (2, bend))
+            )
         super().__init__(x, y, bend)
         self.known = tuple(map(float, self.samples[0][[0, -1]]))
         if ends == "open":
@@ -194,11 +227,18 @@ class Points(Curve):
         xs, ys, bends = [], [], []
         if rounding and turn:
             chord = 2 * rounding * np.sin(turn)
-            last, height = last + chord * np.cos(slope + turn), height + chord * np.sin(slope + turn)
+            last, height = (
+                last + chord * np.cos(slope + turn),
+                height + chord * np.sin(slope + turn),
+            )
             xs, ys, bends = [last], [height], [1 / rounding]
         length = rounding or 1e-4
         steep = slope + 2 * turn
-        return [*xs, last + length * np.cos(steep)], [*ys, height + length * np.sin(steep)], [*bends, 0.0]
+        return (
+            [*xs, last + length * np.cos(steep)],
+            [*ys, height + length * np.sin(steep)],
+            [*bends, 0.0],
+        )
 
     def corners(self):
         inner = super().corners()
@@ -218,7 +258,9 @@ class Points(Curve):
         beyond = np.where(left, self.known[0] - x, x - self.known[1])
         # away from the steep sides the samples' own slopes count; beside them, how far their end is away
         end = np.hypot(beyond, y - np.where(left, *self.samples[1][[0, -1]]))
-        inside = np.where(-beyond > within, np.abs(y - height) * share_of_height(self.steepness), within)
+        inside = np.where(
+            -beyond > within, np.abs(y - height) * share_of_height(self.steepness), within
+        )
         return np.where(beyond > 0, np.minimum(within, end), inside)
 
     def cutoffs(self, edge):
@@ -262,7 +304,10 @@ class Points(Curve):
         if not self.smoothing and not is_rough(*self.measured, max(spacing, SKIN_EDGE)):
             return None
         x, _ = self.measured
-        apart, cutoff = float(np.median(np.diff(x))), max(2 * self.smoothing, WAVE * max(spacing, SKIN_EDGE))
+        apart, cutoff = (
+            float(np.median(np.diff(x))),
+            max(2 * self.smoothing, WAVE * max(spacing, SKIN_EDGE)),
+        )
         return (
             f"smoothing of the profile, whose corners are {apart * 1e6:.3g} um apart, the nodes {spacing * 1e6:.3g} um: "
             f'stimulus.smooth: "{cutoff * 1e6:.0f} um" or more'

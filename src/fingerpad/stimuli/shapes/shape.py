@@ -26,7 +26,9 @@ class Shape(Strict, Profile):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
-        if "shape" in get_annotations(cls):  # a class that only evaluates otherwise has the name of its parent, and not its place
+        if "shape" in get_annotations(
+            cls
+        ):  # a class that only evaluates otherwise has the name of its parent, and not its place
             SHAPES[cls.model_fields["shape"].default] = cls
 
     def recorded(self) -> dict[str, Any]:
@@ -107,7 +109,9 @@ def _read(value: Any, info: ValidationInfo) -> Shape:
     if isinstance(value, Shape):
         return value
     if not isinstance(value, Mapping):
-        raise Problem("is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}')
+        raise Problem(
+            "is not a mapping", '{shape: flat} or {shape: cylinder, curvature: "210 1/m"}'
+        )
     return shape_from(value, info.context)
 
 
@@ -117,8 +121,12 @@ class _AnyShape:
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
         return core_schema.with_info_plain_validator_function(_read)
 
-    def __get_pydantic_json_schema__(self, schema: core_schema.CoreSchema, handler: Any) -> dict[str, Any]:
-        return handler(core_schema.union_schema([shape.__pydantic_core_schema__ for shape in SHAPES.values()]))
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: Any
+    ) -> dict[str, Any]:
+        return handler(
+            core_schema.union_schema([shape.__pydantic_core_schema__ for shape in SHAPES.values()])
+        )
 
 
 Stimulus = Annotated[Shape, _AnyShape()]

@@ -43,7 +43,9 @@ class Wavy(CurvedShape):
         # a fillet of radius r ends on the flat: (lead_in + R sin)^2 = (R + r)^2 - (R cos + r)^2 at most
         sine, drop = math.sin(self.half_angle), 1 - math.cos(self.half_angle)
         ends = ((self.lead_in, 1 / self.curvatures[0]), (self.run_out, 1 / self.curvatures[-1]))
-        largest = min(flat * (flat + 2 * radius * sine) / (2 * radius * drop) for flat, radius in ends)
+        largest = min(
+            flat * (flat + 2 * radius * sine) / (2 * radius * drop) for flat, radius in ends
+        )
         if self.fillet >= largest:
             allowed = f"0 mm to below {format_quantity(largest, 'length')}"
             raise Problem("does not fit the flat beside it", allowed, ("fillet",))
@@ -53,7 +55,9 @@ class Wavy(CurvedShape):
     def length(self) -> float:
         """Length of the surface along x, m."""
         first, *others = (1 / curvature for curvature in self.curvatures)
-        return self.lead_in + 2 * math.sin(self.half_angle) * (first + 2 * sum(others)) + self.run_out
+        return (
+            self.lead_in + 2 * math.sin(self.half_angle) * (first + 2 * sum(others)) + self.run_out
+        )
 
     @cached_property
     def curve(self) -> Curve:
@@ -65,10 +69,14 @@ class Wavy(CurvedShape):
         """
         radius = 1 / np.asarray(self.curvatures, float)
         # convex, then hollow and convex for each further one
-        chords = 2 * np.sin(self.half_angle) * np.concatenate([radius[:1], np.repeat(radius[1:], 2)])
+        chords = (
+            2 * np.sin(self.half_angle) * np.concatenate([radius[:1], np.repeat(radius[1:], 2)])
+        )
         x = np.cumsum([0.0, self.lead_in, *chords, self.run_out])
         y = np.zeros_like(x)
-        bends = np.concatenate([[0.0, 1 / radius[0]], *([-1 / r, 1 / r] for r in radius[1:]), [0.0]])
+        bends = np.concatenate(
+            [[0.0, 1 / radius[0]], *([-1 / r, 1 / r] for r in radius[1:]), [0.0]]
+        )
         if self.fillet:
             (back, on, drop), (back_last, on_last, drop_last) = (
                 _fillet(r, self.half_angle, self.fillet) for r in radius[[0, -1]]
