@@ -1,4 +1,6 @@
-"""Every figure from made-up results, made and drawn once for all tests: frames as published and read back, pictures of these."""
+"""Every figure from made-up results, made and drawn once for all tests: frames as published and
+read back, pictures of these.
+"""
 
 import tempfile
 from functools import cache

@@ -1,4 +1,6 @@
-"""Faults of a file system: the n-th call that touches a folder fails, is interrupted, or is the process's last."""
+"""Faults of a file system: the n-th call that touches a folder fails, is interrupted, or is the
+process's last.
+"""
 
 import builtins
 import contextlib
@@ -12,9 +14,11 @@ ERRORS = (errno.ENOSPC, errno.EIO, errno.EACCES, errno.EDQUOT, errno.EROFS)
 
 
 class Faults:
-    """While this is entered, calls of the system that name something in `folder` are counted; the `at`-th goes wrong by `how`.
+    """While this is entered, calls of the system that name something in `folder` are counted; the
+    `at`-th goes wrong by `how`.
 
-    `how`: a number of errno, "interrupt" or "kill". A file that is to be written is then left half-written.
+    `how`: a number of errno, "interrupt" or "kill". A file that is to be written is then left
+    half-written.
     """
 
     def __init__(self, folder, at=None, how=errno.EIO):
@@ -79,7 +83,9 @@ def files(folder):
 
 
 def results(folder):
-    """The same without scratch folders, which may stay until the next run where tidying up is what goes wrong."""
+    """The same without scratch folders, which may stay until the next run where tidying up is what
+    goes wrong.
+    """
     return {
         name: content
         for name, content in files(folder).items()

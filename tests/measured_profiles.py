@@ -1,4 +1,6 @@
-"""Thirty measured profiles and what they were measured of: shapes in mm, sampled with noise and rounding as instruments do it."""
+"""Thirty measured profiles and what they were measured of: shapes in mm, sampled with noise and
+rounding as instruments do it.
+"""
 
 import numpy as np
 
@@ -60,14 +62,17 @@ SHAPES = {
 
 
 def spectrum(rng, count, spacing, slope, longest):
-    """Gaussian noise of rms 1 whose power falls like wavenumber ** -slope below a longest wavelength (mm)."""
+    """Gaussian noise of rms 1 whose power falls like wavenumber ** -slope below a longest
+    wavelength (mm).
+    """
     wave = np.fft.rfftfreq(count, spacing)
     power = np.where(wave > 1 / longest, np.maximum(wave, 1 / longest) ** (-slope / 2), 0.0)
     noise = np.fft.irfft(power * np.fft.rfft(rng.normal(size=count)), count)
     return noise / noise.std()
 
 
-#: name of the shape, spacing mm, rms of the noise mm, slope of its spectrum, digits after the point of a millimetre
+#: name of the shape, spacing mm, rms of the noise mm, slope of its spectrum, digits after the point
+#: of a millimetre
 INSTRUMENTS = [
     ("cylinder 1.5", 0.005, 0.0005, 0, 6),
     ("cylinder 2.5", 0.005, 0.0005, 0, 6),

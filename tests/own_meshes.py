@@ -6,7 +6,9 @@ from fingerpad.specimen import PadMesh, write_pad
 
 
 def slab_mesh(edge, low=-10e-3, high=10e-3, left=-10e-3, right=10e-3, height=5e-3, y=None):
-    """Linear quads from x = ``left`` to ``right`` m, rows at heights ``y``; the skin is the top from ``low`` to ``high`` m."""
+    """Linear quads from x = ``left`` to ``right`` m, rows at heights ``y``; the skin is the top
+    from ``low`` to ``high`` m.
+    """
     x = np.linspace(left, right, round((right - left) / edge) + 1)
     y = np.linspace(0, height, round(height / edge) + 1) if y is None else y
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -1,6 +1,8 @@
-"""Scenes, sweeps and the files they name, drawn at random from the JSON schemas of the typed models, and broken at random.
+"""Scenes, sweeps and the files they name, drawn at random from the JSON schemas of the typed
+models, and broken at random.
 
-What a quantity is likely to be is read from the scene with every key and from the thesis's specimen: it is drawn around that.
+What a quantity is likely to be is read from the scene with every key and from the thesis's
+specimen: it is drawn around that.
 """
 
 import copy
@@ -249,7 +251,9 @@ def _scene_schema():
 
 @st.composite
 def scenes(draw):
-    """A scene that is likely to be right: a shape, a press and legs after it, and now and then any other part."""
+    """A scene that is likely to be right: a shape, a press and legs after it, and now and then any
+    other part.
+    """
     schema = _scene_schema()
     defs, parts = schema["$defs"], schema["properties"]
     shapes = [name for name, model in defs.items() if "shape" in model.get("required", ())]
@@ -312,7 +316,9 @@ def at(document, path):
 
 @st.composite
 def broken(draw):
-    """A scene or a sweep of which one or two places are something else, gone, called otherwise, or once more."""
+    """A scene or a sweep of which one or two places are something else, gone, called otherwise, or
+    once more.
+    """
     document = copy.deepcopy(draw(scenes() | sweeps()).document)
     for _ in range(draw(st.integers(1, 2))):
         known = list(places(document))

@@ -2,9 +2,11 @@
 
 Baselines, all committed:
 
-- ``tests/baselines/fig_<number>.csv``: every figure from simulations on coarse meshes, which the tests run afresh. They catch a
+- ``tests/baselines/fig_<number>.csv``: every figure from simulations on coarse meshes, which the
+  tests run afresh. They catch a
   change of the mechanics or of a figure's data.
-- ``tests/baselines/thesis.csv``: a summary of every curve in ``figures/thesis/*.csv``. It catches a change of the published data
+- ``tests/baselines/thesis.csv``: a summary of every curve in ``figures/thesis/*.csv``. It catches a
+  change of the published data
   even where the thesis-resolution results are not at hand, or were overwritten.
 - ``figures/thesis/*.png`` themselves: they catch a change of a figure's drawing.
 
@@ -45,7 +47,9 @@ def tolerance(column: str) -> float:
 
 
 def split_curves(frame: pd.DataFrame) -> Iterable[tuple[str, pd.DataFrame]]:
-    """Curves of a frame: rows equal in every text column, with a name made of them; what the thesis says in words is none."""
+    """Curves of a frame: rows equal in every text column, with a name made of them; what the thesis
+    says in words is none.
+    """
     frame = frame[~frame["source"].astype(str).str.startswith("thesis statement")]
     keys = [c for c in TEXT_COLUMNS if c in frame]
     keys += [c for c in ("receptor_depth (um)", "node_x (mm)") if c in frame]
@@ -57,10 +61,11 @@ def split_curves(frame: pd.DataFrame) -> Iterable[tuple[str, pd.DataFrame]]:
 
 
 def differences(frame: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:
-    """What differs between two frames of a figure by more than the tolerances; empty if nothing does.
+    """What differs between two frames of a figure by more than the tolerances; empty if nothing
+    does.
 
-    Columns, curves and the number of points must be the same; numbers are compared point by point, relative
-    to the largest magnitude in the curve.
+    Columns, curves and the number of points must be the same; numbers are compared point by point,
+    relative to the largest magnitude in the curve.
     """
     if list(frame.columns) != list(baseline.columns):
         return [f"columns {list(frame.columns)}, baseline {list(baseline.columns)}"]
@@ -135,10 +140,11 @@ def summary_differences(new: pd.DataFrame, baseline: pd.DataFrame) -> list[str]:
 
 
 def similarity(first: Path, second: Path, shrink: int = 1) -> float:
-    """Structural similarity (Wang et al. 2004) of two grey pictures over the inked part; 0 if sizes differ.
+    """Structural similarity (Wang et al. 2004) of two grey pictures over the inked part; 0 if sizes
+    differ.
 
-    `shrink` averages blocks of that many pixels first. White paper is left out of the mean: in a line drawing
-    it would hide a missing curve.
+    `shrink` averages blocks of that many pixels first. White paper is left out of the mean: in a
+    line drawing it would hide a missing curve.
     """
     from scipy.ndimage import maximum_filter
     from skimage.metrics import structural_similarity

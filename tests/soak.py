@@ -1,8 +1,9 @@
-"""Random scenes, sweeps and meshes through the command line: planned always, run coarsely where that is cheap, and judged.
+"""Random scenes, sweeps and meshes through the command line: planned always, run coarsely where
+that is cheap, and judged.
 
-``make soak N=2000 SEED=1 MINUTES=10``. Whatever is drawn, the exit code is 0, 2 or 3, an error is one line, and a result
-balances: forces, energy, gaps and pressures. What does not is shrunk to its smallest and printed as YAML, ready for the
-catalogue of hard cases.
+``make soak N=2000 SEED=1 MINUTES=10``. Whatever is drawn, the exit code is 0, 2 or 3, an error is
+one line, and a result balances: forces, energy, gaps and pressures. What does not is shrunk to its
+smallest and printed as YAML, ready for the catalogue of hard cases.
 """
 
 from __future__ import annotations
@@ -134,7 +135,8 @@ def judged(out: Path) -> None:
             for k, leg in enumerate(scene["motion"])
             if _presses(leg)
         )
-        # work is summed by trapezoids, which are wrong by less than 1/n^2 of it in n increments of a stiffening pad
+        # work is summed by trapezoids, which are wrong by less than 1/n^2 of it in n increments of
+        # a stiffening pad
         allowed = max(0.03, error) + 1 / fewest**2
         require(
             work == 0 or lost < allowed,
@@ -173,7 +175,9 @@ def _presses(leg: dict) -> bool:
 
 @dataclass
 class Soak:
-    """What became of all that was drawn: counts by kind and outcome; the smallest document that failed, and why."""
+    """What became of all that was drawn: counts by kind and outcome; the smallest document that
+    failed, and why.
+    """
 
     counts: dict[str, Counter] = field(default_factory=dict)
     failure: tuple[Drawn, str] | None = None
@@ -199,7 +203,9 @@ class Soak:
 
 
 def soak(count: int, start: int, seconds: float) -> Soak:
-    """Draw and try up to `count` documents for up to some process time; stops at the first failure, made smaller."""
+    """Draw and try up to `count` documents for up to some process time; stops at the first failure,
+    made smaller.
+    """
     found, begun = Soak(), time.process_time()
     ends = begun + seconds
 

@@ -1,7 +1,9 @@
-"""Files as strangers bring them, damaged at random, through the whole command line: ``make soak FILES=1``.
+"""Files as strangers bring them, damaged at random, through the whole command line: ``make soak
+FILES=1``.
 
-Meshes lose parts, nodes move, names change, tables are cut, cells and bytes are replaced. Whatever is left of a file, the exit
-code is 0, 2 or 3, an error is one line, and a result balances. The first file that does otherwise is kept and named.
+Meshes lose parts, nodes move, names change, tables are cut, cells and bytes are replaced. Whatever
+is left of a file, the exit code is 0, 2 or 3, an error is one line, and a result balances. The
+first file that does otherwise is kept and named.
 """
 
 from __future__ import annotations
@@ -216,7 +218,9 @@ def moved(content: bytes, draw: np.random.Generator) -> bytes:
 
 
 def soak_files(count: int, start: int, seconds: float) -> tuple[Counter, str]:
-    """Outcomes of up to `count` damaged files within a time (s), and of the first failure its folder and why ("": none)."""
+    """Outcomes of up to `count` damaged files within a time (s), and of the first failure its
+    folder and why ("": none).
+    """
     from soak import Failed, command, judged, said
 
     outcomes, begun = Counter(), time.perf_counter()

@@ -1,4 +1,6 @@
-"""Made-up histories with the shapes of real ones: for testing figures and tables only, never a result."""
+"""Made-up histories with the shapes of real ones: for testing figures and tables only, never a
+result.
+"""
 
 from __future__ import annotations
 
@@ -68,7 +70,9 @@ def all_scenes() -> list[str]:
 
 
 def histories(scale: float = 1.0, edge: float = 67e-6) -> dict[str, xr.Dataset]:
-    """Every scene's made-up history; `scale` multiplies every result (a stand-in for a companion)."""
+    """Every scene's made-up history; `scale` multiplies every result (a stand-in for a
+    companion).
+    """
     made = {name: history(name, scale, edge) for name in all_scenes()}
     made |= {name: pressed(name, scale, edge) for name in PRESSED}
     made |= {name: ridged(name, scale, edge) for name in RIDGED} | {
@@ -84,7 +88,9 @@ def companions(mesh: float = 1.01, both: float = 1.0125) -> dict[str, Companion]
 
 
 def _of(variables: dict[str, np.ndarray]) -> dict:
-    """Variables of a history by their values alone: dimensions and units are those of simulated ones."""
+    """Variables of a history by their values alone: dimensions and units are those of simulated
+    ones.
+    """
     said = {
         name: dict(zip(("units", "long_name"), VARIABLES[name][1:], strict=True))
         for name in variables
@@ -109,7 +115,9 @@ def _filled(data: xr.Dataset) -> xr.Dataset:
 def _made(
     scene: dict, variables: dict[str, np.ndarray], time, skin, receptors=((), ())
 ) -> xr.Dataset:
-    """A history of its values: times (nt,), skin nodes and receptors (depths, offsets) where they are."""
+    """A history of its values: times (nt,), skin nodes and receptors (depths, offsets) where they
+    are.
+    """
     x, y = skin
     places = {"skin_x": x, "skin_y": y, "skin_arc": skin_arc(x, y, _apex(x, y))}
     at = {
@@ -211,11 +219,15 @@ PRESSED = {
     },
     **{f"ramp_hold_{v}_mm_per_s": (STEPS["flat"], (1.0,), (v, 1.5)) for v in (8, 32)},
 }
-"""Presses to depths: stimulus, depths in mm leg by leg, and speed in mm/s and end in s of a ramp and hold (None: steady)."""
+"""Presses to depths: stimulus, depths in mm leg by leg, and speed in mm/s and end in s of a ramp
+and hold (None: steady).
+"""
 
 
 def pressed(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
-    """A made-up press to depths: force as the square of depth, half of it relaxing, a smooth dent of the skin."""
+    """A made-up press to depths: force as the square of depth, half of it relaxing, a smooth dent
+    of the skin.
+    """
     stimulus, targets, timed = PRESSED[name]
     if timed is None:
         depth = np.concatenate(
@@ -270,11 +282,15 @@ STROKES = {
     **{f"stroke_sub_{v}": (50, 0.25, v) for v in (1, 10, 40)},
     "step_sub": (50, 1.0, None),
 }
-"""Scenes over the wavy surface: length and step of the way in mm, velocity in mm/s (None: stepped, pressed anew each time)."""
+"""Scenes over the wavy surface: length and step of the way in mm, velocity in mm/s (None: stepped,
+pressed anew each time).
+"""
 
 
 def stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
-    """A made-up stroke: skin that lies on the surface, dragged along, pressed harder where it is more curved."""
+    """A made-up stroke: skin that lies on the surface, dragged along, pressed harder where it is
+    more curved.
+    """
     way, step, speed = STROKES[name]
     radii = RADII[:2] if "sub" in name else RADII
     stimulus = {"shape": "wavy", "curvatures": (1 / radii).tolist(), **WAVY}
@@ -379,7 +395,9 @@ def _with_ridges(data: xr.Dataset, name: str, ridges, **keys) -> xr.Dataset:
 
 
 def ridged(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
-    """A made-up press of a pad with ridges: that of the plain pad, twice the energy at the centre and 1.3 times beside it."""
+    """A made-up press of a pad with ridges: that of the plain pad, twice the energy at the centre
+    and 1.3 times beside it.
+    """
     plain = history("ramp40_" + name.rsplit("_", 1)[1], scale, edge)
     trace = plain.strain_energy_density.values[:, [int(abs(DEPTHS - 915e-6).argmin())]]
     sharp = 1.5 if name.endswith("1260") else 1.0
@@ -388,7 +406,9 @@ def ridged(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
 
 
 def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Dataset:
-    """A made-up stroke of a plate: 200 Pa, with ridges three times as much on the side that the plate leaves."""
+    """A made-up stroke of a plate: 200 Pa, with ridges three times as much on the side that the
+    plate leaves.
+    """
     pad, sign = PLATES[name]
     way = np.concatenate([np.zeros(5), np.arange(0.25, 50.1, 0.25)]) * MM
     base = history("ramp40_flat", scale, edge).isel(time=np.minimum(np.arange(len(way)), 20))
@@ -428,7 +448,9 @@ def plate_stroke(name: str, scale: float = 1.0, edge: float = 67e-6) -> xr.Datas
 
 
 def _with_fields(data: xr.Dataset, times, displacement, pressure) -> xr.Dataset:
-    """The history with full fields: displacements (n, nodes, 2) m and mean stresses (n, elements) Pa at n times."""
+    """The history with full fields: displacements (n, nodes, 2) m and mean stresses (n, elements)
+    Pa at n times.
+    """
     whole, body, indenter = Arrays.of(data), mesh(), np.zeros((len(times), 2, 2))
     add_snapshots(
         whole,
@@ -464,7 +486,9 @@ def _skin(edge: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _pressure(x: np.ndarray, y: np.ndarray, load: float, width: float, layered: bool) -> np.ndarray:
-    """A symmetric pressure (Pa) of resultant `load` over `width`, with twin peaks when it is wide."""
+    """A symmetric pressure (Pa) of resultant `load` over `width`, with twin peaks when it is
+    wide.
+    """
     if width <= 0:
         return np.zeros_like(x)
     half = width / 2

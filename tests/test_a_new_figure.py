@@ -1,4 +1,6 @@
-"""The recipe for a figure, followed: one that is defined here only, from runs that are simulated to the picture and its data."""
+"""The recipe for a figure, followed: one that is defined here only, from runs that are simulated to
+the picture and its data.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,6 @@
-"""The study of accuracy: meshes split, errors and orders found in made-up runs, figures drawn, the planner's errors kept."""
+"""The study of accuracy: meshes split, errors and orders found in made-up runs, figures drawn, the
+planner's errors kept.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -116,7 +118,9 @@ def test_the_plane_is_complete_and_names_tell_points_apart():
 
 
 def test_sizes_span_what_they_should(scenes):
-    """From about 500 to 100,000 nodes; the default's row is the thesis's preset where that is not refined for a contact."""
+    """From about 500 to 100,000 nodes; the default's row is the thesis's preset where that is not
+    refined for a contact.
+    """
     from fingerpad.specimen.build import count_nodes
 
     sizes = [
@@ -135,7 +139,9 @@ def test_sizes_span_what_they_should(scenes):
 
 @pytest.mark.parametrize("element", ["Q1P0", "Q2R"])
 def test_a_point_is_measured(scenes, element):
-    """Values, process times beside a yardstick, and what made them; teaching elements have strain energies too."""
+    """Values, process times beside a yardstick, and what made them; teaching elements have strain
+    energies too.
+    """
     (record,) = study.measure_all([Point("210", element, 1, steps=5)], scenes["210"])
     assert not record["failure"] and all(np.all(np.array(v) > 0) for v in record["values"].values())
     assert set(record["values"]) == set(found.QUANTITIES) and len(record["values"]["depth"]) == 2
@@ -156,7 +162,9 @@ def test_a_point_is_measured(scenes, element):
 
 @pytest.fixture(scope="module")
 def records():
-    """Every quantity is 2 + size^2 / 10 + step / 50, in thousandths (mesh size and step of the default: 1)."""
+    """Every quantity is 2 + size^2 / 10 + step / 50, in thousandths (mesh size and step of the
+    default: 1).
+    """
     out = {}
     for name, point in points().items():
         preset = {"draft": (4, 10), "fine": (14, 40)}.get(point.preset, (point.rows, point.steps))
@@ -227,7 +235,9 @@ def test_planner_is_told_of_mesh_and_steps_apart(records):
 
 
 def test_historical_models_are_fitted_to_the_plate(records, scenes):
-    """Their modulus and tension give the plate its width; sharper surfaces sink deeper into both."""
+    """Their modulus and tension give the plate its width; sharper surfaces sink deeper into
+    both.
+    """
     for model, fit in found.MODELS.values():
         constant = fit(scenes["flat"], 4.8e-3)
         flat, sharp = model(scenes["flat"], 0.0, constant), model(scenes["1260"], 1259.84, constant)
@@ -293,7 +303,9 @@ def test_planner_believes_at_least_the_committed_errors():
 
 
 def test_a_light_press_is_believed_no_nearer_than_the_coarse_elements_under_it(tmp_path):
-    """A hundredth of a gram-weight, whose strain energy two rows of elements in the epidermis get wrong by 8 %."""
+    """A hundredth of a gram-weight, whose strain energy two rows of elements in the epidermis get
+    wrong by 8 %.
+    """
     (scene,) = (each for each in drawn.drawn() if each[0] == "force_39")
     run = drawn.beliefs(*scene, tmp_path)[0]
     assert run["true error (%)"] <= run["believed error (%)"] <= 5
@@ -319,7 +331,9 @@ def test_strokes_errors_are_the_largest_and_the_mean_square_of_all_none_below_a_
 
 
 def test_a_long_stroke_is_as_wrong_as_strokes_are_on_the_whole_and_a_short_one_as_the_worst():
-    """In between the mean square is that of one of the worst and of many others; mutant: the root of a mean of roots."""
+    """In between the mean square is that of one of the worst and of many others; mutant: the root
+    of a mean of roots.
+    """
     errors = StrokeErrors({7: (0.05, 0.01)}, {}, way=2e-3)
     assert [errors.on(way, errors.mesh)[7] for way in (1e-3, 2e-3)] == [0.05, 0.05]
     assert errors.on(8e-3, errors.mesh)[7] == pytest.approx(np.sqrt((0.05**2 + 3 * 0.01**2) / 4))
@@ -349,7 +363,9 @@ def test_drawn_strokes_are_discretised_as_asked():
 
 @pytest.mark.parametrize("curvature", [79.0, 420.0, 2500.0])
 def test_tolerance_is_met_by_the_cheapest(scenes, curvature):
-    """Tighter costs more; what is chosen is believed to meet what was asked, and the next cheaper mesh is not."""
+    """Tighter costs more; what is chosen is believed to meet what was asked, and the next cheaper
+    mesh is not.
+    """
     scene = scenes["210"].model_copy(update={"stimulus": Cylinder(curvature=curvature)})
     plans = [
         plan(scene.model_copy(update={"accuracy": tolerance})) for tolerance in (0.1, 0.05, 0.02)
@@ -396,7 +412,9 @@ def test_committed_beliefs_cover_the_truth():
 
 
 def test_committed_errors_beside_ridges_are_those_expected():
-    """Of nineteen places in twenty less than half in every case, of all of them about twice as much at most."""
+    """Of nineteen places in twenty less than half in every case, of all of them about twice as much
+    at most.
+    """
     rows = pd.read_csv(TABLES / "accuracy_ridges.csv")
     expected = [
         100 * ridges.RULES.ridge_error * height / pitch * elements**-ridges.RULES.ridge_order
@@ -416,9 +434,11 @@ def test_committed_errors_beside_ridges_are_those_expected():
 
 
 def test_elements_among_ridges_are_what_changes_strain_energy_beside_them(monkeypatch):
-    """Eight or eighteen of them from ridge to ridge: nearer to the truth than the planner expects, and the press is the same.
+    """Eight or eighteen of them from ridge to ridge: nearer to the truth than the planner expects,
+    and the press is the same.
 
-    What is fitted over several elements makes up for few of them: in one element alone, energy is off by 2 %.
+    What is fitted over several elements makes up for few of them: in one element alone, energy is
+    off by 2 %.
     """
     scene = ridges.ridged(load_scene(SCENES / "ramp40_k210.yaml"), 0.15, 0.48)
     few, more, truth = (ridges.pressed(scene, elements) for elements in (8, 18, 30))
@@ -439,7 +459,9 @@ def test_elements_among_ridges_are_what_changes_strain_energy_beside_them(monkey
 
 
 def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Dataset:
-    """Depth ``press`` and the same pressure at the end of a press, then pressures at places (mm) of a stroke."""
+    """Depth ``press`` and the same pressure at the end of a press, then pressures at places (mm) of
+    a stroke.
+    """
     count = len(way)
     columns = {"leg": [0, 0, *[1] * count], "stroke_distance": [0.0, 0.0, *(1e-3 * np.array(way))]}
     columns |= {
@@ -456,7 +478,9 @@ def test_difference_of_a_press_is_at_its_end_and_names_the_worst_quantity():
 
 
 def test_difference_of_a_stroke_is_root_mean_square_of_the_largest():
-    """Against a curve 4 - x**2 known finely: off by 0.2 everywhere is 5 %, though at its end the pressure is nothing."""
+    """Against a curve 4 - x**2 known finely: off by 0.2 everywhere is 5 %, though at its end the
+    pressure is nothing.
+    """
     fine, coarse = np.linspace(0.01, 2, 400), np.linspace(0.1, 2, 20)
     truth = a_history(1.0, fine, 4 - fine**2)
     for sign in (1, -1):  # a way back counts as a way
@@ -470,7 +494,9 @@ def test_difference_of_a_stroke_is_root_mean_square_of_the_largest():
     "name", ["curvature_840_steady_10_gf", "curvature_210_thin_epidermis", "curvature_2500"]
 )
 def test_beliefs_cover_the_truth(scenes, name):
-    """Of runs made now, held to a finer run of their own: a few of the study's scenes, its table has all of them."""
+    """Of runs made now, held to a finer run of their own: a few of the study's scenes, its table
+    has all of them.
+    """
     scene = belief.prepared(name, scenes["210"]).model_copy(update={"accuracy": "thesis"})
     rows = pd.DataFrame(belief.beliefs(scene, name, ("draft", 0.05)))
     assert belief.covered(rows) == 1 and (rows["true error (%)"].dropna() > 0).all()
@@ -481,9 +507,13 @@ def test_beliefs_cover_the_truth(scenes, name):
 GEOMETRY = {"3-4", "3-5", "5-25"}
 """Figures of the pad itself, for which nothing is solved."""
 SOME_CURVES = {"3-6", "3-8", "3-9", "3-11", "4-2"}
-"""Figures that state the error of some of their curves only: the others have no coarser companion, or are prescribed."""
+"""Figures that state the error of some of their curves only: the others have no coarser companion,
+or are prescribed.
+"""
 DERIVED = "shape of the stimulus|least-squares|Eq 4-4 and"
-"""Sources of what is drawn through or from the simulated curves of the same picture, whose errors stand there."""
+"""Sources of what is drawn through or from the simulated curves of the same picture, whose errors
+stand there.
+"""
 
 
 @pytest.mark.parametrize(
@@ -533,7 +563,9 @@ def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
 
 
 def test_stated_errors_stand_beside_those_of_the_curves():
-    """Made-up companions 1 % away and finer runs 2 %: every curve states what is left of the one and errs by all of the other."""
+    """Made-up companions 1 % away and finer runs 2 %: every curve states what is left of the one
+    and errs by all of the other.
+    """
     import synthetic
     from cysyk1999.figures.registry import FIGURES
     from cysyk1999.studies.accuracy.shown import FINER, MADE_FINER, STATED, STATED_MESH, TRUE, shown
@@ -564,7 +596,9 @@ def test_stated_errors_stand_beside_those_of_the_curves():
 
 @pytest.mark.parametrize("order", [1.0, 1.5])
 def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
-    """Own nodes at x^2 + c on every second of a finer run's at x^2, what they err by converges, chords between them do not."""
+    """Own nodes at x^2 + c on every second of a finer run's at x^2, what they err by converges,
+    chords between them do not.
+    """
     from cysyk1999.measures.errors import Curve, norm
     from cysyk1999.studies.accuracy.shown import FINER, Finer
     from fingerpad.planning.errors import remains
@@ -583,9 +617,11 @@ def test_a_profile_drawn_straight_between_nodes_is_wrong_by_that_once(order):
 
 
 def test_errors_stated_in_the_published_figures_are_those_of_their_curves():
-    """Of nearly all at least half of it; few are wrong by more than 3 %, and most state no more than a few times what they are.
+    """Of nearly all at least half of it; few are wrong by more than 3 %, and most state no more
+    than a few times what they are.
 
-    Strain energies state more than before, for what receptors read converges faster than the order that is taken of all curves.
+    Strain energies state more than before, for what receptors read converges faster than the order
+    that is taken of all curves.
     """
     drawn = pd.read_csv(ROOT / "figures" / "studies" / "accuracy_shown.csv")
     true, stated = drawn["true error (%)"], drawn["stated error (%)"]

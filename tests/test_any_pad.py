@@ -1,4 +1,6 @@
-"""Any pad: slabs, half-rounds and meshes with layers and curves of any names, of every element, graded and off-centre."""
+"""Any pad: slabs, half-rounds and meshes with layers and curves of any names, of every element,
+graded and off-centre.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -122,7 +124,9 @@ def material(name):
 
 @pytest.mark.parametrize("name", VARIANTS)
 def test_meshes_of_one_s_own(name, tmp_path):
-    """Every one is read, planned and pressed; those of the same slab agree within 3 % (frozen: 9-node quads)."""
+    """Every one is read, planned and pressed; those of the same slab agree within 3 % (frozen:
+    9-node quads).
+    """
     mesh = VARIANTS[name]()
     write_pad(mesh, tmp_path / "own.msh")
     layers = {region: material(region) for region in mesh.regions}
@@ -281,7 +285,9 @@ def test_a_half_round_is_a_half_round(solid):
 
 
 def test_receptors_below_a_steep_skin_are_as_deep_along_its_normal():
-    """On a half-round their distance from its middle is known; the skin that is nearest to them is well aside."""
+    """On a half-round their distance from its middle is known; the skin that is nearest to them is
+    well aside.
+    """
     mesh = build_stack_mesh(
         stack(radius=8e-3, half_width=8e-3, thicknesses=(1e-3, 7e-3), solid=True), SIZE
     )
@@ -334,9 +340,11 @@ SMALL = {"finite_strain": "off"}
 @pytest.mark.verification
 @pytest.mark.parametrize("control", ["depth", "force"])
 def test_a_plate_on_a_bonded_stack(control, tmp_path):
-    """In the middle of a wide slab a plate presses as on layers that cannot move sideways: p = depth / sum h (1-2nu)/(2mu(1-nu)).
+    """In the middle of a wide slab a plate presses as on layers that cannot move sideways: p =
+    depth / sum h (1-2nu)/(2mu(1-nu)).
 
-    Wide against the length over which a stretched cover is held by the foam, sqrt(E h_cover h_foam / mu) = 10 mm.
+    Wide against the length over which a stretched cover is held by the foam, sqrt(E h_cover h_foam
+    / mu) = 10 mm.
     """
     wide = {**SLAB, "slab": {"width": "120 mm", "layers": [COVER, FOAM]}}
     motion = [{"press_to_depth": "0.1 mm"}] if control == "depth" else [{"press_to_force": "60 gf"}]
@@ -354,7 +362,9 @@ def test_a_plate_on_a_bonded_stack(control, tmp_path):
 
 @pytest.mark.verification
 def test_a_cylinder_on_a_bonded_stack(tmp_path):
-    """A cylinder on a slab of two layers against the Fourier solution of :mod:`layered_contact`, and the planner against it."""
+    """A cylinder on a slab of two layers against the Fourier solution of :mod:`layered_contact`,
+    and the planner against it.
+    """
     radius, force = 20e-3, 20 * 9.80665e-3 / 0.01
     layers = [layered.Layer(1e-3, 0.5e6 / 2.9, 0.45), layered.Layer(4e-3, 50e3 / 2.6, 0.3)]
     truth = layered_contact.press(lambda x: x**2 / (2 * radius), layers, 15e-3, force, 512)
@@ -394,7 +404,9 @@ def test_a_plate_slides_over_a_slab_with_friction(tmp_path):
 @pytest.mark.parametrize("thicknesses", [(5e-3,), (1e-3, 4e-3), (0.2e-3, 5e-3)])
 @pytest.mark.parametrize("radius", [1e-3, 50e-3])
 def test_the_estimate_of_a_stack(thicknesses, radius):
-    """Half widths within a third and depths within a twentieth of the Fourier solution, from knife to plate."""
+    """Half widths within a third and depths within a twentieth of the Fourier solution, from knife
+    to plate.
+    """
     known = list(zip(thicknesses, (0.1e6, 20e3), (0.48, 0.3), strict=False))
     estimate = StackEstimate(1e3, thicknesses[0], sum(thicknesses), 1.0, 1.0, 20e-3, tuple(known))
     layers = [layered.Layer(thick, modulus / (2 * (1 + nu)), nu) for thick, modulus, nu in known]

@@ -1,4 +1,6 @@
-"""Input that means harm, or is merely far too much: one line, exit code 2, little memory, nothing run and nothing written."""
+"""Input that means harm, or is merely far too much: one line, exit code 2, little memory, nothing
+run and nothing written.
+"""
 
 import os
 import subprocess
@@ -27,7 +29,9 @@ def sweep(**over):
 
 
 def bomb(levels=9, width=10, plain=True):
-    """YAML that is small, and very large when its aliases are written out; by lists, or by merged mappings."""
+    """YAML that is small, and very large when its aliases are written out; by lists, or by merged
+    mappings.
+    """
     lines = ["a0: &a0 [x]" if plain else "a0: &a0 {x: 1}"]
     for n in range(1, levels):
         aliases = ", ".join([f"*a{n - 1}"] * width)
@@ -89,7 +93,8 @@ def test_what_is_huge_is_refused_in_little_memory(tmp_path, name):
     make, said = HUGE[name]
     make(tmp_path)
     before = sorted(path.name for path in tmp_path.iterdir())
-    # measured by a small process between: a child's peak begins with the memory of whoever started it
+    # measured by a small process between: a child's peak begins with the memory of whoever started
+    # it
     process = subprocess.run(
         [
             sys.executable,

@@ -1,4 +1,6 @@
-"""Calibration: what the elastic curve is, what force tells and what it does not, and parameters given back."""
+"""Calibration: what the elastic curve is, what force tells and what it does not, and parameters
+given back.
+"""
 
 import json
 from math import gamma, pi, sqrt
@@ -495,7 +497,9 @@ def test_series_is_given_back_from_a_wrong_start_by_one_simulation(hereditary, r
 
 
 def test_intervals_of_the_series_cover_what_they_promise(hereditary):
-    """Started at the truth, which is quicker; every tenth also far from it, and the same is found."""
+    """Started at the truth, which is quicker; every tenth also far from it, and the same is
+    found.
+    """
     clean, hits = hereditary.force(THESIS), []
     truth = dict(
         zip(WRONG_START, (1.0, *np.column_stack([THESIS.beta, THESIS.tau]).ravel()), strict=True)

@@ -1,4 +1,6 @@
-"""The list of the thesis's figures: complete, with something in place of what cannot be drawn, and as committed."""
+"""The list of the thesis's figures: complete, with something in place of what cannot be drawn, and
+as committed.
+"""
 
 import re
 from pathlib import Path

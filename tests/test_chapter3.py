@@ -1,4 +1,6 @@
-"""Chapter 3's checks: steady states solved as such, the line and the bar at thesis resolution, and their figures and numbers."""
+"""Chapter 3's checks: steady states solved as such, the line and the bar at thesis resolution, and
+their figures and numbers.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,6 @@
-"""The command line: exit codes, what is written and what is not, mostly with a stand-in for the solver."""
+"""The command line: exit codes, what is written and what is not, mostly with a stand-in for the
+solver.
+"""
 
 import json
 import subprocess
@@ -96,7 +98,8 @@ def refused(capsys, arguments):
 # --- wrong input ----------------------------------------------------------------------------------
 
 
-# all of them are refused in test_scene; these show that each kind of refusal reaches the command line
+# all of them are refused in test_scene; these show that each kind of refusal reaches the command
+# line
 REFUSED = (
     "unknown key in a leg",
     "a list",
@@ -439,7 +442,9 @@ def test_a_run_stopped_while_writing_leaves_the_old_results(
 
 
 def test_an_unforeseen_error_is_one_line_and_a_file(tmp_path, scene, solver, monkeypatch, capsys):
-    """No traceback reaches the user, nor a warning of a library; both are in the file that the line names."""
+    """No traceback reaches the user, nor a warning of a library; both are in the file that the line
+    names.
+    """
 
     def broken(*_, **__):
         warnings.warn("a library's warning", RuntimeWarning, stacklevel=1)

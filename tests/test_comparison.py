@@ -1,4 +1,6 @@
-"""The comparison with the thesis's numbers: rules of judgement, complete ids, and each trend's mutant."""
+"""The comparison with the thesis's numbers: rules of judgement, complete ids, and each trend's
+mutant.
+"""
 
 import csv
 from pathlib import Path
@@ -98,7 +100,9 @@ def test_every_measure_is_asked_for(with_variants):
 
 
 def test_an_input_is_what_a_scene_alone_tells():
-    """No mesh, no history: what these rows say is known before anything is simulated, and of no other row that is judged."""
+    """No mesh, no history: what these rows say is known before anything is simulated, and of no
+    other row that is judged.
+    """
     reference = read_reference(REFERENCE)
     for id_, number in numbers(reference).items():
         found = []
@@ -224,7 +228,9 @@ def test_a_role_that_does_not_go_with_its_row_is_refused(tmp_path, row, role):
 
 @pytest.fixture(scope="module")
 def scored():
-    """Made-up rows: role, score and same_as as in the reference, form, verdict; and the reference that they are of."""
+    """Made-up rows: role, score and same_as as in the reference, form, verdict; and the reference
+    that they are of.
+    """
     given = [
         ("a", "input", "", "", "value", "inside"),
         ("b", "count", "", "", "axis", "plausible"),
@@ -285,7 +291,9 @@ def test_every_row_that_is_scored_none_or_not_comparable_says_why(table):
 
 
 def test_a_row_that_repeats_another_has_its_measure_and_a_bound_on_its_curve():
-    """Their largest curve is one and the same, or of one skin: counting both would count a curve twice."""
+    """Their largest curve is one and the same, or of one skin: counting both would count a curve
+    twice.
+    """
     reference = read_reference(REFERENCE)
     for id_, row in reference[reference["same_as"] != ""].iterrows():
         other = reference.loc[row["same_as"]]
@@ -401,7 +409,9 @@ def test_what_was_not_simulated_is_not_comparable(made):
 
 @pytest.fixture(scope="module")
 def with_variants(made):
-    """The made-up results with variants: fat and radius change nothing, long-term moduli scale every result by 1.3."""
+    """The made-up results with variants: fat and radius change nothing, long-term moduli scale
+    every result by 1.3.
+    """
     histories, coarse, meshes = made
     runs = {
         variant_scene(v, k): coarse[scene_name("ramp40", k)].both

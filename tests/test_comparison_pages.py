@@ -1,4 +1,6 @@
-"""The comparison with the thesis as it is read: every row once, in five columns, and as committed."""
+"""The comparison with the thesis as it is read: every row once, in five columns, and as
+committed.
+"""
 
 import re
 from pathlib import Path

@@ -1,4 +1,6 @@
-"""Compiled loops are kept as machine code and run without numba: the same answers, each for its types, sources and processor."""
+"""Compiled loops are kept as machine code and run without numba: the same answers, each for its
+types, sources and processor.
+"""
 
 import multiprocessing
 import subprocess
@@ -20,7 +22,9 @@ PROCESSES = 6
 
 @cache
 def weighted():
-    """A loop of all that loops take: arrays of several types, tuples, numbers and None; what it allocates is freed."""
+    """A loop of all that loops take: arrays of several types, tuples, numbers and None; what it
+    allocates is freed.
+    """
 
     @njit
     def loop(values, pair, factor, extra, out):
@@ -71,7 +75,9 @@ def test_what_is_compiled_is_counted_as_such_and_what_is_kept_is_not(folder):
 
 
 def test_other_types_sources_or_makers_are_compiled_anew(folder, monkeypatch):
-    """Strides, sizes of integers and whatever else is compiled in are no matter of the arrays' contents."""
+    """Strides, sizes of integers and whatever else is compiled in are no matter of the arrays'
+    contents.
+    """
     values, out = np.array([0.3, 0.7, 1.9]), np.zeros(3)
     loop = Loop("weighted", weighted, "sources")
     loop(values, (values, 0.25), 2.0, None, out)
@@ -152,7 +158,9 @@ def _at_once(folder, number, barrier, answers):
 
 
 def test_processes_that_compile_at_once_do_not_take_each_others(tmp_path):
-    """Linear quads once ran the machine code of triangles, compiled in another process in the same moment, and crashed."""
+    """Linear quads once ran the machine code of triangles, compiled in another process in the same
+    moment, and crashed.
+    """
     context = multiprocessing.get_context("fork")
     barrier, answers = context.Barrier(PROCESSES), context.Queue()
     workers = [

@@ -65,7 +65,9 @@ def solve(parts, active=None, curvature=None, previous=None, **control):
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), st.floats(1e-3, 1e3))
 def test_force_control_satisfies_every_condition(seed, force):
-    """Forces push, closed gaps are closed, open gaps are open, the sum is the load, and equilibrium holds."""
+    """Forces push, closed gaps are closed, open gaps are open, the sum is the load, and equilibrium
+    holds.
+    """
     parts = problem(seed)
     zone, schur, right, gap, gradient = parts
     step = solve(parts, force=force)
@@ -109,7 +111,9 @@ def test_no_contact_below_first_touch():
 
 
 def test_a_node_that_yields_to_nothing_carries_the_force():
-    """Alone in contact it stops the plate: the force is found, and there is no stiffness to tell (a single node that is held)."""
+    """Alone in contact it stops the plate: the force is found, and there is no stiffness to tell (a
+    single node that is held).
+    """
     zone, schur, right, gap, gradient = problem(5)
     equation = np.vstack([[-1, -1], np.arange(2 * len(gap) - 2).reshape(-1, 2)])
     zone = Zone(np.arange(len(gap)), equation)
@@ -144,7 +148,9 @@ def test_stable_is_positive_definite_where_gaps_stay_closed(seed, size, share):
 
 @pytest.mark.parametrize("definite", [True, False])
 def test_response_is_that_of_the_bent_matrix(definite):
-    """Against dense algebra: points between nodes, one of which is held, along two directions and with softness."""
+    """Against dense algebra: points between nodes, one of which is held, along two directions and
+    with softness.
+    """
     rng = np.random.default_rng(4)
     equation = np.arange(12).reshape(6, 2)
     equation[2] = -1
@@ -194,7 +200,9 @@ def test_response_is_that_of_the_bent_matrix(definite):
 
 
 def test_a_flexibility_of_before_is_used_as_long_as_it_leads_to_a_solution():
-    """What it cannot solve is tried with the flexibility of now, and only what that cannot solve is softened."""
+    """What it cannot solve is tried with the flexibility of now, and only what that cannot solve is
+    softened.
+    """
     zone, schur, right, gap, gradient = problem(9)
     now = (zone, schur, gradient, np.full(12, 50.0), np.full(12, 0.01))
     before, tried = Flexibility.of(zone, schur, gradient, np.full(12, 10.0), np.full(12, 0.01)), []
@@ -219,7 +227,9 @@ def test_a_flexibility_of_before_is_used_as_long_as_it_leads_to_a_solution():
 
 
 def test_curvature_enters_the_tangent():
-    """With a curved profile the solution is that of the Lagrangian's second derivative, and differs without it."""
+    """With a curved profile the solution is that of the Lagrangian's second derivative, and differs
+    without it.
+    """
     parts = problem(9)
     zone, schur, _, gap, gradient = parts
     previous, curvature = np.zeros(12), np.full(12, 50.0)
@@ -263,7 +273,9 @@ def system(seed, definite):
 @pytest.mark.parametrize("kind", [PardisoCondensation, SuperLUCondensation])
 @pytest.mark.parametrize("condensed", [0, 1, 20])
 def test_condensation_equals_dense_algebra(kind, definite, condensed):
-    """Schur complement, reduced right-hand side and back-substitution are those of the full system, for both solvers."""
+    """Schur complement, reduced right-hand side and back-substitution are those of the full system,
+    for both solvers.
+    """
     if kind is PardisoCondensation and not pardiso_available():
         pytest.skip("PARDISO is not installed here")
     pattern, data, dense, rng = system(11, definite)
@@ -315,7 +327,9 @@ def test_what_is_not_stable_by_itself_is_not_eliminated():
 
 
 def test_part_of_a_zone_is_the_zone_of_its_points():
-    """Points of three edges of which the middle one is kept: its nodes, their equations, what they are worth at its points."""
+    """Points of three edges of which the middle one is kept: its nodes, their equations, what they
+    are worth at its points.
+    """
     values = np.array([[0.75, 0.25], [0.25, 0.75]])
     shape = np.zeros((6, 4))
     for edge in range(3):
@@ -341,7 +355,9 @@ def test_part_of_a_zone_is_the_zone_of_its_points():
 
 
 def test_entries_of_elements_go_where_their_equations_meet():
-    """Of nodes with both components free, one, or none, in elements of any order; mutant: ranks left out of rows."""
+    """Of nodes with both components free, one, or none, in elements of any order; mutant: ranks
+    left out of rows.
+    """
     rng = np.random.default_rng(5)
     nodes, nen = 30, 4
     cells = np.array([rng.choice(nodes, nen, replace=False) for _ in range(25)])
@@ -415,7 +431,9 @@ def points_on_arc(order, shear=1.0):
 
 @pytest.mark.parametrize("order", [1, 2])
 def test_points_carry_what_nodes_do(order):
-    """The weights of an edge's points give its nodes what a uniform pressure does: 1/2 each, or 1/6, 1/6 and 2/3."""
+    """The weights of an edge's points give its nodes what a uniform pressure does: 1/2 each, or
+    1/6, 1/6 and 2/3.
+    """
 
     def check(weight):
         load = np.zeros(len(points))
@@ -438,7 +456,9 @@ def test_points_carry_what_nodes_do(order):
 
 @pytest.mark.parametrize("order", [1, 2])
 def test_uniform_pressure_is_recovered_on_curved_edges(order):
-    """Forces at points under a uniform pressure give that pressure at every node, all of the load and all of the length."""
+    """Forces at points under a uniform pressure give that pressure at every node, all of the load
+    and all of the length.
+    """
     points, places = points_on_arc(order)
     length = places.lengths(points)
     force, share = places.of_nodes(7.0 * length), places.of_nodes(length)
@@ -449,7 +469,9 @@ def test_uniform_pressure_is_recovered_on_curved_edges(order):
 
 
 def test_softness_minds_differences_of_pressure_only():
-    """An even pressure is not softened; energy is not negative; softness is edge cubed over the shear modulus."""
+    """An even pressure is not softened; energy is not negative; softness is edge cubed over the
+    shear modulus.
+    """
     _, places = points_on_arc(2, shear=2.0)
     soft, length = places.soft(slice(None)), places.weight * 2 * places.spacing
 
@@ -467,7 +489,9 @@ def test_softness_minds_differences_of_pressure_only():
 
 
 def test_pressure_of_a_wave_is_softened_as_said():
-    """gap - d/ds (softness dp/ds): for p = cos(k s) on even skin the softness makes k^2 softness p of it, in the middle."""
+    """gap - d/ds (softness dp/ds): for p = cos(k s) on even skin the softness makes k^2 softness p
+    of it, in the middle.
+    """
     x = np.linspace(0, 1, 201)
     edges = np.stack([np.arange(0, 200, 2), np.arange(2, 201, 2), np.arange(1, 200, 2)], 1)
     places = ContactPoints.on(np.stack([x, 0 * x], 1), np.arange(201), edges, np.ones(100))
@@ -491,7 +515,9 @@ def test_zones_are_whole_edges():
 
 
 def test_smoothing_keeps_a_uniform_pressure_and_removes_alternation():
-    """The 5-point average is exact for uniform pressure, also at a mirrored axis, and damps a corner/middle alternation."""
+    """The 5-point average is exact for uniform pressure, also at a mirrored axis, and damps a
+    corner/middle alternation.
+    """
     points, places = points_on_arc(2)
     length = places.of_nodes(places.lengths(points))
     np.testing.assert_allclose(smoothed_pressure(3.0 * length, length, False), 3.0, rtol=1e-12)
@@ -521,7 +547,9 @@ def test_contact_edge_lies_between_points(half_width):
 
 
 def test_contact_edge_moves_evenly():
-    """Of a pressure that is no such parabola the edge moves on without stairs while points join one by one."""
+    """Of a pressure that is no such parabola the edge moves on without stairs while points join one
+    by one.
+    """
     widths = np.linspace(0.5, 0.6, 81)
 
     def check(edge):
@@ -538,7 +566,9 @@ def test_contact_edge_moves_evenly():
 
 
 def test_contact_under_an_edge_ends_beyond_the_last_point():
-    """Pressure that rises to the edge, and contacts of a point or two: half a spacing beyond the last of them."""
+    """Pressure that rises to the edge, and contacts of a point or two: half a spacing beyond the
+    last of them.
+    """
     x = np.arange(-40, 41) * 0.025
     inside = np.abs(x) < 0.51
     pressure = np.where(inside, 1 / np.sqrt(np.where(inside, 0.52**2 - x**2, 1)), 0)
@@ -549,7 +579,9 @@ def test_contact_under_an_edge_ends_beyond_the_last_point():
 
 
 def test_edges_of_two_contacts_are_the_outermost():
-    """A contact of two patches is as wide as from one's left to the other's right edge, each found from its own patch."""
+    """A contact of two patches is as wide as from one's left to the other's right edge, each found
+    from its own patch.
+    """
     x, one, spacing = hertz(0.2)
     two = np.roll(one, -20) + np.roll(one, 20)
     assert contact_edges(x, two, spacing) == pytest.approx((-0.7, 0.7), abs=1e-9)

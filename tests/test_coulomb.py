@@ -1,4 +1,6 @@
-"""The dense frictional problem: Coulomb's and Signorini's conditions, limits, and what it costs to leave it out."""
+"""The dense frictional problem: Coulomb's and Signorini's conditions, limits, and what it costs to
+leave it out.
+"""
 
 import numpy as np
 import pytest
@@ -49,7 +51,9 @@ def tilted(parts, seed):
 
 
 def check_laws(parts, step, coefficient, motion, total):
-    """Every condition of equilibrium, contact and friction at every node; returns normal forces, friction and slip."""
+    """Every condition of equilibrium, contact and friction at every node; returns normal forces,
+    friction and slip.
+    """
     zone, schur, right, gap, gradient = parts
     tangent, du = tangents(gradient), step.condensed_displacement
     f, tau = step.force, step.tangential
@@ -101,7 +105,9 @@ def test_stiffness_is_that_of_the_force_while_all_nodes_stay_as_they_are(
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), st.floats(0.01, 1.5), st.floats(-1.0, 1.0), st.floats(0.01, 100))
 def test_every_condition_holds(seed, coefficient, shift, force):
-    """Equilibrium, no pull, no penetration, |tau| <= mu f, slip only at the limit and against friction, the load carried."""
+    """Equilibrium, no pull, no penetration, |tau| <= mu f, slip only at the limit and against
+    friction, the load carried.
+    """
     parts = tilted(problem(seed, COUNT), seed)
     motion = np.tile([shift, 0.0], (COUNT, 1))
     step = solve(parts, coefficient, motion, force=force)
@@ -125,7 +131,9 @@ def test_solution_does_not_depend_on_the_first_guess(seed, guess, coefficient):
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from(["force", "depth_change"]))
 def test_without_friction_it_is_the_frictionless_problem(seed, control):
-    """A coefficient of zero gives what the frictionless solver gives, under force and depth control."""
+    """A coefficient of zero gives what the frictionless solver gives, under force and depth
+    control.
+    """
     parts = tilted(problem(seed, COUNT), seed)
     value = 1.3 if control == "force" else 5e-3
     step = solve(parts, 0.0, np.full((COUNT, 2), 0.1), **{control: value})
@@ -140,7 +148,9 @@ def test_without_friction_it_is_the_frictionless_problem(seed, control):
 
 
 def test_a_small_shift_sticks_and_a_large_one_slides():
-    """Friction grows with the shift, up to mu times the normal force at every node, and turns with it."""
+    """Friction grows with the shift, up to mu times the normal force at every node, and turns with
+    it.
+    """
     parts, grown = problem(3, COUNT), []
     for shift in (-1e-6, 1e-6, 1e-3, 10.0, -10.0):
         motion = np.tile([shift, 0.0], (COUNT, 1))
@@ -184,7 +194,9 @@ def test_nothing_can_carry_a_force_sideways():
 
 
 def test_states_and_forces_come_back():
-    """A saved law comes back after another solution was taken over, and released it holds nothing."""
+    """A saved law comes back after another solution was taken over, and released it holds
+    nothing.
+    """
     parts = problem(8, COUNT)
     law = Coulomb(0.5, COUNT)
     everything = slice(0, COUNT)

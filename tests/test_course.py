@@ -29,7 +29,9 @@ def scene(motion, **keys):
 
 @pytest.mark.parametrize("noise", [0.0, 0.05])
 def test_a_recorded_ramp_and_hold_is_the_ramp_and_hold(tmp_path, noise):
-    """2,500 samples with noise of a quarter of a per cent: three corners, and the depths of the two legs."""
+    """2,500 samples with noise of a quarter of a per cent: three corners, and the depths of the two
+    legs.
+    """
     values = RAMP_AND_HOLD + noise * np.random.default_rng(0).normal(size=len(TIME)) * (TIME > 0)
     recorded = scene(written(tmp_path, TIME, values))
     assert len(recorded.motion[0].course.times) == 3
@@ -55,7 +57,9 @@ def test_depth_in_other_units_and_back(tmp_path):
 
 
 def test_cycles_are_followed(tmp_path):
-    """Four cycles a second: depths between the states are those of the table, and viscosity is in."""
+    """Four cycles a second: depths between the states are those of the table, and viscosity is
+    in.
+    """
     depth = 0.5 * (1 - np.cos(2 * np.pi * 4 * TIME))
     made = scene(written(tmp_path, TIME, depth, header="time (s),depth (mm)"), accuracy="thesis")
     history = fingerpad.simulate(made)

@@ -1,4 +1,6 @@
-"""The documentation without building it: tutorials run, numbers are there, links lead somewhere, figures have questions."""
+"""The documentation without building it: tutorials run, numbers are there, links lead somewhere,
+figures have questions.
+"""
 
 import importlib
 import pkgutil
@@ -105,7 +107,9 @@ def test_numbers_read_well(extension):
 
 
 def test_links_lead_to_files():
-    """Relative links of pages that are written by hand; those to generated pages are checked when they are built."""
+    """Relative links of pages that are written by hand; those to generated pages are checked when
+    they are built.
+    """
     for page in PAGES:
         for target in re.findall(
             r"(?:\]\(|```\{(?:image|literalinclude|include)\} )([^)#\s]+)",

@@ -1,4 +1,6 @@
-"""The planner: effects chosen and explained, overridable, and discretisations that follow the scene."""
+"""The planner: effects chosen and explained, overridable, and discretisations that follow the
+scene.
+"""
 
 import json
 import math
@@ -49,7 +51,9 @@ def specimen(scene, **update):
 
 
 def test_ramp_and_hold_calls_for_what_the_thesis_needs(ramp):
-    """A loaded, timed, symmetric, frictionless press: finite strain, viscosity and half the pad; no friction, no ridges."""
+    """A loaded, timed, symmetric, frictionless press: finite strain, viscosity and half the pad; no
+    friction, no ridges.
+    """
     effects = plan(ramp).effects
     assert {name for name, effect in effects.items() if effect.on} == {
         "viscoelasticity",
@@ -78,7 +82,9 @@ def test_steady_press_needs_no_time(ramp):
 
 
 def test_very_fast_and_very_slow_need_no_viscosity(ramp):
-    """A press over before anything relaxes has instantaneous moduli, one much slower than every branch long-term ones."""
+    """A press over before anything relaxes has instantaneous moduli, one much slower than every
+    branch long-term ones.
+    """
     fast = plan(changed(ramp, motion=(PressToForce(press_to_force=2 * GF, rate=2e3 * GF),)))
     assert not fast.effects["viscoelasticity"].on and fast.state == "instantaneous"
     slow = plan(
@@ -108,7 +114,9 @@ def test_lopsided_stimulus_keeps_the_whole_pad(ramp, tmp_path):
 
 
 def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):
-    """Skin that sticks presses otherwise by up to a sixth; what a small coefficient changes is left out."""
+    """Skin that sticks presses otherwise by up to a sixth; what a small coefficient changes is left
+    out.
+    """
     rough, slippery = (
         plan(changed(ramp, friction=coefficient)).effects["friction"]
         for coefficient in (0.6, 0.008)
@@ -134,7 +142,9 @@ def test_friction_in_a_press_is_called_on_where_it_changes_enough(ramp):
     ],
 )
 def test_low_inner_ridges_are_left_out_of_presses(height, accuracy, more, on):
-    """What they change grows with height over pitch; whatever else they could do they are carried for."""
+    """What they change grows with height over pitch; whatever else they could do they are carried
+    for.
+    """
     more = dict(more)
     specimen = {
         "ridges": {"inner": {"height": height}}
@@ -162,7 +172,9 @@ def slid(scene, **slide):
 
 
 def test_stroke_calls_for_friction_and_the_whole_pad(stroke):
-    """Sliding with a coefficient is frictional, without one or only step by step it is not; neither is symmetric."""
+    """Sliding with a coefficient is frictional, without one or only step by step it is not; neither
+    is symmetric.
+    """
     full = plan(stroke).effects
     assert {name for name, effect in full.items() if effect.on} == {
         "friction",
@@ -191,7 +203,9 @@ def test_stroke_calls_for_friction_and_the_whole_pad(stroke):
 
 
 def test_friction_may_be_asked_for_where_there_is_a_coefficient(ramp, stroke):
-    """Pressing with friction is a choice; switching it off in a stroke too; a coefficient of zero cannot be switched on."""
+    """Pressing with friction is a choice; switching it off in a stroke too; a coefficient of zero
+    cannot be switched on.
+    """
     assert plan(changed(ramp, friction=0.6, effects={"friction": True})).effects["friction"].on
     assert not plan(changed(stroke, effects={"friction": False})).effects["friction"].on
     with pytest.raises(PlanError, match="effects.friction: on, but the coefficient is 0"):
@@ -202,7 +216,9 @@ def test_friction_may_be_asked_for_where_there_is_a_coefficient(ramp, stroke):
     ("accuracy", "slide_step"), [("draft", 0.5e-3), ("thesis", 0.25e-3), ("fine", 0.125e-3)]
 )
 def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
-    """Outputs of a slide follow the preset and the surface, not the speed; the cost follows the states that are expected."""
+    """Outputs of a slide follow the preset and the surface, not the speed; the cost follows the
+    states that are expected.
+    """
     chosen = plan(
         changed(
             slid(stroke, speed=40e-3),
@@ -232,7 +248,9 @@ def test_stroke_has_steps_of_a_length(stroke, accuracy, slide_step):
 
 
 def test_steps_of_a_stroke_follow_preset_or_hand(stroke):
-    """Those of a tolerance are as long as the thesis preset's: friction remembers longer ones, and shorter ones buy nothing."""
+    """Those of a tolerance are as long as the thesis preset's: friction remembers longer ones, and
+    shorter ones buy nothing.
+    """
     assert {
         plan(changed(stroke, accuracy=accuracy)).slide_step for accuracy in (0.1, 0.02, "thesis")
     } == {0.25e-3}
@@ -256,7 +274,9 @@ def test_friction_costs(stroke):
 
 
 def test_mesh_is_fine_wherever_a_stroke_takes_the_contact(stroke, ramp):
-    """To where the pad is as steep as the surface, and by the skin's stretch more; a plate does not wander."""
+    """To where the pad is as steep as the surface, and by the skin's stretch more; a plate does not
+    wander.
+    """
 
     def extent(scene):
         return plan(scene).mesh_size.fine_half_width
@@ -276,7 +296,9 @@ def test_mesh_is_fine_wherever_a_stroke_takes_the_contact(stroke, ramp):
 
 
 def test_stroke_is_planned_for_its_sharpest_convexity(stroke):
-    """The narrowest contact on the way decides on strain and error; pressed in place the surface is flat."""
+    """The narrowest contact on the way decides on strain and error; pressed in place the surface is
+    flat.
+    """
     there = plan(stroke).contact
     assert there == plan(changed(stroke, stimulus=Cylinder(curvature=1 / 3.175e-3))).contact
     pressed = plan(
@@ -299,7 +321,9 @@ def test_stroke_is_planned_for_its_sharpest_convexity(stroke):
 
 
 def test_viscosity_follows_how_fast_the_contact_passes(stroke):
-    """Minutes of stroking are still fast for a contact of a millimetre; a creeping or an untimed stroke is not."""
+    """Minutes of stroking are still fast for a contact of a millimetre; a creeping or an untimed
+    stroke is not.
+    """
     pressed = PressToForce(press_to_force=20 * GF)
 
     def effect(scene, **slide):
@@ -345,7 +369,9 @@ def test_viscosity_without_a_series_cannot_be_switched_on(ramp):
 
 
 def test_motion_so_fast_that_inertia_matters_is_refused(ramp):
-    """A quasi-static answer is not given where rho v^2 / mu is not small; a 40 mm/s press is far below the limit."""
+    """A quasi-static answer is not given where rho v^2 / mu is not small; a 40 mm/s press is far
+    below the limit.
+    """
     with pytest.raises(PlanError, match="inertia"):
         plan(changed(ramp, motion=(PressToDepth(press_to_depth=1e-3, speed=2.0),)))
     assert (
@@ -355,7 +381,9 @@ def test_motion_so_fast_that_inertia_matters_is_refused(ramp):
 
 
 def test_presets_and_tolerances_order_cost_and_error(ramp):
-    """Finer asks for more nodes, steps and time and promises less error; a tolerance gets the cheapest that meets it."""
+    """Finer asks for more nodes, steps and time and promises less error; a tolerance gets the
+    cheapest that meets it.
+    """
     draft, thesis, fine = (
         plan(changed(ramp, accuracy=level)) for level in ("draft", "thesis", "fine")
     )
@@ -370,7 +398,9 @@ def test_presets_and_tolerances_order_cost_and_error(ramp):
 
 
 def test_mesh_follows_edges_and_needles(ramp):
-    """Edges of the profile and contacts narrower than the mesh get finer skin there; broad ones do not."""
+    """Edges of the profile and contacts narrower than the mesh get finer skin there; broad ones do
+    not.
+    """
     flat = plan(changed(ramp, stimulus=Flat()))
     assert flat.mesh_size.focus == () and flat.contact.half_width < 20 * flat.contact_edge, (
         "they would hardly be finer"
@@ -394,7 +424,9 @@ def test_mesh_follows_edges_and_needles(ramp):
 
 
 def test_a_presets_stroke_is_finer_in_the_middle_and_coarser_away_from_it(ramp):
-    """Its curves are those of the mesh along its way; what was measured with some growth, and what is given by hand, keeps it."""
+    """Its curves are those of the mesh along its way; what was measured with some growth, and what
+    is given by hand, keeps it.
+    """
     slide = (
         PressToForce(press_to_force=0.2, rate=0.4),
         Slide(slide=5e-3, speed=10e-3, keep="force"),
@@ -461,7 +493,9 @@ def test_layer_kernel(wavenumber, kernel):
     [(0, 4.96, 0.560), (78.74, 3.3, 0.67), (209.97, 2.2, 0.75), (1259.84, 0.73, 0.881)],
 )
 def test_estimates_are_good_enough_to_plan_with(curvature, width, depth):
-    """Estimated widths within 20 % and depths within 25 % of simulated long-term values (mm) at 20 gram-weight."""
+    """Estimated widths within 20 % and depths within 25 % of simulated long-term values (mm) at 20
+    gram-weight.
+    """
     plane = 1 - 0.48**2
     pad = PadEstimate(11e-3, 0.85e-3, 5.5e-3, 0.15e6 / plane, 0.015e6 / plane)
     found = pad.pressed(19.6133, curvature)

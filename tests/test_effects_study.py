@@ -51,7 +51,9 @@ def made(*motion, stimulus=FLAT, **more):
 
 
 def executed(scene):
-    """Functions of the package that are called while a scene is planned and simulated: {(module, name)}."""
+    """Functions of the package that are called while a scene is planned and simulated: {(module,
+    name)}.
+    """
     called = set()
 
     def note(frame, event, _):
@@ -131,7 +133,9 @@ def test_symmetry_halves_the_unknowns():
 
 
 def test_steady_scene_does_no_time_stepping():
-    """Load increments, at most eight, all at time zero; a hold of a steady scene is one step, whatever its length."""
+    """Load increments, at most eight, all at time zero; a hold of a steady scene is one step,
+    whatever its length.
+    """
     scene = made(force(2), accuracy="fine")
     chosen = plan(scene)
     assert not chosen.timed and chosen.steps <= 8
@@ -218,7 +222,9 @@ def test_every_rule_says_what_it_decides():
 
 
 def test_a_small_study_is_drawn_and_tabulated():
-    """Symmetry alone, and made-up choices: markers right and left, a wrong choice in red, rules with evidence."""
+    """Symmetry alone, and made-up choices: markers right and left, a wrong choice in red, rules
+    with evidence.
+    """
     one = study(pairs()[1:2], repeats=1)
     assert one["cost ratio"].item() == pytest.approx(
         one["with (s)"].item() / one["without (s)"].item()

@@ -1,4 +1,6 @@
-"""Errors of curves in three parts: each is found alone where it is known, and companions have the steps they say."""
+"""Errors of curves in three parts: each is found alone where it is known, and companions have the
+steps they say.
+"""
 
 import json
 from dataclasses import replace
@@ -60,7 +62,9 @@ VALUE = over_time(lambda history: history["value"].values)
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("even", [True, False])
 def test_sampling_error_is_what_straight_lines_leave_out(shape, even):
-    """On average over places where a curve bends or jumps about as large; of a smooth curve always."""
+    """On average over places where a curve bends or jumps about as large; of a smooth curve
+    always.
+    """
     time = np.linspace(0, 1, 41) ** (1 if even else 1.5)
     fine, found, true = np.linspace(0, 1, 40001), [], []
     for at in np.random.default_rng(4).uniform(0.3, 0.7, 60):
@@ -123,7 +127,9 @@ def test_a_kink_between_legs_is_no_sampling_error():
 
 
 def test_rates_made_of_differences_of_outputs_are_wrong_at_the_outputs_too():
-    """A curve of central differences: the truth is within what is found, which lines alone (mutant) would leave out."""
+    """A curve of central differences: the truth is within what is found, which lines alone (mutant)
+    would leave out.
+    """
 
     def rates(history):
         t, _, rate = rate_by_leg(
@@ -143,7 +149,9 @@ def test_rates_made_of_differences_of_outputs_are_wrong_at_the_outputs_too():
 
 
 def solved(h, dt, mesh=0.3, steps=0.2, curved=1.0):
-    """A curve that errs by `mesh` h^2 and by `steps` dt, each in a shape of its own, at outputs every dt."""
+    """A curve that errs by `mesh` h^2 and by `steps` dt, each in a shape of its own, at outputs
+    every dt.
+    """
     time = np.arange(0, 1 + dt / 2, dt)
     return outputs(np.sin(7 * curved * time) + mesh * h**2 * np.cos(time) + steps * dt * time, time)
 
@@ -236,7 +244,9 @@ def test_a_companion_one_per_cent_away_is_that_far(name, over, trace):
 
 @pytest.mark.parametrize("number, low, high", [("5-1", 0, 70), ("5-22", 40, 80), ("5-23", 40, 80)])
 def test_errors_of_impulses_are_those_of_the_part_of_the_stroke_that_is_shown(number, low, high):
-    """A companion that is off before or after it does not change them; one that is off within does."""
+    """A companion that is off before or after it does not change them; one that is off within
+    does.
+    """
     histories, meshes, coarse, reference = results()
 
     def off(first, last):
@@ -267,7 +277,9 @@ def test_rate_curve_with_a_jump_is_compared_on_either_side_of_it():
 
 @pytest.mark.parametrize("nodes, order", [(10000, 1.5), (7000, 1.0), (6900, 1.5)])
 def test_less_coarse_a_companion_more_is_left_of_what_a_curve_changes_by(nodes, order):
-    """Where geometry keeps edges short, as ridges do: by the root of the nodes, of curves and of numbers."""
+    """Where geometry keeps edges short, as ridges do: by the root of the nodes, of curves and of
+    numbers.
+    """
 
     def made(h, nodes):
         run = solved(h, 0.02, 0.3, 0.0)
@@ -340,7 +352,9 @@ def test_companions_have_the_steps_of_the_run_all_or_every_second(name):
 
 
 def test_a_companion_passes_twice_the_way_and_no_coarser_events():
-    """What lies between its states is judged as its mesh is: with twice the tolerance its steps jump over small bumps."""
+    """What lies between its states is judged as its mesh is: with twice the tolerance its steps
+    jump over small bumps.
+    """
     scene = load_scene(SCENES / "stroke_10.yaml")
     own = plan(scene)
     mesh, both = companion(scene, own), companion(scene, own, 2)
@@ -351,7 +365,9 @@ def test_a_companion_passes_twice_the_way_and_no_coarser_events():
 
 
 def test_companions_of_a_press_find_its_errors():
-    """Simulated: a press on an intermediate mesh, with its companions and with the truth on a finer one."""
+    """Simulated: a press on an intermediate mesh, with its companions and with the truth on a finer
+    one.
+    """
     scene = load_scene(
         {
             "stimulus": {"shape": "cylinder", "curvature": "400 1/m"},

@@ -1,4 +1,6 @@
-"""Readings of what the thesis leaves open: what they change in the scenes, and what counts as explained by one."""
+"""Readings of what the thesis leaves open: what they change in the scenes, and what counts as
+explained by one.
+"""
 
 import pandas as pd
 import pytest
@@ -22,7 +24,9 @@ REFERENCE = "config/reference/thesis_numbers.csv"
 
 @pytest.mark.parametrize("name", READINGS)
 def test_a_reading_changes_what_it_says(name):
-    """The control nothing but the accuracy, a reading of the wavy surface no press, the others what they name, everywhere."""
+    """The control nothing but the accuracy, a reading of the wavy surface no press, the others what
+    they name, everywhere.
+    """
     reading = READINGS[name]
     press, stroke, steps = (
         load_scene(f"config/scenes/{scene}.yaml")
@@ -52,7 +56,9 @@ def test_every_scene_that_is_read_is_there():
 
 
 def test_explained_is_what_holds_with_a_reading_and_not_without():
-    """TR29 fails in the comparison and without the reading, TR28 holds without it already, TR30 fails with it as well."""
+    """TR29 fails in the comparison and without the reading, TR28 holds without it already, TR30
+    fails with it as well.
+    """
     published = pd.DataFrame(
         [
             (k, "5-12", k, "", 1.0, v)
@@ -99,7 +105,9 @@ def test_a_reading_explains_nothing_by_what_it_was_given():
 
 
 def test_what_is_read_only_is_held_against_the_published_runs():
-    """Another energy explains TR74, which fails in the published runs, and not TR82, which fails at draft accuracy only."""
+    """Another energy explains TR74, which fails in the published runs, and not TR82, which fails at
+    draft accuracy only.
+    """
     assert READ_ONLY == (
         PUBLISHED,
         *(name for name, reading in READINGS.items() if reading.energy != ENERGIES[0]),

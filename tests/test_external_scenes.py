@@ -84,7 +84,9 @@ def reference(built, tmp_path_factory):
 def test_every_element_gives_the_same_answer(
     change, element, tolerance, built, reference, tmp_path
 ):
-    """Linear and quadratic quads and triangles on the same nodes agree in depth, width, pressure and strain energy."""
+    """Linear and quadratic quads and triangles on the same nodes agree in depth, width, pressure
+    and strain energy.
+    """
     chosen, leg = run(change(built), tmp_path)
     assert chosen.element == element
     expected = reference[1]
@@ -120,7 +122,9 @@ LIGHT = {"shape": "flat"}, [{"press_to_force": "2 gf"}], {"finite_strain": False
 def test_linear_quads_are_raised_where_the_accuracy_needs_it(
     stimulus, motion, effects, linear_off, raised_off, tmp_path
 ):
-    """As they are they miss a converged strain energy by 1.6 and 13 %, raised by 0.1 and 1.2; the plan says why."""
+    """As they are they miss a converged strain energy by 1.6 and 13 %, raised by 0.1 and 1.2; the
+    plan says why.
+    """
     document = {"stimulus": stimulus, "motion": motion, "effects": effects}
     truth = summary(simulate(load_scene({**document, "accuracy": "fine"})))["legs"][-1]
     built = load_scene({**document, "accuracy": "draft"})
@@ -145,7 +149,9 @@ def test_linear_quads_are_raised_where_the_accuracy_needs_it(
 
 
 def test_linear_quads_stay_where_they_do_or_are_asked_for(built, tmp_path):
-    """By a tolerance they meet, by hand, and quads of nine nodes by hand; triangles fit no quads."""
+    """By a tolerance they meet, by hand, and quads of nine nodes by hand; triangles fit no
+    quads.
+    """
     write_pad(linear(built), tmp_path / "my.msh")
     (tmp_path / "scene.yaml").write_text(TEXT.format(mesh="my.msh"))
     scene = load_scene(tmp_path / "scene.yaml")
@@ -162,7 +168,9 @@ def test_linear_quads_stay_where_they_do_or_are_asked_for(built, tmp_path):
 
 
 def test_a_raised_skin_bends_as_its_nodes_do(built):
-    """Middles lie on the section to a hundredth of what their chords miss it by; corners and flat sides stay."""
+    """Middles lie on the section to a hundredth of what their chords miss it by; corners and flat
+    sides stay.
+    """
     raised, true = linear(built).raised(), built.points[built.curves["skin"][:, 2]]
     chords = built.points[built.curves["skin"][:, :2]].mean(1)
     found = raised.points[raised.curves["skin"][:, 2]]
@@ -194,7 +202,9 @@ def test_a_raised_skin_bends_as_its_nodes_do(built):
 def test_what_the_mesh_makes_wrong_is_told_by_other_elements_on_it_or_not_at_all(
     change, element, others, tmp_path
 ):
-    """Linear quads by quadratic ones and the other way round, no less than it is; of all others it is not known, and not zero."""
+    """Linear quads by quadratic ones and the other way round, no less than it is; of all others it
+    is not known, and not zero.
+    """
     motion = [{"press_to_force": "10 gf", "rate": "40 gf/s"}]
     document = {"stimulus": {"shape": "cylinder", "curvature": "210 1/m"}, "motion": motion}
     coarse, fine = (load_scene({**document, "accuracy": each}) for each in ("draft", "fine"))

@@ -1,4 +1,6 @@
-"""Without PARDISO: SuperLU gives the same answers, pressed, stroked with friction, and by the linear theory."""
+"""Without PARDISO: SuperLU gives the same answers, pressed, stroked with friction, and by the
+linear theory.
+"""
 
 import os
 import subprocess
@@ -47,7 +49,8 @@ def test_fallback_gives_the_same_answers(case, tmp_path, monkeypatch):
         "strain_energy_density",
     ):
         scale = max(np.abs(truth[name].values).max(), 1e-12)
-        # factored in single precision, they end where less than their tolerance is left out of balance, of strokes the larger
+        # factored in single precision, they end where less than their tolerance is left out of
+        # balance, of strokes the larger
         within = 1e-5 if case != "stroked" else 1e-4
         np.testing.assert_allclose(
             found[name].values, truth[name].values, atol=within * scale, rtol=0, err_msg=name

@@ -1,4 +1,6 @@
-"""Families of scenes: members are scenes like any other, and what is wrong with them is one line."""
+"""Families of scenes: members are scenes like any other, and what is wrong with them is one
+line.
+"""
 
 import pytest
 

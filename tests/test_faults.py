@@ -1,4 +1,6 @@
-"""Whatever goes wrong with files: one line, a code of the interface, nothing half-written, and a rerun that completes."""
+"""Whatever goes wrong with files: one line, a code of the interface, nothing half-written, and a
+rerun that completes.
+"""
 
 import ctypes
 import errno
@@ -42,7 +44,9 @@ def histories():
 
 @pytest.fixture
 def run(tmp_path, histories, monkeypatch):
-    """`run()` runs the command with the solver replaced by the result that comes; what was there is there already."""
+    """`run()` runs the command with the solver replaced by the result that comes; what was there is
+    there already.
+    """
     import fingerpad.simulation
 
     scene, out = write(tmp_path, changed(accuracy=COARSE)), tmp_path / "out"
@@ -84,7 +88,9 @@ def _faults(run, hows, step=1):
 
 
 def test_any_call_may_fail(run, capsys, tmp_path):
-    """One line, 2 or 3; what was there is as it was, and what was computed is where the line says."""
+    """One line, 2 or 3; what was there is as it was, and what was computed is where the line
+    says.
+    """
     elsewhere = 0
     for fault in _faults(run, ERRORS):
         with fault:
@@ -114,7 +120,9 @@ def test_any_call_may_be_interrupted(run, capsys):
 
 
 def test_any_call_may_be_the_last(run):
-    """Killed there: every file is whole, of the run before or of this one; the next run completes and tidies up."""
+    """Killed there: every file is whole, of the run before or of this one; the next run completes
+    and tidies up.
+    """
     for fault in _faults(run, ["kill"], 4):
 
         def killed(fault=fault):
@@ -231,7 +239,9 @@ def test_what_a_killed_writer_left_goes_with_the_next(tmp_path):
 
 @pytest.mark.parametrize("how", [errno.EIO, "interrupt"])
 def test_files_come_together_or_not_at_all(tmp_path, how):
-    """A folder of two files, of which one is there before and a third goes: after any fault all is as before."""
+    """A folder of two files, of which one is there before and a third goes: after any fault all is
+    as before.
+    """
     folder = tmp_path / "folder"
 
     def fill():
@@ -298,7 +308,9 @@ def test_inputs_are_read_without_waiting_and_up_to_a_size(tmp_path):
 
 
 def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
-    """Meshes, imports and units that are kept in the user's cache: cut short, empty, or somebody else's."""
+    """Meshes, imports and units that are kept in the user's cache: cut short, empty, or somebody
+    else's.
+    """
     code = "\n".join(
         [
             "import fingerpad, hashlib, json",
@@ -335,7 +347,9 @@ def test_a_cut_or_foreign_cache_is_made_again(tmp_path):
 
 
 def test_a_cut_or_foreign_result_is_named(tmp_path, histories):
-    """Cut anywhere, empty, another program's, or another kind of result: one line that names it and says what to do."""
+    """Cut anywhere, empty, another program's, or another kind of result: one line that names it and
+    says what to do.
+    """
     import xarray as xr
 
     from cysyk1999.measures.inputs import read_results

@@ -1,9 +1,11 @@
-"""Figure regression: data of every figure against the committed baselines, pictures against their data.
+"""Figure regression: data of every figure against the committed baselines, pictures against their
+data.
 
-The figures of chapters 3 and 4 are made from simulations on coarse meshes, run here, and compared with tests/baselines; those of
-the strokes of chapter 5 from a few shorter ones, for what they read. The published ones in figures/thesis are compared with a
-summary of their curves, with their own pictures, and with the cached results where there are any. A deliberate change is accepted
-by ``make regression-update``.
+The figures of chapters 3 and 4 are made from simulations on coarse meshes, run here, and compared
+with tests/baselines; those of the strokes of chapter 5 from a few shorter ones, for what they read.
+The published ones in figures/thesis are compared with a summary of their curves, with their own
+pictures, and with the cached results where there are any. A deliberate change is accepted by ``make
+regression-update``.
 """
 
 import json
@@ -87,7 +89,9 @@ STROKED = [
 
 
 def stands_for(history, name):
-    """The history of a stroke under another scene's name: passed at that scene's speed, mirrored if it goes the other way."""
+    """The history of a stroke under another scene's name: passed at that scene's speed, mirrored if
+    it goes the other way.
+    """
     scene, done = the_scene(name), scene_of(history)
     slow, fast = (each.motion[1].speed or 1.0 for each in (done, scene))
     start = float(history["time"][history["leg"] == 0][-1])
@@ -104,7 +108,8 @@ def stands_for(history, name):
     return told.assign_coords(receptor_offset=-told["receptor_offset"])
 
 
-#: name -> steps of all its legs, and keys changed, of one stroke over each surface and one of each plate
+#: name -> steps of all its legs, and keys changed, of one stroke over each surface and one of each
+#: plate
 SHORT = {
     "stroke_10": (140, {"outputs.snapshots": (2.0,)}),
     "stroke_sub_10": (60, {}),

@@ -1,4 +1,6 @@
-"""Figures: data frames with units and marks, pictures drawn from the frame alone, files written whole."""
+"""Figures: data frames with units and marks, pictures drawn from the frame alone, files written
+whole.
+"""
 
 import os
 import re
@@ -43,7 +45,9 @@ MODULE_OF = {
 }
 WITHOUT_ERROR = ("5-4", "5-25")  # the surface's own lengths; the specimen itself
 EDGED = ("4-11", "4-12", "4-13", "4-14", "4-20")
-"""Figures of profiles up to the edge of the contact, which is a per cent further away as well: up to three times the error."""
+"""Figures of profiles up to the edge of the contact, which is a per cent further away as well: up
+to three times the error.
+"""
 FIRST = ("4-11", "4-12", "4-13", "4-14", "4-16", "4-17", "5-5", "5-6")
 """Of pressures alone over which the edge of the contact passes: of first order."""
 CHECKED = [
@@ -118,9 +122,11 @@ def left_on_meshes(number: str) -> float:
 
 @pytest.mark.parametrize("number", CHECKED)
 def test_errors_are_the_differences_to_the_companions(number):
-    """Of which one is a per cent away, and the other a quarter of one further; and so are their edges, if the curves have any.
+    """Of which one is a per cent away, and the other a quarter of one further; and so are their
+    edges, if the curves have any.
 
-    What of them remains."""
+    What of them remains.
+    """
     errors, most = frame(number)[[MESH, STEPS]].dropna(), 3 if number in EDGED else 1
     least = left_on_meshes(number)
     largest = 3 * remains(COARSER, PROFILE_ORDER) if number in EDGED else least
@@ -130,7 +136,9 @@ def test_errors_are_the_differences_to_the_companions(number):
 
 @pytest.mark.parametrize("half_width", np.linspace(1.0e-3, 1.067e-3, 6))
 def test_profile_ends_at_the_edge_like_that_of_hertz(half_width):
-    """Against the ellipse, wherever the edge lies between two nodes; mutant: straight lines from node to node have a foot."""
+    """Against the ellipse, wherever the edge lies between two nodes; mutant: straight lines from
+    node to node have a foot.
+    """
     history = results()[0]["ramp40_k210"].isel(time=[-1]).copy(deep=True)
     x = history["skin_x"].values
 
@@ -271,7 +279,9 @@ def test_labels_keep_their_order_and_distance(values):
 
 
 def test_powers_of_ten_are_mathematics_and_ticks_are_text(tmp_path):
-    """Mutants: powers as text (1e6); ticks as mathematics, which take a quarter of a picture's time."""
+    """Mutants: powers as text (1e6); ticks as mathematics, which take a quarter of a picture's
+    time.
+    """
     with theme():
         fig = mpl.figure.Figure()
         ax = fig.subplots()
@@ -450,7 +460,9 @@ def test_a_reading_is_the_measure_of_its_name():
 
 
 def test_round_off_is_published_as_zero():
-    """What is 1e-11 of a column's largest differs between machines; what is more, and text, stays."""
+    """What is 1e-11 of a column's largest differs between machines; what is more, and text,
+    stays.
+    """
     frame = pd.DataFrame(
         {"of": ["a", "b", "c"], "x (mm)": [2.0, -1e-12, 3e-11], "y": [np.nan, 1e-30, -1e-42]}
     )

@@ -1,4 +1,6 @@
-"""First touch: a profile comes straight down, onto nodes or between them, on pads and meshes in any place."""
+"""First touch: a profile comes straight down, onto nodes or between them, on pads and meshes in any
+place.
+"""
 
 import numpy as np
 import pytest
@@ -14,7 +16,9 @@ ROUND = 8e-3
 
 
 def skin(spacing=1e-5, shift=0.0):
-    """An arc of 8 mm radius with its apex at height zero and the node nearest to it ``shift`` m away."""
+    """An arc of 8 mm radius with its apex at height zero and the node nearest to it ``shift`` m
+    away.
+    """
     x = np.arange(-700, 701) * spacing + shift
     return np.column_stack([x, np.sqrt(ROUND**2 - np.minimum(x**2, ROUND**2)) - ROUND])
 
@@ -23,7 +27,9 @@ def skin(spacing=1e-5, shift=0.0):
 @pytest.mark.parametrize("along", [0.0, 0.5e-3, -2e-3, 5e-3])
 @pytest.mark.parametrize("curvature", [1e-13, 26.0, 90.0, 110.0, 1260.0])
 def test_cylinders_touch_where_two_circles_do(curvature, along):
-    """A circle of radius R over a point ``along`` m beside an arc of radius r stands (R + r) cos a above its centre."""
+    """A circle of radius R over a point ``along`` m beside an arc of radius r stands (R + r) cos a
+    above its centre.
+    """
     radius = 1 / curvature
     off = along / (radius + ROUND)
     # R cos a - R without the cancellation
@@ -35,7 +41,9 @@ def test_cylinders_touch_where_two_circles_do(curvature, along):
 
 @pytest.mark.unit
 def test_a_profile_touches_between_nodes_if_it_fits_there():
-    """A blade narrower than the spacing touches the line between two nodes; beside the pad it touches nothing."""
+    """A blade narrower than the spacing touches the line between two nodes; beside the pad it
+    touches nothing.
+    """
     coarse = skin(0.5e-3, 0.25e-3)[2:-2]
     for profile in (
         Bar(width=0.1e-3),
@@ -58,7 +66,9 @@ accuracy: draft
 @pytest.mark.unit
 @pytest.mark.parametrize("shift", [1e-5, 3e-4])
 def test_an_external_mesh_need_not_have_its_apex_in_the_middle(shift, tmp_path):
-    """A pad 0.01 or 0.3 mm beside x = 0 is pressed by a sharp cylinder as one in the middle, within what its nodes allow."""
+    """A pad 0.01 or 0.3 mm beside x = 0 is pressed by a sharp cylinder as one in the middle, within
+    what its nodes allow.
+    """
     built = _draft_mesh()
     depths = []
     for x in (0.0, shift):
@@ -82,7 +92,9 @@ def _draft_mesh():
 @pytest.mark.unit
 @pytest.mark.parametrize("curvature", [90, 100, 210, 1260])
 def test_cylinders_of_any_curvature_are_stepped(curvature, tmp_path):
-    """Each press of a step finds the pad anew; half a millimetre beside the apex a pad is hardly another one."""
+    """Each press of a step finds the pad anew; half a millimetre beside the apex a pad is hardly
+    another one.
+    """
     text = f"""
 stimulus: {{shape: cylinder, curvature: "{curvature} 1/m"}}
 motion: [{{press_to_force: "20 gf"}}, {{step: "1 mm", every: "0.5 mm"}}]
@@ -98,7 +110,9 @@ accuracy: draft
 
 @pytest.mark.unit
 def test_a_step_beside_the_pad_says_so(tmp_path):
-    """A sharp cylinder stepped 12 mm away finds nothing to touch; what was solved before is kept."""
+    """A sharp cylinder stepped 12 mm away finds nothing to touch; what was solved before is
+    kept.
+    """
     text = """
 stimulus: {shape: cylinder, curvature: "1260 1/m"}
 motion: [{press_to_force: "20 gf"}, {step: "12 mm", every: "12 mm"}]

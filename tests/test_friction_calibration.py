@@ -1,4 +1,6 @@
-"""Calibration of friction to the stretch of the skin: a known law given back, what is refused, what is committed."""
+"""Calibration of friction to the stretch of the skin: a known law given back, what is refused, what
+is committed.
+"""
 
 import json
 from functools import cache
@@ -37,7 +39,9 @@ def surface():
 
 
 def history(coefficient, law=lambda mu: 1.5e-3 * mu, ripple=0.1, way=50e-3, start=0.0, name=STROKE):
-    """A stroke that drags the centre by law(mu) in the mean over the waves; one whole period of a ripple about it."""
+    """A stroke that drags the centre by law(mu) in the mean over the waves; one whole period of a
+    ripple about it.
+    """
     ends = surface().stimulus.lead_in, surface().stimulus.length - surface().stimulus.run_out
     x = np.concatenate(
         [

@@ -1,4 +1,6 @@
-"""gmsh works for whoever asks, whatever session, thread, configuration or process that is, and leaves everything as it was."""
+"""gmsh works for whoever asks, whatever session, thread, configuration or process that is, and
+leaves everything as it was.
+"""
 
 import os
 import signal

@@ -63,7 +63,9 @@ def test_membrane_work_is_its_new_length(curvature):
 
 
 def test_plate_carries_the_fluids_pressure():
-    """Under a plate the membrane is flat: force is pressure times width, and pressure exceeds that at rest."""
+    """Under a plate the membrane is flat: force is pressure times width, and pressure exceeds that
+    at rest.
+    """
     state = waterbed.press(20.0, 30.0, 11e-3, 9.5e-3)
     assert state.force == pytest.approx(
         20.0

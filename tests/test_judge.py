@@ -1,4 +1,6 @@
-"""A mesh is judged before it is used: one body whose parts share their nodes, with its skin up over x = 0."""
+"""A mesh is judged before it is used: one body whose parts share their nodes, with its skin up over
+x = 0.
+"""
 
 from dataclasses import replace
 
@@ -64,7 +66,9 @@ def stripped():
 
 
 def partly():
-    """Two halves side by side: the lower rows are the same in both, the upper ones twice as many to the right."""
+    """Two halves side by side: the lower rows are the same in both, the upper ones twice as many to
+    the right.
+    """
     left = slab_mesh(EDGE, left=-10e-3, right=0.0, high=0.0)
     right = slab_mesh(
         EDGE, left=0.0, right=10e-3, low=0.0, y=1e-3 * np.array([0, 1, 2, 2.5, 3, 3.5, 4, 4.5, 5])

@@ -1,4 +1,6 @@
-"""Laws: stress and tangent are the energy's derivatives, all start from one modulus, and adding one takes a file."""
+"""Laws: stress and tangent are the energy's derivatives, all start from one modulus, and adding one
+takes a file.
+"""
 
 import numpy as np
 import pytest
@@ -107,7 +109,9 @@ def test_a_wrong_formula_is_seen(law, constants, formula):
 
 @EACH
 def test_undeformed_every_law_is_the_linear_solid(law, constants):
-    """Without stress at rest, with energy mu dev(e):dev(e) for small strains in the plane, and proportional to mu."""
+    """Without stress at rest, with energy mu dev(e):dev(e) for small strains in the plane, and
+    proportional to mu.
+    """
     m, t = law.stress(3.0, 1.0, 2.5, constants)
     assert (m, t) == pytest.approx((2.5, 3.0))
     for xx, yy, xy in (
@@ -164,7 +168,9 @@ def scene_with(tmp_path, law):
 
 @pytest.mark.slow  # its element loops are compiled for this test only
 def test_a_law_defined_here_goes_from_the_scene_to_the_answer(tmp_path, monkeypatch):
-    """In plane strain without change of volume Mooney-Rivlin is neo-Hooke, and these layers change theirs by little."""
+    """In plane strain without change of volume Mooney-Rivlin is neo-Hooke, and these layers change
+    theirs by little.
+    """
     monkeypatch.setitem(LAWS, MOONEY_RIVLIN.name, MOONEY_RIVLIN)
     scene = scene_with(tmp_path, {"name": "mooney_rivlin", "share": "60 %"})
     fat = scene.specimen.layers.fat.law

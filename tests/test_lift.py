@@ -1,4 +1,6 @@
-"""A finger that is let go: an elastic pad comes back to rest, a viscous one recovers with its Prony series."""
+"""A finger that is let go: an elastic pad comes back to rest, a viscous one recovers with its Prony
+series.
+"""
 
 import numpy as np
 import pytest
@@ -20,7 +22,9 @@ def history(*motion, stimulus=ROUND, accuracy=COARSE, **keys):
 
 @pytest.mark.parametrize("press", [{"press_to_force": "20 gf"}, {"press_to_depth": "0.5 mm"}])
 def test_an_elastic_pad_comes_back_to_rest_the_way_it_went(press):
-    """Under either control: nothing is left after the lift, the way down and the way up are one, and all the work comes back."""
+    """Under either control: nothing is left after the lift, the way down and the way up are one,
+    and all the work comes back.
+    """
     down_and_up = history(press, {"lift": "steady"}, press)
     end = down_and_up.isel(time=np.flatnonzero(down_and_up.leg == 1)[-1])
     top = down_and_up.isel(time=np.flatnonzero(down_and_up.leg == 0)[-1])
@@ -49,10 +53,12 @@ def test_an_elastic_pad_comes_back_to_rest_the_way_it_went(press):
 
 
 def test_a_viscous_pad_recovers_with_its_prony_series():
-    """Let go at once, a nearly incompressible pad creeps back: one branch g, tau recovers as exp(-(1 - g) t / tau).
+    """Let go at once, a nearly incompressible pad creeps back: one branch g, tau recovers as
+    exp(-(1 - g) t / tau).
 
-    Without load ``u + beta v = 0`` and ``v' = u' - v / tau`` with beta = g / (1 - g), for the shape is that of the whole field
-    (Findley, Lai and Onaran 1976, section 5.3: the retardation time of a standard solid is tau (1 + beta)).
+    Without load ``u + beta v = 0`` and ``v' = u' - v / tau`` with beta = g / (1 - g), for the shape
+    is that of the whole field (Findley, Lai and Onaran 1976, section 5.3: the retardation time of a
+    standard solid is tau (1 + beta)).
     """
     g, tau = 0.4, 1.0
     layers = {name: {"poisson_ratio": 0.4999} for name in ("epidermis", "dermis", "fat")}
@@ -80,7 +86,9 @@ def test_a_viscous_pad_recovers_with_its_prony_series():
 
 
 def test_loops_dissipate_what_they_enclose():
-    """Load, unload in part, load again and let go under force control: work less stored energy is dissipated, and grows."""
+    """Load, unload in part, load again and let go under force control: work less stored energy is
+    dissipated, and grows.
+    """
     made = history(
         {"press_to_force": "20 gf", "rate": "40 gf/s"},
         {"press_to_force": "5 gf", "rate": "40 gf/s"},
@@ -100,7 +108,9 @@ def test_loops_dissipate_what_they_enclose():
 
 
 def test_a_stroke_ends_where_the_surface_no_more_touches():
-    """After a way over a wavy surface, zero depth is not where the skin is let go: the lift goes to where it is."""
+    """After a way over a wavy surface, zero depth is not where the skin is let go: the lift goes to
+    where it is.
+    """
     scene = load_scene(
         {
             "stimulus": {"shape": "wavy", "curvatures": ["100 1/m", "200 1/m"], "lead_in": "4 mm"},
@@ -118,7 +128,9 @@ def test_a_stroke_ends_where_the_surface_no_more_touches():
 
 
 def test_steps_of_a_lift():
-    """From the depth that was reached to touch, at the speed; a steady one takes no time; a hold stays there."""
+    """From the depth that was reached to touch, at the speed; a steady one takes no time; a hold
+    stays there.
+    """
     scene = load_scene(
         {
             "stimulus": ROUND,

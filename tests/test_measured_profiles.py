@@ -1,4 +1,6 @@
-"""Measured profiles: how their points are read, what is smoothed away, where they end, and that they solve."""
+"""Measured profiles: how their points are read, what is smoothed away, where they end, and that
+they solve.
+"""
 
 from functools import partial
 
@@ -68,7 +70,9 @@ def test_turning_to_and_fro_is_noise_and_turning_one_way_is_shape():
 @pytest.mark.unit
 @pytest.mark.parametrize("edge", [269e-6, 67e-6, 20e-6])
 def test_profiles_without_noise_are_left_alone(edge):
-    """Arcs of enough points, a wedge of five, a grating of sharp teeth: not one bit of their points changes."""
+    """Arcs of enough points, a wedge of five, a grating of sharp teeth: not one bit of their points
+    changes.
+    """
     arc = np.linspace(-2.4e-3, 2.4e-3, 201)
     teeth = np.cumsum(np.tile([1.0, 0.2, 0.6, 0.2], 6)) * 1e-3
     for x, y in (
@@ -94,7 +98,9 @@ def test_smooth_is_auto_none_or_a_length():
 
 @pytest.mark.unit
 def test_finer_meshes_come_to_longer_cutoffs():
-    """Two edges, where it is rough to them, or octaves of them, up to two edges of the thesis's skin: noise is no shape."""
+    """Two edges, where it is rough to them, or octaves of them, up to two edges of the thesis's
+    skin: noise is no shape.
+    """
     x, y, shape = measured(2)
     assert Points(x, shape).cutoffs(30e-6) == [0.0]
     assert Points(x, y).cutoffs(268.8e-6) == pytest.approx([537.6e-6])
@@ -107,7 +113,9 @@ def test_finer_meshes_come_to_longer_cutoffs():
 
 @pytest.mark.unit
 def test_noise_is_smoothed_away_and_shape_is_kept(folder):
-    """At 2 %: a cylinder's noise over 269 um, which leaves a cylinder; fine textures as short as the mesh feels them."""
+    """At 2 %: a cylinder's noise over 269 um, which leaves a cylinder; fine textures as short as
+    the mesh feels them.
+    """
     x, y, _ = measured(2)
     assert surface_at(folder, x, y, 0.02).smoothing == pytest.approx(268.8e-6)
     x = np.linspace(-3e-3, 3e-3, 1201)
@@ -122,7 +130,9 @@ def test_noise_is_smoothed_away_and_shape_is_kept(folder):
 
 @pytest.mark.unit
 def test_ends():
-    """Beyond the points: nothing but a rounded way up, a level surface, or the last slope for ever."""
+    """Beyond the points: nothing but a rounded way up, a level surface, or the last slope for
+    ever.
+    """
     x, y = [-1e-3, 0.0, 1e-3], [1e-4, 0.0, 1e-4]
     far = np.array([[2e-3, 0.0], [-2e-3, 0.0]])
     along = np.arctan(0.1)
@@ -177,7 +187,9 @@ WEDGE = "-2,1\n-1,.25\n0,0\n1,.25\n2,1\n"
 
 @pytest.mark.unit
 def test_one_more_point_is_no_endless_wedge(tmp_path):
-    """A falling last segment changes nothing where contact does not come; extended for ever it goes 0.3 mm deeper."""
+    """A falling last segment changes nothing where contact does not come; extended for ever it goes
+    0.3 mm deeper.
+    """
     plain, more, extended = (
         simulate(load_scene(scene(tmp_path, rows, ends)))
         for rows, ends in (
@@ -307,7 +319,9 @@ def surface_at(folder, x, y, accuracy):
 
 
 def check_one(folder, number, exact):
-    """The answer with noise is the one without within the error that it states, and says how it came about."""
+    """The answer with noise is the one without within the error that it states, and says how it
+    came about.
+    """
     x, y, shape = measured(number)
     name = INSTRUMENTS[number][0]
     if name not in exact:
@@ -331,7 +345,9 @@ def test_noise_changes_no_more_than_is_said(number, folder):
 @pytest.mark.slow
 @pytest.mark.stability
 def test_thirty_measured_profiles(folder):
-    """White and coloured noise, rounding, textures, dots and edges, each within its stated error of the noise-free answer."""
+    """White and coloured noise, rounding, textures, dots and edges, each within its stated error of
+    the noise-free answer.
+    """
     exact = {}
     for number in range(len(INSTRUMENTS)):
         check_one(folder, number, exact)
@@ -339,7 +355,9 @@ def test_thirty_measured_profiles(folder):
 
 @pytest.mark.unit
 def test_noise_can_be_kept(folder):
-    """A thousand valleys, each narrower than the nodes are apart: the skin lies on what stands out, nearly as on the shape."""
+    """A thousand valleys, each narrower than the nodes are apart: the skin lies on what stands out,
+    nearly as on the shape.
+    """
     x, y, shape = measured(1)
     depths = [
         pressed(folder, x, heights, "none")[1].indentation_depth.values[-1]
@@ -350,7 +368,9 @@ def test_noise_can_be_kept(folder):
 
 @pytest.mark.unit
 def test_the_advice_works(folder, monkeypatch):
-    """Noise of micrometres every micrometre takes long as it is; the message names it and a smoothing with which it does not."""
+    """Noise of micrometres every micrometre takes long as it is; the message names it and a
+    smoothing with which it does not.
+    """
     x, y, shape = measured(7)
     y = shape + 20 * (y - shape)
     monkeypatch.setattr(

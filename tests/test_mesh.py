@@ -1,4 +1,6 @@
-"""The pad's mesh: symmetric to the bit, on the outline, as fine as asked, unchanged by a file trip."""
+"""The pad's mesh: symmetric to the bit, on the outline, as fine as asked, unchanged by a file
+trip.
+"""
 
 import re
 from dataclasses import replace
@@ -379,7 +381,9 @@ def test_failed_writing_leaves_the_old_file(draft, tmp_path):
 
 
 def test_a_full_disk_is_said(draft, tmp_path, monkeypatch):
-    """gmsh does not say that its file was cut; nothing is left of it then, and what was there before stays."""
+    """gmsh does not say that its file was cut; nothing is left of it then, and what was there
+    before stays.
+    """
     path = tmp_path / "pad.msh"
     path.write_text("old")
 

@@ -21,7 +21,9 @@ RAMP_AND_HOLD = (PressToForce(press_to_force=20 * GF, rate=40 * GF), Hold(hold=2
 
 
 def test_ramp_and_hold():
-    """20 gram-weight at 40 gram-weight per second takes half a second; the hold keeps the force for two."""
+    """20 gram-weight at 40 gram-weight per second takes half a second; the hold keeps the force for
+    two.
+    """
     steps = list(programme(RAMP_AND_HOLD, steps=20, contact_length=10e-3))
     assert (
         len(steps) == 40
@@ -73,7 +75,9 @@ def test_press_without_a_rate_takes_no_time():
 
 
 def test_changing_control_starts_from_where_the_pad_is():
-    """After a force-controlled leg a depth-controlled one goes on from the depth that was reached."""
+    """After a force-controlled leg a depth-controlled one goes on from the depth that was
+    reached.
+    """
     legs = (
         PressToForce(press_to_force=1.0, rate=2.0),
         PressToDepth(press_to_depth=1e-3, speed=1e-3),
@@ -97,7 +101,9 @@ STROKE = (
 
 
 def test_slide_goes_its_way_at_its_speed_and_keeps_the_force():
-    """Equal steps of at most the longest, the distance as time goes; the hold after it stays there."""
+    """Equal steps of at most the longest, the distance as time goes; the hold after it stays
+    there.
+    """
     steps = list(programme(STROKE, steps=4, contact_length=1.0, slide_step=0.3e-3))
     press, slide, hold = ([step for step in steps if step.leg == leg] for leg in range(3))
     assert (len(slide), len(hold)) == (27, 4) and {step.distance for step in press} == {0.0}
@@ -170,7 +176,9 @@ def test_slow_slide_takes_no_time():
 
 
 def test_step_and_repeat_presses_afresh_at_every_place():
-    """Four fresh steady indentations to the same force, one every millimetre from where the slide ended."""
+    """Four fresh steady indentations to the same force, one every millimetre from where the slide
+    ended.
+    """
     legs = (*STROKE[:2], StepAndRepeat(step=4e-3, every=1e-3), Hold(hold=1.0))
     steps = list(programme(legs, steps=2, contact_length=1.0))
     fresh = [step for step in steps if step.fresh]
@@ -187,7 +195,9 @@ def test_step_and_repeat_presses_afresh_at_every_place():
 
 
 def test_a_leg_is_one_class(monkeypatch):
-    """A leg that only this test knows: its key registers it, its path makes the steps, checks and outlook ask its attributes."""
+    """A leg that only this test knows: its key registers it, its path makes the steps, checks and
+    outlook ask its attributes.
+    """
     monkeypatch.setattr(motion, "LEGS", dict(motion.LEGS))
 
     class Tap(motion.Leg):

@@ -74,7 +74,9 @@ def test_kinds_of_receptor_by_any_of_their_names(folder):
 
 
 def test_width_of_the_contact_and_of_what_touches(tmp_path):
-    """Over a texture the contact has gaps: its width is from outermost to outermost, what touches is a share of it."""
+    """Over a texture the contact has gaps: its width is from outermost to outermost, what touches
+    is a share of it.
+    """
     x = np.arange(-12, 12.001, 0.01)
     profile = np.column_stack([x, 0.075 * (1 - np.cos(2 * np.pi * x / 1.6))])
     np.savetxt(tmp_path / "p.csv", profile, delimiter=",", header="x (mm),y (mm)", comments="")

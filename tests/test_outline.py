@@ -1,4 +1,6 @@
-"""The outline: its parameters come out as asked, layers are exact offsets, impossible ones are refused."""
+"""The outline: its parameters come out as asked, layers are exact offsets, impossible ones are
+refused.
+"""
 
 from types import SimpleNamespace
 
@@ -14,7 +16,9 @@ pytestmark = pytest.mark.unit
 
 
 def outline(**changed):
-    """A stand-in with the attributes of the scene's model, which refuses some of what is tested here."""
+    """A stand-in with the attributes of the scene's model, which refuses some of what is tested
+    here.
+    """
     return SimpleNamespace(**{**THESIS, **changed})
 
 

@@ -1,4 +1,6 @@
-"""A new effect of the planner is one object: scenes switch it, plans decide on it, runs carry it out, wrong switches name it."""
+"""A new effect of the planner is one object: scenes switch it, plans decide on it, runs carry it
+out, wrong switches name it.
+"""
 
 from pathlib import Path
 
@@ -48,7 +50,9 @@ def scene(force="1 gf", **more):
 
 
 def test_an_own_effect_goes_from_scene_to_run(monkeypatch):
-    """Decided with its reason, switched by a scene, paid for in the cost, carried out in the run and told by its history."""
+    """Decided with its reason, switched by a scene, paid for in the cost, carried out in the run
+    and told by its history.
+    """
     done = []
     effect = PlannedEffect(
         **{**EFFECT.__dict__, "compose": lambda simulation: done.append(simulation.scene.name)}
@@ -82,7 +86,9 @@ def test_an_own_effect_goes_from_scene_to_run(monkeypatch):
 
 
 def test_an_own_effect_goes_into_the_picture_of_the_study():
-    """Its scene is run with and without it, and a point with its name stands beside those of the choices published."""
+    """Its scene is run with and without it, and a point with its name stands beside those of the
+    choices published.
+    """
     choices = pd.read_csv(FIGURES / "studies" / "effects.csv").query("panel == 'planner'")
     with registered(EFFECT):
         frame = assemble(
@@ -117,7 +123,9 @@ def test_the_register_is_the_files_and_the_scene_language():
 
 
 def test_a_tolerance_has_room_for_one_error_only():
-    """Small strain that would eat the tolerance beside the mesh's error is not used; where there is room, or by hand, it is."""
+    """Small strain that would eat the tolerance beside the mesh's error is not used; where there is
+    room, or by hand, it is.
+    """
     chosen = plan(scene("0.07 gf", accuracy=0.1))
     assert chosen.effects["finite_strain"].on == (chosen.small_strain_error == 0)
     assert chosen.estimated_error <= 0.1

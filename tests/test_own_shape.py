@@ -1,4 +1,6 @@
-"""A shape defined here only goes the whole way: scene language, schema, plan, run, results, as CONTRIBUTING shows."""
+"""A shape defined here only goes the whole way: scene language, schema, plan, run, results, as
+CONTRIBUTING shows.
+"""
 
 import json
 from typing import Literal
@@ -73,7 +75,9 @@ def test_it_is_read_checked_and_recorded(tmp_path, roller):
 
 
 def test_it_is_planned_and_run(tmp_path):
-    """Over the middle it is the cylinder, in the plan and to rounding in the run; beside it the pad is no mirror image."""
+    """Over the middle it is the cylinder, in the plan and to rounding in the run; beside it the pad
+    is no mirror image.
+    """
     middle = scene(tmp_path, radius="5 mm")
     cylinder = middle.varied({"stimulus": Cylinder(radius=5e-3)})
     assert plan(middle) == plan(cylinder)

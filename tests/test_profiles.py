@@ -39,7 +39,9 @@ point = st.tuples(st.floats(-5e-3, 5e-3), st.floats(-4e-3, 2e-3))
 @settings(max_examples=80, deadline=None)
 @given(where=point)
 def test_gradient_is_the_derivative_of_the_distance(name, where):
-    """Away from ridges of the distance, its finite differences are the gradient, which has length one."""
+    """Away from ridges of the distance, its finite differences are the gradient, which has length
+    one.
+    """
     profile, x = PROFILES[name], np.array([where])
     step = 1e-8
     distance, gradient, _ = profile.evaluate(x)
@@ -79,7 +81,9 @@ def test_curvature_turns_the_gradient(name, where):
 
 @pytest.mark.parametrize("name", ["flat", "cylinder", "bar", "sharp bar", "line", "sampled"])
 def test_lowest_point_is_the_origin(name):
-    """A profile touches from above at height zero: nothing below is inside, something just above is."""
+    """A profile touches from above at height zero: nothing below is inside, something just above
+    is.
+    """
     profile = PROFILES[name]
     x = np.linspace(-6e-3, 6e-3, 601)
     below, _, _ = profile.evaluate(np.column_stack([x, np.full_like(x, -1e-9)]))
@@ -152,7 +156,9 @@ def drawn(radii, half_angle, lead_in, run_out, spacing=1e-6):
 
 
 def test_wavy_surface_is_the_one_drawn():
-    """Every point of the drawing lies on the surface, the radii of inch tools on the thesis's axes."""
+    """Every point of the drawing lies on the surface, the radii of inch tools on the thesis's
+    axes.
+    """
     points = drawn(INCH_RADII, np.radians(9), 8e-3, 10e-3)
     np.testing.assert_allclose(STANDARD.outline(points[:, 0]), points[:, 1], atol=1e-12)
     np.testing.assert_allclose(STANDARD.evaluate(points)[0], 0, atol=1e-12)
@@ -165,7 +171,9 @@ def test_wavy_surface_is_the_one_drawn():
 
 
 def test_segments_tell_where_which_curvature_is():
-    """Flat, eight convexities with seven hollows of the radius that follows, flat; lengths of the thesis's axes."""
+    """Flat, eight convexities with seven hollows of the radius that follows, flat; lengths of the
+    thesis's axes.
+    """
     segments = STANDARD.segments
     radii = INCH_RADII
     expected = [0, 1 / radii[0], *np.ravel([[-1 / r, 1 / r] for r in radii[1:]]), 0]
@@ -196,7 +204,9 @@ def test_arcs_share_their_tangents_and_only_the_flats_meet_them_sharply():
 
 
 def test_fillet_is_tangent_to_flat_and_arc():
-    """Rounded corners have no kink left and the radius asked for; the solid gains there, nothing else moves."""
+    """Rounded corners have no kink left and the radius asked for; the solid gains there, nothing
+    else moves.
+    """
     rounded = Wavy(fillet=2e-3)
     assert [segment.curvature for segment in rounded.segments][1::16] == pytest.approx([-500, -500])
     for x in rounded.curve.x[1:-1]:
@@ -219,7 +229,9 @@ def test_fillet_is_tangent_to_flat_and_arc():
     st.lists(st.tuples(st.floats(-0.2, 1.2), st.floats(-6e-3, 3e-3)), min_size=5, max_size=5),
 )
 def test_distance_to_the_wavy_surface_is_the_closest_of_all(curvatures, half_angle, places):
-    """Against the nearest of densely drawn points, within what their spacing allows; below the surface it is positive."""
+    """Against the nearest of densely drawn points, within what their spacing allows; below the
+    surface it is positive.
+    """
     spacing = 2e-6
     surface = drawn(1 / np.array(curvatures), half_angle, 8e-3, 8e-3, spacing)
     profile = Wavy(curvatures=curvatures, half_angle=half_angle, lead_in=8e-3, run_out=8e-3)
@@ -239,7 +251,9 @@ def test_distance_to_the_wavy_surface_is_the_closest_of_all(curvatures, half_ang
     st.tuples(st.floats(-0.2, 1.2), st.floats(-4.0, 4.0)),
 )
 def test_distance_to_steep_lines_is_the_closest_of_all(pieces, place):
-    """Against every segment one by one: leaving most of them out loses none that matters, however steep they are."""
+    """Against every segment one by one: leaving most of them out loses none that matters, however
+    steep they are.
+    """
     steps = np.array(pieces)
     profile = Points(np.cumsum(steps[:, 0]), np.cumsum(steps[:, 1]))
     at = np.array([profile.x[0] + place[0] * np.ptp(profile.x), place[1]])
@@ -255,7 +269,9 @@ def test_distance_to_steep_lines_is_the_closest_of_all(pieces, place):
 
 
 def test_work_does_not_grow_with_the_length_of_a_profile(monkeypatch):
-    """Points near the surface look at the pieces near them, whether the profile has a thousand or a million."""
+    """Points near the surface look at the pieces near them, whether the profile has a thousand or a
+    million.
+    """
     looked_at, loop = [], curve._closest
     monkeypatch.setattr(curve, "_closest", lambda *arguments: looked_at.append(loop(*arguments)))
     for count in (10**3, 10**6):
@@ -266,7 +282,9 @@ def test_work_does_not_grow_with_the_length_of_a_profile(monkeypatch):
 
 
 def test_reentrant_corner_has_its_fan_of_normals_in_the_solid():
-    """On the corner the bisector of both normals, above it the distance to it, below it that to the closer of the two sides."""
+    """On the corner the bisector of both normals, above it the distance to it, below it that to the
+    closer of the two sides.
+    """
     corner, half = np.array([STANDARD.curve.x[1], 0.0]), np.radians(4.5)
     up = np.array([np.sin(half), np.cos(half)])
     distance, gradient, curvature = STANDARD.evaluate(
@@ -285,7 +303,9 @@ def test_reentrant_corner_has_its_fan_of_normals_in_the_solid():
 
 
 def test_level_sets_of_arcs_and_corners():
-    """Curvature 1/(R + d) under a convexity, -1/(R - d) under a hollow, 1/d under a corner that points at the skin."""
+    """Curvature 1/(R + d) under a convexity, -1/(R - d) under a hollow, 1/d under a corner that
+    points at the skin.
+    """
     x = [np.mean(STANDARD.curve.x[k : k + 2]) for k in (1, 2)]
     deep = np.column_stack([x, STANDARD.outline(np.array(x)) - 2e-3])
     distance, gradient, curvature = STANDARD.evaluate(deep)
@@ -300,7 +320,9 @@ def test_level_sets_of_arcs_and_corners():
 
 
 def test_arcs_on_a_smooth_join_are_not_corners():
-    """Straight below a join between arcs the curvature is that of one of them, at any distance down to none."""
+    """Straight below a join between arcs the curvature is that of one of them, at any distance down
+    to none.
+    """
     for x in STANDARD.curve.x[2:-2]:
         foot = np.array([x, 0.0])
         normal = STANDARD.evaluate(foot[None])[1][0]
@@ -354,7 +376,9 @@ def test_points_that_are_no_numbers_do_not_stop_a_query():
 
 @pytest.mark.parametrize("curvature", [1e-7, 1e-10, 1e-13])
 def test_nearly_flat_cylinders_are_exact(curvature):
-    """Of a flat plate their distance differs by the sagitta, k x^2 / 2, and not by what a radius of 10^13 m rounds away."""
+    """Of a flat plate their distance differs by the sagitta, k x^2 / 2, and not by what a radius of
+    10^13 m rounds away.
+    """
     at = np.random.default_rng(0).uniform([-5e-3, -2e-3], [5e-3, 1e-4], (200, 2))
     distance, gradient, _ = Cylinder(curvature=curvature).evaluate(at)
     np.testing.assert_allclose(distance, -at[:, 1] + curvature * at[:, 0] ** 2 / 2, rtol=1e-9)

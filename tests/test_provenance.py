@@ -10,7 +10,9 @@ pytestmark = pytest.mark.unit
 
 @pytest.fixture
 def toy(tmp_path, monkeypatch):
-    """A function that writes a package `toy` of {path: text} and gives the closure of a script as names."""
+    """A function that writes a package `toy` of {path: text} and gives the closure of a script as
+    names.
+    """
     package = tmp_path / "toy"
     monkeypatch.setattr(provenance, "PACKAGE", package)
 
@@ -95,7 +97,9 @@ def test_digest_follows_content_not_time_or_order(tmp_path):
 
 
 def test_what_was_followed_is_kept_until_a_file_changes(toy, tmp_path, monkeypatch):
-    """From the user's cache nothing is followed; an edited, a new and a removed file are noticed."""
+    """From the user's cache nothing is followed; an edited, a new and a removed file are
+    noticed.
+    """
     monkeypatch.setattr(provenance, "cache_folder", lambda name: tmp_path)
     files = {"a": "from . import b", "b": "", "c": ""}
     first = toy("import toy.a", **files)

@@ -1,4 +1,6 @@
-"""Quantities: a quantity is its column's header, knows its unit, and is said once for figures, axes and baselines."""
+"""Quantities: a quantity is its column's header, knows its unit, and is said once for figures, axes
+and baselines.
+"""
 
 import pickle
 

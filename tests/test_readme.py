@@ -22,7 +22,9 @@ FROZEN_DEPTH_MM = 1.124395
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
-    """The README from top to bottom, in one folder: what was run, and the command line's last words."""
+    """The README from top to bottom, in one folder: what was run, and the command line's last
+    words.
+    """
     matplotlib.use("Agg")
     folder, patch = tmp_path_factory.mktemp("readme"), pytest.MonkeyPatch()
     said, names, makes, cited = [], {}, [], []

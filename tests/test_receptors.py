@@ -1,4 +1,6 @@
-"""The laws from skin to impulses: integrals and constants given back, impulses that count right, sensors, rates, facts."""
+"""The laws from skin to impulses: integrals and constants given back, impulses that count right,
+sensors, rates, facts.
+"""
 
 from pathlib import Path
 
@@ -539,7 +541,9 @@ def test_pressure_predicts_the_energy_under_it(histories):
 
 
 def test_thesis_constants_predict_the_legible_rates(histories):
-    """Thesis Fig 4-2: 23.7 and 25.3 impulses/s in the hold after a fast ramp, one monkey receptor, nothing fitted here."""
+    """Thesis Fig 4-2: 23.7 and 25.3 impulses/s in the hold after a fast ramp, one monkey receptor,
+    nothing fitted here.
+    """
     for name, recorded in (("ramp150_k630", 23.7), ("ramp150_k1260", 25.3)):
         assert responses.rate_in(histories[name], "hold") == pytest.approx(recorded, abs=10)
 
@@ -571,7 +575,9 @@ def test_rates_peak_at_the_top_of_the_ramp_and_rise_with_curvature(histories):
 def test_rapidly_adapting_receptors_fire_at_the_ramps_beginning_if_the_skins_curvature_drives_them(
     histories,
 ):
-    """Thesis section 4.2: at the beginning of the ramp or not at all, whatever the curvature. Of the two, the first holds."""
+    """Thesis section 4.2: at the beginning of the ramp or not at all, whatever the curvature. Of
+    the two, the first holds.
+    """
     table = sensing.rapidly_adapting({name: histories[name] for name in PRESSED[:3]})
     curvature, strain = (
         table[table["responds to the rate of"] == name] for name in sensing.RAPIDLY_ADAPTING

@@ -1,4 +1,6 @@
-"""The reconstruction of the pad of 1999: evidence, priors, scaling, emulator and inference, each against a known answer."""
+"""The reconstruction of the pad of 1999: evidence, priors, scaling, emulator and inference, each
+against a known answer.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -200,7 +202,9 @@ def test_the_bulk_modulus_changes_and_the_shear_modulus_stays():
 
 
 def test_a_pad_without_fat_beside_its_bone_cannot_be():
-    """A thin shell of fat: the clearance is that of the apex; a wide high bone reaches the skin, which the mesh then refuses."""
+    """A thin shell of fat: the clearance is that of the apex; a wide high bone reaches the skin,
+    which the mesh then refuses.
+    """
     assert 0.1 < pads.clearance(pads.CHOSEN) < 3.8
     thin = pads.CHOSEN | {"bone_half_width": 2.5, "fat_thickness": 3.0}
     assert pads.clearance(thin | {"fat_thickness": 3.2}) > pads.clearance(thin) - 0.21 > 0
@@ -225,7 +229,9 @@ def test_pads_that_cannot_be_have_no_posterior(known):
 
 @pytest.mark.verification
 def test_moduli_read_as_instantaneous_are_a_factor_on_load_and_bulk_modulus():
-    """The reading `instantaneous` against a simulation with `moduli: instantaneous`: lengths equal, pressures by the factor."""
+    """The reading `instantaneous` against a simulation with `moduli: instantaneous`: lengths equal,
+    pressures by the factor.
+    """
     left, mesh = 1 - 0.055 - 0.3691, {"accuracy": {"skin_edge": "200 um", "steps": 6}}
     pad = pads.CHOSEN | {LOAD: pads.CHOSEN[LOAD] / left, "bulk_modulus": 1 / left}
     as_told = pads.scene(pads.CHOSEN, "158").varied({"specimen.moduli": "instantaneous"})
@@ -266,7 +272,9 @@ def test_a_design_goes_on_where_it_was_stopped(tmp_path, known, monkeypatch):
 
 
 def _smooth(x):
-    """Three measures of pads at shares (n, 4): an exact quadratic in the logarithm, a wavy one, and one with a sign."""
+    """Three measures of pads at shares (n, 4): an exact quadratic in the logarithm, a wavy one, and
+    one with a sign.
+    """
     a, b, c, _ = x.T
     return pd.DataFrame(
         {
@@ -302,7 +310,9 @@ def test_the_emulator_states_the_error_that_it_makes():
 
 
 class _Known:
-    """Stands for an emulator: a measure that is the pad's radius, and one that is the load over the state."""
+    """Stands for an emulator: a measure that is the pad's radius, and one that is the load over the
+    state.
+    """
 
     logarithmic, error = np.array([False, False]), np.zeros(2)
 
@@ -346,7 +356,9 @@ def test_the_posterior_of_an_interval_is_the_interval_and_its_evidence_its_share
 
 
 def test_readings_compare_by_their_evidence(known):
-    """A pressure that is 100 times the line load: instantaneous moduli with 17 N/m show 1700 Pa as well, and no 2400 Pa."""
+    """A pressure that is 100 times the line load: instantaneous moduli with 17 N/m show 1700 Pa as
+    well, and no 2400 Pa.
+    """
     wide = {"tolerance": (0.01, 100.0)}
     fits = infer(_problem(known, "instantaneous", pressure=(1600.0, 1800.0), **wide), draws=2**13)
     not_ = infer(_problem(known, "long_term", pressure=(2400.0, 2600.0), **wide), draws=2**13)
@@ -423,14 +435,18 @@ def test_the_default_specimen_is_that_of_the_committed_tables():
 
 
 def test_bands_of_other_pads_hold_the_default_pads_neighbours():
-    """Pads that the figures do not tell apart: each band is rising, positive, and most are narrower than a factor of two."""
+    """Pads that the figures do not tell apart: each band is rising, positive, and most are narrower
+    than a factor of two.
+    """
     found = read_bands(CONFIG / "reference/reconstruction_bands.csv")
     assert set(found["surface"]) == set(pads.SURFACES) and (found["pads"] >= 10).all()
     assert (found["high"] / found["low"]).median() < 2
 
 
 def test_published_results_meet_what_was_asked_of_them(evidence):
-    """The control: the pad chosen before is far off; known pads are found again 9 times in 10; the emulator says its error."""
+    """The control: the pad chosen before is far off; known pads are found again 9 times in 10; the
+    emulator says its error.
+    """
     families, recovered, emulator, readings = (
         pd.read_csv(TABLES / f"reconstruction_{name}.csv")
         for name in ("families", "recovery", "emulator", "readings")

@@ -1,4 +1,6 @@
-"""The analytic solutions agree with themselves: loads, limits, equilibrium, and published numbers."""
+"""The analytic solutions agree with themselves: loads, limits, equilibrium, and published
+numbers.
+"""
 
 import numpy as np
 import pytest
@@ -144,7 +146,9 @@ def test_cattaneo_mindlin_table(load, ratio, peak, centre):
 
 
 def test_cattaneo_mindlin_return():
-    """On the way back the traction carries the force, never exceeds mu p, and at -Q1 is that of Q1 mirrored."""
+    """On the way back the traction carries the force, never exceeds mu p, and at -Q1 is that of Q1
+    mirrored.
+    """
     turn, mu, load = 0.8 * 0.5 * np.pi / 2, 0.5, np.pi / 2
     x = np.linspace(-1, 1, 401)
     for force in (turn, 0.3, 0.0, -0.2, -turn):
@@ -167,7 +171,9 @@ def test_cattaneo_mindlin_return():
     "friction, ratio", [(0.0, 0.1), (0.1, 0.20202), (0.2, 0.306122), (0.3, 0.412371)]
 )
 def test_incline_table_of_cgs4(friction, ratio):
-    """NAFEMS CGS-4 at tan(alpha) = 0.1; downhill is uphill on the mirrored slope; balance of both forces on the plane."""
+    """NAFEMS CGS-4 at tan(alpha) = 0.1; downhill is uphill on the mirrored slope; balance of both
+    forces on the plane.
+    """
     assert incline.limit_ratio(0.1, friction) == pytest.approx(ratio, abs=5e-7)
     assert incline.limit_ratio(-0.1, friction) == pytest.approx(
         (friction - 0.1) / (1 + 0.1 * friction)
@@ -184,7 +190,9 @@ def test_incline_table_of_cgs4(friction, ratio):
 
 
 def test_friction_plate_numbers_agree_with_each_other():
-    """The recomputed displacements lie within the 5 % of the codes, fall inwards and are less than without friction."""
+    """The recomputed displacements lie within the 5 % of the codes, fall inwards and are less than
+    without friction.
+    """
     np.testing.assert_allclose(friction_plate.CONVERGED, friction_plate.MEAN_OF_CODES, rtol=0.05)
     strain = (
         (1 - friction_plate.POISSON_RATIO**2)
@@ -208,7 +216,9 @@ def test_punch_pressure_load_and_exponent():
 
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
 def test_sticking_punch(poisson):
-    """The tractions carry both forces; at nu = 0.5 they are the frictionless pressure, scaled; shear points outwards before."""
+    """The tractions carry both forces; at nu = 0.5 they are the frictionless pressure, scaled;
+    shear points outwards before.
+    """
     normal, sideways = (
         quad(
             lambda s, k=k: (

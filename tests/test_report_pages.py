@@ -1,4 +1,6 @@
-"""Pages of the report: they hold their pictures and tables in themselves, and say what the thesis says."""
+"""Pages of the report: they hold their pictures and tables in themselves, and say what the thesis
+says.
+"""
 
 import re
 from pathlib import Path

@@ -1,4 +1,6 @@
-"""The same scene gives the same bytes but for dates and costs, and the same numbers whatever solves it, on any threads."""
+"""The same scene gives the same bytes but for dates and costs, and the same numbers whatever solves
+it, on any threads.
+"""
 
 import json
 
@@ -24,7 +26,9 @@ COSTS = ("cpu_s", "compiling_s", "wall_s", "peak_rss_MB")
 
 
 def told(folder):
-    """What a run has written: plan.json, summary.json without costs, arrays and attributes of the history without costs."""
+    """What a run has written: plan.json, summary.json without costs, arrays and attributes of the
+    history without costs.
+    """
     summary = json.loads((folder / "summary.json").read_text())
     with netCDF4.Dataset(folder / "history.nc") as file:
         arrays = {

@@ -35,7 +35,9 @@ def made_up(steady_start: bool = False) -> xr.Dataset:
 
 
 def test_rates_are_those_of_eq_5_1_and_impulses_their_integral():
-    """On the ramp A1 (E - threshold) and A2 times the slope above its threshold; on the hold the first alone."""
+    """On the ramp A1 (E - threshold) and A2 times the slope above its threshold; on the hold the
+    first alone.
+    """
     sent = fingerpad.respond(made_up())
     rate = sent.impulse_rate.sel(afferent="slowly_adapting")
     assert rate.dims == ("response_time", "receptor") and rate.attrs["units"] == "1/s"
@@ -70,7 +72,9 @@ def test_kinds_of_receptor_and_laws_of_one_s_own():
 
 
 def test_variability_needs_a_seed_and_receptors_vary_apart():
-    """The same seed gives the same impulses; two receptors under the same energy do not fire together."""
+    """The same seed gives the same impulses; two receptors under the same energy do not fire
+    together.
+    """
     alike = made_up()
     alike["strain_energy_density"][:, 1] = alike.strain_energy_density[:, 0]
     one, again = (fingerpad.respond(alike, variation=0.25, seed=3) for _ in range(2))
@@ -81,7 +85,9 @@ def test_variability_needs_a_seed_and_receptors_vary_apart():
 
 
 def test_what_takes_no_time_has_no_rate():
-    """A steady leg before the ramp moves the start of the energy and adds no rate; a history without time is refused."""
+    """A steady leg before the ramp moves the start of the energy and adds no rate; a history
+    without time is refused.
+    """
     sent = fingerpad.respond(made_up(steady_start=True))
     np.testing.assert_array_equal(np.isfinite(sent.impulse_rate), True)
     assert float(sent.impulse_rate.max()) == float(fingerpad.respond(made_up()).impulse_rate.max())
@@ -92,7 +98,9 @@ def test_what_takes_no_time_has_no_rate():
 
 
 def test_one_key_of_a_scene_writes_responses_into_history_and_summary(tmp_path):
-    """outputs.responses: impulses in the history, a row a receptor in the summary; a dictionary is a scene too."""
+    """outputs.responses: impulses in the history, a row a receptor in the summary; a dictionary is
+    a scene too.
+    """
     scene = fingerpad.load_scene(
         {
             "stimulus": {"shape": "cylinder", "curvature": "400 1/m"},

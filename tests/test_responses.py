@@ -1,4 +1,6 @@
-"""Predicted rates of pressed surfaces: figures beside what is recorded, and the trends of chapter 4 with a mutant of each."""
+"""Predicted rates of pressed surfaces: figures beside what is recorded, and the trends of chapter 4
+with a mutant of each.
+"""
 
 from pathlib import Path
 

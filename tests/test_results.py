@@ -1,4 +1,6 @@
-"""Histories: labelled, with units and provenance, whole on disk, and of the whole pad whatever was solved."""
+"""Histories: labelled, with units and provenance, whole on disk, and of the whole pad whatever was
+solved.
+"""
 
 import errno
 import json
@@ -103,7 +105,9 @@ def test_compiling_is_no_cost_of_a_simulation(monkeypatch):
 
 
 def test_half_model_is_unfolded(run):
-    """Skin and pressure are those of the whole pad, symmetric to the last bit; receptors are read in other elements."""
+    """Skin and pressure are those of the whole pad, symmetric to the last bit; receptors are read
+    in other elements.
+    """
     end = run[3].isel(time=-1)
     np.testing.assert_array_equal(end.skin_x, -end.skin_x[::-1])
     np.testing.assert_array_equal(end.contact_pressure, end.contact_pressure[::-1])
@@ -212,7 +216,9 @@ def test_snapshots_become_vtu(run, tmp_path):
 
 
 def test_fields_are_consistent(run, tmp_path):
-    """Stress, its invariants and the energy of the total stress belong together; a mirror turns the shear stress round."""
+    """Stress, its invariants and the energy of the total stress belong together; a mirror turns the
+    shear stress round.
+    """
     _, _, mesh, history, _ = run
     write_vtu(history, tmp_path)
     cells = {
@@ -246,7 +252,9 @@ def test_fields_are_consistent(run, tmp_path):
 
 
 def test_fields_are_what_receptors_see_in_one_element(run, monkeypatch):
-    """A receptor in the middle of an element has the element's values, to the last bits, if nothing is fitted round it."""
+    """A receptor in the middle of an element has the element's values, to the last bits, if nothing
+    is fitted round it.
+    """
     monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     simulation = Simulation(*run[:3], fields=True)
     body, space = simulation.body, simulation.body.space
@@ -264,7 +272,9 @@ def test_fields_are_what_receptors_see_in_one_element(run, monkeypatch):
 
 
 def test_the_last_state_is_the_field_when_no_snapshot_is_named():
-    """Whatever has no snapshots has one of its end when fields are asked for, and none when they are not."""
+    """Whatever has no snapshots has one of its end when fields are asked for, and none when they
+    are not.
+    """
     scene = load_scene(SCENES / "ramp40_flat.yaml").with_accuracy("draft")
     scene = scene.model_copy(
         update={"motion": (scene.motion[0].model_copy(update={"rate": None}),)}
@@ -279,7 +289,9 @@ def test_the_last_state_is_the_field_when_no_snapshot_is_named():
 
 
 def test_skin_is_indexed_by_the_way_along_it(run, tmp_path):
-    """Pressure over place and time plots; the middle is found by its place; a file that was read again has it too."""
+    """Pressure over place and time plots; the middle is found by its place; a file that was read
+    again has it too.
+    """
     write_history(run[3], tmp_path / "history.nc")
     for history in (run[3], read_history(tmp_path / "history.nc")):
         assert history.contact_pressure.dims == ("time", "skin_node") and np.all(
@@ -310,7 +322,9 @@ def test_a_file_is_the_one_that_xarray_writes(run, tmp_path):
 
 
 def test_a_summary_names_its_receptors(run):
-    """Every energy of a summary stands beside depth and offset; of very many receptors only the history speaks."""
+    """Every energy of a summary stands beside depth and offset; of very many receptors only the
+    history speaks.
+    """
     history = run[3]
     leg = summary(history)["legs"][-1]
     assert [(r["depth_mm"], r["offset_mm"]) for r in leg["receptors"]] == [
@@ -343,7 +357,9 @@ def test_an_interrupted_simulation_keeps_what_had_converged(run):
 
 
 def test_a_full_disk_is_an_error_of_the_system(run, tmp_path, monkeypatch):
-    """What netCDF calls an HDF error becomes one that says what the disk says, and nothing is left."""
+    """What netCDF calls an HDF error becomes one that says what the disk says, and nothing is
+    left.
+    """
     monkeypatch.setattr(shutil, "disk_usage", lambda _: types.SimpleNamespace(free=0))
     monkeypatch.setattr(
         netCDF4,
@@ -370,7 +386,9 @@ def test_nothing_half_written(tmp_path):
 
 
 def test_without_viscosity_there_is_one_strain_energy():
-    """A pad without a Prony series has one strain energy, whatever it is called; with one, the five differ."""
+    """A pad without a Prony series has one strain energy, whatever it is called; with one, the five
+    differ.
+    """
     scene = load_scene(SCENES / "ramp40_k1260.yaml").with_accuracy("draft")
     elastic = scene.model_copy(update={"specimen": scene.specimen.model_copy(update={"prony": ()})})
     end = simulate(elastic).isel(time=-1)
@@ -382,7 +400,9 @@ def test_without_viscosity_there_is_one_strain_energy():
 
 
 def test_an_element_that_folds_at_a_receptor_ends_the_run(monkeypatch):
-    """Between quadrature points det F may fall below zero first: no NaN leaves a run as its result."""
+    """Between quadrature points det F may fall below zero first: no NaN leaves a run as its
+    result.
+    """
     sample, calls = MaterialPoints.sample, iter(range(100))
 
     def folded(points, body):

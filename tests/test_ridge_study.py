@@ -1,4 +1,6 @@
-"""What a receptor feels of direction over ridges: the index, the mirror identity it rests on, cases, frames and rows."""
+"""What a receptor feels of direction over ridges: the index, the mirror identity it rests on,
+cases, frames and rows.
+"""
 
 import json
 from pathlib import Path
@@ -58,7 +60,9 @@ def test_index_is_the_contrast_of_the_two_ways(made):
 
 
 LEFT_OUT = 5e-4
-"""A quarter of the force that a draft stroke may leave out of balance: how energies differ by it depends on the processor."""
+"""A quarter of the force that a draft stroke may leave out of balance: how energies differ by it
+depends on the processor.
+"""
 
 
 def test_strokes_to_either_side_are_mirror_images(base):
@@ -141,7 +145,9 @@ def test_cases_are_named_and_vary_what_they_say(base):
 
 @pytest.mark.parametrize("name", AS_DRAWN)
 def test_ridges_drawn_on_the_thesiss_elements(base, name):
-    """The plain mesh's elements with the boundary moved onto the ridges: at its corners, or all along it."""
+    """The plain mesh's elements with the boundary moved onto the ridges: at its corners, or all
+    along it.
+    """
     asked = case_scene(base, Case(*KEY, name))
     chosen = plan(asked)
     plain = mesh_for(asked, chosen)

@@ -1,4 +1,6 @@
-"""Ridges and the stratum corneum: where they lie, how they are meshed, and that none at all costs and changes nothing."""
+"""Ridges and the stratum corneum: where they lie, how they are meshed, and that none at all costs
+and changes nothing.
+"""
 
 import hashlib
 import re
@@ -89,7 +91,9 @@ def places(points) -> set:
 
 
 def named(points) -> tuple[np.ndarray, np.ndarray]:
-    """Arc lengths from the apex and depths below the smooth outline (m) of points (n, 2) of the upper half, by Newton steps."""
+    """Arc lengths from the apex and depths below the smooth outline (m) of points (n, 2) of the
+    upper half, by Newton steps.
+    """
     x, y = points.T
     theta = CURVE.theta_at_x(np.clip(x, -OUTLINE.half_width, OUTLINE.half_width))
     for _ in range(30):
@@ -127,7 +131,9 @@ def areas(mesh) -> dict[str, float]:
 
 
 def test_plain_mesh_is_what_it_was_before_ridges_existed():
-    """Byte for byte when written; kept to a picometre, for sines differ in the last bit between processors."""
+    """Byte for byte when written; kept to a picometre, for sines differ in the last bit between
+    processors.
+    """
     mesh = build_pad_mesh(OUTLINE, SIZE)
     content = (mesh.points.round(12) + 0.0).tobytes() + mesh.cells.tobytes() + mesh.region.tobytes()
     assert (
@@ -234,7 +240,9 @@ def test_elements_have_positive_jacobians_and_are_no_worse_than_the_slope_of_the
 
 
 def test_mesh_is_conforming_and_its_boundary_is_named(case):
-    """Two elements meet along whole edges, mid-side node included; what is left over is the boundary."""
+    """Two elements meet along whole edges, mid-side node included; what is left over is the
+    boundary.
+    """
     mesh = case[2]
     edges = element_edges(mesh.cells, mesh.element)
     _, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
@@ -265,7 +273,9 @@ def test_mesh_is_symmetric_to_the_last_bit_where_the_ridges_are(case):
 
 
 def test_areas_are_those_under_the_stated_curves(case):
-    """Area between depths a(s) and b(s) of a curve of curvature k is the integral of (b - a) - k (b^2 - a^2) / 2."""
+    """Area between depths a(s) and b(s) of a curve of curvature k is the integral of (b - a) - k
+    (b^2 - a^2) / 2.
+    """
     given_ridges, corneum, mesh = case
     thick = OUTLINE.stratum_corneum_thickness
     pad = given_ridges and RidgedPad(OUTLINE, given_ridges, thick if corneum else 0.0)
@@ -283,7 +293,9 @@ def test_areas_are_those_under_the_stated_curves(case):
 
 
 def test_ridges_are_resolved(meshes):
-    """At least 8 elements a pitch and 4 rows a height, counted on the mesh itself round the tip and the valley at the apex."""
+    """At least 8 elements a pitch and 4 rows a height, counted on the mesh itself round the tip and
+    the valley at the apex.
+    """
     for name in ("inner", "sharp", "high", "high and sharp", "outer", "corneum"):
         mesh, pad = meshes[name], RidgedPad(OUTLINE, CASES[name][0])
         s, depth = named(mesh.points[mesh.cells[:, :4]].reshape(-1, 2))
@@ -576,7 +588,9 @@ def test_ridges_of_no_height_answer_as_the_plain_pad(stimulus):
 
 
 def test_inner_ridges_press_without_cuts_and_are_felt():
-    """The energy at 600 um, in the epidermis, is larger over a tip than over a valley; the pad as a whole hardly knows."""
+    """The energy at 600 um, in the epidermis, is larger over a tip than over a valley; the pad as a
+    whole hardly knows.
+    """
     at = [0.0, RidgedPad(OUTLINE, RIDGES).nearest("valley")[0]]
     plain, ridged = (
         simulate(scene({"ridges": each}, hold=0, offsets=at)) for each in ("none", "inner")

@@ -219,7 +219,9 @@ def test_the_ramp_and_hold_scenes_are_the_eighteen():
 
 
 def test_the_strokes_are_the_thesis_s():
-    """Five velocities over the whole surface, three and a stepped one over its first two convexities, to their ends."""
+    """Five velocities over the whole surface, three and a stepped one over its first two
+    convexities, to their ends.
+    """
     for speed in (1, 5, 10, 20, 40):
         scene = load_scene(CONFIG / "scenes" / f"stroke_{speed}.yaml")
         assert scene.stimulus == Wavy() and scene.friction > 0
@@ -415,7 +417,9 @@ def test_the_surface_may_be_used_to_its_ends(folder):
 
 
 def test_a_leg_that_takes_time_has_as_many_outputs_as_are_asked_for(folder):
-    """Fewer than the accuracy's steps change nothing, nor do any where nothing takes time or who gives the steps by hand."""
+    """Fewer than the accuracy's steps change nothing, nor do any where nothing takes time or who
+    gives the steps by hand.
+    """
 
     def steps(outputs, **changes):
         chosen = fingerpad.plan(
@@ -438,7 +442,9 @@ def test_a_leg_that_takes_time_has_as_many_outputs_as_are_asked_for(folder):
 
 
 def test_snapshots_at_intervals_are_times(folder):
-    """Multiples of the interval up to the end, the end itself too; the canonical form is that of the times."""
+    """Multiples of the interval up to the end, the end itself too; the canonical form is that of
+    the times.
+    """
     every = load_scene(write(folder, changed(outputs={"snapshots": {"every": "0.5 s"}})))
     listed = load_scene(
         write(folder, changed(outputs={"snapshots": ["0.5 s", "1 s", "1.5 s", "2 s", "2.5 s"]}))
@@ -736,7 +742,9 @@ def test_a_scene_is_the_same_in_any_units(folder, depth_um, force_mgf, rate_mgf,
 
 
 def test_a_profile_made_in_python_needs_no_file():
-    """Points in metres are a profile; without points and without a file it says so, and records keep it."""
+    """Points in metres are a profile; without points and without a file it says so, and records
+    keep it.
+    """
     scene = load_scene(
         {"stimulus": {"shape": "flat"}, "motion": [{"press_to_force": "20 gf"}]}, name="made"
     )

@@ -1,4 +1,6 @@
-"""Shape functions and quadrature of the reference elements, against scikit-fem's and against exact integrals."""
+"""Shape functions and quadrature of the reference elements, against scikit-fem's and against exact
+integrals.
+"""
 
 import math
 

@@ -1,4 +1,6 @@
-"""Local skin curvature: exact on arcs, robust to noise, the profile's own in contact of a simulated press."""
+"""Local skin curvature: exact on arcs, robust to noise, the profile's own in contact of a simulated
+press.
+"""
 
 from pathlib import Path
 
@@ -14,7 +16,9 @@ SPACINGS = (67e-6, 134e-6)  # m, nodes of the thesis's resolution and of a draft
 
 
 def arc(curvature, spacing, tilt=0.0, count=60):
-    """Nodes on an arc through the origin, tangent tilted by an angle (rad); positive curvature is hollow from above."""
+    """Nodes on an arc through the origin, tangent tilted by an angle (rad); positive curvature is
+    hollow from above.
+    """
     angle = np.arange(-count, count + 1) * spacing * curvature
     points = np.array([np.sin(angle), 1 - np.cos(angle)]) / curvature
     turn = np.array([[np.cos(tilt), -np.sin(tilt)], [np.sin(tilt), np.cos(tilt)]])

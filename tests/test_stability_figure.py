@@ -94,7 +94,9 @@ def test_table_tells_how_each_method_ended(frame):
 
 
 def test_runs_are_counted_by_how_they_ended(frame):
-    """Where the default method has no answer to be off from, none is wrong; a silent failure would be counted."""
+    """Where the default method has no answer to be off from, none is wrong; a silent failure would
+    be counted.
+    """
     frames = {method: part for method, part in long(frame).groupby("method")}
     assert tally(frames["default"]) == ["1 stable", "1 stopped and said why", "none silent"]
     assert tally(frames["full Q1"]) == ["1 wrong", "1 stopped and said why"]
@@ -140,7 +142,9 @@ def test_picture_has_a_panel_a_method_and_marks_what_did_not_complete(frame):
 
 
 def test_a_group_and_a_case_have_a_place_of_their_own_among_two_hundred():
-    """Names of groups do not run into each other, and a case is wide enough to be seen: half a millimetre."""
+    """Names of groups do not run into each other, and a case is wide enough to be seen: half a
+    millimetre.
+    """
     frames = [rows(method, 1.0).iloc[[0]] for method in METHODS]
     many = [
         f.assign(number=k, case=f"{k}: x", group=f"group {k // 13}")

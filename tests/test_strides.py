@@ -1,4 +1,6 @@
-"""How far a stroke goes in one step, and what is said of the contact between the states that are found."""
+"""How far a stroke goes in one step, and what is said of the contact between the states that are
+found.
+"""
 
 from types import SimpleNamespace
 
@@ -69,7 +71,9 @@ def test_a_ripple_inside_goes_along_with_the_surface():
 
 
 def test_a_piece_that_comes_fades_in():
-    """A second bump that has come has half its pressure half-way; the first one goes on as if there were none."""
+    """A second bump that has come has half its pressure half-way; the first one goes on as if there
+    were none.
+    """
     alone, both = hertz(-1e-3), hertz(-1e-3) + hertz(2e-3, 0.3e-3, 4e3)
     first, last = touch(alone, 0.0), touch(both, 1e-6)
     found = Passage.at(first, last, 0.5, X).pressure(first.pressure, last.pressure)
@@ -96,7 +100,9 @@ def test_ends_are_the_states():
 
 @pytest.mark.parametrize("ways", [(1e-4, 1e-4), (1e-4, 2e-4), (2e-4, 0.5e-4)])
 def test_what_is_missed_is_what_a_parabola_leaves_over_a_line(ways):
-    """A pressure that grows as 1 + c s^2 lies c h^2 / 4 off the line through the ends of a way h, at most."""
+    """A pressure that grows as 1 + c s^2 lies c h^2 / 4 off the line through the ends of a way h,
+    at most.
+    """
     bend = 4e6
     places = np.cumsum([0.0, *ways])
     states = [
@@ -125,7 +131,9 @@ def outputs(count, way=0.05e-3, leg=1, dt=0.01):
 
 
 def walk(strides, error):
-    """Numbers of outputs passed and found, of a walk where ``error(way)`` is what is missed over a way (m)."""
+    """Numbers of outputs passed and found, of a walk where ``error(way)`` is what is missed over a
+    way (m).
+    """
     found, states = [], [touch(hertz()), touch(hertz())]
     while (following := strides.next()) is not None:
         step, passed = following
@@ -151,7 +159,9 @@ def test_strides_grow_to_the_longest_where_nothing_is_missed():
 
 
 def test_strides_are_as_long_as_the_tolerance_allows():
-    """What is missed grows with the square of the way: the way settles where it is the tolerance."""
+    """What is missed grows with the square of the way: the way settles where it is the
+    tolerance.
+    """
     found = walk(
         Strides(iter(outputs(300)), Between(1e-3, 0.01)), lambda way: 0.01 * (way / 0.31e-3) ** 2
     )
@@ -159,7 +169,9 @@ def test_strides_are_as_long_as_the_tolerance_allows():
 
 
 def test_a_stride_over_an_event_is_taken_back():
-    """Where a state is far from what was expected the stride is halved until it is not, or passes nothing."""
+    """Where a state is far from what was expected the stride is halved until it is not, or passes
+    nothing.
+    """
     seen = []
 
     def error(way):
@@ -171,7 +183,9 @@ def test_a_stride_over_an_event_is_taken_back():
 
 
 def test_every_output_is_found_while_stick_turns_to_slip():
-    """A touch that sticks in part follows its predecessor by one output; a long stride to it is taken back."""
+    """A touch that sticks in part follows its predecessor by one output; a long stride to it is
+    taken back.
+    """
     plate = hertz(half_width=2e-3)
     strides = Strides(iter(outputs(60)), Between(0.25e-3, 0.05))
     states, found = [touch(plate, drag=0.3), touch(plate, drag=0.3)], []
@@ -192,7 +206,9 @@ def test_every_output_is_found_while_stick_turns_to_slip():
 
 
 def test_what_must_be_found_is_found():
-    """Ends of legs, snapshots, steps of presses; and every step where nothing is said of what lies between."""
+    """Ends of legs, snapshots, steps of presses; and every step where nothing is said of what lies
+    between.
+    """
     pressed = [Step(0, 0.1 * k, 0.1, force=float(k)) for k in (1, 2, 3)]
     slide = outputs(40)
     slide[13] = Step(1, slide[13].time, 0.01, force=1.0, distance=slide[13].distance)
@@ -313,7 +329,9 @@ def test_a_piece_of_contact_in_one_state_alone_leaves_no_wiggle():
 
 
 def pressed(times, passed):
-    """Arrays at states of a press whose contact grows as Hertz's does under a force that rises evenly, and their records."""
+    """Arrays at states of a press whose contact grows as Hertz's does under a force that rises
+    evenly, and their records.
+    """
     time = np.array([0.0, *times])
     width = 4e-3 * np.sqrt(time)
     contact = np.array([hertz(half_width=max(w / 2, 1e-9), peak=1e7 * w) * (w > 0) for w in width])
@@ -342,7 +360,9 @@ def pressed(times, passed):
 
 
 def test_a_press_goes_from_state_to_state_as_its_width_does():
-    """Mutants: the contact goes evenly in time; its edges are not told apart from nodes that come in; the right half for all."""
+    """Mutants: the contact goes evenly in time; its edges are not told apart from nodes that come
+    in; the right half for all.
+    """
     every = np.arange(1, 41) / 40
     solved = np.append(every[:10], every[11::2])
     out, times = at_outputs(
@@ -364,7 +384,9 @@ def test_a_press_goes_from_state_to_state_as_its_width_does():
 
 
 def test_states_of_a_press_are_found_where_its_accuracy_needs_them():
-    """Of 40 outputs of a press the first ten, then every fourth and snapshots, of a hold every fourth; of a lift all."""
+    """Of 40 outputs of a press the first ten, then every fourth and snapshots, of a hold every
+    fourth; of a lift all.
+    """
     press, hold = PressToForce(press_to_force=1.0, rate=2.0), Hold(hold=2.0)
     legs = press, hold, Lift(lift=1e-3)
     steps = list(programme(legs, steps=40, contact_length=0.01, snapshots=[0.4125], every=4))
@@ -387,7 +409,9 @@ def test_states_of_a_press_are_found_where_its_accuracy_needs_them():
 
 
 def test_strides_pass_what_need_not_be_found_of_a_press():
-    """However far apart states of a stroke may be; what goes wrong is tried again with half as many outputs, then with none."""
+    """However far apart states of a stroke may be; what goes wrong is tried again with half as many
+    outputs, then with none.
+    """
     steps = [Step(0, 0.1 * k, 0.1, force=float(k), solved=k in (1, 8)) for k in range(1, 9)]
     for between in (None, Between(0.25e-3, 0.01)):
         strides = Strides(iter(steps), between)

@@ -1,4 +1,6 @@
-"""Rates predicted of strokes: figures, numbers and claims of chapter 5 on made-up histories, and a mutant of each claim."""
+"""Rates predicted of strokes: figures, numbers and claims of chapter 5 on made-up histories, and a
+mutant of each claim.
+"""
 
 from pathlib import Path
 
@@ -51,7 +53,9 @@ def _with_energy(history, deep, shallow=None):
 
 
 def _bumps(history, height, width=0.3, at=st.place):
-    """Strain energy (Pa) with a bump over each convexity: heights by label, widths as a share of the chord."""
+    """Strain energy (Pa) with a bump over each convexity: heights by label, widths as a share of
+    the chord.
+    """
     d, arcs = at(history), st.convexities(history)
     middle, chord = (
         {k: f(a) for k, a in arcs.items()}
@@ -210,7 +214,8 @@ def test_agreement_and_deviation_over_velocity(lawful):
     assert _holds(lawful, "TR60").holds
     assert _holds(lawful | {"stroke_40": _scaled(lawful["stroke_40"], 1.5)}, "TR60").shown == 4
     assert not _holds(lawful | {"stroke_40": _scaled(lawful["stroke_40"], 1.5)}, "TR60").holds
-    # constants and shift come from the ramps and the stroke at 10 mm/s, whose scale does not move its shift
+    # constants and shift come from the ramps and the stroke at 10 mm/s, whose scale does not move
+    # its shift
     growing = {name: _scaled(lawful[name], 1 + 0.05 * k) for k, name in enumerate(st.FULL.values())}
     assert _holds(lawful | growing, "TR61").holds
     assert not _holds(lawful | growing | {"stroke_20": lawful["stroke_20"]}, "TR61").holds

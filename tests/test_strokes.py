@@ -1,4 +1,6 @@
-"""Strokes: what is read from them, the trends of chapter 5 and a mutant of each, the moving picture."""
+"""Strokes: what is read from them, the trends of chapter 5 and a mutant of each, the moving
+picture.
+"""
 
 import numpy as np
 import pytest
@@ -103,7 +105,9 @@ def test_contact_lengths_are_the_chords_less_what_the_corner_takes(slow):
 
 
 def _passed_by_hertz(stroke, half_width):
-    """The stroke with Hertz's pressure under a contact that goes over the centre node half way, one stroke distance one place."""
+    """The stroke with Hertz's pressure under a contact that goes over the centre node half way, one
+    stroke distance one place.
+    """
     x, d = stroke["skin_x"].values, st.distance(stroke)
     away = (x - x[centre_node(stroke)])[None] - (d - d.mean())[:, None]
     pressure = (
@@ -124,7 +128,9 @@ def _contact_of_centre(stroke):
 
 @pytest.mark.parametrize("spacings", [4.3, 6.1, 9.85])
 def test_contact_of_the_centre_begins_and_ends_between_nodes_and_outputs(slow, spacings):
-    """Half a node off at either end is what counting nodes is wrong by, and so is another law of the pressure at the edge."""
+    """Half a node off at either end is what counting nodes is wrong by, and so is another law of
+    the pressure at the edge.
+    """
     half_width = spacings * _spacing(slow)
     assert _contact_of_centre(_passed_by_hertz(slow, half_width)) == pytest.approx(
         2 * half_width, abs=2 * st.FINE
@@ -192,7 +198,9 @@ def _follower(history, of):
 
 @pytest.fixture(scope="module")
 def following(made):
-    """Strokes without the made-up profile's width: centre pressure linear in curvature, above zero in contact."""
+    """Strokes without the made-up profile's width: centre pressure linear in curvature, above zero
+    in contact.
+    """
     return {name: _follower(history, lambda k: 12000 + 30 * k) for name, history in made.items()}
 
 
@@ -281,7 +289,9 @@ def test_contact_is_lost_before_both_convexities_at_40_mm_per_s_only(made):
 
 
 def _felt(history, peak):
-    """Strain energy with one bump over each convexity, of heights `peak` (curvature label -> Pa)."""
+    """Strain energy with one bump over each convexity, of heights `peak` (curvature label ->
+    Pa).
+    """
     under, arcs = st.place(history), st.convexities(history)
     middles = {k: (a.start + a.end) / 2 for k, a in arcs.items()}
     bumps = sum(

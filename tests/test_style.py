@@ -1,4 +1,6 @@
-"""The style: contrast on paper, colours apart for every reader, pages of a journal's size, notes of two lines."""
+"""The style: contrast on paper, colours apart for every reader, pages of a journal's size, notes of
+two lines.
+"""
 
 import matplotlib as mpl
 import numpy as np

@@ -1,4 +1,6 @@
-"""Sweeps: the language, the design, records that survive whatever kills their writer, and the collected dataset."""
+"""Sweeps: the language, the design, records that survive whatever kills their writer, and the
+collected dataset.
+"""
 
 import csv
 import errno
@@ -356,7 +358,9 @@ def batch_in(folder, count=4):
 
 
 def pretend(monkeypatch, spoil=None):
-    """Scenes cost nothing; `spoil` (curvature -> error) says which fail. What was run is returned."""
+    """Scenes cost nothing; `spoil` (curvature -> error) says which fail. What was run is
+    returned.
+    """
     ran = []
 
     def measured(scene, keep, file=None):

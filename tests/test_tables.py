@@ -1,4 +1,6 @@
-"""Tables as instruments, spreadsheets and numpy write them: each is read right, or refused in one line that says why."""
+"""Tables as instruments, spreadsheets and numpy write them: each is read right, or refused in one
+line that says why.
+"""
 
 import io
 import itertools
@@ -197,7 +199,9 @@ def test_what_is_no_profile_is_refused_in_one_line(tmp_path, name):
 
 @pytest.mark.parametrize("seed", range(50))
 def test_fifty_ways_at_random_are_read_right_or_refused(tmp_path, seed):
-    """Whatever combination: the points are right, or one line says why not. Never another profile."""
+    """Whatever combination: the points are right, or one line says why not. Never another
+    profile.
+    """
     draw = random.Random(seed)
     ways = {
         "delimiter": draw.choice([",", ";", "\t", " "]),

@@ -1,4 +1,6 @@
-"""Every state of a history has a time of its own, so that `sel` and `interp` work on whatever a motion makes."""
+"""Every state of a history has a time of its own, so that `sel` and `interp` work on whatever a
+motion makes.
+"""
 
 import numpy as np
 import pytest

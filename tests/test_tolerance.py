@@ -35,7 +35,9 @@ def scene(stimulus=FLAT, motion=PRESS, **more):
 
 
 def test_contact_on_a_rounded_edge_follows_from_hertz_to_the_square_root():
-    """Without a face it is Hertz's; of a wide face the way is (3 P R / a^2 E)^(2/3) a / 2; never more than the rounding."""
+    """Without a face it is Hertz's; of a wide face the way is (3 P R / a^2 E)^(2/3) a / 2; never
+    more than the rounding.
+    """
     force, radius = 2.0, 0.1e-3
     hertz = np.sqrt(4 * force * radius / (np.pi * PAD.stiff))
     assert PAD.on_rounding(force, 0.0, radius) == pytest.approx(hertz, rel=1e-9)
@@ -75,7 +77,9 @@ def test_least_piece_is_the_bump_that_stands_out_and_not_the_one_that_is_flatten
 
 @pytest.mark.parametrize("stimulus", [ROUNDED, {"shape": "line"}, cylinder(3000.0)])
 def test_tolerance_is_planned_for_what_touches(stimulus):
-    """The face, the tip and the rounding decide on the mesh, not the plate's contact; in 4 times less error, finer edges."""
+    """The face, the tip and the rounding decide on the mesh, not the plate's contact; in 4 times
+    less error, finer edges.
+    """
     rough, good = (plan(scene(stimulus, accuracy=accuracy)) for accuracy in (0.08, 0.02))
     assert rough.estimated_error <= 0.08 * 1.001 and good.estimated_error <= 0.02 * 1.001
     assert rough.missed() is good.missed() is None
@@ -94,7 +98,9 @@ def test_ridges_do_not_hide_the_edge_of_a_bar():
 
 
 def test_ridged_pads_are_refined_under_the_contact():
-    """One per cent is met with fewer than 20,000 nodes; on half of them the press is within two per cent of that."""
+    """One per cent is met with fewer than 20,000 nodes; on half of them the press is within two per
+    cent of that.
+    """
     ramp = [{"press_to_force": "20 gf", "rate": "40 gf/s"}]
     fine, rough = (
         plan(scene(cylinder(209.97), ramp, accuracy=a, specimen={"ridges": "inner"}))
@@ -124,7 +130,9 @@ def test_ridged_pads_are_refined_under_the_contact():
 
 
 def test_ridges_are_refined_where_receptors_are_beside_them():
-    """The wider the contact the less it refines the mesh, and strain energies beside ridges do not get better by that."""
+    """The wider the contact the less it refines the mesh, and strain energies beside ridges do not
+    get better by that.
+    """
     outputs = {"receptors": {"depths": ["915 um"], "offsets": ["-46 um", "46 um"]}}
     ramp, ridged = [{"press_to_force": "20 gf", "rate": "40 gf/s"}], {"ridges": "inner"}
     plans = {
@@ -194,7 +202,9 @@ def test_steps_by_hand_leave_the_mesh_to_the_plan():
 
 
 def test_tolerances_of_a_long_stroke_are_met_or_nearly_had_for_little(monkeypatch):
-    """Of 80 mm over the wavy surface 10, 5, 2 and 1 % are had for ever more work; of a plate the last bit is not paid for."""
+    """Of 80 mm over the wavy surface 10, 5, 2 and 1 % are had for ever more work; of a plate the
+    last bit is not paid for.
+    """
     slide = {"slide": "80 mm", "speed": "10 mm/s", "keep": "force"}
     long = scene({"shape": "wavy"}, [*PRESS, slide], friction=0.35)
     had = [plan(long.with_accuracy(accuracy)) for accuracy in (0.1, 0.05, 0.02, 0.01)]
@@ -264,7 +274,9 @@ def test_run_under_a_true_edge_says_so_everywhere():
 
 
 def believing(monkeypatch, *errors):
-    """Runs that estimate their errors as told, one after the other, for a contact of 0.4 mm; and the plans they were given."""
+    """Runs that estimate their errors as told, one after the other, for a contact of 0.4 mm; and
+    the plans they were given.
+    """
     told, plans = iter(errors), []
 
     def estimates(self, records, width):
@@ -362,7 +374,9 @@ def test_own_meshes_are_believed_by_element_and_quantity(tmp_path):
 
 
 def test_linear_quads_are_raised_only_where_something_that_is_kept_needs_it(tmp_path):
-    """Fine along the skin and coarse below it: of such quads only strain energy is wrong; without receptors they do."""
+    """Fine along the skin and coarse below it: of such quads only strain energy is wrong; without
+    receptors they do.
+    """
     size = replace(plan(scene(accuracy="thesis")).mesh_size, skin_edge=150e-6, layer_edge=600e-6)
     path = tmp_path / "quads.msh"
     write_pad(split(build_pad_mesh(scene().specimen.outline, size), "quad4"), path)
@@ -380,7 +394,9 @@ def test_linear_quads_are_raised_only_where_something_that_is_kept_needs_it(tmp_
 
 
 def test_ten_thousand_nodes_of_linear_quads_stay_under_a_plate(tmp_path):
-    """They are right within a fifth of a per cent, so that the thesis's accuracy does not make forty thousand of them."""
+    """They are right within a fifth of a per cent, so that the thesis's accuracy does not make
+    forty thousand of them.
+    """
     built = mesh_for(scene(), plan(scene(accuracy="thesis")))
     write_pad(split(built, "quad4"), tmp_path / "quads.msh")
     mine, own = (
@@ -460,7 +476,9 @@ def test_receptors_that_do_not_fit_are_named():
 
 
 def test_tiny_edges_make_the_same_columns_on_a_graded_grid(monkeypatch):
-    """Where edges are asked for only near the focus, as many columns come out as where they are asked for everywhere."""
+    """Where edges are asked for only near the focus, as many columns come out as where they are
+    asked for everywhere.
+    """
     from fingerpad.specimen import grid
 
     touch = scene(motion=[{"press_to_force": "1e-4 gf"}], accuracy=0.05)
@@ -475,7 +493,9 @@ def test_tiny_edges_make_the_same_columns_on_a_graded_grid(monkeypatch):
 
 
 def test_plan_solved_is_the_plan_written(tmp_path, capsys):
-    """What a run was solved with is what its folder tells, also of a run that was refined, and it can be run again from there."""
+    """What a run was solved with is what its folder tells, also of a run that was refined, and it
+    can be run again from there.
+    """
     document = tmp_path / "light.yaml"
     document.write_text(
         "stimulus: {shape: flat}\nmotion: [{press_to_force: 2 gf}]\naccuracy: 0.1\n"

@@ -1,4 +1,6 @@
-"""What is unbounded is a property of the contact found: corners that the mesh sees, edges and ends that are touched."""
+"""What is unbounded is a property of the contact found: corners that the mesh sees, edges and ends
+that are touched.
+"""
 
 import json
 
@@ -72,7 +74,9 @@ def test_a_smooth_profile_sampled_densely_is_never_marked(tmp_path, spacing, acc
 
 
 def test_nineteen_points_of_a_curve_have_corners_that_grow(tmp_path):
-    """The same surface sampled coarsely: its peak does not settle, and is marked; sampled densely it does, and is not."""
+    """The same surface sampled coarsely: its peak does not settle, and is marked; sampled densely
+    it does, and is not.
+    """
     coarse = [
         fingerpad.simulate(parabola(tmp_path, 12e-3 / 18, accuracy=a))
         for a in ("draft", "thesis", "fine")
@@ -150,7 +154,9 @@ ENDS = {
 
 @pytest.mark.parametrize("name", ENDS)
 def test_the_end_of_the_skin_is_unbounded_where_the_peak_there_grows(tmp_path, name):
-    """A plate over all of a skin: Williams's wedge says where the corner's pressure has a bound, and finer meshes confirm it."""
+    """A plate over all of a skin: Williams's wedge says where the corner's pressure has a bound,
+    and finer meshes confirm it.
+    """
     low, high, friction, unbounded = ENDS[name]
     found = []
     for edge in (0.5e-3, 0.25e-3):

@@ -1,4 +1,6 @@
-"""Nodes in valleys of a surface: where both sides are, how forces are told apart, and what the contact problem makes of them."""
+"""Nodes in valleys of a surface: where both sides are, how forces are told apart, and what the
+contact problem makes of them.
+"""
 
 import numpy as np
 import pytest
@@ -19,14 +21,18 @@ pytestmark = pytest.mark.unit
 
 
 def groove():
-    """Two flanks that rise at 30 degrees to a ridge of air at x = 0, between level surfaces; also its height."""
+    """Two flanks that rise at 30 degrees to a ridge of air at x = 0, between level surfaces; also
+    its height.
+    """
     flank = 2e-3
     rise = flank * np.tan(np.radians(30))
     return Curve([-9e-3, -flank, 0, flank, 9e-3], [0, 0, rise, 0, 0], np.zeros(4)), rise
 
 
 def test_both_sides_of_a_groove():
-    """Against the distance of a point from two straight lines, beyond the corner as well, with opposite slants."""
+    """Against the distance of a point from two straight lines, beyond the corner as well, with
+    opposite slants.
+    """
     profile, rise = groove()
     rng = np.random.default_rng(0)
     points = np.column_stack([rng.uniform(-2e-4, 2e-4, 40), rise + rng.uniform(-2e-4, 2e-4, 40)])
@@ -40,7 +46,9 @@ def test_both_sides_of_a_groove():
 
 
 def test_where_there_is_no_valley():
-    """Out of reach, beside a corner that points at the skin, on a bend less than matters, or on a plate."""
+    """Out of reach, beside a corner that points at the skin, on a bend less than matters, or on a
+    plate.
+    """
     profile, rise = groove()
     assert not len(profile.walls(np.array([[3e-4, rise], [2e-3, 0.0]]), 1e-4).which)
     assert not Curve([-1, 0, 1], [1e-3, 0, 1e-3], [0, 0]).valleys
@@ -73,7 +81,9 @@ def test_a_valley_between_arcs():
 
 
 def test_forces_of_both_sides_are_one_on_the_point():
-    """Two equal pushes from the sides of a groove hold a point against f / (2 sin) of its weight."""
+    """Two equal pushes from the sides of a groove hold a point against f / (2 sin) of its
+    weight.
+    """
     slant = np.array([np.sin(0.5), -np.cos(0.5)])
     gradient = np.array([[0.0, -1.0], slant, [0.0, -1.0], slant * [-1, 1]])
     rows = Rows(
@@ -91,7 +101,9 @@ def test_forces_of_both_sides_are_one_on_the_point():
 
 
 def test_forces_go_with_their_side():
-    """Into a valley and out of it again: what a node carried stays with the side it is nearest to; on the mirror both are one."""
+    """Into a valley and out of it again: what a node carried stays with the side it is nearest to;
+    on the mirror both are one.
+    """
     profile, rise = groove()
     equation = np.arange(10).reshape(5, 2)
     equation[0, 0] = -1
@@ -143,7 +155,9 @@ def in_valleys(seed, count=12, twice=4):
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), st.floats(1e-3, 1e2))
 def test_every_side_is_kept(seed, force):
-    """Forces push, no side is crossed, only closed ones carry, and the vertical parts are the load."""
+    """Forces push, no side is crossed, only closed ones carry, and the vertical parts are the
+    load.
+    """
     (zone, schur, right, gap, gradient), _ = in_valleys(seed)
     zero = np.zeros(len(gap))
     step = solve_contact(
@@ -180,7 +194,8 @@ def frictional(seed, coefficient, force=2.0):
 
 @pytest.mark.parametrize(("coefficient", "least"), [(0.1, 90), (0.4, 75)])
 def test_a_node_held_by_both_sides_needs_no_friction(coefficient, least):
-    """Coulomb's law holds on every side that a node leans on alone; where it leans on both, they hold it.
+    """Coulomb's law holds on every side that a node leans on alone; where it leans on both, they
+    hold it.
 
     Of random problems a few have no such solution, which is said.
     """
@@ -208,7 +223,9 @@ def test_a_node_held_by_both_sides_needs_no_friction(coefficient, least):
 
 @pytest.mark.parametrize(("share", "ends"), [(None, True), (0.0, False)])
 def test_a_stroke_over_a_finely_sampled_hollow_with_friction(share, ends, tmp_path, monkeypatch):
-    """Each sample of a hollow is a valley, shallow against friction's angle; mutant: two constraints in them cycle."""
+    """Each sample of a hollow is a valley, shallow against friction's angle; mutant: two
+    constraints in them cycle.
+    """
     if share is not None:
         monkeypatch.setattr(valleys, "SHARE", share)
     x = np.arange(-12, 20, 0.1)

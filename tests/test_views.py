@@ -1,4 +1,6 @@
-"""Pictures of what happens inside: frames of a few coarse simulations, with what must be so in them, and pictures of these."""
+"""Pictures of what happens inside: frames of a few coarse simulations, with what must be so in
+them, and pictures of these.
+"""
 
 from functools import cache
 from pathlib import Path

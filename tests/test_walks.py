@@ -1,4 +1,6 @@
-"""Three newcomers' first days, outside the source tree: a researcher's scenes, an engineer's variations, a student's mesh."""
+"""Three newcomers' first days, outside the source tree: a researcher's scenes, an engineer's
+variations, a student's mesh.
+"""
 
 import json
 from pathlib import Path
@@ -38,7 +40,9 @@ def elsewhere(tmp_path, monkeypatch):
 
 
 def told(name, capsys, *options, stimulus=ROUND, motion=(PRESS,), accuracy=COARSE, **keys):
-    """Write a scene, run it as a command, and read what it says and leaves: its line and its summary."""
+    """Write a scene, run it as a command, and read what it says and leaves: its line and its
+    summary.
+    """
     document = {"stimulus": stimulus, "motion": list(motion), "accuracy": accuracy, **keys}
     Path(f"{name}.yaml").write_text(yaml.safe_dump(document), encoding="utf-8")
     assert main(["run", f"{name}.yaml", *options]) == 0
@@ -62,7 +66,9 @@ def last(summary):
 
 
 def test_a_researcher_presses(capsys):
-    """Ramps, plates, needles, edges and steady states: the force comes back as it went in, and shapes come in their order."""
+    """Ramps, plates, needles, edges and steady states: the force comes back as it went in, and
+    shapes come in their order.
+    """
     line, ramp = told("ramp", capsys)
     assert "force 20.0 gf (17.2 N/m)" in line and last(ramp)["force_gf"] == pytest.approx(
         20, rel=1e-4
@@ -154,7 +160,9 @@ def test_a_researcher_plots(capsys):
 
 
 def test_an_engineer_varies_a_bar_thirty_times():
-    """Widths by moduli in one process: wider and stiffer go in less deep, every variation of them."""
+    """Widths by moduli in one process: wider and stiffer go in less deep, every variation of
+    them.
+    """
     base = fingerpad.load_scene(
         {
             "stimulus": {"shape": "bar", "width": "1 mm", "fillet": "0.2 mm"},
@@ -176,7 +184,9 @@ def test_an_engineer_varies_a_bar_thirty_times():
 
 
 def test_an_engineer_measures_a_profile(capsys):
-    """A cylinder sampled every 0.1 mm is the cylinder; so is a scan of it every 5 um, rounded to whole micrometres."""
+    """A cylinder sampled every 0.1 mm is the cylinder; so is a scan of it every 5 um, rounded to
+    whole micrometres.
+    """
     x = np.linspace(-2.4, 2.4, 49)
     rows = [f"{a:.4f},{2.5 - np.sqrt(2.5**2 - a**2):.5f}" for a in x]
     Path("scan.csv").write_text("\n".join(["x (mm),y (mm)", *rows]), encoding="utf-8")
@@ -205,7 +215,9 @@ def test_an_engineer_measures_a_profile(capsys):
 
 
 def test_an_engineer_presses_robot_skin(capsys):
-    """A slab of two layers with names of one's own under a plate and a bar: force over width is the pressure in the middle."""
+    """A slab of two layers with names of one's own under a plate and a bar: force over width is the
+    pressure in the middle.
+    """
     foam = [
         {"name": "cover", "thickness": "1 mm", "youngs_modulus": "0.5 MPa", "poisson_ratio": 0.45},
         {"name": "foam", "thickness": "4 mm", "youngs_modulus": "50 kPa", "poisson_ratio": 0.3},
@@ -243,7 +255,9 @@ def test_an_engineer_presses_robot_skin(capsys):
 
 
 def test_a_student_brings_a_mesh_and_forces(capsys):
-    """A mesh of one's own gives the force of every depth; measured forces at a factor on the moduli give the factor back."""
+    """A mesh of one's own gives the force of every depth; measured forces at a factor on the moduli
+    give the factor back.
+    """
     plates = [{"press_to_depth": f"{depth} mm"} for depth in (0.5, 1.0, 1.5)]
     Path("pad.yaml").write_text(
         yaml.safe_dump({"stimulus": PLATE, "motion": plates, "accuracy": COARSE}), encoding="utf-8"

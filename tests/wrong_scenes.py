@@ -38,7 +38,9 @@ def write(folder, document, name="my_scene.yaml"):
 
 
 def pad_folder(folder):
-    """Give `folder` specimens of its own: the thesis's on a pad of known sizes, and the homogeneous one."""
+    """Give `folder` specimens of its own: the thesis's on a pad of known sizes, and the homogeneous
+    one.
+    """
     specimens = folder / "config" / "specimens"
     specimens.mkdir(parents=True)
     thesis = yaml.safe_load((CONFIG / "specimens/thesis.yaml").read_text())

@@ -1,7 +1,8 @@
-"""The typed model of a workflow configuration, and the JSON schemas of everything a user writes in YAML.
+"""The typed model of a workflow configuration, and the JSON schemas of everything a user writes in
+YAML.
 
-``python -m cysyk1999.config schemas`` writes ``workflow/schemas/*.schema.json``; the first line of each YAML
-file under ``config/`` points an editor at its schema.
+``python -m cysyk1999.config schemas`` writes ``workflow/schemas/*.schema.json``; the first line of
+each YAML file under ``config/`` points an editor at its schema.
 """
 
 from __future__ import annotations
@@ -86,47 +87,74 @@ Accuracy = Annotated[Any, BeforeValidator(_accuracy), Field(json_schema_extra=_A
 
 
 class WorkflowConfig(Strict):
-    """What the workflow simulates, draws and tabulates, and where it puts it. `name` and `scenes` suffice."""
+    """What the workflow simulates, draws and tabulates, and where it puts it. `name` and `scenes`
+    suffice.
+    """
 
     name: Name
     """Name of the run."""
     scenes: Annotated[_list(Name, filled), Field(json_schema_extra={"minItems": 1})]
-    """Scenes to simulate: names of files in `scenes_folder` or, where it has none of that name, in config/scenes."""
+    """Scenes to simulate: names of files in `scenes_folder` or, where it has none of that name, in
+    config/scenes.
+    """
     results: Directory
     """Folder of plans, meshes and simulation histories; results/<name> if left out."""
     figures: Directory
-    """Folder of the thesis's figures, fig_<number>.png beside fig_<number>.csv; figures in `results` if left out."""
+    """Folder of the thesis's figures, fig_<number>.png beside fig_<number>.csv; figures in
+    `results` if left out.
+    """
     tables: Directory
     """Folder of the tables, <name>.csv beside <name>.md; tables in `results` if left out."""
     studies: Directory
-    """Folder of the figures of studies, <name>.png beside <name>.csv; studies in `results` if left out."""
+    """Folder of the figures of studies, <name>.png beside <name>.csv; studies in `results` if left
+    out.
+    """
     scenes_folder: Folder = "config/scenes"
     """Folder of the scenes."""
     subjects: Folder = "config/reference/force_depth"
-    """Folder of measured forces, a CSV file or more; if it is given, the pad is calibrated to them."""
+    """Folder of measured forces, a CSV file or more; if it is given, the pad is calibrated to
+    them.
+    """
     variants: _list(Name) = ()
-    """Scenes simulated without a companion: those of tables of sensitivity, and coarse ones of figures."""
+    """Scenes simulated without a companion: those of tables of sensitivity, and coarse ones of
+    figures.
+    """
     calibration_scenes: _list(Name) = ()
-    """Scenes of the calibration, calibration_plate among them; left out, no calibration but to `subjects` of one's own."""
+    """Scenes of the calibration, calibration_plate among them; left out, no calibration but to
+    `subjects` of one's own.
+    """
     friction_scenes: _list(Name) = ()
     """Strokes of the calibration of friction, stroke_sub_10 among them, and variations of it."""
     friction_coefficients: _list(Coefficient) = ()
-    """Coefficients with which stroke_sub_10 is stroked, as a draft; left out, friction is not calibrated."""
+    """Coefficients with which stroke_sub_10 is stroked, as a draft; left out, friction is not
+    calibrated.
+    """
     ridge_heights: _list(Height) = ()
-    """Heights (um) of the ridges over which ridged_stroke_right is varied, 0 and 150 among them; left out, no study of ridges."""
+    """Heights (um) of the ridges over which ridged_stroke_right is varied, 0 and 150 among them;
+    left out, no study of ridges.
+    """
     ridge_frictions: _list(Height) = ()
     """Coefficients of friction over which ridged_stroke_right is varied."""
     accuracy: Accuracy = None
-    """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each states."""
+    """Accuracy, a level or a tolerance, that replaces what every scene states; left out, as each
+    states.
+    """
     companions: bool = False
-    """Whether each scene has two companions on a mesh with edges half as long again, one with its own steps and one with half of
-    them, from which errors follow."""
+    """Whether each scene has two companions on a mesh with edges half as long again, one with its
+    own steps and one with half of them, from which errors follow.
+    """
     figure_numbers: _list(FigureNumber) | None = None
-    """Figures to draw, by their number in the thesis; left out, all whose scenes the configuration has."""
+    """Figures to draw, by their number in the thesis; left out, all whose scenes the configuration
+    has.
+    """
     animations: _list(Name) = ()
-    """Scenes to make a moving picture of, animation_<scene>.gif and film_<scene>.webm among the studies; they need snapshots."""
+    """Scenes to make a moving picture of, animation_<scene>.gif and film_<scene>.webm among the
+    studies; they need snapshots.
+    """
     field_scenes: _list(Name) = ()
-    """Scenes simulated with whole fields of strain energy at their snapshots, for pictures of what happens inside."""
+    """Scenes simulated with whole fields of strain energy at their snapshots, for pictures of what
+    happens inside.
+    """
     table_names: _list(Name) = ("summary",)
     """Tables to write; summary, what every scene ended at, if left out."""
 
@@ -153,7 +181,9 @@ class WorkflowConfig(Strict):
 
 
 def read_config(document: Mapping[str, Any], file: str | Path) -> WorkflowConfig:
-    """The configuration that a document states, read from `file`; SceneError, one line, if anything in it is wrong."""
+    """The configuration that a document states, read from `file`; SceneError, one line, if anything
+    in it is wrong.
+    """
     try:
         return WorkflowConfig.model_validate(dict(document), context=Path(file))
     except ValidationError as error:

@@ -1,7 +1,8 @@
-"""Measured data that the model is compared with and calibrated to: the CSV files of ``config/reference``.
+"""Measured data that the model is compared with and calibrated to: the CSV files of
+``config/reference``.
 
-Every row says where it comes from (``source``) and how it was obtained (``how_obtained``). Forces over depth are a folder: a
-further subject is a further file in ``config/reference/force_depth``.
+Every row says where it comes from (``source``) and how it was obtained (``how_obtained``). Forces
+over depth are a folder: a further subject is a further file in ``config/reference/force_depth``.
 """
 
 from __future__ import annotations
@@ -23,12 +24,16 @@ INDENTERS = ("flat plate", "flat probe 6.35 mm", "flat probe", "point probe", "c
 
 
 class ReferenceDataError(ValueError):
-    """A reference file is wrong; the message is one line: file, row and column, value, what is allowed."""
+    """A reference file is wrong; the message is one line: file, row and column, value, what is
+    allowed.
+    """
 
 
 @dataclass(frozen=True)
 class Column:
-    """What a column may hold: text, one of some words, or a number above (or from) a bound; `optional` allows none."""
+    """What a column may hold: text, one of some words, or a number above (or from) a bound;
+    `optional` allows none.
+    """
 
     words: tuple[str, ...] = ()
     text: bool = False
@@ -90,7 +95,9 @@ RELAXATION = {
     "tau_s": Column(above=0.0),
     **_ORIGIN,
 }
-"""Terms of relaxation functions; g is the share of the instantaneous shear modulus, empty where the source gives none."""
+"""Terms of relaxation functions; g is the share of the instantaneous shear modulus, empty where the
+source gives none.
+"""
 
 SURFACE_PROFILES = {
     "subject": Column(text=True),
@@ -113,7 +120,9 @@ FRICTION = {
     "high": Column(above=0.0, optional=True),
     **_ORIGIN,
 }
-"""Friction coefficients of fingers, single (`high` empty) or ranges, and factors by which a condition changes them."""
+"""Friction coefficients of fingers, single (`high` empty) or ranges, and factors by which a
+condition changes them.
+"""
 
 
 def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
@@ -123,11 +132,13 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         paths: a folder, all of whose CSV files are read, or files.
 
     Returns:
-        Columns of :data:`FORCE_DEPTH`, the files one after the other in the order of their names. A subject is a file and a
-        name: a name that is in several files stands with its file, ``1 (dandekar_2003)``.
+        Columns of :data:`FORCE_DEPTH`, the files one after the other in the order of their names. A
+        subject is a file and a name: a name that is in several files stands with its file, ``1
+        (dandekar_2003)``.
 
     Raises:
-        ReferenceDataError: a file is wrong, there is none, or it gives a subject's depth under an indenter at a speed twice.
+        ReferenceDataError: a file is wrong, there is none, or it gives a subject's depth under an
+        indenter at a speed twice.
     """
     if isinstance(paths, (str, Path)) and Path(paths).is_dir():
         files = sorted(Path(paths).glob("*.csv"))
@@ -158,7 +169,9 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
 
 
 def read_relaxation(path: str | Path) -> pd.DataFrame:
-    """Relaxation series, columns of :data:`RELAXATION`; `ReferenceDataError` if the file is wrong or shares sum to 1 or more."""
+    """Relaxation series, columns of :data:`RELAXATION`; `ReferenceDataError` if the file is wrong
+    or shares sum to 1 or more.
+    """
     frame = read_table(path, RELAXATION)
     totals = frame.groupby("series", sort=False)["g"].sum()
     for series, total in totals[totals >= 1].items():
@@ -170,7 +183,9 @@ def read_relaxation(path: str | Path) -> pd.DataFrame:
 
 
 def read_surface_profiles(path: str | Path) -> pd.DataFrame:
-    """Surface profiles, columns of :data:`SURFACE_PROFILES`; `ReferenceDataError` if the file is wrong."""
+    """Surface profiles, columns of :data:`SURFACE_PROFILES`; `ReferenceDataError` if the file is
+    wrong.
+    """
     return read_table(path, SURFACE_PROFILES)
 
 
@@ -183,7 +198,9 @@ BANDS = {
     "pads": Column(above=0.0),
     "source": Column(text=True),
 }
-"""What the thesis leaves open of its pad: lowest and highest of a measure among pads that show what it shows."""
+"""What the thesis leaves open of its pad: lowest and highest of a measure among pads that show what
+it shows.
+"""
 
 
 def read_bands(path: str | Path) -> pd.DataFrame:
@@ -201,7 +218,9 @@ def read_bands(path: str | Path) -> pd.DataFrame:
 
 
 def read_friction(path: str | Path) -> pd.DataFrame:
-    """Published friction, columns of :data:`FRICTION`; `ReferenceDataError` if the file is wrong or a range is upside down."""
+    """Published friction, columns of :data:`FRICTION`; `ReferenceDataError` if the file is wrong or
+    a range is upside down.
+    """
     frame = read_table(path, FRICTION)
     for row in frame.index[frame["high"] < frame["low"]]:
         low, high = frame.loc[row, ["low", "high"]]
@@ -215,8 +234,8 @@ def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
     """A table with exactly the columns of `schema`, in any order, and at least one row.
 
     Raises:
-        ReferenceDataError: it cannot be read (:func:`fingerpad.tables.read_table`), a column is missing or unknown, or a cell
-        holds what its column does not allow.
+        ReferenceDataError: it cannot be read (:func:`fingerpad.tables.read_table`), a column is
+        missing or unknown, or a cell holds what its column does not allow.
 
     Returns:
         A row for each of the file's, indexed by its number as a text editor counts.
@@ -259,14 +278,16 @@ def read_table(path: str | Path, schema: dict[str, Column]) -> pd.DataFrame:
 def read_reference(path: str | PathLike) -> pd.DataFrame:
     """Table of numbers printed in the thesis, indexed by id.
 
-    Columns figure, quantity, condition, low, high, units, kind (stated | axis_range | garbled), form (value |
-    range | axis | estimate | unlike: what is shown is not the model's | trend | layout), tolerance, tick (the last of an axis but
-    one, if simulated curves alone set its end), role (input: stated by the thesis and by the scenes; count: of the
-    model itself; calibrated: a parameter was chosen by it; result; trend; empty for a layout), score (fitted: the pad was, or is
-    reconstructed, by it; none: earns nothing, the reason says why; empty: held out), same_as (row of the same number of the same
-    curve, which alone counts), source; and how this model
-    answers: measure (a name of `cysyk1999.measures.table.MEASURES`), at (its condition), of (scenes), reason (of a known
-    difference, or of not being judged). Raises ValueError for a repeated id, an unknown kind, form, role, score or row.
+    Columns figure, quantity, condition, low, high, units, kind (stated | axis_range | garbled),
+    form (value | range | axis | estimate | unlike: what is shown is not the model's | trend |
+    layout), tolerance, tick (the last of an axis but one, if simulated curves alone set its end),
+    role (input: stated by the thesis and by the scenes; count: of the model itself; calibrated: a
+    parameter was chosen by it; result; trend; empty for a layout), score (fitted: the pad was, or
+    is reconstructed, by it; none: earns nothing, the reason says why; empty: held out), same_as
+    (row of the same number of the same curve, which alone counts), source; and how this model
+    answers: measure (a name of `cysyk1999.measures.table.MEASURES`), at (its condition), of
+    (scenes), reason (of a known difference, or of not being judged). Raises ValueError for a
+    repeated id, an unknown kind, form, role, score or row.
     """
     words = ["role", "score", "same_as", "measure", "at", "of", "reason"]
     text = dict.fromkeys(["id", "figure", "condition", "units", *words], str)

@@ -2,11 +2,13 @@
 
 Five verbs are the whole shallow interface; each is imported at its first use.
 
-- ``load_scene(path)``: read and check a scene, a file or a dictionary; it gives a ``Scene`` (`fingerpad.scenes.scene`).
+- ``load_scene(path)``: read and check a scene, a file or a dictionary; it gives a ``Scene``
+  (`fingerpad.scenes.scene`).
   ``plan``, ``simulate`` and ``sweep`` take the file or the dictionary too.
 - ``plan(scene)``: choose effects and discretisation, with reasons (`fingerpad.planning.plan`).
 - ``simulate(scene)``: run it; returns an `xarray.Dataset` (`fingerpad.simulation`).
-- ``sweep(scene, over)``: many variations of it, as one `xarray.Dataset` (`fingerpad.sweeps.engine`).
+- ``sweep(scene, over)``: many variations of it, as one `xarray.Dataset`
+  (`fingerpad.sweeps.engine`).
 - ``respond(history)``: impulse rates and impulses of its receptors (`fingerpad.receptors.respond`).
 """
 

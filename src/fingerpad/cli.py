@@ -1,8 +1,10 @@
-"""The command ``fingerpad``, or ``python -m fingerpad``: plan, run or mesh one scene, without the workflow; plan or run a sweep.
+"""The command ``fingerpad``, or ``python -m fingerpad``: plan, run or mesh one scene, without the
+workflow; plan or run a sweep.
 
-Exit codes: 0 done; 1 an error of the program (one line; the details are in a file); 2 the input is wrong (one line on
-standard error: file, key, what is wrong, what is allowed); 3 the simulation could not be completed (its last converged state
-is saved) or its results could not be written (those there are as they were); 130 interrupted (what had converged is saved).
+Exit codes: 0 done; 1 an error of the program (one line; the details are in a file); 2 the input is
+wrong (one line on standard error: file, key, what is wrong, what is allowed); 3 the simulation
+could not be completed (its last converged state is saved) or its results could not be written
+(those there are as they were); 130 interrupted (what had converged is saved).
 """
 
 from __future__ import annotations
@@ -25,7 +27,8 @@ if TYPE_CHECKING:
     from fingerpad.scenes.scene import Scene
 
 DONE, UNFORESEEN, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
-#: what a run may write into its folder; plan.json names what it did write, and nothing else is ever removed
+#: what a run may write into its folder; plan.json names what it did write, and nothing else is ever
+#: removed
 RESULTS = ("plan.json", "history.nc", "summary.json", "last_converged.nc")
 _GAPS = 0.97
 """Share of a contact's width that touches, below which it has gaps."""
@@ -118,7 +121,9 @@ def _guarded(arguments: list[str] | None, heard: list[warnings.WarningMessage] |
 
 
 def _too_little_memory() -> bool:
-    """Whether a limit leaves less than the libraries take, which then do not fail but try for ever."""
+    """Whether a limit leaves less than the libraries take, which then do not fail but try for
+    ever.
+    """
     import resource
 
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)
@@ -126,7 +131,9 @@ def _too_little_memory() -> bool:
 
 
 def _of_the_machine(error: Exception) -> str | None:
-    """What to say of an error that is not the program's but of its surroundings: disk, rights, memory; None of others."""
+    """What to say of an error that is not the program's but of its surroundings: disk, rights,
+    memory; None of others.
+    """
     if isinstance(error, OSError) and error.errno in _SURROUNDINGS:
         return (
             f"'{error.filename}' fails: {error.strerror}"
@@ -145,14 +152,18 @@ def _of_the_machine(error: Exception) -> str | None:
 
 
 def _deaf() -> int:
-    """The reader of standard output has gone: leave nothing for the interpreter to flush into it."""
+    """The reader of standard output has gone: leave nothing for the interpreter to flush into
+    it.
+    """
     with contextlib.suppress(OSError):  # it may be no file
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return DONE
 
 
 def _unforeseen(error: Exception, heard: list[warnings.WarningMessage] | None) -> int:
-    """One line for an error nobody has thought of; everything that helps to find it goes into a file."""
+    """One line for an error nobody has thought of; everything that helps to find it goes into a
+    file.
+    """
     import platform
     import tempfile
     import traceback
@@ -446,7 +457,9 @@ def _check_room(path: Path, needed: float) -> None:
 
 @contextlib.contextmanager
 def _directory(path: Path) -> Iterator[Path]:
-    """The directory, made if need be; one that was made is removed again when nothing was put in it."""
+    """The directory, made if need be; one that was made is removed again when nothing was put in
+    it.
+    """
     made = [parent for parent in (path, *path.parents) if not parent.exists()]
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -474,7 +487,9 @@ def _unwritable(path: Path) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _folder(path: Path, scene: Scene, plan: Plan, options: argparse.Namespace) -> Iterator[_Folder]:
-    """The folder of the results, held for this process alone; refused if it holds what is not this scene's."""
+    """The folder of the results, held for this process alone; refused if it holds what is not this
+    scene's.
+    """
     from fingerpad.files import locked
 
     with _directory(path), contextlib.ExitStack() as held:
@@ -493,7 +508,8 @@ def _folder(path: Path, scene: Scene, plan: Plan, options: argparse.Namespace) -
 class _Folder:
     """The folder of a run: what the run before wrote there, and how this one writes into it.
 
-    Of files like ``patterns`` those that no run has written are left alone; none, where they may be replaced.
+    Of files like ``patterns`` those that no run has written are left alone; none, where they may be
+    replaced.
     """
 
     def __init__(
@@ -526,8 +542,10 @@ class _Folder:
         return [file for file in found if file.relative_to(self.path).as_posix() not in self.files]
 
     def write(self, fill: Callable[[Path], None], keeping: bool = False) -> None:
-        """Lets ``fill`` write results into a scratch folder; they replace those of the run before, or come beside them when
-        ``keeping``. Where they cannot be written here, they go to a temporary place, which the error names."""
+        """Lets ``fill`` write results into a scratch folder; they replace those of the run before,
+        or come beside them when ``keeping``. Where they cannot be written here, they go to a
+        temporary place, which the error names.
+        """
         try:
             with _unwritable(self.path):
                 if foreign := self._foreign():  # since the run began
@@ -557,7 +575,9 @@ class _Folder:
         )
 
     def _elsewhere(self, fill: Callable[[Path], None]) -> str:
-        """Writes the results to a temporary place instead, and says where; or that they are lost."""
+        """Writes the results to a temporary place instead, and says where; or that they are
+        lost.
+        """
         import shutil
         import tempfile
 
@@ -575,7 +595,9 @@ class _Folder:
         return f"these results are in '{place}'"
 
     def rescue(self, error: Any) -> str:
-        """Saves what converged before ``error`` (its ``dataset``); returns the message that says where."""
+        """Saves what converged before ``error`` (its ``dataset``); returns the message that says
+        where.
+        """
         dataset = getattr(error, "dataset", None)
         try:
             self._last_converged(dataset)
@@ -586,7 +608,9 @@ class _Folder:
         return f"{error}; the last converged state is saved in {self.path / 'last_converged.nc'}"
 
     def keep(self, stop: KeyboardInterrupt) -> str:
-        """Saves what had converged when the run was interrupted beside the results there are; returns the message."""
+        """Saves what had converged when the run was interrupted beside the results there are;
+        returns the message.
+        """
         dataset = getattr(stop, "dataset", None)
         if dataset is None:
             return "interrupted"
@@ -664,7 +688,9 @@ def _print_plan(scene: Scene, plan: Plan) -> None:
 
 @contextlib.contextmanager
 def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], None] | None]:
-    """A progress bar on a terminal's standard error, as a function to call after each step; else None."""
+    """A progress bar on a terminal's standard error, as a function to call after each step; else
+    None.
+    """
     if quiet or not sys.stderr.isatty():
         yield None
         return
@@ -734,7 +760,9 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
 
 
 def _error_line(totals: dict[str, Any]) -> str:
-    """The error at the end and, where it is much larger, the largest on the way; what was asked for; and what it leaves out."""
+    """The error at the end and, where it is much larger, the largest on the way; what was asked
+    for; and what it leaves out.
+    """
     from fingerpad.planning.bounds import percent
 
     run = totals["run"]

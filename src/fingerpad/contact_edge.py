@@ -11,14 +11,16 @@ _EDGES = 3
 def edge_of(x: np.ndarray, pressure: np.ndarray, spacing: float, on_edge: int) -> float:
     """Where pressure falls to zero to the right of where it is known, m.
 
-    Inside the edge of a smooth contact the pressure grows like the square root of the distance, its square evenly, and bends as
-    the contact is wide (Johnson 1985, section 5.1): the edge is where a parabola through the squares vanishes, least squares over
-    some elements, which weigh less and less to either side, so that it moves on evenly from point to point. Where pressure does
-    not fall to the edge, as under an edge of the profile, contact ends half a spacing beyond the last point.
+    Inside the edge of a smooth contact the pressure grows like the square root of the distance, its
+    square evenly, and bends as the contact is wide (Johnson 1985, section 5.1): the edge is where a
+    parabola through the squares vanishes, least squares over some elements, which weigh less and
+    less to either side, so that it moves on evenly from point to point. Where pressure does not
+    fall to the edge, as under an edge of the profile, contact ends half a spacing beyond the last
+    point.
 
     Args:
-        x: (n,) m, ascending places of one contact. pressure: (n,) Pa, above zero. spacing: m, of the last places.
-        on_edge: how many of them there are to an edge of the skin's elements.
+        x: (n,) m, ascending places of one contact. pressure: (n,) Pa, above zero. spacing: m, of
+        the last places. on_edge: how many of them there are to an edge of the skin's elements.
     """
     plain, reach = float(x[-1] + spacing / 2), _EDGES * on_edge * float(spacing)
     known = x > plain - reach - 4 * spacing  # further in there is no weight
@@ -39,9 +41,11 @@ def edge_of(x: np.ndarray, pressure: np.ndarray, spacing: float, on_edge: int) -
 
 
 def _parabola(moments, values, degree):
-    """Coefficients, highest power first, of a parabola or line by least squares; none where there is none.
+    """Coefficients, highest power first, of a parabola or line by least squares; none where there
+    is none.
 
-    moments: (5,) weighed sums of the powers of x. values: (3,) the same of the first three times y. degree: at most.
+    moments: (5,) weighed sums of the powers of x. values: (3,) the same of the first three times y.
+    degree: at most.
     """
     if degree < 1:
         return ()

@@ -1,10 +1,11 @@
-"""A history at all its outputs, from the states that were found: between them no more is solved (Hairer, Norsett and Wanner 1993,
-section II.6, call that dense output).
+"""A history at all its outputs, from the states that were found: between them no more is solved
+(Hairer, Norsett and Wanner 1993, section II.6, call that dense output).
 
-What the body does goes from state to state along cubic splines through them, twice continuously differentiable, for rates are
-asked of it: one a leg, and another wherever a piece of the contact has come or gone, which leaves a kink. They are over the way
-of a stroke, else over time. The contact goes along with the surface (:mod:`fingerpad.mechanics.strides`); where nothing moves
-along it, it is as wide as splines say, and nodes that stay in it have curves of their own.
+What the body does goes from state to state along cubic splines through them, twice continuously
+differentiable, for rates are asked of it: one a leg, and another wherever a piece of the contact
+has come or gone, which leaves a kink. They are over the way of a stroke, else over time. The
+contact goes along with the surface (:mod:`fingerpad.mechanics.strides`); where nothing moves along
+it, it is as wide as splines say, and nodes that stay in it have curves of their own.
 """
 
 from __future__ import annotations
@@ -40,8 +41,8 @@ def at_outputs(
     """The arrays of a history (states, ...) and its times (states,) s at all outputs.
 
     Args:
-        found: at the unloaded pad and each of ``records``. skin_x: (skin nodes,) m, undeformed. apex: the middle skin node. half:
-        are the records' edges of the right half?
+        found: at the unloaded pad and each of ``records``. skin_x: (skin nodes,) m, undeformed.
+        apex: the middle skin node. half: are the records' edges of the right half?
     """
     count = [len(record.passed) + 1 for record in records]
     state = np.concatenate([[0], np.repeat(np.arange(1, len(records) + 1), count)]).astype(int)
@@ -97,15 +98,18 @@ def at_outputs(
 
 
 def _kinks(touches: np.ndarray) -> np.ndarray:
-    """States (k,) that have more pieces of contact, or fewer, than the one before; touches: (states, ns), of nodes."""
+    """States (k,) that have more pieces of contact, or fewer, than the one before; touches:
+    (states, ns), of nodes.
+    """
     pieces = np.count_nonzero(np.diff(touches.astype(np.int8), axis=1, prepend=0) > 0, axis=1)
     return np.flatnonzero(np.diff(pieces)) + 1
 
 
 def _through(place, values, kinks, at):
-    """Values (k, nc) at places (k,) of curves through those (n, nc) at rising places (n,): splines from one of the states
-    ``kinks`` to before the next. What lies between two splines goes on as they do, but neither higher nor lower than its ends
-    (Fritsch and Carlson 1980)."""
+    """Values (k, nc) at places (k,) of curves through those (n, nc) at rising places (n,): splines
+    from one of the states ``kinks`` to before the next. What lies between two splines goes on as
+    they do, but neither higher nor lower than its ends (Fritsch and Carlson 1980).
+    """
     slopes = _slopes(place, values, kinks)
     out = hermite(place, values, slopes, at)
     for ends in np.column_stack([kinks - 1, kinks]):
@@ -117,8 +121,9 @@ def _through(place, values, kinks, at):
 
 
 def _slopes(place, values, kinks):
-    """Of splines through values (n, nc) at places (n,), and where these would be of few states Akima's, which no kink nearby
-    misleads much."""
+    """Of splines through values (n, nc) at places (n,), and where these would be of few states
+    Akima's, which no kink nearby misleads much.
+    """
     if len(place) < _LEAST:
         return np.gradient(values, place, axis=0)
     pieces = np.split(np.arange(len(place)), kinks)
@@ -132,7 +137,9 @@ def _slopes(place, values, kinks):
 
 
 def _contact(out, found, state, passed, share, records, skin_x, half):
-    """Pressure, traction, slip and state of the contact between states, into ``out``; share: (outputs,) of the way from one."""
+    """Pressure, traction, slip and state of the contact between states, into ``out``; share:
+    (outputs,) of the way from one.
+    """
     x, frictional = skin_x + out["skin_displacement_x"], "contact_state" in found
 
     def touch(k):
@@ -176,15 +183,19 @@ def _contact(out, found, state, passed, share, records, skin_x, half):
 
 
 def _of_nodes(place, pressure, at):
-    """Pressures (k, ns) at places (k,) of nodes under which nothing passes, from those (n, ns) at places (n,): their squares,
-    which grow evenly from where a node begins to touch, along Akima's curves."""
+    """Pressures (k, ns) at places (k,) of nodes under which nothing passes, from those (n, ns) at
+    places (n,): their squares, which grow evenly from where a node begins to touch, along Akima's
+    curves.
+    """
     squares = pressure**2
     return np.sqrt(np.maximum(hermite(place, squares, akima_slopes(place, squares), at), 0.0))
 
 
 def _pressing(of_nodes, carried, ends, share):
-    """Pressure (ns,) under a press: nodes that touch in the states at both ``ends`` (2, ns) have their own; one that comes or
-    goes has what goes along with the contact's edge, but no more than if its square grew from the first moment."""
+    """Pressure (ns,) under a press: nodes that touch in the states at both ``ends`` (2, ns) have
+    their own; one that comes or goes has what goes along with the contact's edge, but no more than
+    if its square grew from the first moment.
+    """
     touches = ends > 0
     most = ends.max(axis=0) * np.sqrt(np.where(touches[1], share, 1 - share))
     return np.where(touches.all(axis=0), of_nodes, np.minimum(carried, most))

@@ -32,11 +32,14 @@ MOST_VALUES = 200_000
 
 
 class SceneError(ValueError):
-    """The input is wrong; the text is one line: file, key, value, what is wrong, what is allowed."""
+    """The input is wrong; the text is one line: file, key, value, what is wrong, what is
+    allowed.
+    """
 
 
 class Problem(ValueError):
-    """One thing wrong with one key, raised inside a model; `explain` makes the line of a `SceneError` of it.
+    """One thing wrong with one key, raised inside a model; `explain` makes the line of a
+    `SceneError` of it.
 
     Args:
         problem: what is wrong, written to follow the offending value.
@@ -117,7 +120,9 @@ def error_line(file: Any, location: tuple, problem: Problem, document: Any = Non
 def explain(
     error: ValidationError, file: Any, document: Any, tags: frozenset[str] = frozenset()
 ) -> SceneError:
-    """The first error of a validation as a `SceneError`; `tags` are union labels to leave out of the key."""
+    """The first error of a validation as a `SceneError`; `tags` are union labels to leave out of
+    the key.
+    """
     first = error.errors(include_url=False, include_input=False)[0]
     location = tuple(part for part in first["loc"] if part not in tags)
     cause = first.get("ctx", {}).get("error")
@@ -165,7 +170,8 @@ def _parts(schema: Any) -> list[dict[str, Any]]:
 class Strict(BaseModel):
     """Frozen model that says itself which key is unknown, missing or not a mapping."""
 
-    # reading sources (use_attribute_docstrings) and building every model by itself make up half of the time a scene takes
+    # reading sources (use_attribute_docstrings) and building every model by itself make up half of
+    # the time a scene takes
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
     internal: ClassVar[frozenset[str]] = frozenset()
     """Fields that a document may not set."""
@@ -240,7 +246,8 @@ class _Loader(yaml.SafeLoader):
 
 
 def read_yaml(path: Path) -> Any:
-    """The document in a YAML file, as plain Python objects, parsed once as long as the file stays as it is; nobody changes it.
+    """The document in a YAML file, as plain Python objects, parsed once as long as the file stays
+    as it is; nobody changes it.
 
     Raises:
         SceneError: the file is missing or unreadable, is not YAML, or gives a key twice.
@@ -298,7 +305,9 @@ def _constructed(text: bytes) -> Any:
 
 
 def _written_out(node: yaml.Node, known: dict[int, float]) -> float:
-    """How many values a node is with its aliases written out, whatever of them is shared; infinite if it is within itself."""
+    """How many values a node is with its aliases written out, whatever of them is shared; infinite
+    if it is within itself.
+    """
     if id(node) not in known:
         known[id(node)] = float("inf")
         inner = node.value if isinstance(node, yaml.CollectionNode) else ()

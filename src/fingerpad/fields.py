@@ -28,7 +28,9 @@ def quantity(
     note: str = "",
     words: tuple[str, ...] = (),
 ) -> Any:
-    """Field type: text with a unit in a document, an SI float in Python; `note` explains a wrong `sign`, `words` may stay."""
+    """Field type: text with a unit in a document, an SI float in Python; `note` explains a wrong
+    `sign`, `words` may stay.
+    """
 
     def parse(value: Any, info: ValidationInfo) -> float | str:
         if isinstance(value, str) and value in words:
@@ -108,7 +110,9 @@ def whole(low: int, high: int) -> Any:
 
 
 def read(kind: Any, value: Any, key: str, context: Any) -> Any:
-    """`value` of the field `key` read as the field type `kind`, before the model is there; `Problem` if it is wrong."""
+    """`value` of the field `key` read as the field type `kind`, before the model is there;
+    `Problem` if it is wrong.
+    """
     try:
         return TypeAdapter(kind).validate_python(value, context=context)
     except ValidationError as error:

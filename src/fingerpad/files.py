@@ -1,4 +1,5 @@
-"""Files appear whole under their final name or not at all; a folder is written by one process at a time.
+"""Files appear whole under their final name or not at all; a folder is written by one process at a
+time.
 
 And what is read of files that somebody brings, and where the package's own files are.
 """
@@ -22,21 +23,26 @@ _PACKAGE = Path(__file__).resolve().parent
 BUILT_IN = (
     _PACKAGE / "built_in" if (_PACKAGE / "built_in").is_dir() else _PACKAGE.parents[1] / "config"
 )
-"""Folder of the built-in `specimens`: config/ of the clone, of which an installed package carries a copy (setup.py)."""
+"""Folder of the built-in `specimens`: config/ of the clone, of which an installed package carries a
+copy (setup.py).
+"""
 
 SCRATCH = ".fingerpad-"
 MOST_BYTES = {"text": 1 << 20, "table": 1 << 25, "mesh": 1 << 28}
-"""Of a file that somebody brings: a scene or a sweep, a profile or a table of measured data, a mesh."""
+"""Of a file that somebody brings: a scene or a sweep, a profile or a table of measured data, a
+mesh.
+"""
 PATIENCE = 4.0
 """s that a pipe may be silent."""
 
 
 def read_input(path: str | Path, kind: str) -> bytes:
-    """What is in a file that somebody brings, of a kind of :data:`MOST_BYTES`; nothing is waited for, and no more is held.
+    """What is in a file that somebody brings, of a kind of :data:`MOST_BYTES`; nothing is waited
+    for, and no more is held.
 
     Raises:
-        OSError: there is no such file, it cannot be read, is a device or too large, or is a pipe that nobody writes to; its
-        ``strerror`` says so. ValueError: this can be no path.
+        OSError: there is no such file, it cannot be read, is a device or too large, or is a pipe
+        that nobody writes to; its ``strerror`` says so. ValueError: this can be no path.
     """
     most = MOST_BYTES[kind]
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
@@ -67,12 +73,16 @@ def expanded(path: str | Path) -> Path:
 
 
 def is_file(path: str | Path) -> bool:
-    """Whether there is such a file; unlike `Path.is_file` also for what can be no path, of too many letters for example."""
+    """Whether there is such a file; unlike `Path.is_file` also for what can be no path, of too many
+    letters for example.
+    """
     return os.path.isfile(path)
 
 
 def write_atomically(path: str | Path, write: Callable[[Path], object]) -> None:
-    """Let ``write`` fill a temporary file beside ``path`` and then rename it; parents are created."""
+    """Let ``write`` fill a temporary file beside ``path`` and then rename it; parents are
+    created.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     _remove_leftovers(path)
@@ -126,7 +136,9 @@ def write_text(path: str | Path, text: str) -> None:
 
 @cache
 def cache_folder(name: str) -> Path | None:
-    """A folder of the user's cache for what is slow to find out again; None where there is none that can be written."""
+    """A folder of the user's cache for what is slow to find out again; None where there is none
+    that can be written.
+    """
     from platformdirs import user_cache_path
 
     try:
@@ -139,7 +151,8 @@ def cache_folder(name: str) -> Path | None:
 
 @contextlib.contextmanager
 def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
-    """Hold a directory for this process; the lock ends with the process, however that ends, and leaves no file.
+    """Hold a directory for this process; the lock ends with the process, however that ends, and
+    leaves no file.
 
     Yields the descriptors by which it is held: processes to which they are passed hold it too.
 
@@ -169,8 +182,10 @@ def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> It
     """A scratch folder whose files appear in ``directory`` only when all of them were written.
 
     Args:
-        directory: an existing folder. first: name of the file that appears before the others. removing: names (relative, with
-            "/") of files that go then, unless they were written anew; their folders go when nothing else is in them.
+        directory: an existing folder. first: name of the file that appears before the others.
+        removing: names (relative, with
+            "/") of files that go then, unless they were written anew; their folders go when nothing
+            else is in them.
 
     Raises:
         OSError: something cannot be written; ``directory`` is as it was.
@@ -198,7 +213,9 @@ def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> It
 
 
 def _exchange(names: list[str], new: Path, directory: Path, old: Path) -> None:
-    """The files ``names`` of a directory become those of ``new``, or go where that has none; on any error none of them does."""
+    """The files ``names`` of a directory become those of ``new``, or go where that has none; on any
+    error none of them does.
+    """
     folders = list(dict.fromkeys((directory / name).parent for name in names if "/" in name))
     made = [folder for folder in folders if not folder.exists()]
     done: list[str] = []
@@ -229,7 +246,9 @@ def _exchange(names: list[str], new: Path, directory: Path, old: Path) -> None:
 
 
 def _keep(file: Path, copy: Path) -> None:
-    """A second name for a file, if there is one; where a file system has no such thing, it moves there."""
+    """A second name for a file, if there is one; where a file system has no such thing, it moves
+    there.
+    """
     if file.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
     copy.parent.mkdir(parents=True, exist_ok=True)
@@ -243,8 +262,9 @@ def _keep(file: Path, copy: Path) -> None:
 
 
 def disk_is_full(directory: Path, least: float = 1 << 16) -> OSError | None:
-    """The error of a disk with less than ``least`` bytes left, for who asks before, and for libraries that do not say why they
-    failed; None when there is room."""
+    """The error of a disk with less than ``least`` bytes left, for who asks before, and for
+    libraries that do not say why they failed; None when there is room.
+    """
     if shutil.disk_usage(directory).free < least:
         return OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     return None

@@ -1,10 +1,13 @@
-"""Compiled loops, for whoever calls them: their machine code is kept in files and runs without its compiler.
+"""Compiled loops, for whoever calls them: their machine code is kept in files and runs without its
+compiler.
 
-Importing numba and setting it up costs a short simulation a third of its time, and a loop that was compiled before needs nothing
-of it but three small libraries. So a loop that is called looks for the object code that numba made of it, for arguments of the
-same types, the same sources and the same processor, and lets LLVM link it; only where there is none numba is imported, and what
-it compiles is kept. A file holds one loop for one set of types and is named after all that it depends on: an edited source or
-another numba finds none, and processes that compile at once write the same or different files, each whole.
+Importing numba and setting it up costs a short simulation a third of its time, and a loop that was
+compiled before needs nothing of it but three small libraries. So a loop that is called looks for
+the object code that numba made of it, for arguments of the same types, the same sources and the
+same processor, and lets LLVM link it; only where there is none numba is imported, and what it
+compiles is kept. A file holds one loop for one set of types and is named after all that it depends
+on: an edited source or another numba finds none, and processes that compile at once write the same
+or different files, each whole.
 """
 
 from __future__ import annotations
@@ -30,16 +33,21 @@ from fingerpad.files import cache_folder, write_atomically
 from fingerpad.processes import waiting
 
 _FLAGS = 0x1 | 0x2 | 0x100 | 0x400
-"""C and Fortran order, aligned, writeable: the bits of an array's flags that :func:`_kind` asks for."""
+"""C and Fortran order, aligned, writeable: the bits of an array's flags that :func:`_kind` asks
+for.
+"""
 _LIBRARIES = ("numba._helperlib", "numba._dynfunc", "numba.core.runtime._nrt_python")
-"""Of numba, by file: what the code of a loop calls to take its arguments over, and what makes a Python function of it."""
+"""Of numba, by file: what the code of a loop calls to take its arguments over, and what makes a
+Python function of it.
+"""
 
 
 class Loop:
     """A compiled function of arrays, numbers, None and tuples of them.
 
     Args:
-        name: what it is called in files. compiler: gives numba's dispatcher of it. sources: digest of what it is made of; None:
+        name: what it is called in files. compiler: gives numba's dispatcher of it. sources: digest
+        of what it is made of; None:
             what is compiled of it is not kept.
     """
 
@@ -156,7 +164,9 @@ def _signed(content: bytes) -> bytes:
 
 
 def _read(path: Path) -> tuple[str, str, bytes] | None:
-    """Names of a loop's function and of its environment, and its object code; None if the file is not whole."""
+    """Names of a loop's function and of its environment, and its object code; None if the file is
+    not whole.
+    """
     try:
         kept = path.read_bytes()
     except OSError:
@@ -166,7 +176,9 @@ def _read(path: Path) -> tuple[str, str, bytes] | None:
 
 @cache
 def _folders() -> tuple[Path, ...]:
-    """Where loops are kept: beside what Python has compiled of this module, else in the user's cache."""
+    """Where loops are kept: beside what Python has compiled of this module, else in the user's
+    cache.
+    """
     beside = Path(__file__).with_name("__pycache__")
     with contextlib.suppress(OSError):
         beside.mkdir(exist_ok=True)

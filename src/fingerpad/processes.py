@@ -8,11 +8,15 @@ import sys
 from collections.abc import Iterator
 
 SPARSE = 20_000
-"""Objects made between two searches for unreachable ones: with Python's own 700 they take a tenth of a short run's time."""
+"""Objects made between two searches for unreachable ones: with Python's own 700 they take a tenth
+of a short run's time.
+"""
 
 
 def collect_seldom() -> None:
-    """Look for unreachable objects seldom, and not at all when the process ends: all that it has goes then anyway."""
+    """Look for unreachable objects seldom, and not at all when the process ends: all that it has
+    goes then anyway.
+    """
     gc.set_threshold(SPARSE)
     atexit.unregister(gc.freeze)
     atexit.register(gc.freeze)
@@ -20,7 +24,9 @@ def collect_seldom() -> None:
 
 @contextlib.contextmanager
 def waiting(text: str) -> Iterator[None]:
-    """A line and a spinner on a terminal's standard error, or in a notebook, while something takes long; elsewhere nothing."""
+    """A line and a spinner on a terminal's standard error, or in a notebook, while something takes
+    long; elsewhere nothing.
+    """
     from rich.console import Console
     from rich.errors import LiveError
 

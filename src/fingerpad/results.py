@@ -1,8 +1,8 @@
 """Results of a simulation: the labelled history, its summary, and its files.
 
-A history is an :class:`xarray.Dataset` of the whole pad (a half model is unfolded before it gets here) with units and long
-names on every variable and plan, scene, cost and provenance in its attributes, so it plots itself in a notebook:
-``simulate(scene).contact_width.plot()``.
+A history is an :class:`xarray.Dataset` of the whole pad (a half model is unfolded before it gets
+here) with units and long names on every variable and plan, scene, cost and provenance in its
+attributes, so it plots itself in a notebook: ``simulate(scene).contact_width.plot()``.
 """
 
 from __future__ import annotations
@@ -127,7 +127,8 @@ COORDINATES = {
         "way along the undeformed skin from the apex, positive to the right",
     ),
 }
-#: what a full field holds beside displacement and mean stress: name -> (unit in files, in vtu files, factor, long name)
+#: what a full field holds beside displacement and mean stress: name -> (unit in files, in vtu
+#: files, factor, long name)
 ENERGIES = [name for name in VARIABLES if name.startswith("strain_energy")]
 FIELDS = {
     **{name: ("Pa", "Pa", 1.0, VARIABLES[name][2]) for name in ENERGIES},
@@ -154,7 +155,8 @@ class Variable:
 
 @dataclass
 class Arrays:
-    """A history as a run makes it, and as it is written: importing xarray takes as long as half of a small run.
+    """A history as a run makes it, and as it is written: importing xarray takes as long as half of
+    a small run.
 
     Attributes:
         variables, coordinates: by name. attrs: plan, scene, cost and provenance.
@@ -205,7 +207,9 @@ class Arrays:
 def arrays(
     variables: dict[str, np.ndarray], coordinates: dict[str, np.ndarray], attributes: dict[str, Any]
 ) -> Arrays:
-    """A history from arrays named as in :data:`VARIABLES` and :data:`COORDINATES`; dict attributes become JSON."""
+    """A history from arrays named as in :data:`VARIABLES` and :data:`COORDINATES`; dict attributes
+    become JSON.
+    """
     made = (
         {
             name: Variable(
@@ -225,12 +229,16 @@ def arrays(
 
 
 def _indexed(history: xr.Dataset) -> xr.Dataset:
-    """The history with its skin indexed by the way along it, which grows where x turns back under the pad."""
+    """The history with its skin indexed by the way along it, which grows where x turns back under
+    the pad.
+    """
     return history.set_xindex("skin_arc") if "skin_arc" in history.coords else history
 
 
 def skin_arc(x: np.ndarray, y: np.ndarray, apex: int) -> np.ndarray:
-    """Way (ns,) m along the chain of skin nodes at x, y (ns,) m, zero at the node ``apex`` and growing from left to right."""
+    """Way (ns,) m along the chain of skin nodes at x, y (ns,) m, zero at the node ``apex`` and
+    growing from left to right.
+    """
     way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
     return way - way[apex]
 
@@ -247,10 +255,12 @@ def add_snapshots(
     indenter=None,
     fields=None,
 ) -> None:
-    """Add full fields: ``snapshot_displacement`` (snapshot, node, 2) m and ``snapshot_pressure`` (snapshot, element) Pa.
+    """Add full fields: ``snapshot_displacement`` (snapshot, node, 2) m and ``snapshot_pressure``
+    (snapshot, element) Pa.
 
-    Of the layers ``regions`` the numbers ``region`` (element,) are indices. ``indenter`` (snapshot, n, 2) m, outlines of the
-    stimulus. ``fields``: more of the elements (snapshot, element[, components]), named as in :data:`FIELDS`.
+    Of the layers ``regions`` the numbers ``region`` (element,) are indices. ``indenter`` (snapshot,
+    n, 2) m, outlines of the stimulus. ``fields``: more of the elements (snapshot, element[,
+    components]), named as in :data:`FIELDS`.
     """
     layers = ", ".join(f"{number} {name}" for number, name in enumerate(regions))
     found = {
@@ -335,7 +345,8 @@ def peak_memory_MB() -> float:
 
 
 def scene_of(history: xr.Dataset) -> Scene:
-    """The scene a history was simulated from: its models know the profile, the outline and the schedule.
+    """The scene a history was simulated from: its models know the profile, the outline and the
+    schedule.
 
     An external mesh is known by its name only. Asked for again, the same scene is not read again.
     """
@@ -361,7 +372,8 @@ def states_found(history: xr.Dataset | Arrays) -> int:
 def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
     """The summary of a history: the state at the end of each leg, and what the run took.
 
-    Energies are lists, one entry a receptor point, and once more in ``receptors`` with the place of each; of more than
+    Energies are lists, one entry a receptor point, and once more in ``receptors`` with the place of
+    each; of more than
     :data:`MOST_RECEPTORS` points ``receptors`` says that they are in the history.
     """
     history = Arrays.of(history)
@@ -464,7 +476,9 @@ def summary(history: xr.Dataset | Arrays) -> dict[str, Any]:
 
 
 def _responses(history: Arrays, places: list[dict[str, float]]) -> list[dict[str, Any]] | str:
-    """What each receptor sends: how many impulses, the highest rate, and when the first impulse comes (None: never)."""
+    """What each receptor sends: how many impulses, the highest rate, and when the first impulse
+    comes (None: never).
+    """
     if len(places) > MOST_RECEPTORS:
         return f"{len(places)} receptor points: their impulses are in the history"
     rates, counts, times = (
@@ -531,7 +545,8 @@ def _write_netcdf(history: Arrays, path: Path) -> None:
                 belong = sorted(other for other, dims in beside.items() if dims <= set(each.dims))
                 if belong:
                     made[name].setncattr("coordinates", " ".join(belong))
-        # all after all, as a file is laid out anew at each change from the one to the other: a third of the time
+        # all after all, as a file is laid out anew at each change from the one to the other: a
+        # third of the time
         for name, each in (history.variables | history.coordinates).items():
             made[name][...] = (
                 each.values.astype(object) if each.values.dtype.kind in "UO" else each.values
@@ -539,7 +554,9 @@ def _write_netcdf(history: Arrays, path: Path) -> None:
 
 
 def _mostly_zero(values: np.ndarray) -> bool:
-    """Is it worth packing? What is solved for has digits to the last: packed it takes four times the time, a fifth less room."""
+    """Is it worth packing? What is solved for has digits to the last: packed it takes four times
+    the time, a fifth less room.
+    """
     return np.count_nonzero(values) < values.size / 2
 
 
@@ -551,7 +568,8 @@ def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
     """Read a result into memory, which must hold some variables.
 
     Raises:
-        ResultError: the file is cut off, of another kind, or lacks them. FileNotFoundError: there is none.
+        ResultError: the file is cut off, of another kind, or lacks them. FileNotFoundError: there
+        is none.
     """
     try:
         found = _loaded(path)
@@ -571,7 +589,9 @@ def read_dataset(path: str | Path, holds: tuple[str, ...] = ()) -> xr.Dataset:
 
 
 def _loaded(path: str | Path) -> xr.Dataset:
-    """All of a file at once: xarray's own way opens a variable at a time, and looks for all its backends first."""
+    """All of a file at once: xarray's own way opens a variable at a time, and looks for all its
+    backends first.
+    """
     import netCDF4
     import xarray as xr
 
@@ -589,7 +609,8 @@ def _loaded(path: str | Path) -> xr.Dataset:
 
 
 def read_history(path: str | Path) -> xr.Dataset:
-    """Read a history written by :func:`write_history`, or the one in the folder of a run, into memory.
+    """Read a history written by :func:`write_history`, or the one in the folder of a run, into
+    memory.
 
     Raises as :func:`read_dataset`.
     """
@@ -598,11 +619,13 @@ def read_history(path: str | Path) -> xr.Dataset:
 
 
 def write_vtu(history: xr.Dataset | Arrays, directory: str | Path) -> list[Path]:
-    """Write each full field of a history for ParaView; returns the paths of the pad's, none without full fields.
+    """Write each full field of a history for ParaView; returns the paths of the pad's, none without
+    full fields.
 
-    ``snapshot_<k>.vtu`` is the pad (undeformed, mm) with displacement (mm), contact pressure and traction on its skin (kPa) at
-    nodes; layer, mean stress and whatever else the history holds of :data:`FIELDS` in elements. ``indenter_<k>.vtu`` is the
-    outline of the stimulus. ``snapshots.pvd`` opens all of them as one film, ``snapshots.vtu.series`` the pad alone.
+    ``snapshot_<k>.vtu`` is the pad (undeformed, mm) with displacement (mm), contact pressure and
+    traction on its skin (kPa) at nodes; layer, mean stress and whatever else the history holds of
+    :data:`FIELDS` in elements. ``indenter_<k>.vtu`` is the outline of the stimulus.
+    ``snapshots.pvd`` opens all of them as one film, ``snapshots.vtu.series`` the pad alone.
     """
     if "snapshot_time" not in history:
         return []
@@ -674,7 +697,9 @@ def _in_space(plane: np.ndarray) -> np.ndarray:
 
 
 def _named(name: str, unit: str, values: np.ndarray) -> dict[str, np.ndarray]:
-    """The arrays of a field as ParaView shows them: scalars by their name, a tensor with its nine components."""
+    """The arrays of a field as ParaView shows them: scalars by their name, a tensor with its nine
+    components.
+    """
     label = name.replace("_", " ")
     if name == "cauchy_stress":
         xx, yy, xy, zz = values.T

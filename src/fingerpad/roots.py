@@ -1,4 +1,6 @@
-"""Roots of functions of one number: scipy's solvers take half a second to import, which no plan of a scene needs."""
+"""Roots of functions of one number: scipy's solvers take half a second to import, which no plan of
+a scene needs.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""One scene, simulated: the plan composes body, contact and receptors; the stepper runs; the history is unfolded."""
+"""One scene, simulated: the plan composes body, contact and receptors; the stepper runs; the
+history is unfolded.
+"""
 
 from __future__ import annotations
 
@@ -71,7 +73,8 @@ EDGE_STIFFNESS = 5.0
 _UNLOADED = 0.5  # of a force that was reached before
 _WIDTHS = 64  # of the contact, at which its error is looked up
 _NO_CONTACT = 1e-5  # m, half-width that stands for none
-_UNBALANCED = 0.03  # of the work, noted as missing energy beyond it; of a press at once the work is not known as well
+# of the work, noted as missing energy beyond it; of a press at once the work is not known as well
+_UNBALANCED = 0.03
 _SQUEEZED = 0.1  # det F, noted below it
 _UNEVEN = 0.15  # of the peak pressure, r.m.s. from node to node, noted beyond it
 _STIFF_IN_BULK = (
@@ -89,21 +92,23 @@ def simulate(
     """Simulate a scene.
 
     Args:
-        scene: a checked scene, or a file or dictionary of one. plan: how (default: ``fingerpad.plan(scene)``). mesh: the whole
-        pad's mesh (default: built or read as the plan says). A run that misses the tolerance that its plan was
-        asked for is refined and run again, a few times at most, unless the scene says ``once`` or a mesh is given; the history
-        tells of its last plan. progress: called after each step with time_s, end_time_s, contact_width_mm, iterations, cutbacks.
-        fields: full fields of strain energy, strain and stress as well, at the scene's snapshots, or of the last state.
+        scene: a checked scene, or a file or dictionary of one. plan: how (default:
+        ``fingerpad.plan(scene)``). mesh: the whole pad's mesh (default: built or read as the plan
+        says). A run that misses the tolerance that its plan was asked for is refined and run again,
+        a few times at most, unless the scene says ``once`` or a mesh is given; the history tells of
+        its last plan. progress: called after each step with time_s, end_time_s, contact_width_mm,
+        iterations, cutbacks. fields: full fields of strain energy, strain and stress as well, at
+        the scene's snapshots, or of the last state.
 
     Returns:
         The history of the whole pad (see :mod:`fingerpad.results`).
 
     Raises:
-        SceneError: the file or the dictionary is wrong.
-        PlanError, MeshError, OutlineError: the input cannot be meshed or planned (before anything is solved).
-        ReceptorError: a receptor lies outside the soft tissue.
-        NonConvergence: a step failed for good; its ``dataset`` is the history up to the last converged step. A
-        KeyboardInterrupt has the same ``dataset``, if a step had converged.
+        SceneError: the file or the dictionary is wrong. PlanError, MeshError, OutlineError: the
+        input cannot be meshed or planned (before anything is solved). ReceptorError: a receptor
+        lies outside the soft tissue. NonConvergence: a step failed for good; its ``dataset`` is the
+        history up to the last converged step. A KeyboardInterrupt has the same ``dataset``, if a
+        step had converged.
     """
     made = load_scene(scene)
     return _labelled(lambda: solve(made, plan, mesh, progress, fields))
@@ -116,7 +121,9 @@ def solve(
     progress: Callable[[dict[str, Any]], None] | None = None,
     fields: bool = False,
 ) -> Arrays:
-    """:func:`simulate` without labels, for who only writes its result: so is the ``dataset`` of what it raises."""
+    """:func:`simulate` without labels, for who only writes its result: so is the ``dataset`` of
+    what it raises.
+    """
     chosen = plan or _plan(scene)
     with threadpool_limits(1):
         history = Simulation(scene, chosen, mesh, fields).solve(progress)
@@ -272,7 +279,9 @@ class Simulation:
         return Skin(chain, self.mesh.curves["skin"], spacing, start)
 
     def _require_room(self):
-        """The stimulus must not come down on what is held: ends of the skin that are part of a fixed curve."""
+        """The stimulus must not come down on what is held: ends of the skin that are part of a
+        fixed curve.
+        """
         mesh = self.mesh
         held = np.intersect1d(
             self.skin.nodes, np.concatenate([np.unique(mesh.curves[name]) for name in mesh.fixed])
@@ -337,7 +346,9 @@ class Simulation:
         return self._history(records, states, snapshots, complete=True)
 
     def _sampled(self, before: float) -> dict[str, np.ndarray]:
-        """What the receptors feel now; an element that folds where one lies, between its quadrature points, ends the run."""
+        """What the receptors feel now; an element that folds where one lies, between its quadrature
+        points, ends the run.
+        """
         with np.errstate(invalid="ignore"):
             sampled = self.receptors.sample(self.body)
         for name, values in sampled.items():
@@ -365,12 +376,14 @@ class Simulation:
         return last or 1.0
 
     def _errors(self, records, width) -> dict[str, Any]:
-        """The plan's error law at the contact that was found: of legs' ends, the worst of these, the largest of any step.
+        """The plan's error law at the contact that was found: of legs' ends, the worst of these,
+        the largest of any step.
 
-        Of a leg's end at least a half where but a few nodes touch, and at least the share of the work that has gone missing in
-        strokes: what jumps of nodes over sharp edges have cost. What has been unloaded to less than half of a force before is
-        judged beside what that force did, and so are the steps on the way to a larger contact; a finger that is let go has no
-        error left.
+        Of a leg's end at least a half where but a few nodes touch, and at least the share of the
+        work that has gone missing in strokes: what jumps of nodes over sharp edges have cost. What
+        has been unloaded to less than half of a force before is judged beside what that force did,
+        and so are the steps on the way to a larger contact; a finger that is let go has no error
+        left.
         """
         width, force = np.asarray(width[1:]), np.array([record.force for record in records])
         touching = np.array(
@@ -505,9 +518,11 @@ class Simulation:
             yield "states near to one another may be in equilibrium, and round-off choose between them: smaller steps will tell"
 
     def _notes(self, records, pressures):
-        """What a person should know of the states that were found, and of the contact with a measured profile.
+        """What a person should know of the states that were found, and of the contact with a
+        measured profile.
 
-        pressures: (ns,) Pa at the ends of legs, at the nodes of the skin and their 5-point averages.
+        pressures: (ns,) Pa at the ends of legs, at the nodes of the skin and their 5-point
+        averages.
         """
         doubts, hard = list(self._doubts(records, pressures)), hard_in(self.scene)
         doubts += [f"or try {hard_here(hard)}"] if doubts and hard else []

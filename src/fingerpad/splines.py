@@ -1,4 +1,5 @@
-"""Piecewise cubics through values at places: to import scipy's takes half a second, a third of a short simulation.
+"""Piecewise cubics through values at places: to import scipy's takes half a second, a third of a
+short simulation.
 
 Values are (n, ...) at rising places (n,); their slopes, per unit of place, have the same shape.
 """
@@ -14,7 +15,9 @@ _BLOCK = 32
 def hermite(
     place: np.ndarray, values: np.ndarray, slopes: np.ndarray, at: np.ndarray
 ) -> np.ndarray:
-    """Values (k, ...) at places (k,) between the first and the last of the cubics that have the values and slopes."""
+    """Values (k, ...) at places (k,) between the first and the last of the cubics that have the
+    values and slopes.
+    """
     first = np.clip(np.searchsorted(place, at, side="right") - 1, 0, len(place) - 2)
     step = np.diff(place)[first]
     share = (at - place[first]) / step
@@ -38,8 +41,9 @@ def hermite(
 
 
 def spline_slopes(place: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Slopes of the spline, twice continuously differentiable, whose first two cubics are one, and whose last two (de Boor 1978,
-    chapter IV, "not-a-knot"); of four values and more."""
+    """Slopes of the spline, twice continuously differentiable, whose first two cubics are one, and
+    whose last two (de Boor 1978, chapter IV, "not-a-knot"); of four values and more.
+    """
     step = np.diff(place)
     wide = step.reshape((-1,) + (1,) * (values.ndim - 1))
     secant = np.diff(values, axis=0) / wide
@@ -62,8 +66,9 @@ def spline_slopes(place: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def akima_slopes(place: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Slopes that no value more than two places away changes (Akima 1970), weighted as MATLAB's makima does, so that a flat piece
-    does not overshoot; of two values and more."""
+    """Slopes that no value more than two places away changes (Akima 1970), weighted as MATLAB's
+    makima does, so that a flat piece does not overshoot; of two values and more.
+    """
     secant = np.diff(values, axis=0) / np.diff(place).reshape((-1,) + (1,) * (values.ndim - 1))
     if len(place) == 2:
         return np.concatenate([secant, secant])

@@ -1,7 +1,8 @@
 """Tables that people bring: text files as instruments, spreadsheets and numpy write them.
 
-A table is a header and rows of cells, parted by commas, semicolons, tabs or spaces. Every reader of a user's table (profiles,
-forces, recordings, motions, samples of a sweep) starts here, so all of them take the same files and refuse the same ones.
+A table is a header and rows of cells, parted by commas, semicolons, tabs or spaces. Every reader of
+a user's table (profiles, forces, recordings, motions, samples of a sweep) starts here, so all of
+them take the same files and refuse the same ones.
 """
 
 from __future__ import annotations
@@ -89,9 +90,10 @@ class Table:
 def read_table(path: str | Path) -> Table:
     """Read a table from a text file.
 
-    The encoding may be UTF-8, UTF-16 or Windows-1252. Lines that start with ``#`` or ``%`` are comments; where the first other
-    line is numbers, the last comment before it is the header. Columns are parted by tabs, semicolons, commas or spaces, as in the
-    header. Decimal commas are read where they cannot be anything else.
+    The encoding may be UTF-8, UTF-16 or Windows-1252. Lines that start with ``#`` or ``%`` are
+    comments; where the first other line is numbers, the last comment before it is the header.
+    Columns are parted by tabs, semicolons, commas or spaces, as in the header. Decimal commas are
+    read where they cannot be anything else.
 
     Raises
     ------
@@ -145,7 +147,9 @@ def _decoded(content: bytes) -> tuple[str, list[str]]:
 
 
 def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
-    """Names of the columns, what parts them, and the (number, text) of the lines below that say something."""
+    """Names of the columns, what parts them, and the (number, text) of the lines below that say
+    something.
+    """
     lines = [
         (number, line)
         for number, line in enumerate(io.StringIO(text, newline=""), start=1)
@@ -257,7 +261,9 @@ def _wrong_count(line: int, cells: list[str], header: list[str], delimiter: str)
 
 
 def _decimal_comma(rows: list[list[str]], lines: list[int], delimiter: str) -> bool:
-    """Whether numbers have decimal commas; `TableError` where they may be thousands, or where both signs are used."""
+    """Whether numbers have decimal commas; `TableError` where they may be thousands, or where both
+    signs are used.
+    """
     found, certain, points = "", delimiter == ";", False
     for line, cells in zip(lines, rows, strict=True):
         for cell in cells:

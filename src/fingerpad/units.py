@@ -1,9 +1,10 @@
 """Units at the border: strings such as ``"20 gf"`` become SI floats, and back for messages.
 
-Inside the package every number is SI (m, N, Pa, s). One `pint` registry serves the whole package; the field's
-gram-weight is the gram-force of 9.80665e-3 N (standard gravity, 3rd CGPM 1901, resolution 2), written
-``gf``, ``gw``, ``g wt`` or ``gram-weight``. Only products of unit names with one-digit powers are understood
-(``gf/s``, ``N/mm^2``, ``1/m``), so no text of a user's is ever evaluated.
+Inside the package every number is SI (m, N, Pa, s). One `pint` registry serves the whole package;
+the field's gram-weight is the gram-force of 9.80665e-3 N (standard gravity, 3rd CGPM 1901,
+resolution 2), written ``gf``, ``gw``, ``g wt`` or ``gram-weight``. Only products of unit names with
+one-digit powers are understood (``gf/s``, ``N/mm^2``, ``1/m``), so no text of a user's is ever
+evaluated.
 """
 
 from __future__ import annotations
@@ -66,7 +67,9 @@ USUAL: dict[tuple[str, str], float] = {
     }.items()
     for unit, factor in units.items()
 }
-"""Factors to SI of the units that scenes are mostly written in, as pint has them; importing it takes a third of a second."""
+"""Factors to SI of the units that scenes are mostly written in, as pint has them; importing it
+takes a third of a second.
+"""
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(
@@ -98,12 +101,15 @@ class QuantityError(ValueError):
 
 @cache
 def registry() -> pint.UnitRegistry:
-    """The package's one pint registry, made at first use (importing pint takes a fifth of a second)."""
+    """The package's one pint registry, made at first use (importing pint takes a fifth of a
+    second).
+    """
     import pint
 
     from fingerpad.files import cache_folder
 
-    # pint keeps its parsed definitions in the user's cache folder, where there is one: a tenth of a second a process
+    # pint keeps its parsed definitions in the user's cache folder, where there is one: a tenth of a
+    # second a process
     folder = cache_folder("pint")
     try:
         ureg = pint.UnitRegistry(cache_folder=folder)
@@ -223,12 +229,14 @@ def parse_quantity(text: Any, dimension: str) -> float:
     """SI value of a number with a unit.
 
     Args:
-        text: such as ``"40 gf/s"``, ``"0.85 mm"``, ``"1260 1/m"``, ``"1/16 inch"``. A dimensionless one may
+        text: such as ``"40 gf/s"``, ``"0.85 mm"``, ``"1260 1/m"``, ``"1/16 inch"``. A dimensionless
+        one may
             be bare (``"0.02"``) or in per cent.
         dimension: a key of `DIMENSIONS`.
 
     Returns:
-        The value in the coherent SI unit of the dimension (m, 1/m, N, N/s, Pa, m/s, s, 1); always finite.
+        The value in the coherent SI unit of the dimension (m, 1/m, N, N/s, Pa, m/s, s, 1); always
+        finite.
 
     Raises:
         QuantityError: not text, no unit, unknown unit, another dimension, or not finite.
@@ -287,7 +295,9 @@ def number_of(text: str) -> float:
 
 
 def format_quantity(value: float, dimension: str) -> str:
-    """Text of an SI value in the unit the field uses, such as ``"20 gf"``; `parse_quantity` reads it back."""
+    """Text of an SI value in the unit the field uses, such as ``"20 gf"``; `parse_quantity` reads
+    it back.
+    """
     kind = DIMENSIONS[dimension]
     if dimension == "dimensionless":
         return f"{value:.6g}"

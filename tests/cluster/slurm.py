@@ -1,7 +1,9 @@
-"""A Slurm cluster of this one machine: munged, slurmctld and slurmd, started for a test and gone after it.
+"""A Slurm cluster of this one machine: munged, slurmctld and slurmd, started for a test and gone
+after it.
 
-Needs root and Debian's packages slurm-wlm and munge. Its configuration has to be /etc/slurm/slurm.conf: Snakemake's executor
-clears the variable that could name another. What was there is put back.
+Needs root and Debian's packages slurm-wlm and munge. Its configuration has to be
+/etc/slurm/slurm.conf: Snakemake's executor clears the variable that could name another. What was
+there is put back.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""A sweep through sbatch on a real slurmctld, slurmd and munge, with a power cut in the middle: the numbers of the local run."""
+"""A sweep through sbatch on a real slurmctld, slurmd and munge, with a power cut in the middle: the
+numbers of the local run.
+"""
 
 import subprocess
 import sys

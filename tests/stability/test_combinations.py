@@ -1,4 +1,6 @@
-"""Every two levels of hard factors meet in the catalogue; and what judges a run sees what it is there for."""
+"""Every two levels of hard factors meet in the catalogue; and what judges a run sees what it is
+there for.
+"""
 
 from itertools import combinations, product
 
@@ -21,7 +23,9 @@ pytestmark = pytest.mark.stability
 
 
 def missing(factors, rows, may=lambda pair: True):
-    """Pairs of hard levels that may meet and do not; written out, not taken from the code under test."""
+    """Pairs of hard levels that may meet and do not; written out, not taken from the code under
+    test.
+    """
     met = {frozenset(pair) for row in rows for pair in combinations(row.items(), 2)}
     wanted = [
         ((one, level), (other, beside))
@@ -141,7 +145,9 @@ def test_a_mirror_image_is_told_from_what_is_none():
 
 @pytest.mark.parametrize(("side", "apart"), [(0.0, 1e-4), (0.5, 0.01)])
 def test_side_forces_are_told_apart_by_the_force_they_belong_to(side, apart):
-    """A frictionless press has one of rounding, which may change as it will; a drag half as large as the force may not."""
+    """A frictionless press has one of rounding, which may change as it will; a drag half as large
+    as the force may not.
+    """
     one, other = (
         xr.Dataset(
             {
@@ -197,7 +203,9 @@ HARD_CASE = {
 
 
 def test_what_is_hard_is_said_and_can_be_asked_less_of(tmp_path):
-    """Each thing that is hard in a scene is named, and the case with less of it names it no more."""
+    """Each thing that is hard in a scene is named, and the case with less of it names it no
+    more.
+    """
     case = Case("c", "test", "hard", HARD_CASE)
     hard = hard_in(case.read(tmp_path))
     said = [

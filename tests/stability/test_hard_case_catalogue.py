@@ -1,4 +1,6 @@
-"""Every case of the catalogue is stable by the default method, or fails cleanly; and the measures tell when it is not."""
+"""Every case of the catalogue is stable by the default method, or fails cleanly; and the measures
+tell when it is not.
+"""
 
 from functools import cache, partial
 
@@ -152,7 +154,9 @@ def test_featherweight():
 
 @pytest.mark.parametrize("name", MAY_FAIL)
 def test_what_is_beyond_the_method_leaves_the_last_state_and_a_cause(name, tmp_path, capsys):
-    """As a user runs it: exit 3, one line with cause and advice, the last sound state; or a result that admits its error."""
+    """As a user runs it: exit 3, one line with cause and advice, the last sound state; or a result
+    that admits its error.
+    """
     (tmp_path / "case.yaml").write_text(yaml.safe_dump(CATALOGUE[name].document))
     code = main(["run", str(tmp_path / "case.yaml"), "--out", str(tmp_path / "out"), "--quiet"])
     if code == 0:
@@ -191,7 +195,9 @@ def test_what_the_message_says_to_relax_makes_the_case_run(name):
     ],
 )
 def test_what_the_method_buys(name, method, measure):
-    """Mutants: without pressure modes pressure oscillates, without the lagged pressure Newton's method needs more."""
+    """Mutants: without pressure modes pressure oscillates, without the lagged pressure Newton's
+    method needs more.
+    """
     found = run(CATALOGUE[name], method, compare=False)
     assert found.outcome != STABLE
     assert not found.completed or measure in found.message
@@ -276,7 +282,9 @@ def test_a_run_notes_energy_that_is_missing_and_an_element_that_is_squeezed():
 
 
 def test_a_run_notes_pressure_that_alternates_but_not_that_of_an_edge(monkeypatch):
-    """Of a few nodes of a user's mesh; at a sharp edge pressure has no bound, and is as uneven on any mesh."""
+    """Of a few nodes of a user's mesh; at a sharp edge pressure has no bound, and is as uneven on
+    any mesh.
+    """
 
     def noted(name):
         return "from node to node" in run(CATALOGUE[name], compare=False).history.attrs["notes"]
@@ -288,7 +296,9 @@ def test_a_run_notes_pressure_that_alternates_but_not_that_of_an_edge(monkeypatc
 
 
 def test_a_run_notes_that_it_went_to_and_fro_between_states(monkeypatch):
-    """Starved of iterations where nodes pop round a fillet it does; round an edge, starved as much, steps are only cut."""
+    """Starved of iterations where nodes pop round a fillet it does; round an edge, starved as much,
+    steps are only cut.
+    """
     monkeypatch.setattr(
         simulation,
         "NewtonSettings",
@@ -312,7 +322,9 @@ def test_a_step_is_not_tried_for_ever(monkeypatch):
 
 
 def test_a_run_that_stops_keeps_its_last_state_and_says_why(monkeypatch):
-    """A solver starved of iterations fails cleanly, with the steps before; one that says nothing would not count as clean."""
+    """A solver starved of iterations fails cleanly, with the steps before; one that says nothing
+    would not count as clean.
+    """
     monkeypatch.setattr(
         simulation,
         "NewtonSettings",

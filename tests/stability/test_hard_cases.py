@@ -1,7 +1,8 @@
 """Hard cases converge with sound states, or fail cleanly with the last good state and a diagnosis.
 
-Every case runs the default method through the same door a user has. "Sound" is the same for all: no step cut unless said, a
-force that pushes, complementarity, det F well above zero and an energy balance within the trapezoidal rule's reach.
+Every case runs the default method through the same door a user has. "Sound" is the same for all: no
+step cut unless said, a force that pushes, complementarity, det F well above zero and an energy
+balance within the trapezoidal rule's reach.
 """
 
 from functools import partial
@@ -82,7 +83,9 @@ def sound(history, cuts=0, energy=0.02):
 
 @pytest.mark.parametrize("nu", [0.48, 0.49999])
 def test_pressure_does_not_oscillate(base, nu):
-    """Nodal pressures under a cylinder stay within 2 % of their own 5-point average away from the edge."""
+    """Nodal pressures under a cylinder stay within 2 % of their own 5-point average away from the
+    edge.
+    """
     end = simulate(scene(base, motion=(force(20, 40),), nu=nu, accuracy="thesis")).isel(time=-1)
     inside = np.abs(end.skin_x) < 0.7 * float(end.contact_width) / 2
     ripple = np.abs(end.contact_pressure - end.contact_pressure_smoothed)[inside] / float(
@@ -134,7 +137,9 @@ accuracy: draft
 
 @pytest.fixture
 def starved(monkeypatch):
-    """A solver that may iterate once and halve a step twice: enough for a light touch, not for 100 gram-weight."""
+    """A solver that may iterate once and halve a step twice: enough for a light touch, not for 100
+    gram-weight.
+    """
     starving = partial(
         simulation.NewtonSettings, max_iterations=1, snap_iterations=0, max_halvings=2
     )
@@ -142,7 +147,9 @@ def starved(monkeypatch):
 
 
 def test_failure_saves_the_last_state_and_names_the_cause(starved, tmp_path, capsys):
-    """Exit 3: when, what failed and what to try in one line, and a readable last converged state."""
+    """Exit 3: when, what failed and what to try in one line, and a readable last converged
+    state.
+    """
     (tmp_path / "press.yaml").write_text(PRESS)
     assert (
         main(["run", str(tmp_path / "press.yaml"), "--out", str(tmp_path / "out"), "--quiet"]) == 3

@@ -1,4 +1,5 @@
-"""Strokes over ridged pads under hard conditions: high tips of ten times the modulus, friction 1, ridges of the skin.
+"""Strokes over ridged pads under hard conditions: high tips of ten times the modulus, friction 1,
+ridges of the skin.
 
 Sharp tips are stroked in the catalogue of hard cases.
 """
@@ -35,7 +36,9 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_plate_over_ridges(base, case):
-    """No step is cut, no point is compressed by more than a third, and full slip is reached; there and 1 mm back."""
+    """No step is cut, no point is compressed by more than a third, and full slip is reached; there
+    and 1 mm back.
+    """
     ridges, friction = CASES[case]
     specimen = Specimen(ridges=ridges)
     layers = specimen.layers

@@ -1,7 +1,9 @@
-"""Strokes under hard conditions converge with sound states, or fail cleanly with the last good state and a diagnosis.
+"""Strokes under hard conditions converge with sound states, or fail cleanly with the last good
+state and a diagnosis.
 
-Draft meshes, small distances; coefficients of 1.5 are in the catalogue of hard cases, judged by the same measure. "Sound" is what
-it is for pressing, and besides: friction only takes energy, stays within mu times the normal force and opposes the slip.
+Draft meshes, small distances; coefficients of 1.5 are in the catalogue of hard cases, judged by the
+same measure. "Sound" is what it is for pressing, and besides: friction only takes energy, stays
+within mu times the normal force and opposes the slip.
 """
 
 import json
@@ -83,7 +85,9 @@ def sound_stroke(history, friction, **limits):
 
 
 def turned_round(history, friction):
-    """On a plate the force ends at mu times the load, the skin trails behind, and 4 mm back turn both round."""
+    """On a plate the force ends at mu times the load, the skin trails behind, and 4 mm back turn
+    both round.
+    """
     there, back = (history.isel(time=np.flatnonzero(history.leg == leg)) for leg in (1, 2))
     for ends, sign in ((there, 1), (back, -1)):
         assert float(ends.tangential_force[-1]) == pytest.approx(
@@ -95,13 +99,17 @@ def turned_round(history, friction):
 
 
 def few_factors(history):
-    """Three factorisations a step in the mean at most, and the iterations that kept factors allow."""
+    """Three factorisations a step in the mean at most, and the iterations that kept factors
+    allow.
+    """
     assert json.loads(history.attrs["cost"])["factorisations"] <= 3 * states_found(history)
     assert int(history.newton_iterations.sum()) <= 5 * states_found(history)
 
 
 def kept_force(history, friction):
-    """Over two convexities and the hollow between no coefficient costs more than three factorisations a step."""
+    """Over two convexities and the hollow between no coefficient costs more than three
+    factorisations a step.
+    """
     few_factors(history)
     np.testing.assert_allclose(history.force[11:], LOAD, rtol=1e-3)
 
@@ -122,7 +130,9 @@ def test_coefficients(base, stimulus, motion, then, friction):
     ("curvature", "friction"), [(700, 0.25), (1333, 0.33), (2500, 0.5), (1e4, 0.3)]
 )
 def test_sharp_surfaces_pressed_with_friction_into_a_whole_pad(base, curvature, friction):
-    """Where load on a sharp curve outweighs the skin's stiffness along it, its nodes still slip, as on half a pad."""
+    """Where load on a sharp curve outweighs the skin's stiffness along it, its nodes still slip, as
+    on half a pad.
+    """
     whole, half = (
         stroke(
             base,
@@ -150,7 +160,9 @@ def test_speeds_on_a_wavy_surface(base, speed):
 
 
 def test_faster_strokes_stretch_a_stiffer_skin_less(base):
-    """The skin trails less at 400 mm/s than at 0.1 mm/s, by no more than the Prony series allows."""
+    """The skin trails less at 400 mm/s than at 0.1 mm/s, by no more than the Prony series
+    allows.
+    """
     slow, fast = (stroke(base, Flat(), 0.7, PRESS, slide(4, speed)) for speed in (0.1, 400.0))
     ratio = float(fast.centre_lateral_displacement[-1] / slow.centre_lateral_displacement[-1])
     assert 0.5759 - 0.05 < ratio < 0.9
@@ -178,7 +190,9 @@ def test_depth_is_kept(base, friction):
 
 
 def lost_and_found(history):
-    """A hollow that leaves a lightly pressed pad: no force, no traction, and on the far side contact again; then back."""
+    """A hollow that leaves a lightly pressed pad: no force, no traction, and on the far side
+    contact again; then back.
+    """
     for leg in (1, 2):
         touching = (history.force[history.leg == leg] > 0).values
         first, *_, last = np.flatnonzero(touching)
@@ -196,7 +210,9 @@ def test_contact_is_lost_and_found_without_friction(base):
 
 
 def test_a_hole_wider_than_the_contact(base):
-    """The pad hangs over a hole 2 mm deep, loses it all under depth control, and meets the far side."""
+    """The pad hangs over a hole 2 mm deep, loses it all under depth control, and meets the far
+    side.
+    """
     hole = sampled([0, 5, 7, 13, 15, 30], [0, 0, 2, 2, 0, 0])
     history = stroke(base, hole, 0.7, depth(0.4, 1.0), slide(20, 10, "depth"))
     sound_stroke(history, 0.7)
@@ -205,14 +221,18 @@ def test_a_hole_wider_than_the_contact(base):
 
 
 def test_pulled_sideways_without_friction(base):
-    """A cylinder drawn off a slippery pad at a kept depth is pushed on by its slope, and leaves it altogether."""
+    """A cylinder drawn off a slippery pad at a kept depth is pushed on by its slope, and leaves it
+    altogether.
+    """
     history = stroke(base, ROUND, 0.0, depth(0.5, 1.0), slide(8, 10, "depth"))
     sound_stroke(history, 0.0, energy=0.03)
     assert float(history.tangential_force.min()) < -0.03 * LOAD and float(history.force[-1]) == 0
 
 
 def test_step_and_repeat_forgets(base):
-    """Indentations one by one leave nothing behind: each is that of a pad that was never touched before."""
+    """Indentations one by one leave nothing behind: each is that of a pad that was never touched
+    before.
+    """
     history = stroke(base, WAVY, 0.0, force(20), StepAndRepeat(step=6 * MM, every=2 * MM))
     sound_stroke(
         history, 0.0, energy=0.25
@@ -246,7 +266,9 @@ NAMES = (
 
 
 def test_output_does_not_depend_on_the_step(base):
-    """Half the step changes no headline quantity of a stroke by more than the draft's error of 6 %."""
+    """Half the step changes no headline quantity of a stroke by more than the draft's error of 6
+    %.
+    """
     coarse, fine = (
         stroke(
             base,
@@ -270,7 +292,9 @@ def test_output_does_not_depend_on_the_step(base):
 
 
 def teeth(height, land):
-    """A grating of period 2 mm in mm: lands with sharp convex edges (land > 0) or teeth that end in cusps (land = 0)."""
+    """A grating of period 2 mm in mm: lands with sharp convex edges (land > 0) or teeth that end in
+    cusps (land = 0).
+    """
     starts = 2 * np.arange(9)
     if land:
         x = np.concatenate([[s, s + land, s + land + 0.2, s + 1.8] for s in starts])
@@ -287,7 +311,9 @@ def teeth(height, land):
     ids=["low", "high", "cusps", "deep cusps"],
 )
 def test_gratings_with_sharp_edges(base, height, land, friction):
-    """Stroked over sharp convex edges a run ends soundly, or says how little it can be trusted, or fails with a diagnosis."""
+    """Stroked over sharp convex edges a run ends soundly, or says how little it can be trusted, or
+    fails with a diagnosis.
+    """
     try:
         history = stroke(base, teeth(height, land), friction, PRESS, slide(3))
     except NonConvergence as failure:
@@ -317,7 +343,9 @@ def test_gratings_with_sharp_edges(base, height, land, friction):
 
 @pytest.mark.slow
 def test_full_stroke(base):
-    """80 mm over all eight convexities: no cut, three factorisations a step, and no step dearer at the end than at the start."""
+    """80 mm over all eight convexities: no cut, three factorisations a step, and no step dearer at
+    the end than at the start.
+    """
     history = stroke(base, Wavy(), 0.7, PRESS, slide(80, 40.0))
     sound_stroke(history, 0.7)
     few_factors(history)

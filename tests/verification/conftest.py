@@ -14,7 +14,8 @@ def pytest_collection_modifyitems(items):
 
 @pytest.fixture
 def must_fail():
-    """Function ``must_fail(check, **mutant)``: the check has to miss its *truth* with the mutant's arguments.
+    """Function ``must_fail(check, **mutant)``: the check has to miss its *truth* with the mutant's
+    arguments.
 
     A mutant that only moves a frozen number, or that crashes, does not count.
     """

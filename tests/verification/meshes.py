@@ -1,4 +1,6 @@
-"""Structured meshes (quad9, quad4, tri6) of mapped unit squares, as the package's own mesh dataclass."""
+"""Structured meshes (quad9, quad4, tri6) of mapped unit squares, as the package's own mesh
+dataclass.
+"""
 
 import numpy as np
 
@@ -20,10 +22,10 @@ def mapped(columns, rows, mapping, kind="quad9", distortion=0.0, region=None):
     """Mesh of the image of the unit square under ``mapping`` ((n, 2) -> (n, 2)).
 
     ``columns`` and ``rows``: numbers of elements, or the ascending edges of the elements in [0, 1].
-    ``distortion`` moves the inner corners at random by up to that share of the edge, mid-side nodes staying
-    in the middle. ``region``: function of the element centres in the unit square (ne, 2) -> (ne,) layer
-    numbers; all zero unless given. Curves bottom, right, top, left run
-    clockwise (the body on their right), as the skin of a pad does.
+    ``distortion`` moves the inner corners at random by up to that share of the edge, mid-side nodes
+    staying in the middle. ``region``: function of the element centres in the unit square (ne, 2) ->
+    (ne,) layer numbers; all zero unless given. Curves bottom, right, top, left run clockwise (the
+    body on their right), as the skin of a pad does.
     """
     xs = np.linspace(0, 1, columns + 1) if np.isscalar(columns) else np.asarray(columns, float)
     ys = np.linspace(0, 1, rows + 1) if np.isscalar(rows) else np.asarray(rows, float)
@@ -97,7 +99,9 @@ def rectangle(
 
 
 def quarter_annulus(radial, around, inner, outer, kind="quad9"):
-    """Quarter of a ring; curve left is the hole (r = inner), right the outside, bottom y = 0, top x = 0."""
+    """Quarter of a ring; curve left is the hole (r = inner), right the outside, bottom y = 0, top x
+    = 0.
+    """
 
     def mapping(s):
         r, angle = inner * (outer / inner) ** s[:, 0], s[:, 1] * np.pi / 2
@@ -122,7 +126,9 @@ def nodes_of(mesh, *curves):
 
 
 def graded(fine_share, fine, coarse):
-    """Element edges in [0, 1]: ``fine`` equal ones up to ``fine_share``, then ``coarse`` growing ones."""
+    """Element edges in [0, 1]: ``fine`` equal ones up to ``fine_share``, then ``coarse`` growing
+    ones.
+    """
     first = np.linspace(0, fine_share, fine + 1)
     ratio = _growth((1 - fine_share) / (fine_share / fine), coarse)
     steps = ratio ** np.arange(1, coarse + 1)

@@ -1,4 +1,6 @@
-"""A small fingerpad (its own outline, not the configured one) with the mechanics put together by hand."""
+"""A small fingerpad (its own outline, not the configured one) with the mechanics put together by
+hand.
+"""
 
 from functools import lru_cache
 

@@ -7,13 +7,16 @@ import numpy as np
 from fingerpad.mechanics.stepping import NewtonSettings, QuasiStatic, Record, Skin, Step
 from fingerpad.stimuli.shapes import Flat
 
-#: Frozen numbers do not see these; the forces of nearly incompressible bodies carry 5e-9 of round-off.
+#: Frozen numbers do not see these; the forces of nearly incompressible bodies carry 5e-9 of
+#: round-off.
 TIGHT = NewtonSettings(force_tolerance=1e-7, gap_tolerance=1e-8, max_iterations=30)
 
 
 @dataclass(frozen=True)
 class Pressed:
-    """End of a run: x and pressure of the (deformed) skin nodes, force N/m, depth and edges m, records."""
+    """End of a run: x and pressure of the (deformed) skin nodes, force N/m, depth and edges m,
+    records.
+    """
 
     x: np.ndarray
     pressure: np.ndarray
@@ -24,7 +27,9 @@ class Pressed:
 
     @property
     def half_width(self):
-        """Half the distance of the contact's edges, m (the right edge where the body is a right half)."""
+        """Half the distance of the contact's edges, m (the right edge where the body is a right
+        half).
+        """
         return self.edges[1] if self.x[0] > -1e-12 else (self.edges[1] - self.edges[0]) / 2
 
 
@@ -39,7 +44,9 @@ def skin_of(mesh, curve="top"):
 
 
 def walk(body, mesh, steps, profile=None, settings=TIGHT, curve="top", **more):
-    """Run a schedule of steps; returns the end of the run. ``more`` goes to the stepper (friction, external)."""
+    """Run a schedule of steps; returns the end of the run. ``more`` goes to the stepper (friction,
+    external).
+    """
     skin = skin_of(mesh, curve)
     solver = QuasiStatic(body, skin, profile or Flat(), settings, **more)
     records = solver.run(steps)

@@ -1,4 +1,6 @@
-"""What the verification problems share: bodies, consistent loads, Newton's method, norms, the two numbers."""
+"""What the verification problems share: bodies, consistent loads, Newton's method, norms, the two
+numbers.
+"""
 
 import numpy as np
 from skfem import ElementQuad2, ElementTriP2
@@ -14,7 +16,9 @@ BODIES = {"small": SmallStrainBody, "finite": FiniteStrainBody}
 
 
 def two_numbers(value, *, truth, within, frozen, tight=1e-6):
-    """Assert ``value`` is near the truth and (tighter) what this code gave when the test was written."""
+    """Assert ``value`` is near the truth and (tighter) what this code gave when the test was
+    written.
+    """
     assert abs(value - truth) <= within * abs(truth), (
         f"truth: {value!r} is not {truth!r} within {within:g}"
     )
@@ -30,17 +34,20 @@ def lame_constants(youngs_modulus, poisson):
 
 
 def make_body(mesh, fixed, shear, bulk, element=None, strain="small", prony=None):
-    """Body with one material, or one a region; ``fixed`` (n, 2) bool; with Prony, long-term moduli."""
+    """Body with one material, or one a region; ``fixed`` (n, 2) bool; with Prony, long-term
+    moduli.
+    """
     space = Space(mesh.points, mesh.cells, mesh.element, fixed, element)
     shear, bulk = np.broadcast_to(shear, 3), np.broadcast_to(bulk, 3)
     return BODIES[strain](space, shear[mesh.region], bulk[mesh.region], prony)
 
 
 def solve(body, external, start=None, tolerance=1e-11, most=30):
-    """Equilibrium under nodal forces (n, 2) from the displacement ``start`` (its fixed values stay).
+    """Equilibrium under nodal forces (n, 2) from the displacement ``start`` (its fixed values
+    stay).
 
-    Plain full Newton steps to round-off, without the solver's own stepping or tolerances. The start may be
-    far from volume-preserving, so its dilatation is not taken for a pressure.
+    Plain full Newton steps to round-off, without the solver's own stepping or tolerances. The start
+    may be far from volume-preserving, so its dilatation is not taken for a pressure.
 
     Returns the number of Newton iterations. Raises ``RuntimeError`` when they do not converge.
     """
@@ -59,7 +66,9 @@ def solve(body, external, start=None, tolerance=1e-11, most=30):
 
 
 def _fine_quadrature(space, degree=8):
-    """Positions (ne, nq, 2), weights (ne, nq), shape functions (nq, nen) of a rule of high degree."""
+    """Positions (ne, nq, 2), weights (ne, nq), shape functions (nq, nen) of a rule of high
+    degree.
+    """
     kind = ElementTriP2 if space.element.triangle else ElementQuad2
     xi, weights = get_quadrature(kind, degree)
     values, gradients = space.element.shape(xi.T)

@@ -1,4 +1,6 @@
-"""Drag a rigid profile over the skin of a small mesh: what it does to every node, and blocks to do it on."""
+"""Drag a rigid profile over the skin of a small mesh: what it does to every node, and blocks to do
+it on.
+"""
 
 from dataclasses import dataclass
 
@@ -14,7 +16,8 @@ STICK, SLIP = 1, 2  # of Record.state
 
 @dataclass(frozen=True)
 class Dragged:
-    """A state over the skin nodes: x (m), pressure and traction on the profile (Pa, + is against a positive slide).
+    """A state over the skin nodes: x (m), pressure and traction on the profile (Pa, + is against a
+    positive slide).
 
     Without friction the traction is zero, nothing sticks and everything in contact slips.
     """
@@ -72,7 +75,9 @@ def stroke(body, mesh, steps, profile, friction, settings=TIGHT, curve="top", ex
 
 
 def slide(force, distance, count, press=1, depth=None, dt=1.0):
-    """Press to ``force`` (or ``depth``) in ``press`` steps, then slide in ``count``; the press is leg 0."""
+    """Press to ``force`` (or ``depth``) in ``press`` steps, then slide in ``count``; the press is
+    leg 0.
+    """
     goal = ("force", force) if depth is None else ("depth", depth)
     down = [Step(0, k * dt, dt, **{goal[0]: goal[1] * k / press}) for k in range(1, press + 1)]
     along = [
@@ -83,10 +88,12 @@ def slide(force, distance, count, press=1, depth=None, dt=1.0):
 
 
 def drag_to(stepper, record, targets, first):
-    """Records in which the tangential force has reached each of ``targets`` (N/m), from the state of ``record``.
+    """Records in which the tangential force has reached each of ``targets`` (N/m), from the state
+    of ``record``.
 
-    The force grows ever more slowly with the distance, so secants after a ``first`` small slide (m, either sign) come near
-    without going beyond. Where nothing resists, the last record stands for all that cannot be reached.
+    The force grows ever more slowly with the distance, so secants after a ``first`` small slide (m,
+    either sign) come near without going beyond. Where nothing resists, the last record stands for
+    all that cannot be reached.
     """
     out, force, slope = [], record.force, None
     for target in targets:

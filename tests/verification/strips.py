@@ -18,11 +18,12 @@ def half_strip(
     columns=(16, 12),
     rows=None,
 ):
-    """Mesh and body of ``layers`` (at most three :class:`Layer`, from the top) on 0 <= x <= half_length.
+    """Mesh and body of ``layers`` (at most three :class:`Layer`, from the top) on 0 <= x <=
+    half_length.
 
-    ``fine``: share of the length with ``columns[0]`` equal columns, followed by ``columns[1]`` growing ones.
-    ``rows``: list of the
-    numbers of rows of each layer, or for one layer a pair (equal ones in the same length, growing ones).
+    ``fine``: share of the length with ``columns[0]`` equal columns, followed by ``columns[1]``
+    growing ones. ``rows``: list of the numbers of rows of each layer, or for one layer a pair
+    (equal ones in the same length, growing ones).
     """
     depth = sum(layer.thickness for layer in layers)
     xs = graded(fine, *columns)

@@ -1,4 +1,6 @@
-"""The edge of the contact moves continuously: curves of a ramp and hold have no kinks where more of the skin begins to touch."""
+"""The edge of the contact moves continuously: curves of a ramp and hold have no kinks where more of
+the skin begins to touch.
+"""
 
 import numpy as np
 import pytest
@@ -17,7 +19,9 @@ FROZEN = {
     210.0: (0.0024, 0.00036, 0.0004, 0.00201, 0.00145),
     1260.0: (0.00112, 0.00011, 0.00011, 0.00084, 0.00093),
 }
-"""1/m -> kinks of contact width, peak pressure, centre pressure, and rates of strain energy at 600 and 915 um."""
+"""1/m -> kinks of contact width, peak pressure, centre pressure, and rates of strain energy at 600
+and 915 um.
+"""
 
 
 def check_kinks(curvature=210.0, share=1.0):
@@ -29,7 +33,9 @@ def check_kinks(curvature=210.0, share=1.0):
 
 @pytest.mark.parametrize("curvature", FROZEN)
 def test_curves_have_no_kinks(curvature, must_fail):
-    """At the thesis's accuracy no kink is above 0.3 % of a curve's range; with a tenth of the smoothing, several are."""
+    """At the thesis's accuracy no kink is above 0.3 % of a curve's range; with a tenth of the
+    smoothing, several are.
+    """
     check_kinks(curvature)
     if curvature == 210:
         must_fail(check_kinks, curvature, share=0.1)

@@ -46,7 +46,9 @@ def off(found, truth):
 
 
 def test_fewer_states_say_the_same(every, chosen):
-    """At common outputs: what the body does to half a per cent, what the contact does to three, with fewer states."""
+    """At common outputs: what the body does to half a per cent, what the contact does to three,
+    with fewer states.
+    """
     assert np.array_equal(every.stroke_distance, chosen.stroke_distance) and np.allclose(
         every.time, chosen.time
     )
@@ -71,7 +73,9 @@ def test_fewer_states_say_the_same(every, chosen):
 
 
 def test_states_are_found_where_something_happens(chosen):
-    """Where the stroke begins and the skin comes to slip, and where the corner at 8 mm arrives and leaves."""
+    """Where the stroke begins and the skin comes to slip, and where the corner at 8 mm arrives and
+    leaves.
+    """
     found = chosen.stroke_distance.values[chosen.interpolated.values == 0] * 1e3
     ways = np.diff(found[found > 0])
     assert ways.max() <= 0.5 + 1e-9
@@ -80,7 +84,9 @@ def test_states_are_found_where_something_happens(chosen):
 
 
 def test_node_by_node_would_be_worse(scene, every, monkeypatch):
-    """The mutant: pressures that do not go along with the surface need more states, or say less with as many."""
+    """The mutant: pressures that do not go along with the surface need more states, or say less
+    with as many.
+    """
     at = Passage.at.__func__
 
     def straight(cls, *given):
@@ -112,7 +118,9 @@ def test_factors_in_single_precision_will_do(scene):
 
 
 def test_what_the_skin_yields_to_is_inverted_as_often_as_factors_change(scene, monkeypatch):
-    """Not in every iteration: the geometric term of the contact is kept with the factors. Answers are as if it was not."""
+    """Not in every iteration: the geometric term of the contact is kept with the factors. Answers
+    are as if it was not.
+    """
     short, made = scene.varied({"motion[1].slide": 3e-3}), []
     of = Flexibility.of.__func__
     monkeypatch.setattr(
@@ -135,7 +143,9 @@ def test_what_the_skin_yields_to_is_inverted_as_often_as_factors_change(scene, m
 
 
 def test_a_press_is_condensed_once():
-    """Onto what the plan says will touch, however little of it touches at first; a stroke follows its contact."""
+    """Onto what the plan says will touch, however little of it touches at first; a stroke follows
+    its contact.
+    """
     scene = load_scene(SCENES / "ramp40_k210.yaml")
     run = Simulation(scene, plan(scene), None)
     wide = run.stepper._wide

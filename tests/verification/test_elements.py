@@ -70,7 +70,9 @@ def check_patch(element, strain, poisson, soft_element=1.0):
 @pytest.mark.parametrize("strain", ["small", "finite"])
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_patch(element, strain, poisson, must_fail):
-    """A distorted patch reproduces a uniform strain and its stress to round-off (Irons and Razzaque 1972)."""
+    """A distorted patch reproduces a uniform strain and its stress to round-off (Irons and Razzaque
+    1972).
+    """
     check_patch(element, strain, poisson)
     must_fail(check_patch, element, strain, poisson, soft_element=0.99)
 
@@ -79,7 +81,9 @@ def test_patch(element, strain, poisson, must_fail):
 
 
 def deformed_body(element, prony=None, poisson=0.45, shake=0.003):
-    """A finite-strain body in some state, with a history if viscoelastic; no lag in its pressure."""
+    """A finite-strain body in some state, with a history if viscoelastic; no lag in its
+    pressure.
+    """
     mesh = rectangle(3, 2, 1.0, 0.8, KIND[element], distortion=0.2)
     shear, bulk = lame_constants(3.0, poisson)
     body = make_body(mesh, boundary(mesh, "bottom"), shear, bulk, element, "finite", prony)
@@ -131,7 +135,9 @@ def test_tangent_is_the_derivative_of_the_force(element, prony, must_fail):
 
 
 def check_kept_tangent(element, off=0.0):
-    """What a tangent of somewhere else makes of volume that the pressure does not stand for, and of a step's dilatation."""
+    """What a tangent of somewhere else makes of volume that the pressure does not stand for, and of
+    a step's dilatation.
+    """
     body = deformed_body(element)
     random, h = np.random.default_rng(7), 1e-6
     begin, way, other = body.u.copy(), *random.normal(0, 1, (2, *body.u.shape))
@@ -165,7 +171,9 @@ def test_a_tangent_of_somewhere_else_knows_its_own_volumes(element, must_fail):
 
 
 def answers(body, steps=(0.1, 0.3)):
-    """Force, tangent, dilatation, energies and Jacobian of a body whose nodes have been moved at random, after each step."""
+    """Force, tangent, dilatation, energies and Jacobian of a body whose nodes have been moved at
+    random, after each step.
+    """
     random, out = np.random.default_rng(1), []
     for dt in steps:
         body.begin_step(dt)
@@ -180,7 +188,9 @@ def answers(body, steps=(0.1, 0.3)):
 
 
 def check_mixed_laws(element, prony, moved=0):
-    """Elements of two laws that say the same, in no order, are those of one law; ``moved``: whose blocks begin too late."""
+    """Elements of two laws that say the same, in no order, are those of one law; ``moved``: whose
+    blocks begin too late.
+    """
     mesh = rectangle(11, 7, 1.0, 0.8, KIND[element], distortion=0.2)
     space = Space(mesh.points, mesh.cells, mesh.element, boundary(mesh, "bottom"), element)
     shear, bulk = (np.full(len(mesh.cells), value) for value in lame_constants(3.0, 0.45))
@@ -199,7 +209,9 @@ def check_mixed_laws(element, prony, moved=0):
     for one, both in zip(answers(alone), answers(mixed), strict=True):
         error = np.abs(both - one).max() / np.abs(one).max()
         assert error < 1e-12, f"truth: laws in parts are off by {error:.2e}"
-    if prony:  # what is left over of the last block stays empty: garbage there would be multiplied in every step
+    # what is left over of the last block stays empty: garbage there would be multiplied in every
+    # step
+    if prony:
         assert not mixed.branches.q[..., -1, :, :, len(mesh.cells) % TOGETHER :].any()
 
 
@@ -287,7 +299,9 @@ def check_force_is_gradient(element, strain, wrong_bulk=1.0, own=1.0):
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("strain", ["finite", "small"])
 def test_force_is_the_gradient_of_the_energy(element, strain, must_fail):
-    """Elastic internal forces derive from the recorded network energy, also where pressure stands for another volume."""
+    """Elastic internal forces derive from the recorded network energy, also where pressure stands
+    for another volume.
+    """
     check_force_is_gradient(element, strain)
     if strain == "finite":
         check_force_is_gradient(element, strain, own=0.5)
@@ -316,7 +330,9 @@ def test_finite_strain_forces_start_as_small_strain_ones(must_fail):
 
 
 def check_uniform_pressure(element, curved, weight=1.0):
-    """Forces at the points of skin under a uniform pressure are that of a consistent load, and that pressure at every node."""
+    """Forces at the points of skin under a uniform pressure are that of a consistent load, and that
+    pressure at every node.
+    """
     bend = 0.3 if curved else 0.0
     mesh = mapped(
         5,
@@ -351,7 +367,9 @@ def check_uniform_pressure(element, curved, weight=1.0):
 @pytest.mark.parametrize("curved", [False, True], ids=["straight", "curved"])
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_uniform_pressure_patch(element, curved, must_fail):
-    """Contact forces of a uniform pressure give that pressure at corner and mid-side nodes alike, and its load to all nodes."""
+    """Contact forces of a uniform pressure give that pressure at corner and mid-side nodes alike,
+    and its load to all nodes.
+    """
     check_uniform_pressure(element, curved)
     must_fail(check_uniform_pressure, element, curved, weight=1.01)
 
@@ -369,7 +387,9 @@ def check_smoothing(mirrored, weights=(1, 2, 3, 2, 1)):
 
 @pytest.mark.parametrize("mirrored", [False, True], ids=["whole", "half"])
 def test_smoothed_pressure(mirrored, must_fail):
-    """Smoothed pressure is force over length, both averaged with weights 1, 2, 3, 2, 1 (mirrored)."""
+    """Smoothed pressure is force over length, both averaged with weights 1, 2, 3, 2, 1
+    (mirrored).
+    """
     check_smoothing(mirrored)
     must_fail(check_smoothing, mirrored, weights=(1, 2, 2, 2, 1))
 
@@ -393,6 +413,8 @@ def check_contact_patch(element, strain, depth, poisson=0.0):
 @pytest.mark.parametrize("strain", ["small", "finite"])
 @pytest.mark.parametrize("element", ELEMENTS)
 def test_contact_patch(element, strain, must_fail):
-    """A block under a plate carries E delta/h: 1e5 Pa for nu = 0 (El-Abbasi and Bathe 2001, SSNP121)."""
+    """A block under a plate carries E delta/h: 1e5 Pa for nu = 0 (El-Abbasi and Bathe 2001,
+    SSNP121).
+    """
     check_contact_patch(element, strain, depth=0.1 if strain == "small" else 1e-3)
     must_fail(check_contact_patch, element, strain, depth=1e-3, poisson=0.3)

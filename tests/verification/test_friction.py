@@ -1,4 +1,5 @@
-"""Coulomb friction: partial slip, lift-off with slip and stick, an incline, a sticking punch, and the identities of a stroke.
+"""Coulomb friction: partial slip, lift-off with slip and stick, an incline, a sticking punch, and
+the identities of a stroke.
 
 Every check is run with the coefficient set to zero, too, and has to fail then.
 """
@@ -27,9 +28,11 @@ PEAK = hertz.peak_pressure(HERTZ_LOAD, 1.0)
 
 
 def dragged_cylinder(shares, friction=MU, poisson=POISSON, back=()):
-    """States of a pressed cylinder dragged until Q/(mu P) is each of ``shares`` and then each of ``back``.
+    """States of a pressed cylinder dragged until Q/(mu P) is each of ``shares`` and then each of
+    ``back``.
 
-    It is pressed with friction, too: on an incompressible half-plane a pressure moves no point of the surface sideways.
+    It is pressed with friction, too: on an incompressible half-plane a pressure moves no point of
+    the surface sideways.
     """
     mesh, body = block(DEPTH, DEPTH, poisson, SHEAR)
     skin = skin_of(mesh)
@@ -44,7 +47,9 @@ def dragged_cylinder(shares, friction=MU, poisson=POISSON, back=()):
 
 
 def stick_half_width(state, friction=MU):
-    """Half width of the stick zone, where (mu p - q)^2 is proportional to c^2 - x^2; zero if nothing sticks."""
+    """Half width of the stick zone, where (mu p - q)^2 is proportional to c^2 - x^2; zero if
+    nothing sticks.
+    """
     if state.stick.sum() < 3:
         return 0.0
     x = state.x[state.stick]
@@ -128,7 +133,9 @@ RETURN = {0.4: 0.31635699, 0.0: 0.080950873, -0.4: -0.19631497}
 
 
 def test_partial_slip_on_the_way_back(must_fail):
-    """When Q falls again the edges slip backwards and leave locked-in tractions (Mindlin and Deresiewicz 1953)."""
+    """When Q falls again the edges slip backwards and leave locked-in tractions (Mindlin and
+    Deresiewicz 1953).
+    """
     check_return()
     must_fail(check_return, friction=0.0)
     must_fail(check_return, friction=0.9 * MU)
@@ -155,7 +162,9 @@ SLIDING = (0.99840387, 0.99994432)
 
 
 def test_sliding_cylinder(must_fail):
-    """In full slip F_t = mu F_n, q = mu p, and p stays Hertz's (McEwen 1949; Johnson 1985, section 7.1)."""
+    """In full slip F_t = mu F_n, q = mu p, and p stays Hertz's (McEwen 1949; Johnson 1985, section
+    7.1).
+    """
     check_sliding_cylinder()
     must_fail(check_sliding_cylinder, friction=0.0)
     must_fail(check_sliding_cylinder, friction=1.01 * MU)
@@ -195,7 +204,9 @@ FULL_STICK = (1.5217032e-05, 4.8310109e-05)
 
 
 def test_full_stick(must_fail):
-    """With a large coefficient nothing slips and q = Q/(pi sqrt(a^2 - x^2)) (Johnson 1985, section 7.2)."""
+    """With a large coefficient nothing slips and q = Q/(pi sqrt(a^2 - x^2)) (Johnson 1985, section
+    7.2).
+    """
     check_full_stick()
     must_fail(check_full_stick, friction=0.0)
     must_fail(check_full_stick, friction=0.3)
@@ -247,7 +258,9 @@ PUNCH = {0.4999: (0.0031583427, 0.0024155055), 0.3: (0.003285659, 0.0017356935)}
 
 @pytest.mark.parametrize("poisson", PUNCH)
 def test_sticking_punch(poisson, must_fail):
-    """At nu = 0.5 a flat punch that sticks presses as one that slips; at 0.3 as Muskhelishvili's (Johnson 1985, Eq. 2.69)."""
+    """At nu = 0.5 a flat punch that sticks presses as one that slips; at 0.3 as Muskhelishvili's
+    (Johnson 1985, Eq. 2.69).
+    """
     check_punch(poisson)
     must_fail(check_punch, poisson, friction=0.0)
     must_fail(check_punch, poisson, poisson=0.0 if poisson == 0.3 else 0.3)
@@ -257,7 +270,9 @@ def test_sticking_punch(poisson, must_fail):
 
 
 def friction_plate_contact(elements, friction=friction_plate.FRICTION):
-    """The plate upside down, under a fixed plane, on a cushion a million times softer that only keeps it from floating."""
+    """The plate upside down, under a fixed plane, on a cushion a million times softer that only
+    keeps it from floating.
+    """
     side, cushion = friction_plate.SIDE, friction_plate.SIDE / 4
     rows = np.append(np.linspace(0, 0.2, 2)[:-1], np.linspace(0.2, 1, elements + 1))
     mesh = rectangle(
@@ -318,7 +333,9 @@ PLATE = (2.8604039e-05, 2.7226725e-05, 2.2867958e-05, 1.9807489e-05, 1.5413947e-
 
 
 def test_friction_plate(must_fail):
-    """Lift-off to 3.3 mm, slip to 29 mm, stick beyond, and five sliding displacements (code_aster SSNV128)."""
+    """Lift-off to 3.3 mm, slip to 29 mm, stick beyond, and five sliding displacements (code_aster
+    SSNV128).
+    """
     check_friction_plate()
     must_fail(check_friction_plate, friction=0.0)
     must_fail(check_friction_plate, friction=0.9)
@@ -355,7 +372,9 @@ CGS4 = {0.0: 0.1, 0.1: 0.20202, 0.2: 0.306122, 0.3: 0.412371}
 
 @pytest.mark.parametrize("friction", CGS4)
 def test_incline(friction, must_fail):
-    """Sliding uphill needs F/G = (tan a + mu)/(1 - mu tan a): 0.412371 at mu = 0.3 (NAFEMS CGS-4)."""
+    """Sliding uphill needs F/G = (tan a + mu)/(1 - mu tan a): 0.412371 at mu = 0.3 (NAFEMS
+    CGS-4).
+    """
     check_incline(friction)
     must_fail(check_incline, friction, slope=0.05)
     if friction:
@@ -393,13 +412,17 @@ def check_full_slip(profile, strain, friction=PAD_MU):
 @pytest.mark.parametrize("profile", [FLAT, ROUND], ids=["flat", "cylinder"])
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_full_slip_of_a_pad(strain, profile, must_fail):
-    """After a few millimetres every node's friction is mu times its normal force, and on a plate F_t = mu F_n."""
+    """After a few millimetres every node's friction is mu times its normal force, and on a plate
+    F_t = mu F_n.
+    """
     check_full_slip(profile, strain)
     must_fail(check_full_slip, profile, strain, friction=0.0)
 
 
 def viscoelastic_stroke(count, distance=3e-3, speed=10e-3, profile=FLAT, steady=(), **more):
-    """Pressed in 0.5 s, then slid at 10 mm/s; ``count`` steps each. Then slid to distances (m) of ``steady``, very slowly."""
+    """Pressed in 0.5 s, then slid at 10 mm/s; ``count`` steps each. Then slid to distances (m) of
+    ``steady``, very slowly.
+    """
     down = slide(LOAD, 0.0, 0, press=count, dt=0.5 / count)
     sizes = distance / speed / count
     along = [
@@ -453,7 +476,9 @@ FRICTIONAL = {"small": 0.023967038, "finite": 0.023787169}
 
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_energy_of_a_stroke(strain, must_fail):
-    """Work of both forces = stored + viscous + frictional dissipation; in steady slip friction takes F_t times the way."""
+    """Work of both forces = stored + viscous + frictional dissipation; in steady slip friction
+    takes F_t times the way.
+    """
     check_energy(strain)
     must_fail(check_energy, strain, friction=0.0)
     must_fail(check_energy, strain, frictional_share=0.95)
@@ -495,7 +520,9 @@ def test_strokes_left_and_right_mirror(profile, must_fail):
 
 
 def check_units(length, stress, friction=PAD_MU, load_share=1.0):
-    """Lengths times ``length`` and stresses times ``stress`` leave every ratio of a stroke unchanged."""
+    """Lengths times ``length`` and stresses times ``stress`` leave every ratio of a stroke
+    unchanged.
+    """
     mesh = pad_mesh()
     reference = pad_stroke(slide(LOAD, 1e-3, 3, press=2), FLAT)
     scaled = replace(mesh, points=mesh.points * length)
@@ -524,14 +551,18 @@ def check_units(length, stress, friction=PAD_MU, load_share=1.0):
 
 @pytest.mark.parametrize("length, stress", [(1.0, 37.0), (1e3, 1e-6)], ids=["stiffer", "mm N"])
 def test_units_of_a_stroke_do_not_matter(length, stress, must_fail):
-    """Moduli and forces times c leave every length of a stroke; millimetres give what metres give."""
+    """Moduli and forces times c leave every length of a stroke; millimetres give what metres
+    give.
+    """
     check_units(length, stress)
     must_fail(check_units, length, stress, friction=0.0)
     must_fail(check_units, length, stress, load_share=1.001)
 
 
 def check_step_size(friction=PAD_MU, distance=3e-3):
-    """A cylinder drawn from under the pad, in steps of 0.5, 0.25 and 0.125 mm, compared where all of them stand."""
+    """A cylinder drawn from under the pad, in steps of 0.5, 0.25 and 0.125 mm, compared where all
+    of them stand.
+    """
     runs = [
         viscoelastic_stroke(count, distance, profile=ROUND, friction=mu)[
             count + stride - 1 :: stride
@@ -564,7 +595,9 @@ STEP_SIZE = 7.2059588e-4
 
 
 def test_step_size_does_not_matter(must_fail):
-    """Steps of 0.25 mm give force, depth, pressure and place of contact within 0.5 % of those of 0.125 mm."""
+    """Steps of 0.25 mm give force, depth, pressure and place of contact within 0.5 % of those of
+    0.125 mm.
+    """
     check_step_size()
     must_fail(check_step_size, friction=0.0)
 

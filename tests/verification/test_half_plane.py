@@ -54,7 +54,9 @@ def check_hertz(element, **mutant):
 
 @pytest.mark.parametrize("element", WITHIN)
 def test_hertz_line_contact(element, must_fail):
-    """A rigid cylinder makes Hertz's pressure inside 0.85 a, his width, and the depth of a strip."""
+    """A rigid cylinder makes Hertz's pressure inside 0.85 a, his width, and the depth of a
+    strip.
+    """
     check_hertz(element)
     must_fail(check_hertz, element, poisson=0.3)
     must_fail(check_hertz, element, radius=0.8 * RADIUS)

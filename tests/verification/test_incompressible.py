@@ -1,4 +1,6 @@
-"""Nearly incompressible bodies do not lock: thick cylinder and Cook's membrane up to nu = 0.4999."""
+"""Nearly incompressible bodies do not lock: thick cylinder and Cook's membrane up to nu =
+0.4999.
+"""
 
 import numpy as np
 import pytest
@@ -51,7 +53,9 @@ CYLINDER = {
 @pytest.mark.parametrize("poisson", [0.3, 0.49, 0.499, 0.4999])
 @pytest.mark.parametrize("element", ["Q1P0", "Q2P1", "P2B"])
 def test_thick_cylinder(element, poisson, must_fail):
-    """A pressurised thick cylinder widens as Lame's solution says, at any nu (MacNeal and Harder 1985)."""
+    """A pressurised thick cylinder widens as Lame's solution says, at any nu (MacNeal and Harder
+    1985).
+    """
     check_cylinder(element, poisson)
     must_fail(check_cylinder, element, poisson, solved_poisson=0.2)
     if poisson >= 0.499:
@@ -68,7 +72,9 @@ FINITE_CYLINDER = 5.06241228e-03
 
 
 def test_thick_cylinder_at_finite_strain(must_fail):
-    """The finite-strain body meets Lame's solution at small pressure, and leaves it under a large one."""
+    """The finite-strain body meets Lame's solution at small pressure, and leaves it under a large
+    one.
+    """
     check_finite_cylinder()
     must_fail(check_finite_cylinder, pressure=50.0)
     must_fail(check_finite_cylinder, poisson=0.3)

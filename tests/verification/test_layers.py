@@ -1,4 +1,6 @@
-"""Layers: a thin bonded incompressible one, a stiff one on a soft one, and their contact with a cylinder."""
+"""Layers: a thin bonded incompressible one, a stiff one on a soft one, and their contact with a
+cylinder.
+"""
 
 from functools import cache
 
@@ -129,7 +131,9 @@ def check_kernel(element, ratio, thickness, run_ratio=None, poisson=0.4999):
 @pytest.mark.parametrize("ratio, thickness", [(0.1, 0.25), (0.1, 0.5), (0.5, 0.5), (5.0, 0.5)])
 @pytest.mark.parametrize("element", ["Q1P0", "Q2P1", "P2B"])
 def test_layered_half_plane_kernel(element, ratio, thickness, must_fail):
-    """A layer on another sinks under a cosine load as the bonded incompressible pair does (Gladwell 1980)."""
+    """A layer on another sinks under a cosine load as the bonded incompressible pair does (Gladwell
+    1980).
+    """
     check_kernel(element, ratio, thickness)
     must_fail(check_kernel, element, ratio, thickness, run_ratio=1.0)
     must_fail(check_kernel, element, ratio, thickness, poisson=0.4)
@@ -165,7 +169,9 @@ def check_strip(element, load, layers=SKIN):
 @pytest.mark.parametrize("load", [0.04, 0.4])
 @pytest.mark.parametrize("element", ["Q1P0", "Q2P1", "P2B"])
 def test_contact_of_a_layered_strip(element, load, must_fail):
-    """Three layers in the pad's proportions meet a cylinder as an independent Fourier solution says."""
+    """Three layers in the pad's proportions meet a cylinder as an independent Fourier solution
+    says.
+    """
     check_strip(element, load)
     must_fail(check_strip, element, load, layers=[Layer(0.85, 1.0, 0.48), *SKIN[1:]])
     must_fail(check_strip, element, load, layers=[*SKIN[:2], Layer(3.3, 10.0, 0.48)])

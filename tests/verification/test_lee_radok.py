@@ -1,4 +1,6 @@
-"""Viscoelastic line contact of an incompressible body while the contact grows (Lee and Radok 1960)."""
+"""Viscoelastic line contact of an incompressible body while the contact grows (Lee and Radok
+1960).
+"""
 
 import numpy as np
 import pytest
@@ -27,7 +29,9 @@ def run(steps, series, element="Q2P1"):
 
 
 def hold(value, key, count):
-    """A jump at once to a force or depth, and its hold up to each of TIMES in ``count`` growing steps."""
+    """A jump at once to a force or depth, and its hold up to each of TIMES in ``count`` growing
+    steps.
+    """
     parts = [
         np.linspace(a, b, count + 1)[1:] for a, b in zip((0.0, *TIMES[:-1]), TIMES, strict=True)
     ]
@@ -58,14 +62,18 @@ CREEP = (0.99761238, 1.3147675, 1.5242429, 1.8810857)
 
 
 def test_contact_creeps_under_a_constant_force(must_fail):
-    """Under a step of force a^2 grows as P R J(t)/pi: a/a0 = 1.3134, 1.5227, 1.8784 at t = 1, 2, 5 tau."""
+    """Under a step of force a^2 grows as P R J(t)/pi: a/a0 = 1.3134, 1.5227, 1.8784 at t = 1, 2, 5
+    tau.
+    """
     check_creep()
     must_fail(check_creep, series=None)
     must_fail(check_creep, series=THESIS)
 
 
 def check_relaxation(count=2, series=ONE_TERM):
-    """Depth held after a jump: the width stays, but for what points give way to a pressure that falls to a fifth."""
+    """Depth held after a jump: the width stays, but for what points give way to a pressure that
+    falls to a fifth.
+    """
     load = hertz.force(1.0, RADIUS, 4 * SHEAR / ONE_TERM.g_infinity)
     jump = run(hold(load / 2, "force", 1)[:1], ONE_TERM)[0]
     ends = run(hold(jump.depth, "depth", count), series)
@@ -85,14 +93,18 @@ RELAXED = (0.019444347, 0.012135999, 0.008082996)
 
 
 def test_force_relaxes_under_a_held_contact(must_fail):
-    """With the contact held the force follows G(t): P/P0 = 0.4943, 0.3083, 0.2054 at t = 1, 2, 5 tau."""
+    """With the contact held the force follows G(t): P/P0 = 0.4943, 0.3083, 0.2054 at t = 1, 2, 5
+    tau.
+    """
     check_relaxation()
     must_fail(check_relaxation, series=None)
     must_fail(check_relaxation, series=THESIS)
 
 
 def check_ramp_and_hold(count=10, series=THESIS):
-    """The thesis's programme: force up in 0.5 s, held for 2 s; width against the hereditary integral."""
+    """The thesis's programme: force up in 0.5 s, held for 2 s; width against the hereditary
+    integral.
+    """
     load = hertz.force(1.2, RADIUS, 4 * SHEAR)
     times = np.concatenate(
         [np.linspace(0, 0.5, count + 1)[1:], 0.5 + 2.0 * (np.arange(1, count + 1) / count) ** 2]
@@ -142,6 +154,8 @@ def check_pressure_shape(series=THESIS):
 
 
 def test_pressure_keeps_its_shape(must_fail):
-    """While the contact grows under a constant force the pressure stays Hertz's, on the present width."""
+    """While the contact grows under a constant force the pressure stays Hertz's, on the present
+    width.
+    """
     check_pressure_shape()
     must_fail(check_pressure_shape, series=None)

@@ -8,7 +8,8 @@ from problems import body_load, l2_error, lame_constants, make_body, solve, two_
 from fingerpad.reference_solutions import manufactured
 
 RATE = {"Q1P0": 2.0, "Q2P1": 3.0, "P2B": 3.0}
-#: Relative L2 error of the displacement on the finest mesh, as it was when these tests were written.
+#: Relative L2 error of the displacement on the finest mesh, as it was when these tests were
+#: written.
 FROZEN = {
     ("Q1P0", "small", 0.3): 2.597432e-03,
     ("Q1P0", "small", 0.4999): 2.808367e-03,
@@ -68,7 +69,9 @@ def check_rates(element, strain, poisson, **mutant):
 @pytest.mark.parametrize("strain", ["small", "finite"])
 @pytest.mark.parametrize("element", RATE)
 def test_rates(element, strain, poisson, must_fail):
-    """Displacements converge in L2 at the order of the element, 2 or 3, at nu = 0.3 and 0.4999 alike."""
+    """Displacements converge in L2 at the order of the element, 2 or 3, at nu = 0.3 and 0.4999
+    alike.
+    """
     check_rates(element, strain, poisson)
     if poisson == 0.3:
         must_fail(check_rates, element, strain, poisson, force_poisson=0.31)

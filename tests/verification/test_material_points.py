@@ -1,4 +1,6 @@
-"""Strain energy at receptors: against Hertz's field below the contact, and term by term in simple shear."""
+"""Strain energy at receptors: against Hertz's field below the contact, and term by term in simple
+shear.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -50,7 +52,9 @@ def hertz_contact(element, strain):
 
 
 def check_hertz_energy(element, strain="small", off_axis=0.0):
-    """Incompressible half-plane: the density below the contact is (largest shear stress)^2 / 2 G."""
+    """Incompressible half-plane: the density below the contact is (largest shear stress)^2 / 2
+    G.
+    """
     shear, (load, body) = 1.0, hertz_contact(element, strain)
     p0 = hertz.peak_pressure(load, 1.0)
     points = np.column_stack([np.full(len(DEPTHS), off_axis), -np.array(DEPTHS)])
@@ -80,7 +84,9 @@ def check_hertz_energy(element, strain="small", off_axis=0.0):
 @pytest.mark.parametrize("strain", ["small", "finite"])
 @pytest.mark.parametrize("element", ["Q1P0", "Q2P1", "P2B"])
 def test_energy_below_hertz_contact(element, strain, must_fail):
-    """Strain energy on the axis below a cylinder is that of Hertz's stresses (Johnson 1985, section 4.2)."""
+    """Strain energy on the axis below a cylinder is that of Hertz's stresses (Johnson 1985, section
+    4.2).
+    """
     check_hertz_energy(element, strain)
     must_fail(check_hertz_energy, element, strain, off_axis=0.9)
 
@@ -128,8 +134,9 @@ def check_shear_energies(strain, series=THESIS):
 
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_five_strain_energies_in_shear(strain, must_fail):
-    """A sheared point's headline energy is s^2/2G_0, with long-term moduli s^2/2G, half stress times strain s y/2, its network's
-    G y^2/2, recoverable with the springs'."""
+    """A sheared point's headline energy is s^2/2G_0, with long-term moduli s^2/2G, half stress
+    times strain s y/2, its network's G y^2/2, recoverable with the springs'.
+    """
     check_shear_energies(strain)
     must_fail(check_shear_energies, strain, series=None)
 
@@ -150,7 +157,9 @@ def test_logarithmic_strain_is_half_the_logarithm_of_b():
 
 
 def test_between_elements_no_side_is_preferred(monkeypatch):
-    """On the border of elements a receptor reads the mean of both sides, which differ, where nothing is fitted."""
+    """On the border of elements a receptor reads the mean of both sides, which differ, where
+    nothing is fitted.
+    """
     monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     mesh = rectangle(2, 2)
     fixed = np.zeros(mesh.points.shape, bool)
@@ -170,7 +179,9 @@ WAVES = np.array([[2.1, 1.3], [-1.7, 2.4]])
 
 
 def energy_errors(element, divisions, distortion):
-    """Of receptors anywhere in a body, whose nodes are where a smooth field puts them: root mean square over the energy's."""
+    """Of receptors anywhere in a body, whose nodes are where a smooth field puts them: root mean
+    square over the energy's.
+    """
     kind = {"Q1P0": "quad4", "Q2P1": "quad9", "P2B": "tri6"}[element]
     mesh = rectangle(divisions, divisions, kind=kind, distortion=distortion)
     body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 5.0, element, "small")
@@ -194,8 +205,10 @@ def check_fit(element, within):
 
 @pytest.mark.parametrize(("element", "within"), [("Q1P0", 2e-3), ("Q2P1", 4.1e-5), ("P2B", 1.7e-4)])
 def test_energy_at_receptors_is_better_than_in_elements(element, within, monkeypatch):
-    """What is fitted to the best points of elements round a receptor beats the element that it lies in (Barlow 1976), by a factor
-    of 16, 18 and 5 on regular meshes; of linear quads it converges with one order more."""
+    """What is fitted to the best points of elements round a receptor beats the element that it lies
+    in (Barlow 1976), by a factor of 16, 18 and 5 on regular meshes; of linear quads it converges
+    with one order more.
+    """
     check_fit(element, within)
     monkeypatch.setattr("fingerpad.receptors.recovery.FITTED", {})
     with pytest.raises(AssertionError, match="truth"):
@@ -203,7 +216,9 @@ def test_energy_at_receptors_is_better_than_in_elements(element, within, monkeyp
 
 
 def test_nothing_is_fitted_across_layers_or_gaps():
-    """Where energy jumps, between two layers and between two pieces of one that touch nowhere near, either side keeps its own."""
+    """Where energy jumps, between two layers and between two pieces of one that touch nowhere near,
+    either side keeps its own.
+    """
     mesh = rectangle(17, 16)
     centre = mesh.points[mesh.cells].mean(axis=1)
     stiff = centre[:, 1] > 0.5
@@ -277,7 +292,9 @@ CURVED = {
 @pytest.mark.parametrize("bent", [False, True], ids=["irregular", "curved"])
 @pytest.mark.parametrize("kind", CURVED)
 def test_points_are_found_where_scikit_fem_maps_them(kind, bent):
-    """Places in elements of curved sides or irregular shape, mapped by scikit-fem, are found again, and in no second element."""
+    """Places in elements of curved sides or irregular shape, mapped by scikit-fem, are found again,
+    and in no second element.
+    """
     element, shape = CURVED[kind]
     mesh = (
         quarter_annulus(5, 6, 1.0, 2.0, kind)
@@ -309,7 +326,9 @@ def test_points_are_found_where_scikit_fem_maps_them(kind, bent):
 
 @pytest.mark.parametrize("kind", ["quad9", "tri6"])
 def test_points_are_found_in_long_elements_beside_many_narrow_ones(kind):
-    """Under a refined contact: the centre of the element is farther off than those of a hundred in the row below."""
+    """Under a refined contact: the centre of the element is farther off than those of a hundred in
+    the row below.
+    """
     mesh = rectangle(200, 2, kind=kind)
     mesh.points[:, 1] = np.interp(mesh.points[:, 1], [0, 0.5, 1], [0, 0.1, 1])
     body = make_body(mesh, np.zeros(mesh.points.shape, bool), 2.0, 50.0, CURVED[kind][0], "finite")

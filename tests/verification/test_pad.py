@@ -1,4 +1,6 @@
-"""Identities of the pad that need no published number: separability, symmetry, energy, scaling, limit."""
+"""Identities of the pad that need no published number: separability, symmetry, energy, scaling,
+limit.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -44,7 +46,9 @@ def pressed_whole(shape, strain):
 
 
 def pressed_history(mesh, shape, key, goal, poisson, prony, count=COUNT):
-    """Times (2 count,) and the state over the skin after each step of a ramp and hold, small strain."""
+    """Times (2 count,) and the state over the skin after each step of a ramp and hold, small
+    strain.
+    """
     steps = ramp_and_hold(key, goal, count)
     body = pad_body(mesh, "small", poisson, prony)
     records = walk(body, mesh, steps, SHAPES[shape], curve="skin").records
@@ -55,7 +59,9 @@ def pressed_history(mesh, shape, key, goal, poisson, prony, count=COUNT):
 
 
 def force_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
-    """Depth control: largest deviation of the force from the hereditary integral of the elastic forces."""
+    """Depth control: largest deviation of the force from the hereditary integral of the elastic
+    forces.
+    """
     times, ends = pressed_history(mesh, shape, "depth", 0.4e-3, poisson, prony)
     ramp = [pressed_half(shape, poisson=poisson, depth=end.depth).force for end in ends[:COUNT]]
     elastic = np.concatenate([[0.0], ramp, np.full(COUNT, ramp[-1])]) / THESIS.g_infinity
@@ -64,7 +70,9 @@ def force_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
 
 
 def depth_deviation(mesh, shape, poisson=0.4999, prony=THESIS):
-    """Force control: largest deviations of depth and width from the elastic ones at the creep integral."""
+    """Force control: largest deviations of depth and width from the elastic ones at the creep
+    integral.
+    """
     times, ends = pressed_history(mesh, shape, "force", LOAD / 2, poisson, prony)
     applied = LOAD * np.minimum(np.append(0.0, times) / 0.5, 1.0)
     elastic = THESIS.g_infinity * ting.elastic_force_under_force_control(
@@ -90,7 +98,9 @@ def check_separability(mesh, shape, **mutant):
 
 @BOTH_SHAPES
 def test_layered_pad_separates(half, shape, must_fail):
-    """With nu near 0.5 and one Prony series a ramp and hold follows from one elastic curve (Ting 1966)."""
+    """With nu near 0.5 and one Prony series a ramp and hold follows from one elastic curve (Ting
+    1966).
+    """
     check_separability(half, shape)
     must_fail(check_separability, half, shape, prony=None)
 
@@ -100,7 +110,9 @@ SEPARATION_AT_048 = {"flat": (0.0399809, 0.0351407), "cylinder": (0.0384488, 0.0
 
 @BOTH_SHAPES
 def test_separability_at_the_poisson_ratio_of_the_thesis(half, shape):
-    """At nu = 0.48, where the bulk does not relax, force and depth still separate to a few per cent."""
+    """At nu = 0.48, where the bulk does not relax, force and depth still separate to a few per
+    cent.
+    """
     force, depth = force_deviation(half, shape, 0.48), depth_deviation(half, shape, 0.48)[0]
     assert max(force, depth) < 0.05
     assert (force, depth) == pytest.approx(SEPARATION_AT_048[shape], rel=1e-3)
@@ -110,7 +122,9 @@ def test_separability_at_the_poisson_ratio_of_the_thesis(half, shape):
 
 
 def check_half_is_full(shape, strain, layers=None):
-    """Depth, width, pressures and displacements of the half model unfold to those of the whole pad."""
+    """Depth, width, pressures and displacements of the half model unfold to those of the whole
+    pad.
+    """
     whole, extra = pressed_whole(shape, strain), {} if layers is None else {"layers": layers}
     half = press_pad(pad_body(half_mesh(), strain, **extra), half_mesh(), shape, force=LOAD)
     np.testing.assert_allclose(half.depth, whole.depth, rtol=1e-8, err_msg="truth: depth")
@@ -149,7 +163,9 @@ def ramp_and_hold_records(strain, prony, count):
 
 
 def energy_errors(strain, prony, count, dissipated_share=1.0):
-    """Imbalance of work, stored and dissipated energy over the work, after each step of a ramp and hold."""
+    """Imbalance of work, stored and dissipated energy over the work, after each step of a ramp and
+    hold.
+    """
     records = ramp_and_hold_records(strain, prony, count)
     return np.array(
         [
@@ -170,7 +186,9 @@ def check_energy(strain, prony=THESIS, **mutant):
 @pytest.mark.parametrize("prony", [None, THESIS], ids=["elastic", "viscoelastic"])
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_energy_balance(strain, prony, must_fail):
-    """Work of the indenter = stored + dissipated energy, up to the error in the step of a rule that knows the ends."""
+    """Work of the indenter = stored + dissipated energy, up to the error in the step of a rule that
+    knows the ends.
+    """
     check_energy(strain, prony)
     if prony:
         must_fail(check_energy, strain, prony, dissipated_share=0.9)
@@ -235,7 +253,9 @@ LIMIT = {"flat": 0.0072995662, "cylinder": 0.0063759796}
 
 @BOTH_SHAPES
 def test_finite_strain_becomes_small_strain(half, shape, must_fail):
-    """As the load goes to zero finite-strain depth joins small-strain depth at first order in the load."""
+    """As the load goes to zero finite-strain depth joins small-strain depth at first order in the
+    load.
+    """
     check_small_is_the_limit(half, shape)
     must_fail(check_small_is_the_limit, half, shape, poisson=0.47)
 
@@ -254,7 +274,9 @@ EFFORT = {
 @pytest.mark.parametrize("strain", ["small", "finite"])
 @BOTH_SHAPES
 def test_solver_effort(half, shape, strain):
-    """A viscoelastic ramp and hold takes at most 3 iterations a step and no cut, few with factors of their own; frozen counts."""
+    """A viscoelastic ramp and hold takes at most 3 iterations a step and no cut, few with factors
+    of their own; frozen counts.
+    """
     steps = ramp_and_hold("force", LOAD / 2, 8)
     body = pad_body(half, strain, prony=THESIS)
     solver = QuasiStatic(body, skin_of(half, "skin"), SHAPES[shape], NewtonSettings())
@@ -267,7 +289,9 @@ def test_solver_effort(half, shape, strain):
 
 
 def pressures(shape, settings, of_displacement=False):
-    """(ne, nm) moduli times dilatations at the end of a ramp and hold, of the body or as its displacement has them."""
+    """(ne, nm) moduli times dilatations at the end of a ramp and hold, of the body or as its
+    displacement has them.
+    """
     body = pad_body(half_mesh(), "finite", 0.4999, THESIS)
     solver = QuasiStatic(body, skin_of(half_mesh(), "skin"), SHAPES[shape], settings)
     solver.run(ramp_and_hold("force", LOAD / 2, 8))
@@ -286,7 +310,9 @@ def check_pressures(shape, **more):
 
 @BOTH_SHAPES
 def test_pressures_are_found_by_equilibrium(shape, must_fail):
-    """Loosely converged at nu = 0.4999, on factors of states long past, pressures are right; kappa times volume is not."""
+    """Loosely converged at nu = 0.4999, on factors of states long past, pressures are right; kappa
+    times volume is not.
+    """
     check_pressures(shape)
     must_fail(check_pressures, shape, of_displacement=True)
 
@@ -305,7 +331,9 @@ def check_one_step(mesh, shape, poisson, lagged=True):
 @pytest.mark.parametrize("poisson", [0.48, 0.4999])
 @BOTH_SHAPES
 def test_whole_load_in_one_step(half, shape, poisson, must_fail):
-    """The full load goes on in one finite-strain step of at most six iterations, at nu = 0.48 and 0.4999."""
+    """The full load goes on in one finite-strain step of at most six iterations, at nu = 0.48 and
+    0.4999.
+    """
     check_one_step(half, shape, poisson)
     if poisson == 0.4999:  # plain Newton needs the load cut to pieces
         must_fail(check_one_step, half, shape, poisson, lagged=False)
@@ -329,7 +357,9 @@ def check_quadratic_convergence(mesh, shape=Cylinder):
 
 
 def test_newton_converges_quadratically_on_a_sharp_cylinder(half, must_fail):
-    """With gap curvature in the tangent a force residual of 1e-10 is reached in at most six iterations."""
+    """With gap curvature in the tangent a force residual of 1e-10 is reached in at most six
+    iterations.
+    """
     check_quadratic_convergence(half)
     must_fail(check_quadratic_convergence, half, shape=Misjudged)
 
@@ -338,7 +368,9 @@ def test_newton_converges_quadratically_on_a_sharp_cylinder(half, must_fail):
 
 
 def check_prony_limit(mesh, strain, held, modulus, prony=THESIS):
-    """Force of a pad pressed 0.4 mm at once and held for ``held`` seconds over that of an elastic pad."""
+    """Force of a pad pressed 0.4 mm at once and held for ``held`` seconds over that of an elastic
+    pad.
+    """
     poisson = 0.4999
     steps = [Step(0, 0.0, 0.0, depth=0.4e-3), Step(1, held, held, depth=0.4e-3)]
     viscoelastic = walk(pad_body(mesh, strain, poisson, prony), mesh, steps, curve="skin")
@@ -356,7 +388,9 @@ def check_prony_limit(mesh, strain, held, modulus, prony=THESIS):
 
 @pytest.mark.parametrize("strain", ["small", "finite"])
 def test_prony_limits(half, strain, must_fail):
-    """Held long after 3.25 s the pad is the long-term one, long before 0.34 s the instantaneous one."""
+    """Held long after 3.25 s the pad is the long-term one, long before 0.34 s the instantaneous
+    one.
+    """
     check_prony_limit(half, strain, 1e6, 1.0)
     check_prony_limit(half, strain, 1e-4, 1 / 0.5759)
     must_fail(check_prony_limit, half, strain, 3.0, 1.0)

@@ -1,4 +1,6 @@
-"""Outputs of a press and hold between the states that its accuracy needs, beside a run that finds a state at every one."""
+"""Outputs of a press and hold between the states that its accuracy needs, beside a run that finds a
+state at every one.
+"""
 
 from dataclasses import replace
 
@@ -19,12 +21,16 @@ CLOSE = {
     "strain_energy_density": 5e-4,
     "stored_energy": 1e-3,
 }
-"""What may be between the two, over the largest value: steps twice as long, and of a width what nodes make of it."""
+"""What may be between the two, over the largest value: steps twice as long, and of a width what
+nodes make of it.
+"""
 
 
 @pytest.mark.parametrize("surface", ["flat", "k315"])
 def test_outputs_between_states_are_those_that_are_solved_for(surface):
-    """Mutants: splines over numbers of outputs instead of time; nodes that stay, or those that come, carried with the edge."""
+    """Mutants: splines over numbers of outputs instead of time; nodes that stay, or those that
+    come, carried with the edge.
+    """
     scene = load_scene(f"config/scenes/ramp40_{surface}.yaml")
     own = plan(scene)
     assert (own.every, own.outputs, own.steps) == (2, 80, 45) and own.states_per_leg == 20

@@ -1,4 +1,6 @@
-"""One element in simple shear is a material point: relaxation, ramps, creep and cycles of a Prony series."""
+"""One element in simple shear is a material point: relaxation, ramps, creep and cycles of a Prony
+series.
+"""
 
 import numpy as np
 import pytest
@@ -56,7 +58,9 @@ def check_relaxation(strain, held, series=THESIS):
 
 @STRAINS
 def test_relaxation_is_exact_for_any_step(strain, must_fail):
-    """After a jump the stress follows G(t) to round-off, in one step or in many (Christensen 1982)."""
+    """After a jump the stress follows G(t) to round-off, in one step or in many (Christensen
+    1982).
+    """
     check_relaxation(strain, [15.0])
     check_relaxation(strain, np.linspace(0.1, 15.0, 40))
     must_fail(check_relaxation, strain, [15.0], series=None)
@@ -88,7 +92,9 @@ def check_large_relaxation(held, series=THESIS, rotation=0.0):
 
 @pytest.mark.parametrize("rotation", [0.0, 0.7])
 def test_relaxation_at_large_strain_and_rotation(rotation, must_fail):
-    """Held at any F the stress is that of a neo-Hookean solid of modulus G(t), rotated or not (Simo 1987)."""
+    """Held at any F the stress is that of a neo-Hookean solid of modulus G(t), rotated or not (Simo
+    1987).
+    """
     check_large_relaxation(0.8, rotation=rotation)
     must_fail(check_large_relaxation, 0.8, series=None, rotation=rotation)
     must_fail(check_large_relaxation, 0.8, series=ONE_TERM, rotation=rotation)
@@ -107,7 +113,9 @@ def check_ramp(series, count, ran_as="same"):
 @pytest.mark.parametrize("series", [ONE_TERM, THESIS], ids=["one term", "thesis"])
 @pytest.mark.parametrize("count", [1, 7])
 def test_linear_strain_ramps_are_exact(series, count, must_fail):
-    """The recurrence is exact for a strain linear in each step, at any step (Taylor et al. 1970)."""
+    """The recurrence is exact for a strain linear in each step, at any step (Taylor et al.
+    1970).
+    """
     check_ramp(series, count)
     must_fail(check_ramp, series, count, ran_as=None)
     must_fail(check_ramp, series, count, ran_as=Prony(series.g, tuple(2 * t for t in series.tau)))
@@ -168,13 +176,17 @@ def check_cycle(strain, frozen, series=THESIS, amplitude=0.02, frequency=2.5):
     [("small", (8.23581110e-4, 8.23554609e-4)), ("finite", (8.23639581e-4, 8.23613066e-4))],
 )
 def test_dissipation_of_a_cycle(strain, frozen, must_fail):
-    """A steady cycle loses pi amplitude^2 G'', as work and as recorded dissipation (Christensen 1982)."""
+    """A steady cycle loses pi amplitude^2 G'', as work and as recorded dissipation (Christensen
+    1982).
+    """
     check_cycle(strain, frozen)
     must_fail(check_cycle, strain, frozen, series=None)
 
 
 def test_limits_of_a_held_step(must_fail):
-    """Held long after 3.25 s the moduli are the long-term ones; long before 0.34 s the instantaneous."""
+    """Held long after 3.25 s the moduli are the long-term ones; long before 0.34 s the
+    instantaneous.
+    """
 
     def check(seconds, modulus, series=THESIS):
         stress = drive("small", series, [0.0, seconds], [0.1, 0.1])[-1]

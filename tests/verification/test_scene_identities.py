@@ -45,7 +45,9 @@ def run(tmp_path_factory):
 
 
 def check_same(one, other, within):
-    """Every quantity agrees within a share of its largest value (lateral ones: of force and depth)."""
+    """Every quantity agrees within a share of its largest value (lateral ones: of force and
+    depth).
+    """
     for name in set(one.data_vars) - EXCLUDED:
         first, second = one[name].values, other[name].values
         scale = np.abs(first).max()
@@ -58,7 +60,9 @@ def check_same(one, other, within):
 
 
 def test_symmetry_changes_nothing(run, must_fail):
-    """A scene solved on half the pad has the history of the whole pad, at every node and receptor."""
+    """A scene solved on half the pad has the history of the whole pad, at every node and
+    receptor.
+    """
     half, whole = run(), run(effects={"symmetry": "off"})
     check_same(half, whole, 1e-4)
     np.testing.assert_array_equal(half.contact_pressure, half.contact_pressure[:, ::-1])
@@ -76,7 +80,9 @@ def test_spelling_of_units_changes_nothing(run, must_fail):
     "stimulus", [{"shape": "flat"}, {"shape": "cylinder", "curvature": "1260 1/m"}]
 )
 def test_contact_laws_hold_at_every_step(run, stimulus, finite):
-    """Pressures only push, force times gap vanishes, the force is the one asked for, forces balance."""
+    """Pressures only push, force times gap vanishes, the force is the one asked for, forces
+    balance.
+    """
     history = run(stimulus=stimulus, effects={"finite_strain": finite}).isel(time=slice(1, None))
     assert history.contact_pressure.min() >= 0
     assert history.complementarity_error.max() < 1e-3
@@ -92,7 +98,9 @@ STEADY = {"motion": [{"press_to_force": "20 gf"}, {"press_to_depth": "1.2 mm"}]}
 
 
 def check_steady(run, stimulus, legs, factor=1.0):
-    """Legs of one step and of four end in the same state; their work is known well enough to balance the energy."""
+    """Legs of one step and of four end in the same state; their work is known well enough to
+    balance the energy.
+    """
     once, often = (
         run(stimulus=stimulus, **legs, accuracy={"skin_edge": "400 um", "steps": n}) for n in (2, 8)
     )
@@ -140,6 +148,8 @@ def check_narrow_contact(run, accuracy):
 
 
 def test_narrow_contacts_have_nodes(run, must_fail):
-    """A preset refines under a contact of a few edges, whose width and rates nodes that join one by one would bend."""
+    """A preset refines under a contact of a few edges, whose width and rates nodes that join one by
+    one would bend.
+    """
     check_narrow_contact(run, "draft")
     must_fail(check_narrow_contact, run, {"skin_edge": "537.6 um", "steps": 20})

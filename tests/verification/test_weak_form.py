@@ -1,4 +1,6 @@
-"""The compiled element loops against the weak form in scikit-fem's form language: every element, law and kinematics."""
+"""The compiled element loops against the weak form in scikit-fem's form language: every element,
+law and kinematics.
+"""
 
 import numpy as np
 import pytest
@@ -24,7 +26,8 @@ def yeoh(mu, second=0.6, third=0.2):
     return lambda i1, i2: (mu / 2 * (1 + 2 * second * (i1 - 3) + 3 * third * (i1 - 3) ** 2), 0.0)
 
 
-#: The laws' energies once more: derivatives of W along its invariants, and the constants the solver is given.
+#: The laws' energies once more: derivatives of W along its invariants, and the constants the solver
+#: is given.
 SLOPES = {"neo_hooke": (neo_hooke, ()), "yeoh": (yeoh, (0.6, 0.2))}
 
 
@@ -39,7 +42,9 @@ def bent(s):
 
 
 def parts(element, strain, law="neo_hooke", prony=None, **more):
-    """Body of two layers (of finite strain: the inner one neo-Hooke), and the weak form on its mesh."""
+    """Body of two layers (of finite strain: the inner one neo-Hooke), and the weak form on its
+    mesh.
+    """
     mesh = mapped(2, 2, bent, KIND[element], region=lambda centre: (centre[:, 0] > 0.5).astype(int))
     fixed = np.zeros(mesh.points.shape, bool)
     fixed[nodes_of(mesh, "bottom")] = True
@@ -73,7 +78,9 @@ def close(found, truth):
 
 
 def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
-    """Force and tangent at a large displacement with another pressure in the tangent; with branches, in a second step."""
+    """Force and tangent at a large displacement with another pressure in the tangent; with
+    branches, in a second step.
+    """
     body, form, slopes, mu = parts(element, "finite", law, prony, **more)
     points, space = body.space.points, body.space
     factor, history = 1.0, 0.0
@@ -111,7 +118,9 @@ def check_finite(element, law="neo_hooke", prony=None, change=1.0, **more):
     [(e, law) for e in KIND for law in LAWS if law == "neo_hooke" or e in ("Q2P1", "Q1P0", "P2B")],
 )
 def test_finite_strain(element, law, must_fail):
-    """Every element with one law, and every law with the elements that are solved with: each pair is compiled on its own."""
+    """Every element with one law, and every law with the elements that are solved with: each pair
+    is compiled on its own.
+    """
     check_finite(element, law)
     must_fail(check_finite, element, law, change=1 + 1e-8)
 

@@ -32,7 +32,9 @@ SMOKE = ("--configfile", "config/smoke.yaml")
 
 @dataclass
 class Project:
-    """A copy of the tree. `smoke` runs and dry runs use the coarse configuration unless told otherwise."""
+    """A copy of the tree. `smoke` runs and dry runs use the coarse configuration unless told
+    otherwise.
+    """
 
     root: Path
     environment: dict[str, str] = field(default_factory=dict)
@@ -95,7 +97,9 @@ class Project:
 
     @contextmanager
     def edited(self, path: str, addition: str = "\n# edited\n"):
-        """Append to a file, and put it back as it was in the end, its date too: what was touched only is known by its date."""
+        """Append to a file, and put it back as it was in the end, its date too: what was touched
+        only is known by its date.
+        """
         file = self.root / path
         before, age = file.read_bytes(), file.stat()
         file.write_bytes(before + addition.encode())

@@ -45,7 +45,9 @@ def installed(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def elsewhere(installed, tmp_path):
-    """Run Python in a folder of its own, where nothing of the source tree can be imported or found."""
+    """Run Python in a folder of its own, where nothing of the source tree can be imported or
+    found.
+    """
 
     def run(*arguments: str) -> subprocess.CompletedProcess:
         return subprocess.run(

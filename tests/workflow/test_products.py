@@ -1,6 +1,8 @@
-"""What follows from a configuration: which jobs a target needs, what they make, and what an edit makes again.
+"""What follows from a configuration: which jobs a target needs, what they make, and what an edit
+makes again.
 
-Asked of the package, without Snakemake: a job's inputs, its sources included, are what its rule has.
+Asked of the package, without Snakemake: a job's inputs, its sources included, are what its rule
+has.
 """
 
 from collections.abc import Iterable
@@ -169,7 +171,9 @@ def test_companions_are_solved_beside_their_scenes_on_one_mesh_with_all_steps_an
 
 
 def test_the_table_of_measures_has_every_companion_there_is(thesis):
-    """Also of variants that only a figure compares: without it their rows in the comparison state no error."""
+    """Also of variants that only a figure compares: without it their rows in the comparison state
+    no error.
+    """
     coarse = {Path(p).parent.name for p in thesis.jobs["measures"].inputs["coarse"]}
     assert coarse == thesis.products.coarse and "ramp150_k315" in coarse
 
@@ -387,7 +391,9 @@ def test_an_edited_job_reruns_itself_only(thesis):
 
 @pytest.fixture
 def own(tmp_path, monkeypatch):
-    """A study of its own in a folder of its own: two families and a configuration of name and scenes."""
+    """A study of its own in a folder of its own: two families and a configuration of name and
+    scenes.
+    """
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scenes").mkdir()
     family = "motion: [{press_to_force: 5 gf}]\nover: {surface: {flat: {stimulus: {shape: flat}}, line: {stimulus: {shape: line}}}}\n"

@@ -1,6 +1,8 @@
-"""What is made again after a change, by content, no more and no less; after an interruption; and what is adopted.
+"""What is made again after a change, by content, no more and no less; after an interruption; and
+what is adopted.
 
-Which jobs an edit reruns in the full configuration is asked of the package in test_products, and of Snakemake here.
+Which jobs an edit reruns in the full configuration is asked of the package in test_products, and of
+Snakemake here.
 """
 
 import json
@@ -82,14 +84,18 @@ def test_changed_environment_reruns_simulations_and_what_reads_them(finished):
 
 
 def test_snakemake_looks_for_jobs_when_one_has_ended_and_not_by_the_clock(finished):
-    """Each look by the clock sets another: in ninety jobs they came to an eighth of the time of all."""
+    """Each look by the clock sets another: in ninety jobs they came to an eighth of the time of
+    all.
+    """
     traced = [json.loads(path.read_text()) for path in finished.traces.iterdir()]
     workflows = [process for process in traced if process["argv"][:2] == ["-m", "snakemake"]]
     assert len(workflows) == 1 and workflows[0]["timers"] == 0
 
 
 def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
-    """What is not declared cannot trigger a rerun: the rules' inputs against what processes really opened."""
+    """What is not declared cannot trigger a rerun: the rules' inputs against what processes really
+    opened.
+    """
     config = read_config(
         yaml.safe_load((finished.root / "config" / "smoke.yaml").read_text()), "smoke.yaml"
     )
@@ -209,13 +215,19 @@ def test_an_interrupted_run_goes_on_by_the_same_command(clone, how):
 KILLS = int(os.environ.get("FINGERPAD_KILLS", "2"))
 """Of the coarse workflow, all its processes at once; FINGERPAD_KILLS=50 for more."""
 LATEST = 25.0
-"""s after its start at which a run is killed, at most: Snakemake itself needs a few, a whole run twice that."""
+"""s after its start at which a run is killed, at most: Snakemake itself needs a few, a whole run
+twice that.
+"""
 EXACT = {".csv", ".png", ".msh"}
-"""Bytes that are the same whatever happens; a PDF has coordinates to the last digit, which round-off may change."""
+"""Bytes that are the same whatever happens; a PDF has coordinates to the last digit, which
+round-off may change.
+"""
 
 
 def products(root):
-    """What the coarse workflow makes under final names, but logs and what tells of costs and times."""
+    """What the coarse workflow makes under final names, but logs and what tells of costs and
+    times.
+    """
     found = {
         path.relative_to(root).as_posix(): path
         for path in (root / "results" / "smoke").rglob("*")
@@ -354,7 +366,9 @@ def report(finished):
 
 
 def test_the_report_opens_in_a_browser_and_shows_everything_whole(report):
-    """Driven in headless Chromium: words first, categories, every picture loaded and within its page, no error on the console."""
+    """Driven in headless Chromium: words first, categories, every picture loaded and within its
+    page, no error on the console.
+    """
     browser = shutil.which("chromium") or shutil.which("google-chrome")
     if browser is None:
         pytest.skip("no Chromium here (apt-get install chromium)")

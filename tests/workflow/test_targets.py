@@ -1,4 +1,6 @@
-"""Snakemake asked for targets, in a tree where nothing has run: what test_products finds of the package, and how it is said."""
+"""Snakemake asked for targets, in a tree where nothing has run: what test_products finds of the
+package, and how it is said.
+"""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -23,7 +25,9 @@ def test_default_is_at_most_ninety_jobs_by_the_profile_of_the_tree(fresh):
 
 
 def test_committed_figures_of_a_fresh_clone_are_made_anew(clone):
-    """The figures are there and newer than every source, the results they were drawn from are not."""
+    """The figures are there and newer than every source, the results they were drawn from are
+    not.
+    """
     figure = clone.root / "figures" / "thesis" / "fig_4-12.png"
     figure.parent.mkdir(parents=True)
     figure.touch()
@@ -73,7 +77,9 @@ def test_peers_are_skipped_with_one_clear_line_where_they_are_absent(fresh):
 
 
 def test_from_another_folder_and_as_a_module(fresh, tmp_path_factory):
-    """Code and built-in files come from beside the Snakefile, results go where Snakemake is started."""
+    """Code and built-in files come from beside the Snakefile, results go where Snakemake is
+    started.
+    """
     elsewhere = tmp_path_factory.mktemp("elsewhere")
     (elsewhere / "scenes").mkdir()
     (elsewhere / "scenes" / "own.yaml").write_text(
@@ -96,7 +102,9 @@ def test_from_another_folder_and_as_a_module(fresh, tmp_path_factory):
 
 
 def test_as_the_catalogue_of_workflows_finds_and_tries_it(clone):
-    """By workflow/Snakefile, its profile found by itself, in the folder .test with the configuration that is there."""
+    """By workflow/Snakefile, its profile found by itself, in the folder .test with the
+    configuration that is there.
+    """
     there = (
         "--snakefile",
         "workflow/Snakefile",

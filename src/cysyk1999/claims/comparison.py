@@ -1,16 +1,20 @@
 """The thesis against this model, number by number: ``figures/tables/thesis_comparison``.
 
-Every row is a row of the reference table (what the thesis prints, id by id), which says by which measure of which scenes it is
-answered; a trend has a function of its own. Numbers are judged by the rules in `verdicts`; a trend holds or fails. `layout` rows
-only set axes of figures and have no row here.
+Every row is a row of the reference table (what the thesis prints, id by id), which says by which
+measure of which scenes it is answered; a trend has a function of its own. Numbers are judged by the
+rules in `verdicts`; a trend holds or fails. `layout` rows only set axes of figures and have no row
+here.
 
-Every row has a role. Only a `result` and a `trend` speak for the model: an `input` is what the thesis states and the scenes
-repeat, a `count` is of the model itself, and what is `calibrated` was used to choose a parameter.
+Every row has a role. Only a `result` and a `trend` speak for the model: an `input` is what the
+thesis states and the scenes repeat, a `count` is of the model itself, and what is `calibrated` was
+used to choose a parameter.
 
-What speaks for the model is scored by whether it was held out: a row that the pad was fitted by earns less than one that it never
-saw. Rows that repeat another's number count once, those that hold by construction or are nobody's claim not at all.
+What speaks for the model is scored by whether it was held out: a row that the pad was fitted by
+earns less than one that it never saw. Rows that repeat another's number count once, those that hold
+by construction or are nobody's claim not at all.
 
-A row that is outside says by how much, the reason as far as runs tell it, and what the sensitivity runs make of it.
+A row that is outside says by how much, the reason as far as runs tell it, and what the sensitivity
+runs make of it.
 """
 
 from __future__ import annotations
@@ -67,10 +71,10 @@ def thesis_comparison(
     reference_csv : the table of printed numbers (see `read_reference`).
 
     Returns
-    -------
-    One row an id, columns `COLUMNS`; numbers in the row's `units`. Its errors, by `PARTS`, are what the row's number
-    changes by, in the same units, empty for what is `GIVEN`; it is judged by their sum. Scenes that
-    were not simulated give ``not_comparable``. `summary` of the rows is in ``attrs["summary"]``.
+    ------- One row an id, columns `COLUMNS`; numbers in the row's `units`. Its errors, by `PARTS`,
+    are what the row's number changes by, in the same units, empty for what is `GIVEN`; it is judged
+    by their sum. Scenes that were not simulated give ``not_comparable``. `summary` of the rows is
+    in ``attrs["summary"]``.
     """
     reference = read_reference(reference_csv)
     rows = [
@@ -98,7 +102,8 @@ def score_of(entry: pd.Series) -> str:
 
 
 def scores(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
-    """How many rows agree with the thesis: a row for each kind (value or range, axis, trend) and score, and both scores together.
+    """How many rows agree with the thesis: a row for each kind (value or range, axis, trend) and
+    score, and both scores together.
 
     Columns kind, score, agree, judged. Rows that are not comparable are not judged.
     """
@@ -119,14 +124,18 @@ def scores(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
 
 
 def holding(table: pd.DataFrame) -> dict[str, tuple[int, int]]:
-    """Of each figure how many of the thesis's statements hold here, results and trends, and of how many that can be judged."""
+    """Of each figure how many of the thesis's statements hold here, results and trends, and of how
+    many that can be judged.
+    """
     rows = table[table["role"].isin(("result", "trend")) & table["verdict"].ne("not_comparable")]
     agree = rows["verdict"].isin(AGREES).groupby(rows["figure"]).agg(["sum", "size"])
     return {figure: (int(good), int(count)) for figure, good, count in agree.itertuples()}
 
 
 def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
-    """How many rows agree with the thesis: held out first, then fitted and all; and apart from them what was put in."""
+    """How many rows agree with the thesis: held out first, then fitted and all; and apart from them
+    what was put in.
+    """
     counted = scores(table, reference).set_index(["kind", "score"])
 
     def told(kind: str) -> str:

@@ -1,4 +1,6 @@
-"""The comparison with the thesis for reading: a page a chapter in five columns. Everything else is in the CSV beside them."""
+"""The comparison with the thesis for reading: a page a chapter in five columns. Everything else is
+in the CSV beside them.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,8 @@ VERDICTS = {
 
 
 def pages(csv: str | PathLike, reference: pd.DataFrame) -> dict[str, str]:
-    """Markdown of the comparison: "" is the first page, which leads to the others, and each other is a chapter's by its number.
+    """Markdown of the comparison: "" is the first page, which leads to the others, and each other
+    is a chapter's by its number.
 
     Args:
         csv: the published table. reference: the table of printed numbers, by id.

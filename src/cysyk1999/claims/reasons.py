@@ -1,6 +1,8 @@
-"""Reasons of known differences, and of rows not being judged, by their word in the column `reason` of `thesis_numbers.csv`.
+"""Reasons of known differences, and of rows not being judged, by their word in the column `reason`
+of `thesis_numbers.csv`.
 
-A reason says what a run has shown or what the thesis's text says; what no run has tested is called open.
+A reason says what a run has shown or what the thesis's text says; what no run has tested is called
+open.
 """
 
 from __future__ import annotations
@@ -60,6 +62,8 @@ def reason(word: str, measures: Measures, number: Number) -> str:
 
 
 def when_the_hold_starts(measures: Measures, number: Number) -> float | None:
-    """The inverse contact width that the hold starts with, of the rows that give the one it ends with."""
+    """The inverse contact width that the hold starts with, of the rows that give the one it ends
+    with.
+    """
     ends = number.measure == "inverse_width" and number.scenes[0] in NINE.scenes.values()
     return measures(number.measure, number.scenes[0], "top") if ends else None

@@ -1,8 +1,9 @@
-"""How the number of a row of the reference table is made of measures: columns `measure`, `at` and `of` of `thesis_numbers.csv`.
+"""How the number of a row of the reference table is made of measures: columns `measure`, `at` and
+`of` of `thesis_numbers.csv`.
 
-``of`` names scenes, or sets of them (`SETS`), and may begin with what is made of several numbers: ``largest of`` (left out: the
-same), ``least of``, ``mean of``, ``sum of`` or ``number of`` (how many were simulated). ``at`` is the measure's condition; left
-out, all of its conditions count.
+``of`` names scenes, or sets of them (`SETS`), and may begin with what is made of several numbers:
+``largest of`` (left out: the same), ``least of``, ``mean of``, ``sum of`` or ``number of`` (how
+many were simulated). ``at`` is the measure's condition; left out, all of its conditions count.
 """
 
 from __future__ import annotations
@@ -51,7 +52,9 @@ MADE: dict[str, Callable[[list[float]], float]] = {
 
 @dataclass(frozen=True)
 class Number:
-    """The number of a row: ``number(measures)``, in the unit of its measure. Raises KeyError for what was not simulated."""
+    """The number of a row: ``number(measures)``, in the unit of its measure. Raises KeyError for
+    what was not simulated.
+    """
 
     measure: str
     at: str
@@ -60,7 +63,9 @@ class Number:
 
     @classmethod
     def of(cls, row: Mapping) -> Number:
-        """Read a row of the reference table. Raises ValueError, naming the row, for an unknown measure or unit that differs."""
+        """Read a row of the reference table. Raises ValueError, naming the row, for an unknown
+        measure or unit that differs.
+        """
         if row["measure"] not in MEASURES:
             raise ValueError(
                 f"{row.name}: measure '{row['measure']}' is not one of {', '.join(sorted(MEASURES))}"
@@ -101,7 +106,9 @@ class Number:
 
 
 def numbers(reference: pd.DataFrame) -> dict[str, Number]:
-    """The number of every row of the reference table that has one, by id. Raises ValueError as `Number.of` does."""
+    """The number of every row of the reference table that has one, by id. Raises ValueError as
+    `Number.of` does.
+    """
     return {
         id_: Number.of(row) for id_, row in reference.iterrows() if row["role"] not in ("", "trend")
     }

@@ -1,7 +1,9 @@
-"""What the thesis says of a figure and whether it is so here, in a line: of the rows of the comparison that are the figure's own.
+"""What the thesis says of a figure and whether it is so here, in a line: of the rows of the
+comparison that are the figure's own.
 
-The line that speaks is the first trend that fails, else the first stated number that is missed, else a trend or a number that
-holds, else the range of an axis; the others are counted. What the pad was fitted to speaks, as such, where nothing else does.
+The line that speaks is the first trend that fails, else the first stated number that is missed,
+else a trend or a number that holds, else the range of an axis; the others are counted. What the pad
+was fitted to speaks, as such, where nothing else does.
 """
 
 from __future__ import annotations
@@ -20,7 +22,9 @@ from cysyk1999.measures.table import Instead, Measures
 
 @dataclass(frozen=True)
 class Said:
-    """A statement of the thesis and its verdict: `ids` names it and counts the figure's others; `verdict` is holds or fails."""
+    """A statement of the thesis and its verdict: `ids` names it and counts the figure's others;
+    `verdict` is holds or fails.
+    """
 
     ids: str
     words: str
@@ -31,9 +35,11 @@ class Said:
 
 
 def said(number: str, fine: Measures, instead: Instead, reference: pd.DataFrame) -> Said | None:
-    """What speaks for a figure of a number (``4-10``), as far as the measures know its scenes; None if nothing does.
+    """What speaks for a figure of a number (``4-10``), as far as the measures know its scenes; None
+    if nothing does.
 
-    fine, instead: measures of the histories, and of what tells their errors. reference: of `read_reference`.
+    fine, instead: measures of the histories, and of what tells their errors. reference: of
+    `read_reference`.
     """
     rows = reference[(reference["figure"] == number) & (reference["form"] != "layout")]
     drawn = (
@@ -58,7 +64,9 @@ def said(number: str, fine: Measures, instead: Instead, reference: pd.DataFrame)
 SPEAKING = (("trend", "result"), ("calibrated",))
 """Roles of rows: those after the first speak where no row of the first does."""
 DRAWN = "(headline)"
-"""In the condition of a row that is about the strain energy drawn, where others are about other definitions."""
+"""In the condition of a row that is about the strain energy drawn, where others are about other
+definitions.
+"""
 _PARTS = ("words", "condition", "verdict", "number", "detail")
 
 
@@ -131,7 +139,9 @@ def _shown(value: float | str, units: str) -> str:
 
 
 def _counted(value: float, row: pd.Series) -> str:
-    """The number of a trend where it says something by itself: with its unit, or of how many it counts."""
+    """The number of a trend where it says something by itself: with its unit, or of how many it
+    counts.
+    """
     if row["units"] in ("1", "count"):
         return ""
     return _shown(

@@ -1,7 +1,8 @@
-"""How the numbers that the thesis shows hang on what it does not state: ``figures/tables/sensitivity``.
+"""How the numbers that the thesis shows hang on what it does not state:
+``figures/tables/sensitivity``.
 
-Three variants of the pad, and the pad itself as coarsely (``base``), are pressed by three of the nine surfaces, scenes
-``sensitivity_<variant>_<surface>``:
+Three variants of the pad, and the pad itself as coarsely (``base``), are pressed by three of the
+nine surfaces, scenes ``sensitivity_<variant>_<surface>``:
 
 fat
     a flatter bone, with more fat under the apex.
@@ -107,10 +108,9 @@ def sensitivity(fine: Measures, instead: Instead, reference_csv: str | PathLike)
     reference_csv : the table of printed numbers.
 
     Returns
-    -------
-    One row a quantity and surface, columns `COLUMNS`: the thesis's range, the base, the base as a draft, the
-    variants, and which of base and variants are inside the range, give or take the difference of base and
-    draft. Cells of scenes that were not simulated are empty.
+    ------- One row a quantity and surface, columns `COLUMNS`: the thesis's range, the base, the
+    base as a draft, the variants, and which of base and variants are inside the range, give or take
+    the difference of base and draft. Cells of scenes that were not simulated are empty.
     """
     reference = read_reference(reference_csv)
     rows = []
@@ -147,7 +147,9 @@ def _read(measures: Measures, quantity: str, scene: str, at: str) -> float:
 
 
 def _widths_fit(fine: Measures, variant: str, reference: pd.DataFrame) -> bool:
-    """Whether the contact widths at the end of the hold, by surface, are within the thesis's ranges."""
+    """Whether the contact widths at the end of the hold, by surface, are within the thesis's
+    ranges.
+    """
     widths = {k: fine("width", variant_scene(variant, k), "end") for k in SHAPES}
     return all(
         is_inside(widths[k], 0.0, thesis_range(id_, "mm", reference)) for k, id_ in _WIDTHS.items()
@@ -175,11 +177,13 @@ NEAREST[PADS["homogeneous"]] = "flat"
 def evidence(
     id_: str, number: Number, value: float, error: float, fine: Measures, reference: pd.DataFrame
 ) -> str:
-    """What the variants make of a number of the comparison that is outside, and which of them bring it inside.
+    """What the variants make of a number of the comparison that is outside, and which of them bring
+    it inside.
 
-    A number of surfaces that the variants were not pressed by is given as the change in per cent that the
-    variant makes on the nearest ones. A variant that brings the number inside but moves a contact width at
-    the end of the hold outside is marked. Empty if the variants were not simulated.
+    A number of surfaces that the variants were not pressed by is given as the change in per cent
+    that the variant makes on the nearest ones. A variant that brings the number inside but moves a
+    contact width at the end of the hold outside is marked. Empty if the variants were not
+    simulated.
     """
     entry = reference.loc[id_]
     try:

@@ -1,4 +1,6 @@
-"""The tables that rest on all results, by name: what is made of the measures table, and what of the meshes."""
+"""The tables that rest on all results, by name: what is made of the measures table, and what of the
+meshes.
+"""
 
 from __future__ import annotations
 

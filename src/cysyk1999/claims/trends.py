@@ -1,4 +1,6 @@
-"""What a trend is: a proposition about measures that holds or fails, under the id of the row that the thesis states it in."""
+"""What a trend is: a proposition about measures that holds or fails, under the id of the row that
+the thesis states it in.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ ALIKE = 0.15
 HARDLY = 10.0
 """Largest spread (%) over the velocities that hardly matters: standard deviation over mean."""
 NEGLIGIBLE = 15.0
-"""Largest change (%) of a peak from the slowest to the fastest stroke that is "small and negligible" (section 5.4)."""
+"""Largest change (%) of a peak from the slowest to the fastest stroke that is "small and
+negligible" (section 5.4).
+"""
 FOLLOWS = 0.9
 """Least correlation of a trace that follows another."""
 

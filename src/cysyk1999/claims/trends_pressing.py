@@ -13,13 +13,19 @@ from fingerpad.measures.features import PRESSURE_SCALE
 TWIN = 0.01
 """Least excess of an off-centre pressure peak over the centre's, relative, to count as one."""
 BROAD = ("flat", "79", "105", "158", "210", "315", "420")
-"""Surfaces whose pressure peak has left the centre: all "except for the two highest curvatures" (section 4.4)."""
+"""Surfaces whose pressure peak has left the centre: all "except for the two highest curvatures"
+(section 4.4).
+"""
 LINEAR = 0.9
 """Least R2 of a line to call points linear."""
 DELAY = 0.02
-"""s; least time to the first impulse to call it delayed: a fraction of what a raster of 2.4 s lets one see."""
+"""s; least time to the first impulse to call it delayed: a fraction of what a raster of 2.4 s lets
+one see.
+"""
 AGREES, PANELS = 0.1, 8
-"""Largest root-mean-square residual, relative, to call traces in agreement; of how many of the nine for all to be."""
+"""Largest root-mean-square residual, relative, to call traces in agreement; of how many of the nine
+for all to be.
+"""
 CORRELATED = 0.98
 """Least correlation of traces over time that rise and fall alike."""
 

@@ -30,12 +30,16 @@ NONE_LEFT = 0.5
 PROPORTIONAL = 0.1
 """Largest departure from 1 of the exponent of a quantity that is proportional to another."""
 FELT, UNFELT = 1 / 3, 0.05
-"""Least directional index of a receptor that feels direction (twice the energy one way), largest of one that does not."""
+"""Least directional index of a receptor that feels direction (twice the energy one way), largest of
+one that does not.
+"""
 OUTER = {"right": "ridged_outer_stroke_right", "left": "ridged_outer_stroke_left"}
 
 
 def by_speed(m, quantity, speeds=tuple(SPEEDS)):
-    """A measure of each convexity in the strokes at several velocities: velocity -> convexity -> value."""
+    """A measure of each convexity in the strokes at several velocities: velocity -> convexity ->
+    value.
+    """
     return {speed: m.find(quantity, SPEEDS[speed]) for speed in speeds}
 
 
@@ -60,7 +64,9 @@ def pressure_follows_curvature_at_nodes(m):
 
 @trend("TR27")
 def skin_has_the_curvature_of_the_surface(m):
-    """On every convexity, where what the curvature is fitted through touches it, within 5 % (median)."""
+    """On every convexity, where what the curvature is fitted through touches it, within 5 %
+    (median).
+    """
     found = {
         f"{k} at {v}": miss
         for v, each in by_speed(m, "curvature_miss").items()
@@ -205,7 +211,9 @@ def energy_falls_at_the_sharpest(m):
 
 
 def _stroked_over_pressed(m) -> dict[str, float]:
-    """Peak strain energy stroked over that pressed, at the cylinders' curvatures (stroked: interpolated)."""
+    """Peak strain energy stroked over that pressed, at the cylinders' curvatures (stroked:
+    interpolated).
+    """
     found, exact = (
         list(m.find(q, TEN).values()) for q in ("convexity_energy", "convexity_curvature")
     )
@@ -234,7 +242,9 @@ def falls_below_pressed(m):
 @trend("TR72", quantity="rate_peaks_apart", speeds=tuple(SPEEDS))
 @trend("T301", quantity="rate_peaks_apart", speeds=("10 mm/s",))
 def two_peaks_a_convexity(m, quantity, speeds, shown=""):
-    """Under 52 and 79 1/m; the distances shown are of all convexities at one velocity, or of these two at every one."""
+    """Under 52 and 79 1/m; the distances shown are of all convexities at one velocity, or of these
+    two at every one.
+    """
     found = by_speed(m, quantity, speeds)
     apart = {f"{k} at {v}": found[v][k] for v in speeds for k in ("52", "79")}
     given = {k: v for k, v in (found[shown] if shown else apart).items() if v > 0}
@@ -439,7 +449,9 @@ def islands_under_outer_ridges(m):
 
 @trend("TR74")
 def one_way_at_the_beginning(m):
-    """One way mostly at the beginning, the other throughout; a receptor beside the centre of a pad with inner ridges."""
+    """One way mostly at the beginning, the other throughout; a receptor beside the centre of a pad
+    with inner ridges.
+    """
     found = {way: tuple(m.find("plate_impulses", RIDGED[way]).values()) for way in RIDGED}
     (few, early), (many, first) = sorted(found.values())
     holds = few >= NONE_LEFT and early > few / 2 and many > 2 * few and first < many / 2

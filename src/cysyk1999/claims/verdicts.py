@@ -5,21 +5,24 @@ The rule follows from the row's `form`:
 value
     inside if within the row's relative tolerance (0: equal to six digits) or the error.
 range
-    inside if between low and high, give or take the error. The row's relative tolerance, where there is one, lets a number be
-    lower by what the thesis's own reading adds: it counts nodes 0.0672 mm apart, and a width is up to two spacings more.
+    inside if between low and high, give or take the error. The row's relative tolerance, where
+    there is one, lets a number be lower by what the thesis's own reading adds: it counts nodes
+    0.0672 mm apart, and a width is up to two spacings more.
 value without low
     the thesis does not state it: not judged.
 estimate
-    not a number of the thesis, nor a truth: never judged, the remark says by how much the number differs.
+    not a number of the thesis, nor a truth: never judged, the remark says by how much the number
+    differs.
 unlike
-    a recording, another receptor's or an illegible axis, which says nothing of the model: never judged.
+    a recording, another receptor's or an illegible axis, which says nothing of the model: never
+    judged.
 axis
-    the thesis shows only an axis. Plausible, and no more, if the largest plotted value stays below its end and above the
-    last tick but one (`tick`), where an axis that the curves alone set would have ended; where that is not known it has to
-    fill at least `FILL` of it.
+    the thesis shows only an axis. Plausible, and no more, if the largest plotted value stays below
+    its end and above the last tick but one (`tick`), where an axis that the curves alone set would
+    have ended; where that is not known it has to fill at least `FILL` of it.
 
-The error, of mesh, time steps and sampling together, helps by no more than `HELP` of the bound: a number that is inside only by
-a large error is outside.
+The error, of mesh, time steps and sampling together, helps by no more than `HELP` of the bound: a
+number that is inside only by a large error is outside.
 """
 
 from __future__ import annotations
@@ -31,7 +34,9 @@ import numpy as np
 FILL = 0.5
 """Least share of a thesis axis that its largest curve should fill, where no tick is known."""
 HELP = 0.02
-"""Largest share of a bound by which the error may bring a number inside: the accuracy that is asked for."""
+"""Largest share of a bound by which the error may bring a number inside: the accuracy that is asked
+for.
+"""
 
 
 def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
@@ -43,8 +48,8 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
     entry : low, high, form and tolerance of the reference row, and its tick if it has one.
 
     Returns
-    -------
-    ``inside``, ``plausible``, ``outside`` or ``not_comparable`` (a number that is not finite), and a remark.
+    ------- ``inside``, ``plausible``, ``outside`` or ``not_comparable`` (a number that is not
+    finite), and a remark.
     """
     low, high = float(entry["low"]), float(entry["high"])
     if not np.isfinite(value):
@@ -94,6 +99,8 @@ def significant(value: float, digits: int) -> float:
 
 
 def digits(value: float, count: int = 3) -> str:
-    """A number to so many significant digits in text; a large one to its last whole digit, not as a power of ten."""
+    """A number to so many significant digits in text; a large one to its last whole digit, not as a
+    power of ten.
+    """
     text = f"{value:.{count}g}"
     return f"{value:.0f}" if "e+" in text else text

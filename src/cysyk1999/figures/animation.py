@@ -1,8 +1,10 @@
-"""Moving pictures: a surface on the pad, its layers deform, pressure, what a receptor feels and what it answers follow.
+"""Moving pictures: a surface on the pad, its layers deform, pressure, what a receptor feels and
+what it answers follow.
 
-Made from the full fields (snapshots) of a history, one frame each: an animated GIF and a film (WebM). The same history gives
-the same bytes of the GIF. Colours end at what the shown part of the pad has between its extremes: a singular point, such as the
-end of the nail's clamp, does not own the scale.
+Made from the full fields (snapshots) of a history, one frame each: an animated GIF and a film
+(WebM). The same history gives the same bytes of the GIF. Colours end at what the shown part of the
+pad has between its extremes: a singular point, such as the end of the nail's clamp, does not own
+the scale.
 """
 
 from __future__ import annotations
@@ -96,7 +98,9 @@ def _write_film(frames: list[np.ndarray], path: Path) -> None:
 
 
 def _palette(colours: mpl.colors.Colormap) -> np.ndarray:
-    """The colours (n, 3) of all frames: those of the map, greys from black to white, and the highlight."""
+    """The colours (n, 3) of all frames: those of the map, greys from black to white, and the
+    highlight.
+    """
     mapped = (255 * colours(np.linspace(0, 1, SHADES))[:, :3]).round()
     mark = 255 * np.array([mpl.colors.to_rgb(style.HIGHLIGHT)])
     greys = np.repeat(np.linspace(0, 255, GREYS).round()[:, None], 3, axis=1)
@@ -104,7 +108,9 @@ def _palette(colours: mpl.colors.Colormap) -> np.ndarray:
 
 
 def _indexed(frames: list[np.ndarray], palette: np.ndarray) -> Iterator[Image]:
-    """Frames (height, width, 3) as images of the palette's closest colours, each colour looked for once."""
+    """Frames (height, width, 3) as images of the palette's closest colours, each colour looked for
+    once.
+    """
     from PIL.Image import fromarray
 
     closest = np.full(
@@ -126,7 +132,9 @@ def _indexed(frames: list[np.ndarray], palette: np.ndarray) -> Iterator[Image]:
 def _coloured(
     history: xr.Dataset, middle: np.ndarray
 ) -> tuple[np.ndarray, Normalize, mpl.colors.Colormap, str]:
-    """Values (snapshot, element) to be coloured, their scale, map and label: strain energy if there is some, else mean stress."""
+    """Values (snapshot, element) to be coloured, their scale, map and label: strain energy if there
+    is some, else mean stress.
+    """
     judged = (middle[:, 1] > JUDGED) & (abs(middle[:, 0]) < 8)
     if FIELD in history:
         values = np.maximum(history[FIELD].values, 1e-6)
@@ -267,7 +275,9 @@ def _heading(history: xr.Dataset) -> str:
 
 
 def _borders(points: np.ndarray, cells: np.ndarray, region: np.ndarray) -> np.ndarray:
-    """Node pairs (n, 2) of the element edges on the rim and between layers; `cells` are corner nodes."""
+    """Node pairs (n, 2) of the element edges on the rim and between layers; `cells` are corner
+    nodes.
+    """
     import skfem  # here, for it is slow to import
 
     mesh = (skfem.MeshTri if cells.shape[1] == 3 else skfem.MeshQuad)(points.T, cells.T)

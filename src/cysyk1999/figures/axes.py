@@ -1,6 +1,8 @@
-"""Axes of the thesis: where its range ends, what is shaded beyond it, what the note under a picture says.
+"""Axes of the thesis: where its range ends, what is shaded beyond it, what the note under a picture
+says.
 
-Pictures are made from a frame whose rows say by their `source` what they are: simulated, a thesis's axis range, measured.
+Pictures are made from a frame whose rows say by their `source` what they are: simulated, a thesis's
+axis range, measured.
 """
 
 from __future__ import annotations
@@ -30,11 +32,15 @@ PHASE_LINES = {
     TOP: {"linestyle": "-", "linewidth": 1.8},
     STEADY: {"linestyle": "-", "linewidth": 0.9, "color": style.INK},
 }
-"""Dashed before, thin grey on the way, thick in the surface's colour at the top, thin black in the end."""
+"""Dashed before, thin grey on the way, thick in the surface's colour at the top, thin black in the
+end.
+"""
 FIRST, SECOND = {"linestyle": "-", "linewidth": 1.3}, {"linestyle": style.DASHED, "linewidth": 1.1}
 """Two quantities of one run."""
 STATEMENT = "thesis statement ("
-"""How the source of a row begins that holds what the thesis says of a figure, and whether it is so here."""
+"""How the source of a row begins that holds what the thesis says of a figure, and whether it is so
+here.
+"""
 SURFACE = "surface"
 """Panel of the rows that hold the shape of a stroked surface."""
 
@@ -45,7 +51,9 @@ def surface_name(label: str) -> str:
 
 
 def look(name: str) -> dict[str, object]:
-    """Colour of a surface (``210``) or colour and line of a velocity (``10 mm/s``); of anything else none."""
+    """Colour of a surface (``210``) or colour and line of a velocity (``10 mm/s``); of anything
+    else none.
+    """
     speed = name.removesuffix(" mm/s")
     if speed != name and speed in style.SPEED_COLOURS:
         return style.look_of("speed (mm/s)", speed)
@@ -69,7 +77,8 @@ def footnote(
 ) -> list[str]:
     """What a picture shows: simulated or predicted, with which errors, from which strain energy.
 
-    `how` errors are taken, or of which `lines` through points they are (:func:`error_text`), is said as well.
+    `how` errors are taken, or of which `lines` through points they are (:func:`error_text`), is
+    said as well.
     """
     own = frame[is_simulated(frame)]
     shown = [column for column in own if own[column].notna().any()]
@@ -107,9 +116,11 @@ Lines = Sequence[tuple[str, str]]
 
 
 def of_lines(frame: pd.DataFrame, lines: Lines) -> pd.DataFrame:
-    """The errors of lines through points, one row a line: r.m.s. of what its points are wrong by, over that of their values.
+    """The errors of lines through points, one row a line: r.m.s. of what its points are wrong by,
+    over that of their values.
 
-    NaN in a part that is not known of one of its points; points of which none is known do not count.
+    NaN in a part that is not known of one of its points; points of which none is known do not
+    count.
     """
     found = []
     for named, shown in lines:
@@ -123,9 +134,11 @@ def of_lines(frame: pd.DataFrame, lines: Lines) -> pd.DataFrame:
 
 
 def error_text(frame: pd.DataFrame, lines: Lines = ()) -> str:
-    """``Largest error: mesh 1.2 %, steps 0.3 %, sampling 0.1 %`` of the curve or point that is furthest off, with its surface
-    where that stands out, and ``not known`` where only that of the mesh is not; nothing where none is known. Where points are
-    joined to `lines` it is that of a line."""
+    """``Largest error: mesh 1.2 %, steps 0.3 %, sampling 0.1 %`` of the curve or point that is
+    furthest off, with its surface where that stands out, and ``not known`` where only that of the
+    mesh is not; nothing where none is known. Where points are joined to `lines` it is that of a
+    line.
+    """
     if lines:
         return error_text(of_lines(frame, lines)).replace(
             "Largest error", "Largest error of a line"
@@ -153,14 +166,18 @@ def error_text(frame: pd.DataFrame, lines: Lines = ()) -> str:
 def statement_row(
     ids: str, words: str, condition: str, verdict: str, number: str, detail: str
 ) -> dict[str, str]:
-    """A row that holds what the thesis says of a figure, and how it is here: for a figure's frame."""
+    """A row that holds what the thesis says of a figure, and how it is here: for a figure's
+    frame.
+    """
     return {
         "source": f"{STATEMENT}{ids}): " + " | ".join((words, condition, verdict, number, detail))
     }
 
 
 def statement(frame: pd.DataFrame, width: int = style.NOTE_WIDTH) -> list[str]:
-    """``Thesis: ... Here: holds / fails (number).``, as long as a line allows; nothing without such a row."""
+    """``Thesis: ... Here: holds / fails (number).``, as long as a line allows; nothing without such
+    a row.
+    """
     rows = frame["source"].astype(str)
     if not (found := rows[rows.str.startswith(STATEMENT)].tolist()):
         return []
@@ -194,8 +211,10 @@ def curve(
     whole: pd.DataFrame | None = None,
     **look: object,
 ) -> Line2D:
-    """A simulated curve, or points, of a frame's rows, with their error where it is above 2 %: as a faint band as high as the
-    error's norm to either side, or as bars at points. `whole`: all rows of a curve of which these are a part."""
+    """A simulated curve, or points, of a frame's rows, with their error where it is above 2 %: as a
+    faint band as high as the error's norm to either side, or as bars at points. `whole`: all rows
+    of a curve of which these are a part.
+    """
     (line,) = ax.plot(rows[x], rows[y], **look)
     if points:
         bars(ax, rows, x, y, rows[y].abs(), line.get_color())
@@ -242,11 +261,12 @@ def limit_axis(
     text: bool = True,
     marked: bool = True,
 ) -> None:
-    """Set one axis to the thesis's range found in `frame` and extend it only if simulated data leave it.
+    """Set one axis to the thesis's range found in `frame` and extend it only if simulated data
+    leave it.
 
-    Where it must be extended, the thesis's range is shaded and, with `text`, labelled (one of several alike panels
-    needs it). Without a range in the frame the axis is left to the data. An uncertain reading has a broken bracket.
-    Not `marked`: the limits alone.
+    Where it must be extended, the thesis's range is shaded and, with `text`, labelled (one of
+    several alike panels needs it). Without a range in the frame the axis is left to the data. An
+    uncertain reading has a broken bracket. Not `marked`: the limits alone.
     """
     found = _set_limits(ax, frame, column, axis)
     if marked:
@@ -254,13 +274,17 @@ def limit_axis(
 
 
 def limit_axes(ax: Axes, frame: pd.DataFrame, x: str, y: str, text: bool = True) -> None:
-    """Set both axes as `limit_axis` does; where both are extended, what the thesis shows is one rectangle."""
+    """Set both axes as `limit_axis` does; where both are extended, what the thesis shows is one
+    rectangle.
+    """
     _mark(ax, _set_limits(ax, frame, x, "x"), _set_limits(ax, frame, y, "y"), text)
 
 
 @dataclass(frozen=True)
 class Range:
-    """What the thesis's axis shows, in data units: whether the data leave it, and whether its reading is uncertain."""
+    """What the thesis's axis shows, in data units: whether the data leave it, and whether its
+    reading is uncertain.
+    """
 
     low: float
     high: float
@@ -276,9 +300,11 @@ def draw_bands(
     place: Callable[[pd.Series], float],
     width: float = 4.0,
 ) -> None:
-    """What other pads show that the thesis's figures do not tell apart (`Data.bands`): a bar from the lowest to the highest.
+    """What other pads show that the thesis's figures do not tell apart (`Data.bands`): a bar from
+    the lowest to the highest.
 
-    One of `x` and `y` is the column of the bars' ends, the other is None: there ``place(first row of a bar)`` is where it lies.
+    One of `x` and `y` is the column of the bars' ends, the other is None: there ``place(first row
+    of a bar)`` is where it lies.
     """
     found = rows[rows["source"].astype(str).str.startswith(OTHER_PADS)]
     for k in range(0, len(found), 2):
@@ -298,7 +324,9 @@ def draw_bands(
 
 
 def together(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
-    """The frame with the simulated values of all columns in the first: an axis then holds them all."""
+    """The frame with the simulated values of all columns in the first: an axis then holds them
+    all.
+    """
     first, *others = columns
     own = frame[is_simulated(frame)]
     return (
@@ -311,7 +339,9 @@ def together(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
 
 
 def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> Range | None:
-    """Set the limits of one axis; the thesis's range if the data leave it or its reading is uncertain."""
+    """Set the limits of one axis; the thesis's range if the data leave it or its reading is
+    uncertain.
+    """
     ranges = (
         ~is_simulated(frame) & frame["source"].str.contains("axis range") & frame[column].notna()
     )
@@ -349,7 +379,9 @@ def _set_limits(ax: Axes, frame: pd.DataFrame, column: str, axis: str) -> Range 
 
 
 def _mark(ax: Axes, x: Range | None = None, y: Range | None = None, text: bool = True) -> None:
-    """Shade the thesis's range where an axis goes beyond it, with a bracket beside a vertical one."""
+    """Shade the thesis's range where an axis goes beyond it, with a bracket beside a vertical
+    one.
+    """
     if x and y and x.left and y.left:
         thesis_box(ax, (x.low, x.high), (y.low, y.high), x.uncertain or y.uncertain)
     elif x and x.left:
@@ -394,7 +426,9 @@ def _band(uncertain: bool) -> dict[str, object]:
 
 
 def thesis_box(ax: Axes, x: tuple[float, float], y: tuple[float, float], uncertain: bool) -> None:
-    """What the thesis's axes show as a rectangle; hatched, with a question mark, if a reading of them is uncertain."""
+    """What the thesis's axes show as a rectangle; hatched, with a question mark, if a reading of
+    them is uncertain.
+    """
     from matplotlib.patches import Rectangle
 
     ax.add_patch(Rectangle((x[0], y[0]), x[1] - x[0], y[1] - y[0], **_band(uncertain)))
@@ -412,7 +446,9 @@ def thesis_box(ax: Axes, x: tuple[float, float], y: tuple[float, float], uncerta
 
 
 def wide_limits(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
-    """Axes of the thesis's ranges, and of the data where they leave them at either end; what the thesis shows is then shaded."""
+    """Axes of the thesis's ranges, and of the data where they leave them at either end; what the
+    thesis shows is then shaded.
+    """
     box, doubt = [], False
     for column, set_limits in ((x, ax.set_xlim), (y, ax.set_ylim)):
         marks = rows["source"].str.contains("axis range") & rows[column].notna()
@@ -438,7 +474,9 @@ def wide_limits(ax: Axes, rows: pd.DataFrame, x: str, y: str) -> None:
 
 
 def leave_room_for_brackets(fig: Figure) -> None:
-    """Narrow the panels by what the brackets beside extended axes take, which the layout does not see."""
+    """Narrow the panels by what the brackets beside extended axes take, which the layout does not
+    see.
+    """
     engine = fig.get_layout_engine()
     x, y, width, height = engine.get()["rect"]
     engine.set(rect=(x, y, width - 0.02, height))
@@ -488,7 +526,9 @@ def draw_surface(ax: Axes, frame: pd.DataFrame) -> None:
 
 
 def below_surface(fig: Figure, frame: pd.DataFrame, count: int, along: bool = True) -> list[Axes]:
-    """The surface above and so many panels below it, which are returned; `along`: they share its distances."""
+    """The surface above and so many panels below it, which are returned; `along`: they share its
+    distances.
+    """
     ratios = [0.55 if count == 1 else 0.7, *[3.0 / count] * count]
     top, *below = fig.subplots(1 + count, 1, sharex=along, height_ratios=ratios)
     draw_surface(top, frame)

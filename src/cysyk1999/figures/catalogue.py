@@ -1,4 +1,6 @@
-"""Every figure of the thesis: which are made here, which cannot be, and what stands in for these (``figures/README.md``)."""
+"""Every figure of the thesis: which are made here, which cannot be, and what stands in for these
+(``figures/README.md``).
+"""
 
 from __future__ import annotations
 
@@ -16,18 +18,22 @@ CATALOGUE = {
     "thesis_shows": Column(text=True),
     "stand_in": Column(text=True, optional=True),
 }
-"""Columns of ``config/reference/figures.csv``: what the thesis's figure is, and what is here in place of what is not public."""
+"""Columns of ``config/reference/figures.csv``: what the thesis's figure is, and what is here in
+place of what is not public.
+"""
 
 DRAWABLE = ("simulation", "comparison")
-"""Kinds that need no more than this model to be drawn, a comparison without what was recorded. So do recordings predicted."""
+"""Kinds that need no more than this model to be drawn, a comparison without what was recorded. So
+do recordings predicted.
+"""
 
 
 def read_catalogue(path: str | PathLike) -> pd.DataFrame:
     """The thesis's figures in its order, columns of :data:`CATALOGUE`.
 
     Raises:
-        ReferenceDataError: a cell is wrong. ValueError: a number is given twice, or nothing stands in for a figure that cannot
-        be drawn.
+        ReferenceDataError: a cell is wrong. ValueError: a number is given twice, or nothing stands
+        in for a figure that cannot be drawn.
     """
     table = read_table(path, CATALOGUE)
     if table["number"].duplicated().any():
@@ -47,8 +53,8 @@ def readme(
 ) -> str:
     """Text of ``figures/README.md``.
 
-    made: the figures that are drawn, number -> title. judged: number -> how many of the thesis's statements on it hold here, and
-    of how many that can be answered; the others are not in it.
+    made: the figures that are drawn, number -> title. judged: number -> how many of the thesis's
+    statements on it hold here, and of how many that can be answered; the others are not in it.
     """
     here = catalogue[catalogue["number"].isin(list(made))]
     drawable = catalogue["kind"].isin(DRAWABLE) | catalogue["stand_in"].str.startswith("predicted")
@@ -101,7 +107,9 @@ def readme(
 
 
 def _holds(number: str, judged: Mapping[str, tuple[int, int]]) -> str:
-    """``3 of 4``, with a link to the rows; nothing where the thesis says nothing that can be judged."""
+    """``3 of 4``, with a link to the rows; nothing where the thesis says nothing that can be
+    judged.
+    """
     if number not in judged:
         return ""
     return "[{} of {}](tables/thesis_comparison_chapter{}.md)".format(*judged[number], number[0])

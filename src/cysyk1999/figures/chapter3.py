@@ -1,7 +1,9 @@
-"""Chapter 3: the model's section and its mesh, its surface profiles, forces and layer boundaries, beside what was measured.
+"""Chapter 3: the model's section and its mesh, its surface profiles, forces and layer boundaries,
+beside what was measured.
 
-The thesis compares with recordings of single subjects and with MRI sections. Those are not available and nothing is drawn in
-their place: Figs 3-6 and 3-7 carry published measurements of other or partly the same subjects, the others the model alone.
+The thesis compares with recordings of single subjects and with MRI sections. Those are not
+available and nothing is drawn in their place: Figs 3-6 and 3-7 carry published measurements of
+other or partly the same subjects, the others the model alone.
 """
 
 from __future__ import annotations
@@ -66,7 +68,8 @@ SECTIONS = {
     "1/16 inch bar, 2 mm": (BAR, 2e-3),
 }
 """Panels of Fig 3-11: scene and depth (m)."""
-SHOWN = 7.5  # mm, half of the surface shown: beyond it the flanks are too steep for a deflection at a distance
+# mm, half of the surface shown: beyond it the flanks are too steep for a deflection at a distance
+SHOWN = 7.5
 STATE_LINES = {"undeformed": {"ls": "-", "lw": 0.6, "color": style.GREY}, "deformed": {"lw": 1.2}}
 MODEL = "Lines: simulated, not measured."
 
@@ -143,7 +146,9 @@ def three_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def offset_construction(ax: Axes, lines: dict[str, np.ndarray], thick: tuple[float, float]) -> None:
-    """The boundaries, and points on the normals of the skin at the layers' thicknesses (mm), which lie on them."""
+    """The boundaries, and points on the normals of the skin at the layers' thicknesses (mm), which
+    lie on them.
+    """
     for layer in ("stratum corneum", "dermis", "fat", "bone"):
         ax.plot(*lines[layer].T, color=style.INK, lw=0.8)
     skin = densify(lines["stratum corneum"], 0.2)
@@ -168,7 +173,9 @@ def point_out(ax: Axes, text: str, at: tuple[float, float], label: tuple[float, 
 
 
 def fill(ax: Axes, lines: dict[str, np.ndarray], merged: bool) -> None:
-    """Paint the layers outside to inside; `merged` gives the outermost band the epidermis's colour."""
+    """Paint the layers outside to inside; `merged` gives the outermost band the epidermis's
+    colour.
+    """
     for layer in LAYERS:
         if layer in lines:
             colour = style.LAYER_COLOURS[
@@ -215,7 +222,9 @@ def shown_deflection(history: xr.Dataset, depth: float) -> tuple[np.ndarray, np.
 
 
 def deflections(data: Data) -> pd.DataFrame:
-    """Deflection of the skin in the steady state at several depths of three indenters, and measured ones."""
+    """Deflection of the skin in the steady state at several depths of three indenters, and measured
+    ones.
+    """
     parts, points = [], []
     for panel, history, coarse in data.runs(Runs("panel", PROFILES)):
         depths = pressed_depths(history)
@@ -273,7 +282,9 @@ def at_depths(ax: Axes, rows: pd.DataFrame, spec: Figure) -> None:
 
 
 def misfit_at_the_rim(rows: pd.DataFrame) -> str:
-    """In words, how far the deepest measured profile and the model are apart at its outermost point."""
+    """In words, how far the deepest measured profile and the model are apart at its outermost
+    point.
+    """
     points = rows[~is_simulated(rows) & rows[DEFLECTION].notna() & rows["series"].notna()]
     points = points[
         points["series"] == rows.loc[is_simulated(rows), "series"].iloc[-1]
@@ -374,7 +385,9 @@ def force_words(error: str) -> list[str]:
 
 
 def ramp_and_hold(data: Data, runs: Runs, until: float) -> pd.DataFrame:
-    """Force over time of each scene up to a time, and its steady level, as two rows to the same time."""
+    """Force over time of each scene up to a time, and its steady level, as two rows to the same
+    time.
+    """
     ((_, plate, companion),) = data.runs(STEADY_PLATE)
     parts = []
     for series, history, coarse in data.runs(runs):
@@ -403,7 +416,9 @@ def ramp_and_hold(data: Data, runs: Runs, until: float) -> pd.DataFrame:
 
 
 def forces_over_time(ax: Axes, frame: pd.DataFrame, spec: Figure, at_curves: bool) -> None:
-    """Curves and steady levels, each with its name and peak over steady force: at the curve's end or in a legend."""
+    """Curves and steady levels, each with its name and peak over steady force: at the curve's end
+    or in a legend.
+    """
     simulated, dashes = (
         frame[is_simulated(frame)],
         {"lw": 0.7, "ls": (0, (2, 2)), "color": style.GREY},
@@ -463,7 +478,9 @@ def held(
 
 
 def under_the_bar(data: Data) -> pd.DataFrame:
-    """The section, undeformed and under the 1/16 inch bar at 2 mm: closed layer boundaries, the bar's lower side."""
+    """The section, undeformed and under the 1/16 inch bar at 2 mm: closed layer boundaries, the
+    bar's lower side.
+    """
     history, layers = data.histories[BAR], ("skin", "corneum", "dermis", "fat", "bone")
     errors = section_errors(history, data.coarse.get(BAR))
     pressed = section_rows(
@@ -515,7 +532,9 @@ def name_layers(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
 
 
 def six_indentations(data: Data) -> pd.DataFrame:
-    """Layer boundaries without load and under five indentations; the stratum corneum is left out."""
+    """Layer boundaries without load and under five indentations; the stratum corneum is left
+    out.
+    """
     parts, layers = [], ("corneum", "dermis", "fat")
     for panel, (scene, depth) in SECTIONS.items():
         history = data.histories[scene]

@@ -1,6 +1,8 @@
-"""Chapter 4: ramp-and-hold indentation by nine surfaces: shape, contact, pressure and strain energy.
+"""Chapter 4: ramp-and-hold indentation by nine surfaces: shape, contact, pressure and strain
+energy.
 
-Axes, panels and line styles follow the thesis (Cysyk 1999), so that a picture can be laid beside the original.
+Axes, panels and line styles follow the thesis (Cysyk 1999), so that a picture can be laid beside
+the original.
 """
 
 from __future__ import annotations
@@ -116,7 +118,9 @@ def skin(data: Data) -> pd.DataFrame:
 
 
 def sunk(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lateral position at rest and displacement into the pad (m) of the upper skin at one output."""
+    """Lateral position at rest and displacement into the pad (m) of the upper skin at one
+    output.
+    """
     upper = history["skin_y"].values > 0
     return history["skin_x"].values[upper], -history["skin_displacement_y"].values[index, upper]
 
@@ -174,7 +178,9 @@ def nodes(data: Data) -> pd.DataFrame:
 
 
 def profiles_and_receptors(data: Data) -> pd.DataFrame:
-    """Pressure profiles, and strain energy along two depths, at the top of the ramp and in steady state."""
+    """Pressure profiles, and strain energy along two depths, at the top of the ramp and in steady
+    state.
+    """
     pressure = data.profiles(THREE).query("phase != @PHASES[0]").drop(columns=DOWN)
     parts = [pressure.assign(panel="pressure")]
     for label, history, coarse in data.runs(THREE):
@@ -217,7 +223,9 @@ def axes_of_three(data: Data) -> pd.DataFrame:
 
 
 def energy_rates(data: Data) -> pd.DataFrame:
-    """Rate of the strain energy (see `energy_rate` for the differences taken), with the errors in the ramp, which is shown."""
+    """Rate of the strain energy (see `energy_rate` for the differences taken), with the errors in
+    the ramp, which is shown.
+    """
     parts = []
     for label, history, coarse in data.runs(NINE):
         errors = curve_errors(
@@ -233,7 +241,9 @@ def energy_rates(data: Data) -> pd.DataFrame:
 
 
 def bars_of_the_hold(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    """The thesis's ranges for the hold as bars at the right, broken where their reading is uncertain."""
+    """The thesis's ranges for the hold as bars at the right, broken where their reading is
+    uncertain.
+    """
     (ax,) = panels.values()
     ranges = frame[frame["source"].str.startswith("thesis range of Fig 4-9")]
     if ranges.empty:
@@ -257,7 +267,9 @@ def bars_of_the_hold(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None
 
 
 def phase_legend(*phases: str):
-    """Legend of the phases' line styles, under the title; a line in the surfaces' colours is in those of some of them."""
+    """Legend of the phases' line styles, under the title; a line in the surfaces' colours is in
+    those of some of them.
+    """
 
     def extra(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
         fig = next(iter(panels.values())).figure
@@ -403,7 +415,9 @@ def three_by_three(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def legs_of_rates(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
-    """Strain energy rate in the ramp, nine traces named at its top, where each jumps; of the hold what is above zero."""
+    """Strain energy rate in the ramp, nine traces named at its top, where each jumps; of the hold
+    what is above zero.
+    """
     own, ends = frame[is_simulated(frame)], {}
     seen = 0.01 * own[RATE].max()
     for label, rows in own.groupby("surface", sort=False):
@@ -525,7 +539,8 @@ FIGURES = (
         (P,),
         {
             DOWN: {k: "T143" if k in SURFACES[:3] else "T144" for k in SURFACES},
-            # of 79 and 105 those of Fig 4-11: only a tick at 5000 Pa is legible in Fig 4-13 itself (T139)
+            # of 79 and 105 those of Fig 4-11: only a tick at 5000 Pa is legible in Fig 4-13 itself
+            # (T139)
             P: by_surface("T138 T126 T127 T140 T140 T140 T141 T141 T142"),
         },
         nine(SURFACES, 5.9, header=0.16, fill=Phases()),

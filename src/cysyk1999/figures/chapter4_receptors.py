@@ -1,9 +1,12 @@
-"""Chapter 4, from skin to impulses: the laws of pressure and strain energy, and predicted rates of slowly adapting receptors.
+"""Chapter 4, from skin to impulses: the laws of pressure and strain energy, and predicted rates of
+slowly adapting receptors.
 
-The recordings that the thesis shows beside its model are not public. Its figures of recordings alone (4-2 to 4-5) are made from
-predicted rates (Eq 5-1 with the thesis's constants) and say so in the picture; in those of comparisons (4-9, 4-18 to 4-29) the
-predicted rates stand where the recorded ones did, with what can be read of those in the thesis, and with published rates and
-another model's in panels of their own. A user's recordings under the same protocol are laid over (config/reference/recordings).
+The recordings that the thesis shows beside its model are not public. Its figures of recordings
+alone (4-2 to 4-5) are made from predicted rates (Eq 5-1 with the thesis's constants) and say so in
+the picture; in those of comparisons (4-9, 4-18 to 4-29) the predicted rates stand where the
+recorded ones did, with what can be read of those in the thesis, and with published rates and
+another model's in panels of their own. A user's recordings under the same protocol are laid over
+(config/reference/recordings).
 """
 
 from __future__ import annotations
@@ -87,7 +90,9 @@ if TYPE_CHECKING:
 AVERAGED = 100
 """Trials that the frequency of Fig 4-3 is the mean of."""
 OFTEN = 8
-"""Impulses/s from which on a train has enough of them in Fig 4-3 that their mean frequency is not biased."""
+"""Impulses/s from which on a train has enough of them in Fig 4-3 that their mean frequency is not
+biased.
+"""
 PRINTED = ("T083", "T084", "T085", "T086", "T087")
 """Mean rates of the hold that can be read beside the rasters of Fig 4-2."""
 
@@ -116,7 +121,9 @@ RATE_OVER_TIME = Curve(lambda history: predicted_rate(history)[[TIME, IMPULSE_RA
 
 
 def line_through(rows: pd.DataFrame, x: str, y: str) -> pd.DataFrame:
-    """Two rows: the ends of the line through points, from 0 to the last of them, where it is not negative."""
+    """Two rows: the ends of the line through points, from 0 to the last of them, where it is not
+    negative.
+    """
     slope, offset, share = straight_line(rows[x], rows[y])
     ends = np.array([max(0.0, -offset / slope) if slope > 0 else 0.0, rows[x].max()])
     return pd.DataFrame(
@@ -164,7 +171,9 @@ def given(data: Data, window: str, ramp: float, column: str = GIVEN_RATE) -> pd.
 def published(
     data: Data, panel: str, window: str, model: bool, force: float | None = None
 ) -> pd.DataFrame:
-    """Published rates, or another model's, of pressed surfaces in a window, one series a recording."""
+    """Published rates, or another model's, of pressed surfaces in a window, one series a
+    recording.
+    """
     if (rates := data.measured) is None:
         return pd.DataFrame()
     rows = rates[(rates["species"] == "model") == model]
@@ -186,7 +195,9 @@ def published(
 
 
 def trains_and_rates(data: Data) -> pd.DataFrame:
-    """Predicted impulses of four trials a surface at 150 gf/s, the force, the mean predicted rate in the hold, printed ones."""
+    """Predicted impulses of four trials a surface at 150 gf/s, the force, the mean predicted rate
+    in the hold, printed ones.
+    """
     numbers = data.numbers(FAST, {GIVEN_RATE: HELD})
     plate = data.histories[FAST["flat"]]
     parts = [
@@ -206,7 +217,9 @@ def trains_and_rates(data: Data) -> pd.DataFrame:
 
 
 def frequencies(data: Data) -> pd.DataFrame:
-    """Instantaneous frequency of predicted impulses at 40 gf/s, mean of many trials, and the rate they were made from."""
+    """Instantaneous frequency of predicted impulses at 40 gf/s, mean of many trials, and the rate
+    they were made from.
+    """
     parts, at = [], np.arange(0, 2.0001, 0.02)
     for k, (label, history, coarse) in enumerate(data.runs(NINE)):
         rate, errors = (
@@ -222,7 +235,9 @@ def frequencies(data: Data) -> pd.DataFrame:
 
 
 def peak_and_steady(data: Data) -> tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]:
-    """Predicted peak rate and rate in the last half of the hold, one row a surface, and recorded ones of either kind."""
+    """Predicted peak rate and rate in the last half of the hold, one row a surface, and recorded
+    ones of either kind.
+    """
     rows = data.numbers(NINE, {GIVEN_RATE: PEAK, STEADY_RATE: STEADY})
     return rows, given(data, "peak", 40), given(data, "steady", 40, STEADY_RATE)
 
@@ -277,7 +292,9 @@ def rate_and_width(data: Data) -> pd.DataFrame:
 
 
 def nodes_by_law(data: Data) -> pd.DataFrame:
-    """Pressure of twelve nodes as simulated, and by Eq 4-1 from each node's peak on: one set of constants, and a set for each."""
+    """Pressure of twelve nodes as simulated, and by Eq 4-1 from each node's peak on: one set of
+    constants, and a set for each.
+    """
     ((_, history, coarse),) = data.runs(K210)
     nodes = contact_nodes(history, NODE_COUNT)
     together, parts = fit_nodes("4-1", nodes), []
@@ -297,7 +314,9 @@ def nodes_by_law(data: Data) -> pd.DataFrame:
 
 
 def energy_by_pressure(data: Data) -> pd.DataFrame:
-    """Strain energy at 915 um as simulated and by Eq 4-4 from the contact pressure, one set of constants for nine surfaces."""
+    """Strain energy at 915 um as simulated and by Eq 4-4 from the contact pressure, one set of
+    constants for nine surfaces.
+    """
     runs = list(data.runs(NINE))
     law = fit_sum([history for _, history, _ in runs], RECEPTOR_DEPTH)
     source = f"{SIMULATED}: Eq 4-4 with r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m"
@@ -312,7 +331,9 @@ def energy_by_pressure(data: Data) -> pd.DataFrame:
 
 
 def peaks_over_pressure(data: Data) -> pd.DataFrame:
-    """Predicted peak rate and largest pressure at any node, one row a surface, and the line through them; recorded peak rates."""
+    """Predicted peak rate and largest pressure at any node, one row a surface, and the line through
+    them; recorded peak rates.
+    """
     rows = data.numbers(NINE, {P_PEAK: reading("highest_pressure", "highest"), GIVEN_RATE: PEAK})
     mine = given(data, "peak", 40)
     if len(mine):
@@ -321,7 +342,9 @@ def peaks_over_pressure(data: Data) -> pd.DataFrame:
 
 
 def linear_in_pressure(data: Data) -> pd.DataFrame:
-    """Rates as linear functions of the mean centre pressure: closest to Eq 5-1's in the hold, and to Goodwin's first second."""
+    """Rates as linear functions of the mean centre pressure: closest to Eq 5-1's in the hold, and
+    to Goodwin's first second.
+    """
     early = Q("first_second_pressure", "Pa")
     rows = data.numbers(
         NINE,
@@ -367,7 +390,9 @@ def held_rates(data: Data) -> pd.DataFrame:
 
 
 def mean_rates(data: Data, depth: float) -> pd.DataFrame:
-    """Mean predicted rates of the hold at a depth; beside them published rates and TouchSim's, and ours in their windows."""
+    """Mean predicted rates of the hold at a depth; beside them published rates and TouchSim's, and
+    ours in their windows.
+    """
     law, text = THESIS_RATE, "Eq 5-1 at 915 um"
     if depth != RECEPTOR_DEPTH:
         law, factor = shallow_law(NINE.histories(data.histories))
@@ -391,7 +416,9 @@ def mean_rates(data: Data, depth: float) -> pd.DataFrame:
 
 
 def peak_rates(data: Data) -> pd.DataFrame:
-    """Predicted peak rates at two depths, the line in the peak rate of strain energy closest to each; TouchSim's first 200 ms."""
+    """Predicted peak rates at two depths, the line in the peak rate of strain energy closest to
+    each; TouchSim's first 200 ms.
+    """
     parts = []
     for depth in (SHALLOW_DEPTH, RECEPTOR_DEPTH):
         law, factor = (
@@ -437,7 +464,9 @@ def stamp(
 
 
 def points(ax: Axes, rows: pd.DataFrame, x: str, y: str, **look) -> None:
-    """One point a surface, in the surfaces' colours; the errors of those over 2 % of the largest as bars."""
+    """One point a surface, in the surfaces' colours; the errors of those over 2 % of the largest as
+    bars.
+    """
     look = {"marker": "o", "s": 30, "zorder": 3, "clip_on": False} | look
     axs.bars(ax, rows, x, y, rows[y].abs().max())
     ax.scatter(
@@ -484,7 +513,9 @@ def source_text(rows: pd.DataFrame) -> str:
 
 
 def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """Force above, nine times four predicted trains of impulses, mean rates of the hold at the right."""
+    """Force above, nine times four predicted trains of impulses, mean rates of the hold at the
+    right.
+    """
     upper, ax = fig.subplots(2, 1, sharex=True, height_ratios=[1, 6.2])
     force = frame[frame[FORCE].notna() & is_simulated(frame)]
     upper.plot(force[TIME], force[FORCE], color=style.INK, clip_on=False)
@@ -535,7 +566,9 @@ def trains(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def nine_frequencies(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
-    """Nine traces of predicted frequency, labelled at the right, over the rates they are made from."""
+    """Nine traces of predicted frequency, labelled at the right, over the rates they are made
+    from.
+    """
     ends, both = {}, frame.assign(**{FREQUENCY: frame[[FREQUENCY, IMPULSE_RATE]].max(axis=1)})
     axs.limit_axis(ax, both[(both[TIME] <= 2) | both[TIME].isna()], FREQUENCY, text=False)
     for label in SURFACES:
@@ -569,7 +602,9 @@ def points_and_line(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def name_points(ax: Axes, rows: pd.DataFrame, x: str, y: str, line: pd.DataFrame) -> None:
-    """Curvatures beside points, on the side away from the line; those at the same place share a label."""
+    """Curvatures beside points, on the side away from the line; those at the same place share a
+    label.
+    """
     rows = rows.sort_values([x, y])
     place = rows[[x, y]].to_numpy() / np.array([np.ptp(ax.get_xlim()), np.ptp(ax.get_ylim())])
     groups = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(place, axis=0).T) > 0.03)])
@@ -712,7 +747,9 @@ def left_note(how: str) -> Callable[[pd.DataFrame], list[str]]:
 
 @dataclass(frozen=True, kw_only=True)
 class Beside:
-    """Panels of predicted rates (values of ``panel``; None: what is in none), and at their right rates of others, with ours."""
+    """Panels of predicted rates (values of ``panel``; None: what is in none), and at their right
+    rates of others, with ours.
+    """
 
     height: float
     fill: Callable[[Axes, pd.DataFrame], None]
@@ -760,8 +797,9 @@ def stamped_law(ax: Axes, rows: pd.DataFrame) -> None:
 
 
 def beside(ax: Axes, rows: pd.DataFrame, title: str, mismatch: str) -> None:
-    """A panel of rates measured elsewhere or of another model (points), with ours of the same force (lines): how far apart they
-    are."""
+    """A panel of rates measured elsewhere or of another model (points), with ours of the same force
+    (lines): how far apart they are.
+    """
     ax.set_title(f"{title}\n{mismatch}")
     if rows.empty:
         ax.text(0.5, 0.5, "no rates given", transform=ax.transAxes, ha="center", color=style.GREY)

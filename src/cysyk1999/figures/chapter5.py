@@ -1,8 +1,9 @@
-"""Chapter 5: a wavy surface stepped and stroked over the pad: contact, pressure, skin curvature, stretch and strain energy.
+"""Chapter 5: a wavy surface stepped and stroked over the pad: contact, pressure, skin curvature,
+stretch and strain energy.
 
-Distances are stroke distances: the point of the surface that is over the middle of the pad at rest; times count from the moment
-the surface begins to slide. Above most pictures the surface itself is drawn, solid above, with the curvatures (1/m) of its
-convexities.
+Distances are stroke distances: the point of the surface that is over the middle of the pad at rest;
+times count from the moment the surface begins to slide. Above most pictures the surface itself is
+drawn, solid above, with the curvatures (1/m) of its convexities.
 """
 
 from __future__ import annotations
@@ -112,7 +113,9 @@ def lengths(data: Data) -> pd.DataFrame:
 
 
 def locations(data: Data, runs: Runs) -> pd.DataFrame:
-    """The surface's shape; skin and pressure within 5 mm of the middle, and the surface above it, at three stroke distances."""
+    """The surface's shape; skin and pressure within 5 mm of the middle, and the surface above it,
+    at three stroke distances.
+    """
     ((_, history, coarse),) = data.runs(runs)
     stroke = loaded(history)
     shape, heights = profile_and_height(stroke)
@@ -145,7 +148,9 @@ def locations(data: Data, runs: Runs) -> pd.DataFrame:
 
 
 def profile_at(history: xr.Dataset, at: float) -> tuple[np.ndarray, np.ndarray]:
-    """Position (m) and pressure (Pa) of the upper skin at the stroke distance nearest to one (m)."""
+    """Position (m) and pressure (Pa) of the upper skin at the stroke distance nearest to one
+    (m).
+    """
     stroke = loaded(history)
     return upper_profile(stroke, int(np.argmin(abs(distance(stroke) - at))))
 
@@ -170,7 +175,9 @@ def nodes_over_time(data: Data) -> pd.DataFrame:
 
 
 def largest_energies(data: Data) -> pd.DataFrame:
-    """Largest strain energy at 915 um for each curvature: pressed by cylinders, and stroked at 10 mm/s."""
+    """Largest strain energy at 915 um for each curvature: pressed by cylinders, and stroked at 10
+    mm/s.
+    """
     pressed = data.numbers(PRESSED, {SED: reading("highest_energy", "915 um")}, own=True).assign(
         series="ramp and hold"
     )
@@ -195,7 +202,9 @@ def at_ten(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
 
 
 def three_locations(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
-    """The surface with a star at each location above; its window, the skin and the pressure at each below."""
+    """The surface with a star at each location above; its window, the skin and the pressure at each
+    below.
+    """
     grid = fig.add_gridspec(4, 3, height_ratios=[1.0, 1.0, 1.5, 1.5])
     trace, shape, marks = (
         fig.add_subplot(grid[0, :]),

@@ -1,8 +1,10 @@
-"""Chapter 5: what a slowly adapting receptor makes of strokes, predicted by Eqs 4-4 and 5-1 with the thesis's constants.
+"""Chapter 5: what a slowly adapting receptor makes of strokes, predicted by Eqs 4-4 and 5-1 with
+the thesis's constants.
 
-Where the thesis shows recordings, which are not public, these figures show predictions on the same axes and say so: rates by
-Eq 5-1 from the simulated strain energy, and impulses of a seeded integrate-and-fire receptor at these rates. What a user puts
-into ``config/reference/recordings`` is laid over the bursts.
+Where the thesis shows recordings, which are not public, these figures show predictions on the same
+axes and say so: rates by Eq 5-1 from the simulated strain energy, and impulses of a seeded
+integrate-and-fire receptor at these rates. What a user puts into ``config/reference/recordings`` is
+laid over the bursts.
 """
 
 from __future__ import annotations
@@ -107,7 +109,9 @@ def rate_errors(
     law: ImpulseRate = THESIS_RATE,
     way: tuple[float, ...] = (),
 ) -> Errors:
-    """Of the predicted rate from one place to another of the way (mm), over all of it where none are given."""
+    """Of the predicted rate from one place to another of the way (mm), over all of it where none
+    are given.
+    """
     return curve_errors(
         history,
         coarse,
@@ -128,7 +132,9 @@ def law_of(data: Data, depth: float) -> ImpulseRate:
 
 
 def rasters(data: Data, number: str, low: float, high: float, depth: float = DEEP) -> pd.DataFrame:
-    """Predicted impulses of repeated strokes at 10 mm/s over a part of the surface (mm), and their histogram."""
+    """Predicted impulses of repeated strokes at 10 mm/s over a part of the surface (mm), and their
+    histogram.
+    """
     ((_, history, coarse),) = data.runs(TEN_RUN)
     repetitions, law = STROKES_SHOWN[number], law_of(data, depth)
     rate, impulses = impulses_of(history, repetitions, depth, law)
@@ -143,7 +149,9 @@ def rasters(data: Data, number: str, low: float, high: float, depth: float = DEE
 
 
 def frequencies(data: Data) -> pd.DataFrame:
-    """Instantaneous frequency of predicted impulses of a shallow receptor, mean of 12 strokes at every velocity."""
+    """Instantaneous frequency of predicted impulses of a shallow receptor, mean of 12 strokes at
+    every velocity.
+    """
     way = (40.0, 80.0)
     parts, repetitions = [data.surface(TEN_RUN[TEN], *way)], STROKES_SHOWN["5-23"]
     at, law = np.arange(way[0], way[1] + 0.01, 0.1), law_of(data, SHALLOW)
@@ -203,7 +211,9 @@ def plate_trace(stroke: xr.Dataset, offset: float) -> np.ndarray:
 
 
 def burst_rows(data: Data, runs: Runs, columns: Mapping[Q, str]) -> pd.DataFrame:
-    """Burst of each convexity at some velocities, and a user's recorded ones, for none is public."""
+    """Burst of each convexity at some velocities, and a user's recorded ones, for none is
+    public.
+    """
     own = data.convexities(runs, columns)
     own.insert(1, SPEED, own["series"].str.removesuffix(" mm/s").astype(float))
     own.insert(1, "panel", own["series"])
@@ -231,7 +241,9 @@ def burst_rows(data: Data, runs: Runs, columns: Mapping[Q, str]) -> pd.DataFrame
 
 
 def stroked_and_pressed(data: Data) -> pd.DataFrame:
-    """Predicted rates against curvature: mean of the burst when stroked, peak and steady state when pressed."""
+    """Predicted rates against curvature: mean of the burst when stroked, peak and steady state when
+    pressed.
+    """
     parts = [
         data.numbers(WITHIN, {IMPULSE_RATE: reading("rate", at)}, own=True).assign(
             source=PREDICTED, series=series
@@ -249,7 +261,9 @@ def stroked_and_pressed(data: Data) -> pd.DataFrame:
 
 
 def by_pressure(data: Data) -> pd.DataFrame:
-    """Strain energy at 915 um, simulated and by Eq 4-4: constants of the ramps, shift constant or the skin's."""
+    """Strain energy at 915 um, simulated and by Eq 4-4: constants of the ramps, shift constant or
+    the skin's.
+    """
     law, shift = stroke_law(data.histories)
     parts = [data.surface(TEN_RUN[TEN], 0, 80)]
     for series, history, coarse in data.runs(SPEEDS):
@@ -274,7 +288,9 @@ def over_time(data: Data, columns: Sequence[Q]) -> pd.DataFrame:
 
 
 def energy_and_histogram(data: Data) -> pd.DataFrame:
-    """Strain energy and its rate at 915 um over time, 10 mm/s, and the histogram of 12 predicted strokes."""
+    """Strain energy and its rate at 915 um over time, 10 mm/s, and the histogram of 12 predicted
+    strokes.
+    """
     ((_, history, coarse),) = data.runs(TEN_RUN)
     repetitions = STROKES_SHOWN["5-19"]
     rate, impulses = impulses_of(history, repetitions)

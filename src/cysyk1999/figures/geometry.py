@@ -1,4 +1,6 @@
-"""Geometry of the pad for pictures: boundaries of its layers, elements of its mesh, sections under an indenter."""
+"""Geometry of the pad for pictures: boundaries of its layers, elements of its mesh, sections under
+an indenter.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ NOTE = "The model's own geometry and mesh, not measured; the MRI sections of Cys
 
 
 def stratum_corneum(history: xr.Dataset) -> float:
-    """Thickness (m) of the stratum corneum in a history's scene, which must have a parametric outline."""
+    """Thickness (m) of the stratum corneum in a history's scene, which must have a parametric
+    outline.
+    """
     return scene_of(history).specimen.outline.stratum_corneum_thickness
 
 
@@ -37,8 +41,8 @@ def stratum_corneum(history: xr.Dataset) -> float:
 def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
     """Closed boundary lines: ``skin`` (with the nail side), ``dermis``, ``fat``, ``bone``.
 
-    Points (n, 2) in m, or node numbers (n,) if `as_nodes`. A layer's line is its outer boundary, where it meets the layer
-    outside it. Raises ValueError for a half mesh.
+    Points (n, 2) in m, or node numbers (n,) if `as_nodes`. A layer's line is its outer boundary,
+    where it meets the layer outside it. Raises ValueError for a half mesh.
     """
     if mesh.half:
         raise ValueError("boundaries are drawn from the whole mesh, not from a half of it")
@@ -62,12 +66,16 @@ def boundaries(mesh: PadMesh, as_nodes: bool = False) -> dict[str, np.ndarray]:
 
 
 def _halves(sides: np.ndarray) -> np.ndarray:
-    """Element sides (start, end[, middle]) as straight edges (n, 2), through the middle node if any."""
+    """Element sides (start, end[, middle]) as straight edges (n, 2), through the middle node if
+    any.
+    """
     return sides if sides.shape[1] == 2 else np.vstack((sides[:, [0, 2]], sides[:, [2, 1]]))
 
 
 def loops(edges: np.ndarray) -> list[np.ndarray]:
-    """Join edges (n, 2) of node numbers, of any direction, into lines; closed ones repeat a node."""
+    """Join edges (n, 2) of node numbers, of any direction, into lines; closed ones repeat a
+    node.
+    """
     neighbours: dict[int, list[int]] = {}
     for a, b in edges.tolist():
         neighbours.setdefault(a, []).append(b)
@@ -97,7 +105,9 @@ def densify(line: np.ndarray, spacing: float) -> np.ndarray:
 
 
 def inward(loop: np.ndarray, distance: float) -> np.ndarray:
-    """Closed line moved by `distance` (m) along its inward normals (mean of the adjoining edges')."""
+    """Closed line moved by `distance` (m) along its inward normals (mean of the adjoining
+    edges').
+    """
     points = loop[:-1]
     tangent = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
     normal = np.column_stack((-tangent[:, 1], tangent[:, 0])) / np.hypot(*tangent.T)[:, None]
@@ -109,7 +119,9 @@ def inward(loop: np.ndarray, distance: float) -> np.ndarray:
 
 
 def surface_deflection(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lateral position (m) on the deformed skin and height there over the undeformed skin at that place (m)."""
+    """Lateral position (m) on the deformed skin and height there over the undeformed skin at that
+    place (m).
+    """
     x, y = history["skin_x"].values, history["skin_y"].values
     upper = np.flatnonzero(y > 0)
     moved_x, moved_y = (each[upper] for each in skin_at(history, index))
@@ -120,7 +132,8 @@ def surface_deflection(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.
 
 
 def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
-    """Outline of every element (one row a point) with its layer, the bone's rim, the nail's side that is held, and the quality.
+    """Outline of every element (one row a point) with its layer, the bone's rim, the nail's side
+    that is held, and the quality.
 
     Also the skin and the line `corneum` (m) under it, where the stratum corneum ends.
     """
@@ -166,7 +179,9 @@ def mesh_rows(mesh: PadMesh, corneum: float) -> pd.DataFrame:
 
 
 def _outline(mesh: PadMesh, nodes: np.ndarray, straight: float = 5e-6) -> np.ndarray:
-    """Points (n, 2) in m round one element; middle nodes only where a side is bent by over `straight`."""
+    """Points (n, 2) in m round one element; middle nodes only where a side is bent by over
+    `straight`.
+    """
     corners = KINDS[mesh.element].corners
     first = mesh.points[nodes[:corners]]
     if len(nodes) == corners:
@@ -201,7 +216,9 @@ def draw_mesh(ax: Axes, frame: pd.DataFrame, line: float = 0.22) -> None:
 
 
 def draw_corneum(ax: Axes, skin: np.ndarray, inner: np.ndarray) -> None:
-    """The stratum corneum: between the skin (n, 2) and the line its thickness below, both closed, in mm."""
+    """The stratum corneum: between the skin (n, 2) and the line its thickness below, both closed,
+    in mm.
+    """
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -231,10 +248,11 @@ def quality_of(frame: pd.DataFrame) -> pd.Series:
 
 
 def section(history: xr.Dataset, depth: float, corneum: bool = False) -> dict[str, np.ndarray]:
-    """Layer boundaries (n, 2) in m at the end of a press to `depth` (0: undeformed), and the indenter's lower side.
+    """Layer boundaries (n, 2) in m at the end of a press to `depth` (0: undeformed), and the
+    indenter's lower side.
 
-    Lines as in `boundaries`, and if asked ``corneum``, the inner side of the stratum corneum: material points at its thickness
-    under the skin, moved as the epidermis round them.
+    Lines as in `boundaries`, and if asked ``corneum``, the inner side of the stratum corneum:
+    material points at its thickness under the skin, moved as the epidermis round them.
     """
     from scipy.interpolate import LinearNDInterpolator  # here, for it is slow to import
 
@@ -286,7 +304,9 @@ def section_rows(
 
 
 def section_errors(history: xr.Dataset, coarse: Companion | None) -> Errors:
-    """Errors of the vertical displacement of the layers' boundaries under the apex, at the deepest press."""
+    """Errors of the vertical displacement of the layers' boundaries under the apex, at the deepest
+    press.
+    """
 
     def under_apex(layer: str):
         def feature(d: xr.Dataset) -> float:

@@ -1,13 +1,15 @@
-"""A figure of the thesis, said once: which runs, which quantities, which layout; its data frame and its picture follow.
+"""A figure of the thesis, said once: which runs, which quantities, which layout; its data frame and
+its picture follow.
 
 ::
 
     Figure("4-23", "Strain energy density 915 µm under the centre", NINE, TIME, (sed(915e-6),),
            thesis={TIME: "T189", SED: "T188"}, layout=Panels(4.6, lines=Lines(ends=2.62)))
 
-A picture is a function of its frame alone, which is published beside it. The frame of most figures is read by the quantities
-themselves (`Data.traces`); `rows` says another way, with the other methods of `Data`, and `after` adds what only one figure has.
-What a layout does not say is done by `extra` once its panels are drawn. Matplotlib is imported when something is drawn.
+A picture is a function of its frame alone, which is published beside it. The frame of most figures
+is read by the quantities themselves (`Data.traces`); `rows` says another way, with the other
+methods of `Data`, and `after` adds what only one figure has. What a layout does not say is done by
+`extra` once its panels are drawn. Matplotlib is imported when something is drawn.
 """
 
 from __future__ import annotations
@@ -76,7 +78,9 @@ if TYPE_CHECKING:
     from fingerpad.specimen.pad import PadMesh
 
 Ids = str | Mapping[object, str]
-"""Id of an axis's range in the table of the thesis's numbers, or an id for each panel, surface or pad."""
+"""Id of an axis's range in the table of the thesis's numbers, or an id for each panel, surface or
+pad.
+"""
 Look = Mapping[str, object]
 """What a line looks like, in matplotlib's words."""
 HOW = "r.m.s. over the stroke"
@@ -88,8 +92,9 @@ MEASURED: Mapping[str, tuple[str, Callable[..., pd.DataFrame]]] = {
     "impulse_rates": ("impulse_rates/*.csv recordings/*.csv", lambda paths: read_rates(*paths)),
     "pads": ("reconstruction_bands.csv", lambda paths: read_bands(*paths)),
 }
-"""Data shown beside simulated ones, measured or of other pads, by name: their files in the folder of reference data (one pattern
-or more), and their reader."""
+"""Data shown beside simulated ones, measured or of other pads, by name: their files in the folder
+of reference data (one pattern or more), and their reader.
+"""
 
 
 # --- data ------------------------------------------------------------------------------------------------
@@ -97,7 +102,9 @@ or more), and their reader."""
 
 @dataclass(frozen=True)
 class Data:
-    """What a figure's rows are made from: results by scene, the thesis's numbers, and measured data if it shows any."""
+    """What a figure's rows are made from: results by scene, the thesis's numbers, and measured data
+    if it shows any.
+    """
 
     histories: Histories
     meshes: Mapping[str, PadMesh]
@@ -111,7 +118,9 @@ class Data:
             yield name, self.histories[scene], self.coarse.get(scene)
 
     def traces(self, runs: Runs, columns: Sequence[Q], checked: Sequence[Q] = ()) -> pd.DataFrame:
-        """One row an output: the run's name, the columns, and the errors of what is `checked` (of all that count)."""
+        """One row an output: the run's name, the columns, and the errors of what is `checked` (of
+        all that count).
+        """
         reads = [q.read for q in checked or columns if q.checked]
         parts = []
         for name, history, coarse in self.runs(runs):
@@ -122,7 +131,9 @@ class Data:
         return pd.concat(parts, ignore_index=True)
 
     def profiles(self, runs: Runs, half: bool = False) -> pd.DataFrame:
-        """Pressure over the contact at the shown outputs: at nodes, where they are by then, and between the last and the edge."""
+        """Pressure over the contact at the shown outputs: at nodes, where they are by then, and
+        between the last and the edge.
+        """
         parts = []
         for name, history, coarse in self.runs(runs):
             sunk = -history["skin_displacement_y"].values
@@ -150,7 +161,9 @@ class Data:
         return pd.concat(parts, ignore_index=True)
 
     def numbers(self, runs: Runs, columns: Mapping[Q, Feature], own: bool = False) -> pd.DataFrame:
-        """One row a surface: curvature, numbers, the largest of their errors, relative to the largest of all or to its `own`."""
+        """One row a surface: curvature, numbers, the largest of their errors, relative to the
+        largest of all or to its `own`.
+        """
         histories = [history for _, history, _ in self.runs(runs)]
 
         def read(history: xr.Dataset) -> pd.Series:
@@ -169,7 +182,9 @@ class Data:
         return pd.concat([rows, errors], axis=1)
 
     def convexities(self, runs: Runs, columns: Mapping[Q, str]) -> pd.DataFrame:
-        """One row a run and convexity: its name and curvature, measures by their names, and the largest of their errors."""
+        """One row a run and convexity: its name and curvature, measures by their names, and the
+        largest of their errors.
+        """
 
         def read(history: xr.Dataset) -> pd.DataFrame:
             return pd.DataFrame({q: MEASURES[m](history) for q, m in columns.items()}, dtype=float)
@@ -187,7 +202,9 @@ class Data:
         return pd.concat(parts, ignore_index=True)
 
     def surface(self, scene: str, low: float, high: float) -> pd.DataFrame:
-        """Rows of a stroked surface's shape from `low` to `high` (mm along it): height, and curvature (0 on the flats)."""
+        """Rows of a stroked surface's shape from `low` to `high` (mm along it): height, and
+        curvature (0 on the flats).
+        """
         history = self.histories[scene]
         pieces = arcs(history)
         ends = [1e3 * a.start for a in pieces] + [1e3 * pieces[-1].end]
@@ -205,10 +222,11 @@ class Data:
         measures: Mapping[str, Mapping[str, object]],
         read: Callable[[float], float] = float,
     ) -> pd.DataFrame:
-        """How far other pads differ that the thesis's figures do not rule out: two rows (its ends) a surface and measure.
+        """How far other pads differ that the thesis's figures do not rule out: two rows (its ends)
+        a surface and measure.
 
-        `measures`: name of a measure of `cysyk1999.reference_data.read_bands` -> further cells of its rows; `read` makes of an
-        end that of the column.
+        `measures`: name of a measure of `cysyk1999.reference_data.read_bands` -> further cells of
+        its rows; `read` makes of an end that of the column.
         """
         rows = []
         for band in () if self.measured is None else self.measured.itertuples():
@@ -222,7 +240,9 @@ class Data:
         return pd.DataFrame(rows)
 
     def axis(self, column: str, ids: Ids, key: str) -> pd.DataFrame:
-        """Rows that mark a thesis axis range: two (its ends) for each id that the reference has, `source` saying so."""
+        """Rows that mark a thesis axis range: two (its ends) for each id that the reference has,
+        `source` saying so.
+        """
         rows = []
         for panel, id_ in (ids if isinstance(ids, Mapping) else {None: ids}).items():
             if id_ not in self.reference.index:
@@ -235,10 +255,11 @@ class Data:
 
 
 def edged_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Positions (m) of the nodes of a contact that is its own mirror image, and of its edges, and the pressures (Pa) there.
+    """Positions (m) of the nodes of a contact that is its own mirror image, and of its edges, and
+    the pressures (Pa) there.
 
-    It ends beside the nodes, with the root of the distance, like any smooth contact. A node within half a spacing of its edge is
-    left out, for it may have skin on one side that does not touch.
+    It ends beside the nodes, with the root of the distance, like any smooth contact. A node within
+    half a spacing of its edge is left out, for it may have skin on one side that does not touch.
     """
     (x, p), end = profile(history, index), width(history)[index] / 2
     touch = np.flatnonzero((np.arange(len(x)) >= centre_node(history)) & (p > 0))
@@ -255,7 +276,9 @@ def edged_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarr
 
 
 def upper_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Deformed lateral position (m) and pressure (Pa) of the skin nodes of the upper side at one output."""
+    """Deformed lateral position (m) and pressure (Pa) of the skin nodes of the upper side at one
+    output.
+    """
     upper = history["skin_y"].values > 0
     return tuple(part[upper] for part in profile(history, index))
 
@@ -263,7 +286,8 @@ def upper_profile(history: xr.Dataset, index: int) -> tuple[np.ndarray, np.ndarr
 def largest_of(
     pairs: Sequence[tuple[pd.DataFrame, pd.DataFrame]], sizes: pd.DataFrame | pd.Series
 ) -> pd.DataFrame:
-    """The errors (columns `PARTS`, %) of each row's number that is furthest off, relative to sizes; none of what is zero.
+    """The errors (columns `PARTS`, %) of each row's number that is furthest off, relative to sizes;
+    none of what is zero.
 
     pairs: numbers that differ by the mesh, by the steps, and by how many outputs are read.
     """
@@ -280,7 +304,9 @@ def largest_of(
 
 
 def below(rows: pd.DataFrame, *others: pd.DataFrame) -> pd.DataFrame:
-    """Frames below each other, the first simulated where it says nothing else; empty ones are left out."""
+    """Frames below each other, the first simulated where it says nothing else; empty ones are left
+    out.
+    """
     if "source" not in rows:
         rows.insert(0, "source", SIMULATED)
     return pd.concat([rows, *(part for part in others if len(part))], ignore_index=True)
@@ -320,11 +346,13 @@ class Figure:
     layout
         Its picture.
     rows
-        ``rows(data)``: the rows before those of the axis ranges, where they are not the traces of `y` over `x`.
+        ``rows(data)``: the rows before those of the axis ranges, where they are not the traces of
+        `y` over `x`.
     after
         ``after(data)``: rows after them.
     keep, checked, constants
-        Of the traces: columns before `x`; quantities whose error counts in place of those of `y`; columns with one value.
+        Of the traces: columns before `x`; quantities whose error counts in place of those of `y`;
+        columns with one value.
     surface
         Ends (mm) of the stroked surface that is drawn above.
     measured
@@ -332,9 +360,11 @@ class Figure:
     meshes
         Whether it is made from the meshes of its runs too.
     joined
-        Column that names the lines which points are joined to, if they are: the error stated is the largest of a line.
+        Column that names the lines which points are joined to, if they are: the error stated is the
+        largest of a line.
     how, note
-        How the error is taken; or ``note(frame)``, the line under the picture but for the thesis's statement.
+        How the error is taken; or ``note(frame)``, the line under the picture but for the thesis's
+        statement.
     remarks
         What a caption says beyond the picture.
     width
@@ -386,7 +416,9 @@ class Figure:
         )
 
     def measurements(self, folder: str | PathLike) -> tuple[pd.DataFrame, ...]:
-        """The measured data in `folder` that `frame` takes after its four arguments: one table or none."""
+        """The measured data in `folder` that `frame` takes after its four arguments: one table or
+        none.
+        """
         return (MEASURED[self.measured][1](self.measured_files(folder)),) if self.measured else ()
 
     def measured_files(self, folder: str | PathLike) -> list[Path]:
@@ -402,10 +434,12 @@ class Figure:
         reference: pd.DataFrame,
         measured: pd.DataFrame | None = None,
     ) -> pd.DataFrame:
-        """The tidy data frame, units in the column names; simulated rows first, a `source` in every row.
+        """The tidy data frame, units in the column names; simulated rows first, a `source` in every
+        row.
 
-        `coarse` holds the companions on coarser meshes (may be empty: errors of mesh and steps are then NaN), `reference` is the
-        table of `read_reference` (may be empty: thesis ranges are then left out), `measured` a table of `measurements`.
+        `coarse` holds the companions on coarser meshes (may be empty: errors of mesh and steps are
+        then NaN), `reference` is the table of `read_reference` (may be empty: thesis ranges are
+        then left out), `measured` a table of `measurements`.
         """
         data = Data(histories, meshes, coarse, reference, measured)
         rows = self.rows(data) if self.rows else self._traces(data)
@@ -463,9 +497,10 @@ class Figure:
 class Lines:
     """Curves of a panel: one a name in the column `by` (left out, that of the runs) and quantity.
 
-    `looks` of names (in their order) and quantities go over those of `axes.look`; `names` are what a legend says; `ends`: where
-    (x) surfaces are named directly, under `heading`; `recorded`: what points look like that were measured; `bars`: they are
-    points, whose errors are drawn as bars, not as bands; `hidden`: quantity -> that which must be above 0 where it is shown.
+    `looks` of names (in their order) and quantities go over those of `axes.look`; `names` are what
+    a legend says; `ends`: where (x) surfaces are named directly, under `heading`; `recorded`: what
+    points look like that were measured; `bars`: they are points, whose errors are drawn as bars,
+    not as bands; `hidden`: quantity -> that which must be above 0 where it is shown.
     """
 
     by: str = ""
@@ -502,7 +537,9 @@ class Lines:
 
 @dataclass(frozen=True, kw_only=True)
 class Phases:
-    """Curves of a panel: one a time, with the line of its phase, earlier ones below. `colour`: of a surface, in every panel."""
+    """Curves of a panel: one a time, with the line of its phase, earlier ones below. `colour`: of a
+    surface, in every panel.
+    """
 
     colour: str = ""
     order: Sequence[str] = PHASES
@@ -519,7 +556,8 @@ class Phases:
 
 @dataclass(frozen=True, kw_only=True)
 class Panels:
-    """Panels in a grid, or below the stroked surface: one a value of the column `by`, or one of all rows.
+    """Panels in a grid, or below the stroked surface: one a value of the column `by`, or one of all
+    rows.
 
     Attributes
     ----------
@@ -532,13 +570,15 @@ class Panels:
     fill
         What is drawn in each: `Lines`, `Phases` or another ``fill(panel, rows, spec)``.
     limit
-        Axes that end where the thesis's do: of the panel's rows, or of the whole frame if `alike`; "wide": or where the data do.
+        Axes that end where the thesis's do: of the panel's rows, or of the whole frame if `alike`;
+        "wide": or where the data do.
     marked
         Name of the one panel whose bracket says what it is; None: all.
     set, legend
         Arguments of ``Axes.set`` for every panel; of ``Axes.legend`` for the last one.
     xlabel, ylabel, each
-        Words on the axes in place of those of x and y; on the middle panels of the edges, or on all panels there if `each`.
+        Words on the axes in place of those of x and y; on the middle panels of the edges, or on all
+        panels there if `each`.
     share
         Whether panels in a grid share their axes, in matplotlib's words: ``sharex``, ``sharey``.
     """
@@ -642,7 +682,9 @@ class Own:
 
 
 def nine(names: Sequence[object], height: float, **options) -> Panels:
-    """Nine panels in the thesis's order, the flat plate top left and the sharpest surface bottom right."""
+    """Nine panels in the thesis's order, the flat plate top left and the sharpest surface bottom
+    right.
+    """
     options = {"by": "surface", "titles": axs.surface_name} | options
     return Panels(height=height, names=names, shape=(3, 3), **options)
 

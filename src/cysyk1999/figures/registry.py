@@ -1,4 +1,5 @@
-"""The figures of the thesis, chapters 3 to 5, one module of specs a chapter. Nothing here loads matplotlib.
+"""The figures of the thesis, chapters 3 to 5, one module of specs a chapter. Nothing here loads
+matplotlib.
 
 ::
 

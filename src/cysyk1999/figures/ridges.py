@@ -1,7 +1,7 @@
 """Section 5.5: a pad with inner ridges, pressed by nine surfaces and stroked by a flat plate.
 
-A ridge's tip is at x = 0: of the thesis's receptors at 915 um depth the middle one lies in the epidermis, those beside it in the
-dermis, so receptors of equal material are shown beside it.
+A ridge's tip is at x = 0: of the thesis's receptors at 915 um depth the middle one lies in the
+epidermis, those beside it in the dermis, so receptors of equal material are shown beside it.
 """
 
 from __future__ import annotations
@@ -110,7 +110,9 @@ def at_two_places(data: Data) -> pd.DataFrame:
 
 
 def named_at_both(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
-    """Axes of their own, for the tip of a ridge is stiff, with the surfaces' names, and what the thesis's axis would be."""
+    """Axes of their own, for the tip of a ridge is stiff, with the surfaces' names, and what the
+    thesis's axis would be.
+    """
     for panel, ax in panels.items():
         rows, ends = frame[frame["panel"] == panel], {}
         for label, trace in rows.groupby("surface", sort=False):
@@ -126,7 +128,9 @@ def named_at_both(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
 
 
 def at_receptors(data: Data, runs: Runs) -> pd.DataFrame:
-    """Strain energy over time at the thesis's three receptors, and under the tip if there are ridges, both ways."""
+    """Strain energy over time at the thesis's three receptors, and under the tip if there are
+    ridges, both ways.
+    """
     places = {series: (DEPTH, x) for series, x in OFFSETS.items()} | (
         {EXTRA: (UNDER_TIP, 0.0)} if runs is RIDGED else {}
     )
@@ -134,7 +138,8 @@ def at_receptors(data: Data, runs: Runs) -> pd.DataFrame:
     for way, scene in runs.scenes.items():
         stroke = loaded(data.histories[scene])
         for series, (depth, x) in places.items():
-            # the two ways are mirror images: the companion of the stroke to the right serves both, read on either side
+            # the two ways are mirror images: the companion of the stroke to the right serves both,
+            # read on either side
             side = sed(depth, x if way == "right" else -x).read
             errors = curve_errors(
                 data.histories[right], data.coarse.get(right), over_stroke(side)

@@ -1,9 +1,11 @@
-"""What a receptor feels of the direction of a stroke over a ridged pad, read from the strokes of a plate.
+"""What a receptor feels of the direction of a stroke over a ridged pad, read from the strokes of a
+plate.
 
-Strain energy W at a receptor while the plate moves to the right, and to the left, in full slip. The directional index is their
-contrast, (W right - W left) / (W right + W left), averaged over the outputs after the first :data:`STEADY` of the stroke: 0 for
-a receptor that does not feel direction, 1/3 for twice the energy, 1/2 for three times. Ridges and pad are their own mirror image,
-so the stroke to the left at x is the one to the right at -x, and one stroke gives the index everywhere.
+Strain energy W at a receptor while the plate moves to the right, and to the left, in full slip. The
+directional index is their contrast, (W right - W left) / (W right + W left), averaged over the
+outputs after the first :data:`STEADY` of the stroke: 0 for a receptor that does not feel direction,
+1/3 for twice the energy, 1/2 for three times. Ridges and pad are their own mirror image, so the
+stroke to the left at x is the one to the right at -x, and one stroke gives the index everywhere.
 """
 
 from __future__ import annotations
@@ -28,11 +30,12 @@ KEY = (150, 0.35)
 def both_ways(
     history: xr.Dataset, depth: float, offset: float, steady: float = STEADY, tip: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Energies (time) Pa at a receptor while a plate moves to the right and, by the mirror image, to the left.
+    """Energies (time) Pa at a receptor while a plate moves to the right and, by the mirror image,
+    to the left.
 
     Args:
-        history: a stroke to the right. depth, offset: of the receptor, m, the offset from a ridge's tip. steady: m of stroke to
-        leave out. tip: lateral position of that tip, m.
+        history: a stroke to the right. depth, offset: of the receptor, m, the offset from a ridge's
+        tip. steady: m of stroke to leave out. tip: lateral position of that tip, m.
 
     Raises:
         KeyError: the history has no receptor there.
@@ -46,7 +49,9 @@ def both_ways(
 def directional_index(
     history: xr.Dataset, depth: float, offset: float, steady: float = STEADY, tip: float = 0.0
 ) -> float:
-    """Mean over the steady part of a stroke to the right of (W right - W left) / (W right + W left)."""
+    """Mean over the steady part of a stroke to the right of (W right - W left) / (W right + W
+    left).
+    """
     right, left = both_ways(history, depth, offset, steady, tip)
     return float(np.mean((right - left) / (right + left)))
 

@@ -1,19 +1,22 @@
 """What a curve or a number that is shown is wrong by, in three parts found apart from each other.
 
 mesh
-    what is left by what it changes by on its companions' coarser mesh, with the run's own steps and outputs, if it converges with
-    the order that was measured, pressure profiles with a lower one (`remains`), and edges are longer as the root of the nodes is
-    smaller: geometry, ridges above all, keeps some as short. On a mesh of the user's own by what it changes by with its linear
+    what is left by what it changes by on its companions' coarser mesh, with the run's own steps and
+    outputs, if it converges with the order that was measured, pressure profiles with a lower one
+    (`remains`), and edges are longer as the root of the nodes is smaller: geometry, ridges above
+    all, keeps some as short. On a mesh of the user's own by what it changes by with its linear
     quads made quadratic, or the other way round; of all other elements it is not known.
 time steps
-    the same of what it changes by on that mesh when every two steps are made one, read at the outputs that are left; of a stroke,
-    when steps may be twice as long and what lies between its states off by twice as much.
+    the same of what it changes by on that mesh when every two steps are made one, read at the
+    outputs that are left; of a stroke, when steps may be twice as long and what lies between its
+    states off by twice as much.
 sampling
-    what straight lines between outputs leave out: what it changes by when every second output is left out, over 2^p. The order p
-    is seen when every fourth is left: 2 of a smooth curve, 3/2 of one with a kink, 1/2 of one with a jump.
+    what straight lines between outputs leave out: what it changes by when every second output is
+    left out, over 2^p. The order p is seen when every fourth is left: 2 of a smooth curve, 3/2 of
+    one with a kink, 1/2 of one with a jump.
 
-Each is a norm over the very curve shown, in per cent of the curve's own. They are estimates, not bounds:
-figures/tables/accuracy_shown has them beside what curves change by on finer meshes.
+Each is a norm over the very curve shown, in per cent of the curve's own. They are estimates, not
+bounds: figures/tables/accuracy_shown has them beside what curves change by on finer meshes.
 """
 
 from __future__ import annotations
@@ -37,7 +40,9 @@ from fingerpad.results import scene_of
 MESH, STEPS, SAMPLING = PARTS = ("mesh_error (%)", "time_step_error (%)", "sampling_error (%)")
 """Columns of the three parts of an error."""
 LEFT = REMAINS, STEPS_REMAIN, 1.0
-"""What is left of a value's changes: on the companions' mesh, by their steps, and (all of it) by what sampling leaves out."""
+"""What is left of a value's changes: on the companions' mesh, by their steps, and (all of it) by
+what sampling leaves out.
+"""
 SHOWN_ABOVE = 2.0
 """Per cent from which on an error is drawn as a band or a bar."""
 
@@ -51,7 +56,9 @@ _ROUND_OFF = 1e-9
 
 @dataclass(frozen=True)
 class Companion:
-    """A scene on a coarser mesh: with the run's own steps, and with `both` coarser, every two steps made one."""
+    """A scene on a coarser mesh: with the run's own steps, and with `both` coarser, every two steps
+    made one.
+    """
 
     EDGES: ClassVar[float] = COARSER  # over the run's own, where plans do not tell nodes
 
@@ -60,22 +67,28 @@ class Companion:
 
     @cached_property
     def sparse(self) -> xr.Dataset:
-        """The one with the run's own steps at the outputs of the other: what these two differ by is the steps'."""
+        """The one with the run's own steps at the outputs of the other: what these two differ by is
+        the steps'.
+        """
         return (
             self.mesh if self.mesh.sizes["time"] == self.both.sizes["time"] else thinned(self.mesh)
         )
 
     def apart(self, history: xr.Dataset) -> xr.Dataset | None:
-        """The one with the run's own steps; None where its mesh has as many nodes as the run's: it tells nothing of its error."""
+        """The one with the run's own steps; None where its mesh has as many nodes as the run's: it
+        tells nothing of its error.
+        """
         own, other = (
             _planned(each).get("discretisation", {}).get("nodes") for each in (history, self.mesh)
         )
         return None if own is not None and own == other else self.mesh
 
     def remains(self, history: xr.Dataset, order: float = ORDER) -> float:
-        """What a curve is wrong by over what it changes by on the other mesh, if that is :meth:`apart`.
+        """What a curve is wrong by over what it changes by on the other mesh, if that is
+        :meth:`apart`.
 
-        Its edges are taken to be longer as the root of its nodes is smaller (representative size; Celik et al. 2008, Eq 2).
+        Its edges are taken to be longer as the root of its nodes is smaller (representative size;
+        Celik et al. 2008, Eq 2).
         """
         own, other = _planned(history), _planned(self.mesh)
         if not own or _external(own):
@@ -84,7 +97,9 @@ class Companion:
         return remains((nodes / others) ** 0.5, order)
 
     def mesh_error(self, history: xr.Dataset, curve: Curve) -> float:
-        """What a curve is wrong by because of the mesh, as a norm in the unit of its values; NaN where that is not known."""
+        """What a curve is wrong by because of the mesh, as a norm in the unit of its values; NaN
+        where that is not known.
+        """
         if (other := self.apart(history)) is None:
             return np.nan
         (x, y), (xm, ym) = curve(history), curve(other)
@@ -97,7 +112,9 @@ class Companion:
         return self.remains(history, curve.order) * change
 
     def number(self, history: xr.Dataset, own: Number, other: Number) -> Number:
-        """A number, of what it is on the run's `own` mesh and on the other, on one with edges `COARSER` times as long."""
+        """A number, of what it is on the run's `own` mesh and on the other, on one with edges
+        `COARSER` times as long.
+        """
         return own + self.remains(history) / REMAINS * (other - own)
 
 
@@ -117,7 +134,9 @@ def _external(planned: Mapping[str, Any]) -> bool:
 def instead(
     history: xr.Dataset, companion: Companion | None, read: Callable[[xr.Dataset], Number]
 ) -> tuple[Number, ...]:
-    """What is read in place of a run's: on a coarser mesh, and there with its own steps and coarser ones; NaN: not known."""
+    """What is read in place of a run's: on a coarser mesh, and there with its own steps and coarser
+    ones; NaN: not known.
+    """
     own = read(history)
     if companion is None:
         return (own * np.nan,) * 3
@@ -139,7 +158,9 @@ class Errors:
 
     @classmethod
     def left(cls, *changes: float) -> Errors:
-        """Of what a value changes by on the companions' mesh, by their steps and by sampling, what is left (:data:`LEFT`)."""
+        """Of what a value changes by on the companions' mesh, by their steps and by sampling, what
+        is left (:data:`LEFT`).
+        """
         return cls(*(share * change for share, change in zip(LEFT, changes, strict=True)))
 
     @property
@@ -168,7 +189,8 @@ class Curve:
     Attributes
     ----------
     read
-        ``read(history)``: places (n,), in one direction, twice where the curve jumps, and values (n,).
+        ``read(history)``: places (n,), in one direction, twice where the curve jumps, and values
+        (n,).
     outputs
         Whether its points are outputs; else they are places on the skin at one output.
     order
@@ -189,7 +211,9 @@ class Curve:
         return x + apart, y
 
     def sparse(self, history: xr.Dataset, every: int) -> list[tuple[np.ndarray, np.ndarray]]:
-        """The curve of every so many-th output and of the ends of legs; or of so many points, from each of the first ones on."""
+        """The curve of every so many-th output and of the ends of legs; or of so many points, from
+        each of the first ones on.
+        """
         if self.outputs:
             return [self(thinned(history, every))]
         x, y = self(history)
@@ -204,7 +228,9 @@ def over_time(trace: Trace, order: float = ORDER) -> Curve:
 
 
 def over_stroke(trace: Trace, low: float = -np.inf, high: float = np.inf) -> Curve:
-    """A trace of the loaded outputs of a stroke, over its distance, from `low` to `high` (m) of it."""
+    """A trace of the loaded outputs of a stroke, over its distance, from `low` to `high` (m) of
+    it.
+    """
 
     def read(history: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
         x, y = distance(stroke := loaded(history)), trace(stroke)
@@ -229,7 +255,9 @@ def at_output(
 
 @kept
 def thinned(history: xr.Dataset, every: int = 2) -> xr.Dataset:
-    """Every so many-th output of each leg, and the last of each; of a stroke, of its loaded outputs."""
+    """Every so many-th output of each leg, and the last of each; of a stroke, of its loaded
+    outputs.
+    """
     if "stroke_distance" in history and np.ptp(history["stroke_distance"].values):
         history = loaded(history)
     leg = history["leg"].values
@@ -249,16 +277,20 @@ def norm(x: np.ndarray, y: np.ndarray) -> float:
 
 
 def curve_errors(history: xr.Dataset, companion: Companion | None, *curves: Curve) -> Errors:
-    """Errors of the curve that is furthest off, in per cent of its norm. Mesh and steps are NaN without a companion."""
+    """Errors of the curve that is furthest off, in per cent of its norm. Mesh and steps are NaN
+    without a companion.
+    """
     return furthest(_of_curve(history, companion, curve) for curve in curves)
 
 
 def family_errors(
     history: xr.Dataset, companion: Companion | None, curves: Iterable[Curve]
 ) -> Errors:
-    """Errors of curves drawn as one family: r.m.s. of all of them over that of what they show, in per cent.
+    """Errors of curves drawn as one family: r.m.s. of all of them over that of what they show, in
+    per cent.
 
-    For many lines of one quantity on one axis, of which some hardly rise from zero: relative to themselves these tell nothing.
+    For many lines of one quantity on one axis, of which some hardly rise from zero: relative to
+    themselves these tell nothing.
     """
     found = [
         (norm(*curve(history)), astuple(_of_curve(history, companion, curve))) for curve in curves
@@ -295,11 +327,13 @@ def shared_place(place: float, companion: Companion | None) -> float:
 
 
 def sampling(history: xr.Dataset, curve: Curve) -> float:
-    """What straight lines between its points leave out of a curve, as a norm in the unit of its values.
+    """What straight lines between its points leave out of a curve, as a norm in the unit of its
+    values.
 
-    Left out every second point, the lines miss by 2^p times as much. Where the values themselves follow from differences of
-    outputs, as rates do, those that stay change too, by 2^p - 1 times what they are wrong by. Of a surface stepped over the pad
-    nothing is left out: it is pressed at these points.
+    Left out every second point, the lines miss by 2^p times as much. Where the values themselves
+    follow from differences of outputs, as rates do, those that stay change too, by 2^p - 1 times
+    what they are wrong by. Of a surface stepped over the pad nothing is left out: it is pressed at
+    these points.
     """
     if (
         curve.outputs
@@ -325,7 +359,9 @@ def sampling(history: xr.Dataset, curve: Curve) -> float:
 
 
 def number_errors(history: xr.Dataset, companion: Companion | None, *features: Feature) -> Errors:
-    """Errors of the number, or numbers together, that are furthest off, in per cent of their size."""
+    """Errors of the number, or numbers together, that are furthest off, in per cent of their
+    size.
+    """
     return furthest(_of_number(history, companion, feature) for feature in features)
 
 

@@ -14,7 +14,9 @@ from fingerpad.results import read_dataset
 
 
 class _Opened(Each):
-    """Scene name -> what `opener` makes of its file; each file is opened once, and only if asked for."""
+    """Scene name -> what `opener` makes of its file; each file is opened once, and only if asked
+    for.
+    """
 
     def __init__(self, opener: Callable[[Path], Any], paths: Iterable[Path]) -> None:
         files = {path.parent.name: path for path in paths}
@@ -22,11 +24,13 @@ class _Opened(Each):
 
 
 def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping]:
-    """Sort result files of the workflow, ``.../<simulations, coarse or coarse_mesh>/<scene>/<history.nc or mesh.msh>``.
+    """Sort result files of the workflow, ``.../<simulations, coarse or
+    coarse_mesh>/<scene>/<history.nc or mesh.msh>``.
 
     Returns:
-        Mappings scene name -> result: the histories (`xarray.Dataset`), the meshes (`PadMesh`), and the companions on coarser
-        meshes (:class:`cysyk1999.measures.errors.Companion`), whose files are both needed when one is looked at.
+        Mappings scene name -> result: the histories (`xarray.Dataset`), the meshes (`PadMesh`), and
+        the companions on coarser meshes (:class:`cysyk1999.measures.errors.Companion`), whose files
+        are both needed when one is looked at.
     """
     files = [Path(path) for path in paths]
     kinds: dict[str, list[Path]] = {"coarse": [], "coarse_mesh": [], "simulations": []}
@@ -42,7 +46,9 @@ def read_results(paths: Iterable[str | Path]) -> tuple[Mapping, Mapping, Mapping
 
 
 def read_coarse(paths: Iterable[str | Path]) -> Mapping[str, xr.Dataset]:
-    """Histories of the companions with coarser meshes and steps, by scene, of those among some files of the workflow."""
+    """Histories of the companions with coarser meshes and steps, by scene, of those among some
+    files of the workflow.
+    """
     return _Opened(
         read_dataset, (path for path in map(Path, paths) if path.parent.parent.name == "coarse")
     )

@@ -1,4 +1,5 @@
-"""Measures of pressed pads: contact, pressure, strain energy, predicted rates. "top" is the end of the ramp, "end" of the hold.
+"""Measures of pressed pads: contact, pressure, strain energy, predicted rates. "top" is the end of
+the ramp, "end" of the hold.
 
 Numbers that strokes have too are read of their `loaded` outputs.
 """
@@ -87,7 +88,9 @@ def pressing(scene) -> bool:
 
 @measure("count", lambda scene: not wavy(scene))
 def receptor_depths(history):
-    """How many of the thesis's depths there are: of its profiles, in the epidermis and in the dermis."""
+    """How many of the thesis's depths there are: of its profiles, in the epidermis and in the
+    dermis.
+    """
     have = (
         set(np.round(history["receptor_depth"].values * 1e6).astype(int))
         if "receptor_depth" in history
@@ -116,7 +119,9 @@ def node_spacing(history):
 
 @measure("count", wavy)
 def nodes_present(history):
-    """How many of the nine positions of Fig 5-10 have a skin node within half of the thesis's node spacing."""
+    """How many of the nine positions of Fig 5-10 have a skin node within half of the thesis's node
+    spacing.
+    """
     x = history["skin_x"].values[nodes_at(history)] * 1e3
     return (abs(x - np.array(NODES)) <= 34e-3).sum()
 
@@ -173,7 +178,9 @@ def peak_time(history):
 
 
 def _first_peak(history: xr.Dataset) -> dict[str, int]:
-    """Outputs of the first peak of the centre pressure within the ramp, of the dip after it, and of the ramp's end."""
+    """Outputs of the first peak of the centre pressure within the ramp, of the dip after it, and of
+    the ramp's end.
+    """
     top = ramp_end(history)
     p = features.centre_pressure(history)[: top + 1]
     inner = [i for i in range(1, top) if p[i] > p[i - 1] and p[i] >= p[i + 1]]
@@ -186,7 +193,9 @@ def _first_peak(history: xr.Dataset) -> dict[str, int]:
 
 @measure("1", held)
 def off_centre_excess(history):
-    """Of the largest pressure over the centre's: at the end, and the largest at any time; 0 while the centre does not touch."""
+    """Of the largest pressure over the centre's: at the end, and the largest at any time; 0 while
+    the centre does not touch.
+    """
     pressure = history[PRESSURE].values
     centre = pressure[:, centre_node(history)]
     excess = np.divide(pressure.max(axis=1), centre, out=np.ones_like(centre), where=centre > 0) - 1
@@ -207,7 +216,9 @@ def asymmetry(history):
 
 
 def _peak_place(history: xr.Dataset, index: int) -> float:
-    """Distance (m) of the pressure peak from the centre, between nodes by a parabola through five of them."""
+    """Distance (m) of the pressure peak from the centre, between nodes by a parabola through five
+    of them.
+    """
     x, p = profile(history, index)
     half = np.arange(centre_node(history), len(x))
     node = half[int(p[half].argmax())]
@@ -266,7 +277,9 @@ def _falls(history: xr.Dataset) -> dict[str, tuple[float, float]]:
 
 @measure("s", held)
 def half_of_fall(history):
-    """Time to half of the fall of the pressure: of the largest, of the centre's, and at nodes past the peak."""
+    """Time to half of the fall of the pressure: of the largest, of the centre's, and at nodes past
+    the peak.
+    """
     found = [
         _decay(history, values)[1] for values in history[PRESSURE].values.T[_past_peak(history)]
     ]
@@ -293,7 +306,9 @@ def _late_peaks(history: xr.Dataset) -> np.ndarray:
 
 @measure("count", held)
 def late_nodes(history):
-    """Nodes that join in the hold, and those of them that reach a higher peak than the one before."""
+    """Nodes that join in the hold, and those of them that reach a higher peak than the one
+    before.
+    """
     peaks = _late_peaks(history)
     return {"all": len(peaks), "higher": (np.diff(peaks) > 0).sum()}
 
@@ -307,7 +322,9 @@ def late_peak(history):
 
 @measure("mm", held)
 def falls_up_to(history):
-    """Distance from the centre beyond which the pressure rises in the hold; NaN where none does or where the two mingle."""
+    """Distance from the centre beyond which the pressure rises in the hold; NaN where none does or
+    where the two mingle.
+    """
     nodes, top = surface_nodes(history), ramp_end(history)
     change = history[PRESSURE].values[-1, nodes] - history[PRESSURE].values[top, nodes]
     rising = np.flatnonzero(change > 0)
@@ -321,7 +338,9 @@ def falls_up_to(history):
 
 
 def _traces(history: xr.Dataset) -> dict[str, np.ndarray]:
-    """Strain energy (time) Pa at the thesis's receptors: under the centre, beside it, and by other definitions."""
+    """Strain energy (time) Pa at the thesis's receptors: under the centre, beside it, and by other
+    definitions.
+    """
     places = {f"{z} um": (z * 1e-6, 0.0, "strain_energy_density") for z in (*UM, 935)}
     places |= {
         f"915 um, {side}46 um": (DEPTH, x, "strain_energy_density")
@@ -339,7 +358,9 @@ def _traces(history: xr.Dataset) -> dict[str, np.ndarray]:
 
 @measure("1", lambda scene: held(scene) and scene.name in FAST.scenes.values())
 def energy_peak_offset(history):
-    """Distance of the largest energy from the centre at top and end, the larger, over the spacing of the receptors."""
+    """Distance of the largest energy from the centre at top and end, the larger, over the spacing
+    of the receptors.
+    """
     found = {}
     for depth in (800e-6, 915e-6):
         row = receptors_at(history, depth)
@@ -386,7 +407,9 @@ def rate(history):
 
 @measure("impulses/s", lambda scene: held(scene) or waves(scene))
 def answer(history):
-    """What Fig 5-17 compares: the peak rate of what is pressed, the highest burst rate of what is stroked."""
+    """What Fig 5-17 compares: the peak rate of what is pressed, the highest burst rate of what is
+    stroked.
+    """
     if is_stroke(history):
         return max(burst_values(loaded(history), BURST_RATE).values())
     return predicted_rate(history)[IMPULSE_RATE].max()
@@ -450,7 +473,8 @@ PLAIN = (
     Measure("depth", "mm", lambda h: _ends(h, 1e3 * h["indentation_depth"].values), pressing),
     Measure("width", "mm", lambda h: _ends(h, 1e3 * h["contact_width"].values), pressing),
     Measure("half_width", "mm", lambda h: 1e3 * h["contact_width"].values[-1] / 2, pressing),
-    # largest downward displacement of any skin node; where a depth is prescribed, it is that, to 0.1 um
+    # largest downward displacement of any skin node; where a depth is prescribed, it is that, to
+    # 0.1 um
     Measure("sunk", "mm", lambda h: -1e3 * h["skin_displacement_y"].values.min(), pressing),
     Measure(
         "deflection",
@@ -463,7 +487,8 @@ PLAIN = (
 
 PRESSURE_MEASURES = (
     Measure("highest_pressure", "Pa", lambda h: _ends(h, features.peak_pressure(h)), pressing),
-    # at the first peak within the ramp, at the dip after it and at the ramp's end; without one the last alone
+    # at the first peak within the ramp, at the dip after it and at the ramp's end; without one the
+    # last alone
     Measure(
         "ramp_pressure",
         "Pa",

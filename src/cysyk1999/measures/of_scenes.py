@@ -1,4 +1,6 @@
-"""Inputs: measures of a scene alone, known before anything is simulated; and the counts of its mesh."""
+"""Inputs: measures of a scene alone, known before anything is simulated; and the counts of its
+mesh.
+"""
 
 from __future__ import annotations
 
@@ -196,7 +198,9 @@ TAKEN = (
 
 
 def _smallest_edge(mesh: PadMesh) -> float:
-    """Smallest element edge (um) in epidermis and dermis within 2 mm of the middle, on the upper side."""
+    """Smallest element edge (um) in epidermis and dermis within 2 mm of the middle, on the upper
+    side.
+    """
     corners = mesh.points[mesh.cells[:, : KINDS[mesh.element].corners]]
     middle = corners.mean(axis=1)
     near = (

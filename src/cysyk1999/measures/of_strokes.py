@@ -1,4 +1,6 @@
-"""Measures of strokes, of the wavy surface and of a plate, read of their `loaded` outputs. "26" names the convexity of 26 1/m."""
+"""Measures of strokes, of the wavy surface and of a plate, read of their `loaded` outputs. "26"
+names the convexity of 26 1/m.
+"""
 
 from __future__ import annotations
 
@@ -69,9 +71,13 @@ from fingerpad.receptors.spikes import integrated
 SHALLOW = 560e-6
 """Depth (m) of the double peaks of Figs 5-22 to 5-24."""
 PROMINENCE = 0.005
-"""Least prominence of a peak of strain energy or rate, relative to the largest value while the convexity passes."""
+"""Least prominence of a peak of strain energy or rate, relative to the largest value while the
+convexity passes.
+"""
 SETTLED, BEGINNING = 2e-3, 5.0
-"""Stroke of a plate (m) after which its start is over, and the part of it (mm) that is its beginning."""
+"""Stroke of a plate (m) after which its start is over, and the part of it (mm) that is its
+beginning.
+"""
 
 stroked, Stroke = partial(measure, of="stroke"), partial(Measure, of="stroke")
 in_full, in_part, only_ten = (
@@ -126,9 +132,11 @@ def corner_pressure(stroke):
 
 @stroked("mm", in_part)
 def lost_contact(stroke):
-    """Length of surface without contact: before the first convexity and before the second, and where the first loss is.
+    """Length of surface without contact: before the first convexity and before the second, and
+    where the first loss is.
 
-    Before the first: within 2 mm of the sharp corner; before the second: from the middle of the hollow to a quarter into it.
+    Before the first: within 2 mm of the sharp corner; before the second: from the middle of the
+    hollow to a quarter into it.
     """
     first, second = list(convexities(stroke).values())[:2]
     free = distance(stroke)[~touching(stroke)]
@@ -149,7 +157,9 @@ def _lost(stroke: xr.Dataset, low: float, high: float) -> float:
 
 @stroked("mm", wavy)
 def skin_drag(stroke):
-    """Lateral displacement of the centre node under the arcs, from the first corner to the second: mean and least."""
+    """Lateral displacement of the centre node under the arcs, from the first corner to the second:
+    mean and least.
+    """
     ends, under = list(convexities(stroke).values()), place(stroke)
     over = 1e3 * lateral(stroke)[(under >= ends[0].start) & (under <= ends[-1].end)]
     return {"mean": over.mean(), "least": over.min()}
@@ -160,7 +170,9 @@ def skin_drag(stroke):
 
 @stroked("1", wavy)
 def curvature_correlation(stroke):
-    """Of pressure with the curvature of the skin while it touches: at the centre, and at the nine nodes of Fig 5-10."""
+    """Of pressure with the curvature of the skin while it touches: at the centre, and at the nine
+    nodes of Fig 5-10.
+    """
     found, pressures = {"centre": _scaled_curvature(stroke)[3]}, stroke[PRESSURE].values
     touched = {
         at: n
@@ -188,7 +200,9 @@ def curvature_fit(stroke):
 
 @stroked("1", wavy)
 def curvature_miss(stroke):
-    """Median difference of the skin's curvature from each convexity's, where what it is fitted through touches it."""
+    """Median difference of the skin's curvature from each convexity's, where what it is fitted
+    through touches it.
+    """
     found, under, all_touch = centre_curvature(stroke), place(stroke), embedded(stroke)
     out = {}
     for label, arc in convexities(stroke).items():
@@ -215,7 +229,9 @@ def profile_shift(history, runs):
 
 
 def _lag(stroke: xr.Dataset, runs: Together) -> tuple[float, float]:
-    """Lag (m) of the centre pressure of a stroke behind that of the stepped surface, and their correlation when shifted."""
+    """Lag (m) of the centre pressure of a stroke behind that of the stepped surface, and their
+    correlation when shifted.
+    """
     stepped = loaded(runs[STEPPED])
     return lag(
         distance(stroke),
@@ -227,7 +243,9 @@ def _lag(stroke: xr.Dataset, runs: Together) -> tuple[float, float]:
 
 @stroked("%", named([FULL["1"]]), beside=True)
 def spread_of_traces(history, runs):
-    """Standard deviation of whole traces over the velocities, root mean square, over the mean square root of the traces."""
+    """Standard deviation of whole traces over the velocities, root mean square, over the mean
+    square root of the traces.
+    """
     strokes, found = [loaded(runs[name]) for name in FULL.values()], {}
     for label, trace in (
         ("pressure", features.centre_pressure),
@@ -278,7 +296,9 @@ def _rate_at_560_um(stroke: xr.Dataset, runs: Together) -> np.ndarray:
 
 
 def _by_eq_4_4(history: xr.Dataset, runs: Together) -> tuple[np.ndarray, np.ndarray]:
-    """Strain energy (time) Pa at 915 um as simulated and by Eq 4-4 with a constant shift of the receptor."""
+    """Strain energy (time) Pa at 915 um as simulated and by Eq 4-4 with a constant shift of the
+    receptor.
+    """
     law, shift = runs.once(stroke_law)
     s = skin_sample(history, RECEPTOR_DEPTH)
     return s.energy, s.by(law, shift)
@@ -286,7 +306,9 @@ def _by_eq_4_4(history: xr.Dataset, runs: Together) -> tuple[np.ndarray, np.ndar
 
 @measure("1", in_full, beside=True)
 def departure_of_eq_4_4(history, runs):
-    """Residual of Eq 4-4 over the strain energy, and the share of variance it explains, at all outputs."""
+    """Residual of Eq 4-4 over the strain energy, and the share of variance it explains, at all
+    outputs.
+    """
     felt, by_law = _by_eq_4_4(history, runs)
     return {"residual": rms(by_law - felt) / rms(felt), "R2": r_squared(felt, by_law)}
 
@@ -355,7 +377,9 @@ def dynamic_share(stroke):
 
 @stroked("mm", in_full)
 def rate_after_energy_rate(stroke):
-    """Stroke distance from the peak of the energy's rate to that of the predicted rate, while each convexity passes."""
+    """Stroke distance from the peak of the energy's rate to that of the predicted rate, while each
+    convexity passes.
+    """
     frame, apart = predicted_rate(stroke), {}
     for label, where in _passages(stroke).items():
         part = frame[where]
@@ -370,7 +394,9 @@ def rate_after_energy_rate(stroke):
 
 
 def _settled(stroke: xr.Dataset) -> np.ndarray:
-    """Outputs (time) at which the start of a plate's stroke is over. Raises KeyError for a shorter one."""
+    """Outputs (time) at which the start of a plate's stroke is over. Raises KeyError for a shorter
+    one.
+    """
     late = abs(distance(stroke)) >= SETTLED
     if not late.any():
         raise KeyError(f"stroke of {SETTLED * 1e3:g} mm")
@@ -392,7 +418,9 @@ def spread_of_three(stroke):
 
 @stroked("Pa", plates)
 def energy_beside(stroke):
-    """Strain energy at -46 um: the highest at the start of the stroke, the highest and the least once it is settled."""
+    """Strain energy at -46 um: the highest at the start of the stroke, the highest and the least
+    once it is settled.
+    """
     settled, values = _settled(stroke), energy(stroke, DEPTH, -BESIDE)
     return {
         "start": values[~settled].max(),
@@ -411,7 +439,9 @@ def islands_of_contact(history):
 
 @stroked("impulses", plates)
 def plate_impulses(history):
-    """Mean number of impulses of a receptor 46 um to the right, in the whole stroke and at its beginning."""
+    """Mean number of impulses of a receptor 46 um to the right, in the whole stroke and at its
+    beginning.
+    """
     rate = plate_rate(history)
     grown = integrated(rate[TIME], rate[IMPULSE_RATE])
     return {"whole": grown[-1], "beginning": np.interp(BEGINNING, rate[DISTANCE], grown)}
@@ -444,7 +474,8 @@ CONVEXITIES = (
             ("convexity_energy_rate", "Pa/s", f"largest {RATE}"),
         )
     ),
-    # mean numbers of impulses at the distances of each hollow, and while the centre of the skin, dragged back, is under it
+    # mean numbers of impulses at the distances of each hollow, and while the centre of the skin,
+    # dragged back, is under it
     Stroke("impulses_in_hollows", "impulses", lambda h: _in_hollows(h, distance), in_full),
     Stroke("impulses_under_hollows", "impulses", lambda h: _in_hollows(h, place), in_full),
 )

@@ -1,13 +1,16 @@
-"""Every quantity of figures, tables and baselines, said once: its name and unit, its axis label, how it is read of a history.
+"""Every quantity of figures, tables and baselines, said once: its name and unit, its axis label,
+how it is read of a history.
 
-A quantity *is* the header of its column, ``"name (unit)"``, and can stand wherever such a text can::
+A quantity *is* the header of its column, ``"name (unit)"``, and can stand wherever such a text
+can::
 
     frame[P_CENTRE]                         # the column "centre_pressure (Pa)"
     P_CENTRE.read(history)                  # its values over time, in the unit of the header
     ax.set_ylabel(P_CENTRE.label)
     SED.reading(energy_at(915e-6))          # the same column, read at a depth
 
-A quantity that is added here has a header, an axis label and a tolerance of its baseline everywhere.
+A quantity that is added here has a header, an axis label and a tolerance of its baseline
+everywhere.
 """
 
 from __future__ import annotations
@@ -31,8 +34,9 @@ class Q(str):
     checked
         Whether the errors of a figure count it.
     tolerance
-        Largest difference of a column from its baseline, relative to the largest value of a curve; None: it has no baseline.
-        Pressure and width carry the jumps of single nodes entering contact; everything else is smooth.
+        Largest difference of a column from its baseline, relative to the largest value of a curve;
+        None: it has no baseline. Pressure and width carry the jumps of single nodes entering
+        contact; everything else is smooth.
     """
 
     name: str
@@ -60,7 +64,9 @@ class Q(str):
         return str, (str(self),)  # saved with a frame, it is the header
 
     def reading(self, read: Trace, label: str = "") -> Q:
-        """The same column, read in another way (at a depth, of a law), if need be with another word on the axis."""
+        """The same column, read in another way (at a depth, of a law), if need be with another word
+        on the axis.
+        """
         return Q(self.name, self.unit, label or self.label, read, self.checked, self.tolerance)
 
 

@@ -1,6 +1,8 @@
-"""What receptors make of a history: samples for the laws, predicted rates, impulses, bursts. Nothing here computes mechanics.
+"""What receptors make of a history: samples for the laws, predicted rates, impulses, bursts.
+Nothing here computes mechanics.
 
-Functions take one history (see `fingerpad.results`) and return arrays in SI, or a tidy frame with units in the column names.
+Functions take one history (see `fingerpad.results`) and return arrays in SI, or a tidy frame with
+units in the column names.
 """
 
 from __future__ import annotations
@@ -68,7 +70,9 @@ DEPTHS = tuple(d * 1e-6 for d in (560, 600, 640, 765, 800, 845, 870, 915, 960))
 NODE_SURFACE, NODE_COUNT = "210", 12
 """Surface and number of nodes of Fig 4-17."""
 NODE_SPACING = 67.2e-6
-"""m; between the nodes of Fig 4-17 (Cysyk 1999), at whose places Eqs 4-1 to 4-3 are read on any mesh."""
+"""m; between the nodes of Fig 4-17 (Cysyk 1999), at whose places Eqs 4-1 to 4-3 are read on any
+mesh.
+"""
 TRIALS = 4
 """Trials of a surface in Fig 4-2."""
 SHALLOW_DEPTH = 600e-6
@@ -94,7 +98,9 @@ def is_stroke(history: xr.Dataset) -> bool:
 
 
 def strokes(histories: Histories) -> dict[str, xr.Dataset]:
-    """Histories of strokes over the wavy surface at a speed, by scene: those over most of it first, the slowest first."""
+    """Histories of strokes over the wavy surface at a speed, by scene: those over most of it first,
+    the slowest first.
+    """
     scenes = {name: scene_of(history) for name, history in histories.items()}
     found = [name for name, scene in scenes.items() if waves(scene)]
     order = {
@@ -107,7 +113,9 @@ def strokes(histories: Histories) -> dict[str, xr.Dataset]:
 
 
 def upper_skin(history: xr.Dataset) -> np.ndarray:
-    """Indices of skin nodes from left to right, as far as anything ever touches and one node more on either side."""
+    """Indices of skin nodes from left to right, as far as anything ever touches and one node more
+    on either side.
+    """
     upper = np.flatnonzero(history["skin_y"].values > 0)
     upper = upper[np.argsort(history["skin_x"].values[upper])]
     touched = np.flatnonzero((history[PRESSURE].values[:, upper] > 0).any(axis=0))
@@ -117,8 +125,8 @@ def upper_skin(history: xr.Dataset) -> np.ndarray:
 def sunk(history: xr.Dataset) -> np.ndarray:
     """Downward displacement (time) m of the skin over the receptor at the centre: its indentation.
 
-    Under a pressed surface it is the indentation depth from first touch; under a stroked one it goes up and down with the
-    surface, which the depth of the surface's frame does not.
+    Under a pressed surface it is the indentation depth from first touch; under a stroked one it
+    goes up and down with the surface, which the depth of the surface's frame does not.
     """
     return -history["skin_displacement_y"].values[:, centre_node(history)]
 
@@ -149,7 +157,8 @@ def fit_sum(histories: Iterable[xr.Dataset], depth: float, with_depth: bool = Tr
 
 
 def stroke_law(histories: Histories, depth: float = RECEPTOR_DEPTH) -> tuple[SpatialSum, float]:
-    """Eq 4-4 of the nine pressed surfaces, and the constant shift (m) with which it comes closest to the stroke at 10 mm/s.
+    """Eq 4-4 of the nine pressed surfaces, and the constant shift (m) with which it comes closest
+    to the stroke at 10 mm/s.
 
     Raises KeyError if one of them was not simulated.
     """
@@ -184,18 +193,20 @@ def node_places(count: int) -> np.ndarray:
 
 
 def contact_nodes(history: xr.Dataset, count: int | None = None) -> pd.DataFrame:
-    """Every output of every node of the thesis's that is in contact, from the centre to the right: what Eqs 4-1 to 4-3 relate.
+    """Every output of every node of the thesis's that is in contact, from the centre to the right:
+    what Eqs 4-1 to 4-3 relate.
 
-    Nodes are left out while they are nearer to the contact's edge than one node spacing, since the inverse distance has no
-    bound there; the edge that the thesis sees is itself a node.
+    Nodes are left out while they are nearer to the contact's edge than one node spacing, since the
+    inverse distance has no bound there; the edge that the thesis sees is itself a node.
 
     Args:
         count: of nodes from the centre on; left out, all that ever touch.
 
     Returns:
-        Columns time, node_x (undeformed), contact_pressure, distance to the contact's edge, displacement below that of the skin
-        at the edge, downward speed, curvature of the surface, and ``ramp`` and ``past_peak`` (bool): up to the top of the ramp,
-        and from the largest pressure of the node on.
+        Columns time, node_x (undeformed), contact_pressure, distance to the contact's edge,
+        displacement below that of the skin at the edge, downward speed, curvature of the surface,
+        and ``ramp`` and ``past_peak`` (bool): up to the top of the ramp, and from the largest
+        pressure of the node on.
     """
     nodes = upper_skin(history)
     skin = history["skin_x"].values[nodes]
@@ -258,18 +269,23 @@ LAW_ROWS: dict[str, Callable[[pd.DataFrame], pd.Series]] = {
     "4-2": lambda nodes: nodes["ramp"],
     "4-3": lambda nodes: ~nodes["ramp"] & nodes["past_peak"],
 }
-"""Rows of `contact_nodes` that a law speaks of: from each node's peak on; during the ramp; during the hold, from each node's
-peak on."""
+"""Rows of `contact_nodes` that a law speaks of: from each node's peak on; during the ramp; during
+the hold, from each node's peak on.
+"""
 
 
 def pressure_by_law(law: str, nodes: pd.DataFrame, constants: Sequence[float]) -> pd.DataFrame:
-    """The rows of `contact_nodes` that a law speaks of, with the pressure it gives them (Fig 4-17)."""
+    """The rows of `contact_nodes` that a law speaks of, with the pressure it gives them (Fig
+    4-17).
+    """
     spoken_of = nodes[LAW_ROWS[law](nodes)]
     return spoken_of.assign(**{P_LAW: terms_of(law, spoken_of) @ np.asarray(constants)})
 
 
 def fit_nodes(law: str, nodes: pd.DataFrame) -> np.ndarray:
-    """Constants of Eq 4-1, 4-2 or 4-3 closest to the pressures of the rows of `contact_nodes` that it speaks of."""
+    """Constants of Eq 4-1, 4-2 or 4-3 closest to the pressures of the rows of `contact_nodes` that
+    it speaks of.
+    """
     spoken_of = nodes[LAW_ROWS[law](nodes)]
     return linear(terms_of(law, spoken_of), spoken_of[P].to_numpy())
 
@@ -284,11 +300,13 @@ def predicted_rate(
     law: ImpulseRate = THESIS_RATE,
     offset: float = 0.0,
 ) -> pd.DataFrame:
-    """Impulse rate of a slowly adapting receptor by Eq 4-5 or 5-1 at a depth (m) under the centre, or at an offset (m) beside.
+    """Impulse rate of a slowly adapting receptor by Eq 4-5 or 5-1 at a depth (m) under the centre,
+    or at an offset (m) beside.
 
     Returns:
-        Columns time, strain energy, its rate, what each contributes, and the rate (impulses/s); for a stroke the stroke
-        distance too. The time of a kink between legs is there twice (see `fingerpad.receptors.laws.rate_by_leg`).
+        Columns time, strain energy, its rate, what each contributes, and the rate (impulses/s); for
+        a stroke the stroke distance too. The time of a kink between legs is there twice (see
+        `fingerpad.receptors.laws.rate_by_leg`).
     """
     return _rate_frame(history, energy(history, depth, offset), law)
 
@@ -314,10 +332,12 @@ def _rate_frame(history: xr.Dataset, values: np.ndarray, law: ImpulseRate) -> pd
 def rapidly_adapting_rate(
     history: xr.Dataset, law: RapidlyAdapting, stimulus: str = "curvature", depth: float = 600e-6
 ) -> pd.DataFrame:
-    """Impulse rate of a rapidly adapting receptor from the rate of the skin's curvature at the centre, or of strain energy.
+    """Impulse rate of a rapidly adapting receptor from the rate of the skin's curvature at the
+    centre, or of strain energy.
 
     Args:
-        stimulus: "curvature" (1/m, of the deformed skin) or "energy" (Pa, strain energy density at `depth`, m).
+        stimulus: "curvature" (1/m, of the deformed skin) or "energy" (Pa, strain energy density at
+        `depth`, m).
     """
     values = (
         skin_curvature(history, centre_node(history))
@@ -339,8 +359,9 @@ def rapidly_adapting_rate(
 def raster(
     frame: pd.DataFrame, repetitions: int, seed: int, variation: float = VARIATION
 ) -> pd.DataFrame:
-    """Predicted impulses of repeated trials at a predicted rate: one row an impulse, columns trial (from 1), time, stroke
-    distance."""
+    """Predicted impulses of repeated trials at a predicted rate: one row an impulse, columns trial
+    (from 1), time, stroke distance.
+    """
     time = frame[TIME].to_numpy()
     parts = [
         pd.DataFrame({"trial": trial, TIME: train})
@@ -362,13 +383,17 @@ def impulses_of(
     depth: float = RECEPTOR_DEPTH,
     law: ImpulseRate = THESIS_RATE,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Predicted rate of a stroke from where it begins to slide, and the impulses of some repetitions of it."""
+    """Predicted rate of a stroke from where it begins to slide, and the impulses of some
+    repetitions of it.
+    """
     frame = predicted_rate(loaded(history), depth, law)
     return frame, raster(frame, repetitions, SEED)
 
 
 def plate_rate(stroke: xr.Dataset, offset: float = ASIDE) -> pd.DataFrame:
-    """Predicted rate of a receptor beside the centre while a plate slides, stroke distances counted up either way."""
+    """Predicted rate of a receptor beside the centre while a plate slides, stroke distances counted
+    up either way.
+    """
     rate = predicted_rate(loaded(stroke), RECEPTOR_DEPTH, offset=offset)
     return rate.assign(**{DISTANCE: rate[DISTANCE].abs()})
 
@@ -376,9 +401,11 @@ def plate_rate(stroke: xr.Dataset, offset: float = ASIDE) -> pd.DataFrame:
 def stroke_histogram(
     frame: pd.DataFrame, impulses: pd.DataFrame, repetitions: int, bin_width: float = BIN
 ) -> pd.DataFrame:
-    """Mean rate of a raster in bins of the stroke distance (m): columns stroke_distance (of the bin's middle), predicted_rate.
+    """Mean rate of a raster in bins of the stroke distance (m): columns stroke_distance (of the
+    bin's middle), predicted_rate.
 
-    Only whole bins while the surface slides. frame: of `predicted_rate`. impulses: of `raster`, of so many `repetitions`.
+    Only whole bins while the surface slides. frame: of `predicted_rate`. impulses: of `raster`, of
+    so many `repetitions`.
     """
     slides = np.concatenate([[False], np.diff(frame[DISTANCE].to_numpy()) > 0])
     slides[:-1] |= slides[1:]
@@ -389,7 +416,9 @@ def stroke_histogram(
 
 
 def mean_frequency(impulses: pd.DataFrame, repetitions: int, at: np.ndarray) -> pd.DataFrame:
-    """Instantaneous frequency of a raster, mean over its trials, at times `at` (s): columns time, predicted_frequency."""
+    """Instantaneous frequency of a raster, mean over its trials, at times `at` (s): columns time,
+    predicted_frequency.
+    """
     values = [
         instantaneous_frequency(train[TIME].to_numpy(), at)
         for _, train in impulses.groupby("trial")
@@ -398,8 +427,9 @@ def mean_frequency(impulses: pd.DataFrame, repetitions: int, at: np.ndarray) -> 
 
 
 def time_mean(time, values, start: float | None = None, end: float | None = None) -> float:
-    """Mean over time of a trace from `start` to `end` (s; left out, its ends), linear between samples, jumps where a time is
-    twice."""
+    """Mean over time of a trace from `start` to `end` (s; left out, its ends), linear between
+    samples, jumps where a time is twice.
+    """
     time, values = np.asarray(time, float), np.asarray(values, float)
     a, b = time[0] if start is None else start, time[-1] if end is None else end
     inside = (time > a) & (time < b)
@@ -412,7 +442,9 @@ def time_mean(time, values, start: float | None = None, end: float | None = None
 
 
 def windowed(history: xr.Dataset, time, values, window: str) -> float:
-    """A trace's number for a window of `cysyk1999.receptors.recordings.WINDOWS`; "steady" is the last half of the hold."""
+    """A trace's number for a window of `cysyk1999.receptors.recordings.WINDOWS`; "steady" is the
+    last half of the hold.
+    """
     time, values = np.asarray(time), np.asarray(values)
     top, end = history.variables["time"].values[[ramp_end(history), -1]].tolist()
     if window == "peak":
@@ -429,7 +461,9 @@ def windowed(history: xr.Dataset, time, values, window: str) -> float:
 def rate_in(
     history: xr.Dataset, window: str, depth: float = RECEPTOR_DEPTH, law: ImpulseRate = THESIS_RATE
 ) -> float:
-    """Predicted impulse rate (impulses/s) in a window of `cysyk1999.receptors.recordings.WINDOWS`."""
+    """Predicted impulse rate (impulses/s) in a window of
+    `cysyk1999.receptors.recordings.WINDOWS`.
+    """
     frame = predicted_rate(history, depth, law)
     return windowed(history, frame[TIME], frame[IMPULSE_RATE], window)
 
@@ -447,11 +481,13 @@ def mean_pressure(history: xr.Dataset, window: str = "hold") -> float:
 def shallow_law(
     histories: Mapping[str, xr.Dataset], depth: float = SHALLOW_DEPTH
 ) -> tuple[ImpulseRate, float]:
-    """Eq 5-1 for another depth (m) than the thesis's, and the factor its energies are multiplied by; histories: of the nine.
+    """Eq 5-1 for another depth (m) than the thesis's, and the factor its energies are multiplied
+    by; histories: of the nine.
 
-    The thesis's constants belong to 915 um and it prints none for 560 or 600 um. Energies there are scaled by one number, with
-    which the mean over surfaces of the mean energy in the hold is the same at both depths: what differs is how they depend on
-    curvature. So do all rates that are predicted from another depth, pressed (Figs 4-27, 4-29) and stroked (5-22, 5-23).
+    The thesis's constants belong to 915 um and it prints none for 560 or 600 um. Energies there are
+    scaled by one number, with which the mean over surfaces of the mean energy in the hold is the
+    same at both depths: what differs is how they depend on curvature. So do all rates that are
+    predicted from another depth, pressed (Figs 4-27, 4-29) and stroked (5-22, 5-23).
     """
     deep, shallow = (
         np.mean([windowed(h, h["time"].values, energy(h, z), "hold") for h in histories.values()])
@@ -487,15 +523,16 @@ def bursts(
 ) -> pd.DataFrame:
     """The burst that each convexity of a stroked surface makes (Figs 5-2 to 5-4, 5-16 and 5-17).
 
-    A convexity passes while the point of the skin over the receptor is between the middles of the hollows on either side of it
-    (the flats count up to where the first arc begins and the last one ends, and as far again as the half of the arc). Its burst
-    is the time in that passage during which the strain energy is above `threshold` (Pa; left out, that of the law), crossings
-    found between outputs; width is that time by the stroking velocity. The burst rate is the mean predicted rate over that
-    time: impulses over duration.
+    A convexity passes while the point of the skin over the receptor is between the middles of the
+    hollows on either side of it (the flats count up to where the first arc begins and the last one
+    ends, and as far again as the half of the arc). Its burst is the time in that passage during
+    which the strain energy is above `threshold` (Pa; left out, that of the law), crossings found
+    between outputs; width is that time by the stroking velocity. The burst rate is the mean
+    predicted rate over that time: impulses over duration.
 
     Returns:
-        One row a convexity: its label and curvature, burst width, duration and rate, the largest strain energy, energy rate and
-        impulse rate.
+        One row a convexity: its label and curvature, burst width, duration and rate, the largest
+        strain energy, energy rate and impulse rate.
     """
     frame = predicted_rate(history, depth, law)
     level = law.threshold if threshold is None else threshold
@@ -537,7 +574,9 @@ def burst_values(stroke: xr.Dataset, column: str) -> dict[str, float]:
 
 
 def stimulus(history: xr.Dataset, name: str, depth: float) -> np.ndarray:
-    """A candidate stimulus (time) of a receptor at a depth (m) under the centre, or on the skin over it: see `CANDIDATES`."""
+    """A candidate stimulus (time) of a receptor at a depth (m) under the centre, or on the skin
+    over it: see `CANDIDATES`.
+    """
     variable, _, _ = CANDIDATES[name]
     values = history.variables[variable].values
     if values.ndim == 2:

@@ -1,4 +1,6 @@
-"""Scenes that are looked at together, each set said once: the name that every one of them goes by, and its scene."""
+"""Scenes that are looked at together, each set said once: the name that every one of them goes by,
+and its scene.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ WITHIN_350, WITHIN_400 = (
     tuple(label for label in SURFACES if label == "flat" or float(label) <= most)
     for most in (350, 400)
 )
-"""Surfaces as curved as the stroked one, with the flat plate, on the thesis's axes of Figs 5-17 and 5-18."""
+"""Surfaces as curved as the stroked one, with the flat plate, on the thesis's axes of Figs 5-17 and
+5-18.
+"""
 
 
 @dataclass(frozen=True)
@@ -72,7 +76,9 @@ class Runs:
 
 
 def surfaces(programme: str, labels: Iterable[str] = SURFACES) -> Runs:
-    """Surfaces pressed in a force programme: ``ramp40``, ``ramp150``, ``press10``, ``press15``, ``ridged_40``."""
+    """Surfaces pressed in a force programme: ``ramp40``, ``ramp150``, ``press10``, ``press15``,
+    ``ridged_40``.
+    """
     return Runs("surface", {label: scene_name(programme, label) for label in labels})
 
 
@@ -82,7 +88,9 @@ def by_speed(scenes: Mapping[str, str]) -> Runs:
 
 
 NINE, FAST, RIDGED_NINE = (surfaces(programme) for programme in ("ramp40", "ramp150", "ridged_40"))
-"""The nine surfaces pressed to 20 gram-weight: at 40 gf/s, at 150 gf/s, and on a pad with inner ridges."""
+"""The nine surfaces pressed to 20 gram-weight: at 40 gf/s, at 150 gf/s, and on a pad with inner
+ridges.
+"""
 
 LOWER = {
     force: surfaces(f"press{force}", ("flat", "79", "158", "315", "630")) for force in (10, 15)
@@ -107,5 +115,6 @@ PLAIN, RIDGED = (
     )
     for pad in ("plate", "ridged")
 )
-"""A flat plate stroked both ways over a plain pad and one with inner ridges. The two are mirror images of each other: the
-companion of the stroke to the right, read on either side, serves both."""
+"""A flat plate stroked both ways over a plain pad and one with inner ridges. The two are mirror
+images of each other: the companion of the stroke to the right, read on either side, serves both.
+"""

@@ -1,4 +1,6 @@
-"""Scenes of chapter 3's checks, and what figures and tables read from them: legs, depths, forces in newton."""
+"""Scenes of chapter 3's checks, and what figures and tables read from them: legs, depths, forces in
+newton.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ SPEED_SCENES = {"2": RAMP_HOLD, "8": "ramp_hold_8_mm_per_s", "32": "ramp_hold_32
 
 
 def leg_end(history: xr.Dataset, depth: float) -> int:
-    """Index of the output at which a press to `depth` (m) ends. Raises KeyError if no leg ends there."""
+    """Index of the output at which a press to `depth` (m) ends. Raises KeyError if no leg ends
+    there.
+    """
     return int(np.flatnonzero(history["leg"].values == leg_of(history, depth))[-1])
 
 

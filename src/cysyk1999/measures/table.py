@@ -1,8 +1,10 @@
-"""The measures of all scenes as one long table: what claims, sensitivities and figures of numbers rest on.
+"""The measures of all scenes as one long table: what claims, sensitivities and figures of numbers
+rest on.
 
-The workflow writes it (``<results>/measures.csv``) from every history, its companion on a coarser mesh, and the meshes. A row is
-a number: scene, quantity, condition, unit, value, and what takes its place in `Instead`. The error of anything made of these
-numbers follows from what it changes by when another column is read.
+The workflow writes it (``<results>/measures.csv``) from every history, its companion on a coarser
+mesh, and the meshes. A row is a number: scene, quantity, condition, unit, value, and what takes its
+place in `Instead`. The error of anything made of these numbers follows from what it changes by when
+another column is read.
 """
 
 from __future__ import annotations
@@ -26,8 +28,10 @@ from fingerpad.measures.measure import Measure, Together, measures_of
 from fingerpad.results import scene_of
 
 INSTEAD = ("mesh_companion", "sparse_mesh_companion", "companion", "sparse")
-"""Columns of numbers on a mesh with edges half as long again (as those on the companions' tell), on these of the outputs that are
-left with coarser steps, with these steps, and of every second output of the histories themselves."""
+"""Columns of numbers on a mesh with edges half as long again (as those on the companions' tell), on
+these of the outputs that are left with coarser steps, with these steps, and of every second output
+of the histories themselves.
+"""
 COLUMNS = ("scene", "quantity", "condition", "unit", "value", *INSTEAD)
 
 MEASURES: dict[str, Measure] = {
@@ -48,7 +52,9 @@ Find = Callable[[str, str], Mapping[str, float]]
 
 
 class Measures:
-    """Numbers by quantity, scene and condition, from a table or, when first asked for, from histories."""
+    """Numbers by quantity, scene and condition, from a table or, when first asked for, from
+    histories.
+    """
 
     def __init__(self, find: Find) -> None:
         self.find = find
@@ -78,7 +84,9 @@ class Measures:
 
     @classmethod
     def in_table(cls, table: pd.DataFrame, column: str = "value") -> Measures:
-        """Of a column of the measures table, ``value`` or one of `INSTEAD`; what has a value but nothing there is missing."""
+        """Of a column of the measures table, ``value`` or one of `INSTEAD`; what has a value but
+        nothing there is missing.
+        """
         rows = table[table[column].notna() | table["value"].isna()] if column != "value" else table
         seen: dict[tuple[str, str], dict[str, float]] = {}
         for row in rows.itertuples(index=False):
@@ -152,7 +160,9 @@ def _number(number: Callable[[Measures], float], measures: Measures) -> float:
 def _coarser(
     companion: Companion, history: xr.Dataset, own: Mapping[str, float], other: Mapping[str, float]
 ) -> dict[str, float]:
-    """A measure on a mesh with edges half as long again, of what it is on the run's own and on its companion's."""
+    """A measure on a mesh with edges half as long again, of what it is on the run's own and on its
+    companion's.
+    """
     return {
         at: companion.number(history, own[at], value) for at, value in other.items() if at in own
     }
@@ -173,7 +183,9 @@ def _instead(histories: Histories, coarse: Companions) -> tuple[Histories, ...]:
 
 
 def measures_table(histories: Histories, coarse: Companions, meshes: Meshes) -> pd.DataFrame:
-    """Every measure of every scene, columns `COLUMNS`; empty where nothing was simulated on a coarser mesh, or that shows it."""
+    """Every measure of every scene, columns `COLUMNS`; empty where nothing was simulated on a
+    coarser mesh, or that shows it.
+    """
     fine, others, rows = (
         Together(histories),
         [Together(each) for each in _instead(histories, coarse)],

@@ -1,7 +1,9 @@
-"""Fonts of PDFs: the characters that pictures are written in are taken out of a font once, for all pictures of a process.
+"""Fonts of PDFs: the characters that pictures are written in are taken out of a font once, for all
+pictures of a process.
 
-Matplotlib does so for every picture and font anew, with just the characters used, which takes longer than to draw it. These are
-40 KB more a picture. Where others are asked for, it is done as ever: what a file holds does not depend on those before it.
+Matplotlib does so for every picture and font anew, with just the characters used, which takes
+longer than to draw it. These are 40 KB more a picture. Where others are asked for, it is done as
+ever: what a file holds does not depend on those before it.
 """
 
 from __future__ import annotations
@@ -23,7 +25,8 @@ def shared_fonts() -> Iterator[None]:
     from fontTools.subset import Options
     from matplotlib.backends import _backend_pdf_ps as embedding
 
-    # to place glyphs is over by then: these tables are half of what embedding takes, and no reader of a PDF looks at them
+    # to place glyphs is over by then: these tables are half of what embedding takes, and no reader
+    # of a PDF looks at them
     unread = [
         table for table in ("GDEF", "GPOS", "GSUB") if table not in Options._drop_tables_default
     ]
@@ -50,7 +53,9 @@ def shared_fonts() -> Iterator[None]:
 
 @cache
 def _common(file: Any, subset: Any, as_file: Any) -> SimpleNamespace:
-    """`CHARACTERS` of a font: its file's content, and its glyphs' numbers there by those of the whole."""
+    """`CHARACTERS` of a font: its file's content, and its glyphs' numbers there by those of the
+    whole.
+    """
     from matplotlib.ft2font import FT2Font
 
     numbers = FT2Font(file).get_charmap()

@@ -1,10 +1,13 @@
-"""One style for every picture: what each colour, marker and line style means, the page, its title and note, direct labels.
+"""One style for every picture: what each colour, marker and line style means, the page, its title
+and note, direct labels.
 
-Pages follow the journals' widths (89 mm a column, 183 mm a page, 170 mm tall at most) with one face at 7 pt, DejaVu Sans, which
-matplotlib ships. Colours mean one thing each (`MEANINGS`): curvatures are one sequence from dark blue to ochre that is even in
-the logarithm and keeps its order in grey and for colour-blind readers; what has no order wears the colours of Okabe and Ito
-(2008), darkened where they are too pale for a line, and a line style and a marker besides. Text is never coloured.
-Matplotlib is imported when something is drawn: what only lists or describes pictures need not load it.
+Pages follow the journals' widths (89 mm a column, 183 mm a page, 170 mm tall at most) with one face
+at 7 pt, DejaVu Sans, which matplotlib ships. Colours mean one thing each (`MEANINGS`): curvatures
+are one sequence from dark blue to ochre that is even in the logarithm and keeps its order in grey
+and for colour-blind readers; what has no order wears the colours of Okabe and Ito (2008), darkened
+where they are too pale for a line, and a line style and a marker besides. Text is never coloured.
+Matplotlib is imported when something is drawn: what only lists or describes pictures need not load
+it.
 """
 
 from __future__ import annotations
@@ -29,7 +32,9 @@ PAGE_WIDTH, COLUMN_WIDTH, TALLEST = 183 / INCH, 89 / INCH, 170 / INCH  # inch, o
 NOTE_SIZE = 6.0  # pt
 NOTE_WIDTH = 152  # characters of a footnote's line on a page
 INK, GREY, PALE, BAND = "0.15", "0.42", "0.8", "0.955"
-"""Text and what is not told apart; remarks and references; solids beyond the skin; the thesis's range."""
+"""Text and what is not told apart; remarks and references; solids beyond the skin; the thesis's
+range.
+"""
 HIGHLIGHT = "#00785a"
 """The second of two curves, whatever it is: no surface, speed or force is green."""
 
@@ -101,9 +106,13 @@ COLOURS = {
     "630": "#d06731",
     "1260": "#ca8605",
 }
-"""Of curvatures in 1/m: lightness from 20 to 61, where a line on white still has a contrast of 3, even in their logarithm."""
+"""Of curvatures in 1/m: lightness from 20 to 61, where a line on white still has a contrast of 3,
+even in their logarithm.
+"""
 CATEGORIES = ("#0072b2", "#d55e00", "#009e73", "#b5588f", "#7a6000", "#404040")
-"""Okabe and Ito's blue, vermilion and green; their purple and yellow as dark as a line needs; and grey."""
+"""Okabe and Ito's blue, vermilion and green; their purple and yellow as dark as a line needs; and
+grey.
+"""
 
 
 def _looks(
@@ -160,7 +169,9 @@ MEANINGS: Mapping[str, Mapping[str, Look]] = {
         (SOLID, DASHED, DOTTED),
     ),
 }
-"""What is told apart -> its values, and how each looks. A test measures contrasts and distances, colour-blind ones too."""
+"""What is told apart -> its values, and how each looks. A test measures contrasts and distances,
+colour-blind ones too.
+"""
 
 SPEED_COLOURS = {name: look["color"] for name, look in MEANINGS["speed (mm/s)"].items()}
 SPEED_LINES = {name: look["ls"] for name, look in MEANINGS["speed (mm/s)"].items()}
@@ -172,14 +183,18 @@ LAYER_COLOURS = {
     "fat": "#f6e7c4",
     "bone": "#b9bec4",
 }
-"""Areas, always outlined: their lightness falls from the outside in but for the bone, which is grey."""
+"""Areas, always outlined: their lightness falls from the outside in but for the bone, which is
+grey.
+"""
 FIELD = "cividis"
 """Map of strain energy and other fields: even for colour-blind readers."""
 
 
 def look_of(meaning: str, name: str, *parts: str) -> dict[str, object]:
-    """Parts (left out: ``color`` and ``ls``) of how a value of `MEANINGS` looks. Curvatures that are not in the table lie on the
-    sequence between its own; KeyError for any other value that is not there."""
+    """Parts (left out: ``color`` and ``ls``) of how a value of `MEANINGS` looks. Curvatures that
+    are not in the table lie on the sequence between its own; KeyError for any other value that is
+    not there.
+    """
     if meaning == "curvature (1/m)" and name not in COLOURS:
         return {"color": curvature_colour(float(name))}
     look = MEANINGS[meaning][name]
@@ -187,7 +202,9 @@ def look_of(meaning: str, name: str, *parts: str) -> dict[str, object]:
 
 
 def curvature_colour(curvature: float) -> str:
-    """Colour of any curvature (1/m; a plate: 0) on the sequence of `COLOURS`, linear in its logarithm between these."""
+    """Colour of any curvature (1/m; a plate: 0) on the sequence of `COLOURS`, linear in its
+    logarithm between these.
+    """
     known = np.array([13.0, *(float(name) for name in COLOURS if name != "flat")])
     channels = np.array(
         [[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in COLOURS.values()]
@@ -199,7 +216,9 @@ def curvature_colour(curvature: float) -> str:
 
 
 def ordered(meaning: str, names: Iterable[str]) -> dict[str, Look]:
-    """Looks of some names by their order, of a meaning whose values are not known beforehand: ``depth``, ``subject``."""
+    """Looks of some names by their order, of a meaning whose values are not known beforehand:
+    ``depth``, ``subject``.
+    """
     looks = list(MEANINGS[meaning].values())
     return {name: looks[k % len(looks)] for k, name in enumerate(dict.fromkeys(names))}
 
@@ -208,7 +227,9 @@ def ordered(meaning: str, names: Iterable[str]) -> dict[str, Look]:
 
 
 def styled(draw: Callable[[pd.DataFrame], Figure]) -> Callable[[pd.DataFrame], Figure]:
-    """Run a drawing function under the shared style, whatever the caller's matplotlib settings are, and letter its panels."""
+    """Run a drawing function under the shared style, whatever the caller's matplotlib settings are,
+    and letter its panels.
+    """
 
     @wraps(draw)
     def inner(frame: pd.DataFrame) -> Figure:
@@ -220,7 +241,9 @@ def styled(draw: Callable[[pd.DataFrame], Figure]) -> Callable[[pd.DataFrame], F
 
 @contextmanager
 def theme() -> Iterator[None]:
-    """Matplotlib's own defaults with this style on top; the caller's settings come back afterwards."""
+    """Matplotlib's own defaults with this style on top; the caller's settings come back
+    afterwards.
+    """
     import matplotlib as mpl
 
     with mpl.rc_context():
@@ -238,7 +261,9 @@ def colours(name: str, start: float, end: float, labels: Iterable[str]) -> dict[
 
 
 def wrapped(lines: Iterable[str], width: int = NOTE_WIDTH) -> list[str]:
-    """Paragraphs as lines of at most `width` characters, none of which begins with a percent sign."""
+    """Paragraphs as lines of at most `width` characters, none of which begins with a percent
+    sign.
+    """
     together = (line.replace(" %", "\xa0%") for line in lines)
     return [part.replace("\xa0", " ") for line in together for part in textwrap.wrap(line, width)]
 
@@ -257,9 +282,11 @@ def sheet(
     laid_out: bool = True,
     width: float = PAGE_WIDTH,
 ) -> Figure:
-    """Empty figure of a height and width (inch): title above, after the thesis's number if it has one, the note's lines below.
+    """Empty figure of a height and width (inch): title above, after the thesis's number if it has
+    one, the note's lines below.
 
-    `header` (inch) leaves room under the title. Panels are laid out in between, unless the caller does so (not `laid_out`).
+    `header` (inch) leaves room under the title. Panels are laid out in between, unless the caller
+    does so (not `laid_out`).
     """
     from matplotlib.figure import Figure
 
@@ -306,8 +333,9 @@ def finished(fig: Figure) -> Figure:
 
 
 def letter(fig: Figure) -> None:
-    """Bold lower-case letters above the left end of the panels, if there is more than one; twins and insets have none, nor has
-    a matrix of more panels than there are letters."""
+    """Bold lower-case letters above the left end of the panels, if there is more than one; twins
+    and insets have none, nor has a matrix of more panels than there are letters.
+    """
     places: dict[tuple, Axes] = {}
     for ax in fig.axes:
         spec = ax.get_subplotspec()
@@ -335,8 +363,9 @@ def letter(fig: Figure) -> None:
 
 
 def set_powers(fig: Figure) -> None:
-    """Powers of ten beside an axis as mathematics, the ticks themselves as text: as mathematics they take a quarter of the time
-    of a picture, and look the same."""
+    """Powers of ten beside an axis as mathematics, the ticks themselves as text: as mathematics
+    they take a quarter of the time of a picture, and look the same.
+    """
     from matplotlib.ticker import ScalarFormatter
 
     class Powers(ScalarFormatter):
@@ -366,9 +395,10 @@ def in_kilo(axis: Axis) -> None:
 def spread(values: Sequence[float], gap: float, low: float, high: float) -> np.ndarray:
     """Positions at least `gap` apart, in the order of `values` and closest to them (least squares).
 
-    They stay within ``low .. high`` where there is room. Used to place direct labels. Ties keep their order. What is closest is
-    an isotonic regression, by the formula of largest least means (Barlow, Bartholomew, Bremner and Brunk 1972): scipy's takes a
-    third of a second to import, for a dozen labels.
+    They stay within ``low .. high`` where there is room. Used to place direct labels. Ties keep
+    their order. What is closest is an isotonic regression, by the formula of largest least means
+    (Barlow, Bartholomew, Bremner and Brunk 1972): scipy's takes a third of a second to import, for
+    a dozen labels.
     """
     values = np.asarray(values, float)
     order, count = np.argsort(values, kind="stable"), np.arange(len(values))
@@ -385,9 +415,11 @@ def spread(values: Sequence[float], gap: float, low: float, high: float) -> np.n
 def label_ends(
     ax: Axes, ends: dict[str, tuple[float, float]], x_label: float, heading: str = ""
 ) -> None:
-    """Label the trace of each surface directly at `x_label` (data units), joined to its end by a hairline.
+    """Label the trace of each surface directly at `x_label` (data units), joined to its end by a
+    hairline.
 
-    `ends` maps a surface label to the (x, y) of the trace's last point. Axis limits must be set already.
+    `ends` maps a surface label to the (x, y) of the trace's last point. Axis limits must be set
+    already.
     """
     low, high = ax.get_ylim()
     gap = (high - low) * 0.115 / _axes_height(ax)
@@ -439,8 +471,9 @@ def handle(label: str, **look) -> Line2D:
 
 
 def header_legend(fig: Figure, handles: Sequence[Line2D | Sequence[Line2D]], **kwargs) -> None:
-    """Legend in one row under the title, in the room that `sheet` left by its `header`; several handles of one entry stand side
-    by side, those that look alike as one."""
+    """Legend in one row under the title, in the room that `sheet` left by its `header`; several
+    handles of one entry stand side by side, those that look alike as one.
+    """
     from matplotlib.legend_handler import HandlerTuple
 
     entries = [

@@ -1,4 +1,6 @@
-"""Publishing: a picture and its plotted data, a table as CSV and as Markdown, written side by side, whole or not at all."""
+"""Publishing: a picture and its plotted data, a table as CSV and as Markdown, written side by side,
+whole or not at all.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ if TYPE_CHECKING:
 
 DPI = 300
 COLOURS = 255
-"""Most colours of a committed picture: a third of the bytes of true colour, and no difference to see."""
+"""Most colours of a committed picture: a third of the bytes of true colour, and no difference to
+see.
+"""
 EXACT = 32
 """Colours of a picture that are kept as they are, those of most pixels."""
 SOME = 64
@@ -41,7 +45,9 @@ TEXT_COLUMNS = (
 
 
 def without_round_off(frame: pd.DataFrame, least: float = 1e-11) -> pd.DataFrame:
-    """The frame with zeros for what is below `least` of a column's largest: so that two machines publish the same bytes."""
+    """The frame with zeros for what is below `least` of a column's largest: so that two machines
+    publish the same bytes.
+    """
     for column in frame.select_dtypes("float"):
         size = frame[column].abs()
         frame[column] = frame[column].mask(size < least * size.max(), 0.0)
@@ -56,14 +62,18 @@ def write_frame(frame: pd.DataFrame, path: Path) -> None:
 
 
 def read_frame(path: Path) -> pd.DataFrame:
-    """Read a figure's CSV back: text columns as text (surface "79" too), everything else as numbers."""
+    """Read a figure's CSV back: text columns as text (surface "79" too), everything else as
+    numbers.
+    """
     with open(path, encoding="utf-8") as stream:
         header = stream.readline().strip().split(",")
     return pd.read_csv(path, dtype={c: str for c in TEXT_COLUMNS if c in header})
 
 
 def settle(fig: Figure, dpi: float = DPI) -> None:
-    """Lay a picture out, once for all its files: a solver of layouts differs in the last digit from one process to the next."""
+    """Lay a picture out, once for all its files: a solver of layouts differs in the last digit from
+    one process to the next.
+    """
     fig.set_dpi(dpi)
     engine = fig.get_layout_engine()
     if engine is None:
@@ -78,7 +88,9 @@ def settle(fig: Figure, dpi: float = DPI) -> None:
 
 
 def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
-    """Write a picture as PNG at a fixed resolution, in few colours and without metadata: same data, same bytes."""
+    """Write a picture as PNG at a fixed resolution, in few colours and without metadata: same data,
+    same bytes.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     settle(fig, dpi)
@@ -90,10 +102,12 @@ def write_picture(fig: Figure, path: Path, dpi: float = DPI) -> None:
 
 
 def in_few_colours(pixels: np.ndarray) -> Image:
-    """A picture of opaque pixels (height, width, 4) uint8 with `COLOURS` at most, white always among them.
+    """A picture of opaque pixels (height, width, 4) uint8 with `COLOURS` at most, white always
+    among them.
 
-    The `EXACT` that most pixels have stay what they are; the others are shared out among the rest, none of which counts as more
-    than `SOME` pixels: else a large field has all of them, and the bar that explains it three.
+    The `EXACT` that most pixels have stay what they are; the others are shared out among the rest,
+    none of which counts as more than `SOME` pixels: else a large field has all of them, and the bar
+    that explains it three.
     """
     from PIL import Image
 
@@ -135,8 +149,9 @@ def write_vectors(fig: Figure, path: Path) -> None:
 
 
 def publish(fig: Figure, frame: pd.DataFrame, png_path: str | os.PathLike) -> None:
-    """Write ``fig_X.png``, beside it ``fig_X.csv`` with the plotted data, and ``fig_X.pdf`` into the folder of vectors if one is
-    named (environment variable `VECTORS`)."""
+    """Write ``fig_X.png``, beside it ``fig_X.csv`` with the plotted data, and ``fig_X.pdf`` into
+    the folder of vectors if one is named (environment variable `VECTORS`).
+    """
     png = Path(png_path)
     write_frame(frame, png.with_suffix(".csv"))
     write_picture(fig, png)
@@ -145,7 +160,9 @@ def publish(fig: Figure, frame: pd.DataFrame, png_path: str | os.PathLike) -> No
 
 
 def markdown(frame: pd.DataFrame) -> str:
-    """The table as Markdown: whole numbers in full, others to four digits, empty cells for missing values."""
+    """The table as Markdown: whole numbers in full, others to four digits, empty cells for missing
+    values.
+    """
 
     def cell(value: object) -> str:
         if isinstance(value, float):
@@ -163,8 +180,10 @@ def markdown(frame: pd.DataFrame) -> str:
 
 
 def publish_table(frame: pd.DataFrame, csv_path: str | os.PathLike) -> None:
-    """Write ``name.csv`` (format %s) and, beside it, ``name.md``, headed by ``frame.attrs["summary"]`` if there is one, with the
-    columns that ``frame.attrs["columns"]`` names if it does."""
+    """Write ``name.csv`` (format %s) and, beside it, ``name.md``, headed by
+    ``frame.attrs["summary"]`` if there is one, with the columns that ``frame.attrs["columns"]``
+    names if it does.
+    """
     path = Path(csv_path)
     write_frame(frame, path)
     shown = frame[frame.attrs.get("columns", list(frame.columns))]

@@ -1,8 +1,10 @@
-"""Constants of the laws of :mod:`fingerpad.receptors.laws`, fitted to samples, with intervals that know how the samples group.
+"""Constants of the laws of :mod:`fingerpad.receptors.laws`, fitted to samples, with intervals that
+know how the samples group.
 
-Samples along one history follow one another closely and what a law leaves over is its own error, not noise: intervals from the
-scatter of samples would be far too narrow. They come from leaving out one group (a surface, a node) after the other instead
-(jackknife; Efron and Tibshirani 1993, chapter 11).
+Samples along one history follow one another closely and what a law leaves over is its own error,
+not noise: intervals from the scatter of samples would be far too narrow. They come from leaving out
+one group (a surface, a node) after the other instead (jackknife; Efron and Tibshirani 1993, chapter
+11).
 """
 
 from __future__ import annotations
@@ -21,8 +23,8 @@ class SkinSample:
     """Contact pressure on the skin and the strain energy under it, through one history.
 
     Attributes:
-        x: (time, n) m, deformed. pressure: (time, n) Pa. indentation: (time) m. energy: (time) Pa. reference: (time) m, or a
-        number.
+        x: (time, n) m, deformed. pressure: (time, n) Pa. indentation: (time) m. energy: (time) Pa.
+        reference: (time) m, or a number.
     """
 
     x: np.ndarray
@@ -35,7 +37,9 @@ class SkinSample:
     )
 
     def weighted(self, r: float) -> np.ndarray:
-        """Integral (time) Pa m of Eq 4-4 with a spatial constant r (m); kept, for fits that leave groups out ask for it again."""
+        """Integral (time) Pa m of Eq 4-4 with a spatial constant r (m); kept, for fits that leave
+        groups out ask for it again.
+        """
         if r not in self._weighted:
             self._weighted[r] = SpatialSum(r, 0.0, 1.0).weighted_pressure(
                 self.x, self.pressure, self.reference
@@ -48,7 +52,9 @@ class SkinSample:
 
 
 def linear(terms: np.ndarray, data: np.ndarray) -> np.ndarray:
-    """Constants (p,) of ``data = terms @ constants`` by least squares; terms (n, p) of any scales."""
+    """Constants (p,) of ``data = terms @ constants`` by least squares; terms (n, p) of any
+    scales.
+    """
     scale = np.maximum(np.abs(terms).max(axis=0), 1e-300)
     return np.linalg.lstsq(terms / scale, data, rcond=None)[0] / scale
 
@@ -58,7 +64,8 @@ def spatial_sum(
     with_depth: bool = True,
     bounds: tuple[float, float] = (2e-5, 2e-2),
 ) -> SpatialSum:
-    """Eq 4-4 closest to the strain energies of several histories: r by search, A1 and A2 exactly at every r.
+    """Eq 4-4 closest to the strain energies of several histories: r by search, A1 and A2 exactly at
+    every r.
 
     Args:
         with_depth: False leaves out A1, for a device that knows the pressure only. bounds: m, of r.
@@ -96,7 +103,9 @@ def spatial_sum(
 def constant_shift(
     law: SpatialSum, sample: SkinSample, bounds: tuple[float, float] = (-3e-3, 3e-3)
 ) -> float:
-    """The one lateral shift (m) of a receptor with which a law comes closest to the strain energy of a stroke."""
+    """The one lateral shift (m) of a receptor with which a law comes closest to the strain energy
+    of a stroke.
+    """
 
     def misfit(shift: float) -> float:
         return float(((sample.by(law, shift) - sample.energy) ** 2).sum())
@@ -120,7 +129,8 @@ def _least(
 def jackknife(
     fit: Callable[[Sequence[Any]], np.ndarray], groups: Sequence[Any], level: float = 0.95
 ) -> np.ndarray:
-    """Estimates and confidence intervals (p, 3), low and high last, from fits that leave out one group each.
+    """Estimates and confidence intervals (p, 3), low and high last, from fits that leave out one
+    group each.
 
     Args:
         fit: groups -> parameters (p,). groups: three at least, else the intervals are not a number.
@@ -154,8 +164,8 @@ class GainAndThreshold:
     """Impulse rate ``gain * [stimulus - threshold]+``: the same two constants for every stimulus.
 
     Attributes:
-        gain: (impulses/s) by unit of the stimulus, not negative. threshold: in the stimulus's unit; below the least stimulus it
-        stands for a discharge that needs none.
+        gain: (impulses/s) by unit of the stimulus, not negative. threshold: in the stimulus's unit;
+        below the least stimulus it stands for a discharge that needs none.
     """
 
     gain: float
@@ -169,9 +179,10 @@ class GainAndThreshold:
 def gain_and_threshold(stimulus: np.ndarray, rate: np.ndarray) -> GainAndThreshold:
     """The gain and threshold closest to rates by least squares, the rectified law fitted exactly.
 
-    With the k weakest stimuli below the threshold the rest is a straight line, so every k is tried. A stimulus that falls where
-    the rate rises predicts the mean rate: gain 0 is not a law, so the smallest gain that a float carries stands for it. A
-    threshold below zero says that these rates do not fall to nothing with the stimulus.
+    With the k weakest stimuli below the threshold the rest is a straight line, so every k is tried.
+    A stimulus that falls where the rate rises predicts the mean rate: gain 0 is not a law, so the
+    smallest gain that a float carries stands for it. A threshold below zero says that these rates
+    do not fall to nothing with the stimulus.
     """
     stimulus, rate = np.asarray(stimulus, float), np.asarray(rate, float)
     scale = max(float(np.ptp(stimulus)), float(np.abs(stimulus).max()) * 1e-12, 1e-300)
@@ -188,7 +199,9 @@ def gain_and_threshold(stimulus: np.ndarray, rate: np.ndarray) -> GainAndThresho
 def _rising_lines(
     stimulus: np.ndarray, rate: np.ndarray, least_range: float, least_gain: float
 ) -> list[GainAndThreshold]:
-    """Lines through all stimuli, all but the weakest, and so on, by least squares; those that rise, of stimuli that differ."""
+    """Lines through all stimuli, all but the weakest, and so on, by least squares; those that rise,
+    of stimuli that differ.
+    """
     order = np.argsort(stimulus, kind="stable")
     s, y = stimulus[order] - stimulus.mean(), rate[order]
     first = np.flatnonzero(s[-1] - s > least_range)
@@ -205,7 +218,9 @@ def _rising_lines(
 
 
 def leave_one_out(stimulus: np.ndarray, rate: np.ndarray, groups: np.ndarray) -> np.ndarray:
-    """Rates (n,) predicted by the gain and threshold that the other groups give. groups: (n,) labels, such as curvatures."""
+    """Rates (n,) predicted by the gain and threshold that the other groups give. groups: (n,)
+    labels, such as curvatures.
+    """
     stimulus, rate, groups = (
         np.asarray(stimulus, float),
         np.asarray(rate, float),

@@ -1,7 +1,7 @@
 """Recorded, published and other models' impulse rates: files that this model is compared with.
 
-All have the columns of :data:`RATES`. ``config/reference/impulse_rates`` holds published ones; what a user puts into
-``config/reference/recordings`` joins them everywhere.
+All have the columns of :data:`RATES`. ``config/reference/impulse_rates`` holds published ones; what
+a user puts into ``config/reference/recordings`` joins them everywhere.
 """
 
 from __future__ import annotations
@@ -15,8 +15,10 @@ from cysyk1999.reference_data import Column, ReferenceDataError, read_table
 
 STIMULI = ("flat plate", "cylinder", "sphere", "wavy surface")
 WINDOWS = ("peak", "hold", "steady", "first second", "first 200 ms", "burst")
-"""Part of the response a rate is of: the largest instantaneous one; means from the top of the ramp to the end of the hold, late
-in the hold, over the first second and the first 200 ms from the onset; mean while a convexity of a stroked surface passes."""
+"""Part of the response a rate is of: the largest instantaneous one; means from the top of the ramp
+to the end of the hold, late in the hold, over the first second and the first 200 ms from the onset;
+mean while a convexity of a stroked surface passes.
+"""
 
 RATES = {
     "recording": Column(text=True),
@@ -35,8 +37,10 @@ RATES = {
     "source": Column(text=True),
     "how_obtained": Column(text=True),
 }
-"""Columns of a file of impulse rates, units in the names. A recording is one receptor, or the mean of some, under one protocol.
-``or_curvature_per_m`` is for a rate whose surface is one of two; ``speed_mm_per_s`` is 0 for a pressed surface."""
+"""Columns of a file of impulse rates, units in the names. A recording is one receptor, or the mean
+of some, under one protocol. ``or_curvature_per_m`` is for a rate whose surface is one of two;
+``speed_mm_per_s`` is 0 for a pressed surface.
+"""
 
 
 def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
@@ -49,8 +53,8 @@ def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         Columns of :data:`RATES` and ``file``; no rows if there is no file.
 
     Raises:
-        ReferenceDataError: a file is wrong; a recording has the same rate twice; a burst is of a pressed surface or another of
-        a stroked one.
+        ReferenceDataError: a file is wrong; a recording has the same rate twice; a burst is of a
+        pressed surface or another of a stroked one.
     """
     files = [
         file

@@ -1,13 +1,13 @@
 """A tactile sensor that speaks like skin: contact pressure in, impulse rates out.
 
-An array of pressure sensors on a robot's finger measures what the pad's surface feels. Eq 4-4 says what receptors under a skin
-would make of it, Eq 5-1 what they would send::
+An array of pressure sensors on a robot's finger measures what the pad's surface feels. Eq 4-4 says
+what receptors under a skin would make of it, Eq 5-1 what they would send::
 
     sensor = TactileSensor(x, law)          # places of the pressure sensors (m), a SpatialSum fitted at the receptor's depth
     rate = sensor.step(time, pressure)      # once a frame: s, Pa -> impulses/s
 
-The sum over the sensors is exact for pressures linear between them, so the constants fitted to the pad's nodes hold for any
-spacing that resolves the pressure.
+The sum over the sensors is exact for pressures linear between them, so the constants fitted to the
+pad's nodes hold for any spacing that resolves the pressure.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ class TactileSensor:
     """Impulse rates of receptors under an array of pressure sensors.
 
     Args:
-        x: (n,) m, places of the pressure sensors, increasing. law: Eq 4-4 at the receptors' depth. rate: Eq 5-1.
-        receptors: (m,) m or a number, lateral places of the receptors.
+        x: (n,) m, places of the pressure sensors, increasing. law: Eq 4-4 at the receptors' depth.
+        rate: Eq 5-1. receptors: (m,) m or a number, lateral places of the receptors.
 
     Raises:
         ValueError: fewer than two sensors, or places that do not increase.
@@ -43,10 +43,12 @@ class TactileSensor:
     def step(self, time: float, pressure, indentation: float = 0.0):
         """Impulse rates (m,), or one, impulses/s, from the frame at a time.
 
-        The rate of the strain energy is the difference to the frame before over the time between them; the first frame has none.
+        The rate of the strain energy is the difference to the frame before over the time between
+        them; the first frame has none.
 
         Args:
-            time: s, later than in the call before. pressure: (n,) Pa. indentation: m, for a law that asks for it.
+            time: s, later than in the call before. pressure: (n,) Pa. indentation: m, for a law
+            that asks for it.
         """
         energy = self.weights @ pressure * (self.law.per_depth * indentation + self.law.constant)
         change = 0.0 if self._time is None else (energy - self._energy) / (time - self._time)
@@ -73,7 +75,8 @@ def taxel_pressure(x, pressure, edges) -> np.ndarray:
     """Mean pressure (..., n - 1) Pa over the faces of sensors between edges (n,) m.
 
     Args:
-        x: (..., k) m, increasing: places of the pressures, linear in between, none outside. pressure: (..., k) Pa.
+        x: (..., k) m, increasing: places of the pressures, linear in between, none outside.
+        pressure: (..., k) Pa.
     """
     x, pressure = np.asarray(x, float), np.asarray(pressure, float)
     spacing, inside = np.diff(x), np.clip(edges, x[..., :1], x[..., -1:])

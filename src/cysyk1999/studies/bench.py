@@ -1,7 +1,8 @@
 """Speed of the solver on this machine: ``python -m cysyk1999.studies.bench [--workflow]``.
 
-Everything is measured in one process with one thread, as medians of repeated runs; ratios within the process are what may be
-quoted, absolute times belong to the machine named in the table. Writes figures/tables/speed.csv and .md.
+Everything is measured in one process with one thread, as medians of repeated runs; ratios within
+the process are what may be quoted, absolute times belong to the machine named in the table. Writes
+figures/tables/speed.csv and .md.
 """
 
 from __future__ import annotations
@@ -57,7 +58,9 @@ def seconds(call, repeats: int) -> tuple[float, float, float]:
 
 
 def newton_iteration(repeats: int = 15) -> list[list]:
-    """One Newton iteration of the whole pad against factorisation and solution of the same matrix."""
+    """One Newton iteration of the whole pad against factorisation and solution of the same
+    matrix.
+    """
     scene = load_scene(SCENES / "ramp40_k210.yaml").varied({"effects": {"symmetry": False}})
     run = Simulation(scene, plan(scene), None)
     stepper, body = run.stepper, run.body
@@ -144,7 +147,9 @@ def ridges(repeats: int = 3) -> list[list]:
 
 
 def strokes() -> list[list]:
-    """The five full strokes over the wavy surface, one after the other, and a factorisation on its own mesh after each."""
+    """The five full strokes over the wavy surface, one after the other, and a factorisation on its
+    own mesh after each.
+    """
     scenes = [load_scene(SCENES / f"stroke_{speed}.yaml") for speed in (1, 5, 10, 20, 40)]
     plans = [plan(scene) for scene in scenes]
     total, histories, ratios = 0.0, [], []
@@ -191,7 +196,9 @@ def _factor_and_solve(plain, data, right) -> None:
 
 
 def _plain(body):
-    """A solver without any condensation, the tangent's coefficients and a right-hand side of a body as it is."""
+    """A solver without any condensation, the tangent's coefficients and a right-hand side of a body
+    as it is.
+    """
     data, force = body.tangent()
     return (
         condensation(body.space.pattern, np.zeros(0, dtype=np.int64)),
@@ -244,7 +251,9 @@ def _steady(base: Scene, stimulus, nu: float) -> Scene:
 
 
 def overhead(repeats: int = 5) -> list[list]:
-    """What a simulation process costs before it simulates: start, imports, scene, plan, compiled kernels."""
+    """What a simulation process costs before it simulates: start, imports, scene, plan, compiled
+    kernels.
+    """
     code = (
         "import fingerpad, fingerpad.results, fingerpad.simulation as s;"
         f"scene = fingerpad.load_scene({str(SCENES / 'ramp40_flat.yaml')!r}); s.Simulation(scene, fingerpad.plan(scene), None)"
@@ -260,7 +269,9 @@ def overhead(repeats: int = 5) -> list[list]:
 
 
 def tactile_sensor(frames: int = 20_000, repeats: int = 5) -> list[list]:
-    """Impulse rates from contact pressure, Eqs 4-4 and 5-1: a sample of one receptor, frame by frame and as a whole recording."""
+    """Impulse rates from contact pressure, Eqs 4-4 and 5-1: a sample of one receptor, frame by
+    frame and as a whole recording.
+    """
     x = np.linspace(-4e-3, 4e-3, 113)
     time, pressure = (
         np.arange(frames) * 1e-3,

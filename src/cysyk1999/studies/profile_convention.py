@@ -1,4 +1,5 @@
-"""Picture of how the points of a sampled profile are meant: the lower surface of the solid, y up, x = 0 over the apex.
+"""Picture of how the points of a sampled profile are meant: the lower surface of the solid, y up, x
+= 0 over the apex.
 
 python -m cysyk1999.studies.profile_convention figures/studies/profile_convention.png
 """
@@ -20,7 +21,9 @@ RADIUS = 8.0  # mm, of the pad drawn
 
 
 def frame_convention() -> pd.DataFrame:
-    """Points of a profile and of a pad below it (mm), in the profile's frame, a little before they touch."""
+    """Points of a profile and of a pad below it (mm), in the profile's frame, a little before they
+    touch.
+    """
     x = np.linspace(-3.5, 4.5, 33)
     y = 0.25 + 0.06 * x**2 + 0.25 * np.cos(2 * x) - 0.04 * x
     skin = np.linspace(-6, 6, 121)
@@ -34,7 +37,9 @@ def frame_convention() -> pd.DataFrame:
 
 @style.styled
 def fig_convention(frame: pd.DataFrame) -> Figure:
-    """The solid above its points, the pad below, axes, and what lies beyond the ends by each rule."""
+    """The solid above its points, the pad below, axes, and what lies beyond the ends by each
+    rule.
+    """
     (x, y), (skin, pad) = (
         frame[frame.series == name][["x (mm)", "y (mm)"]].values.T for name in ("profile", "pad")
     )

@@ -1,9 +1,12 @@
-"""Which strain energy? The definitions that a history records, and which of them fall in the hold as neurons' rates do.
+"""Which strain energy? The definitions that a history records, and which of them fall in the hold
+as neurons' rates do.
 
-In a viscoelastic solid under a constant force the word has several meanings, and their trends disagree while the skin creeps:
+In a viscoelastic solid under a constant force the word has several meanings, and their trends
+disagree while the skin creeps:
 
 instantaneous elastic
-    that of the whole stress on the instantaneous moduli, as if nothing had relaxed; the headline `strain_energy_density`.
+    that of the whole stress on the instantaneous moduli, as if nothing had relaxed; the headline
+    `strain_energy_density`.
 long-term moduli
     the same on the long-term moduli, as if all had relaxed.
 half stress × strain
@@ -55,7 +58,9 @@ FALLS = {"fc": "white", "ec": "0.88", "hatch": "\\\\\\", "lw": 0, "zorder": 0}
 
 
 def frame_meanings(histories: Histories, coarse: Companions) -> pd.DataFrame:
-    """Strain energy density over time by definition, depth and surface (40 gf/s), with its change from the top of the ramp on."""
+    """Strain energy density over time by definition, depth and surface (40 gf/s), with its change
+    from the top of the ramp on.
+    """
     parts = []
     for label, history in NINE.histories(histories).items():
         for panel, variable in MEANINGS.items():
@@ -84,7 +89,9 @@ def titled(panel: str) -> str:
 
 @style.styled
 def fig_meanings(frame: pd.DataFrame) -> Figure:
-    """Above: each definition over time, relative to the top of the ramp; below: its change over the hold for every surface."""
+    """Above: each definition over time, relative to the top of the ramp; below: its change over the
+    hold for every surface.
+    """
     note = [
         f"{axs.footnote(frame)[0].replace('; strain energy on instantaneous moduli', '')} Recorded rates fall in the "
         "hold under every surface (Cysyk 1999, section 4.2). Hatched: where a definition does so. Without viscosity the five "

@@ -1,10 +1,12 @@
-"""What sweeps cost: scenes a second and core, memory over a thousand scenes, and what grows with their number.
+"""What sweeps cost: scenes a second and core, memory over a thousand scenes, and what grows with
+their number.
 
     python -m cysyk1999.studies.sweep_bench [SCENES]        figures/tables/sweeps.csv, sweeps.md
 
-Process times are user and system, so that a busy machine counts little; walls are medians of runs of the command itself on an
-idle machine, one core and two in turn. Laying out and collecting are measured up to ten thousand scenes, collecting with records
-that were made up: what a record says costs the same whoever wrote it.
+Process times are user and system, so that a busy machine counts little; walls are medians of runs
+of the command itself on an idle machine, one core and two in turn. Laying out and collecting are
+measured up to ten thousand scenes, collecting with records that were made up: what a record says
+costs the same whoever wrote it.
 """
 
 from __future__ import annotations
@@ -55,7 +57,9 @@ def sweep_of(kind: str, scenes: int) -> Any:
 def of_command(
     kind: str, scenes: int, cores: tuple[int, ...], repeats: int = REPEATS
 ) -> list[dict[str, Any]]:
-    """`fingerpad sweep` from start to finish, on so many cores in turn: medians of the walls, and how many times the scenes."""
+    """`fingerpad sweep` from start to finish, on so many cores in turn: medians of the walls, and
+    how many times the scenes.
+    """
     walls: dict[int, list[float]] = {n: [] for n in cores}
     with tempfile.TemporaryDirectory() as name:
         text = Path(name) / "sweep.yaml"
@@ -177,7 +181,9 @@ def of_laying_out(scenes: int) -> list[dict[str, Any]]:
 
 
 def of_collecting(scenes: int, measures: int = 30) -> list[dict[str, Any]]:
-    """One dataset and one table of made-up records: process time and the largest memory of the process."""
+    """One dataset and one table of made-up records: process time and the largest memory of the
+    process.
+    """
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         values = np.random.default_rng(1).random((scenes, measures)).round(6).tolist()

@@ -1,1 +1,3 @@
-"""What the Snakefile asks the package: its typed configuration, the jobs that follow from it, and the doing of one job."""
+"""What the Snakefile asks the package: its typed configuration, the jobs that follow from it, and
+the doing of one job.
+"""

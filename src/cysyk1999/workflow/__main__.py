@@ -1,7 +1,9 @@
-"""Do one job of the workflow: ``python -m cysyk1999.workflow JOB --log FILE --key VALUE ... --key VALUE ...``
+"""Do one job of the workflow: ``python -m cysyk1999.workflow JOB --log FILE --key VALUE ... --key
+VALUE ...``
 
-JOB is a module of :mod:`cysyk1999.workflow.jobs`, a key the name of some of its files or parameters. Everything printed goes into
-the log; if the job fails, its last line is also shown where the workflow was started.
+JOB is a module of :mod:`cysyk1999.workflow.jobs`, a key the name of some of its files or
+parameters. Everything printed goes into the log; if the job fails, its last line is also shown
+where the workflow was started.
 """
 
 from __future__ import annotations

@@ -1,7 +1,9 @@
-"""A finished run as a Workflow Run RO-Crate: ``python -m cysyk1999.workflow.archive config/thesis.yaml results/archive``.
+"""A finished run as a Workflow Run RO-Crate: ``python -m cysyk1999.workflow.archive
+config/thesis.yaml results/archive``.
 
-Inputs, code, outputs, what made what of what, and what it took, in one folder. Its ``ro-crate-metadata.json`` says what is in it,
-by the profiles Workflow RO-Crate 1.0 and Process and Workflow Run Crate 0.5 (Leo and others 2024, PLoS ONE 19:e0309210).
+Inputs, code, outputs, what made what of what, and what it took, in one folder. Its
+``ro-crate-metadata.json`` says what is in it, by the profiles Workflow RO-Crate 1.0 and Process and
+Workflow Run Crate 0.5 (Leo and others 2024, PLoS ONE 19:e0309210).
 """
 
 from __future__ import annotations
@@ -62,7 +64,8 @@ class NotRun(ValueError):
 
 
 def archive(file: str | Path, out: str | Path) -> Path:
-    """Write the crate of a configuration's finished run, made by the workflow in the working directory, into the folder `out`.
+    """Write the crate of a configuration's finished run, made by the workflow in the working
+    directory, into the folder `out`.
 
     Raises:
         SceneError: the configuration is wrong. NotRun: a result is missing. One line.
@@ -93,7 +96,9 @@ def archive(file: str | Path, out: str | Path) -> Path:
 
 
 def _finished(products: Products) -> list[tuple[Job, Mapping, list[str]]]:
-    """Jobs of the default target in the order they ended: with Snakemake's record of each, and what it made."""
+    """Jobs of the default target in the order they ended: with Snakemake's record of each, and what
+    it made.
+    """
     default = {
         *products.targets("catalogue", *PARTS, figures=""),
         *products.histories(products.config.scenes),

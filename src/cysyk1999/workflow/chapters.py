@@ -1,4 +1,6 @@
-"""What the studies and figures of the package offer, read without importing them when nothing they rest on has changed."""
+"""What the studies and figures of the package offer, read without importing them when nothing they
+rest on has changed.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +26,10 @@ _MODULES = (
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure as the workflow sees it: the module that draws it, the scenes whose histories and meshes it needs, those whose
-    companions it compares with, and patterns of the files of measured data, in the folder of reference data."""
+    """A figure as the workflow sees it: the module that draws it, the scenes whose histories and
+    meshes it needs, those whose companions it compares with, and patterns of the files of measured
+    data, in the folder of reference data.
+    """
 
     number: str
     title: str
@@ -37,11 +41,12 @@ class Figure:
 
 @cache
 def offered(folder: str | Path = ".snakemake") -> dict[str, Any]:
-    """What is on offer: `figures` by number, and the studies' `FAMILY`, `EDGED`, `RIDGED`, `SWEEPS`, `MADE_FINER`, `OUTSIDE`,
-    `CLASSES` (accuracy), `METHODS` (stability), `READINGS` of the scenes `READ` and those `READ_ONLY` of results (explanations),
-    `VIEWS` with scenes.
+    """What is on offer: `figures` by number, and the studies' `FAMILY`, `EDGED`, `RIDGED`,
+    `SWEEPS`, `MADE_FINER`, `OUTSIDE`, `CLASSES` (accuracy), `METHODS` (stability), `READINGS` of
+    the scenes `READ` and those `READ_ONLY` of results (explanations), `VIEWS` with scenes.
 
-    Kept in `folder` beside the digest of the modules that say it: importing them takes longer than all else a dry run does.
+    Kept in `folder` beside the digest of the modules that say it: importing them takes longer than
+    all else a dry run does.
     """
     key = code_digest() + code_digest(Path(__file__).parents[1])
     path = Path(folder, "offered.json")

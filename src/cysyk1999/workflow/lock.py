@@ -11,8 +11,9 @@ _held: list[IO] = []
 def take_over(folder: str | Path = ".snakemake") -> int:
     """Remove the locks in `folder` if whoever set them is dead, and return how many these were.
 
-    Every Snakemake of this workflow keeps a file of the folder locked while it lives, and the kernel lets go of it whatever
-    ends the process. So if that lock is to be had, what else is locked is nobody's. Held until this process ends.
+    Every Snakemake of this workflow keeps a file of the folder locked while it lives, and the
+    kernel lets go of it whatever ends the process. So if that lock is to be had, what else is
+    locked is nobody's. Held until this process ends.
     """
     try:
         import fcntl

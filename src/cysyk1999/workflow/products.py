@@ -1,6 +1,8 @@
-"""From a configuration to the workflow's jobs: what each reads, what it writes, and which of the package's files it rests on.
+"""From a configuration to the workflow's jobs: what each reads, what it writes, and which of the
+package's files it rests on.
 
-Every file is named here, there are no wildcards: what is not named cannot be asked for, and what is asked for has one job.
+Every file is named here, there are no wildcards: what is not named cannot be asked for, and what is
+asked for has one job.
 """
 
 from __future__ import annotations
@@ -25,11 +27,15 @@ from fingerpad.scenes.families import Written, moves_along, read_scene, rests_on
 RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
 RIDGED, OUTER = "ridged_stroke_right", ("ridged_outer_stroke_right", "ridged_outer_stroke_left")
 HEIGHT, FRICTION = 150, 0.35
-"""Height (um) of ridges and coefficient of friction of RIDGED; the study of ridges varies one at a time."""
+"""Height (um) of ridges and coefficient of friction of RIDGED; the study of ridges varies one at a
+time.
+"""
 RIDGE_MESHES = (("fine",), ("curved", "straight", "shifted"))
 """Further meshes for that case, by process."""
 COMPANIONS = {"coarse_mesh": 1, "coarse": 2}
-"""Companions of a scene, on a coarser mesh: the folder of their results, and how many of its steps are one."""
+"""Companions of a scene, on a coarser mesh: the folder of their results, and how many of its steps
+are one.
+"""
 RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rapidly_adapting")
 TABLES = ("thesis_comparison", "sensitivity")
 PARTS = ("animations", "views", "all_tables", "calibration", "ridges", "meanings")
@@ -37,7 +43,9 @@ PARTS = ("animations", "views", "all_tables", "calibration", "ridges", "meanings
 SHOWN = ("picture", "pictures", "table", "tables", "gifs", "films")
 """Outputs that are for people."""
 UNTOLD = ("files", "scene_files", "measured", "written")
-"""Inputs that a job finds by itself, beside others or named in them, and what only says when to run it again."""
+"""Inputs that a job finds by itself, beside others or named in them, and what only says when to run
+it again.
+"""
 
 
 ALL_CORES = 1000
@@ -51,10 +59,11 @@ class Job:
     """One process of the workflow.
 
     Attributes:
-        run: module of `cysyk1999.workflow.jobs`. inputs, outputs: files by what they are to the job. values: parameters likewise.
-        called: the rule's name, if it is not the module's. modules: further modules that the job imports by name. also: outputs
-        beside the others. category, labels: of the outputs called pages, which the report shows. vectors: folder of the pictures
-        as PDF. priority: the higher the earlier, of what takes long or is waited for.
+        run: module of `cysyk1999.workflow.jobs`. inputs, outputs: files by what they are to the
+        job. values: parameters likewise. called: the rule's name, if it is not the module's.
+        modules: further modules that the job imports by name. also: outputs beside the others.
+        category, labels: of the outputs called pages, which the report shows. vectors: folder of
+        the pictures as PDF. priority: the higher the earlier, of what takes long or is waited for.
     """
 
     run: str
@@ -94,7 +103,9 @@ class Job:
 
     @property
     def beside(self) -> list[str]:
-        """What is written beside the outputs: Markdown to tables, their data and PDF to pictures, and `also`."""
+        """What is written beside the outputs: Markdown to tables, their data and PDF to pictures,
+        and `also`.
+        """
         pictures = [Path(p) for key in ("picture", "pictures") for p in self.outputs.get(key, [])]
         tables = [Path(p) for key in ("table", "tables") for p in self.outputs.get(key, [])]
         data = [
@@ -109,7 +120,9 @@ class Job:
 
     @property
     def words(self) -> list[tuple[str, str]]:
-        """What the job is told on its command line: where in the rule it stands (input, output, params), and its key."""
+        """What the job is told on its command line: where in the rule it stands (input, output,
+        params), and its key.
+        """
         told = [("input", key) for key in self.inputs if key not in UNTOLD]
         values = [("params", key) for key in self.values if key not in UNTOLD]
         return [*told, *(("output", key) for key in self.outputs), *values]
@@ -137,8 +150,8 @@ class Products:
     """The jobs of a configuration.
 
     Args:
-        config: the configuration. file: where it was read. root: folder of the Snakefile. Files that a configuration names are
-        looked for in the working directory first and then in `root`.
+        config: the configuration. file: where it was read. root: folder of the Snakefile. Files
+        that a configuration names are looked for in the working directory first and then in `root`.
     """
 
     def __init__(self, config: WorkflowConfig, file: str | Path, root: str | Path) -> None:
@@ -150,7 +163,9 @@ class Products:
     # -- what there is -----------------------------------------------------------------------------------------------------
 
     def at(self, path: str) -> str:
-        """A file or folder of the project: in the working directory if it is there, else beside the Snakefile."""
+        """A file or folder of the project: in the working directory if it is there, else beside the
+        Snakefile.
+        """
         return path if Path(path).exists() else os.path.relpath(self.root / path)
 
     def _check(self) -> None:
@@ -237,7 +252,9 @@ class Products:
         ]
 
     def scene(self, name: str) -> str:
-        """Path of a scene: in the first folder that has a file, or a family, which can be so called."""
+        """Path of a scene: in the first folder that has a file, or a family, which can be so
+        called.
+        """
         if name not in self._found:
             self._found[name] = self._find(name)
         return self._found[name]
@@ -266,7 +283,9 @@ class Products:
         return [self.result(f"{fidelity}/{scene}/history.nc") for scene in scenes]
 
     def companions(self, scenes: Iterable[str]) -> list[str]:
-        """Results of the scenes' companions on coarser meshes with coarser steps, if the configuration has any."""
+        """Results of the scenes' companions on coarser meshes with coarser steps, if the
+        configuration has any.
+        """
         return self.histories(scenes, "coarse") if self.config.companions else []
 
     def both_companions(self, scenes: Iterable[str]) -> list[str]:
@@ -304,7 +323,9 @@ class Products:
 
     @cached_property
     def coarse(self) -> set[str]:
-        """Scenes that have a companion: those of the configuration, and the variants that a figure or a calibration compares."""
+        """Scenes that have a companion: those of the configuration, and the variants that a figure
+        or a calibration compares.
+        """
         c = self.config
         compared = {*c.scenes, *(scene for figure in self.drawn for scene in figure.companions)}
         return compared | {scene for scene in c.every_scene if scene in (PLATE, RAMP, STROKE)}
@@ -357,10 +378,12 @@ class Products:
             )
 
     def _read(self, *names: str) -> dict[str, list[str]]:
-        """What jobs read of scenes: their files, and the specimens, profiles and meshes that these name.
+        """What jobs read of scenes: their files, and the specimens, profiles and meshes that these
+        name.
 
-        The scenes' own files only have to be there: what counts is what is written of a scene (`_written`), so that an edit
-        reruns the scenes whose meaning it changes, not all that share the file.
+        The scenes' own files only have to be there: what counts is what is written of a scene
+        (`_written`), so that an edit reruns the scenes whose meaning it changes, not all that share
+        the file.
         """
         files = dict.fromkeys(
             os.path.relpath(path) for name in names for path in rests_on(self.scene(name))
@@ -398,7 +421,9 @@ class Products:
         return f"{self.config.figures}/fig_{number}.png"
 
     def figures(self) -> Iterator[Job]:
-        """Histories and meshes -> figures: those of a chapter that rest on the same simulations share a process."""
+        """Histories and meshes -> figures: those of a chapter that rest on the same simulations
+        share a process.
+        """
         batch_of = {name: batch for batch, names in self.batches().items() for name in names}
         groups: dict[tuple, list[Figure]] = {}
         for figure in self.drawn:
@@ -461,7 +486,9 @@ class Products:
             )
 
     def fields(self) -> Iterator[Job]:
-        """Scenes -> histories with whole fields: presses in one process, what moves along in another."""
+        """Scenes -> histories with whole fields: presses in one process, what moves along in
+        another.
+        """
         for called, strokes in (("fields_of_presses", False), ("fields_of_strokes", True)):
             if names := [
                 name
@@ -493,7 +520,9 @@ class Products:
         )
 
     def views(self) -> Iterator[Job]:
-        """Pictures of what happens inside, those whose scenes the configuration has, and of the tables that compare."""
+        """Pictures of what happens inside, those whose scenes the configuration has, and of the
+        tables that compare.
+        """
         known, views = {*self.config.every_scene, *self.config.field_scenes}, offered()["VIEWS"]
         there = [name for name, scenes in views.items() if known.issuperset(scenes)]
         for called, strokes in (("views_of_presses", False), ("views_of_strokes", True)):
@@ -570,7 +599,9 @@ class Products:
         return [name for name in names if self._family(name) in families]
 
     def meanings(self) -> Iterator[Job]:
-        """The study of the definitions of strain energy, if the configuration has the nine surfaces."""
+        """The study of the definitions of strain energy, if the configuration has the nine
+        surfaces.
+        """
         name, nine = "strain_energy_meanings", self._of(self.config.scenes, "ramp40")
         if len(nine) >= 9:
             read = {"histories": self.histories(nine), "coarse": self.both_companions(nine)}
@@ -579,7 +610,9 @@ class Products:
     # -- studies -----------------------------------------------------------------------------------------------------------
 
     def calibration(self) -> Iterator[Job]:
-        """The pad calibrated to measured forces; the Prony series and friction, if the configuration has their scenes."""
+        """The pad calibrated to measured forces; the Prony series and friction, if the
+        configuration has their scenes.
+        """
         c = self.config
         if not c.calibration_scenes:
             return
@@ -870,7 +903,9 @@ class Products:
         yield Job("peers", {"files": files}, made, called="peers_table", mem_mb=2000)
 
     def reconstruction(self) -> Iterator[Job]:
-        """The pad that made the thesis's figures: evidence, pads simulated, what is inferred, and what that predicts."""
+        """The pad that made the thesis's figures: evidence, pads simulated, what is inferred, and
+        what that predicts.
+        """
         evidence = {"evidence": [self.at("config/reference/reconstruction_evidence.csv")]}
         start = self.at("config/specimens/long_term.yaml")
         unknowns, named = (
@@ -915,7 +950,9 @@ class Products:
         )
 
     def explanations(self) -> Iterator[Job]:
-        """Readings of what the thesis leaves open -> which of them bring about what does not hold."""
+        """Readings of what the thesis leaves open -> which of them bring about what does not
+        hold.
+        """
         scenes, offers = offered()["READ"], offered()
         names = [*offers["READ_ONLY"], *offers["READINGS"]]
         words = {name: re.sub("[^a-z]+", "_", name) for name in names}
@@ -967,7 +1004,9 @@ class Products:
     # -- for people and archives -------------------------------------------------------------------------------------------
 
     def report(self) -> Iterator[Job]:
-        """A page a figure, study and table, by category: of what the configuration makes, and of studies published beside it."""
+        """A page a figure, study and table, by category: of what the configuration makes, and of
+        studies published beside it.
+        """
         c = self.config
         jobs = [job for part in PARTS for job in getattr(self, part)()]
         made = [path for job in jobs for key in SHOWN for path in job.outputs.get(key, [])]
@@ -1002,7 +1041,9 @@ class Products:
         published: Iterable[str] = (),
         titles: Mapping[str, str] = {},
     ) -> Job:
-        """Pages of pictures or tables, some of which are made here (`shown`); of the others the content counts."""
+        """Pages of pictures or tables, some of which are made here (`shown`); of the others the
+        content counts.
+        """
         name, published = category.lower().replace(" ", "_"), list(published)
         sources = [*shown, *published]
         said = [
@@ -1072,7 +1113,8 @@ class Products:
             self.report,
         )
         jobs = [job for part in parts for job in part()]
-        # a scene read back from a history is filled up with the thesis's specimen, though it lacks nothing
+        # a scene read back from a history is filled up with the thesis's specimen, though it lacks
+        # nothing
         named = {"files": [self.thesis_specimen()]}
         jobs = [
             replace(job, inputs=named | dict(job.inputs)) if READ_BACK & job.inputs.keys() else job
@@ -1086,7 +1128,9 @@ class Products:
         ]
 
     def targets(self, *parts: str, figures: str = "none") -> list[str]:
-        """Final outputs of some parts (names of the methods above), and the figures whose number starts so."""
+        """Final outputs of some parts (names of the methods above), and the figures whose number
+        starts so.
+        """
         wanted = [f for f in self.drawn if f.number.startswith(figures)]
         jobs = [job for part in parts for job in getattr(self, part)()]
         read = {path for job in jobs for paths in job.inputs.values() for path in paths}

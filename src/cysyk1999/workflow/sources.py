@@ -47,9 +47,8 @@ def imported_sources(*modules: str) -> list[Path]:
         There is no such module.
 
     Notes
-    -----
-    Imports inside functions count; those under ``TYPE_CHECKING`` do not. Who imports a verb from ``fingerpad`` rests
-    on the modules of all verbs.
+    ----- Imports inside functions count; those under ``TYPE_CHECKING`` do not. Who imports a verb
+    from ``fingerpad`` rests on the modules of all verbs.
     """
     found = set().union(*map(_upstream, modules))
     if "fingerpad" in found:

@@ -1,7 +1,8 @@
 """Hyperelastic laws: what a layer's tissue answers to a change of shape.
 
-One file a law, with its energy, stress, tangent and declared constants; :data:`LAWS` is the register that scene language, planner
-and mechanics read. The first simulation with a law other than neo-Hooke compiles its element loops, once.
+One file a law, with its energy, stress, tangent and declared constants; :data:`LAWS` is the
+register that scene language, planner and mechanics read. The first simulation with a law other than
+neo-Hooke compiles its element loops, once.
 """
 
 from fingerpad.laws import neo_hooke, yeoh

@@ -1,4 +1,6 @@
-"""What a hyperelastic law is: an isochoric energy of plane strain with its derivatives, and its constants."""
+"""What a hyperelastic law is: an isochoric energy of plane strain with its derivatives, and its
+constants.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ import numpy as np
 
 
 def isochoric(jac):
-    """J^(-2/3), which takes the change of volume out of I1; where a formula is compiled, so is this."""
+    """J^(-2/3), which takes the change of volume out of I1; where a formula is compiled, so is
+    this.
+    """
     return jac ** (-2.0 / 3.0)
 
 
@@ -31,21 +35,22 @@ class Constant:
 class Law:
     """An isotropic, isochoric hyperelastic law, as three formulas of plane strain.
 
-    There ``I2 = I1 - 1 + J^2``, so that every such energy is a function psi of ``I1 = tr F^T F + 1`` and ``J = det F`` alone. Its
-    stress and the change of it, with ``c = cof F``, are
+    There ``I2 = I1 - 1 + J^2``, so that every such energy is a function psi of ``I1 = tr F^T F +
+    1`` and ``J = det F`` alone. Its stress and the change of it, with ``c = cof F``, are
 
         P  = m (F - t/(3 J) c)                                       m = 2 psi_1,   t = -3 J psi_J / m
         dP = m dF + psi_J C0:dF + f F (F:dF) + g (F (c:dF) + c (F:dF)) + h c (c:dF)
                                                                      f = 4 psi_11,  g = 2 psi_1J,  h = psi_JJ
 
-    The formulas take ``(i1, jac, mu, constants)``, and J^(-2/3) from :func:`isochoric`; they work on numbers, where they are
-    compiled into the element loops, and on arrays alike; ``constants[k]`` is the k-th constant. The shear modulus ``mu`` (Pa)
-    multiplies everything: undeformed, every law is the linear solid of that modulus, and Prony branches relax it; without it
-    (zero) t is still a number.
+    The formulas take ``(i1, jac, mu, constants)``, and J^(-2/3) from :func:`isochoric`; they work
+    on numbers, where they are compiled into the element loops, and on arrays alike;
+    ``constants[k]`` is the k-th constant. The shear modulus ``mu`` (Pa) multiplies everything:
+    undeformed, every law is the linear solid of that modulus, and Prony branches relax it; without
+    it (zero) t is still a number.
 
     Attributes:
-        name: in the scene language. energy: psi, Pa. stress: ``(m, t)``. tangent: ``(m, t, f, g, h)``.
-        constants: name -> :class:`Constant`, in the order in which the formulas take them.
+        name: in the scene language. energy: psi, Pa. stress: ``(m, t)``. tangent: ``(m, t, f, g,
+        h)``. constants: name -> :class:`Constant`, in the order in which the formulas take them.
         bilinear: psi is linear in I1, f is zero and is left out of the element loops.
     """
 
@@ -63,7 +68,9 @@ class Law:
 
 
 def departure(law: Law, constants: Sequence[float], strain: float) -> float:
-    """By how much a law is stiffer or softer than neo-Hooke, relative, pulled by ``strain`` in the plane at constant volume."""
+    """By how much a law is stiffer or softer than neo-Hooke, relative, pulled by ``strain`` in the
+    plane at constant volume.
+    """
     stretch = 1 + strain
     return abs(float(law.stress(stretch**2 + stretch**-2 + 1, 1.0, 1.0, constants)[0]) - 1)
 

@@ -1,4 +1,6 @@
-"""Neo-Hooke: ``psi = mu/2 (J^(-2/3) I1 - 3)`` (Rivlin 1948, made isochoric as by Simo, Taylor and Pister 1985)."""
+"""Neo-Hooke: ``psi = mu/2 (J^(-2/3) I1 - 3)`` (Rivlin 1948, made isochoric as by Simo, Taylor and
+Pister 1985).
+"""
 
 from fingerpad.laws.law import Law, isochoric
 

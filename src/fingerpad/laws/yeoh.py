@@ -1,4 +1,6 @@
-"""Yeoh (1993): ``psi = mu/2 (x + second x^2 + third x^3)``, ``x = J^(-2/3) I1 - 3``: tissue that stiffens as it is strained."""
+"""Yeoh (1993): ``psi = mu/2 (x + second x^2 + third x^3)``, ``x = J^(-2/3) I1 - 3``: tissue that
+stiffens as it is strained.
+"""
 
 from fingerpad.laws.law import Constant, Law, isochoric
 

@@ -1,7 +1,8 @@
 """What figures and tables read from a history: phases, profiles, receptor traces.
 
-A history is the dataset of one simulation (SI units, time[0] unloaded). Nothing here computes mechanics. Values are read of its
-variables: to label them first, a hundred thousand times for one table, takes longer than what is done with them.
+A history is the dataset of one simulation (SI units, time[0] unloaded). Nothing here computes
+mechanics. Values are read of its variables: to label them first, a hundred thousand times for one
+table, takes longer than what is done with them.
 """
 
 from __future__ import annotations
@@ -37,8 +38,10 @@ PRESSURE_SCALE = 0.04
 """Factor of the pressure traces of Fig 4-21, of the thesis's choosing."""
 
 PRESSURE = "contact_pressure"
-"""The pressure of every figure and table: of every node the mean at the points beside it, not averaged over neighbours.
-An average lowers the peak under sharp surfaces and blurs the contact edge."""
+"""The pressure of every figure and table: of every node the mean at the points beside it, not
+averaged over neighbours. An average lowers the peak under sharp surfaces and blurs the contact
+edge.
+"""
 
 
 def scene_name(programme: str, label: str) -> str:
@@ -80,7 +83,9 @@ def force_gf(history: xr.Dataset) -> np.ndarray:
 
 
 def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> int:
-    """Index of the receptor at `depth` and `offset` (m). Raises KeyError if the scene has none there."""
+    """Index of the receptor at `depth` and `offset` (m). Raises KeyError if the scene has none
+    there.
+    """
     miss = np.hypot(
         history.variables["receptor_depth"].values - depth,
         history.variables["receptor_offset"].values - offset,
@@ -107,8 +112,8 @@ def energy(
 def energy_rate(history: xr.Dataset, depth: float) -> pd.DataFrame:
     """Time derivative of the strain energy density at the centre, with the times it is taken at.
 
-    Taken leg by leg (see `rate_by_leg`), so that the jump at the top of the ramp stays a jump: that time appears twice, once
-    with the rate of each leg.
+    Taken leg by leg (see `rate_by_leg`), so that the jump at the top of the ramp stays a jump: that
+    time appears twice, once with the rate of each leg.
     """
     time, _, rate = rate_by_leg(
         history.variables["time"].values, energy(history, depth), history.variables["leg"].values
@@ -117,7 +122,9 @@ def energy_rate(history: xr.Dataset, depth: float) -> pd.DataFrame:
 
 
 def skin_at(history: xr.Dataset, index: int | slice = slice(None)) -> tuple[np.ndarray, np.ndarray]:
-    """Deformed positions x, y (m) of the skin nodes at one output (skin_node), or at all of them (time, skin_node)."""
+    """Deformed positions x, y (m) of the skin nodes at one output (skin_node), or at all of them
+    (time, skin_node).
+    """
     x, y = (
         history.variables[f"skin_{k}"].values
         + history.variables[f"skin_displacement_{k}"].values[index]
@@ -132,7 +139,9 @@ def profile(history: xr.Dataset, index: int, name: str = PRESSURE) -> tuple[np.n
 
 
 def pressure_at(history: xr.Dataset, place: float) -> np.ndarray:
-    """Pressure (time) in Pa at a place (m) along the upper side of the skin at rest, straight between nodes."""
+    """Pressure (time) in Pa at a place (m) along the upper side of the skin at rest, straight
+    between nodes.
+    """
     upper = history.variables["skin_y"].values > 0
     x = history.variables["skin_x"].values[upper]
     return np.array(
@@ -156,7 +165,9 @@ def centre_node(history: xr.Dataset) -> int:
 
 
 def surface_nodes(history: xr.Dataset) -> np.ndarray:
-    """Indices of skin nodes from the centre to the right as far as anything ever touches (half contact)."""
+    """Indices of skin nodes from the centre to the right as far as anything ever touches (half
+    contact).
+    """
     centre = centre_node(history)
     ever = np.flatnonzero((history.variables["contact_pressure"].values > 0).any(axis=0))
     return np.arange(centre, max(ever.max(initial=centre), centre) + 1)

@@ -16,7 +16,9 @@ Made = TypeVar("Made")
 def kept(
     make: Callable[Concatenate[xr.Dataset, Further], Made],
 ) -> Callable[Concatenate[xr.Dataset, Further], Made]:
-    """The function, which makes something of a history, not called again for the same one: neither of the two is changed."""
+    """The function, which makes something of a history, not called again for the same one: neither
+    of the two is changed.
+    """
     made: dict[tuple, Made] = {}
 
     @wraps(make)

@@ -1,6 +1,8 @@
-"""Every measure that a sweep can keep, by name: those of any scene, and those that other packages add.
+"""Every measure that a sweep can keep, by name: those of any scene, and those that other packages
+add.
 
-A package adds measures by an entry point of the group ``fingerpad.measures``: a module with a dictionary ``MEASURES``.
+A package adds measures by an entry point of the group ``fingerpad.measures``: a module with a
+dictionary ``MEASURES``.
 """
 
 from __future__ import annotations
@@ -19,7 +21,9 @@ OF_ANY: dict[str, Measure] = measures_of(of_any)
 
 
 def known(names: Iterable[str]) -> Mapping[str, Measure]:
-    """Measures by name: those of any scene, and all others if `names` has one that is not among them."""
+    """Measures by name: those of any scene, and all others if `names` has one that is not among
+    them.
+    """
     if OF_ANY.keys() >= set(names):
         return OF_ANY
     added = {}

@@ -1,7 +1,9 @@
-"""What a measure is: a number with a unit, or one under each of some conditions, that is read of a scene.
+"""What a measure is: a number with a unit, or one under each of some conditions, that is read of a
+scene.
 
-What it is read of says what it can tell. A measure of the *scene* alone is an input: it is known before anything is simulated.
-One of the *mesh* counts parts of the model. Only one of the *history* is a result.
+What it is read of says what it can tell. A measure of the *scene* alone is an input: it is known
+before anything is simulated. One of the *mesh* counts parts of the model. Only one of the *history*
+is a result.
 """
 
 from __future__ import annotations
@@ -23,7 +25,9 @@ Values = Mapping[str, float]
 
 
 class Together(Mapping):
-    """Histories of many scenes by name, those of strokes `loaded` as well, and what takes several of them, made once."""
+    """Histories of many scenes by name, those of strokes `loaded` as well, and what takes several
+    of them, made once.
+    """
 
     def __init__(self, histories: Mapping[str, xr.Dataset]) -> None:
         self._histories = histories
@@ -40,7 +44,9 @@ class Together(Mapping):
         return len(self._histories)
 
     def once(self, make: Callable[[Together], Any]) -> Any:
-        """``make(self)``, made when first asked for. Raises KeyError, each time, if a scene was not simulated."""
+        """``make(self)``, made when first asked for. Raises KeyError, each time, if a scene was not
+        simulated.
+        """
         if make not in self._made:
             self._made[make] = make(self)
         return self._made[make]
@@ -59,7 +65,8 @@ class Measure:
     name, unit
         As in the measures table.
     read
-        A number, or a mapping condition -> number, in `unit`. Raises KeyError where the scene does not show it.
+        A number, or a mapping condition -> number, in `unit`. Raises KeyError where the scene does
+        not show it.
     where
         Whether a scene has it.
     of

@@ -1,6 +1,8 @@
-"""Measures that any scene has, whatever presses and how: what sweeps keep. "end" is the last output, "highest" the largest ever.
+"""Measures that any scene has, whatever presses and how: what sweeps keep. "end" is the last
+output, "highest" the largest ever.
 
-Those of receptors have a condition for each of them, such as "915 um, end", or "915 um at 0.5 mm, end" beside the middle.
+Those of receptors have a condition for each of them, such as "915 um, end", or "915 um at 0.5 mm,
+end" beside the middle.
 """
 
 from __future__ import annotations

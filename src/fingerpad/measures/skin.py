@@ -1,8 +1,9 @@
 """Local curvature of the deformed skin, from the positions of its nodes alone.
 
-The curvature at a node is that of a parabola through its neighbours: x and y are fitted as quadratic functions of the
-arc length along the skin, by weighted least squares over a window of `WINDOW` to either side. In contact, where the nodes
-lie on the profile, it equals the profile's curvature; a noise of e in the nodes becomes one of about 4 e / WINDOW**2.
+The curvature at a node is that of a parabola through its neighbours: x and y are fitted as
+quadratic functions of the arc length along the skin, by weighted least squares over a window of
+`WINDOW` to either side. In contact, where the nodes lie on the profile, it equals the profile's
+curvature; a noise of e in the nodes becomes one of about 4 e / WINDOW**2.
 """
 
 from __future__ import annotations
@@ -15,24 +16,27 @@ import xarray as xr
 from fingerpad.measures.features import skin_at
 
 WINDOW = 0.25e-3
-"""Half of the arc length (m) that a curvature is fitted over: three to four nodes to either side at the thesis's resolution."""
+"""Half of the arc length (m) that a curvature is fitted over: three to four nodes to either side at
+the thesis's resolution.
+"""
 
 LEAST_NODES = 2
 """Nodes to either side that are fitted at least, whatever their spacing."""
 
 
 def local_curvature(x: np.ndarray, y: np.ndarray, node: int, window: float = WINDOW) -> np.ndarray:
-    """Curvature of a line at one of its nodes, signed: positive where it is hollow, as skin is under a convexity.
+    """Curvature of a line at one of its nodes, signed: positive where it is hollow, as skin is
+    under a convexity.
 
     Parameters
-    ----------
-    x, y : (..., nodes) m; positions along the line, from left to right over the upper side of the pad.
-    node : index of the node, at least `LEAST_NODES` away from both ends.
-    window : m; half of the arc length fitted over, widened where it holds fewer than `LEAST_NODES` to either side.
+    ---------- x, y : (..., nodes) m; positions along the line, from left to right over the upper
+    side of the pad. node : index of the node, at least `LEAST_NODES` away from both ends. window :
+    m; half of the arc length fitted over, widened where it holds fewer than `LEAST_NODES` to either
+    side.
 
     Returns
-    -------
-    (...,) 1/m. The weights fall off as (1 - (s / window)**2)**2 with the arc length s from the node.
+    ------- (...,) 1/m. The weights fall off as (1 - (s / window)**2)**2 with the arc length s from
+    the node.
     """
     x, y = np.asarray(x, float), np.asarray(y, float)
     return _curvature(x, y, _way(x, y), node, window)

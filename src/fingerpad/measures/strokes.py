@@ -1,8 +1,10 @@
-"""What figures and tables read from strokes: where the surface is, its convexities, and what each does to the skin.
+"""What figures and tables read from strokes: where the surface is, its convexities, and what each
+does to the skin.
 
-A stroke is read at its `loaded` outputs, the last one at each stroke distance d: the point x = d of the surface is then over
-the middle of the undeformed pad. The node of the skin that lies there at rest, the centre node, is dragged along, so it
-touches the point x = d + u of the surface, u being its lateral displacement.
+A stroke is read at its `loaded` outputs, the last one at each stroke distance d: the point x = d of
+the surface is then over the middle of the undeformed pad. The node of the skin that lies there at
+rest, the centre node, is dragged along, so it touches the point x = d + u of the surface, u being
+its lateral displacement.
 """
 
 from __future__ import annotations
@@ -31,7 +33,9 @@ STEPPED = "step_sub"
 """The first two convexities stepped over the pad: pressed anew every millimetre."""
 
 LOCATIONS = (8.0, 17.0, 26.0)
-"""Stroke distances (mm) of Figs 5-5 and 5-6: middles of the thesis's windows at sharp corner, convexity and concavity."""
+"""Stroke distances (mm) of Figs 5-5 and 5-6: middles of the thesis's windows at sharp corner,
+convexity and concavity.
+"""
 
 NODES = (-1.0, -0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6, 1.0)
 """Lateral positions (mm, undeformed) of the nine nodes of Fig 5-10."""
@@ -43,7 +47,9 @@ _ON_EDGE = 2
 """Of the skin's nodes on an edge of a quadratic element."""
 
 _FAR = 8
-"""Spacings by which one edge of the contact is farther than the other one for certain: it lies within four of its last node."""
+"""Spacings by which one edge of the contact is farther than the other one for certain: it lies
+within four of its last node.
+"""
 _BESIDE = 6
 """Spacings of nodes from the edge of the contact within which it is located between them."""
 
@@ -55,18 +61,23 @@ def profile_and_height(history: xr.Dataset) -> tuple[Profile, np.ndarray]:
 
 
 def arcs(history: xr.Dataset) -> list[Segment]:
-    """Arcs of a history's wavy surface in their order, convex (curvature above 0) and hollow ones."""
+    """Arcs of a history's wavy surface in their order, convex (curvature above 0) and hollow
+    ones.
+    """
     return [piece for piece in scene_of(history).stimulus.segments if piece.curvature]
 
 
 def convexities(history: xr.Dataset) -> dict[str, Segment]:
-    """The convex arcs of a history's wavy surface in their order, by the thesis's name: the curvature in 1/m, rounded."""
+    """The convex arcs of a history's wavy surface in their order, by the thesis's name: the
+    curvature in 1/m, rounded.
+    """
     return {f"{piece.curvature:.0f}": piece for piece in arcs(history) if piece.curvature > 0}
 
 
 @kept
 def loaded(history: xr.Dataset) -> xr.Dataset:
-    """The history at its last output of each stroke distance: at the end of the press, and of every step that follows.
+    """The history at its last output of each stroke distance: at the end of the press, and of every
+    step that follows.
 
     What is loaded already is as it is.
     """
@@ -125,7 +136,9 @@ def centre_curvature(stroke: xr.Dataset) -> np.ndarray:
 def scaled(
     values: np.ndarray, onto: np.ndarray, where: np.ndarray
 ) -> tuple[np.ndarray, float, float, float]:
-    """A linear function A1 * values + A2 closest to `onto` at the outputs `where`: its values, A1, A2 and the correlation."""
+    """A linear function A1 * values + A2 closest to `onto` at the outputs `where`: its values, A1,
+    A2 and the correlation.
+    """
     slope, offset = np.polyfit(values[where], onto[where], 1)
     return (
         slope * values + offset,
@@ -136,7 +149,9 @@ def scaled(
 
 
 def scaled_curvature(stroke: xr.Dataset) -> np.ndarray:
-    """Curvature of the skin at the centre node as a linear function that fits the pressure there in contact (time), Pa."""
+    """Curvature of the skin at the centre node as a linear function that fits the pressure there in
+    contact (time), Pa.
+    """
     return scaled(centre_curvature(stroke), centre_pressure(stroke), touching(stroke))[0]
 
 
@@ -144,8 +159,9 @@ def scaled_curvature(stroke: xr.Dataset) -> np.ndarray:
 def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Place of the centre node and whether it touches, every `FINE` of stroke distance.
 
-    Between outputs both its place and its distance from the edge of the contact, along the undeformed skin and below zero
-    outside, are interpolated: the edge passes over the node where that changes its sign.
+    Between outputs both its place and its distance from the edge of the contact, along the
+    undeformed skin and below zero outside, are interpolated: the edge passes over the node where
+    that changes its sign.
     """
     upper = stroke["skin_y"].values > 0
     x, centre = stroke["skin_x"].values[upper], stroke["skin_x"].values[centre_node(stroke)]
@@ -162,7 +178,9 @@ def _finely(stroke: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _inside(x: np.ndarray, pressure: np.ndarray, place: float) -> float:
-    """How far (m) a place is from the nearest edge of the contact, below zero outside; x, pressure of ascending nodes."""
+    """How far (m) a place is from the nearest edge of the contact, below zero outside; x, pressure
+    of ascending nodes.
+    """
     on, spacing, deepest = np.flatnonzero(pressure > 0), np.gradient(x), -np.inf
     for run in np.split(on, np.flatnonzero(np.diff(on) > 1) + 1):
         left, right = (
@@ -180,7 +198,9 @@ def _inside(x: np.ndarray, pressure: np.ndarray, place: float) -> float:
 
 
 def contact_lengths(stroke: xr.Dataset) -> dict[str, float]:
-    """Stroke distance (m) over which the centre node touches each convexity, by the convexity's label."""
+    """Stroke distance (m) over which the centre node touches each convexity, by the convexity's
+    label.
+    """
     under, touches = _finely(stroke)
     return {
         k: FINE * float(np.sum(touches & (under >= a.start) & (under < a.end)))
@@ -189,7 +209,8 @@ def contact_lengths(stroke: xr.Dataset) -> dict[str, float]:
 
 
 def passage(stroke: xr.Dataset, convexity: Segment, beyond: float = 0.0) -> tuple[float, float]:
-    """Stretch of the surface (m, along it) between the middles of the concavities on either side of a convexity.
+    """Stretch of the surface (m, along it) between the middles of the concavities on either side of
+    a convexity.
 
     Where there is none it ends where the convexity does, or as far `beyond` as this part of it.
     """
@@ -214,7 +235,9 @@ def peaks(stroke: xr.Dataset, trace: Trace) -> dict[str, float]:
 
 
 def lost_contacts(stroke: xr.Dataset) -> list[tuple[float, float]]:
-    """Stretches of the surface, m along it, that the centre node passes under without touching; the ends left out."""
+    """Stretches of the surface, m along it, that the centre node passes under without touching; the
+    ends left out.
+    """
     under, touches = _finely(stroke)
     changes = np.flatnonzero(np.diff(touches.astype(int)))
     return [
@@ -227,10 +250,12 @@ def lost_contacts(stroke: xr.Dataset) -> list[tuple[float, float]]:
 def lag(
     x: np.ndarray, later: np.ndarray, at: np.ndarray, earlier: np.ndarray, most: float = 3e-3
 ) -> tuple[float, float]:
-    """Shift (m) along x by which one trace follows another most closely, and their correlation when shifted by it.
+    """Shift (m) along x by which one trace follows another most closely, and their correlation when
+    shifted by it.
 
-    Positive where `later` (sampled at `x`, m) lies further right: later(at + shift) ~ earlier(at). The earlier trace is
-    compared at its own samples `at` (m), those farther than `most` from the ends; only the later one is interpolated.
+    Positive where `later` (sampled at `x`, m) lies further right: later(at + shift) ~ earlier(at).
+    The earlier trace is compared at its own samples `at` (m), those farther than `most` from the
+    ends; only the later one is interpolated.
     """
     inside = (at >= x[0] + most) & (at <= x[-1] - most)
     shifts = np.arange(-most, most, 0.02e-3)

@@ -1,4 +1,6 @@
-"""The loops of :mod:`kernels` as kept machine code (:mod:`fingerpad.machine_code`): only new ones need numba."""
+"""The loops of :mod:`kernels` as kept machine code (:mod:`fingerpad.machine_code`): only new ones
+need numba.
+"""
 
 from functools import cache, partial
 from pathlib import Path

@@ -1,15 +1,18 @@
-"""Exact unilateral contact of points of the skin with a rigid profile, in the condensed (Schur) system.
+"""Exact unilateral contact of points of the skin with a rigid profile, in the condensed (Schur)
+system.
 
-No penalty: normal forces at the points are multipliers of ``gap >= 0``. At each Newton iteration the gap is linearised where the
-skin and the profile stood before, the profile's own movement is part of the linear solve, and the resulting mixed linear
-complementarity problem
+No penalty: normal forces at the points are multipliers of ``gap >= 0``. At each Newton iteration
+the gap is linearised where the skin and the profile stood before, the profile's own movement is
+part of the linear solve, and the resulting mixed linear complementarity problem
 
     S' du - N^T f + b dd = r,      0 <= f  perpendicular to  gap + N du + n_y dd >= 0,      sum(-n_y f) = F or dd given
 
-is solved to the end by block principal pivoting (Portugal, Judice and Vicente 1994). ``S'`` is the Schur complement less the
-multipliers times the second derivative of the gap. Under force control the profile's depth is one more unknown.
+is solved to the end by block principal pivoting (Portugal, Judice and Vicente 1994). ``S'`` is the
+Schur complement less the multipliers times the second derivative of the gap. Under force control
+the profile's depth is one more unknown.
 
-Friction, when a plan calls for it, has a module of its own on the same condensed quantities; nothing of it is here.
+Friction, when a plan calls for it, has a module of its own on the same condensed quantities;
+nothing of it is here.
 """
 
 from __future__ import annotations
@@ -30,12 +33,15 @@ class ContactError(RuntimeError):
 
 @dataclass
 class Zone:
-    """Points of the skin that may touch, and where the degrees of freedom of its nodes sit in the condensed system.
+    """Points of the skin that may touch, and where the degrees of freedom of its nodes sit in the
+    condensed system.
 
     Attributes:
-        nodes: (nn,) node numbers. equation: (n, 2) equations of all nodes. shape: (nz, nn) values of the nodes' shape functions
-            at the points; None where the points are the nodes. softness: (nz, nz) m^2/N, what forces add to the gaps beside what
-            the body yields, and softness_along what tangential ones add to the slips; None: nothing.
+        nodes: (nn,) node numbers. equation: (n, 2) equations of all nodes. shape: (nz, nn) values
+        of the nodes' shape functions
+            at the points; None where the points are the nodes. softness: (nz, nz) m^2/N, what
+            forces add to the gaps beside what the body yields, and softness_along what tangential
+            ones add to the slips; None: nothing.
         condensed: (nc,) ascending equation numbers.
     """
 
@@ -51,7 +57,8 @@ class Zone:
         if self.shape is None:
             self.shape = np.eye(len(self.nodes))
         self.condensed = np.unique(equation[equation >= 0])
-        # of each point the columns of its nodes' degrees of freedom, x before y, and the shape functions; none where prescribed
+        # of each point the columns of its nodes' degrees of freedom, x before y, and the shape
+        # functions; none where prescribed
         used = max(int((self.shape != 0).sum(axis=1).max(initial=1)), 1)
         of = np.argsort(self.shape == 0, axis=1, kind="stable")[:, :used]
         free = equation[of] >= 0
@@ -69,7 +76,9 @@ class Zone:
         return self.along([directions], np.eye(len(self.condensed)))
 
     def along(self, directions: list[np.ndarray], matrix: np.ndarray) -> np.ndarray:
-        """Components along each of the directions (nz, 2) at the points, of the columns (nc, n) of a matrix: (nd nz, n)."""
+        """Components along each of the directions (nz, 2) at the points, of the columns (nc, n) of
+        a matrix: (nd nz, n).
+        """
         out = np.empty((len(directions) * len(self), matrix.shape[1]))
         compiled.at_points(
             self._columns, self._values, np.stack(directions), np.ascontiguousarray(matrix), out
@@ -85,7 +94,9 @@ class Zone:
         )
 
     def bend(self, matrix: np.ndarray, direction: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """A matrix (nc, nc) less ``weight`` (nz,) times the square of the displacement along ``direction`` (nz, 2)."""
+        """A matrix (nc, nc) less ``weight`` (nz,) times the square of the displacement along
+        ``direction`` (nz, 2).
+        """
         out = matrix.copy()
         compiled.bend(out, self._columns, self._values, direction, weight)
         return out
@@ -132,9 +143,11 @@ class Rows:
     """The constraints of a contact problem.
 
     Attributes:
-        zone: whose points are those of the rows. place: (nr,) or slice, where the stepper keeps what belongs to them: by the
-            number of the skin's point, and for a second side that many points further on. partner: (nr,) the row of the same
-            point's other side or -1; None where no point has two. gap: (nr,) m. gradient: (nr, 2). curvature: (nr,) 1/m.
+        zone: whose points are those of the rows. place: (nr,) or slice, where the stepper keeps
+        what belongs to them: by the
+            number of the skin's point, and for a second side that many points further on. partner:
+            (nr,) the row of the same point's other side or -1; None where no point has two. gap:
+            (nr,) m. gradient: (nr, 2). curvature: (nr,) 1/m.
     """
 
     zone: Zone
@@ -162,7 +175,9 @@ class Rows:
         return out
 
     def closing(self, force: np.ndarray) -> np.ndarray:
-        """(nr,) m, the gaps that forces (nr,) N/m close: with what the zone's softness adds to them."""
+        """(nr,) m, the gaps that forces (nr,) N/m close: with what the zone's softness adds to
+        them.
+        """
         return self.gap if self.zone.softness is None else self.gap + self.zone.softness @ force
 
 
@@ -188,7 +203,9 @@ Step = TypeVar("Step", bound=ContactStep)
 
 
 def _inverse(matrix):
-    """The inverse of a symmetric matrix, and whether it is positive definite: by Cholesky if it is, LU otherwise."""
+    """The inverse of a symmetric matrix, and whether it is positive definite: by Cholesky if it is,
+    LU otherwise.
+    """
     factor = dense.cholesky(matrix)
     if factor is None:
         return np.linalg.inv(matrix), False
@@ -202,8 +219,9 @@ class Flexibility:
     """How a zone yields once the body has been condensed away.
 
     Attributes:
-        matrix: (nc, nc) Schur complement with the geometric term of the gaps. inverse: of it. definite: is it positive definite?
-        border: (nc,) and corner, what that term adds where the profile's depth comes in; None where there is no such term.
+        matrix: (nc, nc) Schur complement with the geometric term of the gaps. inverse: of it.
+        definite: is it positive definite? border: (nc,) and corner, what that term adds where the
+        profile's depth comes in; None where there is no such term.
     """
 
     matrix: np.ndarray
@@ -234,8 +252,9 @@ class Flexibility:
 class Response:
     """How constraint rows answer to multipliers on them once the body has been condensed away.
 
-    With multipliers ``m`` (nr,) and a change ``dd`` of the profile's depth the rows move by
-    ``free + compliance @ m + lever * dd``, what the zone's softness adds included, and the condensed degrees of freedom by
+    With multipliers ``m`` (nr,) and a change ``dd`` of the profile's depth the rows move by ``free
+    + compliance @ m + lever * dd``, what the zone's softness adds included, and the condensed
+    degrees of freedom by
     :meth:`displacement`.
 
     Attributes:
@@ -269,7 +288,8 @@ def respond(
     """Response of the zone to forces on its points.
 
     Args:
-        right: as in :func:`solve_contact`. directions: of (nz, 2) unit vectors, each giving nz rows: the normals, and the
+        right: as in :func:`solve_contact`. directions: of (nz, 2) unit vectors, each giving nz
+        rows: the normals, and the
             tangents where there is friction.
     """
     inverse, corner = flexible.inverse, flexible.corner
@@ -302,8 +322,9 @@ def until_stable(
     previous_force,
     flexible: Flexibility | None,
 ) -> Step:
-    """What ``attempt`` finds with the ``flexible`` of before if there is one, or else with that of now; and as long as that has
-    no stable solution, with less and less of what makes it unstable. Arguments as in :func:`solve_contact`.
+    """What ``attempt`` finds with the ``flexible`` of before if there is one, or else with that of
+    now; and as long as that has no stable solution, with less and less of what makes it unstable.
+    Arguments as in :func:`solve_contact`.
 
     Raises:
         ContactError: of the attempt, when there is nothing to soften.
@@ -324,7 +345,8 @@ def until_stable(
 
 
 def _soften(error, schur, curvature, previous_force, bent) -> tuple[np.ndarray, np.ndarray]:
-    """The Schur complement and the curvature to try next when a linearised problem has no stable solution.
+    """The Schur complement and the curvature to try next when a linearised problem has no stable
+    solution.
 
     ``bent``: did the geometric term take part? Raises ``error`` when there is nothing to soften.
     """
@@ -332,10 +354,12 @@ def _soften(error, schur, curvature, previous_force, bent) -> tuple[np.ndarray, 
         lowest = float(np.linalg.eigvalsh(schur)[0])
         if lowest > 0:
             raise error
-        # the body itself is not stable here (an element folding under an edge): stiffen it just enough to descend
+        # the body itself is not stable here (an element folding under an edge): stiffen it just
+        # enough to descend
         return schur - 2 * lowest * np.eye(len(schur)), curvature
     if np.abs(curvature).max() * previous_force.max() > 1e-6 * np.abs(schur).max():
-        # too curved for its own load at this linearisation: half of the geometric term is safer and still converges
+        # too curved for its own load at this linearisation: half of the geometric term is safer and
+        # still converges
         return schur, 0.5 * curvature
     return schur, 0 * curvature
 
@@ -357,10 +381,11 @@ def solve_contact(
     """Solve the linearised unilateral problem exactly.
 
     Args:
-        schur: (nc, nc) N/m^2. right: (nc,) reduced residual without contact forces, N/m. gap: (nz,) m. gradient: (nz, 2).
-        curvature: (nz,) 1/m, second derivative of the gap along the tangent. previous_force: (nz,) N/m multipliers that weigh it.
-        active: (nz,) bool first guess. Exactly one of force (N/m, the sum of -gradient_y f) and depth_change (m). flexible: of
-        an iteration before, to be used as long as it leads to a solution.
+        schur: (nc, nc) N/m^2. right: (nc,) reduced residual without contact forces, N/m. gap: (nz,)
+        m. gradient: (nz, 2). curvature: (nz,) 1/m, second derivative of the gap along the tangent.
+        previous_force: (nz,) N/m multipliers that weigh it. active: (nz,) bool first guess. Exactly
+        one of force (N/m, the sum of -gradient_y f) and depth_change (m). flexible: of an iteration
+        before, to be used as long as it leads to a solution.
 
     Raises:
         ContactError: pivoting does not end, or nothing can carry the force.
@@ -389,11 +414,14 @@ def solve_contact(
 def pressing_stiffness(
     answer: Response, system: np.ndarray, rows: np.ndarray, share: np.ndarray | None = None
 ) -> float | None:
-    """N/m^2, of the force against the depth while all nodes stay as they are; None where one yields to no force.
+    """N/m^2, of the force against the depth while all nodes stay as they are; None where one yields
+    to no force.
 
     Args:
-        system: (k, k) m^2/N compliance of the ``rows`` (k,) that have multipliers of their own. share: (nz,) of the normal ones
-            that the tangential ones, in the second half of the rows, are; None where there are no tangential ones.
+        system: (k, k) m^2/N compliance of the ``rows`` (k,) that have multipliers of their own.
+        share: (nz,) of the normal ones
+            that the tangential ones, in the second half of the rows, are; None where there are no
+            tangential ones.
     """
     if not len(rows):
         return 0.0
@@ -416,7 +444,8 @@ def require_stable(flexible: Flexibility, compliance: np.ndarray, active: np.nda
 def stable(matrix, compliance, active):
     """Is ``matrix`` positive definite on the displacements that keep the active gaps closed?
 
-    By the inertia of the bordered matrix: the active compliance must have as many negative eigenvalues as ``matrix``.
+    By the inertia of the bordered matrix: the active compliance must have as many negative
+    eigenvalues as ``matrix``.
     """
     inside = compliance[np.ix_(active, active)]
     return dense.negative_eigenvalues(matrix) == dense.negative_eigenvalues((inside + inside.T) / 2)
@@ -460,7 +489,9 @@ def _pivot_with_depth(compliance, offset, lever, corner, load, active):
 
 
 def _principal_pivoting(solve, gap_of, offset, active, keep_one=False):
-    """Exchange all infeasible nodes at once; if that stops helping, one at a time (which always ends)."""
+    """Exchange all infeasible nodes at once; if that stops helping, one at a time (which always
+    ends).
+    """
     active = active.copy()
     best, patience = len(active) + 1, 8
     scale = max(np.abs(offset).max(), 1e-12)

@@ -1,15 +1,17 @@
-"""Where the skin may touch: points inside its edges, not its nodes, so that the contact's edge moves through an element.
+"""Where the skin may touch: points inside its edges, not its nodes, so that the contact's edge
+moves through an element.
 
-A skin edge has as many degrees of freedom as nodes. Contact at nodes makes them join one by one, and with each one the stiffness
-jumps. Here an edge has twice as many points, evenly spaced, with weights that integrate what its nodes carry under a uniform
-pressure. Their pressures would be more than the edge can tell apart, so they are kept from differing from point to point by the
-smallest of terms: the gap that closes is
+A skin edge has as many degrees of freedom as nodes. Contact at nodes makes them join one by one,
+and with each one the stiffness jumps. Here an edge has twice as many points, evenly spaced, with
+weights that integrate what its nodes carry under a uniform pressure. Their pressures would be more
+than the edge can tell apart, so they are kept from differing from point to point by the smallest of
+terms: the gap that closes is
 
     gap - d/ds (softness dp/ds),        softness = SMOOTHING (4 spacing)^3 / (3 shear modulus),
 
-the method of Brezzi and Pitkaranta (1984) for the multipliers of a constraint. A uniform pressure is not changed by it, and with
-the mesh it vanishes as the third power of the spacing. The contact problem stays what it was: symmetric, with multipliers that
-are zero or close a gap.
+the method of Brezzi and Pitkaranta (1984) for the multipliers of a constraint. A uniform pressure
+is not changed by it, and with the mesh it vanishes as the third power of the spacing. The contact
+problem stays what it was: symmetric, with multipliers that are zero or close a gap.
 """
 
 from __future__ import annotations
@@ -21,9 +23,13 @@ import numpy as np
 from fingerpad.mechanics.elements import edge_values
 
 SMOOTHING = 0.01
-"""A tenth leaves half of nodal contact's kinks and more alternation; ten times as much widens contacts by a tenth of an edge."""
+"""A tenth leaves half of nodal contact's kinks and more alternation; ten times as much widens
+contacts by a tenth of an edge.
+"""
 _SHARP = 0.1
-"""Curvature times spacing above which there is less smoothing: a contact of a point or two must not give way."""
+"""Curvature times spacing above which there is less smoothing: a contact of a point or two must not
+give way.
+"""
 PER_NODE = 2
 _RULES = {
     1: ((-0.5, 0.5), (1.0, 1.0)),
@@ -36,11 +42,12 @@ class ContactPoints:
     """Points of the skin, from left to right.
 
     Attributes:
-        nodes: (n, k) of the edge that each is on, among all nodes. along: (n, k) the same, among the skin's. values, slopes:
-            (n, k) shape functions and their derivatives. weight: (n,) of the edge's parameter from -1 to 1. node: (n,) the
-            nearest of the skin's, to which what is at a point is put down. spacing: (n,) m, of the unloaded skin, which
-            the points share. per_edge: how many an edge has. softness: (n,) m^3/Pa. mirrored: does the skin begin at a symmetry
-            axis?
+        nodes: (n, k) of the edge that each is on, among all nodes. along: (n, k) the same, among
+        the skin's. values, slopes:
+            (n, k) shape functions and their derivatives. weight: (n,) of the edge's parameter from
+            -1 to 1. node: (n,) the nearest of the skin's, to which what is at a point is put down.
+            spacing: (n,) m, of the unloaded skin, which the points share. per_edge: how many an
+            edge has. softness: (n,) m^3/Pa. mirrored: does the skin begin at a symmetry axis?
     """
 
     nodes: np.ndarray
@@ -67,9 +74,10 @@ class ContactPoints:
         """Those of the skin.
 
         Args:
-            points: (n, 2) m, all nodes. chain: (ns,) the skin's in order. edges: (m, 2 or 3) its edges (start, end[, middle]).
-                shear: (m,) Pa, long-term shear moduli of the skin at them. mirrored: does the skin begin at a symmetry axis?
-                convexity: 1/m, largest curvature of what presses on it.
+            points: (n, 2) m, all nodes. chain: (ns,) the skin's in order. edges: (m, 2 or 3) its
+            edges (start, end[, middle]).
+                shear: (m,) Pa, long-term shear moduli of the skin at them. mirrored: does the skin
+                begin at a symmetry axis? convexity: 1/m, largest curvature of what presses on it.
         """
         order = edges.shape[1] - 1
         place = np.full(len(points), -1)
@@ -110,15 +118,18 @@ class ContactPoints:
         return slice(max(first // each * each, 0), min(-(-last // each) * each, len(self)))
 
     def shape(self, part: slice) -> tuple[np.ndarray, np.ndarray]:
-        """Nodes (k,) of the edges of some points, in order of their numbers, and shape functions (points, k) at the points."""
+        """Nodes (k,) of the edges of some points, in order of their numbers, and shape functions
+        (points, k) at the points.
+        """
         nodes, column = np.unique(self.nodes[part], return_inverse=True)
         out = np.zeros((len(self.nodes[part]), len(nodes)))
         np.put_along_axis(out, column.reshape(self.nodes[part].shape), self.values[part], axis=1)
         return nodes, out
 
     def soft(self, part: slice, odd: bool = False) -> np.ndarray:
-        """(k, k) m^2/N: what forces at some points add to their gaps; positive semidefinite. odd: of those along the skin, which
-        change their sign at a symmetry axis."""
+        """(k, k) m^2/N: what forces at some points add to their gaps; positive semidefinite. odd:
+        of those along the skin, which change their sign at a symmetry axis.
+        """
         length = self.weight[part] * self.per_edge / 2 * self.spacing[part]  # of the unloaded skin
         way = (self.spacing[part][1:] + self.spacing[part][:-1]) / 2
         soft = (self.softness[part][1:] + self.softness[part][:-1]) / 2 / way
@@ -130,7 +141,9 @@ class ContactPoints:
         return out / length / length[:, None]
 
     def lengths(self, position: np.ndarray) -> np.ndarray:
-        """(n,) m of the skin that belong to each point, nodes being at ``position`` (all nodes, 2) m."""
+        """(n,) m of the skin that belong to each point, nodes being at ``position`` (all nodes, 2)
+        m.
+        """
         return np.hypot(*np.einsum("qa,qai->iq", self.slopes, position[self.nodes])) * self.weight
 
     def of_nodes(self, values: np.ndarray, part: slice = slice(None)) -> np.ndarray:

@@ -1,6 +1,8 @@
-"""Factorisations of small dense symmetric matrices: by the library that PARDISO is of, by scipy's LAPACK where that is not.
+"""Factorisations of small dense symmetric matrices: by the library that PARDISO is of, by scipy's
+LAPACK where that is not.
 
-Importing scipy's linear algebra takes as long as a press takes to solve, and that library is loaded anyway.
+Importing scipy's linear algebra takes as long as a press takes to solve, and that library is loaded
+anyway.
 """
 
 from __future__ import annotations
@@ -25,18 +27,23 @@ def _loaded() -> ctypes.CDLL | None:
     if not found:
         return None
     library = ctypes.CDLL(found[0])
-    # numpy's thread limits do not reach a library that is loaded later, and two threads on one matrix take twice the time
+    # numpy's thread limits do not reach a library that is loaded later, and two threads on one
+    # matrix take twice the time
     library.MKL_Set_Num_Threads(ctypes.c_int(threads()))
     return library
 
 
 def mkl() -> ctypes.CDLL | None:
-    """Intel's Math Kernel Library, with as many threads as this process may use; None where it is not installed or not wanted."""
+    """Intel's Math Kernel Library, with as many threads as this process may use; None where it is
+    not installed or not wanted.
+    """
     return _loaded() if os.environ.get("FINGERPAD_LINEAR_SOLVER", "pardiso") == "pardiso" else None
 
 
 class _Lapack(Protocol):
-    """What is asked of a library. Arrays (n, n) are contiguous and changed in place; of a factor its lower triangle counts."""
+    """What is asked of a library. Arrays (n, n) are contiguous and changed in place; of a factor
+    its lower triangle counts.
+    """
 
     def potrf(self, matrix: np.ndarray) -> bool: ...
     def potri(self, factor: np.ndarray) -> None: ...
@@ -118,7 +125,9 @@ def _lapack() -> _Lapack:
 
 
 def cholesky(matrix: np.ndarray) -> np.ndarray | None:
-    """Factor of a symmetric matrix (n, n) for :func:`solved` and :func:`inverse`; None where it is not positive definite."""
+    """Factor of a symmetric matrix (n, n) for :func:`solved` and :func:`inverse`; None where it is
+    not positive definite.
+    """
     factor = np.array(matrix, float, order="C")
     return factor if not len(factor) or _lapack().potrf(factor) else None
 
@@ -129,14 +138,18 @@ def solved(factor: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def inverse(factor: np.ndarray) -> np.ndarray:
-    """Lower triangle (n, n) of the inverse of the matrix that a Cholesky factor is of, in the factor's place."""
+    """Lower triangle (n, n) of the inverse of the matrix that a Cholesky factor is of, in the
+    factor's place.
+    """
     if len(factor):
         _lapack().potri(factor)
     return factor
 
 
 def negative_eigenvalues(matrix: np.ndarray) -> int:
-    """Their number, of a symmetric matrix, by Sylvester's law: the negative pivots of L D L^T, one in each block of two."""
+    """Their number, of a symmetric matrix, by Sylvester's law: the negative pivots of L D L^T, one
+    in each block of two.
+    """
     if not len(matrix):
         return 0
     factors = np.array(matrix, float, order="C")

@@ -1,7 +1,8 @@
-"""Reference elements: shape functions, quadrature and the pressure space each displacement element is paired with.
+"""Reference elements: shape functions, quadrature and the pressure space each displacement element
+is paired with.
 
-Every element is a mixed one. The dilatation ``J - 1`` is projected, element by element, on a small pressure space;
-the number of its modes is all that tells a locking element from a sound one:
+Every element is a mixed one. The dilatation ``J - 1`` is projected, element by element, on a small
+pressure space; the number of its modes is all that tells a locking element from a sound one:
 
 =========  ==================  ==========================================  ===================================
 name       displacement        pressure modes                              use
@@ -15,8 +16,8 @@ name       displacement        pressure modes                              use
 ``P2``     6-node triangle     6 (= pointwise)                             teaching case: oscillates
 =========  ==================  ==========================================  ===================================
 
-Sources: Simo, Taylor and Pister (1985) for the three-field form; Sussman and Bathe (1987) for Q2 with linear
-pressure; Crouzeix and Raviart (1973) for the triangle with a bubble.
+Sources: Simo, Taylor and Pister (1985) for the three-field form; Sussman and Bathe (1987) for Q2
+with linear pressure; Crouzeix and Raviart (1973) for the triangle with a bubble.
 """
 
 from dataclasses import dataclass
@@ -31,12 +32,11 @@ class ReferenceElement:
     """One element on its reference cell.
 
     Attributes:
-        name: key in :data:`ELEMENTS`.
-        kind: of its displacement, key in :data:`fingerpad.specimen.shapes.SHAPES`.
-        points: (nq, 2) quadrature points; ``weights``: (nq,).
-        values: (nq, nen) shape functions; ``gradients``: (nq, nen, 2) with respect to the reference coordinates.
-        pressure_modes: 1, 3, or nq (pointwise).
-        nodes: (nen, 2) reference coordinates of the nodes.
+        name: key in :data:`ELEMENTS`. kind: of its displacement, key in
+        :data:`fingerpad.specimen.shapes.SHAPES`. points: (nq, 2) quadrature points; ``weights``:
+        (nq,). values: (nq, nen) shape functions; ``gradients``: (nq, nen, 2) with respect to the
+        reference coordinates. pressure_modes: 1, 3, or nq (pointwise). nodes: (nen, 2) reference
+        coordinates of the nodes.
     """
 
     name: str
@@ -58,7 +58,9 @@ class ReferenceElement:
         return self.nodes.shape[0]
 
     def shape(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Shape functions (n, nen) and reference gradients (n, nen, 2) at reference points ``xi`` (n, 2)."""
+        """Shape functions (n, nen) and reference gradients (n, nen, 2) at reference points ``xi``
+        (n, 2).
+        """
         return SHAPES[self.kind](np.asarray(xi, dtype=float))
 
 
@@ -90,17 +92,22 @@ ELEMENTS = {
     )
 }
 
-#: Weights of a uniform line load on one edge: 1/2, 1/2 (linear) and the basis of quadratic edges (start, end, middle).
+#: Weights of a uniform line load on one edge: 1/2, 1/2 (linear) and the basis of quadratic edges
+#: (start, end, middle).
 EDGE_POINTS, EDGE_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def edge_shape(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Shape functions and derivatives of an edge (start, end[, middle]) at :data:`EDGE_POINTS` on [-1, 1]."""
+    """Shape functions and derivatives of an edge (start, end[, middle]) at :data:`EDGE_POINTS` on
+    [-1, 1].
+    """
     return edge_values(order, EDGE_POINTS)
 
 
 def edge_values(order: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Shape functions and derivatives (n, order + 1) of an edge (start, end[, middle]) at points ``s`` (n,) on [-1, 1]."""
+    """Shape functions and derivatives (n, order + 1) of an edge (start, end[, middle]) at points
+    ``s`` (n,) on [-1, 1].
+    """
     if order == 1:
         return np.stack([(1 - s) / 2, (1 + s) / 2], 1), np.stack([-0.5 + 0 * s, 0.5 + 0 * s], 1)
     values = np.stack([s * (s - 1) / 2, s * (s + 1) / 2, 1 - s * s], 1)

@@ -1,15 +1,18 @@
-"""The finite-strain body: nearly incompressible, hyperelastic, total Lagrangian, with or without Prony branches.
+"""The finite-strain body: nearly incompressible, hyperelastic, total Lagrangian, with or without
+Prony branches.
 
-To the isochoric energy of its laws (:mod:`fingerpad.laws`) comes that of a dilatation ``d`` of its own, in the element's
-pressure modes, which the projection ``v`` of J - 1 is to equal (Simo, Taylor and Pister 1985): kappa (d v - d^2/2), the pressure
-being kappa d. Newton's method, with the tangent of a state ``0`` that need not be the present one, is
+To the isochoric energy of its laws (:mod:`fingerpad.laws`) comes that of a dilatation ``d`` of its
+own, in the element's pressure modes, which the projection ``v`` of J - 1 is to equal (Simo, Taylor
+and Pister 1985): kappa (d v - d^2/2), the pressure being kappa d. Newton's method, with the tangent
+of a state ``0`` that need not be the present one, is
 
     (K + kappa B0^T B0) du = -f(u, d) - kappa B0^T (v(u) - d),      d <- v(u) + B0 du,      B = dv/du,
 
-so that pressure is found by equilibrium, and never as kappa times a small difference of displacements: what ``v`` and ``d``
-still differ by after a step is a change of volume too small to matter long before it is a force too small to matter. The
-geometric part of a tangent uses the pressure that the last linear step found (Magisano, Leonetti and Garcea 2017), which lets a
-whole load go on in one step.
+so that pressure is found by equilibrium, and never as kappa times a small difference of
+displacements: what ``v`` and ``d`` still differ by after a step is a change of volume too small to
+matter long before it is a force too small to matter. The geometric part of a tangent uses the
+pressure that the last linear step found (Magisano, Leonetti and Garcea 2017), which lets a whole
+load go on in one step.
 """
 
 import numpy as np
@@ -25,12 +28,13 @@ class FiniteStrainBody:
     """Displacement state of a body and the verbs the stepping needs.
 
     Args:
-        space: the discretised mesh. shear, bulk: (ne,) long-term shear and bulk moduli, Pa.
-        prony: None leaves viscoelasticity out altogether.
-        pointwise: volumetric modulus in units of ``shear`` that is not projected on the pressure modes; a few of them keep
-            elements under an edge from folding, where det F varies wildly within one element. None leaves it out.
-        laws: what the elements answer to a change of shape; None: neo-Hooke.
-        lagged: False makes pressures follow displacement at once: plain Newton's method, to be held to the other.
+        space: the discretised mesh. shear, bulk: (ne,) long-term shear and bulk moduli, Pa. prony:
+        None leaves viscoelasticity out altogether. pointwise: volumetric modulus in units of
+        ``shear`` that is not projected on the pressure modes; a few of them keep
+            elements under an edge from folding, where det F varies wildly within one element. None
+            leaves it out.
+        laws: what the elements answer to a change of shape; None: neo-Hooke. lagged: False makes
+        pressures follow displacement at once: plain Newton's method, to be held to the other.
 
     Attributes:
         u: (n, 2) displacement, m; smallest_jacobian: min det F of the last evaluation.
@@ -87,7 +91,8 @@ class FiniteStrainBody:
             self._factor, self._history = self.branches.begin(dt)
 
     def displace(self, u: np.ndarray, dilatation: np.ndarray | None = None) -> np.ndarray:
-        """Put the body at ``u`` (a predictor); the dilatation (ne, nm) becomes that of ``u`` unless given.
+        """Put the body at ``u`` (a predictor); the dilatation (ne, nm) becomes that of ``u`` unless
+        given.
 
         Returns the internal force there (n, 2) N/m, in the step begun last.
         """
@@ -122,8 +127,10 @@ class FiniteStrainBody:
         return force
 
     def tangent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients of the pattern (nonzeros + 1,) at the current displacement, and the force (n, 2) that goes with them: the
-        internal one and kappa B^T (v - d), which together are that of a dilatation that is the displacement's."""
+        """Coefficients of the pattern (nonzeros + 1,) at the current displacement, and the force
+        (n, 2) that goes with them: the internal one and kappa B^T (v - d), which together are that
+        of a dilatation that is the displacement's.
+        """
         if self._data is None:
             self._data = self.space.pattern.new_data()
         self._data[:] = 0
@@ -150,12 +157,16 @@ class FiniteStrainBody:
         return self._data, force
 
     def linearise(self, solver) -> tuple[np.ndarray, np.ndarray]:
-        """Factor the tangent; returns the Schur complement (nc, nc) and the force (n, 2) that goes with it."""
+        """Factor the tangent; returns the Schur complement (nc, nc) and the force (n, 2) that goes
+        with it.
+        """
         data, force = self.tangent()
         return solver.factor(data), force
 
     def against(self, internal: np.ndarray) -> np.ndarray:
-        """The force (n, 2) that goes with the tangent that was factored last, wherever that was, of the ``internal`` one here."""
+        """The force (n, 2) that goes with the tangent that was factored last, wherever that was, of
+        the ``internal`` one here.
+        """
         force = internal.copy()
         amiss = self._volume - self._dilatation
         compiled.volume_loop(*self.space.sizes)(
@@ -164,7 +175,9 @@ class FiniteStrainBody:
         return force
 
     def advance(self, du: np.ndarray, share: float = 1.0) -> None:
-        """Accept ``share`` of the linear step ``du`` (n, 2), and the dilatation that it leads to."""
+        """Accept ``share`` of the linear step ``du`` (n, 2), and the dilatation that it leads
+        to.
+        """
         about, before = self._about
         found = np.empty_like(self._volume)
         compiled.dilatation_loop(*self.space.sizes)(about, share * du, self.space.mesh, found)
@@ -172,14 +185,18 @@ class FiniteStrainBody:
         self.u = self.u + share * du
 
     def volume_amiss(self) -> tuple[float, float]:
-        """What the displacement's dilatation and its own differ by, and its own, as norms of pressures (N)."""
+        """What the displacement's dilatation and its own differ by, and its own, as norms of
+        pressures (N).
+        """
         bulk = self.bulk[:, None]
         return float(np.linalg.norm(bulk * (self._volume - self._dilatation))), float(
             np.linalg.norm(bulk * self._dilatation)
         )
 
     def commit(self) -> None:
-        """The step has converged: let the branches move on, and add up the work that was done on them."""
+        """The step has converged: let the branches move on, and add up the work that was done on
+        them.
+        """
         if self.branches is not None:
             branches = self.branches
             before = branches.q, branches.last, self._stretch
@@ -227,8 +244,9 @@ class FiniteStrainBody:
     def energies(self) -> tuple[float, float, float]:
         """Network energy, Maxwell-spring energy and the work done on the branches so far, J/m.
 
-        Branch work less spring energy is what the dashpots have dissipated. The work is the integral of the branches' second
-        Piola-Kirchhoff stress over the Green strain, by the trapezoidal rule, so a hold of any length adds none.
+        Branch work less spring energy is what the dashpots have dissipated. The work is the
+        integral of the branches' second Piola-Kirchhoff stress over the Green strain, by the
+        trapezoidal rule, so a hold of any length adds none.
         """
         springs = (
             (None, None) if self.branches is None else (self.branches.prony.beta, self.branches.q)
@@ -257,7 +275,8 @@ def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.nd
     """Isochoric second Piola-Kirchhoff stress (np, 4) at points: 11, 22, 12, 33, Pa.
 
     Args:
-        laws: at the points. u: (n, 2) m. cells: (np, nen). grad: (np, nen, 2) 1/m. shear: (np,) long-term moduli, Pa.
+        laws: at the points. u: (n, 2) m. cells: (np, nen). grad: (np, nen, 2) 1/m. shear: (np,)
+        long-term moduli, Pa.
     """
     out = np.empty((len(cells), 4))
     for part in laws:
@@ -266,7 +285,9 @@ def isochoric_stress(laws: tuple[Assigned, ...], u, cells, grad, shear) -> np.nd
 
 
 def isochoric_energy(laws: tuple[Assigned, ...], f: np.ndarray, shear: np.ndarray) -> np.ndarray:
-    """Energy density of shape (ne, ...), Pa, at deformation gradients (ne, ..., 2, 2); shear: (ne,) or (ne, 1), Pa."""
+    """Energy density of shape (ne, ...), Pa, at deformation gradients (ne, ..., 2, 2); shear: (ne,)
+    or (ne, 1), Pa.
+    """
     i1, jac = (
         np.sum(f * f, axis=(-2, -1)) + 1,
         f[..., 0, 0] * f[..., 1, 1] - f[..., 0, 1] * f[..., 1, 0],
@@ -280,7 +301,9 @@ def isochoric_energy(laws: tuple[Assigned, ...], f: np.ndarray, shear: np.ndarra
 
 
 def push_forward(f: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Kirchhoff stress F S F^T (..., 4) of a second Piola-Kirchhoff stress (..., 4: 11, 22, 12, 33) in plane strain."""
+    """Kirchhoff stress F S F^T (..., 4) of a second Piola-Kirchhoff stress (..., 4: 11, 22, 12, 33)
+    in plane strain.
+    """
     f11, f12, f21, f22 = f[..., 0, 0], f[..., 0, 1], f[..., 1, 0], f[..., 1, 1]
     s11, s22, s12, s33 = np.moveaxis(s, -1, 0)
     a11, a12, a21, a22 = (

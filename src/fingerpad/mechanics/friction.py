@@ -1,14 +1,18 @@
-"""Coulomb friction, solved exactly together with unilateral contact in the condensed (Schur) system.
+"""Coulomb friction, solved exactly together with unilateral contact in the condensed (Schur)
+system.
 
-Beside its normal multiplier ``f >= 0`` every touching point has a tangential one, ``tau`` along ``t = (-n_y, n_x)``, n the gap's
-gradient. With ``s`` the slip of the point over the profile since the step began,
+Beside its normal multiplier ``f >= 0`` every touching point has a tangential one, ``tau`` along ``t
+= (-n_y, n_x)``, n the gap's gradient. With ``s`` the slip of the point over the profile since the
+step began,
 
     |tau| <= mu f,    s = 0 where |tau| < mu f,    tau = -mu f sign(s) where s != 0,
 
-which is implicit (backward Euler) in time. Each linearised problem is solved to the end by exchanging states (open, sticking,
-slipping either way) until every node satisfies its own: the trial rule |tau - c s| <= mu f of the primal-dual active set method
-(Alart and Curnier 1991; Hueber, Stadler and Wohlmuth 2008). The global tangent stays symmetric, for friction only ever meets the
-small dense system. What a zone's softness adds to the gaps it takes from the slip, of the friction that has changed in the step.
+which is implicit (backward Euler) in time. Each linearised problem is solved to the end by
+exchanging states (open, sticking, slipping either way) until every node satisfies its own: the
+trial rule |tau - c s| <= mu f of the primal-dual active set method (Alart and Curnier 1991; Hueber,
+Stadler and Wohlmuth 2008). The global tangent stays symmetric, for friction only ever meets the
+small dense system. What a zone's softness adds to the gaps it takes from the slip, of the friction
+that has changed in the step.
 """
 
 from dataclasses import dataclass
@@ -27,13 +31,16 @@ from fingerpad.mechanics.contact import (
     until_stable,
 )
 
-#: What :attr:`Coulomb.state` holds where there is contact: 0 sticks, +-1 slips with the friction on the skin along +-t.
+#: What :attr:`Coulomb.state` holds where there is contact: 0 sticks, +-1 slips with the friction on
+#: the skin along +-t.
 STICK = 0
 
 
 @dataclass
 class FrictionStep(ContactStep):
-    """Solution of one linearised frictional problem: also the tangential forces (nz,) N/m and the states (nz,)."""
+    """Solution of one linearised frictional problem: also the tangential forces (nz,) N/m and the
+    states (nz,).
+    """
 
     tangential: np.ndarray | None = None
     state: np.ndarray | None = None
@@ -43,11 +50,13 @@ class Coulomb:
     """Coulomb's law with one coefficient, and the state of every point of the skin.
 
     Args:
-        coefficient: of friction. count: number of places where contact may be: points of the skin, twice as many where the
+        coefficient: of friction. count: number of places where contact may be: points of the skin,
+        twice as many where the
             profile has valleys, on both sides of which a point may lean.
 
     Attributes:
-        tangential: (count,) N/m force on the skin along the tangent. state: (count,) -1, 0, 1. slip: (count,) m since the step
+        tangential: (count,) N/m force on the skin along the tangent. state: (count,) -1, 0, 1.
+        slip: (count,) m since the step
             began.
         dissipated: J/m so far.
     """
@@ -63,7 +72,9 @@ class Coulomb:
 
     @property
     def kept(self) -> list[np.ndarray]:
-        """What belongs to the places and goes with a point from one side of a valley to the other."""
+        """What belongs to the places and goes with a point from one side of a valley to the
+        other.
+        """
         return [self.tangential, self._before, self.state]
 
     def save(self):
@@ -101,11 +112,13 @@ class Coulomb:
         depth_change: float | None = None,
         flexible: Flexibility | None = None,
     ) -> FrictionStep:
-        """Solve the linearised unilateral and frictional problem exactly; arguments as of :func:`contact.solve_contact`.
+        """Solve the linearised unilateral and frictional problem exactly; arguments as of
+        :func:`contact.solve_contact`.
 
         Args:
-            part: where the zone's rows are kept. motion: (nz, 2) m, of their points over the profile since the step began.
-            partner: (nz,) the row of the same point's other side in a valley, or -1; None where no point has two.
+            part: where the zone's rows are kept. motion: (nz, 2) m, of their points over the
+            profile since the step began. partner: (nz,) the row of the same point's other side in a
+            valley, or -1; None where no point has two.
 
         Raises:
             ContactError: no consistent set of states is found.
@@ -141,7 +154,9 @@ class Coulomb:
         self.tangential[part], self.state[part] = step.tangential, step.state
 
     def pull(self, part: slice, gradient: np.ndarray) -> np.ndarray:
-        """(nz, 2) N/m tangential force on the points of the zone, whose gap gradients (nz, 2) are."""
+        """(nz, 2) N/m tangential force on the points of the zone, whose gap gradients (nz, 2)
+        are.
+        """
         return self.tangential[part, None] * tangents(gradient)
 
     def creep(
@@ -152,7 +167,9 @@ class Coulomb:
         motion: np.ndarray,
         softness=None,
     ) -> float:
-        """Record the slip; returns the largest one (m) of a point that should stick. softness: along the skin, of the zone."""
+        """Record the slip; returns the largest one (m) of a point that should stick. softness:
+        along the skin, of the zone.
+        """
         self.slip[:] = 0
         slip = np.einsum("ni,ni->n", motion, tangents(gradient))
         if softness is not None:
@@ -161,7 +178,9 @@ class Coulomb:
         return float(np.abs(self.slip[part][self.state[part] == STICK]).max(initial=0.0))
 
     def commit(self, part: slice, pull: np.ndarray, motion: np.ndarray) -> float:
-        """The step has converged, (nz, 2) N/m pull at the points; returns what friction dissipated, J/m (trapezoidal in time)."""
+        """The step has converged, (nz, 2) N/m pull at the points; returns what friction dissipated,
+        J/m (trapezoidal in time).
+        """
         full = np.zeros_like(self._pull)
         full[part] = pull
         lost = -0.5 * float(np.sum((self._pull[part] + pull) * motion))
@@ -170,9 +189,11 @@ class Coulomb:
         return lost
 
     def record(self, active: np.ndarray, places) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Tangential force, slip and state (0 open, 1 sticks, 2 slips) of every skin node (ns,), for the record.
+        """Tangential force, slip and state (0 open, 1 sticks, 2 slips) of every skin node (ns,),
+        for the record.
 
-        A node slips where all points round it that touch slip one way, on the average as far as they.
+        A node slips where all points round it that touch slip one way, on the average as far as
+        they.
         """
         active = active.astype(float)
         touching, sliding, tangential, slip = (
@@ -196,12 +217,13 @@ class _Cycling(ContactError):
 
 
 def _solve(mu, answer, offset, load, active, state, partner=None):
-    """States, forces and depth change of the linearised problem; returns (f, tau, depth change, active, state, pivots,
-    stiffness).
+    """States, forces and depth change of the linearised problem; returns (f, tau, depth change,
+    active, state, pivots, stiffness).
 
-    A node that comes into contact slips at first, against its motion: entering as sticking makes the states cycle. Where friction
-    is so large that slipping nodes wedge themselves in it is the other way round. If neither ends, Tresca's problem (given bounds
-    of the friction, which always has a solution) is solved again and again with the bounds that its own pressures give.
+    A node that comes into contact slips at first, against its motion: entering as sticking makes
+    the states cycle. Where friction is so large that slipping nodes wedge themselves in it is the
+    other way round. If neither ends, Tresca's problem (given bounds of the friction, which always
+    has a solution) is solved again and again with the bounds that its own pressures give.
     """
     for entering_sticks in (False, True):
         try:
@@ -225,9 +247,11 @@ def _solve(mu, answer, offset, load, active, state, partner=None):
 def _exchange(
     mu, answer, offset, load, active, state, entering_sticks=False, bound=None, partner=None
 ):
-    """Exchange states until all are consistent; ``bound``: (nz,) N/m of the friction, instead of mu times the normal force.
+    """Exchange states until all are consistent; ``bound``: (nz,) N/m of the friction, instead of mu
+    times the normal force.
 
-    A node that leans on both sides of a valley is held by them: it cannot slip, so no friction is asked of it.
+    A node that leans on both sides of a valley is held by them: it cannot slip, so no friction is
+    asked of it.
     """
     n = len(active)
     a, lever = answer.compliance, answer.lever
@@ -289,7 +313,8 @@ def _exchange(
             )  # held fast, though it may have come a long way in this step
             if load is None:
                 yields = pressing_stiffness(answer, system, np.concatenate([on, n + stick]), share)
-            else:  # what is left of the depth's own equation: the second solution is of a unit of it
+            # what is left of the depth's own equation: the second solution is of a unit of it
+            else:
                 yields = 1 / solution[-1, 1] if solution[-1, 1] else None
             return (
                 np.maximum(f, 0),

@@ -1,26 +1,28 @@
 """Compiled loops: over the elements of the finite-strain body, and in the dense system of contact.
 
-Local degrees of freedom are ordered (all x, all y). With ``c = cof F``, ``C0`` the constant operator ``d(cof F) = C0 : dF`` of
-two dimensions, and the law's ``m, t`` and ``f, g, h`` (:class:`fingerpad.laws.Law`), the first Piola-Kirchhoff stress and its
-derivative are
+Local degrees of freedom are ordered (all x, all y). With ``c = cof F``, ``C0`` the constant
+operator ``d(cof F) = C0 : dF`` of two dimensions, and the law's ``m, t`` and ``f, g, h``
+(:class:`fingerpad.laws.Law`), the first Piola-Kirchhoff stress and its derivative are
 
     P  = m (F - t/(3 J) c) + p c + F H
     dP = (m I + H) dF - (m t/(3 J) - p_lag) C0 : dF
          + f F (F : dF) + g (F (c : dF) + c (F : dF)) + h c (c : dF)                 [isochoric]
          + kappa sum_a psi_a int psi_a c : dF                                        [dilatation, rank = pressure modes]
 
-so no 4 x 4 tangent is ever formed: a Laplacian, a cross product and a rank-two update do. All of it is drawn back to the
-reference cell, whose gradients are the same for all elements, and the loops are compiled for the sizes of the element they are
-of. ``H`` is the (symmetric) history stress of the Prony branches; passing ``None`` compiles a kernel in which it does not exist.
-``p_lag`` is the pressure the last linear step predicted (mixed integration point; Magisano, Leonetti and Garcea 2017), while the
-residual keeps the true one.
+so no 4 x 4 tangent is ever formed: a Laplacian, a cross product and a rank-two update do. All of it
+is drawn back to the reference cell, whose gradients are the same for all elements, and the loops
+are compiled for the sizes of the element they are of. ``H`` is the (symmetric) history stress of
+the Prony branches; passing ``None`` compiles a kernel in which it does not exist. ``p_lag`` is the
+pressure the last linear step predicted (mixed integration point; Magisano, Leonetti and Garcea
+2017), while the residual keeps the true one.
 
-Elements go through the loops side by side, a block at a time: what is known of a block is stored with its elements as the last
-axis, and the innermost loops are over them, as wide as the processor's vectors are. Only the tangent's matrices are multiplied
-element by element: there they are over rows.
+Elements go through the loops side by side, a block at a time: what is known of a block is stored
+with its elements as the last axis, and the innermost loops are over them, as wide as the
+processor's vectors are. Only the tangent's matrices are multiplied element by element: there they
+are over rows.
 
-All functions live in this one module, for what is kept of them on disk (:mod:`compiled`, through which they are called) knows of
-changes of this file and of the laws' alone.
+All functions live in this one module, for what is kept of them on disk (:mod:`compiled`, through
+which they are called) knows of changes of this file and of the laws' alone.
 """
 
 from functools import cache
@@ -62,12 +64,16 @@ def _from_bits(context, number):
 
 
 _THIRDS = 4.0 / 3.0 * 2.0**52 * (1023.0 - 0.051)
-"""Less a third of a number's bits: the bits of its -1/3rd power, which is wrong by 3.4 % at most."""
+"""Less a third of a number's bits: the bits of its -1/3rd power, which is wrong by 3.4 % at
+most.
+"""
 
 
 @overload(isochoric, jit_options=_JIT, inline="always")
 def _isochoric_factor(jac):
-    """J^(-2/3) from its exponent, by two steps of fourth order: to two units in the last place, at a tenth of a power's cost."""
+    """J^(-2/3) from its exponent, by two steps of fourth order: to two units in the last place, at
+    a tenth of a power's cost.
+    """
 
     def factor(jac):
         root = _from_bits(np.int64(_THIRDS - _bits(jac) / 3.0))
@@ -107,9 +113,11 @@ def _spring(f11, f12, f21, f22, s11, s22, s12, t33):
 
 @njit(**_JIT)
 def bend(matrix, columns, values, direction, weight):
-    """Take ``weight`` (nz,) times the square of the points' displacement along ``direction`` (nz, 2) off a matrix (nc, nc).
+    """Take ``weight`` (nz,) times the square of the points' displacement along ``direction`` (nz,
+    2) off a matrix (nc, nc).
 
-    ``columns``, ``values`` (nz, nodes, 2): of each point the degrees of freedom of its nodes and the shape functions.
+    ``columns``, ``values`` (nz, nodes, 2): of each point the degrees of freedom of its nodes and
+    the shape functions.
     """
     for k in range(len(weight)):
         if weight[k] == 0.0:
@@ -134,7 +142,8 @@ def mirror(matrix):
 
 @njit(**_JIT)
 def at_points(columns, values, directions, matrix, out):
-    """Components along ``directions`` (nd, nz, 2) at the points of each column of ``matrix`` (nc, n), into ``out`` (nd nz, n).
+    """Components along ``directions`` (nd, nz, 2) at the points of each column of ``matrix`` (nc,
+    n), into ``out`` (nd nz, n).
 
     ``columns`` and ``values`` as of :func:`bend`.
     """
@@ -156,10 +165,12 @@ def at_points(columns, values, directions, matrix, out):
 
 @njit(**_JIT)
 def exchanged(compliance, share, on, stick, out):
-    """How points answer to multipliers of their own: (no + ns, no + ns), column by column into ``out``.
+    """How points answer to multipliers of their own: (no + ns, no + ns), column by column into
+    ``out``.
 
-    ``compliance`` (2 nz, 2 nz), symmetric, of normal and tangential multipliers; ``on`` (no,) points with normal ones, each of
-    which brings a ``share`` (nz,) of it along the tangent; ``stick`` (ns,) points with tangential ones.
+    ``compliance`` (2 nz, 2 nz), symmetric, of normal and tangential multipliers; ``on`` (no,)
+    points with normal ones, each of which brings a ``share`` (nz,) of it along the tangent;
+    ``stick`` (ns,) points with tangential ones.
     """
     points, touching = len(share), len(on)
     for c in range(touching):
@@ -180,16 +191,18 @@ def exchanged(compliance, share, on, stick, out):
 def _common(nodes: int, points: int, modes: int) -> tuple:
     """What the loops over elements have in common, for elements of these sizes.
 
-    Each works on those of a block from ``first`` to before ``last``; ``start`` is the number of the block's own first. Arrays
-    have the elements of a block as their last axis. The three are unsigned: an index that could count from the end would make
-    gathers of what are rows.
+    Each works on those of a block from ``first`` to before ``last``; ``start`` is the number of the
+    block's own first. Arrays have the elements of a block as their last axis. The three are
+    unsigned: an index that could count from the end would make gathers of what are rows.
     """
 
     @njit(**_INLINE)
     def deform(u, cells, reference, inverse, start, first, last, local, drawn, f):
-        """Deformation gradient 11, 12, 21, 22 and its determinant at their points, into ``f`` (5, nq, ...).
+        """Deformation gradient 11, 12, 21, 22 and its determinant at their points, into ``f`` (5,
+        nq, ...).
 
-        ``local`` (2, nen, ...) and ``drawn`` (2, 2 nq, ...) are for the displacements and their gradients on the reference cell.
+        ``local`` (2, nen, ...) and ``drawn`` (2, 2 nq, ...) are for the displacements and their
+        gradients on the reference cell.
         Returns the smallest determinant.
         """
         for k in range(first, last):
@@ -239,7 +252,9 @@ def _common(nodes: int, points: int, modes: int) -> tuple:
 
     @njit(**_INLINE)
     def to_nodes(reference, first, last, drawn, local):
-        """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes: ``local`` (2, nen, ...)."""
+        """What stresses ``drawn`` (2, 2 nq, ...) back to the reference cell are worth at its nodes:
+        ``local`` (2, nen, ...).
+        """
         for i in range(2):
             for a in range(nodes):
                 for k in range(first, last):
@@ -266,7 +281,9 @@ def dilatation_loop(nodes: int, points: int, modes: int):
 
     @njit(**_JIT)
     def predict_dilatation(u, du, mesh, out):
-        """Linear prediction ``int psi_a (J - 1 + cof F : grad du)`` of the dilatation modes, into ``out`` (ne, nm)."""
+        """Linear prediction ``int psi_a (J - 1 + cof F : grad du)`` of the dilatation modes, into
+        ``out`` (ne, nm).
+        """
         cells, reference, inverses, weights, all_psi = mesh
         together = weights.shape[2]
         local, drawn = np.empty((2, nodes, together)), np.empty((2, 2 * points, together))
@@ -303,12 +320,15 @@ def dilatation_loop(nodes: int, points: int, modes: int):
 
 @cache
 def volume_loop(nodes: int, points: int, modes: int):
-    """The loop for what pressures on a given shape are worth at the nodes, for elements of these sizes."""
+    """The loop for what pressures on a given shape are worth at the nodes, for elements of these
+    sizes.
+    """
     deform, _, to_nodes, add = _common(nodes, points, modes)
 
     @njit(**_JIT)
     def force_of_dilatation(u, dilatation, mesh, kappa, force):
-        """Nodal forces ``int kappa (psi_a dilatation_a) cof F : grad v``, accumulated in ``force`` (n, 2).
+        """Nodal forces ``int kappa (psi_a dilatation_a) cof F : grad v``, accumulated in ``force``
+        (n, 2).
 
         Shapes: u (n, 2); dilatation (ne, nm); kappa (ne,).
         """
@@ -353,11 +373,14 @@ def volume_loop(nodes: int, points: int, modes: int):
 
 @cache
 def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
-    """The element loops of a law for elements with so many nodes, quadrature points and pressure modes.
+    """The element loops of a law for elements with so many nodes, quadrature points and pressure
+    modes.
 
-    The law's formulas are compiled into them: assemble_tangent, internal_force, commit and energies. In all of them ``mesh`` is
-    :attr:`Space.mesh`, ``constants`` (number of constants, ne) are the law's, and ``blocks`` (k, 3) says which elements follow
-    it: those of a block, from the first to before the last (:meth:`Space.blocks`).
+    The law's formulas are compiled into them: assemble_tangent, internal_force, commit and
+    energies. In all of them ``mesh`` is
+    :attr:`Space.mesh`, ``constants`` (number of constants, ne) are the law's, and ``blocks`` (k, 3)
+    says which elements follow it: those of a block, from the first to before the last
+    (:meth:`Space.blocks`).
     """
     deform, project, to_nodes, add = _common(nodes, points, modes)
     law_energy, law_stress, law_tangent = law.energy, law.stress, law.tangent
@@ -382,13 +405,15 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
         data,
         force,
     ):
-        """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``, its pressures being of its volume.
+        """Tangent (scattered into CSR ``data``) and internal force at displacement ``u``, its
+        pressures being of its volume.
 
-        Shapes: u (n, 2); mu, kappa (ne,); dilatation (ne, nm) of the pressures in the geometric part; volume (ne, nm), filled
-        with the dilatation of ``u``, which may be the same array; history (blocks, 4, nq, together) second Piola-Kirchhoff 11,
-        22, 12, 33, or None; factor: share of the isochoric stress that answers at once; pointwise (ne,): extra volumetric modulus
-        that is not projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last one: discarded); force (n, 2),
-        accumulated.
+        Shapes: u (n, 2); mu, kappa (ne,); dilatation (ne, nm) of the pressures in the geometric
+        part; volume (ne, nm), filled with the dilatation of ``u``, which may be the same array;
+        history (blocks, 4, nq, together) second Piola-Kirchhoff 11, 22, 12, 33, or None; factor:
+        share of the isochoric stress that answers at once; pointwise (ne,): extra volumetric
+        modulus that is not projected, or None; scatter (ne, nd(nd+1)/2) positions in ``data`` (last
+        one: discarded); force (n, 2), accumulated.
         Returns the smallest det F.
         """
         cells, reference, inverses, weights, all_psi = mesh
@@ -404,8 +429,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
             np.empty((2, 2 * points, together)),
         )
         modal, own = np.empty((modes, 2, nodes, together)), np.empty((10, points))
-        # K = left^T right: the gradients of the virtual displacements, x and y, and below them their dilatation modes; and how
-        # stresses answer to all degrees of freedom, the second time only to those along y
+        # K = left^T right: the gradients of the virtual displacements, x and y, and below them
+        # their dilatation modes; and how stresses answer to all degrees of freedom, the second time
+        # only to those along y
         left = np.empty((2, nodes, 2 * points + modes))
         left[:, :, : 2 * points] = reference
         right_x, right_y = (
@@ -566,10 +592,11 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     def internal_force(
         u, mesh, mu, kappa, constants, blocks, history, factor, pointwise, dilatation, volume, force
     ):
-        """Internal force (n, 2) of the pressures kappa times ``dilatation`` (ne, nm), accumulated in ``force``.
+        """Internal force (n, 2) of the pressures kappa times ``dilatation`` (ne, nm), accumulated
+        in ``force``.
 
-        Fills ``volume`` (ne, nm), the dilatation of ``u``; it may be the same array, then pressures are of it. Returns the
-        smallest det F.
+        Fills ``volume`` (ne, nm), the dilatation of ``u``; it may be the same array, then pressures
+        are of it. Returns the smallest det F.
         """
         cells, reference, inverses, weights, all_psi = mesh
         together = weights.shape[2]
@@ -649,9 +676,9 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
     ):
         """Branch stresses, isochoric stress and C 11, 22, 12 after a step, into the new.
 
-        Shapes: branches (nb, blocks, 4, nq, together); stress (blocks, 4, nq, together); stretch (blocks, 3, nq, together).
-        ``decay``, ``gain`` (nb,) of the step; ``mu`` (ne,) long-term moduli. Returns the work done on the branches, by the
-        trapezoidal rule, J/m.
+        Shapes: branches (nb, blocks, 4, nq, together); stress (blocks, 4, nq, together); stretch
+        (blocks, 3, nq, together). ``decay``, ``gain`` (nb,) of the step; ``mu`` (ne,) long-term
+        moduli. Returns the work done on the branches, by the trapezoidal rule, J/m.
         """
         cells, reference, inverses, weights, _ = mesh
         together = weights.shape[2]
@@ -683,7 +710,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
                     )
                     now[4, k], now[5, k], now[6, k] = c11, c22, c12
                 for c in range(4):
-                    # the mean of a branch's stress before and after, times the way: 12 counts twice, and C is twice E
+                    # the mean of a branch's stress before and after, times the way: 12 counts
+                    # twice, and C is twice E
                     share = 0.0 if c == 3 else 0.5 if c == 2 else 0.25
                     for b in range(len(decay)):
                         for k in range(first, last):
@@ -708,7 +736,8 @@ def loops(law: Law, nodes: int, points: int, modes: int) -> SimpleNamespace:
 
     @njit(**_JIT)
     def energies(u, mesh, mu, constants, blocks, pointwise, beta, branches):
-        """Energy of the network's change of shape and that of the Maxwell springs, tau_i : tau_i / (4 beta_i mu), J/m.
+        """Energy of the network's change of shape and that of the Maxwell springs, tau_i : tau_i /
+        (4 beta_i mu), J/m.
 
         ``beta`` (nb,) and ``branches`` (nb, blocks, 4, nq, together), None without.
         """
@@ -764,7 +793,8 @@ def stress_loop(law: Law):
 
     @njit(**_JIT)
     def isochoric_stress(u, cells, grad, mu, constants, only, out):
-        """Isochoric second Piola-Kirchhoff stress 11, 22, 12, 33 into ``out`` (np, 4) where only (np,) says so.
+        """Isochoric second Piola-Kirchhoff stress 11, 22, 12, 33 into ``out`` (np, 4) where only
+        (np,) says so.
 
         Shapes: u (n, 2); cells (np, nen); grad (np, nen, 2); mu (np,).
         """

@@ -1,9 +1,11 @@
-"""Symmetric sparse factorisation that condenses the system onto a few degrees of freedom (the possible contact zone).
+"""Symmetric sparse factorisation that condenses the system onto a few degrees of freedom (the
+possible contact zone).
 
-``K x = b`` is split in the condensed degrees of freedom ``c`` and the rest ``i``. One factorisation gives the dense Schur
-complement ``S = K_cc - K_ci K_ii^-1 K_ic``; a forward sweep gives the reduced right-hand side, and after the small dense
-problem has been solved by whoever owns it, a backward sweep gives the rest. PARDISO does all of it inside its own
-factorisation; where it is not available SuperLU gives the same answers, slower.
+``K x = b`` is split in the condensed degrees of freedom ``c`` and the rest ``i``. One factorisation
+gives the dense Schur complement ``S = K_cc - K_ci K_ii^-1 K_ic``; a forward sweep gives the reduced
+right-hand side, and after the small dense problem has been solved by whoever owns it, a backward
+sweep gives the rest. PARDISO does all of it inside its own factorisation; where it is not available
+SuperLU gives the same answers, slower.
 """
 
 from __future__ import annotations
@@ -25,13 +27,15 @@ class FactorisationError(RuntimeError):
 
 
 class SymmetricPattern:
-    """Upper-triangular CSR pattern of the free degrees of freedom and where each element entry goes.
+    """Upper-triangular CSR pattern of the free degrees of freedom and where each element entry
+    goes.
 
     Found from pairs of nodes, of which there are a quarter as many as of equations.
 
     Args:
-        cells: (ne, nen) nodes of the elements, whose entries are in the order of components, then nodes.
-        equation: (n, nc) equation number of each component of a node, ascending; -1 where prescribed.
+        cells: (ne, nen) nodes of the elements, whose entries are in the order of components, then
+        nodes. equation: (n, nc) equation number of each component of a node, ascending; -1 where
+        prescribed.
 
     Raises:
         FactorisationError: a free node belongs to no element.
@@ -110,8 +114,8 @@ _NO_MEMORY = -2  # of PARDISO's errors, the only one that is not the matrix's fa
 class PardisoCondensation:
     """Intel MKL PARDISO as LDL^T; ``single``: in single precision, half as much to read and write.
 
-    Its Cholesky is a quarter faster, but with a Schur complement it crashes the process, instead of reporting, when the
-    tangent is indefinite; LDL^T takes definite and indefinite tangents alike.
+    Its Cholesky is a quarter faster, but with a Schur complement it crashes the process, instead of
+    reporting, when the tangent is indefinite; LDL^T takes definite and indefinite tangents alike.
     """
 
     name = "pardiso"
@@ -127,7 +131,8 @@ class PardisoCondensation:
         self._perm = np.zeros(pattern.size, dtype=np.int32)
         self._perm[self.condensed] = 1
         self._handle, self._parameters = np.zeros(64, np.int64), np.zeros(64, np.int32)
-        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia; precision; Schur complement, factors
+        # own settings; METIS; pivot perturbation; Bunch-Kaufman; two levels; report inertia;
+        # precision; Schur complement, factors
         for i, value in {
             1: 1,
             2: 2,
@@ -141,7 +146,9 @@ class PardisoCondensation:
         self._call(11, self._dummy, np.zeros(pattern.size, self._real))
 
     def _call(self, phase: int, right: np.ndarray, out: np.ndarray) -> int:
-        """One phase of PARDISO, of one real symmetric indefinite matrix (-2) and one right-hand side, without a report."""
+        """One phase of PARDISO, of one real symmetric indefinite matrix (-2) and one right-hand
+        side, without a report.
+        """
         error = ctypes.c_int32(0)
         numbers = (
             ctypes.byref(ctypes.c_int32(value))
@@ -184,7 +191,8 @@ class PardisoCondensation:
         return error.value
 
     def factor(self, data: np.ndarray) -> np.ndarray:
-        """Factorise coefficients of the pattern (nonzeros + 1,); returns the Schur complement (nc, nc).
+        """Factorise coefficients of the pattern (nonzeros + 1,); returns the Schur complement (nc,
+        nc).
 
         Raises:
             FactorisationError: singular to working precision.
@@ -198,11 +206,15 @@ class PardisoCondensation:
 
     @property
     def negative_pivots(self) -> int:
-        """Negative eigenvalues of the last factored matrix: 0 for a stable equilibrium without contact forces."""
+        """Negative eigenvalues of the last factored matrix: 0 for a stable equilibrium without
+        contact forces.
+        """
         return int(self._parameters[22])
 
     def forward(self, right: np.ndarray) -> np.ndarray:
-        """Reduced right-hand side (nc,) for the condensed degrees of freedom; keeps the rest for :meth:`backward`."""
+        """Reduced right-hand side (nc,) for the condensed degrees of freedom; keeps the rest for
+        :meth:`backward`.
+        """
         self._reduced = np.zeros(self._pattern.size, self._real)
         self._call(
             331 if len(self.condensed) else 33, np.array(right, dtype=self._real), self._reduced
@@ -265,10 +277,12 @@ class SuperLUCondensation:
 
 
 class Narrowed:
-    """A condensation taken further, onto some of the degrees of freedom (k,) that it condenses onto.
+    """A condensation taken further, onto some of the degrees of freedom (k,) that it condenses
+    onto.
 
-    What is done again in every iteration grows with the third power of their number; which ones they are may change as often as
-    the contact does, for nothing is factored for it but a dense block.
+    What is done again in every iteration grows with the third power of their number; which ones
+    they are may change as often as the contact does, for nothing is factored for it but a dense
+    block.
     """
 
     def __init__(self, solver, condensed: np.ndarray):
@@ -276,9 +290,11 @@ class Narrowed:
         self.schur = np.zeros((0, 0))
 
     def take(self, schur: np.ndarray) -> bool:
-        """Eliminate what is not wanted of the solver's Schur complement (nc, nc), of which ``schur`` (k, k) is left.
+        """Eliminate what is not wanted of the solver's Schur complement (nc, nc), of which
+        ``schur`` (k, k) is left.
 
-        False, with nothing done, where that block is not positive definite: then who solves for contact must see all of it.
+        False, with nothing done, where that block is not positive definite: then who solves for
+        contact must see all of it.
         """
         kept, rest = self._kept, ~self._kept
         if kept.all():
@@ -311,7 +327,9 @@ class Narrowed:
 
 
 def condensation(pattern: SymmetricPattern, condensed: np.ndarray, single: bool = False):
-    """The best available solver for this pattern, condensing onto the given equations (nc,); ``single``: precision will do."""
+    """The best available solver for this pattern, condensing onto the given equations (nc,);
+    ``single``: precision will do.
+    """
     return (
         PardisoCondensation(pattern, condensed, single)
         if pardiso_available()

@@ -11,7 +11,8 @@ _ON_EDGE = 4
 def smoothed_pressure(nodal_force, length, mirrored: bool) -> np.ndarray:
     """5-point (1, 2, 3, 2, 1) average of force over the same average of length, (ns,) Pa.
 
-    ``mirrored``: the first node lies on a symmetry axis, beyond which the pattern continues; its force and length are halves.
+    ``mirrored``: the first node lies on a symmetry axis, beyond which the pattern continues; its
+    force and length are halves.
     """
     kernel = np.array([1.0, 2.0, 3.0, 2.0, 1.0])
 
@@ -28,8 +29,8 @@ def smoothed_pressure(nodal_force, length, mirrored: bool) -> np.ndarray:
 def checkerboard(pressure: np.ndarray, smoothed: np.ndarray) -> float:
     """R.m.s. of nodal pressure less its 5-point average over the peak pressure, inside the contact.
 
-    Inside: from the third to the third last touching node (ns,), nodes that have been lifted off between them included. nan where
-    there are fewer than three.
+    Inside: from the third to the third last touching node (ns,), nodes that have been lifted off
+    between them included. nan where there are fewer than three.
     """
     on = np.flatnonzero(pressure > 0)
     if len(on) < 7:
@@ -39,10 +40,12 @@ def checkerboard(pressure: np.ndarray, smoothed: np.ndarray) -> float:
 
 
 def contact_edges(x, pressure, spacing, mirrored: bool = False) -> tuple[float, float]:
-    """Left and right edge of the contact (m), from outermost to outermost; (nan, nan) without contact.
+    """Left and right edge of the contact (m), from outermost to outermost; (nan, nan) without
+    contact.
 
     Args:
-        x: (n,) m, lateral position of points of the skin in order. pressure: (n,) Pa. spacing: (n,) m between them. mirrored: the
+        x: (n,) m, lateral position of points of the skin in order. pressure: (n,) Pa. spacing: (n,)
+        m between them. mirrored: the
             first one lies beside a symmetry axis at x = 0, beyond which the pattern continues.
     """
     if mirrored:

@@ -1,8 +1,8 @@
 """The small-strain body: the linearisation of the finite one, its own and cheaper path.
 
-The tangent is constant and factored once for each step size. A Prony branch of a linear body needs no tensors at quadrature
-points: it is a *branch displacement* v with ``v(t + dt) = exp(-dt/tau) v(t) + gamma (u(t + dt) - u(t))`` whose stress is beta
-times the deviatoric stress of v.
+The tangent is constant and factored once for each step size. A Prony branch of a linear body needs
+no tensors at quadrature points: it is a *branch displacement* v with ``v(t + dt) = exp(-dt/tau)
+v(t) + gamma (u(t + dt) - u(t))`` whose stress is beta times the deviatoric stress of v.
 """
 
 import numpy as np
@@ -16,7 +16,9 @@ from fingerpad.specimen.materials import Prony
 
 
 class SmallStrainBody:
-    """Linear body with the verbs of :class:`~fingerpad.mechanics.finite_strain.FiniteStrainBody` (same arguments)."""
+    """Linear body with the verbs of :class:`~fingerpad.mechanics.finite_strain.FiniteStrainBody`
+    (same arguments).
+    """
 
     geometrically_linear = True
     smallest_jacobian = 1.0
@@ -121,7 +123,9 @@ class SmallStrainBody:
         return self._factor * self._free[0] + self._free[1]
 
     def linearise(self, solver) -> tuple[np.ndarray, np.ndarray]:
-        """Schur complement (nc, nc), factored anew only for a new step size or contact zone, and internal force (n, 2)."""
+        """Schur complement (nc, nc), factored anew only for a new step size or contact zone, and
+        internal force (n, 2).
+        """
         key = (id(solver), self._factor)
         if self._factored is None or self._factored[0] != key:
             self._data = self.stiffness()
@@ -140,7 +144,9 @@ class SmallStrainBody:
         self.u = self.u + share * du
 
     def commit(self) -> None:
-        """The step has converged: let the branch displacements move on, and add up the work that was done on them."""
+        """The step has converged: let the branch displacements move on, and add up the work that
+        was done on them.
+        """
         if self.prony:
             decay, gamma = self._decay[:, None, None], self._gamma[:, None, None]
             step = self.u - self._last
@@ -165,7 +171,9 @@ class SmallStrainBody:
         self.branch_work = state[3]
 
     def energies(self) -> tuple[float, float, float]:
-        """Network energy, Maxwell-spring energy and the work done on the branches so far (trapezoidal rule), J/m."""
+        """Network energy, Maxwell-spring energy and the work done on the branches so far
+        (trapezoidal rule), J/m.
+        """
         u = self.u.ravel()
         network = 0.5 * u @ (self._deviatoric @ u + self._volumetric @ u)
         spring = 0.0

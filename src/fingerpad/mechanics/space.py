@@ -1,4 +1,6 @@
-"""A mesh turned into arrays the element loops read: gradients, weights, pressure modes, equations, pattern."""
+"""A mesh turned into arrays the element loops read: gradients, weights, pressure modes, equations,
+pattern.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,11 +16,15 @@ DEFAULT_ELEMENT = {name: kind.solved for name, kind in KINDS.items() if kind.sol
 
 
 TOGETHER = 32
-"""Elements of a block, which go through the element loops side by side: what is worked out of them fits the nearest memory."""
+"""Elements of a block, which go through the element loops side by side: what is worked out of them
+fits the nearest memory.
+"""
 
 
 def blocked(values: np.ndarray) -> np.ndarray:
-    """Values of elements (ne, ...) in blocks of elements side by side: (blocks, ..., TOGETHER), filled up with zeros."""
+    """Values of elements (ne, ...) in blocks of elements side by side: (blocks, ..., TOGETHER),
+    filled up with zeros.
+    """
     count = -(-len(values) // TOGETHER)
     filled = np.zeros((count * TOGETHER, *values.shape[1:]))
     filled[: len(values)] = values
@@ -29,7 +35,8 @@ def blocked(values: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class PlaneStrain:
-    """What a two-dimensional field means in three dimensions: no out-of-plane stretch, force per contact length.
+    """What a two-dimensional field means in three dimensions: no out-of-plane stretch, force per
+    contact length.
 
     Attributes:
         contact_length: m; newtons over it are the newtons per metre of the model.
@@ -39,7 +46,9 @@ class PlaneStrain:
     out_of_plane_stretch: float = 1.0
 
     def volume_weight(self, points: np.ndarray) -> np.ndarray:
-        """Volume per cross-section area at points (..., 2); an axisymmetric measure would return 2 pi r."""
+        """Volume per cross-section area at points (..., 2); an axisymmetric measure would return 2
+        pi r.
+        """
         return np.ones(points.shape[:-1])
 
 
@@ -47,17 +56,18 @@ class Space:
     """Displacement and pressure spaces on one mesh.
 
     Args:
-        points: (n, 2) m. cells: (ne, nen) in the order of gmsh (6-node triangles are given their bubble node here).
-        kind: "quad9", "quad4" or "tri6". element: key of ELEMENTS; None = the default for the kind.
-        fixed: (n, 2) bool, prescribed degrees of freedom.
+        points: (n, 2) m. cells: (ne, nen) in the order of gmsh (6-node triangles are given their
+        bubble node here). kind: "quad9", "quad4" or "tri6". element: key of ELEMENTS; None = the
+        default for the kind. fixed: (n, 2) bool, prescribed degrees of freedom.
 
     Attributes:
-        points, cells: as used (with bubble nodes). weight (ne, nq) m^2 (times the measure);
-        centres (ne, 2) m, means of the elements' nodes; psi (ne, nq, nm) pressure modes, orthonormal in the weight;
-        equation (n, 2) equation number or -1; size.
-        mesh: what the element loops read, as tuple: cells; gradients on the reference cell (nen, 2 nq), all along its first
-        coordinate before all along the second; and, in blocks of elements (:func:`blocked`), what makes gradients of them
-        (4, nq), 1/m, with 11, 12, 21, 22 of the inverse Jacobian; weight (nq); pressure modes (nm, nq). sizes: nen, nq, nm.
+        points, cells: as used (with bubble nodes). weight (ne, nq) m^2 (times the measure); centres
+        (ne, 2) m, means of the elements' nodes; psi (ne, nq, nm) pressure modes, orthonormal in the
+        weight; equation (n, 2) equation number or -1; size. mesh: what the element loops read, as
+        tuple: cells; gradients on the reference cell (nen, 2 nq), all along its first coordinate
+        before all along the second; and, in blocks of elements (:func:`blocked`), what makes
+        gradients of them (4, nq), 1/m, with 11, 12, 21, 22 of the inverse Jacobian; weight (nq);
+        pressure modes (nm, nq). sizes: nen, nq, nm.
 
     Raises:
         ValueError: an element is inverted or the element does not fit the mesh.
@@ -107,7 +117,9 @@ class Space:
         self.size = int(self.equation.max()) + 1
 
     def _raw_modes(self, position):
-        """Pressure modes before orthonormalisation at points (ne, nq, 2): 1, x, y about the centre, or one per point."""
+        """Pressure modes before orthonormalisation at points (ne, nq, 2): 1, x, y about the centre,
+        or one per point.
+        """
         count = self.element.pressure_modes
         if count not in (1, 3):
             return np.broadcast_to(np.eye(count), (len(position), count, count))
@@ -132,7 +144,8 @@ class Space:
         """Orthonormal pressure modes (n, nm) of ``elements`` (n,) at physical ``points`` (n, 2).
 
         Raises:
-            ValueError: the element's pressure is pointwise and has no value between its quadrature points.
+            ValueError: the element's pressure is pointwise and has no value between its quadrature
+            points.
         """
         count = self.element.pressure_modes
         if count not in (1, 3):
@@ -142,7 +155,8 @@ class Space:
         return np.einsum("na,nba->nb", raw, self._orthonormal[elements])
 
     def blocks(self, which: np.ndarray) -> np.ndarray:
-        """(k, 3): of each block with elements of ``which`` (ne,) bool, its number and the first and last + 1 of a run of them.
+        """(k, 3): of each block with elements of ``which`` (ne,) bool, its number and the first and
+        last + 1 of a run of them.
 
         Unsigned, which the element loops are compiled for.
         """
@@ -161,17 +175,21 @@ class Space:
         return field[~self.fixed]
 
     def to_nodes(self, vector: np.ndarray) -> np.ndarray:
-        """Nodal field (n, 2) with ``vector`` (size,) at the free degrees of freedom and zero elsewhere."""
+        """Nodal field (n, 2) with ``vector`` (size,) at the free degrees of freedom and zero
+        elsewhere.
+        """
         out = np.zeros(self.points.shape)
         out[~self.fixed] = vector
         return out
 
 
 def edge_load_vectors(points: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Nodal vectors (n, 2) of ``int N_a n ds`` over edges (m, 2 or 3; start, end[, middle]) with unit outward pressure.
+    """Nodal vectors (n, 2) of ``int N_a n ds`` over edges (m, 2 or 3; start, end[, middle]) with
+    unit outward pressure.
 
-    The body lies on the right of start -> end; the vector points out of it. This is the consistent nodal load of a uniform
-    pressure of one on the curve as it lies now, so force over it is pressure on straight and curved edges alike.
+    The body lies on the right of start -> end; the vector points out of it. This is the consistent
+    nodal load of a uniform pressure of one on the curve as it lies now, so force over it is
+    pressure on straight and curved edges alike.
     """
     values, slopes = edge_shape(edges.shape[1] - 1)
     tangent = np.einsum("qa,mai->mqi", slopes, points[edges])

@@ -1,7 +1,9 @@
-"""Quasi-static stepping: Newton's method with the exact contact problem inside, step cutting, and checks of every state.
+"""Quasi-static stepping: Newton's method with the exact contact problem inside, step cutting, and
+checks of every state.
 
-The stepper is composed of a body (small or finite strain, with or without Prony branches), the skin that may touch and a rigid
-profile. It knows nothing of scenes, plans or files. Time enters only through the step sizes; inertia is never solved.
+The stepper is composed of a body (small or finite strain, with or without Prony branches), the skin
+that may touch and a rigid profile. It knows nothing of scenes, plans or files. Time enters only
+through the step sizes; inertia is never solved.
 """
 
 from collections.abc import Callable, Iterable
@@ -27,8 +29,9 @@ class NonConvergence(RuntimeError):
     """A step could not be completed even after cutting.
 
     Attributes:
-        time: s, where the last converged state stands. reason: what failed. advice: what to try. hard: what is hard in the scene,
-        for who knows it. records: the records of every converged scheduled step.
+        time: s, where the last converged state stands. reason: what failed. advice: what to try.
+        hard: what is hard in the scene, for who knows it. records: the records of every converged
+        scheduled step.
     """
 
     hard: tuple[str, ...] = ()
@@ -58,19 +61,21 @@ class _TooFar(_StepFailure):
 class NewtonSettings:
     """Tolerances relative to the current contact force and to the node spacing, and limits.
 
-    Forces on nodes may be out of balance by ``force_tolerance``, their sum by ``whole``; what pressures and volumes are apart by
-    may be ``volume`` times as large a share of the pressures (norms over the elements).
-    A force that goes to zero is as good as zero within ``least_scale`` tolerances of the largest there was. ``snap_iterations``
-    are allowed on top when a node is popping round an edge: through an unstable state Newton's method only descends. All attempts
-    at a scheduled step may take ``most_iterations``. Factors are kept within a step while what they leave is within ``chord``
-    tolerances and they would end, as they go on, ``outlook`` iterations later; and from step to step until the steps that they
-    served have taken ``patience`` iterations beyond the fewest of one, which is what new ones cost, while what answers at once in
-    a step has changed by no more than ``stiffening``. A zone ``loose`` times as wide as it need be is drawn together, and, once
-    there has been a stroke, one ``spare`` times as wide condensed anew. A push that points farther than ``aside`` (rad) from the
-    vertical is one at the side. An iteration goes only as far as det F stays above ``squeeze`` of what it was, where that is at
-    least a fifth of its way.
-    ``single``: the tangent is factored in single precision, as the next iteration corrects what that is wrong by; until a step
-    does not converge.
+    Forces on nodes may be out of balance by ``force_tolerance``, their sum by ``whole``; what
+    pressures and volumes are apart by may be ``volume`` times as large a share of the pressures
+    (norms over the elements). A force that goes to zero is as good as zero within ``least_scale``
+    tolerances of the largest there was. ``snap_iterations`` are allowed on top when a node is
+    popping round an edge: through an unstable state Newton's method only descends. All attempts at
+    a scheduled step may take ``most_iterations``. Factors are kept within a step while what they
+    leave is within ``chord`` tolerances and they would end, as they go on, ``outlook`` iterations
+    later; and from step to step until the steps that they served have taken ``patience`` iterations
+    beyond the fewest of one, which is what new ones cost, while what answers at once in a step has
+    changed by no more than ``stiffening``. A zone ``loose`` times as wide as it need be is drawn
+    together, and, once there has been a stroke, one ``spare`` times as wide condensed anew. A push
+    that points farther than ``aside`` (rad) from the vertical is one at the side. An iteration goes
+    only as far as det F stays above ``squeeze`` of what it was, where that is at least a fifth of
+    its way. ``single``: the tangent is factored in single precision, as the next iteration corrects
+    what that is wrong by; until a step does not converge.
     """
 
     force_tolerance: float = 1e-4
@@ -99,8 +104,9 @@ class Skin:
     """The part of the boundary that may touch.
 
     Attributes:
-        nodes: (ns,) ordered along the skin. edges: (m, 2 or 3) boundary edges (start, end[, middle]), body on their right.
-        spacing: m, smallest distance of neighbouring nodes. start: indices (first, last + 1) of the first contact zone.
+        nodes: (ns,) ordered along the skin. edges: (m, 2 or 3) boundary edges (start, end[,
+        middle]), body on their right. spacing: m, smallest distance of neighbouring nodes. start:
+        indices (first, last + 1) of the first contact zone.
     """
 
     nodes: np.ndarray
@@ -113,8 +119,9 @@ class Skin:
 class Record:
     """What one converged step left behind (arrays over the skin's nodes are (ns,)).
 
-    Forces at the points where the skin touches are put down to the nearest nodes, and so are the lengths of skin that they act
-    on: one over the other is the mean pressure of the points on either side of a node.
+    Forces at the points where the skin touches are put down to the nearest nodes, and so are the
+    lengths of skin that they act on: one over the other is the mean pressure of the points on
+    either side of a node.
     """
 
     leg: int
@@ -150,7 +157,9 @@ class Record:
 
 @dataclass(frozen=True)
 class _Past:
-    """A state before a step of ``dt``: displacement (n, 2) m, dilatation (the body's own), contact forces (np,) N/m, depth m."""
+    """A state before a step of ``dt``: displacement (n, 2) m, dilatation (the body's own), contact
+    forces (np,) N/m, depth m.
+    """
 
     dt: float
     u: np.ndarray
@@ -171,9 +180,11 @@ class _Past:
 
 
 def first_touch(skin: np.ndarray, profile) -> float:
-    """Height (m) of the origin of ``profile`` where, moving straight down, it first touches ``skin`` (ns, 2) m; NaN if it misses.
+    """Height (m) of the origin of ``profile`` where, moving straight down, it first touches
+    ``skin`` (ns, 2) m; NaN if it misses.
 
-    Where the skin stands out most against the profile: at a node, or between two if the profile fits between them.
+    Where the skin stands out most against the profile: at a node, or between two if the profile
+    fits between them.
     """
     x, y = skin.T
     height = y - profile.outline(x)
@@ -190,9 +201,10 @@ class QuasiStatic:
     """Walks a schedule of steps.
 
     Args:
-        body: FiniteStrainBody or SmallStrainBody, unloaded. skin: where contact may happen. profile: the rigid shape.
-        observers: callables ``(body, dt)`` run after each converged substep (receptors keep their own history so).
-        external: (n, 2) dead nodal forces, N/m, or None. friction: Coulomb's coefficient; None leaves friction out altogether.
+        body: FiniteStrainBody or SmallStrainBody, unloaded. skin: where contact may happen.
+        profile: the rigid shape. observers: callables ``(body, dt)`` run after each converged
+        substep (receptors keep their own history so). external: (n, 2) dead nodal forces, N/m, or
+        None. friction: Coulomb's coefficient; None leaves friction out altogether.
     """
 
     def __init__(
@@ -289,13 +301,17 @@ class QuasiStatic:
             self._take(self._schur)
 
     def _take(self, schur):
-        """Take over the Schur complement of all that is condensed onto, with which contact is solved for where it may be."""
+        """Take over the Schur complement of all that is condensed onto, with which contact is
+        solved for where it may be.
+        """
         self._schur = schur
         if not self._narrowed.take(schur):
             self._narrow(self._outer.start, self._outer.stop)
 
     def _reach_what_touches(self):
-        """Widen the zone to where the profile touches first: the edges of a hole are not where its middle is."""
+        """Widen the zone to where the profile touches first: the edges of a hole are not where its
+        middle is.
+        """
         gap = self.profile.evaluate(self._position(slice(None)))[0]
         first = np.flatnonzero(gap <= gap.min() + 0.1 * self.skin.spacing)
         if first[0] < self._range.start or first[-1] >= self._range.stop:
@@ -308,7 +324,9 @@ class QuasiStatic:
         (self._narrow if inside else self._set_zone)(first, last)
 
     def _grow_zone(self):
-        """Make room round a contact that fills its zone: among the points that are condensed onto, or of these more."""
+        """Make room round a contact that fills its zone: among the points that are condensed onto,
+        or of these more.
+        """
         first, last = self._round(np.flatnonzero(self._touching()), 16, 8)
         self._narrow(min(first, self._range.start), max(last, self._range.stop))
         if self._zone_is_tight():
@@ -317,14 +335,18 @@ class QuasiStatic:
             self._set_zone(first - more if first else 0, last + more)
 
     def _round(self, on, least, share):
-        """First and last point + 1 of a zone with ``least`` points or a ``share``-th of a contact ``on`` (k,) to either side."""
+        """First and last point + 1 of a zone with ``least`` points or a ``share``-th of a contact
+        ``on`` (k,) to either side.
+        """
         more = max(least, np.ptp(on) // share)
         return max(on[0] - more, 0), min(on[-1] + 1 + more, len(self.places))
 
     def _follow(self):
-        """Draw the zone together round a contact that has moved on: every iteration pays for its size.
+        """Draw the zone together round a contact that has moved on: every iteration pays for its
+        size.
 
-        What is condensed onto is left as wide as it was made before the first stroke: a press comes to fill it.
+        What is condensed onto is left as wide as it was made before the first stroke: a press comes
+        to fill it.
         """
         on = np.flatnonzero(self._touching())
         if len(on):
@@ -336,7 +358,9 @@ class QuasiStatic:
                 self._narrow(first, last)
 
     def _zone_is_tight(self, margin=6):
-        """Does contact come so near, in points, to an end of the zone that is not an end of the skin?"""
+        """Does contact come so near, in points, to an end of the zone that is not an end of the
+        skin?
+        """
         on = np.flatnonzero(self._touching()[self._range])
         if not len(on):
             return False
@@ -383,13 +407,17 @@ class QuasiStatic:
         return height
 
     def touching_depth(self) -> float:
-        """Depth (m) at which the profile just touches the undeformed skin where it is now; zero where it came down first."""
+        """Depth (m) at which the profile just touches the undeformed skin where it is now; zero
+        where it came down first.
+        """
         return self.height - self._first_touch()
 
     # -- one step ---------------------------------------------------------------------------------------------------
 
     def save(self):
-        """The state to come back to: body, contact forces, active nodes, depth, distance, friction."""
+        """The state to come back to: body, contact forces, active nodes, depth, distance,
+        friction.
+        """
         friction = self.friction and self.friction.save()
         return (
             self.body.save(),
@@ -413,7 +441,9 @@ class QuasiStatic:
         self._factors = None
 
     def _start_again(self, distance):
-        """Lift the profile off, let the body recover, and come down to first touch at another stroke distance (m)."""
+        """Lift the profile off, let the body recover, and come down to first touch at another
+        stroke distance (m).
+        """
         self.body.restore(self._unloaded)
         self.contact_force[:], self.active[:] = 0, False
         self.distance = distance
@@ -477,7 +507,9 @@ class QuasiStatic:
         raise _StepFailure(f"{limit} Newton iterations did not suffice")
 
     def _factors_fit(self):
-        """Are there factors of this zone, and of a step in which as much of the stress answers at once?"""
+        """Are there factors of this zone, and of a step in which as much of the stress answers at
+        once?
+        """
         return (
             self._factors is not None
             and self._factors[0] is self.solver
@@ -592,7 +624,9 @@ class QuasiStatic:
         return residual if share == 1.0 else max(residual, 2.0)
 
     def _motion(self, zone):
-        """(nz, 2) m: how far the points of a zone have moved over the profile since the step began."""
+        """(nz, 2) m: how far the points of a zone have moved over the profile since the step
+        began.
+        """
         u, depth, distance = self._begin
         return zone.shape @ (self.body.u - u)[zone.nodes] + np.array(
             [self.distance - distance, self.depth - depth]
@@ -613,7 +647,9 @@ class QuasiStatic:
         return True
 
     def _forces(self):
-        """Force of the profile on the zone's points (nz, 2) N/m, and the frictional part of it (None without friction)."""
+        """Force of the profile on the zone's points (nz, 2) N/m, and the frictional part of it
+        (None without friction).
+        """
         rows = self._rows()
         push = rows.of_points(self.contact_force[rows.place, None] * rows.gradient)
         if self.friction is None:
@@ -622,9 +658,11 @@ class QuasiStatic:
         return push + pull, pull
 
     def _check_energy(self, work, energies, lost, moved):
-        """A false equilibrium shows: its energy is not what was put in (which large steps know with a margin).
+        """A false equilibrium shows: its energy is not what was put in (which large steps know with
+        a margin).
 
-        Small steps of a stroke (``moved``) have no such excuse: what goes missing in them, where nodes jump over edges, adds up.
+        Small steps of a stroke (``moved``) have no such excuse: what goes missing in them, where
+        nodes jump over edges, adds up.
         """
         if (
             self.external is not None
@@ -639,15 +677,18 @@ class QuasiStatic:
         self._missing = missing
 
     def _clearance(self):
-        """m, between the profile and the points of the skin where nothing touches: nodes may be nearer to it."""
+        """m, between the profile and the points of the skin where nothing touches: nodes may be
+        nearer to it.
+        """
         return max(float(self._rows().gap.min()), 0.0)
 
     def _pressing_work(self, force, way, stiffness, clearance=0.0):
-        """Work (J/m) of the force on a way (m) into the pad: by the trapezoidal rule, which is right for small steps.
+        """Work (J/m) of the force on a way (m) into the pad: by the trapezoidal rule, which is
+        right for small steps.
 
-        It need not be small: where contact begins or ends the force grows by a power of the way, which the ``stiffness`` (N/m^2;
-        None: not known) at the other end tells, beside a ``clearance`` (m) on the way; else it is a cubic with the stiffness of
-        either end.
+        It need not be small: where contact begins or ends the force grows by a power of the way,
+        which the ``stiffness`` (N/m^2; None: not known) at the other end tells, beside a
+        ``clearance`` (m) on the way; else it is a cubic with the stiffness of either end.
         """
         trapezoidal = 0.5 * (self.force + force) * way
         if stiffness is None:
@@ -662,7 +703,9 @@ class QuasiStatic:
         )
 
     def _advance(self, dt, control, target, distance, predict, good=None):
-        """One substep with predictor, check and commit. ``good``: asked of the contact that was found, before it is accepted."""
+        """One substep with predictor, check and commit. ``good``: asked of the contact that was
+        found, before it is accepted.
+        """
         state = self.save()
         self._begin = self.body.u, self.depth, self.distance
         # a steady stroke takes no time: its steps are as long as their way
@@ -730,8 +773,9 @@ class QuasiStatic:
         return _Past(dt, self.body.u, self.body.pressed, self.contact_force, self.depth)
 
     def _predictions(self, dt):
-        """Where the path goes on to in a step of ``dt``: along the straight line through the last two states, and along the
-        parabola through the last three if there are as many."""
+        """Where the path goes on to in a step of ``dt``: along the straight line through the last
+        two states, and along the parabola through the last three if there are as many.
+        """
         now, found = self._now(dt), []
         sizes = [past.dt for past in self._past]
         if sizes:
@@ -753,11 +797,13 @@ class QuasiStatic:
         on_step: Callable[[Record], None] | None = None,
         between: Between | None = None,
     ) -> list[Record]:
-        """Walk the schedule; returns one record per state that was found: of every step or, where it says that none needs to be
-        found and ``between`` how good what lies between must be, of as many as it takes.
+        """Walk the schedule; returns one record per state that was found: of every step or, where
+        it says that none needs to be found and ``between`` how good what lies between must be, of
+        as many as it takes.
 
         Raises:
-            NonConvergence: a step fails even after ``max_halvings`` halvings or ``most_iterations``; its ``records`` hold what
+            NonConvergence: a step fails even after ``max_halvings`` halvings or
+            ``most_iterations``; its ``records`` hold what
                 converged.
         """
         records: list[Record] = []
@@ -788,7 +834,8 @@ class QuasiStatic:
         return records
 
     def _complete(self, step, last, records, strides):
-        """Go to the end of a step, in parts where it does not converge; returns iterations, halvings and the residual.
+        """Go to the end of a step, in parts where it does not converge; returns iterations,
+        halvings and the residual.
 
         Raises:
             _TooFar: what it passes would not be known well enough, or it is better tried with less.
@@ -800,7 +847,8 @@ class QuasiStatic:
             self._start_again(step.distance)
             begin = 0.0 if control == "force" else self.depth
         start = self.distance
-        # a steady press goes in strides as long as its way: what the last one did is no guide to the next
+        # a steady press goes in strides as long as its way: what the last one did is no guide to
+        # the next
         pressed = step.dt >= STEADY and step.distance == self.distance
         smooth = (
             last is not None
@@ -891,7 +939,9 @@ class QuasiStatic:
         raise NonConvergence(self.time, reason, advice, where) from failure
 
     def _slips_off(self, record):
-        """Was the pad touched, on its way along the profile, by its side only? Then nothing can hold it there."""
+        """Was the pad touched, on its way along the profile, by its side only? Then nothing can
+        hold it there.
+        """
         push = -(record.nodal_force @ record.gradient)
         return bool(record.distance) and abs(push[0]) > np.tan(self.settings.aside) * push[1]
 
@@ -909,7 +959,9 @@ class QuasiStatic:
         return "more steps, a finer mesh, or depth instead of force control"
 
     def _on_nodes(self):
-        """Force (ns,) N/m on the skin's nodes, its direction (ns, 2), their length (ns,) m, and the contact's edges."""
+        """Force (ns,) N/m on the skin's nodes, its direction (ns, 2), their length (ns,) m, and the
+        contact's edges.
+        """
         rows, places, part = self._rows(), self.places, self._range
         if self._nodal is not None and self._nodal[0] is rows:
             return self._nodal[1]

@@ -1,12 +1,14 @@
 """How far a stroke goes in one step, and the contact between the states that are found.
 
-Outputs of a stroke are close to one another; states are found only where the straight way from one to the next is too far from
-the truth. What it is off by is seen without any further solution: the state before last is left out, and what lies between those
-on either side is held to it. A line through two points with a curve of second derivative ``f''`` between them misses it by
-``f'' h h' / 2`` where it is left out and by ``f'' h^2 / 8`` at most between the last two.
+Outputs of a stroke are close to one another; states are found only where the straight way from one
+to the next is too far from the truth. What it is off by is seen without any further solution: the
+state before last is left out, and what lies between those on either side is held to it. A line
+through two points with a curve of second derivative ``f''`` between them misses it by ``f'' h h' /
+2`` where it is left out and by ``f'' h^2 / 8`` at most between the last two.
 
-Pressure is not interpolated node by node, for a bump passes over many nodes in a step. It goes along with the surface, and beside
-its edges with these, which is where it is smooth; its square is interpolated, which is linear at the edge of a smooth contact.
+Pressure is not interpolated node by node, for a bump passes over many nodes in a step. It goes
+along with the surface, and beside its edges with these, which is where it is smooth; its square is
+interpolated, which is linear at the edge of a smooth contact.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ import numpy as np
 from fingerpad.stimuli.motion import STEADY, Step
 
 _BESIDE = 2.0
-"""Ways of an edge past the surface, over which what lies inside it goes along with the edge less and less."""
+"""Ways of an edge past the surface, over which what lies inside it goes along with the edge less
+and less.
+"""
 _NOT_FAR = 2.5
 """Ways of the surface, from the middle of one, within which an edge is the same edge."""
 _MARGIN = 12
@@ -34,7 +38,9 @@ _TOO_FAR = 2.0
 
 @dataclass(frozen=True)
 class Between:
-    """What lies between two states: ``longest`` m from one to the next, ``tolerance`` of the pressure there, relative."""
+    """What lies between two states: ``longest`` m from one to the next, ``tolerance`` of the
+    pressure there, relative.
+    """
 
     longest: float
     tolerance: float
@@ -42,9 +48,11 @@ class Between:
 
 @dataclass(frozen=True, eq=False)
 class Touch:
-    """The contact of one state: places ``x`` (ns,) m of the skin's nodes across, ``pressure`` (ns,) Pa, the contact's outermost
-    ``edges`` m, how far the pad has come along the surface (``distance`` m), the drag over the force, and the share of the force
-    that is carried where the skin sticks."""
+    """The contact of one state: places ``x`` (ns,) m of the skin's nodes across, ``pressure`` (ns,)
+    Pa, the contact's outermost ``edges`` m, how far the pad has come along the surface
+    (``distance`` m), the drag over the force, and the share of the force that is carried where the
+    skin sticks.
+    """
 
     x: np.ndarray
     pressure: np.ndarray
@@ -55,7 +63,9 @@ class Touch:
 
     @cached_property
     def patches(self) -> np.ndarray:
-        """(k, 2) m, edges of every piece of skin that touches: where the squares of its last two pressures fall to zero."""
+        """(k, 2) m, edges of every piece of skin that touches: where the squares of its last two
+        pressures fall to zero.
+        """
         x, square = self.x, self.pressure**2
         on = np.flatnonzero(square > 0)
         if not len(on):
@@ -78,10 +88,11 @@ class Touch:
 
 @dataclass(frozen=True)
 class Passage:
-    """The contact at a ``share`` of the way from a ``first`` to a ``last`` state, at nodes at ``x`` (ns,) m by then.
+    """The contact at a ``share`` of the way from a ``first`` to a ``last`` state, at nodes at ``x``
+    (ns,) m by then.
 
-    ``origin``: (2, k) m, where in either state the contact was that is at the nodes of ``window``; None where it cannot be told:
-    there each node goes its own straight way.
+    ``origin``: (2, k) m, where in either state the contact was that is at the nodes of ``window``;
+    None where it cannot be told: there each node goes its own straight way.
     """
 
     first: Touch
@@ -107,12 +118,16 @@ class Passage:
         return (1 - self.share) * np.sqrt(first) + self.share * np.sqrt(last)
 
     def value(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-        """(ns,) of anything else that goes along with the contact, of values (ns,) in either state."""
+        """(ns,) of anything else that goes along with the contact, of values (ns,) in either
+        state.
+        """
         first, last = self._carried(first, last)
         return (1 - self.share) * first + self.share * last
 
     def _carried(self, *values, falls=False):
-        """Of each state what is at its nodes (ns,), where that is by now; ``falls``: to zero at the contact's edges."""
+        """Of each state what is at its nodes (ns,), where that is by now; ``falls``: to zero at the
+        contact's edges.
+        """
         if self.origin is None:
             return values
         moved = [np.zeros(len(each)) for each in values]
@@ -134,7 +149,9 @@ class Passage:
 
 @lru_cache(maxsize=4)
 def _way(first: Touch, last: Touch) -> tuple[slice, np.ndarray | None]:
-    """The nodes where there is contact in either of two states, and beside it, and their anchors."""
+    """The nodes where there is contact in either of two states, and beside it, and their
+    anchors.
+    """
     on = np.flatnonzero((first.pressure > 0) | (last.pressure > 0))
     if not len(on):
         return slice(0, 0), None
@@ -144,9 +161,11 @@ def _way(first: Touch, last: Touch) -> tuple[slice, np.ndarray | None]:
 
 
 def _anchors(first: Touch, last: Touch) -> np.ndarray | None:
-    """(2, k) m, places of the same points of the contact in two states: edges, and what lies well inside them; None if unknown.
+    """(2, k) m, places of the same points of the contact in two states: edges, and what lies well
+    inside them; None if unknown.
 
-    A piece of the contact that has come or gone has no edges in the other state, and fades where it is.
+    A piece of the contact that has come or gone has no edges in the other state, and fades where it
+    is.
     """
     along = (
         first.distance - last.distance
@@ -169,7 +188,9 @@ def _anchors(first: Touch, last: Touch) -> np.ndarray | None:
 
 
 def _same(edges: np.ndarray, then: np.ndarray, along: float) -> dict[int, int]:
-    """Which edges (k,) m, all left or all right, are which then: nearest to one another and, if the surface moves, not far."""
+    """Which edges (k,) m, all left or all right, are which then: nearest to one another and, if the
+    surface moves, not far.
+    """
     if not len(edges) or not len(then):
         return {}
     apart, far = (
@@ -181,13 +202,17 @@ def _same(edges: np.ndarray, then: np.ndarray, along: float) -> dict[int, int]:
 
 
 def _along(x: np.ndarray, now: np.ndarray, then: np.ndarray) -> np.ndarray:
-    """Places (n,) m that what is at ``x`` (n,) m came from or goes to, between anchors (k,) m now and then."""
+    """Places (n,) m that what is at ``x`` (n,) m came from or goes to, between anchors (k,) m now
+    and then.
+    """
     shift = np.interp(x, now, then - now)
     return x + shift
 
 
 def missed(before: Touch, middle: Touch, found: Touch) -> float:
-    """What lies between the last two of three states is off by at most, relative to all of the pressure; or of the drag."""
+    """What lies between the last two of three states is off by at most, relative to all of the
+    pressure; or of the drag.
+    """
     ways = abs(middle.distance - before.distance), abs(found.distance - middle.distance)
     if not min(ways) or not middle.pressure.any():
         return 0.0
@@ -200,7 +225,8 @@ def missed(before: Touch, middle: Touch, found: Touch) -> float:
 
 
 class Strides:
-    """Scheduled steps, those that need not be found joined to strides as long as what lies between allows.
+    """Scheduled steps, those that need not be found joined to strides as long as what lies between
+    allows.
 
     Args:
         steps: as scheduled. between: None: every step is found.
@@ -233,7 +259,9 @@ class Strides:
         return replace(last, dt=min(sum(step.dt for step in taken), STEADY)), tuple(taken[:-1])
 
     def judge(self, before: Touch, middle: Touch, found: Touch) -> bool:
-        """Is what lies between the last two good enough? The next stride is as long as it may be by this."""
+        """Is what lies between the last two good enough? The next stride is as long as it may be by
+        this.
+        """
         if self._between is None:
             return True
         off = missed(before, middle, found) / self._between.tolerance

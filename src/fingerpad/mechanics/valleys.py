@@ -1,13 +1,15 @@
 """Contact with a surface that has valleys: a point of the skin in one leans on both of its sides.
 
-The distance to such a surface is the smaller of two, and its gradient jumps where they are equal, which is just where a point
-comes to rest: with one constraint Newton's method pushes it from side to side for ever. Here each such point has two, one for
-each side as if it went on beyond the corner (the feasible set of a point under a valley is the intersection of both). The contact
-problem is the same; only its rows are more than its points. A profile without valleys never comes here.
+The distance to such a surface is the smaller of two, and its gradient jumps where they are equal,
+which is just where a point comes to rest: with one constraint Newton's method pushes it from side
+to side for ever. Here each such point has two, one for each side as if it went on beyond the corner
+(the feasible set of a point under a valley is the intersection of both). The contact problem is the
+same; only its rows are more than its points. A profile without valleys never comes here.
 
-Friction holds a point in a shallow valley on one of its sides: whatever push both of them could give it lies within the cone of
-that side's friction, as long as the valley turns by less than friction's angle. There one constraint is enough, and two, of which
-either may stick or slip, would have the states cycle.
+Friction holds a point in a shallow valley on one of its sides: whatever push both of them could
+give it lies within the cone of that side's friction, as long as the valley turns by less than
+friction's angle. There one constraint is enough, and two, of which either may stick or slip, would
+have the states cycle.
 """
 
 import numpy as np
@@ -22,7 +24,8 @@ class Valleys:
     """Which points of the skin are in which valley, remembered from one look to the next.
 
     Args:
-        profile: the rigid shape. count: number of points of the skin. reach: m, from the corner of a valley within which a
+        profile: the rigid shape. count: number of points of the skin. reach: m, from the corner of
+        a valley within which a
             point has two constraints. friction: Coulomb's coefficient, 0 without.
     """
 
@@ -34,12 +37,14 @@ class Valleys:
     def rows(
         self, zone: Zone, part: slice, points: np.ndarray, single: tuple, kept: list[np.ndarray]
     ) -> Rows:
-        """The constraints of a zone whose points are at ``points`` (nz, 2) m in the profile's frame.
+        """The constraints of a zone whose points are at ``points`` (nz, 2) m in the profile's
+        frame.
 
         Args:
-            part: the zone among the skin's points. single: gap, gradient and curvature with one constraint a point. kept: arrays
-                (2 ns,) of what belongs to the rows (forces, states): where a point has come into a valley, or left one, they are
-                moved to the side that it is nearest to.
+            part: the zone among the skin's points. single: gap, gradient and curvature with one
+            constraint a point. kept: arrays
+                (2 ns,) of what belongs to the rows (forces, states): where a point has come into a
+                valley, or left one, they are moved to the side that it is nearest to.
         """
         walls = self.profile.walls(points, self.reach, self.flat)
         free = zone.movable[walls.which]  # on the mirror both sides are one

@@ -1,11 +1,12 @@
 """The Prony recurrence (Simo 1987; Holzapfel 2000, section 6.10; Taylor, Pister and Goudreau 1970).
 
-Each branch obeys ``Q' + Q/tau = beta S_iso'``. Over a step in which ``S_iso`` changes linearly the solution is exact:
+Each branch obeys ``Q' + Q/tau = beta S_iso'``. Over a step in which ``S_iso`` changes linearly the
+solution is exact:
 
     Q(t + dt) = exp(-dt/tau) Q(t) + beta gamma (S_iso(t + dt) - S_iso(t)),   gamma = (1 - exp(-dt/tau)) / (dt/tau)
 
-so the stress answers ``factor = 1 + sum beta gamma`` of the new isochoric stress at once, plus a history that is known when
-the step begins. A body without a Prony series never comes here.
+so the stress answers ``factor = 1 + sum beta gamma`` of the new isochoric stress at once, plus a
+history that is known when the step begins. A body without a Prony series never comes here.
 """
 
 import numpy as np
@@ -14,17 +15,20 @@ from fingerpad.specimen.materials import Prony
 
 
 def step_coefficients(prony: Prony, dt: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Decay exp(-dt/tau) (nb,), gamma (nb,) and the instantaneous factor 1 + sum beta gamma of a step of ``dt`` seconds."""
+    """Decay exp(-dt/tau) (nb,), gamma (nb,) and the instantaneous factor 1 + sum beta gamma of a
+    step of ``dt`` seconds.
+    """
     ratio = dt / np.asarray(prony.tau)
     gamma = np.where(ratio > 1e-8, -np.expm1(-ratio) / np.maximum(ratio, 1e-300), 1 - ratio / 2)
     return np.exp(-ratio), gamma, float(1 + np.sum(prony.beta * gamma))
 
 
 class Branches:
-    """History of the Prony branches at a set of points: stress ``q`` (nb, ...) and the last ``S_iso`` (...).
+    """History of the Prony branches at a set of points: stress ``q`` (nb, ...) and the last
+    ``S_iso`` (...).
 
-    ``shape``: of a stress there, whichever of its axes are the components 11, 22, 12, 33. Committed only after a step has
-    converged.
+    ``shape``: of a stress there, whichever of its axes are the components 11, 22, 12, 33. Committed
+    only after a step has converged.
     """
 
     def __init__(self, prony: Prony, shape: tuple[int, ...]):
@@ -41,7 +45,9 @@ class Branches:
 
     @property
     def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
-        """Decay (nb,) of the branches and their gain (nb,) a change of the isochoric stress, of the step begun last."""
+        """Decay (nb,) of the branches and their gain (nb,) a change of the isochoric stress, of the
+        step begun last.
+        """
         return self._decay, self.prony.beta * self._gamma
 
     def commit(self, stress: np.ndarray) -> None:

@@ -1,4 +1,6 @@
-"""What is not to be had: plans that would need more than the machine has end here, before anything is allocated."""
+"""What is not to be had: plans that would need more than the machine has end here, before anything
+is allocated.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ class PlanError(ValueError):
 
 
 def check_size(scene: Scene, size: MeshSize, ridges: Any, rules: Rules) -> None:
-    """Refuses meshes of more nodes than are allowed, from above and before anything is allocated."""
+    """Refuses meshes of more nodes than are allowed, from above and before anything is
+    allocated.
+    """
     outline = scene.specimen.outline
     fine = (
         scene.specimen.soft_thickness
@@ -67,7 +71,9 @@ def check_memory(scene: Scene, nodes: int, steps: int, rules: Rules) -> None:
 
 
 def _memory() -> tuple[float, str]:
-    """Bytes of memory that a run can have: the machine's, or what is left of a limit on addresses, and words for such a limit."""
+    """Bytes of memory that a run can have: the machine's, or what is left of a limit on addresses,
+    and words for such a limit.
+    """
     import resource
 
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)

@@ -1,4 +1,6 @@
-"""What of a scene decides on its contact: motion, pad and surface, and the narrowest piece that has to be resolved."""
+"""What of a scene decides on its contact: motion, pad and surface, and the narrowest piece that has
+to be resolved.
+"""
 
 from __future__ import annotations
 
@@ -77,7 +79,9 @@ def worst_contact(
 def least_half_width(
     scene: Scene, pad: PadEstimate, profile: Profile, contact: ContactEstimate, found: float | None
 ) -> float | None:
-    """Half-width (m) of the least piece of the contact where that is not the contact itself: a face, a tip, a bump; or found."""
+    """Half-width (m) of the least piece of the contact where that is not the contact itself: a
+    face, a tip, a bump; or found.
+    """
     least = np.inf if found is None else found
     if profile.edges or (not profile.irregular and profile.reach[1] < contact.half_width):
         least = min(least, profile.reach[1])
@@ -95,7 +99,9 @@ def least_half_width(
 
 
 def earliest_half_width(scene: Scene, contact: ContactEstimate, timed: bool) -> float:
-    """Half width (m) of the contact before anything relaxes: narrower as the root of the modulus is larger."""
+    """Half width (m) of the contact before anything relaxes: narrower as the root of the modulus is
+    larger.
+    """
     relaxes = timed and scene.specimen.moduli == "long_term"
     share = (1 - sum(term.g for term in scene.specimen.prony)) ** 0.5 if relaxes else 1.0
     earliest = share * contact.half_width
@@ -108,7 +114,9 @@ def contact_reach(scene: Scene, contact: ContactEstimate) -> float:
 
 
 def pressing_force(scene: Scene, pad: PadEstimate, contact: ContactEstimate) -> float:
-    """Largest force (N/m) of the motion: that of its legs, or what presses to the estimated depth."""
+    """Largest force (N/m) of the motion: that of its legs, or what presses to the estimated
+    depth.
+    """
     forces = [leg.force for leg in scene.motion if leg.force is not None]
     return max(forces) / scene.specimen.contact_length if forces else pad.force_of(contact.depth)
 
@@ -140,7 +148,9 @@ def check_width(scene: Scene, pad: PadEstimate, contact: ContactEstimate, rules:
 
 
 def inertia_ratio_of(scene: Scene, contact: ContactEstimate) -> tuple[float, int]:
-    """rho v^2 / mu of the softest layer, what leaving inertia out of the equations neglects; and the fastest leg."""
+    """rho v^2 / mu of the softest layer, what leaving inertia out of the equations neglects; and
+    the fastest leg.
+    """
     layers = scene.specimen.materials.values()
     softest = min(layer.youngs_modulus / (2 * (1 + layer.poisson_ratio)) for layer in layers)
     speed = [0.0] * len(scene.motion)

@@ -1,4 +1,6 @@
-"""The mesh and the steps: a named preset, the cheapest that meets a tolerance, or by hand; and what edges of the profile need."""
+"""The mesh and the steps: a named preset, the cheapest that meets a tolerance, or by hand; and what
+edges of the profile need.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ from fingerpad.stimuli.profile import Profile
 
 _THIN = 1e-3  # m, of layers altogether, below which presets are in their size
 _FINEST_FOCUS = 14  # halvings of the edge in the contact that are tried
-_NEAR = 0.15  # of the least error there is, by which a tolerance that cannot be met is missed further for less work
+# of the least error there is, by which a tolerance that cannot be met is missed further for less
+# work
+_NEAR = 0.15
 _MOST_COLUMNS = 2000  # of refined elements to either side
 _WIDER = 1.2  # than a contact is estimated to be, the mesh is as fine as it is there
 _STAGE = 2.0**0.25  # by how much finer a mesh is in a contact, if at all
@@ -35,7 +39,9 @@ def preset_for(
     tolerance: float | None,
     stroke: Stroke | None,
 ) -> tuple[Preset, Discretisation | None]:
-    """The discretisation asked for: a named one, the cheapest that meets a tolerance, or one by hand."""
+    """The discretisation asked for: a named one, the cheapest that meets a tolerance, or one by
+    hand.
+    """
     accuracy = scene.accuracy
     by_hand = accuracy if isinstance(accuracy, Discretisation) else None
     if isinstance(accuracy, str):
@@ -56,7 +62,9 @@ def preset_for(
 
 
 def _in_size(preset: Preset, scene: Scene) -> Preset:
-    """A preset in the size of its specimen: on layers far thinner than a finger's, edges and steps are as much shorter."""
+    """A preset in the size of its specimen: on layers far thinner than a finger's, edges and steps
+    are as much shorter.
+    """
     stack = scene.specimen.stack
     share = 1.0 if stack is None else min(1.0, sum(stack.thicknesses) / _THIN)
     step = preset.slide_step and share * preset.slide_step
@@ -71,9 +79,11 @@ def _in_size(preset: Preset, scene: Scene) -> Preset:
 def _cheapest(
     scene: Scene, tolerance: float, contact: ContactEstimate, rules: Rules, stroke: Stroke | None
 ) -> Preset:
-    """Of the measured meshes and steps those of least nodes times steps that meet it or, if none does, come near the least error.
+    """Of the measured meshes and steps those of least nodes times steps that meet it or, if none
+    does, come near the least error.
 
-    A mesh that suffices for the widest contact measured is refined under a narrower one that stays where it is.
+    A mesh that suffices for the widest contact measured is refined under a narrower one that stays
+    where it is.
     """
     thesis, known = rules.presets["thesis"], rules.errors
     timed = bool(scene.specimen.prony) and any(
@@ -122,7 +132,9 @@ def _cheapest(
 
 
 def usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
-    """Edge (m) of the skin before the contact is known: of the mesh given, the preset, or the one by hand; else of the thesis."""
+    """Edge (m) of the skin before the contact is known: of the mesh given, the preset, or the one
+    by hand; else of the thesis.
+    """
     if external is not None:
         return apex_edge(external)
     by_hand = getattr(scene.accuracy, "skin_edge", None)
@@ -133,7 +145,8 @@ def usual_edge(scene: Scene, external: PadMesh | None, rules: Rules) -> float:
 
 
 def element_for(by_hand: Discretisation | None, external: PadMesh | None) -> str:
-    """The element to solve with: the one asked for, if the mesh has it or can be raised to it, else the mesh's own.
+    """The element to solve with: the one asked for, if the mesh has it or can be raised to it, else
+    the mesh's own.
 
     Raises:
         PlanError: it does not fit the mesh.
@@ -156,7 +169,8 @@ def raised_for(
     tolerance: float,
     error: Callable[[PadMesh], float],
 ) -> tuple[PadMesh, str]:
-    """An external mesh, its linear quads raised to quadratic ones where the accuracy needs it, and why it was ("": it was not).
+    """An external mesh, its linear quads raised to quadratic ones where the accuracy needs it, and
+    why it was ("": it was not).
 
     Args:
         tolerance: relative, what is asked. error: expected of a contact on a mesh.
@@ -181,7 +195,9 @@ def raised_for(
 def wander_of(
     scene: Scene, pad: PadEstimate, profile: Profile, friction: bool, rules: Rules
 ) -> float:
-    """How far (m) a stroke takes the contact from the middle of the pad: to where the pad is as steep as the surface."""
+    """How far (m) a stroke takes the contact from the middle of the pad: to where the pad is as
+    steep as the surface.
+    """
     way = np.cumsum([leg.along for leg in scene.motion])
     return (
         min(profile.steepness * pad.apex_radius, np.abs(way).max()) + rules.skin_stretch * friction
@@ -224,7 +240,8 @@ def mesh_size_for(
         and (edge := _staged(max(contact.half_width / edges, rules.least_edge), np.floor))
         <= preset.skin_edge / _STAGE
     ):
-        # its edge passes from node to node, and the curves of a narrow contact show how far these are apart: along the skin alone
+        # its edge passes from node to node, and the curves of a narrow contact show how far these
+        # are apart: along the skin alone
         focus = all_over(_WIDER * _staged(contact_reach(scene, contact), np.ceil), edge)
         rows = max(preset.rows, rules.rows_per_half_width)
         radial = max(edge, _staged(contact.half_width / rows, np.floor))
@@ -244,7 +261,9 @@ def mesh_size_for(
 
 
 def _growth(scene: Scene, preset: Preset, rules: Rules) -> float:
-    """From one edge to the next: of a preset larger where the contact moves, whose mesh is mostly away from it."""
+    """From one edge to the next: of a preset larger where the contact moves, whose mesh is mostly
+    away from it.
+    """
     return (
         max(preset.growth, min(preset.growth**2, rules.stroked_growth))
         if _stroked(scene)
@@ -258,12 +277,16 @@ def _stroked(scene: Scene) -> bool:
 
 
 def _staged(length: float, rounded: Callable[[float], float]) -> float:
-    """A length (m) rounded to one of four in every octave: contacts of about a size share a mesh, of which a sweep has few."""
+    """A length (m) rounded to one of four in every octave: contacts of about a size share a mesh,
+    of which a sweep has few.
+    """
     return float(2.0 ** (rounded(4 * np.log2(length)) / 4))
 
 
 def _refined_at_apex(scene: Scene) -> bool:
-    """Whether a contact narrower than an edge is refined for: not where edges are given by hand or the contact moves."""
+    """Whether a contact narrower than an edge is refined for: not where edges are given by hand or
+    the contact moves.
+    """
     return edges_chosen(scene) and not moves_along(scene)
 
 
@@ -273,14 +296,18 @@ def edges_chosen(scene: Scene) -> bool:
 
 
 def _only_inner(scene: Scene) -> bool:
-    """Whether edges along the skin are those that are asked for: outer ridges have a third of them."""
+    """Whether edges along the skin are those that are asked for: outer ridges have a third of
+    them.
+    """
     return scene.specimen.ridges is None or scene.specimen.ridges.outer is None
 
 
 def _edge_size(
     profile: Profile, preset: Preset, asked: float | None, rounding: float, rules: Rules
 ) -> float:
-    """Element edge (m) at the profile's own edges: as presets have it, and finer where a tolerance asks for that."""
+    """Element edge (m) at the profile's own edges: as presets have it, and finer where a tolerance
+    asks for that.
+    """
     edge = (
         min(preset.skin_edge / 4, profile.edge_radius / 2)
         if profile.edge_radius
@@ -296,7 +323,9 @@ def _edge_size(
 
 
 def edges_error(profile: Profile, edge: float, rounding: float, rules: Rules) -> tuple[float, str]:
-    """Error because of the profile's own edges, meshed with ``edge`` m: of a rounded one the peak pressure's; and what it is."""
+    """Error because of the profile's own edges, meshed with ``edge`` m: of a rounded one the peak
+    pressure's; and what it is.
+    """
     if not profile.edges:
         return 0.0, ""
     if peak_is_unbounded(profile, edge, rounding, rules):
@@ -310,7 +339,9 @@ def edges_error(profile: Profile, edge: float, rounding: float, rules: Rules) ->
 
 
 def peak_is_unbounded(profile: Profile, edge: float, rounding: float, rules: Rules) -> bool:
-    """Whether the pressure at the profile's edges is the mesh's: they are true ones, or roundings that ``edge`` m cannot tell."""
+    """Whether the pressure at the profile's edges is the mesh's: they are true ones, or roundings
+    that ``edge`` m cannot tell.
+    """
     return bool(
         profile.unbounded
         or (profile.edges and rules.fillet_error * (edge / rounding) ** rules.fillet_order > 1)
@@ -318,7 +349,9 @@ def peak_is_unbounded(profile: Profile, edge: float, rounding: float, rules: Rul
 
 
 def height_at_receptors(scene: Scene, external: PadMesh) -> float | None:
-    """Largest height of the elements of a mesh that receptors are in, over their depth; None where there are no receptors."""
+    """Largest height of the elements of a mesh that receptors are in, over their depth; None where
+    there are no receptors.
+    """
     receptors = scene.outputs.receptors
     if not receptors.depths or not receptors.offsets:
         return None

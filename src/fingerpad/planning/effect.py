@@ -1,4 +1,6 @@
-"""What an effect of the planner is: a question, a decision with its reason, rules with their evidence, scenes that show it."""
+"""What an effect of the planner is: a question, a decision with its reason, rules with their
+evidence, scenes that show it.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ class Effect:
 
 @dataclass(frozen=True)
 class Case:
-    """What a decision may ask about: the scene, its contact, what may be left out, and the effects decided before."""
+    """What a decision may ask about: the scene, its contact, what may be left out, and the effects
+    decided before.
+    """
 
     scene: Scene
     profile: Profile
@@ -38,7 +42,9 @@ class Case:
 
 @dataclass(frozen=True)
 class Shown:
-    """A scene that shows what an effect changes: its name, document, does it matter, and the moduli where time is left out."""
+    """A scene that shows what an effect changes: its name, document, does it matter, and the moduli
+    where time is left out.
+    """
 
     label: str
     matters: bool
@@ -51,11 +57,12 @@ class PlannedEffect:
     """An effect that a plan decides on.
 
     Attributes:
-        name: in the scene language. question: that decides. decide: of a case. always: what is done whatever the rules say.
-        possible: whether it can be asked for at all where ``decide`` has left it out. after: effects whose decisions it asks
-        about. rules: class of its rules, each a :func:`rule`; None for an effect without. dearer: cost with it over without.
-        compose: what it changes in a composed :class:`fingerpad.simulation.Simulation`, before that runs. shown: the scenes that
-        show it. title, marker: in the picture of the study.
+        name: in the scene language. question: that decides. decide: of a case. always: what is done
+        whatever the rules say. possible: whether it can be asked for at all where ``decide`` has
+        left it out. after: effects whose decisions it asks about. rules: class of its rules, each a
+        :func:`rule`; None for an effect without. dearer: cost with it over without. compose: what
+        it changes in a composed :class:`fingerpad.simulation.Simulation`, before that runs. shown:
+        the scenes that show it. title, marker: in the picture of the study.
     """
 
     name: str
@@ -77,5 +84,7 @@ OWN_PAIR = "own pair"
 
 
 def rule(value: Any, decides: str, evidence: str = "") -> Any:
-    """A rule of the planner: its value, what it decides and where the evidence is (see :data:`OWN_PAIR`)."""
+    """A rule of the planner: its value, what it decides and where the evidence is (see
+    :data:`OWN_PAIR`).
+    """
     return field(default=value, metadata={"decides": decides, "evidence": evidence})

@@ -1,4 +1,6 @@
-"""What a discretisation is wrong by: measured in the study of accuracy, read between what was measured, and goes on beyond it."""
+"""What a discretisation is wrong by: measured in the study of accuracy, read between what was
+measured, and goes on beyond it.
+"""
 
 from __future__ import annotations
 
@@ -13,20 +15,28 @@ THESIS_ROWS = 7
 COARSER = 1.5
 """Edges of a companion's mesh over those of the run's own."""
 ORDER = 1.5
-"""With which curves are taken to converge with the mesh: measured ones, at 1 to 2, do so on either side of it."""
+"""With which curves are taken to converge with the mesh: measured ones, at 1 to 2, do so on either
+side of it.
+"""
 PROFILE_ORDER = 1.0
-"""The same of pressure profiles, whose slope has no bound at the contact's edge: they are wrong in the last element there."""
+"""The same of pressure profiles, whose slope has no bound at the contact's edge: they are wrong in
+the last element there.
+"""
 
 
 def remains(edges: float, order: float = ORDER) -> float:
-    """What a result is wrong by over what it changes by when edges are so many times as long (Richardson 1911)."""
+    """What a result is wrong by over what it changes by when edges are so many times as long
+    (Richardson 1911).
+    """
     return 1 / abs(edges**order - 1)
 
 
 REMAINS = remains(COARSER)
 """What a result is wrong by over what it changes by on its companion's mesh."""
 STEPS_REMAIN = 1 / (2.0**ORDER - 1)
-"""The same over what it changes by with steps twice as long, of which measured orders are as large."""
+"""The same over what it changes by with steps twice as long, of which measured orders are as
+large.
+"""
 
 
 PLATES, WAVES = "plates", "waves"
@@ -35,11 +45,12 @@ PLATES, WAVES = "plates", "waves"
 
 @dataclass(frozen=True)
 class StrokeErrors:
-    """Relative errors of strokes drawn at random, a press and a way: the largest, and the root of the mean square of all.
+    """Relative errors of strokes drawn at random, a press and a way: the largest, and the root of
+    the mean square of all.
 
     Attributes:
-        mesh: elements across the epidermis -> both. time: steps of a leg -> what both are more than with the default's steps.
-        way: m, the middle of those drawn (1 to 2.5 mm).
+        mesh: elements across the epidermis -> both. time: steps of a leg -> what both are more than
+        with the default's steps. way: m, the middle of those drawn (1 to 2.5 mm).
     """
 
     mesh: Mapping[int, tuple[float, float]]
@@ -47,7 +58,9 @@ class StrokeErrors:
     way: float = 1.75e-3
 
     def on(self, way: float, table: Mapping[int, tuple[float, float]]) -> Mapping[int, float]:
-        """A table's errors over a way (m): as long as those drawn it may be the worst of them, longer it has many in it."""
+        """A table's errors over a way (m): as long as those drawn it may be the worst of them,
+        longer it has many in it.
+        """
         share = min(1.0, self.way / way)
         return {
             n: float(np.sqrt(share * largest**2 + (1 - share) * mean**2))
@@ -64,24 +77,29 @@ class Stroke:
 
 
 def stroke_of(scene: Any, uneven: bool) -> Stroke | None:
-    """The stroke of a scene along a surface that is ``uneven`` or not; None: it goes nowhere along it."""
+    """The stroke of a scene along a surface that is ``uneven`` or not; None: it goes nowhere along
+    it.
+    """
     ways = [abs(leg.along) for leg in scene.motion if leg.along]
     return Stroke(WAVES if uneven else PLATES, min(ways)) if ways else None
 
 
 @dataclass(frozen=True)
 class MeasuredErrors:
-    """Largest relative error of depth, width, centre and peak pressure and strain energies, as the study of accuracy found it.
+    """Largest relative error of depth, width, centre and peak pressure and strain energies, as the
+    study of accuracy found it.
 
-    Those of the inferred pad (figures/tables/accuracy_planner.csv, and accuracy_strokes.csv); of presses those of an earlier
-    version of that table where they were larger. Between half widths errors are
-    interpolated in logarithms.
+    Those of the inferred pad (figures/tables/accuracy_planner.csv, and accuracy_strokes.csv); of
+    presses those of an earlier version of that table where they were larger. Between half widths
+    errors are interpolated in logarithms.
 
     Attributes:
-        half_widths: m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the ramp. edge: m, along the skin,
-        where 7 elements go across the epidermis. mesh: elements across the epidermis -> error (half_widths). time: steps of a leg
-        -> error (half_widths). energy: as mesh, of the strain energies alone: what the elements under a contact that is refined
-        for leave wrong; of the narrowest those of loads drawn at random where they were larger. strokes: by what is stroked over.
+        half_widths: m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the
+        ramp. edge: m, along the skin, where 7 elements go across the epidermis. mesh: elements
+        across the epidermis -> error (half_widths). time: steps of a leg
+        -> error (half_widths). energy: as mesh, of the strain energies alone: what the elements
+        under a contact that is refined for leave wrong; of the narrowest those of loads drawn at
+        random where they were larger. strokes: by what is stroked over.
     """
 
     half_widths: tuple[float, ...] = (0.37e-3, 1.09e-3, 2.3e-3)
@@ -142,14 +160,17 @@ class MeasuredErrors:
 
 @dataclass(frozen=True)
 class OwnErrors:
-    """Largest relative errors of presses on meshes of one's own, by the element they are solved with and by quantity.
+    """Largest relative errors of presses on meshes of one's own, by the element they are solved
+    with and by quantity.
 
-    Those of the inferred pad under a plate and cylinders of 20 to 630 1/m with 3.5 to 20 gram-weight, on meshes of edges of 30 to
-    450 um, each against a fine run (figures/tables/accuracy_own.csv).
+    Those of the inferred pad under a plate and cylinders of 20 to 630 1/m with 3.5 to 20
+    gram-weight, on meshes of edges of 30 to 450 um, each against a fine run
+    (figures/tables/accuracy_own.csv).
 
     Attributes:
-        shares: edge of the skin over half width of the contact. table: element -> quantity -> errors (shares). height: element ->
-        error of strain energy where the height of the elements that receptors are in is their depth; it goes with the power 1.5.
+        shares: edge of the skin over half width of the contact. table: element -> quantity ->
+        errors (shares). height: element -> error of strain energy where the height of the elements
+        that receptors are in is their depth; it goes with the power 1.5.
     """
 
     shares: tuple[float, ...] = (0.03, 0.06, 0.12, 0.25, 0.5, 1.0)
@@ -191,12 +212,14 @@ def own_errors(
     rules: Any,
     bumpy: bool = False,
 ) -> dict[str, float]:
-    """Expected relative error by quantity on a mesh of one's own, from :class:`OwnErrors`; of a stroke the law's, for all alike.
+    """Expected relative error by quantity on a mesh of one's own, from :class:`OwnErrors`; of a
+    stroke the law's, for all alike.
 
     Args:
-        element: key of the element it is solved with. edge: m, skin edge in the contact. half_width: m, of the contact.
-        at_receptors: largest height of the elements that receptors are in, over their depth; None: no receptors, whose strain
-        energy is then not asked for. steps, stroke, bumpy: as in :func:`estimated_error`.
+        element: key of the element it is solved with. edge: m, skin edge in the contact.
+        half_width: m, of the contact. at_receptors: largest height of the elements that receptors
+        are in, over their depth; None: no receptors, whose strain energy is then not asked for.
+        steps, stroke, bumpy: as in :func:`estimated_error`.
     """
     known, share = rules.own, edge / half_width
     factor = rules.safety * (rules.bumps if bumpy else 1.0)
@@ -232,16 +255,18 @@ def estimated_error(
     rules: Any,
     bumpy: bool = False,
 ) -> float:
-    """Expected relative error of depth, width, pressure and strain energy at the legs' ends, from :class:`MeasuredErrors`.
+    """Expected relative error of depth, width, pressure and strain energy at the legs' ends, from
+    :class:`MeasuredErrors`.
 
-    Of a leg that strokes: the root mean square over its way, relative to the largest value on it. Of presses at least what an
-    edge of the contact between two nodes may be misplaced by.
+    Of a leg that strokes: the root mean square over its way, relative to the largest value on it.
+    Of presses at least what an edge of the contact between two nodes may be misplaced by.
 
     Args:
-        edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run, found after it.
-        steps: of a leg; None when neither time nor a way matters. stroke: the pad's along the surface, if there is one.
-        body_edge: m, skin edge around the contact where that is coarser: no finer than the widest contact measured needs it.
-        bumpy: has the surface bumps of its own within the contact, as measured ones have?
+        edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run,
+        found after it. steps: of a leg; None when neither time nor a way matters. stroke: the pad's
+        along the surface, if there is one. body_edge: m, skin edge around the contact where that is
+        coarser: no finer than the widest contact measured needs it. bumpy: has the surface bumps of
+        its own within the contact, as measured ones have?
     """
     factor = rules.safety * (rules.bumps if bumpy else 1.0)
     found = [_measured_error(edge, half_width, steps, stroke, rules, factor)]
@@ -274,7 +299,9 @@ def _at(
     table: Mapping[int, tuple[float, ...]],
     order: float,
 ) -> float:
-    """Relative error at a ``count`` by a ``table`` of it, for a contact of ``half_width`` m between those measured."""
+    """Relative error at a ``count`` by a ``table`` of it, for a contact of ``half_width`` m between
+    those measured.
+    """
     columns = [
         _read(count, tuple(table), column, order) for column in zip(*table.values(), strict=True)
     ]
@@ -311,7 +338,9 @@ def _measured_error(
 
 
 def _read(count: float, counts: tuple[int, ...], errors: tuple[float, ...], order: float) -> float:
-    """Error at ``count`` between measured ones, in logarithms; beyond them it goes on with ``order``."""
+    """Error at ``count`` between measured ones, in logarithms; beyond them it goes on with
+    ``order``.
+    """
     inside = np.clip(count, counts[0], counts[-1])
     error = np.exp(np.interp(np.log(inside), np.log(counts), np.log(errors)))
     return float(error * (inside / count) ** order)

@@ -1,9 +1,10 @@
 """Back-of-the-envelope contact mechanics: what the planner knows before anything is solved.
 
-A line contact on a stiff layer over a soft half-plane: Hertz's half-width with a modulus that falls from the epidermis' to the
-fat's as the contact outgrows the epidermis, through the kernel of a layered incompressible half-plane. Within about a tenth of
-the simulated widths and a fifth of the depths of the thesis's nine shapes; good enough to place a fine mesh and to say how
-large strains will be.
+A line contact on a stiff layer over a soft half-plane: Hertz's half-width with a modulus that falls
+from the epidermis' to the fat's as the contact outgrows the epidermis, through the kernel of a
+layered incompressible half-plane. Within about a tenth of the simulated widths and a fifth of the
+depths of the thesis's nine shapes; good enough to place a fine mesh and to say how large strains
+will be.
 """
 
 from __future__ import annotations
@@ -24,9 +25,11 @@ _CLOSE = 1e-12
 
 
 def layer_kernel(stiffness_ratio: float, wavenumber: float) -> float:
-    """Surface compliance of a layer (modulus 1) on a half-plane (modulus ``stiffness_ratio``) over that of the layer alone.
+    """Surface compliance of a layer (modulus 1) on a half-plane (modulus ``stiffness_ratio``) over
+    that of the layer alone.
 
-    Both incompressible, bonded, loaded by a cosine pressure of ``wavenumber`` k times the layer's thickness h.
+    Both incompressible, bonded, loaded by a cosine pressure of ``wavenumber`` k times the layer's
+    thickness h.
     """
     alpha = (1 - stiffness_ratio) / (1 + stiffness_ratio)
     e2, e4 = np.exp(-2 * wavenumber), np.exp(-4 * wavenumber)
@@ -38,8 +41,8 @@ def layer_kernel(stiffness_ratio: float, wavenumber: float) -> float:
 class ContactEstimate:
     """Half-width m, depth m and representative strain of a pressed line contact.
 
-    ``narrowest`` is the half-width m of the least piece of it that has to be resolved: of a face, a tip or a bump (None: the
-    whole contact).
+    ``narrowest`` is the half-width m of the least piece of it that has to be resolved: of a face, a
+    tip or a bump (None: the whole contact).
     """
 
     half_width: float
@@ -50,7 +53,9 @@ class ContactEstimate:
 
 @dataclass(frozen=True)
 class PadEstimate:
-    """What the estimate needs to know of a pad, SI: apex radius, epidermis and soft thickness, plane moduli E/(1 - nu^2)."""
+    """What the estimate needs to know of a pad, SI: apex radius, epidermis and soft thickness,
+    plane moduli E/(1 - nu^2).
+    """
 
     apex_radius: float
     epidermis_thickness: float
@@ -64,7 +69,8 @@ class PadEstimate:
         ratio = min(self.soft / self.stiff, 0.999)
         half_width = np.sqrt(4 * force * radius / (np.pi * self.stiff))
         for _ in range(60):
-            # the shift stands for the bone: contacts much wider than the epidermis feel a finite thickness
+            # the shift stands for the bone: contacts much wider than the epidermis feel a finite
+            # thickness
             wavenumber = self.epidermis_thickness / half_width + 0.65
             modulus = self.stiff / layer_kernel(ratio, wavenumber)
             before, half_width = (
@@ -101,7 +107,8 @@ class PadEstimate:
     def on_rounding(self, force: float, flat: float, radius: float) -> float:
         """How far (m) the contact of a face reaches into the rounding of its edge.
 
-        Ciavarella, Hills and Monno 1998, J. Mech. Eng. Sci. 212, eq. 11, on a half-plane as stiff as the epidermis.
+        Ciavarella, Hills and Monno 1998, J. Mech. Eng. Sci. 212, eq. 11, on a half-plane as stiff
+        as the epidermis.
 
         Args:
             force: N/m. flat: m, half-width of the face between the roundings; radius: m, of these.
@@ -124,10 +131,12 @@ class PadEstimate:
     def least_piece(
         self, force: float, outline: Callable[[np.ndarray], np.ndarray], low: float, high: float
     ) -> float:
-        """Half-width (m) of the narrowest piece of a contact somewhere in ``low`` to ``high`` m along a surface.
+        """Half-width (m) of the narrowest piece of a contact somewhere in ``low`` to ``high`` m
+        along a surface.
 
-        A surface bulges the more the smaller the length over which that is asked. A bump that is wider than the contact it would
-        make alone stands out; what is narrower is flattened, and counts as part of what is wider.
+        A surface bulges the more the smaller the length over which that is asked. A bump that is
+        wider than the contact it would make alone stands out; what is narrower is flattened, and
+        counts as part of what is wider.
 
         Args:
             force: N/m. outline: height of the surface (n,) m at (n,) m; NaN where there is none.

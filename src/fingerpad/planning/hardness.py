@@ -1,4 +1,6 @@
-"""What makes a scene hard to solve: said where a run breaks off or doubts itself, as what to ask less of."""
+"""What makes a scene hard to solve: said where a run breaks off or doubts itself, as what to ask
+less of.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +15,16 @@ _INCOMPRESSIBLE = 0.499
 _FORCE = 0.5
 _DEPTH = 2e-3
 _CURVATURE = 1000.0
-"""Ratio of layers' moduli, that of the skin's to the next one's, Poisson's ratio, N, m and 1/m beyond which it is said:
-chosen between the usual and the hard levels of the catalogue of hard cases (figures/tables/stability.csv)."""
+"""Ratio of layers' moduli, that of the skin's to the next one's, Poisson's ratio, N, m and 1/m
+beyond which it is said: chosen between the usual and the hard levels of the catalogue of hard cases
+(figures/tables/stability.csv).
+"""
 
 
 def hard_in(scene: Scene) -> tuple[str, ...]:
-    """What is hard in a scene, in words, in the order in which the catalogue of hard cases tries less of it."""
+    """What is hard in a scene, in words, in the order in which the catalogue of hard cases tries
+    less of it.
+    """
     return tuple(_found(scene))
 
 

@@ -1,7 +1,9 @@
-"""Scene -> plan: which effects the scene calls for, which discretisation, why, and what it will cost.
+"""Scene -> plan: which effects the scene calls for, which discretisation, why, and what it will
+cost.
 
-Nothing is solved here. Every choice carries a sentence with the number that decided it, and every choice can be overridden in
-the scene. The thresholds and measured constants stand together in :class:`Rules`.
+Nothing is solved here. Every choice carries a sentence with the number that decided it, and every
+choice can be overridden in the scene. The thresholds and measured constants stand together in
+:class:`Rules`.
 """
 
 from __future__ import annotations
@@ -82,22 +84,26 @@ class Plan:
     """Everything decided about a scene before it is solved.
 
     Attributes:
-        effects: friction, viscoelasticity, finite_strain, symmetry, ridges. state: moduli used when viscosity is off
-        ("long_term" or "instantaneous"). element: key of the element. mesh_size: of a built mesh, None for an external one.
-        contact: the estimate behind the choices. steps_per_leg: time steps or load increments of each leg; steps: all of them, of
-        strokes, whose error chooses them, as many as are expected; outputs: of the history.
-        slide_step: m, longest step of a slide; None when steps are given by hand. timed: does time matter?
-        nodes, smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
-        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline quantities; small_strain_error: the
-        part of it that small strain is to blame for; least_error: at least this because of the profile's edges or of the elements
-        that receptors are in. error_from: what most of it comes from. asked_error: the tolerance, None where none is asked for;
-        once: whether it is tried for once only. unbounded: where contact is expected at which pressure has no bound, so that a
-        peak is the mesh's; the run says where it was. unresolved_edge: whether edges are rounded, but finer than the mesh can
-        tell. errors: on a mesh of one's own, by quantity; receptor_height: there the largest height of elements that receptors
-        are in, over their depth. specimen: sentences on what is touched, and what of it the scene left out. surface: what the
-        mesh makes of a measured profile. stride: so many steps are made one. strokes: does the pad move along the surface, so
-        that errors are of a way? every: of so many outputs of presses and holds a state is found at one, for more are asked for
-        than the accuracy needs.
+        effects: friction, viscoelasticity, finite_strain, symmetry, ridges. state: moduli used when
+        viscosity is off ("long_term" or "instantaneous"). element: key of the element. mesh_size:
+        of a built mesh, None for an external one. contact: the estimate behind the choices.
+        steps_per_leg: time steps or load increments of each leg; steps: all of them, of strokes,
+        whose error chooses them, as many as are expected; outputs: of the history. slide_step: m,
+        longest step of a slide; None when steps are given by hand. timed: does time matter? nodes,
+        smallest_edge (m): of the mesh that is solved on. inertia_ratio: rho v^2 / mu, neglected.
+        contact_edge: m, skin edge under the apex; estimated_error: relative, of the headline
+        quantities; small_strain_error: the part of it that small strain is to blame for;
+        least_error: at least this because of the profile's edges or of the elements that receptors
+        are in. error_from: what most of it comes from. asked_error: the tolerance, None where none
+        is asked for; once: whether it is tried for once only. unbounded: where contact is expected
+        at which pressure has no bound, so that a peak is the mesh's; the run says where it was.
+        unresolved_edge: whether edges are rounded, but finer than the mesh can tell. errors: on a
+        mesh of one's own, by quantity; receptor_height: there the largest height of elements that
+        receptors are in, over their depth. specimen: sentences on what is touched, and what of it
+        the scene left out. surface: what the mesh makes of a measured profile. stride: so many
+        steps are made one. strokes: does the pad move along the surface, so that errors are of a
+        way? every: of so many outputs of presses and holds a state is found at one, for more are
+        asked for than the accuracy needs.
     """
 
     effects: dict[str, Effect]
@@ -137,7 +143,9 @@ class Plan:
         return self.unbounded.covers + self.strokes * OF_STROKES
 
     def missed(self, error: float | None = None) -> str | None:
-        """What to say where ``error`` (default: the expected one) exceeds the tolerance; None where it does not."""
+        """What to say where ``error`` (default: the expected one) exceeds the tolerance; None where
+        it does not.
+        """
         planned = error is None
         error = self.estimated_error if planned else error
         if self.asked_error is None or error <= self.asked_error * (1 + 1e-9):
@@ -146,7 +154,9 @@ class Plan:
         return f"asked {percent(self.asked_error)}, {had} {percent(error)}: {self.error_from}"
 
     def result_bytes(self, scene: Scene, fields: bool = False) -> float:
-        """Bytes that the files of a run of ``scene`` will take at most, roughly; ``fields``: with those for ParaView."""
+        """Bytes that the files of a run of ``scene`` will take at most, roughly; ``fields``: with
+        those for ParaView.
+        """
         nodes = self.nodes * (2 if self.effects["symmetry"].on else 1)
         each_time = 8 * (20 + 7 * _SKIN_NODES * nodes**0.5 + 13 * receptors_of(scene))
         snapshots = len(scene.outputs.snapshots) or int(fields)
@@ -156,7 +166,9 @@ class Plan:
 
     @property
     def stepping(self) -> tuple[int, bool, float | None, int, int]:
-        """What :func:`schedule` needs to know: steps of a leg, does time matter, longest step of a slide (m), stride, every."""
+        """What :func:`schedule` needs to know: steps of a leg, does time matter, longest step of a
+        slide (m), stride, every.
+        """
         return self.steps_per_leg, self.timed, self.slide_step, self.stride, self.every
 
     @property
@@ -166,9 +178,11 @@ class Plan:
 
     @property
     def between(self) -> tuple[float, float] | None:
-        """Of a stroke: the longest way (m) between two states, and by how much of the pressure what lies between may be off.
+        """Of a stroke: the longest way (m) between two states, and by how much of the pressure what
+        lies between may be off.
 
-        The latter is the mesh's, whatever the stride: twice as much hides bumps that bear little of the load.
+        The latter is the mesh's, whatever the stride: twice as much hides bumps that bear little of
+        the load.
         """
         return (
             (self.slide_step * self.stride, BETWEEN * self.contact_edge)
@@ -178,7 +192,9 @@ class Plan:
 
     @property
     def newton_tolerance(self) -> float | None:
-        """Force out of balance, over that of the contact, that a stroke leaves: as good as its mesh is; None: the usual one."""
+        """Force out of balance, over that of the contact, that a stroke leaves: as good as its mesh
+        is; None: the usual one.
+        """
         return min(NEWTON * self.contact_edge, _OUT_OF_BALANCE) if self.between else None
 
     @property
@@ -298,13 +314,15 @@ def plan(
     """Decide effects and discretisation of ``scene``.
 
     Args:
-        scene: a checked scene, or a file or dictionary of one. rules: thresholds (default: :data:`RULES`). found: half-width m of
-        the narrowest contact that a run has shown, in place of the estimated one. tolerance: what the mesh is made for where that
-        is less than the scene asks.
+        scene: a checked scene, or a file or dictionary of one. rules: thresholds (default:
+        :data:`RULES`). found: half-width m of the narrowest contact that a run has shown, in place
+        of the estimated one. tolerance: what the mesh is made for where that is less than the scene
+        asks.
 
     Raises:
-        PlanError: an override asks for what the scene cannot have, or the mesh for more than the machine has. MeshError: an
-        external mesh cannot be read, or the pad has no room for its ridges.
+        PlanError: an override asks for what the scene cannot have, or the mesh for more than the
+        machine has. MeshError: an external mesh cannot be read, or the pad has no room for its
+        ridges.
     """
     scene, rules = load_scene(scene), rules or RULES
     external = external_mesh(scene)
@@ -314,7 +332,8 @@ def plan(
     profile = measured.felt(usual_edge(scene, external, rules))
     pad = pad_estimate(scene.specimen, external, measured.face)
     moves, stroke = moves_along(scene), stroke_of(scene, profile.uneven)
-    # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets the sharpest convexity
+    # a surface is flat where it is pressed first, unless it is all curved; on its way the pad meets
+    # the sharpest convexity
     contact = worst_contact(
         scene, pad, profile, profile.convexity if moves or not profile.uneven else 0.0
     )
@@ -510,10 +529,12 @@ def refined(
     runs: int = 1,
     rules: Rules | None = None,
 ) -> Plan | str:
-    """The plan of another run of a scene that was solved as ``before`` says, or why there is none ("" where none is wanted).
+    """The plan of another run of a scene that was solved as ``before`` says, or why there is none
+    ("" where none is wanted).
 
     Args:
-        error: what the run estimates of itself. narrowest: half-width m of the narrowest contact that it found. runs: so far.
+        error: what the run estimates of itself. narrowest: half-width m of the narrowest contact
+        that it found. runs: so far.
     """
     rules = rules or RULES
     if before.missed(error) is None or before.once:
@@ -537,9 +558,11 @@ def refined(
 
 
 def companion(scene: Scene, own: Plan, stride: int = 1, coarser: float = COARSER) -> Plan:
-    """The plan of a run's companion: its `own` in all but edges so many times as long, and so many steps made one.
+    """The plan of a run's companion: its `own` in all but edges so many times as long, and so many
+    steps made one.
 
-    An external mesh keeps its edges: linear quads are solved as quadratic ones and the other way round, all others as they are.
+    An external mesh keeps its edges: linear quads are solved as quadratic ones and the other way
+    round, all others as they are.
     """
     scheduled = list(
         schedule(scene, own.steps_per_leg, own.timed, own.slide_step, stride, own.every)

@@ -13,10 +13,11 @@ from fingerpad.planning.errors import MeasuredErrors, OwnErrors
 class Preset:
     """A discretisation: edges m, steps per leg, longest step of a slide m.
 
-    ``tolerance`` is what an effect left out may change. ``edges`` are at least in half of a contact that stays where it is,
-    ``rows`` in as much of the depth below it: of meshes that soon grow coarse more, or strain energies fall short.
-    ``focus`` is the edge m to which the mesh is refined in the contact,
-    along the skin and into it (None: not refined unless the contact is narrower than an edge).
+    ``tolerance`` is what an effect left out may change. ``edges`` are at least in half of a contact
+    that stays where it is, ``rows`` in as much of the depth below it: of meshes that soon grow
+    coarse more, or strain energies fall short. ``focus`` is the edge m to which the mesh is refined
+    in the contact, along the skin and into it (None: not refined unless the contact is narrower
+    than an edge).
     """
 
     skin_edge: float
@@ -35,40 +36,51 @@ class Rules(*(effect.rules for effect in EFFECTS.values() if effect.rules)):
     """Thresholds and measured constants of the planner; those of an effect are in its file.
 
     Attributes:
-        presets: by name.
-        errors: what a tolerance is met with, and what a run believes of itself.
-        mesh_order, time_order: with which errors are taken to go on beyond the meshes and steps that were measured.
-        edge_share: of an element's edge, by which an edge of the contact may be misplaced: little more than a quarter of the
+        presets: by name. errors: what a tolerance is met with, and what a run believes of itself.
+        mesh_order, time_order: with which errors are taken to go on beyond the meshes and steps
+        that were measured. edge_share: of an element's edge, by which an edge of the contact may be
+        misplaced: little more than a quarter of the
             node spacing.
-        safety: factor on both, for errors swing with where nodes happen to lie: the least that covers presses drawn at random.
-        stroked: factor on those of strokes, for others than those measured.
-        fillet_error, fillet_order: of the peak pressure, over that power of element edge / length of the contact on the rounded
-            edge that presses. edge_error: of the centre
-            pressure and the strain energies, over element edge / half width of the face, under a true edge; edge_floor: what it
-            does not fall below, for the skin's node at the edge is held by it or is not (at most 11.3 % in 24 bars drawn at
-            random, with a third more); edge_finest: the error that a mesh is at most made for there.
-        bumps: factor on the error of measured profiles, whose bumps make contacts within the contact.
-        profile_share: of a tolerance, that the smoothing of a measured profile may use up before a longer one is tried.
-        own: what a mesh of one's own is believed to be wrong by.
-        linear_triangle, linear_quad: by how much coarser P2B and Q1P0 elements of external meshes count than their edges on a
+        safety: factor on both, for errors swing with where nodes happen to lie: the least that
+        covers presses drawn at random. stroked: factor on those of strokes, for others than those
+        measured. fillet_error, fillet_order: of the peak pressure, over that power of element edge
+        / length of the contact on the rounded
+            edge that presses. edge_error: of the centre pressure and the strain energies, over
+            element edge / half width of the face, under a true edge; edge_floor: what it does not
+            fall below, for the skin's node at the edge is held by it or is not (at most 11.3 % in
+            24 bars drawn at random, with a third more); edge_finest: the error that a mesh is at
+            most made for there.
+        bumps: factor on the error of measured profiles, whose bumps make contacts within the
+        contact. profile_share: of a tolerance, that the smoothing of a measured profile may use up
+        before a longer one is tried. own: what a mesh of one's own is believed to be wrong by.
+        linear_triangle, linear_quad: by how much coarser P2B and Q1P0 elements of external meshes
+        count than their edges on a
             stroke.
-        least_edge: m, of an element; shorter ones are not made. least_half_width: m, of a contact; narrower ones are refused.
-        most_nodes: of a mesh, and most_memory: share of the machine's, that a plan may ask for; bytes_node, bytes_step: needed
+        least_edge: m, of an element; shorter ones are not made. least_half_width: m, of a contact;
+        narrower ones are refused. most_nodes: of a mesh, and most_memory: share of the machine's,
+        that a plan may ask for; bytes_node, bytes_step: needed
             for each node, and for each node and step.
-        most_runs: of a scene whose run missed its tolerance; most_nodes_again: of a mesh on which it is run again.
-        least_steps: of a leg; fewer would do for its end, but a curve of fewer is none. least_steps_stroked: where there is a
-            stroke, for friction remembers the way that each step took, and events lie between outputs.
+        most_runs: of a scene whose run missed its tolerance; most_nodes_again: of a mesh on which
+        it is run again. least_steps: of a leg; fewer would do for its end, but a curve of fewer is
+        none. least_steps_stroked: where there is a
+            stroke, for friction remembers the way that each step took, and events lie between
+            outputs.
         fine_half_width: m, least extent of the fine skin mesh to either side of the apex.
-        edges_per_half_width: least edges in a contact to either side; presets have more. rows_per_half_width: least rows of
-            elements in as much of the depth below it, where it is refined for them: of the presets `thesis` and `fine` more make
-            no curve better, fewer no worse where the layers have as many.
-        stroked_growth: most to which a preset's growth is squared where the contact moves: its curves are those of the mesh along
+        edges_per_half_width: least edges in a contact to either side; presets have more.
+        rows_per_half_width: least rows of
+            elements in as much of the depth below it, where it is refined for them: of the presets
+            `thesis` and `fine` more make no curve better, fewer no worse where the layers have as
+            many.
+        stroked_growth: most to which a preset's growth is squared where the contact moves: its
+        curves are those of the mesh along
             its way.
-        stroked_share: of a preset's skin edge, under the middle of a pad that is stroked, where its curves are read, and
+        stroked_share: of a preset's skin edge, under the middle of a pad that is stroked, where its
+        curves are read, and
             stroked_middle: m to either side.
         inertia_limit: largest rho v^2 / mu at which a quasi-static solution is offered.
         skin_stretch: m, by which friction carries the contact along, added to the fine skin mesh.
-        seconds_*: measured process time of one reference core (see benchmarks): start-up, per node and Newton iteration with
+        seconds_*: measured process time of one reference core (see benchmarks): start-up, per node
+        and Newton iteration with
             finite and with small strain, and per node and step for output.
     """
 

@@ -17,7 +17,9 @@ _ROUND_EDGES = 4
 _PARTS = 5
 """Outputs of the longest step of a slide."""
 _OUTPUTS = 28
-"""Outputs while an arc of the surface passes: the centre touches the sharpest convexities for three quarters of their length."""
+"""Outputs while an arc of the surface passes: the centre touches the sharpest convexities for three
+quarters of their length.
+"""
 _MOST_PARTS = 16
 """Of the longest step of a slide."""
 _AROUND = 1.5e-3
@@ -25,8 +27,10 @@ _AROUND = 1.5e-3
 _MORE = 2.2
 """States that are found of a slide, over its longest steps."""
 BETWEEN = 30.0
-"""1/m: by how much of its pressure a stroke may be off between two states, over the skin's edge: what nodes make of it as they
-come and go is that large. Three times as much takes as long, for long steps need more factorisations."""
+"""1/m: by how much of its pressure a stroke may be off between two states, over the skin's edge:
+what nodes make of it as they come and go is that large. Three times as much takes as long, for long
+steps need more factorisations.
+"""
 NEWTON = 15.0
 """1/m: the force that may be left out of balance in a stroke, relative, over the skin's edge."""
 
@@ -42,8 +46,9 @@ def schedule(
 ):
     """Steps of the scene's motion (see :func:`fingerpad.stimuli.motion.programme`).
 
-    A steady press is one step, which is cut where Newton's method does not converge. Friction remembers how it was loaded, and
-    who gives the number of steps by hand (``slide_step`` None) wants to see them: then there are more.
+    A steady press is one step, which is cut where Newton's method does not converge. Friction
+    remembers how it was loaded, and who gives the number of steps by hand (``slide_step`` None)
+    wants to see them: then there are more.
     """
     on_the_way = bool(scene.friction) or slide_step is None
     return programme(

@@ -1,8 +1,10 @@
-"""What the planner knows of the contact with any stack of bonded layers on a rigid base before anything is solved.
+"""What the planner knows of the contact with any stack of bonded layers on a rigid base before
+anything is solved.
 
-The pressure is taken to be Hertz's, or uniform where the profile or the surface ends before the contact would; the stack sinks
-under it as its Fourier compliance says (:func:`fingerpad.reference_solutions.layered.stack_compliance`), as if it went on for
-ever to both sides. Half widths of flat stacks come out within about a tenth, depths within a few per cent.
+The pressure is taken to be Hertz's, or uniform where the profile or the surface ends before the
+contact would; the stack sinks under it as its Fourier compliance says
+(:func:`fingerpad.reference_solutions.layered.stack_compliance`), as if it went on for ever to both
+sides. Half widths of flat stacks come out within about a tenth, depths within a few per cent.
 """
 
 from __future__ import annotations
@@ -24,7 +26,9 @@ _FLAT = 5.0  # apex radius, in half widths, beyond which a pad is a flat one
 
 
 def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
-    """What a specimen is made of, held by and free at, and what its scene left out, in words; nothing of a thesis's outline."""
+    """What a specimen is made of, held by and free at, and what its scene left out, in words;
+    nothing of a thesis's outline.
+    """
     lines = []
     if external is not None:
         wide, high = (np.ptp(external.points, axis=0) * 1e3).tolist()
@@ -70,9 +74,11 @@ def _where_met(external: PadMesh) -> str:
 
 
 def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> PadEstimate:
-    """What is known of a scene's specimen; ``external`` is its own mesh, the stimulus ends ``reach`` m beside its middle.
+    """What is known of a scene's specimen; ``external`` is its own mesh, the stimulus ends
+    ``reach`` m beside its middle.
 
-    A finger is judged by the thesis's measures, any other stack of layers by the layers below its middle.
+    A finger is judged by the thesis's measures, any other stack of layers by the layers below its
+    middle.
 
     Raises:
         MeshError: the skin of the mesh does not cross x = 0.
@@ -141,10 +147,12 @@ def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> P
 
 @dataclass(frozen=True)
 class StackEstimate(PadEstimate):
-    """A stack of layers, SI; ``apex_radius`` is 1000 m for a flat one, ``epidermis_thickness`` that of the outermost layer.
+    """A stack of layers, SI; ``apex_radius`` is 1000 m for a flat one, ``epidermis_thickness`` that
+    of the outermost layer.
 
     Args:
-        half_width: m, of the surface, or of the face that is pressed on it. layers: (thickness m, Young's modulus Pa, Poisson's
+        half_width: m, of the surface, or of the face that is pressed on it. layers: (thickness m,
+        Young's modulus Pa, Poisson's
             ratio) of each, outside to inside.
     """
 
@@ -153,7 +161,9 @@ class StackEstimate(PadEstimate):
 
     @cached_property
     def _spectrum(self) -> tuple[np.ndarray, np.ndarray]:
-        """Wavenumbers (n,) 1/m, and the sinking under a cosine pressure of each of them, m/Pa, times its step of ln k over pi."""
+        """Wavenumbers (n,) 1/m, and the sinking under a cosine pressure of each of them, m/Pa,
+        times its step of ln k over pi.
+        """
         layers = [Layer(thickness, e / (2 * (1 + nu)), nu) for thickness, e, nu in self.layers]
         scaled = np.geomspace(1e-3, 30 / _NARROWEST, 160)
         k = scaled / self.soft_thickness
@@ -166,7 +176,9 @@ class StackEstimate(PadEstimate):
         return k, k * np.array(compliance) * np.log(scaled[1] / scaled[0]) / np.pi
 
     def _under_hertz(self, half_width: float) -> tuple[float, float]:
-        """Sinking (m) in the middle of a Hertzian pressure of 1 N/m, and how much less its edge sinks."""
+        """Sinking (m) in the middle of a Hertzian pressure of 1 N/m, and how much less its edge
+        sinks.
+        """
         from scipy.special import j1  # here, for it is slow to import
 
         k, sinking = self._spectrum

@@ -27,9 +27,10 @@ class Surface:
     """What a mesh makes of a measured profile.
 
     Attributes:
-        smoothing: m, cut-off wavelength of the filter it goes through; 0 where nothing is finer than the mesh. moved: m, largest
-        change of its heights within reach of the pad. error: relative, what the waves near the cut-off may change of depth and
-        pressure. end: m, x of the last point, where contact is expected to reach it.
+        smoothing: m, cut-off wavelength of the filter it goes through; 0 where nothing is finer
+        than the mesh. moved: m, largest change of its heights within reach of the pad. error:
+        relative, what the waves near the cut-off may change of depth and pressure. end: m, x of the
+        last point, where contact is expected to reach it.
     """
 
     smoothing: float = 0.0
@@ -60,8 +61,9 @@ class Surface:
 
 
 def touching_share(pressure: float, modulus: float, slope: float) -> float:
-    """Share of a rough contact that touches, of a nominal pressure (Pa), a plane modulus (Pa) and the r.m.s. slope of its surface
-    (Persson 2001, J. Chem. Phys. 115, eq. 61)."""
+    """Share of a rough contact that touches, of a nominal pressure (Pa), a plane modulus (Pa) and
+    the r.m.s. slope of its surface (Persson 2001, J. Chem. Phys. 115, eq. 61).
+    """
     return erf(np.sqrt(2) * pressure / (modulus * slope)) if slope else 1.0
 
 
@@ -76,15 +78,18 @@ def surface_of(
 ) -> Surface:
     """How ``profile`` comes to skin with nodes ``edge`` m apart.
 
-    A wave of slope s in a stiff skin takes a pressure of E* s / 2 to flatten it (Johnson 1985, section 13.2): the slopes of the
-    octave above the cut-off, against the pressure where it touches, and the heights of that octave, against the depth, are what
-    noise may still change. Of the
-    cut-offs that come into question the shortest with an error that is allowed is taken, or else the one with the least: a finer
-    mesh feels finer shapes, but where they are noise it would only find more of it.
+    A wave of slope s in a stiff skin takes a pressure of E* s / 2 to flatten it (Johnson 1985,
+    section 13.2): the slopes of the octave above the cut-off, against the pressure where it
+    touches, and the heights of that octave, against the depth, are what noise may still change. Of
+    the cut-offs that come into question the shortest with an error that is allowed is taken, or
+    else the one with the least: a finer mesh feels finer shapes, but where they are noise it would
+    only find more of it.
 
     Args:
-        way: m, least and largest x of the profile that comes over the pad's apex. pressed: the deepest contact with a surface of
-            a curvature (1/m). force: N/m, that presses at most. allowed: relative error that may be left to the profile.
+        way: m, least and largest x of the profile that comes over the pad's apex. pressed: the
+        deepest contact with a surface of
+            a curvature (1/m). force: N/m, that presses at most. allowed: relative error that may be
+            left to the profile.
     """
     if not np.isfinite(profile.known).all():
         return Surface()

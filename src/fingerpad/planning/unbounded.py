@@ -1,9 +1,11 @@
-"""Where pressure has no bound, so that its peak is the mesh's and has no error: corners, edges, and ends of surface or skin.
+"""Where pressure has no bound, so that its peak is the mesh's and has no error: corners, edges, and
+ends of surface or skin.
 
-Under a rigid corner that turns by an angle t the pressure of an elastic half-plane of plane modulus E* grows as
-E* t / (2 pi) ln(room / distance) (Johnson 1985, section 5.2, a wedge). Nodes of the skin see the corner down to their own
-distance. A smooth profile that is sampled densely has corners too, but they turn so little, and lie so close, that nodes see
-nothing of them: only where the corner brings more than a share of the pressure, it is one.
+Under a rigid corner that turns by an angle t the pressure of an elastic half-plane of plane modulus
+E* grows as E* t / (2 pi) ln(room / distance) (Johnson 1985, section 5.2, a wedge). Nodes of the
+skin see the corner down to their own distance. A smooth profile that is sampled densely has corners
+too, but they turn so little, and lie so close, that nodes see nothing of them: only where the
+corner brings more than a share of the pressure, it is one.
 """
 
 from __future__ import annotations
@@ -17,7 +19,9 @@ from fingerpad.stimuli.profile import Profile
 OF_STROKES = "; of strokes root mean square, relative to the largest"
 """What is said of errors besides, where the pad moves along the surface."""
 SEEN = 0.1
-"""Share of the largest pressure that a corner brings to its node, above which the mesh sees it as a corner."""
+"""Share of the largest pressure that a corner brings to its node, above which the mesh sees it as a
+corner.
+"""
 
 
 @dataclass(frozen=True)
@@ -73,8 +77,9 @@ def seen_corners(
 def ends_unbounded(angle: float, friction: bool) -> bool:
     """Whether pressure is unbounded where a contact reaches the end of the skin.
 
-    Without friction the corner and its mirror image in the rigid surface are a free wedge of twice the ``angle`` (rad), whose
-    stresses are unbounded above 180 degrees (Williams 1952). With friction a corner that sticks has that from about 60 degrees.
+    Without friction the corner and its mirror image in the rigid surface are a free wedge of twice
+    the ``angle`` (rad), whose stresses are unbounded above 180 degrees (Williams 1952). With
+    friction a corner that sticks has that from about 60 degrees.
     """
     return angle > np.radians(60.0 if friction else 91.0)
 

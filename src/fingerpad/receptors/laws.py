@@ -1,4 +1,5 @@
-"""The thesis's equations from skin to impulses: contact pressure, strain energy from pressure, impulse rate (Cysyk 1999).
+"""The thesis's equations from skin to impulses: contact pressure, strain energy from pressure,
+impulse rate (Cysyk 1999).
 
 =========  ==================================================================================================
 Eqs 4-1    pressure of a node under one surface, once it is past its peak
@@ -8,8 +9,8 @@ Eq 4-4     strain energy under the skin as a weighted sum of the pressure on it
 Eqs 4-5    impulse rate from strain energy and its rate; Eq 5-1 is the same without a constant term
 =========  ==================================================================================================
 
-Pure functions of arrays in SI units. The first three are linear in their constants and are given as the terms the constants
-multiply: ``pressure = terms @ constants``.
+Pure functions of arrays in SI units. The first three are linear in their constants and are given as
+the terms the constants multiply: ``pressure = terms @ constants``.
 """
 
 from __future__ import annotations
@@ -28,8 +29,9 @@ NODE_TERMS = {
 }
 """Terms of the laws of nodal pressure, in the order of the thesis's constants.
 
-The exponent -1 of the distance in Eqs 4-1 and 4-3 is hardly legible in the copy at hand; the text calls the pressure
-proportional to an inverse width. Eq 4-1 is kept in its other reading too."""
+The exponent -1 of the distance in Eqs 4-1 and 4-3 is hardly legible in the copy at hand; the text
+calls the pressure proportional to an inverse width. Eq 4-1 is kept in its other reading too.
+"""
 
 TERM_UNITS = {
     "inverse edge distance": "Pa m",
@@ -46,9 +48,10 @@ def pressure_terms(law: str, **quantities: np.ndarray) -> np.ndarray:
     """Terms (..., n) of the nodal pressure of Eq 4-1, 4-2 or 4-3.
 
     Args:
-        law: a key of :data:`NODE_TERMS`. quantities, broadcast together: ``edge_distance``, m, from the node to the nearer edge
-        of the contact; ``displacement``, m, of the node into the pad less that of the skin at the contact's edge; ``speed``, m/s,
-        of that displacement at the node; ``curvature``, 1/m, of the surface. Only those that the law names are looked at.
+        law: a key of :data:`NODE_TERMS`. quantities, broadcast together: ``edge_distance``, m, from
+        the node to the nearer edge of the contact; ``displacement``, m, of the node into the pad
+        less that of the skin at the contact's edge; ``speed``, m/s, of that displacement at the
+        node; ``curvature``, 1/m, of the surface. Only those that the law names are looked at.
     """
     given = {
         "inverse edge distance": lambda: 1 / np.asarray(quantities["edge_distance"]),
@@ -62,11 +65,12 @@ def pressure_terms(law: str, **quantities: np.ndarray) -> np.ndarray:
 
 
 def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np.ndarray:
-    """Weights (..., n) m of pressures at places x in the integral of ``p(x) exp(-|x - reference| / r)`` over the surface.
+    """Weights (..., n) m of pressures at places x in the integral of ``p(x) exp(-|x - reference| /
+    r)`` over the surface.
 
-    Exact for a pressure that is linear between the places, whatever their spacing (the weights are integrals of the hat functions
-    with the kernel), so that a skin of nodes 67 um apart and an array of sensors 1 mm apart mean the same sum. No pressure is
-    assumed beyond the ends.
+    Exact for a pressure that is linear between the places, whatever their spacing (the weights are
+    integrals of the hat functions with the kernel), so that a skin of nodes 67 um apart and an
+    array of sensors 1 mm apart mean the same sum. No pressure is assumed beyond the ends.
 
     Args:
         x: (..., n) m, increasing. reference: (...) m. r: spatial constant, m.
@@ -86,8 +90,9 @@ def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np
 class SpatialSum:
     """Eq 4-4: strain energy density at a depth as a weighted sum of the contact pressure over it.
 
-    ``SE(t) = integral of p(x, t) exp(-|x - x_ref| / r) dx * (per_depth * DOI(t) + constant)``. The thesis sums over its
-    nodes; an integral does not depend on their spacing (its constants are these times that spacing).
+    ``SE(t) = integral of p(x, t) exp(-|x - x_ref| / r) dx * (per_depth * DOI(t) + constant)``. The
+    thesis sums over its nodes; an integral does not depend on their spacing (its constants are
+    these times that spacing).
 
     Attributes:
         r: spatial constant, m. per_depth: A1, 1/m^2. constant: A2, 1/m.
@@ -98,7 +103,9 @@ class SpatialSum:
     constant: float
 
     def weighted_pressure(self, x, pressure, reference=0.0) -> np.ndarray:
-        """The integral (...), Pa m. x, pressure: (..., n) m, Pa. reference: (...) m, where the receptor is, shift included."""
+        """The integral (...), Pa m. x, pressure: (..., n) m, Pa. reference: (...) m, where the
+        receptor is, shift included.
+        """
         x, pressure = np.asarray(x, float), np.asarray(pressure, float)
         on = np.flatnonzero(np.any(pressure != 0, axis=tuple(range(pressure.ndim - 1))))
         touched = (
@@ -114,8 +121,9 @@ class SpatialSum:
         """Strain energy density (...), Pa.
 
         Args:
-            x: (..., n) m, places of the pressures, deformed. pressure: (..., n) Pa. indentation: (...) m, of the skin over the
-            receptor. reference: (...) m, lateral place of the receptor: where it is at rest plus what it has shifted by.
+            x: (..., n) m, places of the pressures, deformed. pressure: (..., n) Pa. indentation:
+            (...) m, of the skin over the receptor. reference: (...) m, lateral place of the
+            receptor: where it is at rest plus what it has shifted by.
         """
         return self.weighted_pressure(x, pressure, reference) * (
             self.per_depth * np.asarray(indentation) + self.constant
@@ -129,14 +137,16 @@ def rectified(values) -> np.ndarray:
 
 @dataclass(frozen=True)
 class ImpulseRate:
-    """Eqs 4-5 and 5-1: impulse rate of a slowly adapting receptor from strain energy density and its rate.
+    """Eqs 4-5 and 5-1: impulse rate of a slowly adapting receptor from strain energy density and
+    its rate.
 
-    ``rate = A1 [SE - threshold]+ + A2 [dSE/dt - rate_threshold]+ + spontaneous``. The thesis writes the brackets plainly; that
-    each is rectified follows from its Fig 5-19, which shows the energy cut at its threshold and the positive rate only.
+    ``rate = A1 [SE - threshold]+ + A2 [dSE/dt - rate_threshold]+ + spontaneous``. The thesis writes
+    the brackets plainly; that each is rectified follows from its Fig 5-19, which shows the energy
+    cut at its threshold and the positive rate only.
 
     Attributes:
-        per_energy: A1, (impulses/s)/Pa. per_rate: A2, impulses/Pa. threshold: Pa. rate_threshold: Pa/s.
-        spontaneous: A3 of Eq 4-5, impulses/s; Eq 5-1 has none.
+        per_energy: A1, (impulses/s)/Pa. per_rate: A2, impulses/Pa. threshold: Pa. rate_threshold:
+        Pa/s. spontaneous: A3 of Eq 4-5, impulses/s; Eq 5-1 has none.
     """
 
     per_energy: float
@@ -168,13 +178,14 @@ THESIS_RATE = ImpulseRate(per_energy=0.081, per_rate=0.0182, threshold=150.0, ra
 def rate_by_leg(time, values, leg) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A trace and its rate, differentiated leg by leg: times (m,), values and rates (m, ...).
 
-    Second-order differences within a leg (numpy.gradient). A kink between two legs, such as the top of a ramp, stays a jump of
-    the rate: that time is there twice, with the rate of either leg, so an integral over time sees the jump where it is. A leg
-    that takes no time has no rate and is left out.
+    Second-order differences within a leg (numpy.gradient). A kink between two legs, such as the top
+    of a ramp, stays a jump of the rate: that time is there twice, with the rate of either leg, so
+    an integral over time sees the jump where it is. A leg that takes no time has no rate and is
+    left out.
 
     Args:
-        time: (n,) s, not falling. values: (n, ...). leg: (n,) whole numbers that do not fall; the first sample of a leg
-        belongs to the leg before it as well.
+        time: (n,) s, not falling. values: (n, ...). leg: (n,) whole numbers that do not fall; the
+        first sample of a leg belongs to the leg before it as well.
     """
     time, values, leg = np.asarray(time, float), np.asarray(values, float), np.asarray(leg)
     ends = np.flatnonzero(np.diff(leg) > 0)
@@ -192,7 +203,8 @@ def rate_by_leg(time, values, leg) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def time_above(time, trace, threshold: float = 0.0) -> float:
-    """How long (s) a trace is above a threshold; it is linear between samples, and crossings are found between them.
+    """How long (s) a trace is above a threshold; it is linear between samples, and crossings are
+    found between them.
 
     Args:
         time: (n,) s, not falling; a repeated time is a jump. trace: (n,).

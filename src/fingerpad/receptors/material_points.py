@@ -1,12 +1,14 @@
 """Mechanical state at chosen material points, with their own Prony history.
 
-Receptor depths fall where they fall, not on quadrature points. What is sampled is treated like one more quadrature point (of zero
-weight): displacement gradient and pressure are evaluated there exactly as the element interpolates them, and the branch stresses
-follow the same recurrence as in the body. Receptors have what is fitted to them (:mod:`fingerpad.receptors.recovery`).
+Receptor depths fall where they fall, not on quadrature points. What is sampled is treated like one
+more quadrature point (of zero weight): displacement gradient and pressure are evaluated there
+exactly as the element interpolates them, and the branch stresses follow the same recurrence as in
+the body. Receptors have what is fitted to them (:mod:`fingerpad.receptors.recovery`).
 
-What is sampled are the stimuli that receptors have been said to respond to (Phillips and Johnson 1981; Srinivasan and Dandekar
-1996). Five meanings of strain energy density (per undeformed volume) are kept apart, because under constant force they
-disagree even in trend (see :func:`strain_energies`).
+What is sampled are the stimuli that receptors have been said to respond to (Phillips and Johnson
+1981; Srinivasan and Dandekar 1996). Five meanings of strain energy density (per undeformed volume)
+are kept apart, because under constant force they disagree even in trend (see
+:func:`strain_energies`).
 """
 
 import numpy as np
@@ -40,9 +42,10 @@ class MaterialPoints:
     """Receptors in a body; an observer of the stepper.
 
     Args:
-        body: the body they belong to. points: (nr, 2) undeformed positions, m.
-        shear_instantaneous: (ne,) Pa, the moduli the headline strain energy is measured with; None for a purely elastic
-            solid, whose strain energy has one meaning only. mirrored: the body is half of one that is symmetric in x = 0.
+        body: the body they belong to. points: (nr, 2) undeformed positions, m. shear_instantaneous:
+        (ne,) Pa, the moduli the headline strain energy is measured with; None for a purely elastic
+            solid, whose strain energy has one meaning only. mirrored: the body is half of one that
+            is symmetric in x = 0.
 
     Raises:
         ReceptorError: a point lies outside the mesh.
@@ -56,7 +59,9 @@ class MaterialPoints:
 
     @classmethod
     def centres(cls, body, shear_instantaneous: np.ndarray) -> "MaterialPoints":
-        """A point in the middle of every element, in their order: the fields of a body as its receptors see them."""
+        """A point in the middle of every element, in their order: the fields of a body as its
+        receptors see them.
+        """
         made, count = cls.__new__(cls), len(body.space.cells)
         middle = np.full((count, 2), 1 / 3 if body.space.element.triangle else 0.5)
         made._place(body, Location(np.arange(count), middle), None, shear_instantaneous)
@@ -106,10 +111,11 @@ class MaterialPoints:
     def sample(self, body) -> dict[str, np.ndarray]:
         """What a receptor could respond to, (nr,) each, at the body's present state.
 
-        The five strain energy densities (Pa, see :func:`strain_energies`), the principal strains in the plane
-        (``compressive_strain`` and ``tensile_strain``: stretch less one, positive in compression and in tension; zero if
-        there is none), ``von_mises_stress`` and ``hydrostatic_pressure`` (Cauchy, Pa, compression positive) and ``dilatation``
-        (J - 1 as the element projects it).
+        The five strain energy densities (Pa, see :func:`strain_energies`), the principal strains in
+        the plane (``compressive_strain`` and ``tensile_strain``: stretch less one, positive in
+        compression and in tension; zero if there is none), ``von_mises_stress`` and
+        ``hydrostatic_pressure`` (Cauchy, Pa, compression positive) and ``dilatation`` (J - 1 as the
+        element projects it).
         """
         gradient, dilatation = self._gradient(body), self._dilatation(body)
         stress = self._isochoric(body)
@@ -155,7 +161,9 @@ class MaterialPoints:
         }
 
     def stress_and_strain(self, body) -> dict[str, np.ndarray]:
-        """``cauchy_stress`` (samples, 4: xx, yy, xy, zz) Pa, ``principal_strains`` (samples, 2: stretches less one, rising)."""
+        """``cauchy_stress`` (samples, 4: xx, yy, xy, zz) Pa, ``principal_strains`` (samples, 2:
+        stretches less one, rising).
+        """
         gradient = self._gradient(body)
         if self._linear:
             f, jac = np.broadcast_to(np.eye(2), gradient.shape), np.ones(len(gradient))
@@ -174,7 +182,9 @@ class MaterialPoints:
 
 
 def logarithmic_strain(f: np.ndarray) -> np.ndarray:
-    """Spatial logarithmic (Hencky) strain ``log(F F^T) / 2`` in the plane, (nr, 2, 2), of deformation gradients (nr, 2, 2)."""
+    """Spatial logarithmic (Hencky) strain ``log(F F^T) / 2`` in the plane, (nr, 2, 2), of
+    deformation gradients (nr, 2, 2).
+    """
     b = f @ f.swapaxes(1, 2)
     mean = 0.5 * np.trace(b, axis1=1, axis2=2)
     share = np.hypot(0.5 * (b[:, 0, 0] - b[:, 1, 1]), b[:, 0, 1]) / mean
@@ -186,20 +196,28 @@ def logarithmic_strain(f: np.ndarray) -> np.ndarray:
 def strain_energies(f, strain, stress, branches, network, shear, shear_instantaneous, volumetric):
     """Strain energy densities of a finite linear viscoelastic solid, Pa (J per undeformed m^3).
 
-    Of shape only; ``volumetric``, kappa/2 (J - 1)^2, which does not relax, is added to each. With tau the Kirchhoff stress:
+    Of shape only; ``volumetric``, kappa/2 (J - 1)^2, which does not relax, is added to each. With
+    tau the Kirchhoff stress:
 
-    * ``strain_energy_density`` (headline): the elastic energy that the total stress stands for on the instantaneous moduli,
+    * ``strain_energy_density`` (headline): the elastic energy that the total stress stands for on
+      the instantaneous moduli,
       ``tau_dev : tau_dev / (4 G_0)``.
-    * ``strain_energy_long_term_moduli``: the same on the long-term moduli, ``tau_dev : tau_dev / (4 G_inf)``.
-    * ``strain_energy_half_stress_strain``: ``tau_dev : h / 2`` with the total stress and the logarithmic strain h.
-    * ``strain_energy_recoverable``: network plus the Maxwell springs, ``tau_i : tau_i / (4 G_i)`` each.
+    * ``strain_energy_long_term_moduli``: the same on the long-term moduli, ``tau_dev : tau_dev / (4
+      G_inf)``.
+    * ``strain_energy_half_stress_strain``: ``tau_dev : h / 2`` with the total stress and the
+      logarithmic strain h.
+    * ``strain_energy_recoverable``: network plus the Maxwell springs, ``tau_i : tau_i / (4 G_i)``
+      each.
     * ``strain_energy_network``: psi(C) of the long-term network alone.
 
-    Without instantaneous moduli (None: no viscosity at all) there is one energy, psi(C), and all five are it.
+    Without instantaneous moduli (None: no viscosity at all) there is one energy, psi(C), and all
+    five are it.
 
     Args:
-        f, strain: (nr, 2, 2), in the plane. stress: (nr, 4) long-term isochoric second Piola-Kirchhoff stress. branches: pairs
-            (beta, (nr, 4) stress). network, volumetric: (nr,) Pa, of shape and of volume. shear, shear_instantaneous: (nr,) Pa.
+        f, strain: (nr, 2, 2), in the plane. stress: (nr, 4) long-term isochoric second
+        Piola-Kirchhoff stress. branches: pairs
+            (beta, (nr, 4) stress). network, volumetric: (nr,) Pa, of shape and of volume. shear,
+            shear_instantaneous: (nr,) Pa.
     """
     total, springs = stress, 0.0
     for beta, q in branches:

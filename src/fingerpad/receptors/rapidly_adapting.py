@@ -1,8 +1,10 @@
-"""Rapidly adapting receptors: impulses while a stimulus changes, whichever way, and none while it is held.
+"""Rapidly adapting receptors: impulses while a stimulus changes, whichever way, and none while it
+is held.
 
-The thesis models slowly adapting receptors only; of rapidly adapting ones it reports that they fire at the beginning of the
-ramp or not at all, whatever the curvature, and supposes that they respond to the rate at which the skin's curvature changes
-(Cysyk 1999, section 4.2, after Srinivasan and LaMotte 1991). Threshold and saturation are not stated anywhere at hand.
+The thesis models slowly adapting receptors only; of rapidly adapting ones it reports that they fire
+at the beginning of the ramp or not at all, whatever the curvature, and supposes that they respond
+to the rate at which the skin's curvature changes (Cysyk 1999, section 4.2, after Srinivasan and
+LaMotte 1991). Threshold and saturation are not stated anywhere at hand.
 """
 
 from __future__ import annotations
@@ -16,12 +18,12 @@ from fingerpad.receptors.laws import rectified
 
 @dataclass(frozen=True)
 class RapidlyAdapting:
-    """Impulse rate from the rate of a stimulus: ``highest * (1 - exp(-[|rate| - threshold]+ / scale))``.
+    """Impulse rate from the rate of a stimulus: ``highest * (1 - exp(-[|rate| - threshold]+ /
+    scale))``.
 
     Attributes:
-        threshold: in the unit of the stimulus by second; slower changes are not felt. scale: likewise, of the approach to
-        saturation.
-        highest: impulses/s.
+        threshold: in the unit of the stimulus by second; slower changes are not felt. scale:
+        likewise, of the approach to saturation. highest: impulses/s.
     """
 
     threshold: float

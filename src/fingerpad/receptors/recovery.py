@@ -1,4 +1,6 @@
-"""Where receptors are in a mesh, and what they read of it: fits to the points round them at which an element's strain is best."""
+"""Where receptors are in a mesh, and what they read of it: fits to the points round them at which
+an element's strain is best.
+"""
 
 from dataclasses import dataclass
 from functools import cache
@@ -15,11 +17,15 @@ FITTED = {
     "Q1P0": (square_rule(1)[0], 2),
     "P2B": (triangle_rule(5)[0], 3),
 }
-"""By element, the points of the reference cell that are sampled, and the degree of the polynomial fitted to what is there."""
+"""By element, the points of the reference cell that are sampled, and the degree of the polynomial
+fitted to what is there.
+"""
 _RADII = (1.2, 1.3, 1.4, 1.5, 1.6, 1.8, 2.0, 2.2, 2.5, 2.8)
 """Of the patch it is fitted on, in lengths of the element in the middle: the first that will do."""
 _MOST = 5.0
-"""Sum of the sizes of a fit's weights; one of more makes errors larger than they are beside the receptor."""
+"""Sum of the sizes of a fit's weights; one of more makes errors larger than they are beside the
+receptor.
+"""
 
 
 class ReceptorError(ValueError):
@@ -39,7 +45,8 @@ class Sums:
     """Weighted sums, one a receptor, of what is sampled: a matrix (nr, samples) by its rows.
 
     Attributes:
-        weights, index: (m,) of all rows after each other, and of which sample. starts: (nr,) where each row begins.
+        weights, index: (m,) of all rows after each other, and of which sample. starts: (nr,) where
+        each row begins.
     """
 
     weights: np.ndarray
@@ -54,10 +61,12 @@ class Sums:
 def containing(space, points, tolerance=1e-6):
     """Every element that each physical point (n, 2), m, lies in, borders included.
 
-    Scikit-fem has no finder for curved elements, and its inverse of a curved map takes no point outside.
+    Scikit-fem has no finder for curved elements, and its inverse of a curved map takes no point
+    outside.
 
     Returns:
-        The points' indices (m,), ascending and for each the element with the nearest centre first; their :class:`Location` (m,).
+        The points' indices (m,), ascending and for each the element with the nearest centre first;
+        their :class:`Location` (m,).
 
     Raises:
         ReceptorError: a point lies in no element.
@@ -82,7 +91,9 @@ def containing(space, points, tolerance=1e-6):
 
 
 def _among(space, points, candidates, tolerance):
-    """Which points (n, 2) lie in which of their candidates (n, k): indices (m,), elements (m,), reference coordinates (m, 2)."""
+    """Which points (n, 2) lie in which of their candidates (n, k): indices (m,), elements (m,),
+    reference coordinates (m, 2).
+    """
     nodes = space.points[space.cells[candidates]]
     low, high = nodes.min(2), nodes.max(2)
     # a quadratic side bulges beyond the box round its nodes by an eighth of it at most
@@ -97,7 +108,9 @@ def _among(space, points, candidates, tolerance):
 
 
 def _inverse_map(element, nodes, points):
-    """Reference coordinates (m, 2) of points in elements of nodes (m, nen, 2) by Newton's method; nan where it fails."""
+    """Reference coordinates (m, 2) of points in elements of nodes (m, nen, 2) by Newton's method;
+    nan where it fails.
+    """
     xi = np.full((len(points), 2), 1 / 3 if element.triangle else 0.5)
     moving = np.arange(len(points))
     for _ in range(12):
@@ -116,10 +129,11 @@ def _inverse_map(element, nodes, points):
 
 
 def _mean_of_neighbours(space, layers, points):
-    """Where points are sampled (:class:`Location`), (m,) whose each sample is, and its share in the mean.
+    """Where points are sampled (:class:`Location`), (m,) whose each sample is, and its share in the
+    mean.
 
-    Strain jumps from element to element; a value from one side would tell left from right. So a point on a border takes the mean
-    over the elements there that are of one layer with the nearest.
+    Strain jumps from element to element; a value from one side would tell left from right. So a
+    point on a border takes the mean over the elements there that are of one layer with the nearest.
     """
     owner, found = containing(space, points)
     layer = layers[found.element]
@@ -129,16 +143,20 @@ def _mean_of_neighbours(space, layers, points):
 
 
 def recovery(space, layers, points, mirrored):
-    """Where to sample (:class:`Location`), and the sums (nr,) of samples that make values at points; None: samples are values.
+    """Where to sample (:class:`Location`), and the sums (nr,) of samples that make values at
+    points; None: samples are values.
 
-    Strain is right to a power of the edges more at some points of an element: in the middle of a linear quad, at the 2 x 2 Gauss
-    points of a quadratic one (Barlow 1976); a triangle's quadrature points are off either way. To what is there round a receptor,
-    in elements of its layer that hang together, a polynomial is fitted (Zienkiewicz and Zhu 1992). Where there are too few, as in
-    a layer of one row, and in elements of the teaching cases, values are those of the elements that the receptor lies in.
+    Strain is right to a power of the edges more at some points of an element: in the middle of a
+    linear quad, at the 2 x 2 Gauss points of a quadratic one (Barlow 1976); a triangle's quadrature
+    points are off either way. To what is there round a receptor, in elements of its layer that hang
+    together, a polynomial is fitted (Zienkiewicz and Zhu 1992). Where there are too few, as in a
+    layer of one row, and in elements of the teaching cases, values are those of the elements that
+    the receptor lies in.
 
     Args:
-        space: :class:`fingerpad.mechanics.space.Space`. layers: (ne,) number of each element's material. points: (nr, 2) m.
-        mirrored: the mesh is half of one that is symmetric in x = 0; what is fitted goes over the axis.
+        space: :class:`fingerpad.mechanics.space.Space`. layers: (ne,) number of each element's
+        material. points: (nr, 2) m. mirrored: the mesh is half of one that is symmetric in x = 0;
+        what is fitted goes over the axis.
 
     Raises:
         ReceptorError: a point lies in no element.
@@ -171,7 +189,8 @@ def recovery(space, layers, points, mirrored):
 
 
 def _fits(space, layers, points, owner, found, mirrored):
-    """{point: (samples (m,), weights (m,))}, samples numbered element by element; only of points where a fit is good.
+    """{point: (samples (m,), weights (m,))}, samples numbered element by element; only of points
+    where a fit is good.
 
     Args:
         owner, found: of :func:`_mean_of_neighbours`.
@@ -200,7 +219,9 @@ def _fits(space, layers, points, owner, found, mirrored):
 
 
 def _fitted(at, weight, degree):
-    """Weights (m,) of values at points (m, 2) in their best polynomial's value at the origin; None where they are too few."""
+    """Weights (m,) of values at points (m, 2) in their best polynomial's value at the origin; None
+    where they are too few.
+    """
     powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i)]
     if len(at) < len(powers):
         return None
@@ -215,7 +236,9 @@ def _fitted(at, weight, degree):
 
 
 def _patches(space, layers, owner, element):
-    """Of every point which of some elements (m,) it lies in, and all of its layer that share a node with these, or the next."""
+    """Of every point which of some elements (m,) it lies in, and all of its layer that share a node
+    with these, or the next.
+    """
     corners = space.cells[:, : 3 if space.element.triangle else 4]
     order = np.argsort(corners.ravel(), kind="stable")
     ends = np.searchsorted(corners.ravel()[order], np.arange(len(space.points) + 1))

@@ -1,4 +1,6 @@
-"""From a simulated history to what its receptors would send: impulse rates and impulses, by one call."""
+"""From a simulated history to what its receptors would send: impulse rates and impulses, by one
+call.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ AFFERENTS: dict[str, ImpulseRate | RapidlyAdapting] = {
     "slowly_adapting": THESIS_RATE,
     "rapidly_adapting": ASSUMED_RATE,
 }
-"""Kinds of receptor and their laws: Eq 5-1 with the thesis's own constants; saturating in the rate, its constants assumed."""
+"""Kinds of receptor and their laws: Eq 5-1 with the thesis's own constants; saturating in the rate,
+its constants assumed.
+"""
 
 
 NAMES = {
@@ -36,21 +40,24 @@ def respond(
     variation: float = 0.0,
     seed: int | None = None,
 ) -> xr.Dataset:
-    """Impulse rates and impulses of all receptors of a history, predicted from their strain energy density and its rate.
+    """Impulse rates and impulses of all receptors of a history, predicted from their strain energy
+    density and its rate.
 
     Args:
-        history: as `fingerpad.simulate` or `fingerpad.read_history` returns it. afferents: one or more of :data:`AFFERENTS` or
+        history: as `fingerpad.simulate` or `fingerpad.read_history` returns it. afferents: one or
+        more of :data:`AFFERENTS` or
         :data:`NAMES`, or laws by a name of one's own.
         variation: coefficient of variation of the intervals (0: none). seed: of that variability.
 
     Returns:
-        ``impulse_rate`` (afferent, response_time, receptor), impulses/s; ``impulses`` (afferent, receptor), how many;
-        ``impulse_time`` (afferent, receptor, impulse), s, NaN after the last. Rates are differences within a leg, so the time
-        of a kink between legs is there twice, 1e-12 s apart (see :func:`fingerpad.receptors.laws.rate_by_leg`).
+        ``impulse_rate`` (afferent, response_time, receptor), impulses/s; ``impulses`` (afferent,
+        receptor), how many; ``impulse_time`` (afferent, receptor, impulse), s, NaN after the last.
+        Rates are differences within a leg, so the time of a kink between legs is there twice, 1e-12
+        s apart (see :func:`fingerpad.receptors.laws.rate_by_leg`).
 
     Raises:
-        TypeError: this is no history. ValueError: nothing in the history takes time, there is no such afferent, or there is
-        variability without a seed.
+        TypeError: this is no history. ValueError: nothing in the history takes time, there is no
+        such afferent, or there is variability without a seed.
     """
     if not isinstance(history, xr.Dataset):
         raise TypeError(

@@ -1,8 +1,10 @@
-"""From an impulse rate to impulses, and back: an integrate-and-fire receptor, rasters, histograms and instantaneous frequency.
+"""From an impulse rate to impulses, and back: an integrate-and-fire receptor, rasters, histograms
+and instantaneous frequency.
 
-The receptor integrates its rate and fires whenever the integral has grown by a threshold: 1 without variability, so that the
-number of impulses is the integral of the rate. With variability the thresholds are drawn anew for every interval from a gamma
-distribution with mean 1; its coefficient of variation is that of the intervals at a steady rate.
+The receptor integrates its rate and fires whenever the integral has grown by a threshold: 1 without
+variability, so that the number of impulses is the integral of the rate. With variability the
+thresholds are drawn anew for every interval from a gamma distribution with mean 1; its coefficient
+of variation is that of the intervals at a steady rate.
 """
 
 from __future__ import annotations
@@ -12,13 +14,17 @@ from collections.abc import Sequence
 import numpy as np
 
 VARIATION = 0.25
-"""Coefficient of variation of the intervals at a steady rate: assumed, the thesis states none. Numbers of impulses then vary by
-``VARIATION * sqrt(number)``, by less than one up to 16; those of repeated trials of SA-I receptors of monkeys do (standard
-deviation; Vega-Bermudez and Johnson 1999, J Neurophysiol 81:2701, abstract)."""
+"""Coefficient of variation of the intervals at a steady rate: assumed, the thesis states none.
+Numbers of impulses then vary by ``VARIATION * sqrt(number)``, by less than one up to 16; those of
+repeated trials of SA-I receptors of monkeys do (standard deviation; Vega-Bermudez and Johnson 1999,
+J Neurophysiol 81:2701, abstract).
+"""
 
 
 def integrated(time, rate) -> np.ndarray:
-    """Integral (n,) of a rate (n,) from the first time (n,) s on; the rate is linear in between, a repeated time is a jump."""
+    """Integral (n,) of a rate (n,) from the first time (n,) s on; the rate is linear in between, a
+    repeated time is a jump.
+    """
     time, rate = np.asarray(time, float), np.asarray(rate, float)
     return np.concatenate([[0.0], np.cumsum(np.diff(time) * (rate[1:] + rate[:-1]) / 2)])
 
@@ -29,14 +35,15 @@ def impulses(
     """Times (m,) s of impulses at an instantaneous rate.
 
     Args:
-        time: (n,) s, not falling; a repeated time is a jump of the rate. rate: (n,) impulses/s, not negative, linear in between.
-        variation: coefficient of variation of the threshold. 0 is deterministic: an impulse whenever the integral of the rate
-        passes a whole number. Otherwise a trial also starts anywhere in an interval (length-biased, so that the mean number of
-        impulses is the integral of the rate).
-        seed: of the variability; needed if there is any.
+        time: (n,) s, not falling; a repeated time is a jump of the rate. rate: (n,) impulses/s, not
+        negative, linear in between. variation: coefficient of variation of the threshold. 0 is
+        deterministic: an impulse whenever the integral of the rate passes a whole number. Otherwise
+        a trial also starts anywhere in an interval (length-biased, so that the mean number of
+        impulses is the integral of the rate). seed: of the variability; needed if there is any.
 
     Raises:
-        ValueError: a rate is negative or not finite, times fall, or there is variability without a seed.
+        ValueError: a rate is negative or not finite, times fall, or there is variability without a
+        seed.
     """
     time, rate = np.asarray(time, float), np.asarray(rate, float)
     if not np.isfinite(rate).all() or (rate < 0).any():
@@ -47,7 +54,8 @@ def impulses(
     due = _thresholds(grown[-1], variation, seed)
     after = np.minimum(np.searchsorted(grown, due, side="left"), len(grown) - 1)
     before = np.maximum(after - 1, 0)
-    # the integral is a parabola between samples; this form of its root holds for constant, rising and falling rates
+    # the integral is a parabola between samples; this form of its root holds for constant, rising
+    # and falling rates
     dt, need, a = time[after] - time[before], due - grown[before], rate[before]
     slope = np.divide(rate[after] - a, dt, out=np.zeros_like(dt), where=dt > 0)
     root = a + np.sqrt(np.maximum(a**2 + 2 * slope * need, 0))
@@ -75,7 +83,9 @@ def _thresholds(total: float, variation: float, seed) -> np.ndarray:
 def trains(
     time, rate, repetitions: int, seed: int, variation: float = VARIATION
 ) -> list[np.ndarray]:
-    """Impulse times (s) of several repetitions, each with a variability of its own; the first ones do not depend on how many."""
+    """Impulse times (s) of several repetitions, each with a variability of its own; the first ones
+    do not depend on how many.
+    """
     return [
         impulses(time, rate, variation, child)
         for child in map(np.random.default_rng, np.random.SeedSequence(seed).spawn(repetitions))
@@ -99,7 +109,8 @@ def instantaneous_frequency(train, at=None) -> np.ndarray:
         train: (m,) s, increasing. at: (...) s; left out, one frequency an interval, (m - 1,).
 
     Returns:
-        At the times `at` that of the interval they fall into, 0 before the first impulse and from the last one on.
+        At the times `at` that of the interval they fall into, 0 before the first impulse and from
+        the last one on.
     """
     train = np.asarray(train, float)
     frequency = 1 / np.diff(train)

@@ -1,6 +1,7 @@
 """Analytic solutions of contact, elasticity and linear viscoelasticity, to check a solver against.
 
-The package stands alone: numpy and scipy (the weak form: scikit-fem), nothing of the rest of ``fingerpad``. One module a subject:
+The package stands alone: numpy and scipy (the weak form: scikit-fem), nothing of the rest of
+``fingerpad``. One module a subject:
 
 ================== ===========================================================================
 hertz              rigid or elastic cylinder on a half-plane: width, pressure, stresses below
@@ -22,6 +23,7 @@ manufactured       displacement fields with their body forces, small and finite 
 weak_form          the equations that are solved and their tangent, in scikit-fem's form language
 ================== ===========================================================================
 
-Any consistent set of units will do; the docstrings use the SI. Forces and moments of plane problems are per
-unit length out of plane. Pressures are positive in compression, stresses positive in tension.
+Any consistent set of units will do; the docstrings use the SI. Forces and moments of plane problems
+are per unit length out of plane. Pressures are positive in compression, stresses positive in
+tension.
 """

@@ -1,9 +1,10 @@
-"""Partial slip of the Hertz line contact under a tangential force Q < mu P applied after the normal force P.
+"""Partial slip of the Hertz line contact under a tangential force Q < mu P applied after the normal
+force P.
 
-Exact when normal and tangential problems are uncoupled: similar materials, or an incompressible body on a
-rigid one.
-Sources: C. Cattaneo (1938); R. D. Mindlin (1949); R. D. Mindlin & H. Deresiewicz (1953) for the return;
-K. L. Johnson, *Contact Mechanics* (1985), sections 7.2(a), 7.3 and 7.4.
+Exact when normal and tangential problems are uncoupled: similar materials, or an incompressible
+body on a rigid one. Sources: C. Cattaneo (1938); R. D. Mindlin (1949); R. D. Mindlin & H.
+Deresiewicz (1953) for the return; K. L. Johnson, *Contact Mechanics* (1985), sections 7.2(a), 7.3
+and 7.4.
 """
 
 import numpy as np
@@ -26,10 +27,11 @@ def stick_ratio(tangential_force, normal_force, friction):
 
 
 def traction(x, half_width, peak_pressure, friction, stick_ratio):
-    """Shear traction q(x) = mu p0 [sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - x^2/c^2)], Pa, of the shape of ``x``.
+    """Shear traction q(x) = mu p0 [sqrt(1 - x^2/a^2) - (c/a) sqrt(1 - x^2/c^2)], Pa, of the shape
+    of ``x``.
 
-    The second term only inside the stick zone |x| < c. Raises ``ValueError`` for a stick ratio outside [0,
-    1].
+    The second term only inside the stick zone |x| < c. Raises ``ValueError`` for a stick ratio
+    outside [0, 1].
     """
     positive(half_width=half_width)
     if not 0 <= stick_ratio <= 1:
@@ -43,10 +45,12 @@ def traction(x, half_width, peak_pressure, friction, stick_ratio):
 
 
 def returned_traction(x, half_width, peak_pressure, friction, turn, tangential_force, normal_force):
-    """Shear traction after Q rose to ``turn`` and came back to ``tangential_force``, Pa, of the shape of ``x``.
+    """Shear traction after Q rose to ``turn`` and came back to ``tangential_force``, Pa, of the
+    shape of ``x``.
 
-    On the way back the edges slip the other way: from the traction at the turn twice that of the difference is taken,
-    with a stick zone of c/a = sqrt(1 - (Q1 - Q)/(2 mu P)). Raises ``ValueError`` unless -Q1 <= Q <= Q1 <= mu P.
+    On the way back the edges slip the other way: from the traction at the turn twice that of the
+    difference is taken, with a stick zone of c/a = sqrt(1 - (Q1 - Q)/(2 mu P)). Raises
+    ``ValueError`` unless -Q1 <= Q <= Q1 <= mu P.
     """
     inner = stick_ratio((turn - tangential_force) / 2, normal_force, friction)
     first, back = (

@@ -1,10 +1,10 @@
 """Cook's membrane: a tapered panel, clamped left, uniform shear on its right edge. Small strain.
 
-Corners (0, 0), (48, 44), (48, 60), (0, 44); ``total_load`` is the resultant over the right edge of length 16.
-Sources: R. D. Cook (1974) for the problem; the values for nu = 1/3 agree with the published 23.96 (plane
-stress, mid-edge) and CalculiX/Elmer 32.28 (plane strain, corner; CoFEA initiative); the nearly incompressible
-ones were recomputed with Taylor-Hood elements on graded and uniform 128 x 128 meshes (literature: Kasper &
-Taylor 2000, 7.769 for E = 250; 16.44 for E = 1.125).
+Corners (0, 0), (48, 44), (48, 60), (0, 44); ``total_load`` is the resultant over the right edge of
+length 16. Sources: R. D. Cook (1974) for the problem; the values for nu = 1/3 agree with the
+published 23.96 (plane stress, mid-edge) and CalculiX/Elmer 32.28 (plane strain, corner; CoFEA
+initiative); the nearly incompressible ones were recomputed with Taylor-Hood elements on graded and
+uniform 128 x 128 meshes (literature: Kasper & Taylor 2000, 7.769 for E = 250; 16.44 for E = 1.125).
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,9 @@ CORNER = (48.0, 60.0)
 
 @dataclass(frozen=True)
 class CookCase:
-    """One row: moduli, load and the vertical displacement at (48, 52) and (48, 60); None where not known."""
+    """One row: moduli, load and the vertical displacement at (48, 52) and (48, 60); None where not
+    known.
+    """
 
     plane: str
     youngs_modulus: float
@@ -33,5 +35,6 @@ CASES = {
     "nearly_incompressible_unit": CookCase("strain", 1.12499998125, 0.499999975, 1.0, 16.453, None),
 }
 
-#: Mid-edge displacement of n x n plain four-node quads for ``nearly_incompressible``: how locking looks.
+#: Mid-edge displacement of n x n plain four-node quads for ``nearly_incompressible``: how locking
+#: looks.
 LOCKED_Q1 = {8: 2.22, 16: 2.41, 32: 2.96, 64: 4.17, 128: 5.80}

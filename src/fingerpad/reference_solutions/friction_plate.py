@@ -1,10 +1,12 @@
-"""An elastic plate pressed on a rigid plane and pushed along it: lift-off, slip and stick in one contact.
+"""An elastic plate pressed on a rigid plane and pushed along it: lift-off, slip and stick in one
+contact.
 
-A square of :data:`SIDE`, plane strain, stands on the rigid plane y = 0; uniform pressures act on its top and on its left side
-x = 0, and its right side x = SIDE cannot move sideways. Lengths m, stresses Pa.
-Sources: code_aster V6.04.128 (SSNV128, from the French research group on large deformations, GRECO): ``MEAN_OF_CODES``, given
-to 5 %. ``CONVERGED`` was recomputed without any penalty, from the linear equations that a given partition of the contact into
-lifted, slipping and sticking nodes leaves, the partition being corrected until Coulomb's and Signorini's conditions held
+A square of :data:`SIDE`, plane strain, stands on the rigid plane y = 0; uniform pressures act on
+its top and on its left side x = 0, and its right side x = SIDE cannot move sideways. Lengths m,
+stresses Pa. Sources: code_aster V6.04.128 (SSNV128, from the French research group on large
+deformations, GRECO): ``MEAN_OF_CODES``, given to 5 %. ``CONVERGED`` was recomputed without any
+penalty, from the linear equations that a given partition of the contact into lifted, slipping and
+sticking nodes leaves, the partition being corrected until Coulomb's and Signorini's conditions held
 everywhere: scikit-fem, nine-node elements, small strain, 48 x 48 and 96 x 96 agreeing to 1e-5.
 """
 

@@ -1,7 +1,8 @@
 """Hertz line contact: two parallel cylinders, or a cylinder and a half-plane, without friction.
 
-Sources: H. Hertz (1881); K. L. Johnson, *Contact Mechanics* (1985), section 4.2(c), Eqs 4.43-4.49, and
-section 5.6 for the approach. x is measured along the surface from the centre of the contact, z into the body.
+Sources: H. Hertz (1881); K. L. Johnson, *Contact Mechanics* (1985), section 4.2(c), Eqs 4.43-4.49,
+and section 5.6 for the approach. x is measured along the surface from the centre of the contact, z
+into the body.
 """
 
 import numpy as np
@@ -12,7 +13,8 @@ from ._check import poisson_ratio, positive
 def composite_modulus(youngs_modulus, poisson, other_modulus=np.inf, other_poisson=0.0):
     """Plane-strain contact modulus E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, in Pa.
 
-    The other body is rigid unless given. Raises ``ValueError`` for a modulus <= 0 or nu outside (-1, 0.5].
+    The other body is rigid unless given. Raises ``ValueError`` for a modulus <= 0 or nu outside
+    (-1, 0.5].
     """
     positive(youngs_modulus=youngs_modulus)
     poisson_ratio(poisson=poisson, other_poisson=other_poisson)
@@ -24,7 +26,8 @@ def composite_modulus(youngs_modulus, poisson, other_modulus=np.inf, other_poiss
 def half_width(force, radius, modulus):
     """Half width of the contact a = sqrt(4 P R / (pi E*)), m (Johnson 1985, Eq. 4.43).
 
-    ``force`` P, N/m; ``radius`` R = 1/(1/R1 + 1/R2), m; ``modulus`` E*, Pa; scalars or arrays that broadcast.
+    ``force`` P, N/m; ``radius`` R = 1/(1/R1 + 1/R2), m; ``modulus`` E*, Pa; scalars or arrays that
+    broadcast.
     Raises ``ValueError`` unless all are positive.
     """
     positive(force=force, radius=radius, modulus=modulus)
@@ -44,7 +47,9 @@ def peak_pressure(force, half_width):
 
 
 def pressure(x, half_width, peak_pressure):
-    """Contact pressure p0 sqrt(1 - x^2/a^2), zero outside, Pa, shape of ``x`` (Johnson 1985, Eq. 4.44)."""
+    """Contact pressure p0 sqrt(1 - x^2/a^2), zero outside, Pa, shape of ``x`` (Johnson 1985, Eq.
+    4.44).
+    """
     positive(half_width=half_width)
     return peak_pressure * np.sqrt(
         np.maximum(0.0, 1 - (np.asarray(x, dtype=float) / half_width) ** 2)
@@ -52,14 +57,17 @@ def pressure(x, half_width, peak_pressure):
 
 
 def load_fraction(x, half_width):
-    """Share of the force carried within ``|x|`` of the centre, (2/pi)(s sqrt(1 - s^2) + asin s), s = x/a."""
+    """Share of the force carried within ``|x|`` of the centre, (2/pi)(s sqrt(1 - s^2) + asin s), s
+    = x/a.
+    """
     positive(half_width=half_width)
     s = np.clip(np.abs(np.asarray(x, dtype=float)) / half_width, 0, 1)
     return 2 / np.pi * (s * np.sqrt(1 - s**2) + np.arcsin(s))
 
 
 def stresses(x, z, half_width, peak_pressure):
-    """Stresses ``(sigma_x, sigma_z, tau_xz)`` below the contact, Pa (McEwen 1949; Johnson 1985, Eq. 4.49).
+    """Stresses ``(sigma_x, sigma_z, tau_xz)`` below the contact, Pa (McEwen 1949; Johnson 1985, Eq.
+    4.49).
 
     ``x`` and ``z`` (>= 0, into the body), m, broadcast together. Raises ``ValueError`` for z < 0.
     """
@@ -80,10 +88,11 @@ def stresses(x, z, half_width, peak_pressure):
 
 
 def axis_stresses(z, half_width, peak_pressure, poisson):
-    """Stresses on the axis x = 0, a dict of arrays of the shape of ``z``, Pa (Johnson 1985, Eqs 4.46-4.47).
+    """Stresses on the axis x = 0, a dict of arrays of the shape of ``z``, Pa (Johnson 1985, Eqs
+    4.46-4.47).
 
-    Keys ``sigma_x``, ``sigma_z``, ``sigma_y`` (out of plane, plane strain), ``max_shear`` (in plane) and
-    ``von_mises``. Raises ``ValueError`` for nu outside (-1, 0.5].
+    Keys ``sigma_x``, ``sigma_z``, ``sigma_y`` (out of plane, plane strain), ``max_shear`` (in
+    plane) and ``von_mises``. Raises ``ValueError`` for nu outside (-1, 0.5].
     """
     poisson_ratio(poisson=poisson)
     sigma_x, sigma_z, _ = stresses(
@@ -103,11 +112,12 @@ def axis_stresses(z, half_width, peak_pressure, poisson):
 
 
 def approach_to_depth(force, half_width, modulus, poisson, depth):
-    """Sinking of the contact's centre relative to the point of the half-plane at ``depth`` below it, m.
+    """Sinking of the contact's centre relative to the point of the half-plane at ``depth`` below
+    it, m.
 
     delta = P (1 - nu^2)/(pi E) [2 ln(2 d/a) - nu/(1 - nu)] for d >> a (Johnson 1985, section 5.6);
-    ``modulus`` is E/(1 - nu^2). The sinking relative to infinity does not exist. Raises ``ValueError`` unless
-    depth > a.
+    ``modulus`` is E/(1 - nu^2). The sinking relative to infinity does not exist. Raises
+    ``ValueError`` unless depth > a.
     """
     positive(force=force, half_width=half_width, modulus=modulus, depth=depth)
     poisson_ratio(poisson=poisson)

@@ -9,9 +9,11 @@ from ._check import positive
 
 
 def limit_ratio(slope, friction):
-    """Sideways force over normal force F/G = (tan(alpha) + mu)/(1 - mu tan(alpha)) at which sliding uphill starts.
+    """Sideways force over normal force F/G = (tan(alpha) + mu)/(1 - mu tan(alpha)) at which sliding
+    uphill starts.
 
-    ``slope`` is tan(alpha), negative downhill. Raises ``ValueError`` for mu < 0, or where no force suffices (mu tan(alpha) >= 1).
+    ``slope`` is tan(alpha), negative downhill. Raises ``ValueError`` for mu < 0, or where no force
+    suffices (mu tan(alpha) >= 1).
     """
     slope, friction = np.asarray(slope, dtype=float), np.asarray(friction, dtype=float)
     if np.any(friction < 0):

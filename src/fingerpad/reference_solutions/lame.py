@@ -22,8 +22,9 @@ def radial_displacement(
 ):
     """Radial displacement u_r(r) = (1 + nu)/E [(1 - 2 nu) A r + B/r], m, of the shape of ``r``.
 
-    A = (p_i a^2 - p_o b^2)/(b^2 - a^2), B = (p_i - p_o) a^2 b^2/(b^2 - a^2). Pressures in Pa, nu up to and
-    including 0.5. Raises ``ValueError`` for radii out of order, a modulus <= 0 or nu outside (-1, 0.5].
+    A = (p_i a^2 - p_o b^2)/(b^2 - a^2), B = (p_i - p_o) a^2 b^2/(b^2 - a^2). Pressures in Pa, nu up
+    to and including 0.5. Raises ``ValueError`` for radii out of order, a modulus <= 0 or nu outside
+    (-1, 0.5].
     """
     positive(youngs_modulus=youngs_modulus)
     poisson_ratio(poisson=poisson)

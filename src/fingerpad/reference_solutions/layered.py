@@ -1,8 +1,8 @@
 """Bonded elastic layers in plane strain under a frictionless normal load.
 
-Sources: K. L. Johnson, *Contact Mechanics* (1985), section 5.8 for the thin incompressible layer (re-derived
-here from the lubrication argument); J. Meijers (1968); G. M. L. Gladwell (1980), chapter on layers, for the
-transfer of Fourier modes, solved here as one small linear system a mode.
+Sources: K. L. Johnson, *Contact Mechanics* (1985), section 5.8 for the thin incompressible layer
+(re-derived here from the lubrication argument); J. Meijers (1968); G. M. L. Gladwell (1980),
+chapter on layers, for the transfer of Fourier modes, solved here as one small linear system a mode.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,8 @@ from ._check import poisson_ratio, positive
 
 
 def thin_layer_half_width(force, radius, thickness, youngs_modulus):
-    """Half width of a rigid cylinder on a thin bonded incompressible layer, a = (45 P R b^3/(2 E))^(1/5), m.
+    """Half width of a rigid cylinder on a thin bonded incompressible layer, a = (45 P R b^3/(2
+    E))^(1/5), m.
 
     ``thickness`` b, m; valid for a >> b. Johnson (1985), section 5.8: P = 2 E a^5/(45 R b^3).
     """
@@ -45,7 +46,8 @@ def thin_layer_depth(half_width, radius):
 
 
 def incompressible_kernel(wavenumber_times_thickness, ratio):
-    """Kernel K(kh) of an incompressible layer (mu1, h) bonded to an incompressible half-plane (mu2).
+    """Kernel K(kh) of an incompressible layer (mu1, h) bonded to an incompressible half-plane
+    (mu2).
 
     ``ratio`` is mu2/mu1.     Under p cos(kx) without shear the surface sinks by p/(2 mu1 k) K cos(kx). K -> 1
     for kh -> infinity and mu1/mu2 for kh -> 0. Of the shape of ``wavenumber_times_thickness``; raises
@@ -61,7 +63,9 @@ def incompressible_kernel(wavenumber_times_thickness, ratio):
 
 @dataclass(frozen=True)
 class Layer:
-    """One layer of a stack, from the loaded surface down: thickness (m, ``inf`` for a half-plane), moduli."""
+    """One layer of a stack, from the loaded surface down: thickness (m, ``inf`` for a half-plane),
+    moduli.
+    """
 
     thickness: float
     shear_modulus: float
@@ -69,10 +73,12 @@ class Layer:
 
 
 def _mode(layer, wavenumber, depth):
-    """Rows (u_x, u_y, sigma_yy, sigma_xy), columns the Airy constants, at ``depth`` below the layer's top.
+    """Rows (u_x, u_y, sigma_yy, sigma_xy), columns the Airy constants, at ``depth`` below the
+    layer's top.
 
-    Airy function f(d) cos(kx) with f = exp(-kd), kd exp(-kd), exp(k(d - h)), k(d - h) exp(k(d - h)); d points
-    down, y up. Displacements are multiplied by 2 k and the stresses divided by k^2, all amplitudes.
+    Airy function f(d) cos(kx) with f = exp(-kd), kd exp(-kd), exp(k(d - h)), k(d - h) exp(k(d -
+    h)); d points down, y up. Displacements are multiplied by 2 k and the stresses divided by k^2,
+    all amplitudes.
     """
     h, nu = layer.thickness, layer.poisson_ratio
     s = wavenumber * depth
@@ -95,12 +101,14 @@ def _mode(layer, wavenumber, depth):
 
 
 def stack_compliance(wavenumber, layers):
-    """Sinking of the surface over the pressure, for p cos(kx) on a stack of bonded layers, m/Pa; a float.
+    """Sinking of the surface over the pressure, for p cos(kx) on a stack of bonded layers, m/Pa; a
+    float.
 
-    ``layers`` from the top down; a last layer of infinite thickness is a half-plane, otherwise the stack is
-    bonded to a rigid base. ``wavenumber`` k, 1/m; zero gives the uniform pressure with sides that cannot
-    move, the sum of h (1 - 2 nu)/(2 mu (1 - nu)). Exact for each k. Raises ``ValueError`` for an empty stack,
-    an infinite layer that is not the last, bad moduli or a negative wavenumber.
+    ``layers`` from the top down; a last layer of infinite thickness is a half-plane, otherwise the
+    stack is bonded to a rigid base. ``wavenumber`` k, 1/m; zero gives the uniform pressure with
+    sides that cannot move, the sum of h (1 - 2 nu)/(2 mu (1 - nu)). Exact for each k. Raises
+    ``ValueError`` for an empty stack, an infinite layer that is not the last, bad moduli or a
+    negative wavenumber.
     """
     if not layers:
         raise ValueError("a stack needs at least one layer")

@@ -1,11 +1,10 @@
 """A rigid profile pressed without friction on a stack of bonded layers, plane strain, small strain.
 
 Numerical but independent of finite elements: pressures on a regular grid, one Fourier kernel
-(:func:`layered.stack_compliance`), and an exact active set. The problem is periodic and even, which is the
-same as a strip whose two sides slide on smooth walls. Error of first order in the grid spacing at the
-contact's edge.
-Source of the approach: K. L. Johnson, *Contact Mechanics* (1985), section 5.9; I. A. Polonsky & L. M. Keer
-(1999).
+(:func:`layered.stack_compliance`), and an exact active set. The problem is periodic and even, which
+is the same as a strip whose two sides slide on smooth walls. Error of first order in the grid
+spacing at the contact's edge. Source of the approach: K. L. Johnson, *Contact Mechanics* (1985),
+section 5.9; I. A. Polonsky & L. M. Keer (1999).
 """
 
 from dataclasses import dataclass
@@ -19,8 +18,8 @@ from . import layered
 class StripContact:
     """Solution on the half strip 0 <= x <= L: ``x`` (n,) m, ``pressure`` (n,) Pa, ``depth`` m.
 
-    ``force`` is that of both halves, N/m. ``half_width`` lies midway between the last grid point in contact
-    and the first one out of it.
+    ``force`` is that of both halves, N/m. ``half_width`` lies midway between the last grid point in
+    contact and the first one out of it.
     """
 
     x: np.ndarray
@@ -31,13 +30,14 @@ class StripContact:
 
 
 def press(profile, layers, half_length, force, points=512):
-    """Press a rigid even profile on a strip of the given half length; returns a :class:`StripContact`.
+    """Press a rigid even profile on a strip of the given half length; returns a
+    :class:`StripContact`.
 
     ``profile``: callable x -> height of the rigid surface above its lowest point, m (at x = 0 ..
-    half_length); ``force`` N/m over the whole width. ``depth`` is how far the lowest point went below the
-    undeformed surface.
-    Raises ``ValueError`` for a force <= 0 or a contact that covers the whole strip, ``RuntimeError`` when the
-    active set does not settle.
+    half_length); ``force`` N/m over the whole width. ``depth`` is how far the lowest point went
+    below the undeformed surface.
+    Raises ``ValueError`` for a force <= 0 or a contact that covers the whole strip,
+    ``RuntimeError`` when the active set does not settle.
     """
     if not force > 0:
         raise ValueError("force must be positive")

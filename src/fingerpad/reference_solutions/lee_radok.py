@@ -1,8 +1,9 @@
-"""Viscoelastic line contact: a rigid cylinder on an incompressible half-plane, valid while the contact grows.
+"""Viscoelastic line contact: a rigid cylinder on an incompressible half-plane, valid while the
+contact grows.
 
 P(t) = (pi/R) int G(t - s) d(a^2)/ds ds, from the elastic P = pi G a^2/R (E* = 4 G when nu = 0.5).
-Sources: E. H. Lee & J. R. M. Radok (1960); K. L. Johnson, *Contact Mechanics* (1985), section 6.5. Not valid
-once the contact recedes: T. C. T. Ting (1966).
+Sources: E. H. Lee & J. R. M. Radok (1960); K. L. Johnson, *Contact Mechanics* (1985), section 6.5.
+Not valid once the contact recedes: T. C. T. Ting (1966).
 """
 
 import numpy as np
@@ -20,10 +21,11 @@ def _growing(half_width):
 
 
 def force_from_width(times, half_widths, radius, shear_modulus, g, tau):
-    """Force at ``times`` for a contact whose a^2 is linear between the samples, N/m, shape ``(n,)``.
+    """Force at ``times`` for a contact whose a^2 is linear between the samples, N/m, shape
+    ``(n,)``.
 
-    ``shear_modulus`` is G_0, Pa. The width jumps to its first value at ``times[0]``. Raises ``ValueError``
-    when the contact shrinks, or for bad series.
+    ``shear_modulus`` is G_0, Pa. The width jumps to its first value at ``times[0]``. Raises
+    ``ValueError`` when the contact shrinks, or for bad series.
     """
     positive(radius=radius, shear_modulus=shear_modulus)
     squared = _growing(half_widths)
@@ -43,19 +45,25 @@ def width_from_force(times, forces, radius, shear_modulus, g, tau):
 
 
 def step_creep_width(t, radius, force, shear_modulus, g, tau):
-    """Half width under a force applied at once and held, sqrt(P R J(t)/pi), m, of the shape of ``t``."""
+    """Half width under a force applied at once and held, sqrt(P R J(t)/pi), m, of the shape of
+    ``t``.
+    """
     positive(radius=radius, force=force, shear_modulus=shear_modulus)
     return np.sqrt(force * radius / (np.pi * shear_modulus) * prony_point.creep(t, g, tau))
 
 
 def held_width_force(t, half_width, radius, shear_modulus, g, tau):
-    """Force while a contact made at once is held, P(t) = pi a^2 G(t)/R, N/m, of the shape of ``t``."""
+    """Force while a contact made at once is held, P(t) = pi a^2 G(t)/R, N/m, of the shape of
+    ``t``.
+    """
     positive(half_width=half_width, radius=radius, shear_modulus=shear_modulus)
     return np.pi * half_width**2 / radius * shear_modulus * prony_point.relaxation(t, g, tau)
 
 
 def ramp_force(t, rate, radius, shear_modulus, g, tau):
-    """Force while a^2 = ``rate`` t, N/m: (pi k/R) G_0 [(1 - sum g) t + sum g_i tau_i (1 - exp(-t/tau_i))]."""
+    """Force while a^2 = ``rate`` t, N/m: (pi k/R) G_0 [(1 - sum g) t + sum g_i tau_i (1 -
+    exp(-t/tau_i))].
+    """
     positive(rate=rate, radius=radius, shear_modulus=shear_modulus)
     g, tau = prony_point._series(g, tau)
     t = np.asarray(t, dtype=float)
@@ -64,10 +72,11 @@ def ramp_force(t, rate, radius, shear_modulus, g, tau):
 
 
 def force_by_quadrature(t, width_squared_rate, radius, relaxation_modulus):
-    """Force at one time for any G(t) and any smooth a^2 starting from zero, N/m, by numerical convolution.
+    """Force at one time for any G(t) and any smooth a^2 starting from zero, N/m, by numerical
+    convolution.
 
-    ``width_squared_rate`` s -> d(a^2)/ds, m^2/s; ``relaxation_modulus`` t -> G, Pa; both callables of a
-    float.
+    ``width_squared_rate`` s -> d(a^2)/ds, m^2/s; ``relaxation_modulus`` t -> G, Pa; both callables
+    of a float.
     """
     positive(t=t, radius=radius)
     integral, _ = quad(

@@ -1,11 +1,12 @@
 """Manufactured plane-strain displacement fields and the body forces that make them solutions.
 
-A :class:`Field` gives u, grad u and the second gradient in closed form; :func:`small_strain_body_force` and
+A :class:`Field` gives u, grad u and the second gradient in closed form;
+:func:`small_strain_body_force` and
 :func:`finite_strain_body_force` turn it into b = -div sigma or b = -Div P without any numerical
-differentiation (b_i = -A_iJkL u_k,JL, A the tangent of P). Finite strain: psi = mu/2 (J^(-2/3) I1 - 3) +
-kappa/2 (J - 1)^2 with the plane-strain I1 = tr C + 1. Shapes: points (..., 2), u (..., 2), grad u (..., 2, 2)
-with [i, J] = du_i/dX_J, second gradient (..., 2, 2, 2) with [i, J, K].
-Sources: P. J. Roache (2002) for the method; G. A. Holzapfel (2000), chapter 6, for the material.
+differentiation (b_i = -A_iJkL u_k,JL, A the tangent of P). Finite strain: psi = mu/2 (J^(-2/3) I1 -
+3) + kappa/2 (J - 1)^2 with the plane-strain I1 = tr C + 1. Shapes: points (..., 2), u (..., 2),
+grad u (..., 2, 2) with [i, J] = du_i/dX_J, second gradient (..., 2, 2, 2) with [i, J, K]. Sources:
+P. J. Roache (2002) for the method; G. A. Holzapfel (2000), chapter 6, for the material.
 """
 
 from collections.abc import Callable
@@ -18,7 +19,9 @@ from ._check import positive
 
 @dataclass(frozen=True)
 class Field:
-    """Displacement field: three callables of points (..., 2), m; shapes as in the module's docstring."""
+    """Displacement field: three callables of points (..., 2), m; shapes as in the module's
+    docstring.
+    """
 
     displacement: Callable
     gradient: Callable
@@ -47,7 +50,9 @@ def _split(points):
 
 
 def affine(matrix, offset=(0.0, 0.0)):
-    """Field u = matrix X + offset: a patch test, no body force. ``matrix`` (2, 2), ``offset`` (2,) m."""
+    """Field u = matrix X + offset: a patch test, no body force. ``matrix`` (2, 2), ``offset`` (2,)
+    m.
+    """
     matrix, offset = np.array(matrix, dtype=float), np.array(offset, dtype=float)
     return Field(
         lambda x: np.asarray(x) @ matrix.T + offset,
@@ -59,7 +64,8 @@ def affine(matrix, offset=(0.0, 0.0)):
 def gradient_of_potential(amplitude, wavenumber):
     """Field u = grad phi, phi = amplitude/wavenumber sin(kx + 0.3) cos(ky - 0.2): no rotation.
 
-    ``amplitude`` m, ``wavenumber`` k 1/m. Its divergence is -2 k amplitude sin(kx + 0.3) cos(ky - 0.2).
+    ``amplitude`` m, ``wavenumber`` k 1/m. Its divergence is -2 k amplitude sin(kx + 0.3) cos(ky -
+    0.2).
     """
     positive(wavenumber=wavenumber)
     return _trigonometric(amplitude, wavenumber, curl=False)
@@ -68,7 +74,8 @@ def gradient_of_potential(amplitude, wavenumber):
 def divergence_free(amplitude, wavenumber):
     """Field u = curl of amplitude/wavenumber sin(kx + 0.3) cos(ky - 0.2): div u = 0 at every point.
 
-    ``amplitude`` m, ``wavenumber`` k 1/m. The body force does not depend on kappa, so nu -> 0.5 makes sense.
+    ``amplitude`` m, ``wavenumber`` k 1/m. The body force does not depend on kappa, so nu -> 0.5
+    makes sense.
     """
     positive(wavenumber=wavenumber)
     return _trigonometric(amplitude, wavenumber, curl=True)
@@ -118,7 +125,8 @@ def _trigonometric(amplitude, k, curl):
 
 
 def isochoric_shears(amplitude, wavenumber):
-    """Field of two shears: x = X + a sin(kY), then y = Y + a sin(k x + 0.5); det F = 1 at every point.
+    """Field of two shears: x = X + a sin(kY), then y = Y + a sin(k x + 0.5); det F = 1 at every
+    point.
 
     ``amplitude`` a m, ``wavenumber`` k 1/m. Finite strain without change of volume.
     """
@@ -155,7 +163,9 @@ def isochoric_shears(amplitude, wavenumber):
 
 
 def small_strain_stress(field, points, shear_modulus, bulk_modulus):
-    """In-plane stress (..., 2, 2), Pa: 2 mu dev(eps) + kappa tr(eps) 1, the deviator three-dimensional."""
+    """In-plane stress (..., 2, 2), Pa: 2 mu dev(eps) + kappa tr(eps) 1, the deviator
+    three-dimensional.
+    """
     grad = field.gradient(points)
     strain = (grad + np.swapaxes(grad, -1, -2)) / 2
     trace = np.trace(strain, axis1=-2, axis2=-1)[..., None, None] * np.eye(2)
@@ -179,7 +189,9 @@ def _kinematics(field, points):
 
 
 def finite_strain_energy(field, points, shear_modulus, bulk_modulus):
-    """Energy psi (...), J/m^3. Raises ``ValueError`` where det F <= 0, as all finite-strain ones."""
+    """Energy psi (...), J/m^3. Raises ``ValueError`` where det F <= 0, as all finite-strain
+    ones.
+    """
     deformation, volume, _ = _kinematics(field, points)
     invariant = (deformation**2).sum((-1, -2)) + 1
     return (
@@ -198,7 +210,9 @@ def first_piola_stress(field, points, shear_modulus, bulk_modulus):
 
 
 def finite_strain_body_force(field, points, shear_modulus, bulk_modulus):
-    """Body force per undeformed volume b_i = -A_iJkL u_k,JL (..., 2), N/m^3, A = dP/dF in closed form."""
+    """Body force per undeformed volume b_i = -A_iJkL u_k,JL (..., 2), N/m^3, A = dP/dF in closed
+    form.
+    """
     deformation, volume, inverse = _kinematics(field, points)
     second = field.second_gradient(points)
     invariant = (deformation**2).sum((-1, -2)) + 1
@@ -227,9 +241,11 @@ def finite_strain_body_force(field, points, shear_modulus, bulk_modulus):
 
 
 def nearly_incompressible(isochoric, dilatant, bulk_modulus, pressure_modulus):
-    """Field isochoric + (pressure_modulus/bulk_modulus) dilatant: pressure bounded as kappa -> infinity.
+    """Field isochoric + (pressure_modulus/bulk_modulus) dilatant: pressure bounded as kappa ->
+    infinity.
 
-    Small strain: pressure = pressure_modulus x div of ``dilatant`` when ``isochoric`` is free of divergence.
+    Small strain: pressure = pressure_modulus x div of ``dilatant`` when ``isochoric`` is free of
+    divergence.
     """
     positive(bulk_modulus=bulk_modulus, pressure_modulus=pressure_modulus)
     return isochoric + (pressure_modulus / bulk_modulus) * dilatant

@@ -1,9 +1,10 @@
 """The skin as an elastic half-plane: the continuum model of Phillips and Johnson (1981).
 
-One homogeneous, isotropic, linear elastic half-plane in plane strain: no layers, no bone, no time, small strain. The pad's curved
-skin enters through the gap alone, so a plate or cylinder presses it as Hertz's line contact does; below, stresses add up from
-strips of uniform pressure, for any pressure that was found.
-Sources: J. R. Phillips and K. O. Johnson, J. Neurophysiol. 46, 1204 (1981); K. L. Johnson, *Contact Mechanics* (1985), sections
+One homogeneous, isotropic, linear elastic half-plane in plane strain: no layers, no bone, no time,
+small strain. The pad's curved skin enters through the gap alone, so a plate or cylinder presses it
+as Hertz's line contact does; below, stresses add up from strips of uniform pressure, for any
+pressure that was found. Sources: J. R. Phillips and K. O. Johnson, J. Neurophysiol. 46, 1204
+(1981); K. L. Johnson, *Contact Mechanics* (1985), sections
 2.5 (strip), 4.2 and 5.6 (contact). x along the surface, z into the body.
 """
 
@@ -14,10 +15,12 @@ from ._check import poisson_ratio, positive
 
 
 def strip_stresses(x, z, edges, pressures):
-    """Stresses ``(sigma_x, sigma_z, tau_xz)`` below strips of uniform pressure, Pa, of the shape of ``x`` and ``z`` together.
+    """Stresses ``(sigma_x, sigma_z, tau_xz)`` below strips of uniform pressure, Pa, of the shape of
+    ``x`` and ``z`` together.
 
     Args:
-        x, z: m, z > 0. edges: (n + 1,) m, ascending ends of the strips. pressures: (n,) Pa, compression positive.
+        x, z: m, z > 0. edges: (n + 1,) m, ascending ends of the strips. pressures: (n,) Pa,
+        compression positive.
 
     Raises:
         ValueError: a point does not lie inside the body, or the edges do not ascend.
@@ -40,7 +43,9 @@ def strip_stresses(x, z, edges, pressures):
 
 
 def strains(sigma_x, sigma_z, tau_xz, youngs_modulus, poisson):
-    """Principal strains in the plane ``(tensile, compressive)``, both signed, of a plane-strain state of stress (Pa)."""
+    """Principal strains in the plane ``(tensile, compressive)``, both signed, of a plane-strain
+    state of stress (Pa).
+    """
     positive(youngs_modulus=youngs_modulus)
     poisson_ratio(poisson=poisson)
     plane, contraction = (1 - poisson**2) / youngs_modulus, poisson * (1 + poisson) / youngs_modulus
@@ -52,7 +57,8 @@ def strains(sigma_x, sigma_z, tau_xz, youngs_modulus, poisson):
 def strain_energy_density(sigma_x, sigma_z, tau_xz, shear, bulk, poisson):
     """Strain energy density, Pa: stress deviator on ``shear``, mean stress on ``bulk`` (Pa).
 
-    ``shear`` may be that of another time than the one the stresses (of ``poisson``) were found with.
+    ``shear`` may be that of another time than the one the stresses (of ``poisson``) were found
+    with.
     """
     positive(shear=shear, bulk=bulk)
     poisson_ratio(poisson=poisson)
@@ -66,7 +72,8 @@ def press(force, radius, youngs_modulus, poisson, thickness):
     """A rigid plate or cylinder on the half-plane: ``(depth m, half width m, peak pressure Pa)``.
 
     Args:
-        force: N/m. radius: m, 1/(1/pad + curvature). thickness: m, the depth of the point that the sinking refers to (the
+        force: N/m. radius: m, 1/(1/pad + curvature). thickness: m, the depth of the point that the
+        sinking refers to (the
             bone's): a half-plane has no other.
     """
     modulus = hertz.composite_modulus(youngs_modulus, poisson)

@@ -1,8 +1,9 @@
 """A material point of a linear viscoelastic solid whose relaxation modulus is a Prony series.
 
-G(t) = G_0 [1 - sum g_i (1 - exp(-t/tau_i))]: ``g`` are shares of the *instantaneous* modulus G_0, ``tau`` in
-s. All results are exact, so a time integrator can be asked for round-off at any step size.
-Sources: R. M. Christensen, *Theory of Viscoelasticity* (1982), chapters 1-3; J. C. Simo & T. J. R. Hughes,
+G(t) = G_0 [1 - sum g_i (1 - exp(-t/tau_i))]: ``g`` are shares of the *instantaneous* modulus G_0,
+``tau`` in s. All results are exact, so a time integrator can be asked for round-off at any step
+size. Sources: R. M. Christensen, *Theory of Viscoelasticity* (1982), chapters 1-3; J. C. Simo & T.
+J. R. Hughes,
 *Computational Inelasticity* (1998), section 10.3.
 """
 
@@ -22,9 +23,11 @@ def _series(g, tau):
 
 
 def relaxation(t, g, tau):
-    """Relaxation function G(t)/G_0, of the shape of ``t`` (s, >= 0): 1 at once, 1 - sum g in the long term.
+    """Relaxation function G(t)/G_0, of the shape of ``t`` (s, >= 0): 1 at once, 1 - sum g in the
+    long term.
 
-    Raises ``ValueError`` for a negative g, sum g >= 1, a tau <= 0 or unequal lengths (all functions here do).
+    Raises ``ValueError`` for a negative g, sum g >= 1, a tau <= 0 or unequal lengths (all functions
+    here do).
     """
     g, tau = _series(g, tau)
     t = np.asarray(t, dtype=float)[..., None]
@@ -34,9 +37,9 @@ def relaxation(t, g, tau):
 def creep_terms(g, tau):
     """Shares ``j`` and retardation times ``theta`` (s) of the creep function.
 
-    G_0 J(t) = 1 + sum j_k (1 - exp(-t/theta_k)). The generalised Maxwell solid under constant stress is a
-    linear system with a symmetric matrix; its eigenvalues are -1/theta_k. Arrays of the length of ``g``. One
-    term: theta = tau/(1 - g), j = g/(1 - g).
+    G_0 J(t) = 1 + sum j_k (1 - exp(-t/theta_k)). The generalised Maxwell solid under constant
+    stress is a linear system with a symmetric matrix; its eigenvalues are -1/theta_k. Arrays of the
+    length of ``g``. One term: theta = tau/(1 - g), j = g/(1 - g).
     """
     g, tau = _series(g, tau)
     drive = np.sqrt(g / tau)
@@ -45,14 +48,18 @@ def creep_terms(g, tau):
 
 
 def creep(t, g, tau):
-    """Creep function G_0 J(t), of the shape of ``t`` (s, >= 0): 1 at once, 1/(1 - sum g) in the long term."""
+    """Creep function G_0 J(t), of the shape of ``t`` (s, >= 0): 1 at once, 1/(1 - sum g) in the
+    long term.
+    """
     j, theta = creep_terms(g, tau)
     t = np.asarray(t, dtype=float)[..., None]
     return 1 - (j * np.expm1(-t / theta)).sum(-1)
 
 
 def _hereditary(times, values, final, shares, decay_times):
-    """Integral of [final + sum shares exp(-(t - s)/decay_times)] dv(s), exact for piecewise linear v."""
+    """Integral of [final + sum shares exp(-(t - s)/decay_times)] dv(s), exact for piecewise linear
+    v.
+    """
     times, values = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
     if times.ndim != 1 or times.shape != values.shape or np.any(np.diff(times) < 0):
         raise ValueError("times must be one-dimensional and not decrease, values of the same shape")
@@ -66,11 +73,12 @@ def _hereditary(times, values, final, shares, decay_times):
 
 
 def stress_from_strain(times, strains, g, tau, modulus=1.0):
-    """Stress at ``times`` for the strain history that is linear between the samples, Pa, shape ``(n,)``.
+    """Stress at ``times`` for the strain history that is linear between the samples, Pa, shape
+    ``(n,)``.
 
-    The strain jumps from zero to ``strains[0]`` at ``times[0]``; a repeated time is a jump. ``modulus`` is
-    the instantaneous one of the stress-strain pair (G_0 for tensor strain gives half the shear stress: use 2
-    G_0).
+    The strain jumps from zero to ``strains[0]`` at ``times[0]``; a repeated time is a jump.
+    ``modulus`` is the instantaneous one of the stress-strain pair (G_0 for tensor strain gives half
+    the shear stress: use 2 G_0).
     Raises ``ValueError`` for times that decrease or unequal shapes.
     """
     g, tau = _series(g, tau)
@@ -78,7 +86,8 @@ def stress_from_strain(times, strains, g, tau, modulus=1.0):
 
 
 def strain_from_stress(times, stresses, g, tau, modulus=1.0):
-    """Strain at ``times`` for the stress history that is linear between the samples, shape ``(n,)``.
+    """Strain at ``times`` for the stress history that is linear between the samples, shape
+    ``(n,)``.
 
     Counterpart of :func:`stress_from_strain`; exact likewise.
     """
@@ -94,5 +103,7 @@ def storage_and_loss(frequency, g, tau):
 
 
 def dissipation_per_cycle(amplitude, frequency, g, tau, modulus=1.0):
-    """Energy lost in one steady cycle of strain ``amplitude``, pi amplitude^2 G''(frequency), J/m^3."""
+    """Energy lost in one steady cycle of strain ``amplitude``, pi amplitude^2 G''(frequency),
+    J/m^3.
+    """
     return np.pi * amplitude**2 * modulus * storage_and_loss(frequency, g, tau)[1]

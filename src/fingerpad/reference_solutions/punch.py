@@ -1,6 +1,7 @@
 """Flat rigid punch with sharp edges on a half-plane.
 
-Source: K. L. Johnson, *Contact Mechanics* (1985), section 2.8 (with stick: N. I. Muskhelishvili 1949).
+Source: K. L. Johnson, *Contact Mechanics* (1985), section 2.8 (with stick: N. I. Muskhelishvili
+1949).
 """
 
 import numpy as np
@@ -9,7 +10,9 @@ from ._check import poisson_ratio, positive
 
 
 def pressure(x, half_width, force):
-    """Pressure P / (pi sqrt(a^2 - x^2)), Pa; infinite at the edges, zero outside (Johnson 1985, Eq. 2.64)."""
+    """Pressure P / (pi sqrt(a^2 - x^2)), Pa; infinite at the edges, zero outside (Johnson 1985, Eq.
+    2.64).
+    """
     positive(half_width=half_width, force=force)
     square = half_width**2 - np.asarray(x, dtype=float) ** 2
     with np.errstate(divide="ignore"):
@@ -35,16 +38,19 @@ def surface_drop(x, half_width, force, modulus):
 def stick_exponent(poisson):
     """Exponent eta = ln(3 - 4 nu)/(2 pi) of the edge field under full stick.
 
-    Zero for nu = 0.5: then stick and slip give the same pressure. Raises ``ValueError`` outside (-1, 0.5].
+    Zero for nu = 0.5: then stick and slip give the same pressure. Raises ``ValueError`` outside
+    (-1, 0.5].
     """
     poisson_ratio(poisson=poisson)
     return np.log(3 - 4 * poisson) / (2 * np.pi)
 
 
 def sticking_tractions(x, half_width, force, tangential_force, poisson):
-    """Pressure and shear traction (on the half-plane, along +x) under a punch that sticks everywhere, Pa, |x| < a.
+    """Pressure and shear traction (on the half-plane, along +x) under a punch that sticks
+    everywhere, Pa, |x| < a.
 
-    p + i q = 2 (1 - nu)/sqrt(3 - 4 nu) (P + i Q)/(pi sqrt(a^2 - x^2)) exp(i eta ln((a + x)/(a - x))), eta of
+    p + i q = 2 (1 - nu)/sqrt(3 - 4 nu) (P + i Q)/(pi sqrt(a^2 - x^2)) exp(i eta ln((a + x)/(a -
+    x))), eta of
     :func:`stick_exponent` (Johnson 1985, Eq. 2.69). Raises ``ValueError`` outside the punch.
     """
     positive(half_width=half_width, force=force)

@@ -1,9 +1,11 @@
 """The fingertip as a water bed: the membrane model of Srinivasan (1989).
 
-An incompressible fluid under a membrane of constant tension T that is held along two lines; both weightless and without friction.
-At rest the membrane is an arc of radius R over a rigid chord of half width w. Where nothing touches it is an arc again, of the
-radius r = T/p at the pressure p; where a rigid cylinder of radius rho touches it follows the cylinder and carries p + T/rho. The
-area under it stays. That is the finite-deflection form of the model; for shallow membranes and line loads it becomes
+An incompressible fluid under a membrane of constant tension T that is held along two lines; both
+weightless and without friction. At rest the membrane is an arc of radius R over a rigid chord of
+half width w. Where nothing touches it is an arc again, of the radius r = T/p at the pressure p;
+where a rigid cylinder of radius rho touches it follows the cylinder and carries p + T/rho. The area
+under it stays. That is the finite-deflection form of the model; for shallow membranes and line
+loads it becomes
 :func:`line_load_profile`. There is no strain in a fluid, hence no strain energy at a receptor.
 Source: M. A. Srinivasan, J. Biomech. 22, 343 (1989).
 """
@@ -18,7 +20,9 @@ from ._check import positive
 
 @dataclass(frozen=True)
 class Pressed:
-    """A pressed membrane: depth m, contact half width m, contact pressure Pa (uniform), force N/m, length of the membrane m."""
+    """A pressed membrane: depth m, contact half width m, contact pressure Pa (uniform), force N/m,
+    length of the membrane m.
+    """
 
     depth: float
     half_width: float
@@ -28,9 +32,11 @@ class Pressed:
 
 
 def line_load_profile(x, depth, half_length):
-    """Downward deflection at ``x`` of a flat membrane of half length L under a line load at its middle, m, of the shape of ``x``.
+    """Downward deflection at ``x`` of a flat membrane of half length L under a line load at its
+    middle, m, of the shape of ``x``.
 
-    depth (1 - 4 s + 3 s^2), s = |x|/L: parabolas that leave the fluid's area as it is. The force is 8 T depth / L.
+    depth (1 - 4 s + 3 s^2), s = |x|/L: parabolas that leave the fluid's area as it is. The force is
+    8 T depth / L.
     """
     positive(half_length=half_length)
     s = np.abs(np.asarray(x, float)) / half_length
@@ -46,7 +52,8 @@ def rest_height(radius, half_width):
 
 
 def press(force, tension, radius, half_width, curvature=0.0):
-    """Press a rigid cylinder of ``curvature`` (1/m; 0: a plate) by ``force`` (N/m) into a membrane of ``tension`` (N/m).
+    """Press a rigid cylinder of ``curvature`` (1/m; 0: a plate) by ``force`` (N/m) into a membrane
+    of ``tension`` (N/m).
 
     Args:
         radius, half_width: m, of the membrane at rest.
@@ -75,7 +82,9 @@ def _arc(centre, radius, start, end):
 
 
 def _shape(contact, height, half_width, curvature):
-    """(area of the right half, length of it, radius of the free arc) at an indenter's ``height`` above the chord."""
+    """(area of the right half, length of it, radius of the free arc) at an indenter's ``height``
+    above the chord.
+    """
     theta = contact if curvature else 0.0
     reach = np.sin(theta) / curvature if curvature else contact
     touch = np.array([reach, height + (1 - np.cos(theta)) / curvature if curvature else height])

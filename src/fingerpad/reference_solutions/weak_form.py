@@ -1,19 +1,23 @@
-"""The weak form that is solved, and its tangent, as one writes them down: in scikit-fem's form language.
+"""The weak form that is solved, and its tangent, as one writes them down: in scikit-fem's form
+language.
 
-Find the displacement u of the reference body, with F = I + grad u, I1 = tr C, J = det F in three dimensions (F33 = 1), such that
+Find the displacement u of the reference body, with F = I + grad u, I1 = tr C, J = det F in three
+dimensions (F33 = 1), such that
 
     int P : grad v = external(v) for every v,      P = a P_iso(F) + p cof F + F H
     P_iso = d psi / dF,  psi = W(J^(-2/3) I1, J^(-4/3) I2)      p = kappa theta,  theta = projection of J - 1 on the modes q
 
-The projection (Simo, Taylor and Pister 1985) is element by element, ``sum_b G_ab theta_b = int q_a (J - 1)`` with ``G_ab`` =
-``int q_a q_b``; a share k (J - 1) of the pressure may be left unprojected. Prony branches of a step enter through the factor a
-and the history H, a second Piola-Kirchhoff stress (Simo 1987). The tangent is the derivative of P, with the pressure that the
+The projection (Simo, Taylor and Pister 1985) is element by element, ``sum_b G_ab theta_b = int q_a
+(J - 1)`` with ``G_ab`` = ``int q_a q_b``; a share k (J - 1) of the pressure may be left
+unprojected. Prony branches of a step enter through the factor a and the history H, a second
+Piola-Kirchhoff stress (Simo 1987). The tangent is the derivative of P, with the pressure that the
 linear step before predicted in its geometric part (Magisano, Leonetti and Garcea 2017):
 
-    int (d(a P_iso + F H) + p_lag d(cof F)) : grad v + sum_ab kappa G^-1_ab (int q_a cof F : grad du) (int q_b cof F : grad v)
+    int (d(a P_iso + F H) + p_lag d(cof F)) : grad v + sum_ab kappa G^-1_ab (int q_a cof F : grad
+    du) (int q_b cof F : grad v)
 
-For small strain P = 2 mu a dev eps(u) + p I + H and theta is the projection of div u. Nothing here is compiled, condensed or
-shared with the solver, whose element loops the tests hold to it.
+For small strain P = 2 mu a dev eps(u) + p I + H and theta is the projection of div u. Nothing here
+is compiled, condensed or shared with the solver, whose element loops the tests hold to it.
 """
 
 from collections.abc import Callable
@@ -43,7 +47,9 @@ _STEP = 1e-30  # of the complex-step derivatives, exact to round-off
 
 
 class NodalBubble(ElementTriP2B):
-    """Quadratic triangle whose bubble is the shape function of a node at the centroid (Crouzeix and Raviart 1973)."""
+    """Quadratic triangle whose bubble is the shape function of a node at the centroid (Crouzeix and
+    Raviart 1973).
+    """
 
     def lbasis(self, X, i):
         value, slope = super().lbasis(X, i)
@@ -52,7 +58,8 @@ class NodalBubble(ElementTriP2B):
         return value - at_centroid * bubble, slope - at_centroid * steep
 
 
-#: Displacement element, degree of the quadrature and number of pressure modes (None: one a quadrature point), by name.
+#: Displacement element, degree of the quadrature and number of pressure modes (None: one a
+#: quadrature point), by name.
 ELEMENTS = {
     "Q2P1": (ElementQuad2, 5, 3),
     "Q2": (ElementQuad2, 5, None),
@@ -81,7 +88,9 @@ def product(a, b):
 
 
 def isochoric_stress(f, slopes):
-    """dW/dF of W(J^(-2/3) I1, J^(-4/3) I2); ``slopes`` gives W's two derivatives at its two arguments, Pa."""
+    """dW/dF of W(J^(-2/3) I1, J^(-4/3) I2); ``slopes`` gives W's two derivatives at its two
+    arguments, Pa.
+    """
     c, j = product(np.swapaxes(f, 0, 1), f), determinant(f)
     i1 = c[0, 0] + c[1, 1] + 1
     i2 = (i1**2 - (c[0, 0] ** 2 + c[1, 1] ** 2 + 2 * c[0, 1] ** 2 + 1)) / 2
@@ -151,8 +160,8 @@ class WeakForm:
     """The forms on one mesh.
 
     Args:
-        points: (n, 2) m. cells: (ne, nodes) in the order of gmsh. element: key of :data:`ELEMENTS`. kappa, pointwise:
-        (ne,) Pa.
+        points: (n, 2) m. cells: (ne, nodes) in the order of gmsh. element: key of :data:`ELEMENTS`.
+        kappa, pointwise: (ne,) Pa.
     """
 
     points: np.ndarray
@@ -186,7 +195,9 @@ class WeakForm:
 
     @cached_property
     def modes(self) -> list[np.ndarray]:
-        """Pressure modes at the quadrature points, (ne, nq) each: 1, x and y about the element's middle, or one a point."""
+        """Pressure modes at the quadrature points, (ne, nq) each: 1, x and y about the element's
+        middle, or one a point.
+        """
         count, x = ELEMENTS[self.element][2], self.basis.global_coordinates()
         if count is None:
             return [
@@ -254,7 +265,9 @@ class WeakForm:
     def stiffness(
         self, u, slopes, lag: np.ndarray, factor: float = 1.0, history: np.ndarray | float = 0.0
     ) -> np.ndarray:
-        """Tangent (2n, 2n: x and y of each node) of finite strain; lag: (ne, nq), the dilatation that was predicted."""
+        """Tangent (2n, 2n: x and y of each node) of finite strain; lag: (ne, nq), the dilatation
+        that was predicted.
+        """
         fields = self._fields(u, lag, history)
         shape = tangent(slopes).assemble(self.basis, **fields, a=factor)
         return self._numbered(shape + self._projected(dilatation_change, u=fields["u"]))

@@ -1,8 +1,9 @@
 """A rigid sinusoidal surface pressed on a half-plane, without friction (partial contact).
 
-The surface is 2 h sin^2(pi x / lambda) away from the flat at first touch, crests at x = 0, lambda, ...
-Sources: H. M. Westergaard (1939); K. L. Johnson, *Contact Mechanics* (1985), section 13.2.
-The problem is periodic, so the field dies out as exp(-2 pi z/lambda) and no log-divergent approach spoils it.
+The surface is 2 h sin^2(pi x / lambda) away from the flat at first touch, crests at x = 0, lambda,
+... Sources: H. M. Westergaard (1939); K. L. Johnson, *Contact Mechanics* (1985), section 13.2. The
+problem is periodic, so the field dies out as exp(-2 pi z/lambda) and no log-divergent approach
+spoils it.
 """
 
 import numpy as np
@@ -17,7 +18,8 @@ def full_contact_pressure(amplitude, wavelength, modulus):
 
 
 def mean_pressure(half_width, amplitude, wavelength, modulus):
-    """Mean pressure over a period for contacts of half width a <= lambda/2, p* sin^2(pi a/lambda), Pa.
+    """Mean pressure over a period for contacts of half width a <= lambda/2, p* sin^2(pi a/lambda),
+    Pa.
 
     Raises ``ValueError`` for a half width outside [0, lambda/2].
     """
@@ -31,7 +33,9 @@ def mean_pressure(half_width, amplitude, wavelength, modulus):
 
 
 def half_width(mean_pressure, amplitude, wavelength, modulus):
-    """Half width of each contact at a mean pressure in [0, p*], m; ``ValueError`` outside that range."""
+    """Half width of each contact at a mean pressure in [0, p*], m; ``ValueError`` outside that
+    range.
+    """
     ratio = np.asarray(mean_pressure) / full_contact_pressure(amplitude, wavelength, modulus)
     if np.any((ratio < 0) | (ratio > 1)):
         raise ValueError("mean_pressure must lie between 0 and the full-contact pressure")

@@ -1,6 +1,8 @@
-"""Which effects a scene may switch: one for each file in ``planning/effects``, where they are decided on.
+"""Which effects a scene may switch: one for each file in ``planning/effects``, where they are
+decided on.
 
-Planning stands above scenes and is not imported here: the names of its files are the words of the language.
+Planning stands above scenes and is not imported here: the names of its files are the words of the
+language.
 """
 
 from pathlib import Path

@@ -7,10 +7,11 @@
         flat: {stimulus: {shape: flat}}
         k210: {stimulus: {shape: cylinder, curvature: "210 1/m"}}
 
-A member is asked for as if it were a file beside the family's, ``ramp40_k210.yaml``. With several keys under ``over`` there is a
-member for every combination. ``extends: other.yaml`` starts from another file, whose ``over`` comes along: a list of words takes
-some of them, further keys change them. Mappings are merged, everything else is replaced. Names follow the order of the keys,
-those of the file itself before those of the file it extends.
+A member is asked for as if it were a file beside the family's, ``ramp40_k210.yaml``. With several
+keys under ``over`` there is a member for every combination. ``extends: other.yaml`` starts from
+another file, whose ``over`` comes along: a list of words takes some of them, further keys change
+them. Mappings are merged, everything else is replaced. Names follow the order of the keys, those of
+the file itself before those of the file it extends.
 """
 
 from __future__ import annotations
@@ -33,8 +34,9 @@ MOST_EXTENDED = 20
 
 @dataclass(frozen=True)
 class Written:
-    """A scene as it is written: its document, its tags (family, and the word under each key of ``over``), and the files it is in,
-    its own first."""
+    """A scene as it is written: its document, its tags (family, and the word under each key of
+    ``over``), and the files it is in, its own first.
+    """
 
     document: Any
     tags: Mapping[str, str]
@@ -42,7 +44,8 @@ class Written:
 
 
 def read_scene(path: str | Path) -> Written:
-    """What is written of a scene, in a file of its own or as a member of a family in the same folder.
+    """What is written of a scene, in a file of its own or as a member of a family in the same
+    folder.
 
     Raises:
         SceneError: there is neither, a file cannot be read, or it is a family itself.
@@ -62,7 +65,9 @@ def read_scene(path: str | Path) -> Written:
 
 
 def read_family(path: str | Path) -> dict[str, Written]:
-    """The scenes that a file describes, by name: one unless it has ``over``; SceneError if it cannot be read or is wrong."""
+    """The scenes that a file describes, by name: one unless it has ``over``; SceneError if it
+    cannot be read or is wrong.
+    """
     path = Path(path)
     document, files = _extended(path, ())
     if not isinstance(document, Mapping) or "over" not in document:
@@ -82,7 +87,8 @@ def read_family(path: str | Path) -> dict[str, Written]:
 
 
 def rests_on(path: str | Path) -> list[Path]:
-    """The files that a scene is made of: its own, those it extends, and the specimens, profile and mesh that it names.
+    """The files that a scene is made of: its own, those it extends, and the specimens, profile and
+    mesh that it names.
 
     Of what is not there nothing is said: reading the scene does.
     """

@@ -1,7 +1,7 @@
 """A scene: specimen, stimulus, motion, outputs and accuracy, read from YAML and checked.
 
-Quantities are strings with units in a document and SI floats in the models. In Python the models are made
-with SI floats directly (``Cylinder(curvature=210.0)``).
+Quantities are strings with units in a document and SI floats in the models. In Python the models
+are made with SI floats directly (``Cylinder(curvature=210.0)``).
 """
 
 from __future__ import annotations
@@ -151,12 +151,16 @@ class Outputs(Strict):
     ] = ()
     """Times of full fields: a list, or {every: "0.1 s"}; in a scene always the times."""
     per_leg: whole(1, MAXIMUM_SNAPSHOTS) | None = None
-    """Least number of outputs in each press and hold that takes time; left out, as many as the accuracy takes steps."""
+    """Least number of outputs in each press and hold that takes time; left out, as many as the
+    accuracy takes steps.
+    """
     responses: Annotated[
         tuple[Afferent, ...],
         BeforeValidator(_read_responses, json_schema_input_type=_ResponsesSurface),
     ] = ()
-    """Impulses predicted for the receptors: true (slowly adapting), or a list of slowly_adapting and rapidly_adapting."""
+    """Impulses predicted for the receptors: true (slowly adapting), or a list of slowly_adapting
+    and rapidly_adapting.
+    """
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
@@ -176,7 +180,9 @@ def _switch(value: Any) -> bool:
 
 
 class Discretisation(Strict):
-    """Accuracy by hand; what is left out is chosen by the plan, as for the tolerance or else as for `thesis`."""
+    """Accuracy by hand; what is left out is chosen by the plan, as for the tolerance or else as for
+    `thesis`.
+    """
 
     tolerance: number("a tolerance above 0 and below 1", 0.0, 1.0) | None = None
     """Relative error allowed: a run that turns out to be worse is refined and run again."""
@@ -282,7 +288,9 @@ class Scene(Strict):
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
-        """The name is the file's, the tags are the family's; specimen and outputs left out are the default specimen's."""
+        """The name is the file's, the tags are the family's; specimen and outputs left out are the
+        default specimen's.
+        """
         if context is not None:
             data["name"], data["tags"] = context.path.stem, context.tags
         data.setdefault("specimen", {})
@@ -371,7 +379,9 @@ class Scene(Strict):
 
     @property
     def end_time(self) -> float | None:
-        """Duration of the motion, s, steady legs taking none; None if a change of control leaves it open."""
+        """Duration of the motion, s, steady legs taking none; None if a change of control leaves it
+        open.
+        """
         return end_time(self.motion)
 
     @property
@@ -391,7 +401,8 @@ class Scene(Strict):
         """Copy of the scene with some of its keys changed, checked like a scene that was read.
 
         Args:
-            changes: dotted key -> value, such as ``{"specimen.layers.fat.youngs_modulus": "20 kPa", "motion[0].rate": 0.4}``:
+            changes: dotted key -> value, such as ``{"specimen.layers.fat.youngs_modulus": "20 kPa",
+            "motion[0].rate": 0.4}``:
                 text with a unit, an SI number, or a whole part (a model, or a mapping of its keys).
 
         Raises:
@@ -411,7 +422,8 @@ class Scene(Strict):
             raise explain(error, self.name, data, _TAGS) from None
 
     def with_accuracy(self, accuracy: Any) -> Scene:
-        """Copy of the scene at another accuracy: draft, thesis, fine, a tolerance as number or text, or a `Discretisation`.
+        """Copy of the scene at another accuracy: draft, thesis, fine, a tolerance as number or
+        text, or a `Discretisation`.
 
         It has the outputs of that accuracy, not those asked for in each leg (``outputs.per_leg``).
 
@@ -421,9 +433,11 @@ class Scene(Strict):
         return self.varied({"accuracy": accuracy, "outputs.per_leg": None})
 
     def canonical(self) -> dict[str, Any]:
-        """The scene as plain data for provenance: SI numbers, names and content hashes in place of paths.
+        """The scene as plain data for provenance: SI numbers, names and content hashes in place of
+        paths.
 
-        Equal scenes give equal dictionaries, in the same order of keys; `json.dumps` takes them as they are.
+        Equal scenes give equal dictionaries, in the same order of keys; `json.dumps` takes them as
+        they are.
         """
         data = self.model_dump(mode="json")
         mesh = self.specimen.mesh
@@ -456,7 +470,9 @@ def scene_of_record(data: Mapping[str, Any]) -> Scene:
 
 
 def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> Any:
-    """`part`, a model, mapping or list of them, as plain data with the value at `path` below it replaced."""
+    """`part`, a model, mapping or list of them, as plain data with the value at `path` below it
+    replaced.
+    """
     if not path:
         return value
     key, *rest = path
@@ -480,7 +496,9 @@ def _changed(part: Any, path: tuple[str | int, ...], value: Any, where: str) -> 
 
 
 def _middles(specimen: Any, context: Any) -> tuple[float, ...]:
-    """Where receptors of a slab or a half-round are unless the scene says: in the middles of its layers, m."""
+    """Where receptors of a slab or a half-round are unless the scene says: in the middles of its
+    layers, m.
+    """
     shapes = {"slab": Slab, "half_round": HalfRound}
     given = (
         specimen.get if isinstance(specimen, Mapping) else lambda key: getattr(specimen, key, None)
@@ -502,16 +520,19 @@ def load_scene(source: Scene | str | Path | Mapping[str, Any], name: str = "scen
     """Read and check a scene; one that is made already is given back.
 
     Args:
-        source: YAML file, a member of a family as if it were a file (:mod:`fingerpad.scenes.families`), or a dictionary. Paths
-            in it are relative to the file (of a dictionary: to the working directory), and names of specimens are looked up in
-            config/specimens of that folder, of the folders above, and of the package.
+        source: YAML file, a member of a family as if it were a file
+        (:mod:`fingerpad.scenes.families`), or a dictionary. Paths
+            in it are relative to the file (of a dictionary: to the working directory), and names of
+            specimens are looked up in config/specimens of that folder, of the folders above, and of
+            the package.
         name: of the scene of a dictionary; a file's is the file's.
 
     Returns:
         The scene, every quantity an SI float.
 
     Raises:
-        SceneError: the file cannot be read or anything in it is wrong; its text is one line. TypeError: it is none of these.
+        SceneError: the file cannot be read or anything in it is wrong; its text is one line.
+        TypeError: it is none of these.
     """
     if isinstance(source, Scene):
         return source
@@ -581,7 +602,9 @@ def _published(schema: dict[str, Any], title: str) -> dict[str, Any]:
 
 
 def _tidy(schema: Any) -> Any:
-    """Without generated titles, nulls and SI defaults, which documents lack; a stimulus's shape is required."""
+    """Without generated titles, nulls and SI defaults, which documents lack; a stimulus's shape is
+    required.
+    """
     if isinstance(schema, list):
         return [_tidy(item) for item in schema if item != {"type": "null"}]
     if not isinstance(schema, dict):

@@ -1,4 +1,6 @@
-"""The specimen of a scene: outline or mesh, layers, relaxation, named in config/specimens or given."""
+"""The specimen of a scene: outline or mesh, layers, relaxation, named in config/specimens or
+given.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,9 @@ DEFAULT_SPECIMEN = "thesis"
 
 
 class Outline(Strict):
-    """Parameters of the pad's symmetric section; apex at (0, apex_height), bottom at (0, -depth_below)."""
+    """Parameters of the pad's symmetric section; apex at (0, apex_height), bottom at (0,
+    -depth_below).
+    """
 
     apex_height: Length
     """Height of the skin's apex above the origin."""
@@ -185,7 +189,9 @@ class Layer(Strict):
     law: Annotated[ChosenLaw, BeforeValidator(_read_law, json_schema_input_type=_LAW_SURFACE)] = (
         ChosenLaw(name="neo_hooke")
     )
-    """How it stiffens when strained: the name of a law, or keys name and its constants; neo_hooke unless given."""
+    """How it stiffens when strained: the name of a law, or keys name and its constants; neo_hooke
+    unless given.
+    """
 
     @model_serializer(mode="wrap")
     def _without_default(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -199,7 +205,9 @@ class Layers(Strict):
     """The layers between skin and bone."""
 
     stratum_corneum: Layer | None = None
-    """Outermost part of the epidermis, if it is to be a layer of its own; keys left out are the epidermis's."""
+    """Outermost part of the epidermis, if it is to be a layer of its own; keys left out are the
+    epidermis's.
+    """
     epidermis: Layer
     """Outermost layer."""
     dermis: Layer
@@ -305,7 +313,9 @@ class Stack(Strict):
 
 
 class Slab(Stack):
-    """A flat slab of bonded layers on a fixed base, free at its sides: a robot's skin, a phantom."""
+    """A flat slab of bonded layers on a fixed base, free at its sides: a robot's skin, a
+    phantom.
+    """
 
     radius: ClassVar = None
 
@@ -324,7 +334,9 @@ class Slab(Stack):
 
 
 class HalfRound(Stack):
-    """Half of a cylinder of bonded layers on a fixed base, its top at x = 0; what the layers leave of it is a rigid core."""
+    """Half of a cylinder of bonded layers on a fixed base, its top at x = 0; what the layers leave
+    of it is a rigid core.
+    """
 
     radius: Length
     """Radius of the surface."""
@@ -379,9 +391,13 @@ class InnerRidges(Strict):
     shape: Literal["smooth", "sharp"]
     """A cosine, or its square: tips of half the radius, wider valleys."""
     phase: quantity("length", "any", words=("tip", "valley"))
-    """What is at x = 0 (valley: halfway between two primary ridges), or the lateral position of the nearest primary tip."""
+    """What is at x = 0 (valley: halfway between two primary ridges), or the lateral position of the
+    nearest primary tip.
+    """
     limiting: number("a number from 0 to below 1", 0.0, 1.0, low_included=True)
-    """Height over theirs of limiting ridges halfway between the primary ones, which makes all half as wide; 0 for none."""
+    """Height over theirs of limiting ridges halfway between the primary ones, which makes all half
+    as wide; 0 for none.
+    """
 
     @model_validator(mode="after")
     def _check(self) -> InnerRidges:
@@ -396,7 +412,9 @@ class InnerRidges(Strict):
 
 
 class OuterRidges(Strict):
-    """The papillary ridges of the skin, whose crests lie over the tips of the inner ones; the skin's mean height is kept."""
+    """The papillary ridges of the skin, whose crests lie over the tips of the inner ones; the
+    skin's mean height is kept.
+    """
 
     period: Length | None = None
     """From one ridge to the next, along the skin; the inner ridges' pitch unless given."""
@@ -414,7 +432,9 @@ class Ridges(Strict):
     outer: OuterRidges | None = None
     """Of the skin; none unless given, keys left out are the thesis file's."""
     half_width: Length
-    """Distance from the apex, along the skin, within which ridges stand in full; they fade out over one pitch beyond."""
+    """Distance from the apex, along the skin, within which ridges stand in full; they fade out over
+    one pitch beyond.
+    """
 
 
 class PronyTerm(Strict):
@@ -446,7 +466,9 @@ class SpecimenFile(Strict):
     moduli: Moduli | None = None
     """State that the moduli of `layers` describe."""
     prony: PronySeries | None = None
-    """Relaxation of the shear modulus, normalised by the instantaneous one; an empty list for none."""
+    """Relaxation of the shear modulus, normalised by the instantaneous one; an empty list for
+    none.
+    """
     contact_length: Length | None = None
     """Out-of-plane length that turns newtons into newtons per metre."""
     ridges: Ridges | None = None
@@ -469,7 +491,9 @@ def _lacks(layer: Any, key: str) -> bool:
 
 
 class Source:
-    """Where a document comes from, and the tags of the family it belongs to: finds the files it names and the specimens."""
+    """Where a document comes from, and the tags of the family it belongs to: finds the files it
+    names and the specimens.
+    """
 
     def __init__(self, path: Path, tags: Mapping[str, str] | None = None) -> None:
         self.path, self.tags = path, dict(tags or {})
@@ -486,7 +510,9 @@ class Source:
         yield BUILT_IN / "specimens"
 
     def specimen_files(self) -> dict[str, Path]:
-        """The specimen files by name; one in a nearer folder hides one of the same name farther away."""
+        """The specimen files by name; one in a nearer folder hides one of the same name farther
+        away.
+        """
         folders = [folder for folder in self._folders() if folder.is_dir()]
         return {
             file.stem: file
@@ -540,7 +566,9 @@ def _si(model: Strict) -> dict[str, Any]:
 
 
 def _named(part: str, surface: Any) -> BeforeValidator:
-    """Field that may name a specimen file; keys left out of a mapping are the default specimen's."""
+    """Field that may name a specimen file; keys left out of a mapping are the default
+    specimen's.
+    """
 
     def read(value: Any, info: ValidationInfo) -> Any:
         source = source_of(info.context)
@@ -574,7 +602,9 @@ _RIDGES = Literal["none", "inner", "inner_and_outer"]
 
 
 def _read_ridges(value: Any, info: ValidationInfo) -> Any:
-    """Ridges by a word or by keys; keys left out are the default specimen's, and there are outer ridges only if asked for."""
+    """Ridges by a word or by keys; keys left out are the default specimen's, and there are outer
+    ridges only if asked for.
+    """
     if value is None or isinstance(value, Ridges):
         return value
     if value == "none":
@@ -612,14 +642,18 @@ Names = Annotated[tuple[Name, ...], BeforeValidator(listed)]
 
 
 class Specimen(Strict):
-    """What is touched: a finger's outline, an external mesh, a slab or a half-round, and the material of its layers."""
+    """What is touched: a finger's outline, an external mesh, a slab or a half-round, and the
+    material of its layers.
+    """
 
     internal: ClassVar = frozenset({"assumed", "stated"})
 
     outline: Annotated[Outline, _named("outline", Outline)] | None = None
     """Section of the pad, by name or by keys; keys left out are the thesis's."""
     mesh: Path | None = None
-    """External mesh in mm instead of an outline: surfaces are layers, a curve skin is touched; bone, nail and base are held."""
+    """External mesh in mm instead of an outline: surfaces are layers, a curve skin is touched;
+    bone, nail and base are held.
+    """
     slab: Slab | None = None
     """A flat slab instead of an outline."""
     half_round: HalfRound | None = None
@@ -636,15 +670,21 @@ class Specimen(Strict):
         ]
         | None
     ) = None
-    """Elasticity of the layers, by name or by keys; keys left out are the thesis's. Of a mesh: a material for each surface."""
+    """Elasticity of the layers, by name or by keys; keys left out are the thesis's. Of a mesh: a
+    material for each surface.
+    """
     moduli: Moduli
     """State that the moduli of `layers` describe."""
     prony: Annotated[tuple[PronyTerm, ...], _named("prony", tuple[PronyTerm, ...])]
-    """Relaxation of shear, normalised by the instantaneous modulus: a name, a list of terms, or none."""
+    """Relaxation of shear, normalised by the instantaneous modulus: a name, a list of terms, or
+    none.
+    """
     ridges: Annotated[
         Ridges | None, BeforeValidator(_read_ridges, json_schema_input_type=Ridges | _RIDGES)
     ] = None
-    """Ridges of epidermis and skin: none, inner, inner_and_outer, or keys; keys left out are the thesis file's."""
+    """Ridges of epidermis and skin: none, inner, inner_and_outer, or keys; keys left out are the
+    thesis file's.
+    """
     contact_length: Length
     """Out-of-plane length that turns newtons into newtons per metre."""
     assumed: SkipJsonSchema[tuple[str, ...]] = Field((), exclude=True, repr=False)
@@ -654,7 +694,9 @@ class Specimen(Strict):
 
     @classmethod
     def fill(cls, data: dict[str, Any], context: Any) -> dict[str, Any]:
-        """Parts left out are the default specimen's; `moduli` comes with the file that names `layers`."""
+        """Parts left out are the default specimen's; `moduli` comes with the file that names
+        `layers`.
+        """
         source = source_of(context)
         given = {key for key, value in data.items() if value is not None}
         shapes = [key for key in _SHAPES if key in given]
@@ -673,7 +715,8 @@ class Specimen(Strict):
         if shapes == ["mesh"]:
             if not isinstance(data["mesh"], (str, Path)):
                 raise Problem("is not a path", "the path of a .msh file", ("mesh",))
-            # in Python a path may be one that a result remembers: whether it is there turns out when it is read
+            # in Python a path may be one that a result remembers: whether it is there turns out
+            # when it is read
             in_document = context is not None or isinstance(data["mesh"], str)
             data["mesh"] = source.resolve(data["mesh"]) if in_document else Path(data["mesh"])
             if in_document and not is_file(data["mesh"]):
@@ -715,7 +758,9 @@ class Specimen(Strict):
 
     @classmethod
     def _fill_stack(cls, data: dict[str, Any], shape: str, source: Source) -> dict[str, Any]:
-        """What a slab or a half-round leaves out; nothing but the contact length is the thesis's."""
+        """What a slab or a half-round leaves out; nothing but the contact length is the
+        thesis's.
+        """
         for key in ("layers", "ridges"):
             if data.get(key) not in (None, "none"):
                 raise Problem(
@@ -742,7 +787,9 @@ class Specimen(Strict):
     def _fill_plain(
         cls, data: dict[str, Any], left_out: list[str], source: Source
     ) -> dict[str, Any]:
-        """Layers under names of their own do not relax unless told, and their moduli are then those of the long term."""
+        """Layers under names of their own do not relax unless told, and their moduli are then those
+        of the long term.
+        """
         if data.get("prony") is None:
             data["prony"] = ()
             left_out.append("prony: none, elastic")
@@ -778,7 +825,9 @@ class Specimen(Strict):
         return self.layers
 
     def material(self, name: str) -> Layer:
-        """Material of a layer; an external mesh may part the stratum corneum where the scene does not."""
+        """Material of a layer; an external mesh may part the stratum corneum where the scene does
+        not.
+        """
         known = self.materials
         return (
             known["epidermis"] if name == "stratum_corneum" and name not in known else known[name]

@@ -40,7 +40,9 @@ def _counted_layers(*layered) -> tuple[int, float]:
 
 
 def counted(specimen, size, ridges) -> tuple[int, float]:
-    """Nodes and shortest edge (m) of the mesh of such a size of an outline (with `ridges` or None), a slab or a half-round."""
+    """Nodes and shortest edge (m) of the mesh of such a size of an outline (with `ridges` or None),
+    a slab or a half-round.
+    """
     if specimen.stack is not None:
         from fingerpad.specimen.quality import shortest_edge
         from fingerpad.specimen.stacks import build_stack_mesh
@@ -53,7 +55,8 @@ def counted(specimen, size, ridges) -> tuple[int, float]:
 
 
 def mesh_for(scene, plan):
-    """The mesh of a scene: its external mesh if it names one, else its outline, slab or half-round meshed as the plan says.
+    """The mesh of a scene: its external mesh if it names one, else its outline, slab or half-round
+    meshed as the plan says.
 
     Raises
     ------

@@ -1,10 +1,11 @@
-"""Building the pad's mesh from its outline, or the mesh of a slab or a half-round, as fine as a `MeshSize` says.
+"""Building the pad's mesh from its outline, or the mesh of a slab or a half-round, as fine as a
+`MeshSize` says.
 
-The built mesh of a plain pad is a mapped mesh: gmsh (through pygmsh) recombines three transfinite bands into second-order
-quads on the reference rectangle (column along the skin, row below it), and every node is then placed on the
-section. Rows in epidermis and dermis are exact offset curves of the skin; columns in the fat are normals of
-the bone. The left half is the mirror image of the right one, bit for bit. Ridges and a stratum corneum are
-meshed by `fingerpad.specimen.layered`.
+The built mesh of a plain pad is a mapped mesh: gmsh (through pygmsh) recombines three transfinite
+bands into second-order quads on the reference rectangle (column along the skin, row below it), and
+every node is then placed on the section. Rows in epidermis and dermis are exact offset curves of
+the skin; columns in the fat are normals of the bone. The left half is the mirror image of the right
+one, bit for bit. Ridges and a stratum corneum are meshed by `fingerpad.specimen.layered`.
 """
 
 from __future__ import annotations
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
 def _reference_quads(columns: int, bands: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
     """Second-order quads on the reference rectangle, of which x counts columns and -y counts rows.
 
-    Returns the elements' nodes as (elements, 9, 2) integer half steps (column, row), and bands (elements,).
+    Returns the elements' nodes as (elements, 9, 2) integer half steps (column, row), and bands
+    (elements,).
     """
     steps = _kept_quads(columns, bands)
     ends = np.concatenate(([0], np.cumsum(bands)))
@@ -40,7 +42,9 @@ def _reference_quads(columns: int, bands: tuple[int, ...]) -> tuple[np.ndarray, 
 
 
 def _kept_quads(columns: int, bands: tuple[int, ...]) -> np.ndarray:
-    """Nodes of the quads from the user's cache; else gmsh makes them, for which it takes a third of a second to be ready."""
+    """Nodes of the quads from the user's cache; else gmsh makes them, for which it takes a third of
+    a second to be ready.
+    """
     folder = cache_folder("quads")
     if folder is None:
         return ask("rectangle", columns, bands)
@@ -66,7 +70,8 @@ def _kept_quads(columns: int, bands: tuple[int, ...]) -> np.ndarray:
 def build_pad_mesh(
     outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False
 ) -> PadMesh:
-    """Mesh the pad with second-order quads (quad9), mirror-symmetric to the last bit where the pad is symmetric.
+    """Mesh the pad with second-order quads (quad9), mirror-symmetric to the last bit where the pad
+    is symmetric.
 
     Parameters
     ----------
@@ -76,8 +81,8 @@ def build_pad_mesh(
     corneum : whether the stratum corneum is a region of its own.
 
     Returns
-    -------
-    PadMesh, with nodes exactly at x = 0, mid-side nodes on the skin and the layers' true boundaries.
+    ------- PadMesh, with nodes exactly at x = 0, mid-side nodes on the skin and the layers' true
+    boundaries.
 
     Raises
     ------
@@ -97,7 +102,8 @@ def build_pad_mesh(
         len(columns) - 1, (epidermis_rows, skin_rows - epidermis_rows, fat_rows)
     )
 
-    # columns of the whole ring, clockwise from the apex; the right half's come first, bottom included
+    # columns of the whole ring, clockwise from the apex; the right half's come first, bottom
+    # included
     ring = 2 * (wide - 1)
     mirrored = right[-2:0:-1] * (-1.0, 1.0)
     points = np.concatenate((right, mirrored)).reshape(-1, 2)
@@ -141,7 +147,9 @@ def build_pad_mesh(
 def count_nodes(
     outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False
 ) -> int:
-    """Number of nodes of `build_pad_mesh` with these arguments, without building it (and without gmsh)."""
+    """Number of nodes of `build_pad_mesh` with these arguments, without building it (and without
+    gmsh).
+    """
     if ridges or corneum:
         from fingerpad.specimen.layered import count_layered_nodes
 
@@ -155,7 +163,9 @@ def count_nodes(
 def smallest_edge(
     outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None = None, corneum: bool = False
 ) -> float:
-    """Shortest element edge (m, corner to corner) of `build_pad_mesh` with these arguments (without gmsh)."""
+    """Shortest element edge (m, corner to corner) of `build_pad_mesh` with these arguments (without
+    gmsh).
+    """
     if ridges or corneum:
         return shortest_edge(build_pad_mesh(outline, size, ridges, corneum))
     curve = curve_of(outline)

@@ -1,4 +1,6 @@
-"""The one table of element kinds: how gmsh and meshio call them, and how the solver treats them by default."""
+"""The one table of element kinds: how gmsh and meshio call them, and how the solver treats them by
+default.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +9,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of element; nodes are corners counter-clockwise, mid-side nodes (0-1, 1-2, ...), centre.
+    """One kind of element; nodes are corners counter-clockwise, mid-side nodes (0-1, 1-2, ...),
+    centre.
 
     Attributes:
-        name: as in `PadMesh.element`. corners, nodes: their numbers. gmsh: its element type. meshio: its name there, and in VTK.
-        solved: key of the mixed element it is solved with (see :mod:`fingerpad.mechanics.elements`), None where it is raised or
-        completed first.
-        mirrored: order of the nodes of the mirror image that is counter-clockwise again.
+        name: as in `PadMesh.element`. corners, nodes: their numbers. gmsh: its element type.
+        meshio: its name there, and in VTK. solved: key of the mixed element it is solved with (see
+        :mod:`fingerpad.mechanics.elements`), None where it is raised or completed first. mirrored:
+        order of the nodes of the mirror image that is counter-clockwise again.
     """
 
     name: str

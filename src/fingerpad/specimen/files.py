@@ -1,9 +1,10 @@
 """Meshes as gmsh .msh files: the built mesh is written to one, a user's own mesh is read from one.
 
-Coordinates are in mm. Physical surfaces are the layers, under any names; a mesh with epidermis, dermis and fat (and
-stratum_corneum, if it has it) is a finger. A physical curve skin is what may be touched; at least one more is held: bone,
-nail, base, or what the scene says. Boundary edges in none of them are free. Linear and quadratic triangles and quads are read
-(format 2.2 or 4.1); an 8-node quad is given the centre node where its own (serendipity) map puts the centre.
+Coordinates are in mm. Physical surfaces are the layers, under any names; a mesh with epidermis,
+dermis and fat (and stratum_corneum, if it has it) is a finger. A physical curve skin is what may be
+touched; at least one more is held: bone, nail, base, or what the scene says. Boundary edges in none
+of them are free. Linear and quadratic triangles and quads are read (format 2.2 or 4.1); an 8-node
+quad is given the centre node where its own (serendipity) map puts the centre.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ def write_pad(mesh: PadMesh, path: str | Path) -> None:
     """Write `mesh` to a gmsh .msh file (version 4.1, mm), whole or not at all.
 
     Raises
-    ------
-    OSError : the file cannot be written, or not to its end (gmsh itself does not say that a disk is full).
+    ------ OSError : the file cannot be written, or not to its end (gmsh itself does not say that a
+    disk is full).
     """
     write_atomically(path, lambda partial: _write(mesh, partial, path))
 
@@ -85,7 +86,9 @@ def _require_mesh(path: Path) -> None:
 
 
 def _count(content: bytes, section: str) -> int:
-    """How many nodes or elements a .msh file says that it has; 0 where it says nothing that can be read."""
+    """How many nodes or elements a .msh file says that it has; 0 where it says nothing that can be
+    read.
+    """
     mark = f"\n${section}".encode()
     start = content.find(mark)
     line = (
@@ -191,7 +194,9 @@ def _with_centre(points: np.ndarray, cells: np.ndarray) -> tuple[np.ndarray, np.
 
 
 def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The named boundary facets, material on the right, from the end nodes of the file's line elements."""
+    """The named boundary facets, material on the right, from the end nodes of the file's line
+    elements.
+    """
     edges = element_edges(mesh.cells, mesh.element)
     n = len(mesh.points)
 
@@ -235,7 +240,9 @@ def _facets(path: Path, mesh: PadMesh, pairs: dict[str, np.ndarray]) -> dict[str
 
 
 def _require_joined(path: Path, mesh: PadMesh, pairs: np.ndarray, place) -> None:
-    """Two edges (m, 2) at one place are no boundary but a gap between elements that do not share their nodes."""
+    """Two edges (m, 2) at one place are no boundary but a gap between elements that do not share
+    their nodes.
+    """
     middles = mesh.points[pairs].mean(axis=1)
     double = twins(middles, _SAME_PLACE * np.ptp(mesh.points[:, 0]))
     if len(double):
@@ -290,8 +297,8 @@ def read_specimen_mesh(specimen) -> PadMesh:
     """The mesh a scene's specimen names, its surfaces checked against the layers' names, both ways.
 
     Parameters
-    ----------
-    specimen : has `mesh`, `materials` (by name), `stated` (names of the layers the scene gives), `fixed` and `free`.
+    ---------- specimen : has `mesh`, `materials` (by name), `stated` (names of the layers the scene
+    gives), `fixed` and `free`.
 
     Raises
     ------
@@ -323,21 +330,24 @@ def read_pad_mesh(
     """Read a pad from a gmsh .msh file (mm).
 
     Parameters
-    ----------
-    layers : names of its physical surfaces, outside to inside. Left out they are stratum_corneum (if it is there), epidermis,
+    ---------- layers : names of its physical surfaces, outside to inside. Left out they are
+    stratum_corneum (if it is there), epidermis,
         dermis and fat where the mesh has these three, else whatever surfaces it has.
-    fixed : names of the physical curves that are held, beside bone, nail and base. free : of those that are not (these
-        three may be among them). Boundary edges in none of these and not in the skin are free, as the curve "unnamed".
+    fixed : names of the physical curves that are held, beside bone, nail and base. free : of those
+    that are not (these
+        three may be among them). Boundary edges in none of these and not in the skin are free, as
+        the curve "unnamed".
 
     Returns
     -------
     PadMesh in m, with the elements of the file (quad8 becomes quad9), and `symmetric` found out.
 
     Raises
-    ------
-    MeshError : one line naming the file, what is wrong and what is allowed, when the file is missing or unreadable, it has no
-        skin or nothing that is held, a name is none of its own, an element is of another kind, in no layer, in two, or not
-        counter-clockwise, the mesh is not plane, a curve is not on the boundary, or coordinates cannot be mm.
+    ------ MeshError : one line naming the file, what is wrong and what is allowed, when the file is
+    missing or unreadable, it has no
+        skin or nothing that is held, a name is none of its own, an element is of another kind, in
+        no layer, in two, or not counter-clockwise, the mesh is not plane, a curve is not on the
+        boundary, or coordinates cannot be mm.
     """
     path = Path(path)
     if not is_file(path):

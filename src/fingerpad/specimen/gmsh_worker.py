@@ -1,8 +1,9 @@
 """gmsh, in a process of its own.
 
-gmsh has one session in a process, reads the user's configuration files and wants the main thread for its signals. Here nothing
-of that reaches the caller: its own gmsh session, its threads and its settings stay as they are, and a mesh that crashes gmsh
-crashes only this process. The process is started when it is first needed and ends with the one that started it.
+gmsh has one session in a process, reads the user's configuration files and wants the main thread
+for its signals. Here nothing of that reaches the caller: its own gmsh session, its threads and its
+settings stay as they are, and a mesh that crashes gmsh crashes only this process. The process is
+started when it is first needed and ends with the one that started it.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ from typing import Any
 import numpy as np
 
 PATIENCE = 60.0
-"""s that gmsh is given for a task: damaged files may keep it busy for ever, a mesh of half a million elements takes five."""
+"""s that gmsh is given for a task: damaged files may keep it busy for ever, a mesh of half a
+million elements takes five.
+"""
 
 
 class GmshError(RuntimeError):
@@ -32,7 +35,9 @@ class GmshError(RuntimeError):
 
 
 class GmshMissing(ImportError):
-    """gmsh cannot be loaded here; the message is one line that says what is missing and how to install it."""
+    """gmsh cannot be loaded here; the message is one line that says what is missing and how to
+    install it.
+    """
 
 
 # --- the caller's side --------------------------------------------------------------------------------------------------
@@ -167,7 +172,9 @@ def rectangle(gmsh, columns: int, bands: tuple[int, ...]) -> np.ndarray:
 
 
 def write(gmsh, path: str, points: np.ndarray, curves: list[tuple], surfaces: list[tuple]) -> None:
-    """Write a .msh file (version 4.1). `points` (n, 2) mm; of each group (name, gmsh's element type, node numbers from 1)."""
+    """Write a .msh file (version 4.1). `points` (n, 2) mm; of each group (name, gmsh's element
+    type, node numbers from 1).
+    """
     with _session(gmsh):
         gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
         gmsh.option.setNumber("Mesh.Binary", 0)
@@ -188,9 +195,9 @@ def read(gmsh, path: str) -> tuple[np.ndarray, np.ndarray, dict, dict, int]:
     """What is in a .msh file, nodes by their tags.
 
     Returns
-    -------
-    Node tags (n,), their places (n, 3), surfaces as {name: [(gmsh's type, element tags, node tags)]}, curves likewise, and the
-    number of all surface elements, in a group or not. A group without a name has its number.
+    ------- Node tags (n,), their places (n, 3), surfaces as {name: [(gmsh's type, element tags,
+    node tags)]}, curves likewise, and the number of all surface elements, in a group or not. A
+    group without a name has its number.
     """
     with _session(gmsh), tempfile.TemporaryDirectory(prefix="fingerpad-") as folder:
         # alone, for gmsh runs what stands in a .opt file beside a mesh

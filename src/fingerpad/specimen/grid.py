@@ -1,4 +1,6 @@
-"""Where the nodes of the built meshes go: graded divisions, columns along the skin, rows below it, positions on the section."""
+"""Where the nodes of the built meshes go: graded divisions, columns along the skin, rows below it,
+positions on the section.
+"""
 
 from __future__ import annotations
 
@@ -27,14 +29,18 @@ def divide(grid: np.ndarray, edge: np.ndarray, low: float, high: float, rounding
 
 
 def limit_growth(s: np.ndarray, edge: np.ndarray, growth: float) -> np.ndarray:
-    """The largest edge lengths up to `edge` that grow by at most the factor `growth` from one to the next."""
+    """The largest edge lengths up to `edge` that grow by at most the factor `growth` from one to
+    the next.
+    """
     slope = np.log(growth)  # edges of a linearly growing length form a geometric series
     rising = np.minimum.accumulate(edge - slope * s) + slope * s
     return (np.minimum.accumulate((rising + slope * s)[::-1]))[::-1] - slope * s
 
 
 def _grid_along(length: float, smallest: float, focus: list[float]) -> np.ndarray:
-    """Arc lengths at which edges are asked for: four to the smallest edge; of tiny edges, only from focus to focus and near."""
+    """Arc lengths at which edges are asked for: four to the smallest edge; of tiny edges, only from
+    focus to focus and near.
+    """
     count = max(4000, int(np.ceil(4.0 * length / smallest)))
     if count <= _LARGEST_GRID:
         return np.linspace(0.0, length, count + 1)
@@ -49,7 +55,8 @@ def _grid_along(length: float, smallest: float, focus: list[float]) -> np.ndarra
 def columns_of(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, int]:
     """Arc lengths of the column boundaries from apex to bottom, and the index of the nail's rim.
 
-    The end of the fine zone, the widest place (where the curvature jumps) and the nail's rim are boundaries.
+    The end of the fine zone, the widest place (where the curvature jumps) and the nail's rim are
+    boundaries.
     """
     breaks = [
         0.0,
@@ -101,7 +108,9 @@ def _layer_rows(low: float, high: float, first: float, size: MeshSize) -> np.nda
 
 
 def rows_of(curve: OutlineCurve, size: MeshSize) -> tuple[np.ndarray, tuple[int, int], int, float]:
-    """Depths of the skin's row boundaries, rows above its interfaces, rows in the fat, first fat edge."""
+    """Depths of the skin's row boundaries, rows above its interfaces, rows in the fat, first fat
+    edge.
+    """
     middle, inner = curve.layer_depths
     first = min(size.skin_radial_edge or size.layer_edge, size.layer_edge)
     epidermis = _layer_rows(0.0, middle, first, size)
@@ -126,7 +135,8 @@ def fat_rows_of(curve: OutlineCurve, size: MeshSize, above: float) -> tuple[int,
 def _fat_fractions(thickness: np.ndarray, count: int, edge: float) -> np.ndarray:
     """Row boundaries in the fat as fractions of its thickness (n,), shape (n, count + 1).
 
-    Edges form a geometric series starting with `edge` where the fat is thick enough; elsewhere all are equal.
+    Edges form a geometric series starting with `edge` where the fat is thick enough; elsewhere all
+    are equal.
     """
     powers = np.arange(count)
 
@@ -141,7 +151,9 @@ def _fat_fractions(thickness: np.ndarray, count: int, edge: float) -> np.ndarray
 
 
 def with_middles(values: np.ndarray) -> np.ndarray:
-    """The values with the mean of each neighbouring pair inserted between them, along the last axis."""
+    """The values with the mean of each neighbouring pair inserted between them, along the last
+    axis.
+    """
     refined = np.empty((*values.shape[:-1], 2 * values.shape[-1] - 1))
     refined[..., ::2] = values
     refined[..., 1::2] = 0.5 * (values[..., 1:] + values[..., :-1])

@@ -1,4 +1,6 @@
-"""Is a mesh that somebody brings one body with its skin up? What is wrong is refused before anything is solved."""
+"""Is a mesh that somebody brings one body with its skin up? What is wrong is refused before
+anything is solved.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +11,17 @@ from scipy.sparse.csgraph import connected_components
 from fingerpad.specimen.pad import SKIN, MeshError, PadMesh, element_edges
 
 _SLIT = np.radians(5.0)
-"""Angle of a gap between two boundary edges at a node, below which it is a slit between layers that were not joined."""
+"""Angle of a gap between two boundary edges at a node, below which it is a slit between layers that
+were not joined.
+"""
 _ON = 1e-3
 """Of an edge's length: nearer to it than this, a node of another element lies on it."""
 _JOIN = "allowed: layers that share their nodes (one curve for both, or gmsh's fragment)"
 
 
 def check_joined(mesh: PadMesh, name: str) -> None:
-    """Refuse a mesh that is not one piece, or whose elements lie beside each other without sharing their nodes.
+    """Refuse a mesh that is not one piece, or whose elements lie beside each other without sharing
+    their nodes.
 
     Raises
     ------
@@ -58,7 +63,9 @@ def _check_pieces(mesh: PadMesh, name: str, neighbours: np.ndarray) -> None:
 
 
 def _check_boundary(mesh: PadMesh, name: str, edges: np.ndarray, owner: np.ndarray) -> None:
-    """Boundary edges must not cross or touch each other but at common nodes, nor part by less than a slit there."""
+    """Boundary edges must not cross or touch each other but at common nodes, nor part by less than
+    a slit there.
+    """
     if edges.shape[1] == 3:  # along their middles
         edges, owner = np.concatenate([edges[:, [0, 2]], edges[:, [2, 1]]]), np.tile(owner, 2)
     ends = mesh.points[edges]
@@ -121,14 +128,17 @@ def _touch(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _slit(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Whether edges (n, 2) with one common node, their elements to the left, part there by less than a slit."""
+    """Whether edges (n, 2) with one common node, their elements to the left, part there by less
+    than a slit.
+    """
     ends_at = np.array([(a[:, i] == b[:, j]) for i in (0, 1) for j in (0, 1)])
     i, j = np.divmod(np.argmax(ends_at, axis=0), 2)
     rows = np.arange(len(a))
     start = points[a[rows, i]]
     u, v = points[a[rows, 1 - i]] - start, points[b[rows, 1 - j]] - start
     turn = np.arctan2(_cross(u, v), (u * v).sum(axis=1))
-    # between u and v, turned to the left of u, is material where u leaves the node and v comes to it
+    # between u and v, turned to the left of u, is material where u leaves the node and v comes to
+    # it
     material = np.where(turn > 0, (i == 0) & (j == 1), (j == 0) & (i == 1))
     return (np.abs(turn) < _SLIT) & ~(material & (turn != 0))
 
@@ -172,7 +182,9 @@ def check_skin(mesh: PadMesh, name: str) -> None:
 
 
 def meeting_place(mesh: PadMesh) -> tuple[float, int] | None:
-    """Height (m) of the skin over x = 0, where the indenter comes down, and the facet there; None where there is no skin."""
+    """Height (m) of the skin over x = 0, where the indenter comes down, and the facet there; None
+    where there is no skin.
+    """
     ends = mesh.points[mesh.curves[SKIN][:, :2]]
     near = 1e-6 * np.ptp(mesh.points[:, 0])
     over = np.flatnonzero((ends[..., 0].min(axis=1) <= near) & (ends[..., 0].max(axis=1) >= -near))
@@ -184,7 +196,9 @@ def meeting_place(mesh: PadMesh) -> tuple[float, int] | None:
 
 
 def _heights(ends: np.ndarray, near: float) -> np.ndarray:
-    """Heights (k,) at which segments (n, 2, 2) pass x = 0; of one that runs along it, its upper end."""
+    """Heights (k,) at which segments (n, 2, 2) pass x = 0; of one that runs along it, its upper
+    end.
+    """
     over = (ends[..., 0].min(axis=1) <= near) & (ends[..., 0].max(axis=1) >= -near)
     (x0, y0), (x1, y1) = ends[over, 0].T, ends[over, 1].T
     upright = np.abs(x1 - x0) <= near

@@ -1,8 +1,9 @@
 """Meshes of pads with ridges, or with a stratum corneum of its own.
 
-Ridges need columns three times as fine as the plain mesh's, but only where they are: between two rows of 3:1 templates (four
-quads each), one in the epidermis and one in the dermis, within the zone that has ridges. Outer ridges need them up to the skin.
-Below and beside stays the plain mesh. Nodes are named on a lattice of sixths of a column and eighths of a row, and then placed.
+Ridges need columns three times as fine as the plain mesh's, but only where they are: between two
+rows of 3:1 templates (four quads each), one in the epidermis and one in the dermis, within the zone
+that has ridges. Outer ridges need them up to the skin. Below and beside stays the plain mesh. Nodes
+are named on a lattice of sixths of a column and eighths of a row, and then placed.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ from fingerpad.specimen.quality import check_orientation
 from fingerpad.specimen.ridges import RidgedPad, RidgesLike
 
 PER_PITCH = 8  # elements from one ridge to the next, at least
-PER_HEIGHT = 4  # rows within a ridge's height of the interface, unless the ridges are low (see `_interface_edge`)
+# rows within a ridge's height of the interface, unless the ridges are low (see `_interface_edge`)
+PER_HEIGHT = 4
 _GROWTH = 1.25  # largest ratio of one row to the next between the templates
 _TEMPLATE = 0.9  # height of a row of templates, in columns of the plain mesh
 _C, _R = 6, 8  # lattice steps of a column and of a row
@@ -54,7 +56,9 @@ _CELLS = {
 
 @dataclass(frozen=True)
 class _Grid:
-    """Columns (arc lengths m) and rows (depths m) of the skin's layers, and which of them are refined."""
+    """Columns (arc lengths m) and rows (depths m) of the skin's layers, and which of them are
+    refined.
+    """
 
     columns: np.ndarray
     nail: int
@@ -74,7 +78,9 @@ def ridge_column(size: MeshSize, ridged: RidgedPad) -> float:
 
 
 def apex_column(outline: OutlineLike, size: MeshSize, ridges: RidgesLike) -> float:
-    """Edge (m) along the skin of the columns at the apex from which the ridges' are made: these are a third as wide."""
+    """Edge (m) along the skin of the columns at the apex from which the ridges' are made: these are
+    a third as wide.
+    """
     return min(
         [
             ridge_column(size, RidgedPad(outline, ridges)),
@@ -92,8 +98,8 @@ def skin_edge(outline: OutlineLike, size: MeshSize, ridges: RidgesLike, edge: fl
 def _interface_edge(fine: float, growth: float, ridged: RidgedPad) -> float:
     """Edge (m) across the interface; `fine` is the edge along it.
 
-    Not below a fortieth of the distance between ridges, which matters for ridges lower than a quarter of it: strains about
-    them fade over that distance, not over their height.
+    Not below a fortieth of the distance between ridges, which matters for ridges lower than a
+    quarter of it: strains about them fade over that distance, not over their height.
     """
     inner, slope = ridged.inner, np.log(growth)
     room = min(ridged.interface - ridged.above, ridged.below - ridged.interface)
@@ -233,7 +239,9 @@ def _places(
 def build_layered_mesh(
     outline: OutlineLike, size: MeshSize, ridges: RidgesLike | None, corneum: bool
 ) -> PadMesh:
-    """The pad with ridges or a layer ``stratum_corneum``; see :func:`fingerpad.specimen.build.build_pad_mesh`."""
+    """The pad with ridges or a layer ``stratum_corneum``; see
+    :func:`fingerpad.specimen.build.build_pad_mesh`.
+    """
     grid, curve, ridged = _grid(outline, size, ridges, corneum)
     steps, region = _right_cells(grid)
     half = _C * (len(grid.columns) - 1)
@@ -291,7 +299,8 @@ def count_layered_nodes(
 def ridge_resolution(
     outline: OutlineLike, size: MeshSize, ridges: RidgesLike, corneum: bool = False
 ) -> tuple[float, int]:
-    """Elements from one inner ridge to the next, and rows within a ridge's height of the interface, the fewest of each.
+    """Elements from one inner ridge to the next, and rows within a ridge's height of the interface,
+    the fewest of each.
 
     The rows are counted above and below the tip and the valley nearest to x = 0.
     """

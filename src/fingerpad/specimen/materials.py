@@ -8,7 +8,8 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Prony:
-    """Relaxation of the shear modulus, ``G(t)/G_0 = 1 - sum_i g_i (1 - exp(-t/tau_i))`` (thesis Eq 3-1).
+    """Relaxation of the shear modulus, ``G(t)/G_0 = 1 - sum_i g_i (1 - exp(-t/tau_i))`` (thesis Eq
+    3-1).
 
     Attributes:
         g: shares of the instantaneous modulus that relax, each >= 0, sum < 1.
@@ -52,9 +53,11 @@ class Prony:
 
 @dataclass(frozen=True)
 class Moduli:
-    """Per region: long-term shear modulus, instantaneous shear modulus and the (time-independent) bulk modulus, Pa.
+    """Per region: long-term shear modulus, instantaneous shear modulus and the (time-independent)
+    bulk modulus, Pa.
 
-    ``mu = E / 2(1 + nu)``, ``kappa = E / 3(1 - 2 nu)``; with a Prony series only the shear modulus relaxes.
+    ``mu = E / 2(1 + nu)``, ``kappa = E / 3(1 - 2 nu)``; with a Prony series only the shear modulus
+    relaxes.
     """
 
     shear_long_term: np.ndarray
@@ -65,7 +68,8 @@ class Moduli:
 def moduli(
     youngs_modulus, poisson_ratio, prony: Prony, described_state: str = "long_term"
 ) -> Moduli:
-    """Long-term and instantaneous moduli of regions whose E (Pa) and nu describe one of the two states.
+    """Long-term and instantaneous moduli of regions whose E (Pa) and nu describe one of the two
+    states.
 
     Raises:
         ValueError: E <= 0, nu outside (-1, 1/2), or an unknown state.

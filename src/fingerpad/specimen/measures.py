@@ -1,4 +1,6 @@
-"""Measures of a meshed pad: the skin's apex, layer thicknesses, and points at a depth below the skin."""
+"""Measures of a meshed pad: the skin's apex, layer thicknesses, and points at a depth below the
+skin.
+"""
 
 from __future__ import annotations
 
@@ -21,12 +23,16 @@ def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
 
 
 def touched_side(y: np.ndarray) -> np.ndarray:
-    """Whether heights ``y`` (n,) of a skin are of the half that is touched; of a flat skin all are."""
+    """Whether heights ``y`` (n,) of a skin are of the half that is touched; of a flat skin all
+    are.
+    """
     return y >= y.max() - 0.5 * np.ptp(y)
 
 
 def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
-    """Nodes at which the skin ends, and the angle (rad) between it and the boundary that goes on, through the material."""
+    """Nodes at which the skin ends, and the angle (rad) between it and the boundary that goes on,
+    through the material.
+    """
     skin = mesh.curves["skin"][:, :2]
     others = np.concatenate(
         [facets[:, :2] for name, facets in mesh.curves.items() if name != "skin"]
@@ -47,7 +53,8 @@ def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
 
 
 def layers_below(mesh: PadMesh) -> list[tuple[str, float]]:
-    """Names and thicknesses (m) of the layers straight below the skin at x = 0, down to the first gap or the base.
+    """Names and thicknesses (m) of the layers straight below the skin at x = 0, down to the first
+    gap or the base.
 
     Raises:
         MeshError: the skin does not cross x = 0.
@@ -90,7 +97,8 @@ def apex_radius(mesh: PadMesh) -> float:
 
 
 def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
-    """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft tissue to the bone, m.
+    """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft
+    tissue to the bone, m.
 
     Raises:
         MeshError: there is no skin, or no bone below it, at x = 0.
@@ -131,10 +139,11 @@ def apex_edge(mesh: PadMesh) -> float:
 
 
 def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Points (n, 2) m at lateral position ``offsets`` whose distance to the undeformed skin is ``depths`` (n,) m.
+    """Points (n, 2) m at lateral position ``offsets`` whose distance to the undeformed skin is
+    ``depths`` (n,) m.
 
-    On the axis of a symmetric pad that is straight below the apex; elsewhere depth is measured along the skin's normal, as
-    the layers are.
+    On the axis of a symmetric pad that is straight below the apex; elsewhere depth is measured
+    along the skin's normal, as the layers are.
 
     Raises:
         MeshError: no point of that depth exists at that offset.
@@ -177,9 +186,11 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
 
 
 def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Points (n, 2) m at lateral position ``offsets`` whose depth below the smooth outline is ``depths`` (n,) m.
+    """Points (n, 2) m at lateral position ``offsets`` whose depth below the smooth outline is
+    ``depths`` (n,) m.
 
-    For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as :func:`below_skin`.
+    For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as
+    :func:`below_skin`.
 
     Raises:
         MeshError: no point of that depth exists at that offset.

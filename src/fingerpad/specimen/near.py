@@ -1,4 +1,6 @@
-"""Points in the plane that lie at the same place, and those nearest to others; few without a tree, which is slow to import."""
+"""Points in the plane that lie at the same place, and those nearest to others; few without a tree,
+which is slow to import.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ _MOST = 2**24  # distances at once
 
 
 def twins(points: np.ndarray, tolerance: float) -> np.ndarray:
-    """Pairs (m, 2) of points (n, 2), the lower index first, that are no further apart than ``tolerance``."""
+    """Pairs (m, 2) of points (n, 2), the lower index first, that are no further apart than
+    ``tolerance``.
+    """
     along = points @ _ASKEW
     order = np.argsort(along, kind="stable")
     found = []
@@ -25,7 +29,9 @@ def twins(points: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 def same_place(points: np.ndarray, others: np.ndarray, tolerance: float) -> np.ndarray:
-    """Index (n,) of one of ``others`` (k, 2) that lies where each of the points (n, 2) does; -1 where none does."""
+    """Index (n,) of one of ``others`` (k, 2) that lies where each of the points (n, 2) does; -1
+    where none does.
+    """
     n = len(points)
     first, second = twins(np.concatenate([points, others]), tolerance).T
     across = (first < n) & (second >= n)
@@ -35,7 +41,9 @@ def same_place(points: np.ndarray, others: np.ndarray, tolerance: float) -> np.n
 
 
 def nearest(points: np.ndarray, others: np.ndarray, number: int) -> np.ndarray:
-    """Indices (n, number) of those of ``others`` (k, 2) that are nearest to each of the points (n, 2), the nearest first."""
+    """Indices (n, number) of those of ``others`` (k, 2) that are nearest to each of the points (n,
+    2), the nearest first.
+    """
     number = min(number, len(others))
     if len(points) * len(others) > _MOST:
         from scipy.spatial import cKDTree  # here, for it is slow to import

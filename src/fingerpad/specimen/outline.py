@@ -4,9 +4,10 @@ The right half is parametrised by the angle theta, from the apex (0) to the bott
 
     x = a sin(theta) (1 + c sin(theta)^2),    y = b cos(theta),
 
-with b the apex height above the horizontal diameter and the depth below it underneath. The scale a is the
-geometric mean of apex radius and apex height, so the radius of curvature at the apex is the one asked for; c
-makes the half width the one asked for. Negative angles are the left half. Lengths in m, curvatures in 1/m.
+with b the apex height above the horizontal diameter and the depth below it underneath. The scale a
+is the geometric mean of apex radius and apex height, so the radius of curvature at the apex is the
+one asked for; c makes the half width the one asked for. Negative angles are the left half. Lengths
+in m, curvatures in 1/m.
 """
 
 from __future__ import annotations
@@ -49,7 +50,8 @@ def _mm(length: float) -> str:
 def bisect(negative_below, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Elementwise brackets (low, high), down to rounding, of the root of an increasing function.
 
-    `negative_below(t)` tells where it is still negative. Meshes hang on the last bit of it, so no other root finder will do.
+    `negative_below(t)` tells where it is still negative. Meshes hang on the last bit of it, so no
+    other root finder will do.
     """
     low, high = low.copy(), high.copy()
     for _ in range(60):
@@ -70,8 +72,8 @@ class OutlineCurve:
     Raises
     ------
     OutlineError
-        when the section is not convex, the layers are thicker than the smallest radius of curvature, the
-        layers reach the bone, or the nail is wider than the pad.
+        when the section is not convex, the layers are thicker than the smallest radius of
+        curvature, the layers reach the bone, or the nail is wider than the pad.
     """
 
     def __init__(self, outline: OutlineLike):
@@ -110,7 +112,9 @@ class OutlineCurve:
         return np.column_stack((-dy / speed, dx / speed))
 
     def point(self, theta: ArrayLike, depth: ArrayLike = 0.0) -> np.ndarray:
-        """Points (n, 2) in m at the angles theta (n,), `depth` m below the skin along the normal."""
+        """Points (n, 2) in m at the angles theta (n,), `depth` m below the skin along the
+        normal.
+        """
         theta = np.atleast_1d(np.asarray(theta, dtype=float))
         sine = np.sin(theta)
         skin = np.column_stack(
@@ -150,7 +154,9 @@ class OutlineCurve:
         return np.sign(theta) * (self._arc[index] + self._interval(self._theta[index], size))
 
     def theta_at(self, arc_length: ArrayLike) -> np.ndarray:
-        """Angles (n,) at a signed arc length (n,) in m from the apex; the ends are exactly 0 and pi."""
+        """Angles (n,) at a signed arc length (n,) in m from the apex; the ends are exactly 0 and
+        pi.
+        """
         arc_length = np.atleast_1d(np.asarray(arc_length, dtype=float))
         target = np.abs(arc_length)
         index = np.clip(np.searchsorted(self._arc, target, side="right") - 1, 0, _INTERVALS - 1)
@@ -166,7 +172,9 @@ class OutlineCurve:
         return np.sign(arc_length) * theta
 
     def theta_at_x(self, x: ArrayLike, lower: bool = False) -> np.ndarray:
-        """Angles (n,) where the upper (or lower) half of the skin passes x (n,) in m, |x| <= half_width."""
+        """Angles (n,) where the upper (or lower) half of the skin passes x (n,) in m, |x| <=
+        half_width.
+        """
         x = np.atleast_1d(np.asarray(x, dtype=float))
         size = np.abs(x)
 
@@ -181,7 +189,9 @@ class OutlineCurve:
     # -- the bone --------------------------------------------------------------------------------------------
 
     def bone_point(self, phi: ArrayLike) -> np.ndarray:
-        """Points (n, 2) in m of the bone's rim at the ellipse's angles phi (n,), top 0 to bottom pi."""
+        """Points (n, 2) in m of the bone's rim at the ellipse's angles phi (n,), top 0 to bottom
+        pi.
+        """
         phi = np.atleast_1d(np.asarray(phi, dtype=float))
         outline = self.outline
         x = np.where(np.abs(phi) == np.pi, 0.0, outline.bone_half_width * np.sin(phi))
@@ -190,7 +200,9 @@ class OutlineCurve:
         )
 
     def bone_foot(self, points: np.ndarray) -> np.ndarray:
-        """Angles phi (n,) of the bone's points nearest to `points` (n, 2), x >= 0, outside the bone."""
+        """Angles phi (n,) of the bone's points nearest to `points` (n, 2), x >= 0, outside the
+        bone.
+        """
         width, height = self.outline.bone_half_width, self.outline.bone_half_height
         x, y = points[:, 0], points[:, 1] - self.outline.bone_centre_height
 

@@ -1,4 +1,6 @@
-"""The pad's mesh as data: what a mesh is (`PadMesh`), how fine it shall be (`MeshSize`), its edges and its skin."""
+"""The pad's mesh as data: what a mesh is (`PadMesh`), how fine it shall be (`MeshSize`), its edges
+and its skin.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ class MeshError(ValueError):
 
 
 def all_over(reach: float, edge: float) -> tuple[tuple[float, float], ...]:
-    """A mesh size's ``focus`` with that ``edge`` (m) from the apex to so far (m) to either side of it."""
+    """A mesh size's ``focus`` with that ``edge`` (m) from the apex to so far (m) to either side of
+    it.
+    """
     return tuple(
         (float(x), edge) for x in np.linspace(0.0, reach, max(2, round(reach / edge / 2) + 1))
     )
@@ -33,14 +37,13 @@ class MeshSize:
     """How fine the built mesh shall be; all lengths in m.
 
     Parameters
-    ----------
-    skin_edge : edge along the skin where contact is expected (two node spacings).
-    fine_half_width : arc length from the apex within which `skin_edge` holds.
-    layer_edge : edge across epidermis and dermis.
-    growth : largest ratio of one edge to the next finer one, along the skin and into the fat under the apex.
-    focus : pairs (x, edge): near the skin points at x and -x the edge along the skin shrinks to `edge`.
-    skin_radial_edge : first edge below the skin, growing to `layer_edge`; None means `layer_edge` at once.
-    coarse_edge : largest edge along the skin; None means eight times `skin_edge`.
+    ---------- skin_edge : edge along the skin where contact is expected (two node spacings).
+    fine_half_width : arc length from the apex within which `skin_edge` holds. layer_edge : edge
+    across epidermis and dermis. growth : largest ratio of one edge to the next finer one, along the
+    skin and into the fat under the apex. focus : pairs (x, edge): near the skin points at x and -x
+    the edge along the skin shrinks to `edge`. skin_radial_edge : first edge below the skin, growing
+    to `layer_edge`; None means `layer_edge` at once. coarse_edge : largest edge along the skin;
+    None means eight times `skin_edge`.
     """
 
     skin_edge: float
@@ -72,7 +75,9 @@ class MeshSize:
             )
 
     def coarser(self, ratio: float) -> MeshSize:
-        """The size of a mesh whose edges are so many times as long everywhere, as nearly as growth up to 3 has it."""
+        """The size of a mesh whose edges are so many times as long everywhere, as nearly as growth
+        up to 3 has it.
+        """
         return MeshSize(
             ratio * self.skin_edge,
             self.fine_half_width,
@@ -89,19 +94,17 @@ class PadMesh:
     """A plane mesh of the pad with named regions and curves.
 
     Parameters
-    ----------
-    points : (n, 2) float64, node positions in m.
-    cells : (elements, nodes per element) int32: corners counter-clockwise, mid-side nodes (0-1, 1-2, ...),
+    ---------- points : (n, 2) float64, node positions in m. cells : (elements, nodes per element)
+    int32: corners counter-clockwise, mid-side nodes (0-1, 1-2, ...),
         centre node; the order of gmsh and meshio.
-    element : "quad9", "quad4", "tri6" or "tri3".
-    region : (elements,) int8, index into `regions`.
-    curves : name -> (facets, 2 or 3) int32 node numbers (start, end[, middle]), the material on the right of
-        the way from start to end. "skin" runs from left to right, facet after facet; a finger's others are "bone"
-        and "nail"; in a half mesh there is "symmetry".
-    symmetric : whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from such a mesh).
-    half : whether this is the right half only.
-    regions : names of the layers, outside to inside.
-    fixed : names of the curves that are held; the others, the skin among them, are free.
+    element : "quad9", "quad4", "tri6" or "tri3". region : (elements,) int8, index into `regions`.
+    curves : name -> (facets, 2 or 3) int32 node numbers (start, end[, middle]), the material on the
+    right of
+        the way from start to end. "skin" runs from left to right, facet after facet; a finger's
+        others are "bone" and "nail"; in a half mesh there is "symmetry".
+    symmetric : whether the mesh is its own mirror image in x = 0 (for a half mesh: was cut from
+    such a mesh). half : whether this is the right half only. regions : names of the layers, outside
+    to inside. fixed : names of the curves that are held; the others, the skin among them, are free.
     """
 
     points: np.ndarray
@@ -148,7 +151,9 @@ class PadMesh:
         )
 
     def elevated(self, solved: str | None = None) -> PadMesh:
-        """The mesh with mid-side nodes where it needs some: of linear triangles always, of quads for the element "Q2P1"."""
+        """The mesh with mid-side nodes where it needs some: of linear triangles always, of quads
+        for the element "Q2P1".
+        """
         return (
             self.raised()
             if self.element == "tri3" or (self.element == "quad4" and solved == "Q2P1")
@@ -156,10 +161,11 @@ class PadMesh:
         )
 
     def raised(self) -> PadMesh:
-        """The same elements with mid-side nodes (tri3 -> tri6), and quads with a centre node (quad4 -> quad9).
+        """The same elements with mid-side nodes (tri3 -> tri6), and quads with a centre node (quad4
+        -> quad9).
 
-        Sides stay straight but for the skin's, which bend as it does: on a polygon pressure would jump from node to node. A mesh
-        that has these nodes is itself.
+        Sides stay straight but for the skin's, which bend as it does: on a polygon pressure would
+        jump from node to node. A mesh that has these nodes is itself.
         """
         if KINDS[self.element].quadratic:
             return self
@@ -200,10 +206,11 @@ def _areas(corners: np.ndarray) -> np.ndarray:
 
 
 def _bulge(ends: np.ndarray, areas: np.ndarray) -> np.ndarray:
-    """How far (n, 2) m the middles of a line's sides lie beside their chords, if it turns evenly from side to side.
+    """How far (n, 2) m the middles of a line's sides lie beside their chords, if it turns evenly
+    from side to side.
 
-    ``ends`` (n, 2, 2) m, one side after the other; ``areas`` (n,) of their elements, of whose depth it is a quarter at most.
-    Turns by more than 30 degrees are corners.
+    ``ends`` (n, 2, 2) m, one side after the other; ``areas`` (n,) of their elements, of whose depth
+    it is a quarter at most. Turns by more than 30 degrees are corners.
     """
     chord = ends[:, 1] - ends[:, 0]
     length = np.hypot(*chord.T)
@@ -218,7 +225,9 @@ def _bulge(ends: np.ndarray, areas: np.ndarray) -> np.ndarray:
 
 
 def element_edges(cells: np.ndarray, element: str) -> np.ndarray:
-    """All element edges, counter-clockwise, shape (corners * elements, 2 or 3): start, end[, middle]."""
+    """All element edges, counter-clockwise, shape (corners * elements, 2 or 3): start, end[,
+    middle].
+    """
     corners = KINDS[element].corners
     quadratic = cells.shape[1] > corners
     edges = []

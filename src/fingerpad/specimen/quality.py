@@ -1,4 +1,6 @@
-"""Quality of a mesh: size, smallest edge, and how near its elements are to rectangles or even triangles."""
+"""Quality of a mesh: size, smallest edge, and how near its elements are to rectangles or even
+triangles.
+"""
 
 from __future__ import annotations
 
@@ -26,14 +28,18 @@ _TRIANGLE_POINTS = np.array([(1 / 6, 1 / 6), (2 / 3, 1 / 6), (1 / 6, 2 / 3)])  #
 
 
 def sample_points(element: str) -> tuple[np.ndarray, np.ndarray]:
-    """Corners and Gauss points (3 x 3 in quads, 3 in triangles) of the reference element, each (m, 2)."""
+    """Corners and Gauss points (3 x 3 in quads, 3 in triangles) of the reference element, each (m,
+    2).
+    """
     if element.startswith("quad"):
         return _SQUARE[:4], _GAUSS
     return _TRIANGLE, _TRIANGLE_POINTS
 
 
 def jacobians(mesh: PadMesh, at: np.ndarray) -> np.ndarray:
-    """Jacobian matrices (elements, m, 2, 2) in m at reference points (m, 2); [..., k, :] is tangent k."""
+    """Jacobian matrices (elements, m, 2, 2) in m at reference points (m, 2); [..., k, :] is tangent
+    k.
+    """
     return np.moveaxis(
         np.tensordot(mesh.points[mesh.cells], SHAPES[mesh.element](at)[1], axes=(1, 1)), 1, -1
     )
@@ -54,7 +60,9 @@ def counter_clockwise(mesh: PadMesh) -> PadMesh:
 
 
 def check_orientation(mesh: PadMesh, name: str) -> None:
-    """Raise `MeshError` naming the first element whose Jacobian is not positive at every Gauss point."""
+    """Raise `MeshError` naming the first element whose Jacobian is not positive at every Gauss
+    point.
+    """
     points = sample_points(mesh.element)[1]
     if mesh.element.startswith("tri"):  # at all points of the rule that they are solved with
         points = np.concatenate([points, get_quadrature(RefTri, 5)[0].T])
@@ -70,10 +78,11 @@ def check_orientation(mesh: PadMesh, name: str) -> None:
 
 
 def scaled_jacobian(mesh: PadMesh) -> np.ndarray:
-    """Smallest scaled Jacobian (elements,) over corners and Gauss points; 1 is a rectangle or even triangle.
+    """Smallest scaled Jacobian (elements,) over corners and Gauss points; 1 is a rectangle or even
+    triangle.
 
-    The determinant of the curved element's tangents over the product of their lengths; in a triangle over the
-    largest product of two sides' lengths, times 2 / sqrt(3) (P. M. Knupp, 2003).
+    The determinant of the curved element's tangents over the product of their lengths; in a
+    triangle over the largest product of two sides' lengths, times 2 / sqrt(3) (P. M. Knupp, 2003).
     """
     tangents = jacobians(mesh, np.concatenate(sample_points(mesh.element)))
     lengths = np.hypot(tangents[..., 0], tangents[..., 1])
@@ -101,7 +110,9 @@ def quality_of(mesh: PadMesh) -> dict[str, float]:
 
 
 def quality_table(meshes: Mapping[str, PadMesh]) -> DataFrame:
-    """One row per mesh: mesh, element, nodes, elements, smallest edge (um), worst scaled Jacobian (1)."""
+    """One row per mesh: mesh, element, nodes, elements, smallest edge (um), worst scaled Jacobian
+    (1).
+    """
     import pandas as pd
 
     rows = []

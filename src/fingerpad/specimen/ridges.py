@@ -1,8 +1,10 @@
-"""Where the ridges of a pad lie: its epidermis bulges into the dermis, its skin outwards, in register.
+"""Where the ridges of a pad lie: its epidermis bulges into the dermis, its skin outwards, in
+register.
 
-Every material point is named by (s, d): arc length s along the smooth outline from its apex and depth d below it. Ridges move
-points in depth only, and the mean depth over a pitch is kept, so ridges of no height are the smooth pad. They stand in full
-within `half_width` of the apex and fade out over one pitch beyond.
+Every material point is named by (s, d): arc length s along the smooth outline from its apex and
+depth d below it. Ridges move points in depth only, and the mean depth over a pitch is kept, so
+ridges of no height are the smooth pad. They stand in full within `half_width` of the apex and fade
+out over one pitch beyond.
 """
 
 from __future__ import annotations
@@ -18,11 +20,14 @@ _POWER = {
     "sharp": 2,
 }  # of cos(pi u)^2: a sharp tip has half a smooth one's radius of curvature
 _MEAN = {"smooth": 1 / 2, "sharp": 3 / 8}
-_REACH = 0.25  # pitches by which the mesh still follows the ridges above their valleys and below their tips
+# pitches by which the mesh still follows the ridges above their valleys and below their tips
+_REACH = 0.25
 
 
 class RidgesLike(Protocol):
-    """What ridges say: ``inner`` has pitch, height, shape, phase and limiting, ``outer`` (or None) period, height and shape."""
+    """What ridges say: ``inner`` has pitch, height, shape, phase and limiting, ``outer`` (or None)
+    period, height and shape.
+    """
 
     inner: Any
     outer: Any
@@ -32,7 +37,8 @@ class RidgesLike(Protocol):
 def ridge_shape(u: np.ndarray, shape: str, limiting: float = 0.0) -> np.ndarray:
     """Height of a ridge over its valleys, 0 to 1, at positions ``u`` in pitches from a tip.
 
-    With limiting ridges, ``limiting`` times as high, halfway between the primary ones, every ridge is half as wide.
+    With limiting ridges, ``limiting`` times as high, halfway between the primary ones, every ridge
+    is half as wide.
     """
     if not limiting:
         return np.cos(np.pi * u) ** (2 * _POWER[shape])
@@ -54,8 +60,8 @@ class RidgedPad:
     """Depths of a ridged pad below its smooth outline.
 
     Parameters
-    ----------
-    outline : the scene's outline, lengths in m. ridges : the scene's. corneum : thickness in m of a stratum corneum that keeps
+    ---------- outline : the scene's outline, lengths in m. ridges : the scene's. corneum :
+    thickness in m of a stratum corneum that keeps
         it (it follows outer ridges and ignores inner ones); 0 for none.
 
     Attributes
@@ -102,13 +108,17 @@ class RidgedPad:
         return np.abs(s) if self.symmetric else s  # the same numbers, to the bit, on both sides
 
     def interface_shift(self, s: np.ndarray) -> np.ndarray:
-        """How much deeper (m) than without ridges the epidermis ends, at arc lengths ``s`` (m) from the apex."""
+        """How much deeper (m) than without ridges the epidermis ends, at arc lengths ``s`` (m) from
+        the apex.
+        """
         s, inner = self._place(s), self.inner
         shape = ridge_shape((s - self.tip) / self.pitch, inner.shape, inner.limiting)
         return inner.height * (shape - self.mean) * self._window(s)
 
     def skin_shift(self, s: np.ndarray) -> np.ndarray:
-        """How much deeper (m) than without ridges the skin lies, at arc lengths ``s`` (m) from the apex."""
+        """How much deeper (m) than without ridges the skin lies, at arc lengths ``s`` (m) from the
+        apex.
+        """
         s = self._place(s)
         if self.outer is None:
             return np.zeros_like(s)
@@ -126,9 +136,11 @@ class RidgedPad:
         return d + self.skin_shift(s) * with_skin + self.interface_shift(s) * with_interface
 
     def nearest(self, which: str) -> tuple[float, float]:
-        """Lateral position and depth (m, below the smooth skin) of the inner ridge's tip or valley nearest to x = 0.
+        """Lateral position and depth (m, below the smooth skin) of the inner ridge's tip or valley
+        nearest to x = 0.
 
-        Of two valleys equally near the right one is meant. ``which`` is "tip" or "valley"; a tip is the deepest epidermis.
+        Of two valleys equally near the right one is meant. ``which`` is "tip" or "valley"; a tip is
+        the deepest epidermis.
 
         Raises
         ------

@@ -1,7 +1,8 @@
-"""Shape functions and quadrature of the reference elements: the square and the triangle with corners 0 and 1.
+"""Shape functions and quadrature of the reference elements: the square and the triangle with
+corners 0 and 1.
 
-Written out here because a library of elements takes longer to import than a press takes to solve; tests compare them with
-scikit-fem's.
+Written out here because a library of elements takes longer to import than a press takes to solve;
+tests compare them with scikit-fem's.
 """
 
 from __future__ import annotations
@@ -11,7 +12,9 @@ from collections.abc import Callable
 import numpy as np
 
 Shape = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-"""Values (m, nodes) and derivatives (m, nodes, 2) of shape functions at points (m, 2) of the reference element."""
+"""Values (m, nodes) and derivatives (m, nodes, 2) of shape functions at points (m, 2) of the
+reference element.
+"""
 
 _CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))
 _QUAD9 = (*_CORNERS, (2, 0), (1, 2), (2, 1), (0, 2), (2, 2))  # node 2 of a line is its middle
@@ -19,7 +22,9 @@ _SIDES = ((0, 1), (1, 2), (0, 2))  # of a triangle, in the order of their middle
 
 
 def _line(order: int, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Lagrange polynomials of the line with nodes 0, 1 and, of order 2, its middle; and their derivatives."""
+    """Lagrange polynomials of the line with nodes 0, 1 and, of order 2, its middle; and their
+    derivatives.
+    """
     if order == 1:
         return np.stack([1 - t, t]), np.stack([0 * t - 1, 0 * t + 1])
     values = np.stack([(1 - t) * (1 - 2 * t), t * (2 * t - 1), 4 * t * (1 - t)])
@@ -37,7 +42,9 @@ def _quad(order: int, nodes: tuple[tuple[int, int], ...]) -> Shape:
 
 
 def _serendipity(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Those of nine nodes, the centre's shared out: -1/4 to each corner, 1/2 to each middle of a side."""
+    """Those of nine nodes, the centre's shared out: -1/4 to each corner, 1/2 to each middle of a
+    side.
+    """
     values, gradients = _quad(2, _QUAD9)(at)
     share = np.array([-0.25] * 4 + [0.5] * 4)
     return values[:, :8] + values[:, 8:] * share, gradients[:, :8] + gradients[:, 8:] * share[
@@ -94,14 +101,18 @@ SHAPES: dict[str, Shape] = {
 
 
 def square_rule(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss points (count^2, 2) of the reference square and weights, exact for degree 2 count - 1 in each coordinate."""
+    """Gauss points (count^2, 2) of the reference square and weights, exact for degree 2 count - 1
+    in each coordinate.
+    """
     t, w = np.polynomial.legendre.leggauss(count)
     x, y = np.meshgrid((t + 1) / 2, (t + 1) / 2, indexing="ij")
     return np.column_stack([x.ravel(), y.ravel()]), np.outer(w, w).ravel() / 4
 
 
 def triangle_rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points (6 or 7, 2) of the reference triangle and weights, exact for polynomials of degree 4 or 5 (Dunavant 1985)."""
+    """Points (6 or 7, 2) of the reference triangle and weights, exact for polynomials of degree 4
+    or 5 (Dunavant 1985).
+    """
     if degree == 4:
         a, share = (
             np.array([0.445948490915965, 0.091576213509771]),

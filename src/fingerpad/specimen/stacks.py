@@ -1,9 +1,11 @@
-"""Stacks of bonded layers on a fixed base: flat slabs (robot skin, phantoms) and half-rounds (fingertips of hands and robots).
+"""Stacks of bonded layers on a fixed base: flat slabs (robot skin, phantoms) and half-rounds
+(fingertips of hands and robots).
 
-A slab lies under y = 0, -width / 2 <= x <= width / 2; its sides are free. A half-round is the half of a cylinder over y = 0, its
-layers are shells; what the layers leave of it is a rigid core. Both are mapped meshes of second-order quads, the left half the
-mirror image of the right one, bit for bit: rows follow the surface, columns are normal to it. The solid core of a half-round
-is a block with a corner on the ring's 45 degrees.
+A slab lies under y = 0, -width / 2 <= x <= width / 2; its sides are free. A half-round is the half
+of a cylinder over y = 0, its layers are shells; what the layers leave of it is a rigid core. Both
+are mapped meshes of second-order quads, the left half the mirror image of the right one, bit for
+bit: rows follow the surface, columns are normal to it. The solid core of a half-round is a block
+with a corner on the ring's 45 degrees.
 """
 
 from __future__ import annotations
@@ -20,12 +22,16 @@ from fingerpad.specimen.quality import check_orientation
 _COARSEST = 8.0  # largest edge along the surface and across the layers, in those under the contact
 _ROWS = 2  # rows in a layer, at least
 _MOST = 64  # edges to either side of the middle and across the stack, at most, before they grow
-_RING = 0.62  # radius of a solid core's block, in that of the ring round it; and of that ring, in the innermost layer's
+# radius of a solid core's block, in that of the ring round it; and of that ring, in the innermost
+# layer's
+_RING = 0.62
 _TURN = 0.2  # largest angle in radians that an edge along a half-round may turn by
 
 
 def _graded(length: float, ends: list[float], wanted, focus, growth: float) -> np.ndarray:
-    """Division points of [0, length] with the edges ``wanted(s)``, smaller at ``focus``, and ``ends`` among them."""
+    """Division points of [0, length] with the edges ``wanted(s)``, smaller at ``focus``, and
+    ``ends`` among them.
+    """
     grid = np.union1d(np.linspace(0.0, length, 8001), [*ends, *(s for s, _ in focus)])
     edge = wanted(grid)
     for low, high in pairwise(ends):
@@ -90,7 +96,9 @@ def _rows(stack, size: MeshSize, depth: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _quads(columns: int, rows: int) -> np.ndarray:
-    """Half steps (elements, 9, 2) of column and row, row after row; rows count downwards, nodes run counter-clockwise."""
+    """Half steps (elements, 9, 2) of column and row, row after row; rows count downwards, nodes run
+    counter-clockwise.
+    """
     shape = np.array([(0, 2), (2, 2), (2, 0), (0, 0), (1, 2), (2, 1), (1, 0), (0, 1), (1, 1)])
     start = np.stack(
         np.meshgrid(np.arange(columns), np.arange(rows), indexing="xy"), axis=-1
@@ -184,13 +192,15 @@ def _half_round(stack, size: MeshSize):
 
 
 def build_stack_mesh(stack, size: MeshSize) -> PadMesh:
-    """Mesh a slab or a half-round with second-order quads (quad9), mirror-symmetric to the last bit.
+    """Mesh a slab or a half-round with second-order quads (quad9), mirror-symmetric to the last
+    bit.
 
     Parameters
-    ----------
-    stack : has `names` and `thicknesses` (m) of the layers, outside to inside, `half_width` (m), `radius` (m; None for a slab)
+    ---------- stack : has `names` and `thicknesses` (m) of the layers, outside to inside,
+    `half_width` (m), `radius` (m; None for a slab)
         and, for a half-round, `solid`: whether the innermost layer fills it.
-    size : edge lengths; `layer_edge` holds to a depth of half of `fine_half_width`, below it rows grow.
+    size : edge lengths; `layer_edge` holds to a depth of half of `fine_half_width`, below it rows
+    grow.
 
     Returns
     -------

@@ -1,4 +1,6 @@
-"""A course of depth or force over time, as an instrument writes it, in as few straight pieces as its noise allows."""
+"""A course of depth or force over time, as an instrument writes it, in as few straight pieces as
+its noise allows.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from fingerpad.units import QuantityError, parse_quantity
 EXACT = 5e-3
 """Of the largest value of a course, by which the pieces may be off."""
 NOISE = 8.0
-"""Standard deviations of the noise, by which they may be off where that is more: from one extreme to the other."""
+"""Standard deviations of the noise, by which they may be off where that is more: from one extreme
+to the other.
+"""
 MOST_PIECES = 2000
 """Of a course."""
 _COLUMN = re.compile(
@@ -26,7 +30,9 @@ _ALLOWED = "the columns 'time (s)' and 'depth (mm)', or 'time (s)' and 'force (g
 
 
 class Course(NamedTuple):
-    """Corners of a course: ``times`` (n,) s from zero, ``values`` (n,) in m or N, and which: "depth" or "force"."""
+    """Corners of a course: ``times`` (n,) s from zero, ``values`` (n,) in m or N, and which:
+    "depth" or "force".
+    """
 
     times: tuple[float, ...]
     values: tuple[float, ...]
@@ -101,7 +107,9 @@ def _columns(table: Table) -> dict[str, tuple[int, float]]:
 
 
 def _noise(values: np.ndarray) -> float:
-    """Standard deviation of the noise of samples, from their second differences, which leave nothing of a slope."""
+    """Standard deviation of the noise of samples, from their second differences, which leave
+    nothing of a slope.
+    """
     if len(values) < 20:
         return 0.0
     return float(1.4826 * np.median(np.abs(np.diff(values, 2))) / np.sqrt(6))
@@ -122,7 +130,9 @@ def _fitted(times: np.ndarray, values: np.ndarray, corners: np.ndarray) -> np.nd
 
 
 def corners_of(times: np.ndarray, values: np.ndarray, within: float) -> np.ndarray:
-    """Indices of samples between which straight pieces are off by no more than ``within`` (Douglas and Peucker 1973)."""
+    """Indices of samples between which straight pieces are off by no more than ``within`` (Douglas
+    and Peucker 1973).
+    """
     kept, todo = {0, len(times) - 1}, [(0, len(times) - 1)]
     while todo:
         first, last = todo.pop()

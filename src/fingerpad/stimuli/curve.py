@@ -10,7 +10,9 @@ from fingerpad.stimuli.profile import Profile, Walls
 
 
 class Segment(NamedTuple):
-    """A piece of a curve: x of its ends (m) and its curvature (1/m), above zero where it bulges at the skin."""
+    """A piece of a curve: x of its ends (m) and its curvature (1/m), above zero where it bulges at
+    the skin.
+    """
 
     start: float
     end: float
@@ -20,16 +22,19 @@ class Segment(NamedTuple):
 class Curve(Profile):
     """A single-valued lower surface of straight lines and circular arcs; its distance is exact.
 
-    The first and the last piece are lines and go on for ever. Nothing is rounded where pieces meet at an angle: the closest
-    point may be the corner, and on the corner itself the gradient bisects the normals beside it. The work of a query grows
-    with the pieces near the point, at most those within its vertical distance from the surface, not with the length of it.
+    The first and the last piece are lines and go on for ever. Nothing is rounded where pieces meet
+    at an angle: the closest point may be the corner, and on the corner itself the gradient bisects
+    the normals beside it. The work of a query grows with the pieces near the point, at most those
+    within its vertical distance from the surface, not with the length of it.
 
     Args:
-        x, y: (m + 1,) m, ends of the pieces; x strictly increasing. curvature: (m,) 1/m, above zero for arcs that bulge at the
+        x, y: (m + 1,) m, ends of the pieces; x strictly increasing. curvature: (m,) 1/m, above zero
+        for arcs that bulge at the
             skin, below zero for hollow ones, zero for lines.
 
     Raises:
-        ValueError: x is not strictly increasing, an end piece is no line, or an arc is not single-valued.
+        ValueError: x is not strictly increasing, an end piece is no line, or an arc is not
+        single-valued.
     """
 
     uneven = True
@@ -37,8 +42,8 @@ class Curve(Profile):
     overlap = 1e-12
     #: m, closer than which a point is on a corner
     touch = 1e-9
-    #: rad, less than which a corner turns away from the skin without making a valley: a node on it is pushed to and fro by
-    #: less than the tolerance of the forces
+    #: rad, less than which a corner turns away from the skin without making a valley: a node on it
+    #: is pushed to and fro by less than the tolerance of the forces
     flat = 2e-3
     #: pieces that are the surface itself and not its continuation
     own = slice(None)
@@ -206,7 +211,9 @@ _closest = Loop("closest_on_curve", _compiler, sources(Path(__file__).with_name(
 
 
 def share_of_height(slope: float) -> float:
-    """Of the way along y to a surface of at most this slope: farther along x than that it cannot come near."""
+    """Of the way along y to a surface of at most this slope: farther along x than that it cannot
+    come near.
+    """
     slope = min(slope, 1.0)
     return 2 * slope / (1 + slope**2)
 

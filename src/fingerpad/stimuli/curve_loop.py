@@ -1,4 +1,6 @@
-"""The closest point of a curve of lines and arcs, as a compiled loop over points; called through machine code that is kept."""
+"""The closest point of a curve of lines and arcs, as a compiled loop over points; called through
+machine code that is kept.
+"""
 
 from math import atan2, cos, hypot, inf, sin
 
@@ -22,11 +24,13 @@ def _at(x, ends, right):
 
 @njit(**_JIT)
 def closest(points, below, within, ends, pieces, limits, distance, gradient, curvature):
-    """Signed distance (n,), its gradient (n, 2) and curvature (n,) at ``points`` (n, 2), into the last three.
+    """Signed distance (n,), its gradient (n, 2) and curvature (n,) at ``points`` (n, 2), into the
+    last three.
 
-    ``below`` (n,) bool: is the point in the solid? ``within`` (n,) m: farther along x the surface cannot be closest. ``ends``
-    (x, y, kink, bisector), each (m + 1,); ``pieces`` (centre (m, 2), tangent (m, 2), side, radius, line, reach); ``limits``
-    (overlap, touch): as :class:`fingerpad.stimuli.curve.Curve` has them. Returns how many pieces were looked at.
+    ``below`` (n,) bool: is the point in the solid? ``within`` (n,) m: farther along x the surface
+    cannot be closest. ``ends`` (x, y, kink, bisector), each (m + 1,); ``pieces`` (centre (m, 2),
+    tangent (m, 2), side, radius, line, reach); ``limits`` (overlap, touch): as
+    :class:`fingerpad.stimuli.curve.Curve` has them. Returns how many pieces were looked at.
     """
     end_x, end_y, kink, bisector = ends
     centre, tangent, side, radius, line, reach = pieces

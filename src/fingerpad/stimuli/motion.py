@@ -1,7 +1,8 @@
 """Motion programmes: the legs of a scene, each its keys and the steps it turns into.
 
-A new leg is one class here: a subclass of :class:`Leg` whose first field is its key in a scene. What the planner and the checks
-of a programme ask of legs are its attributes; nothing outside this module asks which leg it is.
+A new leg is one class here: a subclass of :class:`Leg` whose first field is its key in a scene.
+What the planner and the checks of a programme ask of legs are its attributes; nothing outside this
+module asks which leg it is.
 """
 
 from __future__ import annotations
@@ -26,22 +27,26 @@ from fingerpad.stimuli.course import Course, read_course
 from fingerpad.tables import TableError
 from fingerpad.units import format_quantity
 
-#: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed after it.
+#: Duration (s) that stands for "until nothing changes any more": every Prony branch has relaxed
+#: after it.
 STEADY = 1e9
 INSTANT, NO_TIME = 1e-12, 1e-6
-"""s: by so much stand the states of a history apart of which the later takes no time; a leg that takes less than the latter takes
-none."""
+"""s: by so much stand the states of a history apart of which the later takes no time; a leg that
+takes less than the latter takes none.
+"""
 MAXIMUM_STEPS = 100_000
 MAXIMUM_STROKE = 10.0
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step: leg number, end time s, duration s (:data:`STEADY`: to the steady state), and what is reached at its end.
+    """One step: leg number, end time s, duration s (:data:`STEADY`: to the steady state), and what
+    is reached at its end.
 
-    Exactly one of ``force`` (N per m of contact length) and ``depth`` (m) is given. ``distance`` (m) is how far the pad has come
-    along the surface. A ``fresh`` step lifts the pad, lets it recover fully and presses it there again. One that is not
-    ``solved`` is an output on the way, where no state needs to be found.
+    Exactly one of ``force`` (N per m of contact length) and ``depth`` (m) is given. ``distance``
+    (m) is how far the pad has come along the surface. A ``fresh`` step lifts the pad, lets it
+    recover fully and presses it there again. One that is not ``solved`` is an output on the way,
+    where no state needs to be found.
     """
 
     leg: int
@@ -55,7 +60,9 @@ class Step:
 
 
 class Goal(NamedTuple):
-    """What is prescribed: force (N/m) or depth (m), the other None, and the place along the surface (m)."""
+    """What is prescribed: force (N/m) or depth (m), the other None, and the place along the surface
+    (m).
+    """
 
     force: float | None
     depth: float | None
@@ -63,7 +70,9 @@ class Goal(NamedTuple):
 
 
 class Reached(NamedTuple):
-    """Where a leg finds the pad: force (N/m), depth (m), and the depth (m) at which the undeformed skin is just touched."""
+    """Where a leg finds the pad: force (N/m), depth (m), and the depth (m) at which the undeformed
+    skin is just touched.
+    """
 
     force: float
     depth: float
@@ -71,8 +80,10 @@ class Reached(NamedTuple):
 
 
 class Stepping(NamedTuple):
-    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of a slide (m), increments of
-    a steady press, and into how many parts the longest steps of a slide are cut by outputs."""
+    """How finely: steps of a leg, m of contact length (N to N/m), does time matter, longest step of
+    a slide (m), increments of a steady press, and into how many parts the longest steps of a slide
+    are cut by outputs.
+    """
 
     steps: int
     contact_length: float
@@ -82,8 +93,9 @@ class Stepping(NamedTuple):
     parts: Callable[[np.ndarray], np.ndarray] | None = None
 
     def way(self, start: float, way: float) -> np.ndarray:
-        """Places (m) along the surface of a slide's outputs: every ``slide_step``, and each of these in as many ``parts`` as are
-        wanted of one with its middle at a place (k,) m."""
+        """Places (m) along the surface of a slide's outputs: every ``slide_step``, and each of
+        these in as many ``parts`` as are wanted of one with its middle at a place (k,) m.
+        """
         if not self.slide_step:
             return start + way * np.arange(1, self.steps + 1) / self.steps
         count = math.ceil(abs(way) / self.slide_step * (1 - 1e-9))
@@ -97,7 +109,9 @@ class Stepping(NamedTuple):
 
 
 class Outlook(NamedTuple):
-    """What is known of a programme before it is run: s, N, m (NaN: not known), and has the pad moved along the surface?"""
+    """What is known of a programme before it is run: s, N, m (NaN: not known), and has the pad
+    moved along the surface?
+    """
 
     time: float = 0.0
     force: float = 0.0
@@ -109,12 +123,14 @@ class Leg(Strict):
     """Base of all legs.
 
     Attributes:
-        key: its name in a scene. presses: does it press to a target, so that a programme may begin with it? needs_contact: is it
-        senseless when nothing is pressed? releases: is nothing pressed after it? loads: does it deform the skin? strokes: does it
-        rub the skin? fresh: are its steps? early: share of its outputs, from the first, that need a state each.
-        force, depth: N, m, which it presses to. along: m, its way along the surface. kept: "force" or "depth" on that way. speed:
-        m/s, None for a steady leg, or one that has none; every leg says it. quickest: s, that its load would take at its fastest,
-        where that is not its duration. starts: what it starts at, N or m, where that is said: where the leg before has ended.
+        key: its name in a scene. presses: does it press to a target, so that a programme may begin
+        with it? needs_contact: is it senseless when nothing is pressed? releases: is nothing
+        pressed after it? loads: does it deform the skin? strokes: does it rub the skin? fresh: are
+        its steps? early: share of its outputs, from the first, that need a state each. force,
+        depth: N, m, which it presses to. along: m, its way along the surface. kept: "force" or
+        "depth" on that way. speed: m/s, None for a steady leg, or one that has none; every leg says
+        it. quickest: s, that its load would take at its fastest, where that is not its duration.
+        starts: what it starts at, N or m, where that is said: where the leg before has ended.
     """
 
     key: ClassVar[str]
@@ -146,10 +162,12 @@ class Leg(Strict):
     def path(
         self, at: Goal, last: float | None, reached: Reached, how: Stepping
     ) -> tuple[np.ndarray, list[Goal], float | None]:
-        """Durations (s) of its steps and what each reaches, and the last of these durations (None: steady).
+        """Durations (s) of its steps and what each reaches, and the last of these durations (None:
+        steady).
 
         Args:
-            at: what is prescribed when it begins. last: s, duration of the step before. reached: where the pad is. how: finely.
+            at: what is prescribed when it begins. last: s, duration of the step before. reached:
+            where the pad is. how: finely.
         """
         raise NotImplementedError
 
@@ -167,7 +185,9 @@ LEGS: dict[str, type[Leg]] = {}
 
 _PUSH = ": the stimulus must press into the skin"
 _EARLY = 0.25
-"""Of a press, in which the contact grows as the root of what has passed, and a curve through few of its states would be off."""
+"""Of a press, in which the contact grows as the root of what has passed, and a curve through few of
+its states would be off.
+"""
 
 
 def _ramp(
@@ -271,7 +291,9 @@ class Hold(Leg):
 
 
 class Lift(Leg):
-    """Let the finger go: raise the stimulus to where it no more than touches the undeformed skin; a hold then is recovery."""
+    """Let the finger go: raise the stimulus to where it no more than touches the undeformed skin; a
+    hold then is recovery.
+    """
 
     needs_contact = releases = True
 
@@ -307,7 +329,9 @@ class Follow(Leg):
     follows: ClassVar = {"table": ("course",)}
 
     table: Path | None
-    """CSV file with the columns `time (s)` and `depth (mm)` or `force (gf)`, or other units in them."""
+    """CSV file with the columns `time (s)` and `depth (mm)` or `force (gf)`, or other units in
+    them.
+    """
     course: SkipJsonSchema[Course]
 
     speed: ClassVar[None] = None
@@ -416,7 +440,9 @@ class Slide(Leg):
     speed: quantity("speed", note=": the sign of slide is its direction") | None = None
     """Speed along the surface; left out for a stroke so slow that all is relaxed."""
     keep: Literal["force", "depth"] = "force"
-    """What is kept as it is when the stroke begins: the normal force, or the height of the surface."""
+    """What is kept as it is when the stroke begins: the normal force, or the height of the
+    surface.
+    """
 
     @property
     def along(self) -> float:
@@ -451,7 +477,9 @@ class Slide(Leg):
 
 
 class StepAndRepeat(Leg):
-    """Move on without stroking: lift, recover, press again to what the leg before reached, over and over."""
+    """Move on without stroking: lift, recover, press again to what the leg before reached, over and
+    over.
+    """
 
     needs_contact = fresh = True
 
@@ -541,7 +569,9 @@ Motion = Annotated[_Motion, BeforeValidator(_check_motion, json_schema_input_typ
 
 
 def check_programme(legs: Sequence[Leg], length: float = math.inf) -> None:
-    """Refuses legs that make no sense one after the other, on a surface of `length` m; `Problem` with the key below motion."""
+    """Refuses legs that make no sense one after the other, on a surface of `length` m; `Problem`
+    with the key below motion.
+    """
     if not legs[0].presses:
         raise Problem(
             "comes before anything is pressed",
@@ -591,7 +621,9 @@ def check_programme(legs: Sequence[Leg], length: float = math.inf) -> None:
 
 
 def end_time(legs: Sequence[Leg]) -> float | None:
-    """Duration of a programme, s, steady legs taking none; None if a change of control leaves it open."""
+    """Duration of a programme, s, steady legs taking none; None if a change of control leaves it
+    open.
+    """
     outlook = Outlook()
     for leg in legs:
         outlook = leg.ahead(outlook)
@@ -599,7 +631,9 @@ def end_time(legs: Sequence[Leg]) -> float | None:
 
 
 def geometric(duration: float, count: int, first: float) -> np.ndarray:
-    """``count`` step sizes (s) that sum to ``duration``, start at ``first`` and grow by a constant ratio (never shrink)."""
+    """``count`` step sizes (s) that sum to ``duration``, start at ``first`` and grow by a constant
+    ratio (never shrink).
+    """
     many = count >= 500
     if count == 1 or first * count >= duration * (1 - 1e-9 * (count if many else 1)):
         return np.full(count, duration / count)
@@ -627,18 +661,20 @@ def programme(
     """Steps of a motion programme, leg by leg.
 
     Args:
-        legs: SI, newtons.
-        steps: per leg. contact_length: m, turns N into N/m.
-        timed: does time matter? If not, a press is load increments and a hold one step.
-        snapshots: times (s) at which a step must end.
-        present: asked when a leg begins for what has been :class:`Reached` so far, which a change between force and depth
-            control needs, and a lift; without it such a leg is taken to start from zero, and a lift to end there.
+        legs: SI, newtons. steps: per leg. contact_length: m, turns N into N/m. timed: does time
+        matter? If not, a press is load increments and a hold one step. snapshots: times (s) at
+        which a step must end. present: asked when a leg begins for what has been :class:`Reached`
+        so far, which a change between force and depth
+            control needs, and a lift; without it such a leg is taken to start from zero, and a lift
+            to end there.
         slide_step: m, longest step of a slide; without it a slide has ``steps`` of them.
-        increments: of a steady press. Without friction its end does not depend on them.
-        parts: into how many (k,) the longest steps of a slide are cut by outputs, by their place (k,) m along the surface. Where
+        increments: of a steady press. Without friction its end does not depend on them. parts: into
+        how many (k,) the longest steps of a slide are cut by outputs, by their place (k,) m along
+        the surface. Where
             it is given, states need to be found only at the end of a slide and at snapshots.
-        stride: so many steps of a leg are made one, but for those that press anew.
-        every: of a press or hold that takes time, a state must be found at one of so many outputs, once the early ones are over,
+        stride: so many steps of a leg are made one, but for those that press anew. every: of a
+        press or hold that takes time, a state must be found at one of so many outputs, once the
+        early ones are over,
             and at snapshots.
     """
     how = Stepping(steps, contact_length, timed, slide_step, increments, parts)
@@ -672,7 +708,9 @@ def programme(
 
 
 def apart(times: np.ndarray) -> np.ndarray:
-    """Times (n,) s that do not fall, made to rise: states at the same time stand :data:`INSTANT` apart, in their order."""
+    """Times (n,) s that do not fall, made to rise: states at the same time stand :data:`INSTANT`
+    apart, in their order.
+    """
     out = np.array(times, float)
     for k in range(1, len(out)):
         least = out[k - 1] + max(INSTANT, 4 * np.spacing(out[k - 1]))
@@ -687,7 +725,9 @@ def among(times: Sequence[float], time: float) -> bool:
 
 
 def _joined(sizes: np.ndarray, goals: list[Goal], stride: int) -> tuple[np.ndarray, list[Goal]]:
-    """Durations (s) and goals of a leg's steps when so many are made one; the last may be of fewer."""
+    """Durations (s) and goals of a leg's steps when so many are made one; the last may be of
+    fewer.
+    """
     starts = range(0, len(goals), stride)
     sizes = np.add.reduceat(sizes, starts)
     return np.minimum(sizes, STEADY), [goals[min(k + stride, len(goals)) - 1] for k in starts]

@@ -1,9 +1,10 @@
 """What every stimulus is to the solver: a rigid profile as a signed-distance function.
 
-A profile lives in its own frame: the solid lies above, x is lateral, x = 0 is over the pad's middle when a motion begins.
-``evaluate`` returns, at any points, the distance (positive outside the solid), its gradient (pointing away from the solid,
-towards the skin) and the curvature of the level set through the point (the only nonzero eigenvalue of the distance's second
-derivative). The contact problem needs no more.
+A profile lives in its own frame: the solid lies above, x is lateral, x = 0 is over the pad's middle
+when a motion begins. ``evaluate`` returns, at any points, the distance (positive outside the
+solid), its gradient (pointing away from the solid, towards the skin) and the curvature of the level
+set through the point (the only nonzero eigenvalue of the distance's second derivative). The contact
+problem needs no more.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ import numpy as np
 class Walls(NamedTuple):
     """The two sides of valleys, each as if it went on beyond the corner between them.
 
-    ``which``: (k,) the points that are in a valley. corner: (k,) its number along the surface. distance: (k, 2) m from the side
-    before and the side after, gradient: (k, 2, 2) and curvature: (k, 2) 1/m of the distances.
+    ``which``: (k,) the points that are in a valley. corner: (k,) its number along the surface.
+    distance: (k, 2) m from the side before and the side after, gradient: (k, 2, 2) and curvature:
+    (k, 2) 1/m of the distances.
     """
 
     which: np.ndarray
@@ -31,17 +33,20 @@ class Profile:
     """Base of all profiles, and what the planner asks of them.
 
     Attributes:
-        symmetric: is it its own mirror image in x = 0? uneven: does its curvature change along x, with flat or hollow places?
-        edges: m, x where its own edges press; the mesh is refined there. edge_radius: m, their rounding (0: sharp).
-        singular: is there an edge at which strains are large or without bound? unbounded: a true edge, at which pressure has no
-        bound? irregular: are there bumps that only a search finds? face: m, half width of a flat face that presses as a whole.
-        steepness: largest slope of the surface; without bound for shapes that end beside their middle. convexity: 1/m, largest
-        curvature with which it bulges at the skin. dip: m, by which it reaches below its point at x = 0.
-        length: m, of the surface along x from x = 0; a motion must stay on it. reach: m, first and last x where there is one.
-        known: m, first and last x of measured points; contact beyond them is with a guess. smoothing: m, cut-off wavelength at
-        which a measured surface was smoothed; 0 if it was not. segments: pieces of lines and arcs that it is made of, if it is.
-        valleys: are there corners that point away from the skin, in which a node may lean on both sides (see :meth:`walls`)?
-        notes: how its file was read where that had to be guessed, in words.
+        symmetric: is it its own mirror image in x = 0? uneven: does its curvature change along x,
+        with flat or hollow places? edges: m, x where its own edges press; the mesh is refined
+        there. edge_radius: m, their rounding (0: sharp). singular: is there an edge at which
+        strains are large or without bound? unbounded: a true edge, at which pressure has no bound?
+        irregular: are there bumps that only a search finds? face: m, half width of a flat face that
+        presses as a whole. steepness: largest slope of the surface; without bound for shapes that
+        end beside their middle. convexity: 1/m, largest curvature with which it bulges at the skin.
+        dip: m, by which it reaches below its point at x = 0. length: m, of the surface along x from
+        x = 0; a motion must stay on it. reach: m, first and last x where there is one. known: m,
+        first and last x of measured points; contact beyond them is with a guess. smoothing: m,
+        cut-off wavelength at which a measured surface was smoothed; 0 if it was not. segments:
+        pieces of lines and arcs that it is made of, if it is. valleys: are there corners that point
+        away from the skin, in which a node may lean on both sides (see :meth:`walls`)? notes: how
+        its file was read where that had to be guessed, in words.
     """
 
     symmetric: ClassVar[bool] = True
@@ -68,7 +73,8 @@ class Profile:
         raise NotImplementedError
 
     def walls(self, points: np.ndarray, reach: float, flat: float = 0.0) -> Walls:
-        """Both sides of the valleys that ``points`` (n, 2) m are in, those within ``reach`` m of the corner at the bottom.
+        """Both sides of the valleys that ``points`` (n, 2) m are in, those within ``reach`` m of
+        the corner at the bottom.
 
         What turns by less than ``flat`` (rad) is no valley.
         """
@@ -81,16 +87,22 @@ class Profile:
         )
 
     def corners(self) -> np.ndarray:
-        """Corners that bulge at the skin, (k, 3): x (m), the angle by which the surface turns (rad), the room beside it (m)."""
+        """Corners that bulge at the skin, (k, 3): x (m), the angle by which the surface turns
+        (rad), the room beside it (m).
+        """
         edges = self.edges if self.unbounded else ()
         return np.array([(x, np.pi / 2, self.reach[1]) for x in edges]).reshape(-1, 3)
 
     def outline(self, x: np.ndarray) -> np.ndarray:
-        """Height of the lower surface (n,) m over ``x`` (n,) m; NaN where the profile does not reach."""
+        """Height of the lower surface (n,) m over ``x`` (n,) m; NaN where the profile does not
+        reach.
+        """
         raise NotImplementedError
 
     def cutoffs(self, edge: float) -> list[float]:
-        """Cut-off wavelengths (m) at which it may be smoothed for skin with nodes ``edge`` m apart, ascending; 0 is none."""
+        """Cut-off wavelengths (m) at which it may be smoothed for skin with nodes ``edge`` m apart,
+        ascending; 0 is none.
+        """
         return [0.0]
 
     def felt(self, edge: float) -> Profile:
@@ -98,9 +110,13 @@ class Profile:
         return self
 
     def at(self, smoothing: float, edge: float) -> Profile:
-        """The profile smoothed at a cut-off wavelength (m; 0: not at all), for skin with nodes ``edge`` m apart."""
+        """The profile smoothed at a cut-off wavelength (m; 0: not at all), for skin with nodes
+        ``edge`` m apart.
+        """
         return self
 
     def advice(self, spacing: float) -> str | None:
-        """What to try when skin with nodes ``spacing`` m apart finds no equilibrium under the profile; None: nothing special."""
+        """What to try when skin with nodes ``spacing`` m apart finds no equilibrium under the
+        profile; None: nothing special.
+        """
         return None

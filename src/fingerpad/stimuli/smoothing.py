@@ -1,21 +1,28 @@
-"""Structure of a sampled profile that is finer than a mesh can feel: found, and smoothed away by the metrologist's filter."""
+"""Structure of a sampled profile that is finer than a mesh can feel: found, and smoothed away by
+the metrologist's filter.
+"""
 
 import numpy as np
 
-#: Turning to and fro (rad) within half an edge, above which a profile is rougher than the mesh can feel.
+#: Turning to and fro (rad) within half an edge, above which a profile is rougher than the mesh can
+#: feel.
 ROUGH = np.radians(3.0)
-#: Cut-off wavelength over the edge: between nodes an edge apart no shorter wave can be told from a longer one.
+#: Cut-off wavelength over the edge: between nodes an edge apart no shorter wave can be told from a
+#: longer one.
 WAVE = 2.0
-#: m, edge of the skin of the thesis's mesh: noise of fewer points than a finer mesh has nodes is found by it all the same.
+#: m, edge of the skin of the thesis's mesh: noise of fewer points than a finer mesh has nodes is
+#: found by it all the same.
 SKIN_EDGE = 134.4e-6
-#: Standard deviation of the Gaussian over the cut-off wavelength, at which it leaves half of a wave (ISO 16610-21, eq. 1 to 3).
+#: Standard deviation of the Gaussian over the cut-off wavelength, at which it leaves half of a wave
+#: (ISO 16610-21, eq. 1 to 3).
 SIGMA = np.sqrt(np.log(2) / 2) / np.pi
 _PER_SIGMA = 8  # samples
 _MOST = 2_000_000  # samples
 
 
 def turning(x: np.ndarray, y: np.ndarray, window: float) -> np.ndarray:
-    """(n - 2,) rad by which the lines through points turn to and fro within ``window`` m from each inner point on.
+    """(n - 2,) rad by which the lines through points turn to and fro within ``window`` m from each
+    inner point on.
 
     Zero where they turn to one side only, as around an arc or an edge however sharp.
     """
@@ -32,10 +39,12 @@ def is_rough(x: np.ndarray, y: np.ndarray, edge: float) -> bool:
 
 
 def cutoffs(x: np.ndarray, y: np.ndarray, edge: float) -> list[float]:
-    """Cut-off wavelengths (m) that come into question on a skin with nodes ``edge`` m apart: none (0), and octaves.
+    """Cut-off wavelengths (m) that come into question on a skin with nodes ``edge`` m apart: none
+    (0), and octaves.
 
-    None where it is not rough. From two edges on where the mesh cannot feel what is finer, up to two edges of the thesis's skin:
-    finer meshes feel finer shapes, but also noise, and which of the two it is only the planner can judge.
+    None where it is not rough. From two edges on where the mesh cannot feel what is finer, up to
+    two edges of the thesis's skin: finer meshes feel finer shapes, but also noise, and which of the
+    two it is only the planner can judge.
     """
     if not is_rough(x, y, max(edge, SKIN_EDGE)):
         return [0.0]
@@ -45,10 +54,12 @@ def cutoffs(x: np.ndarray, y: np.ndarray, edge: float) -> list[float]:
 
 
 def smoothed(x: np.ndarray, y: np.ndarray, cutoff: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points (m,), (m,) m of the profile after a Gaussian filter of ``cutoff`` m, evenly spaced between its ends.
+    """Points (m,), (m,) m of the profile after a Gaussian filter of ``cutoff`` m, evenly spaced
+    between its ends.
 
-    The filter of ISO 16610-21, which leaves half the height of waves as long as ``cutoff``, in its regression form (after
-    ISO 16610-31): a line is fitted under the Gaussian's weight at each place, so that slopes are kept up to the ends.
+    The filter of ISO 16610-21, which leaves half the height of waves as long as ``cutoff``, in its
+    regression form (after ISO 16610-31): a line is fitted under the Gaussian's weight at each
+    place, so that slopes are kept up to the ends.
     """
     from scipy.ndimage import gaussian_filter1d  # here, for it is slow to import
 
@@ -71,18 +82,24 @@ def smoothed(x: np.ndarray, y: np.ndarray, cutoff: float) -> tuple[np.ndarray, n
 
 
 SHARP = 4
-"""Times that what is long is taken away, so that waves three times as long leave less than a hundredth."""
+"""Times that what is long is taken away, so that waves three times as long leave less than a
+hundredth.
+"""
 
 
 def finer_than(x: np.ndarray, y: np.ndarray, cutoff: float) -> np.ndarray:
-    """Heights (n,) m at evenly spaced x (n,) m of the waves of a profile that are shorter than ``cutoff`` m."""
+    """Heights (n,) m at evenly spaced x (n,) m of the waves of a profile that are shorter than
+    ``cutoff`` m.
+    """
     for _ in range(SHARP):
         y = y - np.interp(x, *smoothed(x, y, cutoff))
     return y
 
 
 def _averages(x, y, even):
-    """Mean heights of the line through points within half a spacing of each place, so that no point is passed over."""
+    """Mean heights of the line through points within half a spacing of each place, so that no point
+    is passed over.
+    """
     half = (even[1] - even[0]) / 2
     edges = np.append(even - half, even[-1] + half)
     area = np.concatenate([[0.0], np.cumsum(np.diff(x) * (y[1:] + y[:-1]) / 2)])

@@ -1,1 +1,3 @@
-"""Sweeps: from one scene to thousands, with nothing lost. Language -> design -> forecast -> batches -> one labelled dataset."""
+"""Sweeps: from one scene to thousands, with nothing lost. Language -> design -> forecast -> batches
+-> one labelled dataset.
+"""

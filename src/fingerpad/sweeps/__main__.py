@@ -1,7 +1,7 @@
 """One job of a sweep, in a process of its own, for the rules of ``sweeps.smk``.
 
-``python -m fingerpad.sweeps batch TODO RECORDS`` runs scenes; ``python -m fingerpad.sweeps collect FOLDER DATASET TABLE``
-gathers what they left.
+``python -m fingerpad.sweeps batch TODO RECORDS`` runs scenes; ``python -m fingerpad.sweeps collect
+FOLDER DATASET TABLE`` gathers what they left.
 """
 
 import sys

@@ -1,7 +1,8 @@
-"""Scenes of a sweep in one process, one after the other: imports, kernels and grids of equal pads are shared.
+"""Scenes of a sweep in one process, one after the other: imports, kernels and grids of equal pads
+are shared.
 
-Each scene's record is written when it is done. A scene that cannot be simulated is a record with its diagnosis; one that has
-killed its process twice is not tried again.
+Each scene's record is written when it is done. A scene that cannot be simulated is a record with
+its diagnosis; one that has killed its process twice is not tried again.
 """
 
 from __future__ import annotations
@@ -67,7 +68,9 @@ def _stop(*_: Any) -> None:
 def _one(
     base: Scene, number: int, changes: Mapping[str, Any], spec: Mapping[str, Any], file: Path
 ) -> dict[str, Any]:
-    """The record of a scene, whatever becomes of it; OSError only if its history cannot be written."""
+    """The record of a scene, whatever becomes of it; OSError only if its history cannot be
+    written.
+    """
     started = time.perf_counter()
     try:
         return measured(base.varied(changes), spec["keep"], file if spec["histories"] else None)
@@ -137,7 +140,9 @@ def _resident_MB() -> float:
 
 
 class _Watch:
-    """Remembers in a file which scene runs, so that the process after one that was killed knows in which."""
+    """Remembers in a file which scene runs, so that the process after one that was killed knows in
+    which.
+    """
 
     def __init__(self, path: Path) -> None:
         self._path = path

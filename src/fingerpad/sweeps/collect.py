@@ -1,4 +1,6 @@
-"""From records to one labelled dataset and one table, written in a stream: what is held does not grow with their number."""
+"""From records to one labelled dataset and one table, written in a stream: what is held does not
+grow with their number.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,8 @@ def collect(design: Mapping[str, Any], records: Iterable[Path], dataset: Path, t
     """Write the NetCDF dataset and the CSV table of a sweep.
 
     Args:
-        design: the sweep as it was laid out (`fingerpad.sweeps.engine`): dimensions, parameters, keys. records: their files.
+        design: the sweep as it was laid out (`fingerpad.sweeps.engine`): dimensions, parameters,
+        keys. records: their files.
 
     Raises:
         ValueError: a scene has no record. OSError: a file cannot be written.
@@ -188,7 +191,9 @@ def _coordinates(file: Any, parameters: list[Mapping[str, Any]]) -> None:
 
 
 def _tabulate(design: Mapping[str, Any], dataset: Path, path: Path) -> None:
-    """A row a scene: its number, its parameters, the measures with their units, errors, diagnosis."""
+    """A row a scene: its number, its parameters, the measures with their units, errors,
+    diagnosis.
+    """
     import netCDF4
 
     shape, total = tuple(design["dimensions"].values()), len(design["keys"])

@@ -130,7 +130,9 @@ def _time(seconds: float) -> str:
 
 
 def sweep(options: Any) -> int:
-    """Run a sweep; the exit code: 0, or 3 if it did not come to its end. Raises SceneError and SweepError."""
+    """Run a sweep; the exit code: 0, or 3 if it did not come to its end. Raises SceneError and
+    SweepError.
+    """
     from fingerpad.sweeps.engine import NotFinished, held, lay_out, run_layout
 
     found = read(options.sweep, options.accuracy)
@@ -165,7 +167,9 @@ def _closing(layout: Layout) -> str:
 
 @contextlib.contextmanager
 def _bar(name: str, total: int | None, quiet: bool) -> Iterator[Callable[[int], None] | None]:
-    """A bar of scenes on a terminal's standard error, as a function to call with how many are done; else None."""
+    """A bar of scenes on a terminal's standard error, as a function to call with how many are done;
+    else None.
+    """
     if quiet or not sys.stderr.isatty():
         yield None
         return

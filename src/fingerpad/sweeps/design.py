@@ -1,4 +1,6 @@
-"""From a sweep to its scenes: which values each has, in which place of the result, and that every one of them is valid."""
+"""From a sweep to its scenes: which values each has, in which place of the result, and that every
+one of them is valid.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +23,9 @@ class Parameter:
     """An axis of a sweep in its results.
 
     Attributes:
-        name: what it is called. key: the dotted key of the scene. unit: of its values, "" for words. dimension: of the result
-        that it runs along. values: along that dimension, numbers in `unit` or words. source: where a distribution is from.
+        name: what it is called. key: the dotted key of the scene. unit: of its values, "" for
+        words. dimension: of the result that it runs along. values: along that dimension, numbers in
+        `unit` or words. source: where a distribution is from.
     """
 
     name: str
@@ -81,7 +84,9 @@ class Design:
 
     @cached_property
     def dimensions(self) -> dict[str, int]:
-        """Dimension of the result -> its length: of the draws ("scene", "draw" where they are crossed), then of each axis."""
+        """Dimension of the result -> its length: of the draws ("scene", "draw" where they are
+        crossed), then of each axis.
+        """
         names = self.read.names
         draws = (
             {"draw" if self._listed else "scene": len(self._values[self._drawn[0]])}
@@ -153,7 +158,9 @@ class Design:
         return map(self.scene, range(len(self)))
 
     def check(self) -> None:
-        """SceneError, one line, unless every scene is valid and every measure that is kept is one of its first scene."""
+        """SceneError, one line, unless every scene is valid and every measure that is kept is one
+        of its first scene.
+        """
         from fingerpad.measures.known import known
 
         first = self.scene(0)

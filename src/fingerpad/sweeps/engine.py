@@ -1,4 +1,5 @@
-"""The folder of a sweep, its division into batches, and Snakemake, which runs them here or on a cluster.
+"""The folder of a sweep, its division into batches, and Snakemake, which runs them here or on a
+cluster.
 
     sweep.json               batches with their predicted cost and memory, and files of records from before
     design.json              dimensions, parameters, and the key (digest of the content) of every scene
@@ -7,7 +8,8 @@
     histories/<key>.nc       where histories are kept
     sweep.nc, sweep.csv      the result
 
-A batch is called after the content of its scenes, so that what was run is found again whatever else has changed.
+A batch is called after the content of its scenes, so that what was run is found again whatever else
+has changed.
 """
 
 from __future__ import annotations
@@ -54,8 +56,9 @@ class Layout:
     """What is to be done for a sweep in a folder.
 
     Attributes:
-        folder: the sweep's. batches: name -> scenes (count), cost_s, memory_MB. known: files of records from before. scenes: of
-        the sweep; missing: of these, those that are in batches; expected_s: what the missing ones will cost, of one core.
+        folder: the sweep's. batches: name -> scenes (count), cost_s, memory_MB. known: files of
+        records from before. scenes: of the sweep; missing: of these, those that are in batches;
+        expected_s: what the missing ones will cost, of one core.
     """
 
     folder: Path
@@ -71,7 +74,9 @@ class Layout:
         return sum(batch["cost_s"] for batch in self.batches.values())
 
     def done(self) -> tuple[int, int]:
-        """How many of the missing scenes have a record by now, and how many of these have failed."""
+        """How many of the missing scenes have a record by now, and how many of these have
+        failed.
+        """
         done = failed = 0
         for name in self.batches:
             for ending in (".jsonl", ".part"):
@@ -98,11 +103,12 @@ def lay_out(
     """Check and plan every scene of a sweep, and divide those that have no record yet into batches.
 
     Args:
-        force: whether another sweep's folder is taken over. again: whether scenes that failed before are tried again.
+        force: whether another sweep's folder is taken over. again: whether scenes that failed
+        before are tried again.
 
     Raises:
-        SceneError: a scene is wrong, or cannot be planned; SweepError: the folder is another sweep's. One line, and nothing was
-        written.
+        SceneError: a scene is wrong, or cannot be planned; SweepError: the folder is another
+        sweep's. One line, and nothing was written.
     """
     from fingerpad.sweeps.design import Design
     from fingerpad.sweeps.forecast import divided, forecast
@@ -224,7 +230,9 @@ def _described(design: Any, keys: list[str]) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def held(folder: Path) -> Iterator[tuple[int, ...]]:
-    """The folder of a sweep, for this process alone, by the descriptors yielded. Raises SweepError."""
+    """The folder of a sweep, for this process alone, by the descriptors yielded. Raises
+    SweepError.
+    """
     if (wrong := unusable(folder.absolute())) or set("{}") & set(str(folder.absolute())):
         raise SweepError(
             f"--out: '{folder}' has {wrong or 'braces'} in its name; allowed: a folder without"
@@ -250,11 +258,13 @@ def run_layout(
     """Let Snakemake run the batches of a sweep and collect them.
 
     Args:
-        profile: folder of a Snakemake profile, of a cluster for example. watch: called now and then with `Layout.done`. lock: by
-        which the folder is `held`; Snakemake holds it too, for it goes on where this process is killed.
+        profile: folder of a Snakemake profile, of a cluster for example. watch: called now and then
+        with `Layout.done`. lock: by which the folder is `held`; Snakemake holds it too, for it goes
+        on where this process is killed.
 
     Raises:
-        NotFinished: a batch or the collection failed for good. KeyboardInterrupt. What was done is kept in either case.
+        NotFinished: a batch or the collection failed for good. KeyboardInterrupt. What was done is
+        kept in either case.
     """
     folder = layout.folder.absolute()
     (folder / "logs").mkdir(exist_ok=True)
@@ -311,7 +321,9 @@ def run_layout(
 
 
 def _surroundings(folder: Path) -> dict[str, str]:
-    """Environment for Snakemake, also where the user has no name, or no home that can be written, as in a container."""
+    """Environment for Snakemake, also where the user has no name, or no home that can be written,
+    as in a container.
+    """
     own, out = folder / ".snakemake", dict(os.environ)
     if cache_folder("") is None:
         out |= {"XDG_CACHE_HOME": str(own / "cache"), "XDG_CONFIG_HOME": str(own / "config")}
@@ -344,17 +356,20 @@ def sweep(
     """Simulate variations of a scene.
 
     Args:
-        scene: the base scene, a file, or a dictionary. over: dotted key of it -> values, as in a sweep's file: a list such as
-        ``["79 1/m", "210 1/m"]``, ``{"range": ["2 gf", "200 gf"], "count": 9}``, a distribution, words, or a folder.
-        out: folder of the sweep, in which what is there is not run again (default: none is kept). cores: processes at a time.
-        profile: of Snakemake, for a cluster. more: further keys of a sweep: design, samples, seed, keep, histories, accuracy.
+        scene: the base scene, a file, or a dictionary. over: dotted key of it -> values, as in a
+        sweep's file: a list such as ``["79 1/m", "210 1/m"]``, ``{"range": ["2 gf", "200 gf"],
+        "count": 9}``, a distribution, words, or a folder. out: folder of the sweep, in which what
+        is there is not run again (default: none is kept). cores: processes at a time. profile: of
+        Snakemake, for a cluster. more: further keys of a sweep: design, samples, seed, keep,
+        histories, accuracy.
 
     Returns:
-        The labelled dataset: a dimension for each key of a grid, measures with units, `estimated_error`, and of scenes that
-        could not be simulated a `diagnosis`.
+        The labelled dataset: a dimension for each key of a grid, measures with units,
+        `estimated_error`, and of scenes that could not be simulated a `diagnosis`.
 
     Raises:
-        SceneError, SweepError: the sweep or one of its scenes is wrong (before anything is run). NotFinished: a batch failed.
+        SceneError, SweepError: the sweep or one of its scenes is wrong (before anything is run).
+        NotFinished: a batch failed.
     """
     import tempfile
 

@@ -1,4 +1,6 @@
-"""What a sweep will cost: every scene planned, nothing solved; and its scenes in batches of about equal cost."""
+"""What a sweep will cost: every scene planned, nothing solved; and its scenes in batches of about
+equal cost.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ from fingerpad.planning.rules import RULES
 from fingerpad.sweeps.design import Design
 
 SECONDS_PROCESS = 6.0
-"""Of one reference core, before the first scene of a process: imports and kernels (see benchmarks)."""
+"""Of one reference core, before the first scene of a process: imports and kernels (see
+benchmarks).
+"""
 SECONDS_SCENE = 0.22
 """Of each scene beside its solution: mesh, history, measures, record (see benchmarks)."""
 MEMORY_MB = 400.0
@@ -20,7 +24,9 @@ MEMORY_MB = 400.0
 RECORD_BYTES = 3000.0
 """Of each scene on the disk: in todo, records, dataset and table."""
 BATCH_S = 60.0
-"""What a batch should cost at least; a sweep that has fewer of these than cores is divided further, down to LEAST_S."""
+"""What a batch should cost at least; a sweep that has fewer of these than cores is divided further,
+down to LEAST_S.
+"""
 LEAST_S = 8.0
 MOST_BATCHES = 1000
 """Of a sweep: schedulers and Snakemake are slow with more."""
@@ -31,8 +37,8 @@ class Forecast:
     """What scenes will cost.
 
     Attributes:
-        cost_s: of each scene, s of one core. memory_MB, result_bytes: of each. effects: name -> in how many scenes it is on.
-        worst_error: the largest that is expected.
+        cost_s: of each scene, s of one core. memory_MB, result_bytes: of each. effects: name -> in
+        how many scenes it is on. worst_error: the largest that is expected.
     """
 
     cost_s: list[float] = field(default_factory=list)
@@ -85,7 +91,8 @@ def forecast(design: Design, progress: Callable[[int], object] | None = None) ->
 
 
 def divided(numbers: list[int], cost_s: list[float], cores: int = 1) -> list[list[int]]:
-    """Scenes in batches of about equal cost: a minute or more each, on all cores where that leaves LEAST_S a batch.
+    """Scenes in batches of about equal cost: a minute or more each, on all cores where that leaves
+    LEAST_S a batch.
 
     Args:
         numbers: of the scenes to be run, rising. cost_s: of every scene of the sweep.

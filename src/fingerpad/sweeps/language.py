@@ -1,14 +1,16 @@
-"""The sweep language: a base scene, the keys that vary, the design, what is kept; read from YAML and checked.
+"""The sweep language: a base scene, the keys that vary, the design, what is kept; read from YAML
+and checked.
 
     scene: ../scenes/press10.yaml
     over:
-      stimulus.curvature: ["79 1/m", "210 1/m", "630 1/m"]
-      motion[0].press_to_force: {range: ["2 gf", "200 gf"], count: 9, spacing: logarithmic}
-      specimen.layers.fat.youngs_modulus: {lognormal: {median: "15 kPa", factor: 1.5}, within: ["5 kPa", "40 kPa"]}
+      stimulus.curvature: ["79 1/m", "210 1/m", "630 1/m"] motion[0].press_to_force: {range: ["2
+      gf", "200 gf"], count: 9, spacing: logarithmic} specimen.layers.fat.youngs_modulus:
+      {lognormal: {median: "15 kPa", factor: 1.5}, within: ["5 kPa", "40 kPa"]}
 
-An axis is a list of values, a range, a distribution, words with a value each, or a folder of files. Distributions, and ranges
-without a count, are drawn together in a design of points; all else is crossed with every other axis. ``table: samples.csv`` under
-``over`` is a design of one's own: its columns are keys with their units, such as ``stimulus.curvature (1/m)``, its rows scenes.
+An axis is a list of values, a range, a distribution, words with a value each, or a folder of files.
+Distributions, and ranges without a count, are drawn together in a design of points; all else is
+crossed with every other axis. ``table: samples.csv`` under ``over`` is a design of one's own: its
+columns are keys with their units, such as ``stimulus.curvature (1/m)``, its rows scenes.
 """
 
 from __future__ import annotations
@@ -40,7 +42,9 @@ _FILES = ("csv", "mesh", "table")
 
 @dataclass(frozen=True)
 class Unit:
-    """The unit that an axis is stated in: its text ("1": none), the dimension, and its size in SI."""
+    """The unit that an axis is stated in: its text ("1": none), the dimension, and its size in
+    SI.
+    """
 
     text: str
     dimension: str
@@ -198,7 +202,9 @@ def _pattern(value: Any) -> Any:
 
 
 class Column(Values):
-    """A column of a table of samples: its values belong to those of the table's other columns, row by row."""
+    """A column of a table of samples: its values belong to those of the table's other columns, row
+    by row.
+    """
 
 
 class Folder(Axis):
@@ -291,7 +297,9 @@ class LogNormal(Strict):
     median: Quantity
     """Median."""
     factor: number("a factor above 1", 1.0, math.inf)
-    """Geometric standard deviation: two thirds of the values are within this factor of the median."""
+    """Geometric standard deviation: two thirds of the values are within this factor of the
+    median.
+    """
 
 
 class Distribution(Axis):
@@ -344,7 +352,9 @@ class Distribution(Axis):
 
 
 def quantiles(axis: Range | Distribution, shares: Any) -> Any:
-    """Values (n,) of a drawn axis, in its unit, at shares (n,) from 0 to 1 of its (truncated) distribution. Raises `Problem`."""
+    """Values (n,) of a drawn axis, in its unit, at shares (n,) from 0 to 1 of its (truncated)
+    distribution. Raises `Problem`.
+    """
     found = axis.distribution()
     low, high = 0.0, 1.0
     if getattr(axis, "within", None):
@@ -437,7 +447,9 @@ def _over(value: Any, info: ValidationInfo) -> dict[str, Axis]:
 
 
 def _columns(value: Any, info: ValidationInfo) -> dict[str, Column]:
-    """The axes of a table of samples: its columns are keys of the scene, with the unit of their values in brackets."""
+    """The axes of a table of samples: its columns are keys of the scene, with the unit of their
+    values in brackets.
+    """
     if not isinstance(value, (str, Path)):
         raise Problem("is not a path", "the path of a CSV file whose columns are keys of the scene")
     path = expanded(value) if info.context is None else info.context.parent / expanded(value)
@@ -503,9 +515,12 @@ class Sweep(Strict):
     scene: Any = Field(json_schema_extra={"anyOf": [{"type": "string"}, {"type": "object"}]})
     """The base scene: the path of a scene, relative to this file, or a scene."""
     over: Annotated[dict[str, Any], BeforeValidator(_over)]
-    """Key of the scene, such as motion[0].rate -> its values: a list, a range, a distribution, words, or a folder of files.
+    """Key of the scene, such as motion[0].rate -> its values: a list, a range, a distribution,
+    words, or a folder of files.
 
-    Or table: a CSV file with a column for each key, its unit in brackets, and a row for each scene."""
+    Or table: a CSV file with a column for each key, its unit in brackets, and a row for each
+    scene.
+    """
     design: Literal["grid", "latin_hypercube", "sobol"] = "grid"
     """How what is drawn is drawn; a grid draws nothing."""
     samples: whole(1, MOST) | None = None
@@ -527,7 +542,9 @@ class Sweep(Strict):
 
 @dataclass(frozen=True)
 class Read:
-    """A sweep as it was read: its name, the file (None in Python), what it says, and the base scene at its accuracy."""
+    """A sweep as it was read: its name, the file (None in Python), what it says, and the base scene
+    at its accuracy.
+    """
 
     name: str
     file: Path
@@ -561,8 +578,8 @@ def load_sweep(
     """Read and check a sweep.
 
     Args:
-        source: YAML file, or a dictionary, whose paths are relative to the working directory. name: of a dictionary's sweep.
-        scene: the base scene, in place of the one that the sweep says.
+        source: YAML file, or a dictionary, whose paths are relative to the working directory. name:
+        of a dictionary's sweep. scene: the base scene, in place of the one that the sweep says.
 
     Raises:
         SceneError: the file cannot be read or anything in it is wrong; its text is one line.

@@ -1,4 +1,6 @@
-"""What is known of scenes that were run: a line of JSON each, written at once; whatever kills the writer, whole lines stay."""
+"""What is known of scenes that were run: a line of JSON each, written at once; whatever kills the
+writer, whole lines stay.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ UNFINISHED = ".part"
 
 @cache
 def code() -> str:
-    """Digest of all that makes the numbers of a scene: the files of this package and of those with measures, and the libraries' versions."""
+    """Digest of all that makes the numbers of a scene: the files of this package and of those with
+    measures, and the libraries' versions.
+    """
     from fingerpad.measures.known import plugins
     from fingerpad.provenance import code_digest
     from fingerpad.results import provenance
@@ -31,7 +35,9 @@ def code() -> str:
 
 
 def key_of(scene: Scene, keep: tuple[str, ...], histories: bool) -> str:
-    """What a scene's record is known by: a digest of its content, of what is kept of it, and of the code."""
+    """What a scene's record is known by: a digest of its content, of what is kept of it, and of the
+    code.
+    """
     content = {
         name: part for name, part in scene.canonical().items() if name not in ("name", "tags")
     }
@@ -40,7 +46,9 @@ def key_of(scene: Scene, keep: tuple[str, ...], histories: bool) -> str:
 
 
 def read_records(path: Path) -> Iterator[dict[str, Any]]:
-    """The records of a file; a line that was not written to its end, and what follows, is left out."""
+    """The records of a file; a line that was not written to its end, and what follows, is left
+    out.
+    """
     with path.open("rb") as lines:
         for line in lines:
             if not line.endswith(b"\n"):

@@ -1,4 +1,6 @@
-"""Record which files of the project a process opens and how many timers it sets: on the path of traced processes only."""
+"""Record which files of the project a process opens and how many timers it sets: on the path of
+traced processes only.
+"""
 
 import atexit
 import json

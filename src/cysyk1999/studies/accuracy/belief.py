@@ -1,8 +1,10 @@
-"""Does a run know its error? Scenes that the study of accuracy has not seen, each against the same scene on the finest preset.
+"""Does a run know its error? Scenes that the study of accuracy has not seen, each against the same
+scene on the finest preset.
 
-The truth is the largest relative difference of depth, width, centre and peak pressure and strain energies to the "fine" run, made
-finer in narrow contacts, which has an error of its own: at the legs' ends, and of legs that stroke as root mean square over their
-way. The belief is what the run itself states as its error; it covers the truth when it is not smaller.
+The truth is the largest relative difference of depth, width, centre and peak pressure and strain
+energies to the "fine" run, made finer in narrow contacts, which has an error of its own: at the
+legs' ends, and of legs that stroke as root mean square over their way. The belief is what the run
+itself states as its error; it covers the truth when it is not smaller.
 """
 
 from __future__ import annotations
@@ -73,8 +75,9 @@ OUTSIDE: dict[str, dict[str, Any]] = {
         "motion": (*_press(30.0, hold=None), Slide(slide=3e-3, speed=5e-3)),
     },
 }
-"""Scenes outside the study by what is different in them. The last but one showed that errors of strokes add to those of presses;
-the last was added to check what the planner has made of that."""
+"""Scenes outside the study by what is different in them. The last but one showed that errors of
+strokes add to those of presses; the last was added to check what the planner has made of that.
+"""
 
 
 def outside(base: Scene) -> dict[str, Scene]:
@@ -83,7 +86,9 @@ def outside(base: Scene) -> dict[str, Scene]:
 
 
 STILL_FINER = 1.4
-"""By how much the edges of a stroke's truth are shorter than the preset's, which is what a tight tolerance comes to itself."""
+"""By how much the edges of a stroke's truth are shorter than the preset's, which is what a tight
+tolerance comes to itself.
+"""
 QUANTITIES = (
     "indentation_depth",
     "contact_width",
@@ -98,9 +103,9 @@ def difference(
 ) -> tuple[float, str]:
     """Largest relative difference of two histories, and the quantity that has it.
 
-    At the end of every leg; the pressure in the middle relative to the largest, for it may be next to nothing. Of a leg that
-    strokes the root mean square over its way, relative to the largest value on it: what a
-    surface with hollows leaves at one moment may be next to nothing.
+    At the end of every leg; the pressure in the middle relative to the largest, for it may be next
+    to nothing. Of a leg that strokes the root mean square over its way, relative to the largest
+    value on it: what a surface with hollows leaves at one moment may be next to nothing.
     """
     off = dict.fromkeys(quantities, 0.0)
     for leg in np.unique(truth.leg.values[1:]):
@@ -172,7 +177,9 @@ def finer(chosen: Plan, share: float) -> Plan:
 
 
 def finest(scene: Scene) -> Plan:
-    """The plan of the truth: the preset, in the contact at least 20 elements to its half width; of a stroke still finer."""
+    """The plan of the truth: the preset, in the contact at least 20 elements to its half width; of
+    a stroke still finer.
+    """
     chosen = plan(scene)
     if chosen.strokes:
         return finer(chosen, STILL_FINER)
@@ -191,7 +198,9 @@ def finest(scene: Scene) -> Plan:
 
 
 def beliefs(scene: Scene, name: str, levels: tuple = LEVELS) -> list[dict[str, Any]]:
-    """Run a scene at every level and as :func:`finest`: what each believes and how wrong it is (of the finest: unknown)."""
+    """Run a scene at every level and as :func:`finest`: what each believes and how wrong it is (of
+    the finest: unknown).
+    """
     from fingerpad.simulation import simulate
 
     truth = simulate(scene, finest(scene))

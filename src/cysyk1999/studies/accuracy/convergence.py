@@ -1,6 +1,7 @@
 """Orders of convergence, extrapolation to the limit, and the grid convergence index.
 
-Sources: L. F. Richardson, Phil. Trans. R. Soc. A 210, 307 (1911); P. J. Roache, J. Fluids Eng. 116, 405 (1994).
+Sources: L. F. Richardson, Phil. Trans. R. Soc. A 210, 307 (1911); P. J. Roache, J. Fluids Eng. 116,
+405 (1994).
 """
 
 from __future__ import annotations
@@ -12,14 +13,18 @@ import numpy as np
 from scipy.optimize import brentq
 
 SAFETY, SAFETY_UNOBSERVED = 1.25, 3.0
-"""Roache's factors on the extrapolated difference: with a believable order observed on three sizes, and with one assumed."""
+"""Roache's factors on the extrapolated difference: with a believable order observed on three sizes,
+and with one assumed.
+"""
 LOWEST, HIGHEST = 1.0, 2.0
 """Orders between which differences are extrapolated; what is seen outside is not believed."""
 
 
 @dataclass(frozen=True)
 class Limit:
-    """The value at size zero, how uncertain (of the same unit), and the order seen on the three finest sizes (nan: none)."""
+    """The value at size zero, how uncertain (of the same unit), and the order seen on the three
+    finest sizes (nan: none).
+    """
 
     value: float
     uncertainty: float
@@ -27,7 +32,9 @@ class Limit:
 
 
 def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
-    """Order p of values f + c h^p at the three finest of falling ``sizes``; nan where they do not approach monotonically."""
+    """Order p of values f + c h^p at the three finest of falling ``sizes``; nan where they do not
+    approach monotonically.
+    """
     coarse, middle, fine = np.asarray(sizes, float)[-3:]
     first, second = np.diff(np.asarray(values, float)[-3:])
     if first * second <= 0:
@@ -40,7 +47,9 @@ def observed_order(sizes: Sequence[float], values: Sequence[float]) -> float:
 
 
 def fitted_order(sizes: Sequence[float], errors: Sequence[float]) -> float:
-    """Slope of log error over log size, by least squares over all that are not zero; nan for fewer than two."""
+    """Slope of log error over log size, by least squares over all that are not zero; nan for fewer
+    than two.
+    """
     sizes, errors = np.asarray(sizes, float), np.abs(np.asarray(errors, float))
     known = np.isfinite(errors) & (errors > 0)
     return (
@@ -51,11 +60,13 @@ def fitted_order(sizes: Sequence[float], errors: Sequence[float]) -> float:
 
 
 def limit(sizes: Sequence[float], values: Sequence[float]) -> Limit:
-    """Richardson's limit from the two finest of at least three falling sizes, and its grid convergence index.
+    """Richardson's limit from the two finest of at least three falling sizes, and its grid
+    convergence index.
 
-    An order above :data:`HIGHEST` is replaced by it, and by more than a tenth the index has the larger factor. Where an order
-    below :data:`LOWEST` is seen, or none, the limit is the finest value, as uncertain as the last three are apart; where these
-    swing, it is taken to lie somewhere between them.
+    An order above :data:`HIGHEST` is replaced by it, and by more than a tenth the index has the
+    larger factor. Where an order below :data:`LOWEST` is seen, or none, the limit is the finest
+    value, as uncertain as the last three are apart; where these swing, it is taken to lie somewhere
+    between them.
     """
     order, (middle, fine) = observed_order(sizes, values), np.asarray(sizes, float)[-2:]
     last = np.asarray(values, float)[-3:]

@@ -1,9 +1,11 @@
-"""Scenes drawn at random outside the cylinders, by class of stimulus, to ask whether runs know their error there as well.
+"""Scenes drawn at random outside the cylinders, by class of stimulus, to ask whether runs know
+their error there as well.
 
-The classes: bars with true edges, filleted bars, lines, sampled profiles, strokes over waves, pads with inner ridges,
-external meshes, very small and large forces, profiles with corners, and meshes of one's own as gmsh makes them. The truth
-is the same scene on the finest run's mesh made finer still; of a true edge, where nodes are held or are not, that of a
-rounding by a hundredth of the half width.
+The classes: bars with true edges, filleted bars, lines, sampled profiles, strokes over waves, pads
+with inner ridges, external meshes, very small and large forces, profiles with corners, and meshes
+of one's own as gmsh makes them. The truth is the same scene on the finest run's mesh made finer
+still; of a true edge, where nodes are held or are not, that of a rounding by a hundredth of the
+half width.
 """
 
 from __future__ import annotations
@@ -41,28 +43,37 @@ CLASSES = (
     "own",
 )
 SEED, SCENES, CORNERED, OWN = 22, 60, 20, 20
-"""Of the scenes drawn. Seeds 20 and 21 set the rules of edges, fillets, waves and measured profiles. Of 22, unseen then, 59 were
-covered and a bar's true edge believed 11.0 % where it was wrong by 11.3: its floor became 15 %, and nothing else changed.
-On the inferred pad the same rules covered 58 of them, which raised the rules' ``safety`` and the factor of measured profiles
-(``bumps``): 60 of 60 is fitted. Strokes over waves had a factor as well while their errors were those of their last moment; as
-root mean squares over the way they need none. Of the strokes of seed 23, unseen, one in seven was missed: steps of steady ones
-did not count; of eleven of seed 24, unseen after that, ten were covered, and one was wrong by 3.1 % and believed 2.8.
-The last are profiles with corners: wedges, bumps of straight lines, and curves sampled at a few points and at many."""
+"""Of the scenes drawn. Seeds 20 and 21 set the rules of edges, fillets, waves and measured
+profiles. Of 22, unseen then, 59 were covered and a bar's true edge believed 11.0 % where it was
+wrong by 11.3: its floor became 15 %, and nothing else changed. On the inferred pad the same rules
+covered 58 of them, which raised the rules' ``safety`` and the factor of measured profiles
+(``bumps``): 60 of 60 is fitted. Strokes over waves had a factor as well while their errors were
+those of their last moment; as root mean squares over the way they need none. Of the strokes of seed
+23, unseen, one in seven was missed: steps of steady ones did not count; of eleven of seed 24,
+unseen after that, ten were covered, and one was wrong by 3.1 % and believed 2.8. The last are
+profiles with corners: wedges, bumps of straight lines, and curves sampled at a few points and at
+many.
+"""
 LEVELS = (0.1, 0.05)
 """Accuracies that are asked for, one drawn for each scene; an external mesh is what it is."""
 HEAVY = ("wavy", "ridges")
 """Classes tried at the first of these only, or at one of their own."""
 FINER, FINER_STILL, ROUNDED = 1.7, 2.5, 200
-"""By how much the truth's edges are shorter than the run's, of strokes and large meshes and of others; among ridges they
-are shorter still; a true edge is rounded by the width over this."""
+"""By how much the truth's edges are shorter than the run's, of strokes and large meshes and of
+others; among ridges they are shorter still; a true edge is rounded by the width over this.
+"""
 PATIENCE = 60.0
 """s of process time that the truth of a true edge may take, before it is rounded more."""
 BESIDE = 6, (0.7, 1.1), 0.24
-"""Receptors drawn beside ridges: their number, and the bounds of their depths and of their offsets to either side, mm."""
+"""Receptors drawn beside ridges: their number, and the bounds of their depths and of their offsets
+to either side, mm.
+"""
 
 
 def drawn(seed: int = SEED, count: int = SCENES) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Name, class and document of each scene, the classes in turn; what an external mesh is made of stands under ``made``."""
+    """Name, class and document of each scene, the classes in turn; what an external mesh is made of
+    stands under ``made``.
+    """
     draw = np.random.default_rng(seed)
 
     def between(low, high):
@@ -141,7 +152,9 @@ def drawn(seed: int = SEED, count: int = SCENES) -> Iterator[tuple[str, str, dic
 
 
 def _cornered(draw: np.random.Generator, number: int) -> dict[str, Any]:
-    """A profile with corners in a document; every fourth is a smooth one sampled densely, which has none."""
+    """A profile with corners in a document; every fourth is a smooth one sampled densely, which has
+    none.
+    """
     bend, reach = float(np.exp(draw.uniform(np.log(20), np.log(400)))), 8e-3
     if number % 4 == 0:  # a wedge
         x = np.array([-reach, 0.0, reach])
@@ -189,8 +202,9 @@ def truth_of(scene: Scene, last: Plan) -> Any:
 
 
 def _of_true_edge(scene, rounded):
-    """The truth of a bar's true edge: that of a rounding by its width over ``rounded``; twice or four times that where it is too
-    sharp, or takes too long."""
+    """The truth of a bar's true edge: that of a rounding by its width over ``rounded``; twice or
+    four times that where it is too sharp, or takes too long.
+    """
     from cysyk1999.studies.stability.run import Late, in_time
     from fingerpad.mechanics.stepping import NonConvergence
     from fingerpad.simulation import simulate
@@ -207,7 +221,9 @@ def _of_true_edge(scene, rounded):
 
 
 def beliefs(name: str, kind: str, document: dict[str, Any], folder: Path) -> list[dict[str, Any]]:
-    """Run a drawn scene as it is and as finely as the truth: a row each. ``folder`` takes an external mesh."""
+    """Run a drawn scene as it is and as finely as the truth: a row each. ``folder`` takes an
+    external mesh.
+    """
     from fingerpad.simulation import simulate
 
     document = dict(document)
@@ -244,7 +260,9 @@ def beliefs(name: str, kind: str, document: dict[str, Any], folder: Path) -> lis
 def _beliefs_on_own(
     name: str, kind: str, document: dict[str, Any], folder: Path
 ) -> list[dict[str, Any]]:
-    """The same of a scene on a mesh of one's own; its truth is on a finer mesh of the same shape."""
+    """The same of a scene on a mesh of one's own; its truth is on a finer mesh of the same
+    shape.
+    """
     from fingerpad.simulation import simulate
 
     histories = []

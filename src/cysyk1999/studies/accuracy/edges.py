@@ -1,9 +1,10 @@
-"""Does the edge of the contact move continuously? Kinks of the curves of a ramp and hold, with other smoothing and meshes.
+"""Does the edge of the contact move continuously? Kinks of the curves of a ramp and hold, with
+other smoothing and meshes.
 
-Contact that begins node by node leaves a kink in every curve whenever one joins. Contact at points inside elements
-(:mod:`fingerpad.mechanics.contact_points`) leaves less than can be seen, if its pressures are smoothed enough to be those of one
-edge and not so much that the contact widens. How far the pressures across the contact are off is a matter of the nodes along the
-skin alone.
+Contact that begins node by node leaves a kink in every curve whenever one joins. Contact at points
+inside elements (:mod:`fingerpad.mechanics.contact_points`) leaves less than can be seen, if its
+pressures are smoothed enough to be those of one edge and not so much that the contact widens. How
+far the pressures across the contact are off is a matter of the nodes along the skin alone.
 """
 
 from __future__ import annotations
@@ -33,9 +34,13 @@ if TYPE_CHECKING:
 OUTPUTS = 40
 """Of the ramp, and as many of the hold."""
 ONSET = 5
-"""Outputs of the ramp that are left out: the contact begins with a root of time, which no parabola follows."""
+"""Outputs of the ramp that are left out: the contact begins with a root of time, which no parabola
+follows.
+"""
 SHARES = (1.0, 0.1, 0.001, 10.0)
-"""Of the smoothing that is the method's own. The third is next to none: what points alone do, whose pressures alternate."""
+"""Of the smoothing that is the method's own. The third is next to none: what points alone do, whose
+pressures alternate.
+"""
 
 
 @contextmanager
@@ -50,7 +55,9 @@ def smoothed(share: float) -> Iterator[None]:
 
 
 def kink(time: np.ndarray, values: np.ndarray) -> float:
-    """Largest distance of one of ``values`` (n,) at ``time`` (n,) from the parabola fitted to two neighbours on either side."""
+    """Largest distance of one of ``values`` (n,) at ``time`` (n,) from the parabola fitted to two
+    neighbours on either side.
+    """
     worst = 0.0
     for k in range(2, len(time) - 2):
         near = np.array([k - 2, k - 1, k + 1, k + 2])
@@ -60,7 +67,9 @@ def kink(time: np.ndarray, values: np.ndarray) -> float:
 
 
 def kinks(history: xr.Dataset) -> dict[str, float]:
-    """Largest kink (share of the range) of each curve of a ramp and hold, its onset and the corner between its legs left out."""
+    """Largest kink (share of the range) of each curve of a ramp and hold, its onset and the corner
+    between its legs left out.
+    """
     time, leg = history["time"].values, history["leg"].values
     curves = {
         name: (time, history[name].values)
@@ -83,7 +92,9 @@ def kinks(history: xr.Dataset) -> dict[str, float]:
 
 
 def alternation(history: xr.Dataset) -> float:
-    """Largest distance (share of the peak) of a node's final pressure from its neighbours' cubic, of all but the last four."""
+    """Largest distance (share of the peak) of a node's final pressure from its neighbours' cubic,
+    of all but the last four.
+    """
     pressure = history["contact_pressure"].values[-1]
     on = np.flatnonzero(pressure > 0)[6:-6]
     near = (-pressure[on - 2] + 4 * pressure[on - 1] + 4 * pressure[on + 1] - pressure[on + 2]) / 6
@@ -93,8 +104,9 @@ def alternation(history: xr.Dataset) -> float:
 def pressed(
     scene: Scene, share: float = 1.0, sized: Callable[[MeshSize], MeshSize] = lambda size: size
 ) -> xr.Dataset:
-    """The history of a ramp and hold with outputs that are close enough to see kinks, a state at each, for splines between states
-    would hide some; on its own mesh or one of another size."""
+    """The history of a ramp and hold with outputs that are close enough to see kinks, a state at
+    each, for splines between states would hide some; on its own mesh or one of another size.
+    """
     from fingerpad.scenes.scene import Receptors
 
     receptors = Receptors(depths=DEPTHS, offsets=(0.0,))
@@ -131,7 +143,9 @@ FINER = 1 / 3
 
 
 def pressure_off(history: xr.Dataset, truth: xr.Dataset) -> float:
-    """Largest error of the pressure profile at an output, its onset left out, as a norm over that of the truth."""
+    """Largest error of the pressure profile at an output, its onset left out, as a norm over that
+    of the truth.
+    """
 
     def profile(of: xr.Dataset, k: int) -> tuple[np.ndarray, np.ndarray]:
         place = np.flatnonzero(of["skin_y"].values > 0)
@@ -146,7 +160,9 @@ def pressure_off(history: xr.Dataset, truth: xr.Dataset) -> float:
 
 
 def rows(surface: str, scene: Scene) -> list[dict[str, object]]:
-    """Kinks, alternation and answers (per cent off the method's own) of a surface with each smoothing and on each mesh."""
+    """Kinks, alternation and answers (per cent off the method's own) of a surface with each
+    smoothing and on each mesh.
+    """
     out, own = [], None
     truth = pressed(scene, sized=lambda size: size.coarser(FINER))
     for mesh, share in (

@@ -1,4 +1,6 @@
-"""Runs of the study of accuracy -> reference, errors, costs: what its tables and figures show and what the planner goes by."""
+"""Runs of the study of accuracy -> reference, errors, costs: what its tables and figures show and
+what the planner goes by.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,9 @@ from fingerpad.reference_solutions import hertz, phillips_johnson, waterbed
 Records = Mapping[str, dict[str, Any]]
 
 HEADLINE = ("depth", "width", "centre pressure", "peak pressure", "energy 600 um", "energy 915 um")
-"""The quantities whose largest error is the error of a discretisation; the rate is shown beside them."""
+"""The quantities whose largest error is the error of a discretisation; the rate is shown beside
+them.
+"""
 QUANTITIES = (*HEADLINE, "peak energy rate")
 HALF_PLANE, WATER_BED = "elastic half-plane", "water bed"
 FINITE_ELEMENTS = "finite elements"
@@ -64,7 +68,8 @@ def step_limits(records: Records, family: str, quantity: str) -> list[Limit]:
 
 
 def interplay(records: Records, family: str, quantity: str) -> np.ndarray:
-    """How far the preset fine is from the sum of what its mesh and its steps change by themselves, (moments,).
+    """How far the preset fine is from the sum of what its mesh and its steps change by themselves,
+    (moments,).
 
     Where friction keeps what steps have left behind, they do not simply add.
     """
@@ -76,7 +81,8 @@ def interplay(records: Records, family: str, quantity: str) -> np.ndarray:
 
 
 def references(records: Records, family: str) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Quantity -> converged value and its uncertainty (moments,): the limit in the mesh, corrected by that in the steps.
+    """Quantity -> converged value and its uncertainty (moments,): the limit in the mesh, corrected
+    by that in the steps.
 
     The uncertainty is that of both limits, and of adding them.
     """
@@ -103,10 +109,12 @@ def errors(values: Mapping[str, list[float]], reference) -> dict[str, float]:
 
 
 def accuracy_table(records: Records, scenes: Mapping[str, Any]) -> pd.DataFrame:
-    """Every point, the historical models and the references: errors (%), cost (s, MB, unknowns, iterations).
+    """Every point, the historical models and the references: errors (%), cost (s, MB, unknowns,
+    iterations).
 
     Args:
-        records: by name. scenes: family -> its scene, whose specimen the historical models take their measures from.
+        records: by name. scenes: family -> its scene, whose specimen the historical models take
+        their measures from.
     """
     yardstick = statistics.median(
         s for record in records.values() for s in record["cost"]["yardstick_s"]
@@ -185,7 +193,9 @@ def _row(record, reference, cpu, default) -> dict[str, Any]:
 
 
 def half_plane_modulus(scene, width: float) -> float:
-    """Young's modulus (Pa) with which a half-plane has the contact ``width`` (m) under the plate at the end of the hold."""
+    """Young's modulus (Pa) with which a half-plane has the contact ``width`` (m) under the plate at
+    the end of the hold.
+    """
     specimen = scene.specimen
     force = scene.motion[0].press_to_force / specimen.contact_length
     poisson = specimen.layers.dermis.poisson_ratio
@@ -220,7 +230,9 @@ def half_plane(scene, curvature: float, modulus: float) -> dict[str, float]:
 
 
 def water_bed_tension(scene, width: float) -> float:
-    """Tension (N/m) with which a water bed has the contact ``width`` (m) under the plate at the end of the hold."""
+    """Tension (N/m) with which a water bed has the contact ``width`` (m) under the plate at the end
+    of the hold.
+    """
     force = scene.motion[0].press_to_force / scene.specimen.contact_length
 
     def excess(log):
@@ -264,7 +276,9 @@ def _historical(name, constant, family, scene, reference, default) -> dict[str, 
 
 
 def orders_table(records: Records) -> pd.DataFrame:
-    """Observed orders and grid convergence index of every element and of the steps, a quantity each (its last moment)."""
+    """Observed orders and grid convergence index of every element and of the steps, a quantity each
+    (its last moment).
+    """
     rows = []
     for family in FAMILY:
         if Point(family).name not in records:
@@ -303,11 +317,13 @@ def orders_table(records: Records) -> pd.DataFrame:
 
 
 def planner_table(records: Records) -> pd.DataFrame:
-    """What the planner goes by of presses: relative errors by mesh size, also of strain energies alone, and by steps of a leg.
+    """What the planner goes by of presses: relative errors by mesh size, also of strain energies
+    alone, and by steps of a leg.
 
-    Errors of a mesh are those to the limit in the mesh at the default's steps, errors of steps those to the limit in the steps
-    on the default's mesh; never below the limit's own uncertainty (and, of meshes, that of adding both, which is a product of
-    theirs and falls with the edge beyond the default's mesh) nor below those of what is finer. The largest at the moments looked
+    Errors of a mesh are those to the limit in the mesh at the default's steps, errors of steps
+    those to the limit in the steps on the default's mesh; never below the limit's own uncertainty
+    (and, of meshes, that of adding both, which is a product of theirs and falls with the edge
+    beyond the default's mesh) nor below those of what is finer. The largest at the moments looked
     at, relative to what it is of.
     """
     rows = []
@@ -382,7 +398,9 @@ def pareto(cost: np.ndarray, error: np.ndarray) -> np.ndarray:
 
 
 def growth(nodes: np.ndarray, cost: np.ndarray, least: float = 3000) -> tuple[float, float]:
-    """Factor and exponent of cost = factor nodes^exponent, least squares over meshes of ``least`` nodes and more."""
+    """Factor and exponent of cost = factor nodes^exponent, least squares over meshes of ``least``
+    nodes and more.
+    """
     large = np.asarray(nodes) >= least
     exponent, intercept = np.polyfit(
         np.log(np.asarray(nodes)[large]), np.log(np.asarray(cost)[large]), 1
@@ -391,7 +409,9 @@ def growth(nodes: np.ndarray, cost: np.ndarray, least: float = 3000) -> tuple[fl
 
 
 def error_frame(table: pd.DataFrame, scenes: Iterable[str]) -> pd.DataFrame:
-    """Error against cost: one row a discretisation and quantity, the worst of ``scenes`` and their mean cost; front marked."""
+    """Error against cost: one row a discretisation and quantity, the worst of ``scenes`` and their
+    mean cost; front marked.
+    """
     chosen = table[table["scene"].isin(list(scenes)) & table["error (%)"].notna()]
     keys = ["model", "preset", "element", "rows", "strain", "tolerance", "steps per leg"]
     chosen = chosen.assign(**{key: [_text(value) for value in chosen[key]] for key in keys})
@@ -426,7 +446,9 @@ def _text(value: object) -> str:
 
 
 def growth_frame(table: pd.DataFrame) -> pd.DataFrame:
-    """Process time and memory against nodes, a row each element and mesh (mean of pressed scenes), with fitted exponents."""
+    """Process time and memory against nodes, a row each element and mesh (mean of pressed scenes),
+    with fitted exponents.
+    """
     plane = table[
         table["scene"].isin(PRESSED)
         & (pd.to_numeric(table["steps per leg"], errors="coerce") == DEFAULT_STEPS)
@@ -460,4 +482,6 @@ FRAMES = {
         drop=True
     ),
 }
-"""Figure name -> its data frame, of the table of accuracy, of beliefs, or of errors shown, of which each curve is drawn once."""
+"""Figure name -> its data frame, of the table of accuracy, of beliefs, or of errors shown, of which
+each curve is drawn once.
+"""

@@ -1,4 +1,6 @@
-"""Meshes made of the built one, of its nodes: other elements, and worse shapes, as meshes from elsewhere have."""
+"""Meshes made of the built one, of its nodes: other elements, and worse shapes, as meshes from
+elsewhere have.
+"""
 
 from dataclasses import replace
 
@@ -30,7 +32,9 @@ def distorted(mesh: PadMesh, share: float = 0.3) -> PadMesh:
 
 
 def triangles(mesh: PadMesh) -> PadMesh:
-    """Each 9-node quad as two 6-node triangles on the same nodes, a symmetric mesh staying symmetric."""
+    """Each 9-node quad as two 6-node triangles on the same nodes, a symmetric mesh staying
+    symmetric.
+    """
     right = mesh.points[mesh.cells[:, 8], 0] > 0
     halves = [([0, 1, 2, 4, 5, 8], [0, 1, 3, 4, 8, 7]), ([0, 2, 3, 8, 6, 7], [1, 2, 3, 5, 6, 8])]
     cells = np.concatenate(
@@ -50,7 +54,9 @@ def quarters(mesh: PadMesh) -> PadMesh:
 
 
 def corners_only(mesh: PadMesh) -> PadMesh:
-    """Triangles and quads without their mid-side and centre nodes: what most mesh generators write."""
+    """Triangles and quads without their mid-side and centre nodes: what most mesh generators
+    write.
+    """
     count = KINDS[mesh.element].corners
     used = np.unique(mesh.cells[:, :count])
     number = np.full(len(mesh.points), -1, np.int32)

@@ -1,7 +1,9 @@
-"""Meshes of one's own: what their elements make wrong of which quantity, and whether runs on unseen ones know it.
+"""Meshes of one's own: what their elements make wrong of which quantity, and whether runs on unseen
+ones know it.
 
-The table is measured on the inferred pad, its mesh split into the elements that users bring; the unseen ones are drawn at random:
-slabs and half-rings of two layers, in triangles and quads as gmsh makes them, fine at the skin and coarser inside.
+The table is measured on the inferred pad, its mesh split into the elements that users bring; the
+unseen ones are drawn at random: slabs and half-rings of two layers, in triangles and quads as gmsh
+makes them, fine at the skin and coarser inside.
 """
 
 from __future__ import annotations
@@ -41,7 +43,9 @@ SHARES = (0.0, 0.03, 0.06, 0.12, 0.25, 0.5, 1.1)
 
 
 def measured(base: Scene, folder: Path) -> pd.DataFrame:
-    """Errors of presses on meshes of every kind of element: a row a surface, force, edge and element."""
+    """Errors of presses on meshes of every kind of element: a row a surface, force, edge and
+    element.
+    """
     from fingerpad.simulation import simulate
 
     rows = []

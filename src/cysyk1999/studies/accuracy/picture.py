@@ -1,4 +1,6 @@
-"""Figures of the study of accuracy: error and cost, growth of cost, belief and truth. Each is drawn from its data frame."""
+"""Figures of the study of accuracy: error and cost, growth of cost, belief and truth. Each is drawn
+from its data frame.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,9 @@ KINDS = {
     "Q2": "nine-node quads, full",
     "Q2R": "nine-node quads, reduced",
 }
-"""Words for the elements; the last three, displacements only with full or reduced integration, are for teaching."""
+"""Words for the elements; the last three, displacements only with full or reduced integration, are
+for teaching.
+"""
 
 
 def _look(name: str, size: float = 3.6) -> dict[str, object]:
@@ -228,7 +232,9 @@ def belief(frame: pd.DataFrame) -> Figure:
 
 
 def _truth_and_belief(fig: Figure) -> tuple[Axes, Axes]:
-    """Axes of true over believed error, with the line where they agree; and of their ratio, by rows."""
+    """Axes of true over believed error, with the line where they agree; and of their ratio, by
+    rows.
+    """
     left, right = fig.subplots(1, 2, width_ratios=(1, 0.9))
     ends = np.array([0.08, 100.0])
     left.fill_between(ends, ends, 1e-3, color="0.95", lw=0)
@@ -281,7 +287,9 @@ def drawn(frame: pd.DataFrame) -> Figure:
 
 @styled
 def ridges(frame: pd.DataFrame) -> Figure:
-    """Errors of strain energies beside ridges against the elements among them, and those expected."""
+    """Errors of strain energies beside ridges against the elements among them, and those
+    expected.
+    """
     fig = study_figure(
         "How many elements does a ridge need?",
         [

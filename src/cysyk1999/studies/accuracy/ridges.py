@@ -1,9 +1,11 @@
 """What pads with inner ridges are wrong by, by the number of elements from one ridge to the next.
 
-Strain energies beside ridges depend on the columns of elements among them and hardly on anything else of the mesh, so these are
-what is varied, about ridges of several heights and pitches, and the truth has more of them than any other. The errors are those
-of strain energy at the top of a ramp, everywhere about the boundary of epidermis and dermis; next to the boundary itself, where
-strain energy jumps and a receptor lies in one layer or the other by a hair, they are larger and not counted.
+Strain energies beside ridges depend on the columns of elements among them and hardly on anything
+else of the mesh, so these are what is varied, about ridges of several heights and pitches, and the
+truth has more of them than any other. The errors are those of strain energy at the top of a ramp,
+everywhere about the boundary of epidermis and dermis; next to the boundary itself, where strain
+energy jumps and a receptor lies in one layer or the other by a hair, they are larger and not
+counted.
 """
 
 from __future__ import annotations
@@ -44,7 +46,9 @@ DEPTH_STEP = 10e-6
 
 
 def ridged(base: Scene, height: float, pitch: float) -> Scene:
-    """A scene pressed to its force on a pad with ridges (mm), and the thesis's edges but for what is varied."""
+    """A scene pressed to its force on a pad with ridges (mm), and the thesis's edges but for what
+    is varied.
+    """
     height, pitch, border = 1e-3 * height, 1e-3 * pitch, base.specimen.outline.epidermis_thickness
     most = RULES.ridge_near * height
     depths = (
@@ -72,7 +76,9 @@ def ridged(base: Scene, height: float, pitch: float) -> Scene:
 
 
 def pressed(scene: Scene, elements: int) -> Arrays:
-    """The history of a scene with so many elements from one ridge to the next, under the receptors and a pitch beyond."""
+    """The history of a scene with so many elements from one ridge to the next, under the receptors
+    and a pitch beyond.
+    """
     chosen, inner = plan(scene), scene.specimen.ridges.inner
     focus = all_over(1.5 * inner.pitch, 3 * wave_of(inner) / elements)
     return solve(scene, replace(chosen, mesh_size=replace(chosen.mesh_size, focus=focus)))

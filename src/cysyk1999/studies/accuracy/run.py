@@ -1,8 +1,9 @@
 """What accuracy costs in time: the runs of the study, one point each, and what is measured of them.
 
-A point is a scene of the family with one discretisation. The plane of elements and mesh sizes is complete; time steps, Newton
-tolerance, small strain and presets are varied one at a time from the default preset. Meshes
-of other elements are the default's quadratic quads split, with the same nodes, so the boundary is the same.
+A point is a scene of the family with one discretisation. The plane of elements and mesh sizes is
+complete; time steps, Newton tolerance, small strain and presets are varied one at a time from the
+default preset. Meshes of other elements are the default's quadratic quads split, with the same
+nodes, so the boundary is the same.
 """
 
 from __future__ import annotations
@@ -42,7 +43,9 @@ EDGED = {"flat": "ramp40_flat", "105": "ramp40_k105", "210": "ramp40_k210", "126
 ELEMENTS = ("Q2P1", "Q1P0", "P2B", "Q1", "Q2", "Q2R")
 """Keys of the elements; the last three are for teaching."""
 ROWS = (1, 2, 4, 7, 10, 14, 22)
-"""Mesh sizes: rows of elements in the epidermis. Other edges are in proportion; 7 are the default's."""
+"""Mesh sizes: rows of elements in the epidermis. Other edges are in proportion; 7 are the
+default's.
+"""
 DEFAULT_ROWS, DEFAULT_STEPS, DEFAULT_TOLERANCE = 7, 20, 1e-4
 STEPS, TOLERANCES = (5, 10, 20, 40, 80), (1e-2, 1e-3, 1e-4, 1e-6)
 DEPTHS = (600e-6, 915e-6)
@@ -57,8 +60,9 @@ class Point:
     """One discretisation of one scene.
 
     Attributes:
-        family: key of FAMILY. element: key of the elements. rows: mesh size, see ROWS. steps: of each leg (a slide's have the
-        length that belongs to them). tolerance: of Newton's method, on the force. finite: strain. preset: name, in place of all.
+        family: key of FAMILY. element: key of the elements. rows: mesh size, see ROWS. steps: of
+        each leg (a slide's have the length that belongs to them). tolerance: of Newton's method, on
+        the force. finite: strain. preset: name, in place of all.
     """
 
     family: str
@@ -100,7 +104,9 @@ def sweeps() -> dict[str, list[Point]]:
 
 
 def split(mesh: PadMesh, kind: str) -> PadMesh:
-    """A mesh of quad9 split into "quad4" (four each) or "tri6" (two each) with the same nodes; mirror images stay so."""
+    """A mesh of quad9 split into "quad4" (four each) or "tri6" (two each) with the same nodes;
+    mirror images stay so.
+    """
     cells, curves = mesh.cells, mesh.curves
     if kind == "quad4":
         parts = [(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]
@@ -188,7 +194,9 @@ def simulation(point: Point, scene: Scene, chosen: Plan, mesh: PadMesh):
 
 
 def _nearest_mode(space, elements, points):
-    """Pointwise pressure modes (n, nq) at ``points`` (n, 2): those of the nearest quadrature point."""
+    """Pointwise pressure modes (n, nq) at ``points`` (n, 2): those of the nearest quadrature
+    point.
+    """
     position = np.einsum("qa,nai->nqi", space.element.values, space.points[space.cells[elements]])
     nearest = np.sum((position - points[:, None]) ** 2, axis=2).argmin(1)
     return np.where(
@@ -197,7 +205,8 @@ def _nearest_mode(space, elements, points):
 
 
 def values(history: xr.Dataset) -> dict[str, list[float]]:
-    """Quantity -> its values (SI) at the moments looked at: top of the ramp and end, or the top and along the stroke.
+    """Quantity -> its values (SI) at the moments looked at: top of the ramp and end, or the top and
+    along the stroke.
 
     The peak rate of strain energy is one of the ramp, at each depth.
     """
@@ -231,7 +240,9 @@ RULER = Point("flat", rows=2)
 
 
 def measure_all(sweep: list[Point], scene: Scene) -> Iterator[dict[str, Any]]:
-    """What :func:`measure` says of each point; each in a process of its own, with the kernels loaded before."""
+    """What :func:`measure` says of each point; each in a process of its own, with the kernels
+    loaded before.
+    """
     processes = get_context("fork")
     with processes.Pool(1) as pool:  # what compiling takes of memory is nobody's
         pool.apply(_load_kernels, (sweep, scene))
@@ -258,11 +269,13 @@ def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
     """Run a point and say what it answers and costs.
 
     Args:
-        repeats: of the whole run, of which costs are medians; one that takes longer than :data:`LONG` is run once.
+        repeats: of the whole run, of which costs are medians; one that takes longer than
+        :data:`LONG` is run once.
 
     Returns:
-        JSON-able: the point; values or the reason of failure; cost: process time of each repeat, meshing included, with that of
-        the yardstick around it; memory of the process, unknowns, iterations; machine and versions.
+        JSON-able: the point; values or the reason of failure; cost: process time of each repeat,
+        meshing included, with that of the yardstick around it; memory of the process, unknowns,
+        iterations; machine and versions.
     """
     from threadpoolctl import threadpool_limits
 
@@ -314,7 +327,9 @@ def _timed(call):
 
 
 def seconds(record: dict[str, Any], yardstick: float) -> float:
-    """Median process time (s) of a record, each repeat scaled to a machine on which the yardstick takes ``yardstick`` s."""
+    """Median process time (s) of a record, each repeat scaled to a machine on which the yardstick
+    takes ``yardstick`` s.
+    """
     cost = record["cost"]
     return yardstick * statistics.median(
         a / b for a, b in zip(cost["cpu_s"], cost["yardstick_s"], strict=True)

@@ -1,7 +1,9 @@
-"""Are the errors that figures state those of their curves? Stated errors beside changes on meshes with half the edges.
+"""Are the errors that figures state those of their curves? Stated errors beside changes on meshes
+with half the edges.
 
-A figure is made twice: with the companions of its scenes, whose errors it states, and with finer runs in their place. What a
-curve changes by then is nearly all that it is wrong by; the rest follows by the order with which curves converge.
+A figure is made twice: with the companions of its scenes, whose errors it states, and with finer
+runs in their place. What a curve changes by then is nearly all that it is wrong by; the rest
+follows by the order with which curves converge.
 """
 
 from __future__ import annotations
@@ -29,7 +31,9 @@ MADE_FINER = (
     "ridged_stroke_",
     "ridged_40_",
 )
-"""How names of scenes begin that are made finer: all that figures read but chapter 3's and the homogeneous pad."""
+"""How names of scenes begin that are made finer: all that figures read but chapter 3's and the
+homogeneous pad.
+"""
 STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"
 
 
@@ -41,8 +45,8 @@ class Finer(Companion):
     def mesh_error(self, history: xr.Dataset, curve: Curve) -> float:
         """What a curve is wrong by as it is drawn.
 
-        Over the skin it is drawn straight from node to node. What that leaves out the finer mesh shows in full; only what its
-        nodes change by goes on to change.
+        Over the skin it is drawn straight from node to node. What that leaves out the finer mesh
+        shows in full; only what its nodes change by goes on to change.
         """
         (x, y), (at, fine) = curve(history), curve(self.mesh)
         there = np.interp(x, at, fine)
@@ -58,11 +62,13 @@ def shown(
     finer: Mapping[str, xr.Dataset],
     reference: pd.DataFrame,
 ) -> pd.DataFrame:
-    """One row a curve or number with an error of its own, of figures all of whose companions there are finer runs of.
+    """One row a curve or number with an error of its own, of figures all of whose companions there
+    are finer runs of.
 
     Args:
-        figures: with their measured data. results: of :func:`cysyk1999.measures.inputs.read_results`. finer: scene -> history on
-        a mesh with edges `FINER` times as long. reference: the thesis's numbers.
+        figures: with their measured data. results: of
+        :func:`cysyk1999.measures.inputs.read_results`. finer: scene -> history on a mesh with edges
+        `FINER` times as long. reference: the thesis's numbers.
     """
     histories, meshes, coarse = results
     truth = {scene: Finer(history, history) for scene, history in finer.items()}

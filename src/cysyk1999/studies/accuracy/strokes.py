@@ -1,10 +1,12 @@
-"""What strokes are wrong by, on meshes and with steps of several lengths: over plates and over waves, drawn at random.
+"""What strokes are wrong by, on meshes and with steps of several lengths: over plates and over
+waves, drawn at random.
 
-Each run is held to one on the finest mesh with steps half as long, as :func:`~cysyk1999.studies.accuracy.belief.difference` has
-it, at the end of the press before, on which friction leaves its mark, and over the way. It does not fall evenly: where a corner
-of the waves comes to lie between nodes, and at which output the contact leaves the centre, is as it happens. So the largest
-error of the strokes counts, and the root of the mean square of all, to which a longer stroke, with as much in it as in many of
-these, comes nearer.
+Each run is held to one on the finest mesh with steps half as long, as
+:func:`~cysyk1999.studies.accuracy.belief.difference` has it, at the end of the press before, on
+which friction leaves its mark, and over the way. It does not fall evenly: where a corner of the
+waves comes to lie between nodes, and at which output the contact leaves the centre, is as it
+happens. So the largest error of the strokes counts, and the root of the mean square of all, to
+which a longer stroke, with as much in it as in many of these, comes nearer.
 """
 
 from __future__ import annotations
@@ -26,12 +28,16 @@ from fingerpad.planning.rules import RULES
 from fingerpad.scenes.scene import Scene
 
 MESHES, STEPS = (2, 4, 7, 10, 14), (10, 20, 40)
-"""Elements across the epidermis, with the default's steps of a leg; and steps of a leg, on the default's mesh."""
+"""Elements across the epidermis, with the default's steps of a leg; and steps of a leg, on the
+default's mesh.
+"""
 FINEST = 22, 40
 """Elements and steps of what the others are held to."""
 STROKED_OVER = PLATES, WAVES
 SEEDS, COUNT = (22, 23), 60
-"""Of the scenes drawn, and how many of each, of which the strokes over waves are taken: as they are, and over a plate instead."""
+"""Of the scenes drawn, and how many of each, of which the strokes over waves are taken: as they
+are, and over a plate instead.
+"""
 RATE, SPEEDS = "40 gf/s", ("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s")
 """With which the same are pressed and, one after the other, stroked, where the skin relaxes."""
 LARGEST, MEAN = "largest", "root mean square"
@@ -39,7 +45,9 @@ LARGEST, MEAN = "largest", "root mean square"
 
 
 def strokes(over: str, seeds: tuple[int, ...] = SEEDS) -> dict[str, Scene]:
-    """The strokes over plates or over waves, by name: all as they are drawn, steady ones, and then all in time."""
+    """The strokes over plates or over waves, by name: all as they are drawn, steady ones, and then
+    all in time.
+    """
     drawn_ones = {
         f"{seed}_{name}": each
         for seed in seeds
@@ -57,7 +65,9 @@ def strokes(over: str, seeds: tuple[int, ...] = SEEDS) -> dict[str, Scene]:
 
 
 def discretised(scene: Scene, rows: int, steps: int) -> Plan:
-    """The plan of a scene with so many elements across the epidermis and steps a leg, elsewhere as tolerances are met."""
+    """The plan of a scene with so many elements across the epidermis and steps a leg, elsewhere as
+    tolerances are met.
+    """
     known = RULES.errors
     these = replace(known, mesh={rows: known.mesh[rows]}, time={steps: known.time[steps]})
     only = replace(RULES, errors=these, least_steps_stroked=steps)
@@ -86,7 +96,8 @@ def stroke_errors(over: str, name: str, scene: Scene) -> Iterator[dict[str, obje
 
 
 def strokes_table(found: pd.DataFrame) -> pd.DataFrame:
-    """Relative errors by mesh, and what fewer or more steps than the default's add to them; none below one that is finer.
+    """Relative errors by mesh, and what fewer or more steps than the default's add to them; none
+    below one that is finer.
 
     found: of all scenes, as of :func:`stroke_errors`.
     """

@@ -1,8 +1,10 @@
-"""Calibration of the pad to measured steady forces of a flat plate: one constant times the moduli, their ratio kept.
+"""Calibration of the pad to measured steady forces of a flat plate: one constant times the moduli,
+their ratio kept.
 
-The finite elements are run once for the elastic curve f(d), force per contact length over depth in the steady state. With
-displacements prescribed, every stress of the model is proportional to a factor s common to all moduli, at any strain, so the
-force on a contact of length l is ``F = s l(d) f(d)`` exactly, and fits evaluate f alone.
+The finite elements are run once for the elastic curve f(d), force per contact length over depth in
+the steady state. With displacements prescribed, every stress of the model is proportional to a
+factor s common to all moduli, at any strain, so the force on a contact of length l is ``F = s l(d)
+f(d)`` exactly, and fits evaluate f alone.
 """
 
 from __future__ import annotations
@@ -46,7 +48,9 @@ ESTIMATE_COLUMNS = (
 
 @dataclass(frozen=True)
 class ElasticCurve:
-    """Steady-state response to a flat plate: depth m (0 first, increasing), force N/m, contact width m."""
+    """Steady-state response to a flat plate: depth m (0 first, increasing), force N/m, contact
+    width m.
+    """
 
     depth: np.ndarray
     force: np.ndarray
@@ -89,12 +93,16 @@ def constant_length(curve: ElasticCurve, depth, length: float) -> np.ndarray:
 
 
 def elliptical_patch(curve: ElasticCurve, depth, aspect: float) -> np.ndarray:
-    """Effective length, m, of an elliptical contact under the plane's mean pressure: pi/4 * aspect * width."""
+    """Effective length, m, of an elliptical contact under the plane's mean pressure: pi/4 * aspect
+    * width.
+    """
     return math.pi / 4 * aspect * curve.width_at(depth)
 
 
 def plane_sections(curve: ElasticCurve, depth, radius: float) -> np.ndarray:
-    """Effective length, m, of a pad curved along the finger, each section for itself: int f(d - z^2/2R) dz / f(d)."""
+    """Effective length, m, of a pad curved along the finger, each section for itself: int f(d -
+    z^2/2R) dz / f(d).
+    """
     depth = np.asarray(depth, float)
     node, weight = np.polynomial.legendre.leggauss(24)
     angle = math.pi / 4 * (node + 1)  # z = sqrt(2 R d) sin(angle), so that f's foot is smooth
@@ -108,7 +116,9 @@ LENGTHS: dict[str, tuple[Callable, str, str, float]] = {
     "elliptical patch": (elliptical_patch, "aspect ratio", "1", 1.0),
     "plane sections": (plane_sections, "radius along the finger", "mm", 1e3),
 }
-"""Model of the effective length -> its function, its parameter, the unit it is shown in and SI -> that unit."""
+"""Model of the effective length -> its function, its parameter, the unit it is shown in and SI ->
+that unit.
+"""
 _TOLD = {
     "constant length": "constant x length",
     "elliptical patch": "constant x aspect ratio",
@@ -120,7 +130,8 @@ _TOLD = {
 
 
 def plate_forces(data: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """Steady forces under the plate by subject, by depth; the mean over subjects where all have the depth comes last.
+    """Steady forces under the plate by subject, by depth; the mean over subjects where all have the
+    depth comes last.
 
     Raises:
         ValueError: there are none, or a subject has fewer than two depths.
@@ -163,8 +174,8 @@ def fit_constant(
     """The factor s on the moduli behind `curve`, contact length (m) given.
 
     Args:
-        depth: m. force: N. relative: weigh each force by its inverse instead of equally.
-        sigma: standard deviation of a force, N (relative: of its relative error), None from the scatter.
+        depth: m. force: N. relative: weigh each force by its inverse instead of equally. sigma:
+        standard deviation of a force, N (relative: of its relative error), None from the scatter.
     """
     shape = length * curve.force_at(depth)
     weight = 1 / np.asarray(force, float) if relative else 1.0
@@ -176,7 +187,9 @@ def fit_constant(
 def fit_constant_and_length(
     curve: ElasticCurve, depth, force, start: dict[str, float], sigma: float | None = None
 ) -> Fit:
-    """The factor s and the contact length (m) together, ``start = {"s": .., "length": ..}``: force tells their product only."""
+    """The factor s and the contact length (m) together, ``start = {"s": .., "length": ..}``: force
+    tells their product only.
+    """
     shape = curve.force_at(depth)
     return fit(
         lambda p: (p[0] * p[1] * shape, np.column_stack([p[1] * shape, p[0] * shape])),
@@ -201,7 +214,9 @@ def fit_length(curve: ElasticCurve, depth, force, model: str) -> Fit:
 
 
 def ridge_correlation(found: Fit, factor: float = 10.0) -> float:
-    """Correlation of the log parameters of a fit when each is known beforehand to within `factor` (one standard deviation)."""
+    """Correlation of the log parameters of a fit when each is known beforehand to within `factor`
+    (one standard deviation).
+    """
     information = (
         found.jacobian.T @ found.jacobian / found.sigma**2
         + np.eye(len(found.values)) / math.log(factor) ** 2
@@ -215,7 +230,9 @@ def ridge_correlation(found: Fit, factor: float = 10.0) -> float:
 
 @dataclass(frozen=True)
 class Calibration:
-    """What the calibration makes: four data frames, and the constant of each subject and of the mean."""
+    """What the calibration makes: four data frames, and the constant of each subject and of the
+    mean.
+    """
 
     fit: pd.DataFrame
     identifiability: pd.DataFrame
@@ -230,8 +247,9 @@ def calibrate(
     """Calibrate every subject and the mean.
 
     Args:
-        histories: ``calibration_plate``, and where they are there ``calibration_less_fat``, ``calibration_more_fat`` and
-        ``calibration_long_term``. coarse: the companion of ``calibration_plate``, or nothing. data: of
+        histories: ``calibration_plate``, and where they are there ``calibration_less_fat``,
+        ``calibration_more_fat`` and ``calibration_long_term``. coarse: the companion of
+        ``calibration_plate``, or nothing. data: of
         :func:`cysyk1999.reference_data.read_force_depth`.
     """
     plate = histories["calibration_plate"]
@@ -329,7 +347,9 @@ def _fit_frame(curves, forces, constants, length) -> pd.DataFrame:
 
 
 def _cited(group) -> str:
-    """Author and year of the sources of a subject's rows: what stands before the first comma or the year."""
+    """Author and year of the sources of a subject's rows: what stands before the first comma or the
+    year.
+    """
     return "; ".join(
         dict.fromkeys(group["source"].str.replace(r"^(.*?\b\d{4}\b).*$", r"\1", regex=True))
     )
@@ -341,7 +361,9 @@ def _line(panel, series, source, depth, force, low=np.nan, high=np.nan):
 
 
 def _identifiability_frame(curve, forces, length) -> pd.DataFrame:
-    """Rise of the misfit in units of its scatter over s and length, and its profiles over each and over their product."""
+    """Rise of the misfit in units of its scatter over s and length, and its profiles over each and
+    over their product.
+    """
     depth, force = _si(forces[_last(forces)])
     best = fit_constant(curve, depth, force, length)
     s, shape = best.values[0], curve.force_at(depth)
@@ -621,9 +643,11 @@ def _of(found: Fit) -> tuple[float, float, float]:
 
 
 def specimen_text(who: str, found: Fit, specimen: Mapping, data: pd.DataFrame) -> str:
-    """A specimen file with the moduli of `specimen` (SI, as in a history's scene) times the fitted constant.
+    """A specimen file with the moduli of `specimen` (SI, as in a history's scene) times the fitted
+    constant.
 
-    It has layers and their reading only; the rest of the specimen, its contact length above all, is the default's.
+    It has layers and their reading only; the rest of the specimen, its contact length above all, is
+    the default's.
     """
     (s, low, high), length = _of(found), specimen["contact_length"] * 1e3
     chosen = data[(data["indenter"] == PLATE) & (data["speed_mm_per_s"] == 0)]
@@ -647,7 +671,9 @@ def specimen_text(who: str, found: Fit, specimen: Mapping, data: pd.DataFrame) -
 
 
 def specimen_names(subjects: Iterable[str]) -> dict[str, str]:
-    """Names of calibrated specimens, each once: ``calibrated_subject_1``, ``calibrated_subject_Anna_Müller``."""
+    """Names of calibrated specimens, each once: ``calibrated_subject_1``,
+    ``calibrated_subject_Anna_Müller``.
+    """
     names: dict[str, str] = {}
     for who in subjects:
         kept = re.sub(r"[^\w-]+", "_", unicodedata.normalize("NFC", who)).strip("_") or "_"

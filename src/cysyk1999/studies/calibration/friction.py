@@ -1,8 +1,10 @@
-"""Calibration of the coefficient of friction, which the thesis does not state, to the stretch of the skin that it does.
+"""Calibration of the coefficient of friction, which the thesis does not state, to the stretch of
+the skin that it does.
 
-A surface stroked over the pad drags the skin along: the node at the pad's centre trails by a lateral displacement that grows with
-the coefficient. Strokes with several coefficients give the mean of this displacement over the waves as a curve; the thesis's
-stretch picks one coefficient from it. Stretch tells friction force over stiffness, so the coefficient is as good as the moduli.
+A surface stroked over the pad drags the skin along: the node at the pad's centre trails by a
+lateral displacement that grows with the coefficient. Strokes with several coefficients give the
+mean of this displacement over the waves as a curve; the thesis's stretch picks one coefficient from
+it. Stretch tells friction force over stiffness, so the coefficient is as good as the moduli.
 """
 
 from __future__ import annotations
@@ -22,11 +24,15 @@ from fingerpad.results import scene_of
 
 STROKE = "stroke_sub_10"
 STRETCH, AXIS = "T232", "T266"
-"""Rows of the thesis's numbers: the shift of pressure profiles by skin stretch, the axis of lateral displacements (mm)."""
+"""Rows of the thesis's numbers: the shift of pressure profiles by skin stretch, the axis of lateral
+displacements (mm).
+"""
 ABOUT = 0.15e-3
 """What "about 1 mm" leaves open to either side, m."""
 STEP = 0.05
-"""The coefficient is given to the nearest of these: "about" leaves twice as much open to either side."""
+"""The coefficient is given to the nearest of these: "about" leaves twice as much open to either
+side.
+"""
 COEFFICIENT, LOWEST, HIGHEST = "coefficient (1)", "lowest (mm)", "highest (mm)"
 VARIATIONS = {
     "stroke_sub_1": "1 mm/s",
@@ -40,7 +46,9 @@ VARIATIONS = {
 
 @dataclass(frozen=True)
 class Stretch:
-    """Lateral displacement of the centre over the waves, m: mean over the way, least and greatest (signed, dragged to -x)."""
+    """Lateral displacement of the centre over the waves, m: mean over the way, least and greatest
+    (signed, dragged to -x).
+    """
 
     coefficient: float
     mean: float
@@ -49,10 +57,12 @@ class Stretch:
 
 
 def stretch(history: xr.Dataset) -> Stretch:
-    """What a stroke over a wavy surface does between the end of its lead-in and the start of its run-out.
+    """What a stroke over a wavy surface does between the end of its lead-in and the start of its
+    run-out.
 
     Raises:
-        ValueError: the stroke ends before the last wave does, or does not go over a wavy surface in the positive direction.
+        ValueError: the stroke ends before the last wave does, or does not go over a wavy surface in
+        the positive direction.
     """
     scene = scene_of(history)
     if scene.stimulus.shape != "wavy":
@@ -75,7 +85,8 @@ def stretch(history: xr.Dataset) -> Stretch:
 
 
 class StretchCurve:
-    """Stretch over the coefficient of friction, monotone between the coefficients that were simulated.
+    """Stretch over the coefficient of friction, monotone between the coefficients that were
+    simulated.
 
     Args:
         points: at least two, of different coefficients.
@@ -107,7 +118,8 @@ class StretchCurve:
         return PchipInterpolator(self.coefficient, self.values["mean"])
 
     def coefficient_at(self, lateral: float, name: str = "mean") -> float:
-        """Coefficient at which the mean, lowest or highest lateral displacement is `lateral` (m, negative).
+        """Coefficient at which the mean, lowest or highest lateral displacement is `lateral` (m,
+        negative).
 
         Raises:
             ValueError: none between the simulated coefficients has it.
@@ -139,8 +151,9 @@ def calibrate_friction(
     """Calibrate the coefficient of friction.
 
     Args:
-        sweep: :data:`STROKE` with several coefficients, as drafts. histories: scenes of :data:`VARIATIONS`. numbers: the
-        thesis's, columns id, low and high. published: of :func:`cysyk1999.reference_data.read_friction`.
+        sweep: :data:`STROKE` with several coefficients, as drafts. histories: scenes of
+        :data:`VARIATIONS`. numbers: the thesis's, columns id, low and high. published: of
+        :func:`cysyk1999.reference_data.read_friction`.
     """
     stated = numbers.set_index("id")
     target = -1e-3 * stated.loc[STRETCH, "low"]

@@ -11,7 +11,9 @@ from scipy.stats import norm, t
 
 _FAR = np.log(
     1e4
-)  # how many times more or less than at the start a parameter may be: beyond, a search has lost its way
+    # how many times more or less than at the start a parameter may be: beyond, a search has lost its
+    # way
+)
 
 
 @dataclass(frozen=True)
@@ -19,9 +21,10 @@ class Fit:
     """A fit, linearised in the logarithms of its parameters.
 
     Attributes:
-        names, values: (p,) parameters. jacobian: (n, p) derivative of the weighted residual by log parameters.
-        residual: (n,) data less model, in the data's unit. rss: weighted sum of squares. sigma: standard deviation of the
-        weighted residual, known or from the scatter. known: was it known? evaluations: of the model, sensitivities with them.
+        names, values: (p,) parameters. jacobian: (n, p) derivative of the weighted residual by log
+        parameters. residual: (n,) data less model, in the data's unit. rss: weighted sum of
+        squares. sigma: standard deviation of the weighted residual, known or from the scatter.
+        known: was it known? evaluations: of the model, sensitivities with them.
     """
 
     names: tuple[str, ...]
@@ -40,7 +43,9 @@ class Fit:
 
     @property
     def covariance(self) -> np.ndarray:
-        """(p, p) covariance of the log parameters; entries grow without bound where the data do not tell parameters apart."""
+        """(p, p) covariance of the log parameters; entries grow without bound where the data do not
+        tell parameters apart.
+        """
         return self.sigma**2 * np.linalg.pinv(
             self.jacobian.T @ self.jacobian, rcond=1e-13, hermitian=True
         )
@@ -52,7 +57,9 @@ class Fit:
         return self.covariance / np.outer(spread, spread)
 
     def quantile(self, level: float = 0.95) -> float:
-        """Half-width of the two-sided interval in standard deviations: normal if sigma is known, else Student's t."""
+        """Half-width of the two-sided interval in standard deviations: normal if sigma is known,
+        else Student's t.
+        """
         p = 0.5 + level / 2
         return float(norm.ppf(p) if self.known else t.ppf(p, self.count - len(self.values)))
 
@@ -64,7 +71,9 @@ class Fit:
     def derived(
         self, function: Callable[[np.ndarray], float], level: float = 0.95
     ) -> tuple[float, float, float]:
-        """Value and confidence interval of a positive function of the parameters (first order, in logarithms)."""
+        """Value and confidence interval of a positive function of the parameters (first order, in
+        logarithms).
+        """
         value, step = function(self.values), 1e-6
         shift = np.exp(step * np.eye(len(self.values)))
         slope = np.array(
@@ -78,7 +87,9 @@ class Fit:
 
     @property
     def aicc(self) -> float:
-        """Akaike's information criterion for small samples, the scatter counted as a parameter (Hurvich and Tsai 1989)."""
+        """Akaike's information criterion for small samples, the scatter counted as a parameter
+        (Hurvich and Tsai 1989).
+        """
         n, k = self.count, len(self.values) + 1
         return (
             float(n * np.log(max(self.rss, 1e-300) / n) + 2 * k + 2 * k * (k + 1) / (n - k - 1))
@@ -98,12 +109,14 @@ def fit(
     """Fit positive parameters by least squares on weight * (data - model).
 
     Args:
-        model: parameters (p,) -> values (n,) and their derivatives (n, p) by the parameters, in one evaluation.
-        data: (n,). start: parameter -> positive value to start from. weight: of the residuals.
-        sigma: standard deviation of the weighted residual; None takes it from the scatter.
+        model: parameters (p,) -> values (n,) and their derivatives (n, p) by the parameters, in one
+        evaluation. data: (n,). start: parameter -> positive value to start from. weight: of the
+        residuals. sigma: standard deviation of the weighted residual; None takes it from the
+        scatter.
 
     Raises:
-        ValueError: no more data than parameters and sigma is not known, a start is not positive, or the search failed.
+        ValueError: no more data than parameters and sigma is not known, a start is not positive, or
+        the search failed.
     """
     data, names = np.asarray(data, float), tuple(start)
     first = np.array([start[name] for name in names], float)
@@ -166,7 +179,9 @@ def fit(
 
 
 def group_interval(values: Sequence[float], level: float = 0.95) -> tuple[float, float, float]:
-    """Geometric mean of several subjects' positive values and its Student interval, from the scatter between them."""
+    """Geometric mean of several subjects' positive values and its Student interval, from the
+    scatter between them.
+    """
     log = np.log(np.asarray(values, float))
     half = t.ppf(0.5 + level / 2, len(log) - 1) * log.std(ddof=1) / np.sqrt(len(log))
     centre = log.mean()

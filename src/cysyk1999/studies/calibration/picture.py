@@ -1,4 +1,6 @@
-"""Figures of the calibration: fit, identifiability, residuals, relaxation, friction. Each is drawn from its data frame alone."""
+"""Figures of the calibration: fit, identifiability, residuals, relaxation, friction. Each is drawn
+from its data frame alone.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,9 @@ def _title_of(who: str) -> str:
 
 @styled
 def fit(frame: pd.DataFrame) -> Figure:
-    """Measured steady forces, fitted curves with 95 % bands and the thesis's constant; the mean with the bone moved."""
+    """Measured steady forces, fitted curves with 95 % bands and the thesis's constant; the mean
+    with the bone moved.
+    """
     note = [
         "Lines: simulated, steady state; moduli times a fitted constant (dotted: its 95 % confidence), dashed: the moduli stated "
         f"in the thesis. Points: {_measured(frame)}."
@@ -122,7 +126,9 @@ def _measured(frame: pd.DataFrame) -> str:
 
 @styled
 def identifiability(frame: pd.DataFrame) -> Figure:
-    """The valley of equal misfit over constant and contact length, and the profiles along each and across."""
+    """The valley of equal misfit over constant and contact length, and the profiles along each and
+    across.
+    """
     note = [
         "Rise of the sum of squares of simulated against measured forces above its least, over the squared scatter of the fit. "
         "Along the valley nothing changes: force tells modulus × contact length, nothing of either alone."
@@ -216,7 +222,9 @@ def identifiability(frame: pd.DataFrame) -> Figure:
 
 @styled
 def residuals(frame: pd.DataFrame) -> Figure:
-    """Misfit by depth with a constant contact length and with two that grow, and the effective length that force asks for."""
+    """Misfit by depth with a constant contact length and with two that grow, and the effective
+    length that force asks for.
+    """
     note = [
         "Measured forces less simulated ones, whose contact length has one parameter, fitted with the thesis's moduli. "
         "Elliptical patch: proportional to the width; plane sections: each pressed by itself. Thin, a marker a subject; thick: "
@@ -277,7 +285,9 @@ def residuals(frame: pd.DataFrame) -> Figure:
 
 @styled
 def prony(frame: pd.DataFrame) -> Figure:
-    """Ramp-and-hold force and its fits, their errors, and how well amplitudes of the measured time constants could be told."""
+    """Ramp-and-hold force and its fits, their errors, and how well amplitudes of the measured time
+    constants could be told.
+    """
     note = [
         "Simulated throughout, with known noise: no measured time courses are at hand. Time constants of Pawluk and Howe "
         "(1999) are measured, without amplitudes; right: the error any amplitude would have."
@@ -339,7 +349,9 @@ def prony(frame: pd.DataFrame) -> Figure:
 
 @styled
 def friction(frame: pd.DataFrame) -> Figure:
-    """Lateral displacement along the strokes, its mean and range over the coefficient, the thesis's stretch, published values."""
+    """Lateral displacement along the strokes, its mean and range over the coefficient, the thesis's
+    stretch, published values.
+    """
     panels = {name: rows for name, rows in frame.groupby("panel", sort=False)}
     published = panels["published"]
     note = [

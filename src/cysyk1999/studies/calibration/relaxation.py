@@ -1,15 +1,17 @@
 """Fit of the Prony series to ramp-and-hold force, through separability.
 
-Under a prescribed depth d(t) the force is nearly the hereditary integral of the elastic curve (quasi-linear viscoelasticity:
-Fung 1993), ``F(t) = s l [f(d(t)) + sum_j b_j int exp(-(t - t')/theta_j) df(d(t'))]``, so a fit needs no simulation. The terms
-(b, theta) of the force are those of the shear modulus (beta, tau) in series with a volume change that does not relax; how much
-of it there is, the two elastic curves of the long-term and the instantaneous reading of the moduli tell. What separability
-leaves out is corrected with one full simulation at the fitted series: its ratio to the hereditary force multiplies the
-hereditary force of a second fit.
+Under a prescribed depth d(t) the force is nearly the hereditary integral of the elastic curve
+(quasi-linear viscoelasticity: Fung 1993), ``F(t) = s l [f(d(t)) + sum_j b_j int exp(-(t -
+t')/theta_j) df(d(t'))]``, so a fit needs no simulation. The terms (b, theta) of the force are those
+of the shear modulus (beta, tau) in series with a volume change that does not relax; how much of it
+there is, the two elastic curves of the long-term and the instantaneous reading of the moduli tell.
+What separability leaves out is corrected with one full simulation at the fitted series: its ratio
+to the hereditary force multiplies the hereditary force of a second fit.
 
-No measured time courses are at hand: the force fitted to is simulated, with the thesis's series, and noise of a known size is
-added. Of measured relaxation there are time constants only (Pawluk and Howe 1999, no amplitudes); for them the study says how
-well amplitudes could be told from such a force, and invents none.
+No measured time courses are at hand: the force fitted to is simulated, with the thesis's series,
+and noise of a known size is added. Of measured relaxation there are time constants only (Pawluk and
+Howe 1999, no amplitudes); for them the study says how well amplitudes could be told from such a
+force, and invents none.
 """
 
 from __future__ import annotations
@@ -43,10 +45,12 @@ FullForce = Callable[[Prony], np.ndarray]
 def relaxing_part(
     time: np.ndarray, elastic: np.ndarray, tau: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Hereditary integral int exp(-(t - t')/tau) dF(t') of a force that is linear between samples, and its derivative by tau.
+    """Hereditary integral int exp(-(t - t')/tau) dF(t') of a force that is linear between samples,
+    and its derivative by tau.
 
     Args:
-        time: (n,) s, increasing, from the unloaded state. elastic: (n,) elastic force at these times. tau: s.
+        time: (n,) s, increasing, from the unloaded state. elastic: (n,) elastic force at these
+        times. tau: s.
     """
     step, rise = np.diff(time), np.diff(elastic)
     x = step / tau
@@ -61,11 +65,13 @@ def relaxing_part(
 
 
 def volume_share(curve: ElasticCurve, other: ElasticCurve, depth: float, ratio: float) -> float:
-    """Share k of volume change in the pad's yielding to a plate: force is ``~ G / (1 + k G/G_inf)``, bulk modulus fixed.
+    """Share k of volume change in the pad's yielding to a plate: force is ``~ G / (1 + k
+    G/G_inf)``, bulk modulus fixed.
 
     Args:
-        curve: elastic curve at the shear modulus G_inf. other: at `ratio` * G_inf and the same bulk modulus, which is what the
-        other reading of the moduli, long-term or instantaneous, leaves in the steady state. depth: m.
+        curve: elastic curve at the shear modulus G_inf. other: at `ratio` * G_inf and the same bulk
+        modulus, which is what the other reading of the moduli, long-term or instantaneous, leaves
+        in the steady state. depth: m.
     """
     rise = float(other.force_at(depth) / (ratio * curve.force_at(depth)))
     return (rise - 1) / (1 - rise * ratio)
@@ -74,10 +80,12 @@ def volume_share(curve: ElasticCurve, other: ElasticCurve, depth: float, ratio: 
 def force_terms(
     beta: Sequence[float], tau: Sequence[float], share: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Terms (b, theta) of the relaxation of force under a held depth, fastest last, from those of the shear modulus.
+    """Terms (b, theta) of the relaxation of force under a held depth, fastest last, from those of
+    the shear modulus.
 
-    The force's modulus over its steady value is ``(1 + k) G / (1 + k G)``, G(p) = 1 + sum beta p/(p + 1/tau) the shear modulus
-    over its long-term value at the Laplace variable p and k the share: a rational function, split into partial fractions.
+    The force's modulus over its steady value is ``(1 + k) G / (1 + k G)``, G(p) = 1 + sum beta p/(p
+    + 1/tau) the shear modulus over its long-term value at the Laplace variable p and k the share: a
+    rational function, split into partial fractions.
     """
     rate = 1 / np.asarray(tau, float)
     below = np.poly(-rate)
@@ -97,8 +105,8 @@ class RampForce:
 
     Args:
         curve: the elastic curve. time: (n,) s, from 0. depth: (n,) m. length: contact length, m.
-        share: of volume change, see :func:`volume_share`. ratio: (n,) full over hereditary force, the correction (default: none).
-        Between samples the depth is taken as linear.
+        share: of volume change, see :func:`volume_share`. ratio: (n,) full over hereditary force,
+        the correction (default: none). Between samples the depth is taken as linear.
     """
 
     refinement = 4
@@ -128,7 +136,9 @@ class RampForce:
         return RampForce(self.curve, self.time, self.depth, self.length, self.share, ratio)
 
     def branch(self, tau: float) -> tuple[np.ndarray, np.ndarray]:
-        """What a branch of unit strength adds to the force (N), and its derivative by tau, at the samples."""
+        """What a branch of unit strength adds to the force (N), and its derivative by tau, at the
+        samples.
+        """
         value, change = relaxing_part(self.fine, self.elastic, tau)
         return self.ratio * value[:: self.refinement], self.ratio * change[:: self.refinement]
 
@@ -166,7 +176,9 @@ class RampForce:
 
 
 def series_of(found: Fit) -> Prony:
-    """The Prony series of a fit (s, beta, tau, ...), slowest term first: g_i = beta_i / (1 + sum beta)."""
+    """The Prony series of a fit (s, beta, tau, ...), slowest term first: g_i = beta_i / (1 + sum
+    beta).
+    """
     pairs = sorted(found.values[1:].reshape(-1, 2).tolist(), key=lambda pair: -pair[1])
     whole = 1 + sum(beta for beta, _ in pairs)
     return Prony(tuple(beta / whole for beta, _ in pairs), tuple(tau for _, tau in pairs))
@@ -184,7 +196,9 @@ def series_estimates(found: Fit) -> dict[str, tuple[float, float, float]]:
 
 @dataclass(frozen=True)
 class PronyFit:
-    """Fit by the hereditary integral alone, fit after the correction, the corrected model, and how often each was evaluated."""
+    """Fit by the hereditary integral alone, fit after the correction, the corrected model, and how
+    often each was evaluated.
+    """
 
     hereditary: Fit
     corrected: Fit
@@ -200,11 +214,13 @@ def fit_series(
     start: Mapping[str, float] = WRONG_START,
     sigma: float | None = None,
 ) -> PronyFit:
-    """Fit s and a Prony series to a force (N) at the samples of `model` (the first, unloaded, is left out).
+    """Fit s and a Prony series to a force (N) at the samples of `model` (the first, unloaded, is
+    left out).
 
     Args:
-        full: simulates the whole force, N, of a series on the moduli of the elastic curve; called once. start: s, then beta and
-        tau of each term. sigma: N, of the noise; None takes it from the scatter.
+        full: simulates the whole force, N, of a series on the moduli of the elastic curve; called
+        once. start: s, then beta and tau of each term. sigma: N, of the noise; None takes it from
+        the scatter.
     """
 
     def fitted(which: RampForce, begin) -> Fit:
@@ -237,12 +253,15 @@ def amplitude_design(
     end: float = 10.0,
     samples: int = 30,
 ):
-    """Sensitivities (2 samples, 1 + terms) of a ramp-and-hold force over the held elastic force, to log s and to each beta.
+    """Sensitivities (2 samples, 1 + terms) of a ramp-and-hold force over the held elastic force, to
+    log s and to each beta.
 
-    The force is linear in the amplitudes beta, so these do not depend on them at beta = 0, and nor does what the force tells.
+    The force is linear in the amplitudes beta, so these do not depend on them at beta = 0, and nor
+    does what the force tells.
 
     Args:
-        depth: m. speed: m/s. taus: s. end: s, of the hold. samples: in the ramp, and as many in the hold, as in the scene.
+        depth: m. speed: m/s. taus: s. end: s, of the hold. samples: in the ramp, and as many in the
+        hold, as in the scene.
     """
     ramp = depth / speed
     time = np.concatenate([[0.0], ramp * np.arange(1, samples + 1) / samples])
@@ -266,10 +285,12 @@ class Relaxation:
 def study(
     plate: xr.Dataset, other: xr.Dataset, ramp: xr.Dataset, constants: pd.DataFrame, full: FullForce
 ) -> Relaxation:
-    """Fit the series to the simulated force of `ramp`, and say what it tells of the measured time constants.
+    """Fit the series to the simulated force of `ramp`, and say what it tells of the measured time
+    constants.
 
     Args:
-        plate, other, ramp: histories of the scenes ``calibration_{plate,long_term,ramp_hold}``. constants: of
+        plate, other, ramp: histories of the scenes ``calibration_{plate,long_term,ramp_hold}``.
+        constants: of
         :func:`cysyk1999.reference_data.read_relaxation`. full: see :func:`fit_series`.
     """
     specimen = json.loads(ramp.attrs["scene"])["specimen"]
@@ -335,7 +356,9 @@ def study(
 
 
 def _told(curve, depth, taus, curve_peak) -> pd.DataFrame:
-    """95 % half-width of each amplitude over the long-term modulus, for the noise of this study, by speed of the ramp."""
+    """95 % half-width of each amplitude over the long-term modulus, for the noise of this study, by
+    speed of the ramp.
+    """
     rows = []
     for speed in SPEEDS:
         design = amplitude_design(curve, depth, speed * 1e-3, taus)

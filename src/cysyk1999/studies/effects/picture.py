@@ -1,4 +1,6 @@
-"""Figure of the study of effects: what each changes and costs, and the planner's choices against that."""
+"""Figure of the study of effects: what each changes and costs, and the planner's choices against
+that.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,9 @@ class Look(NamedTuple):
 
 
 def looks() -> dict[str, Look]:
-    """Every effect of the planner, registered when this is asked, and what else is switched in the study."""
+    """Every effect of the planner, registered when this is asked, and what else is switched in the
+    study.
+    """
     titles = {
         name: (effect.title or name.replace("_", " "), effect.marker)
         for name, effect in EFFECTS.items()
@@ -51,7 +55,9 @@ def looks() -> dict[str, Look]:
 
 
 def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
-    """Plotted rows: panel changes (of :func:`cysyk1999.studies.effects.run.study`) and panel planner (of ``verdicts``)."""
+    """Plotted rows: panel changes (of :func:`cysyk1999.studies.effects.run.study`) and panel
+    planner (of ``verdicts``).
+    """
     return pd.concat(
         [pairs.assign(panel="changes"), found.assign(panel="planner")], ignore_index=True
     )
@@ -59,7 +65,9 @@ def assemble(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
 
 @styled
 def effects(frame: pd.DataFrame) -> Figure:
-    """Left, change over cost ratio of each effect; right, what each choice of the planner is worth over the accuracy."""
+    """Left, change over cost ratio of each effect; right, what each choice of the planner is worth
+    over the accuracy.
+    """
     height = 5.0
     scenes = len(frame.loc[frame["panel"] == "planner", ["seed", "scene"]].drop_duplicates())
     note = (

@@ -1,7 +1,9 @@
-"""What each effect changes in the answers and what it costs; and whether the planner's choices bear it out.
+"""What each effect changes in the answers and what it costs; and whether the planner's choices bear
+it out.
 
-An effect is simulated with and without it on the same mesh, so what differs is its own. :func:`study` does so on scenes where it
-matters and where it does not, :func:`verdicts` on scenes drawn at random, for every choice that the planner made.
+An effect is simulated with and without it on the same mesh, so what differs is its own.
+:func:`study` does so on scenes where it matters and where it does not, :func:`verdicts` on scenes
+drawn at random, for every choice that the planner made.
 """
 
 from __future__ import annotations
@@ -46,9 +48,13 @@ ANSWERS = {
 """The headline quantities by which a change is told, as the history and as people call them."""
 SLIDES_ONLY = ("tangential_force", "centre_lateral_displacement")
 KNOWN_SAFE = 0.1
-"""An effect worth less than this share of the accuracy need not be carried where leaving it out is known to be safe."""
+"""An effect worth less than this share of the accuracy need not be carried where leaving it out is
+known to be safe.
+"""
 SEEDS, SCENES = (31, 404, 505), 40
-"""Scenes drawn of each seed. Seeds 1999, 20261121, 7, 2026 and 31 have set the planner's rules: the others are unseen."""
+"""Scenes drawn of each seed. Seeds 1999, 20261121, 7, 2026 and 31 have set the planner's rules: the
+others are unseen.
+"""
 RIDGED = 6
 """One press in so many has ridges."""
 FLATTENED = 1e-8
@@ -170,7 +176,9 @@ BESIDE = (
 
 
 def pairs() -> tuple[Pair, ...]:
-    """What shows the effects that are registered when this is asked, and what is :data:`BESIDE` them."""
+    """What shows the effects that are registered when this is asked, and what is :data:`BESIDE`
+    them.
+    """
     own = (
         Pair(name, shown.label, shown.matters, shown.document, _switched(name, shown.state))
         for name, effect in EFFECTS.items()
@@ -180,10 +188,11 @@ def pairs() -> tuple[Pair, ...]:
 
 
 def study(shown: Iterable[Pair] | None = None, repeats: int = 11) -> pd.DataFrame:
-    """Changes and cost ratios of every pair, or of some: a row each; costs: process times, medians of ``repeats`` in turn after
-    one that is not counted, the ratio that of the ratios of each turn.
+    """Changes and cost ratios of every pair, or of some: a row each; costs: process times, medians
+    of ``repeats`` in turn after one that is not counted, the ratio that of the ratios of each turn.
 
-    What ridges change is told on a mesh that has them, where they are flattened; what they cost, beside the smooth pad's mesh.
+    What ridges change is told on a mesh that has them, where they are flattened; what they cost,
+    beside the smooth pad's mesh.
     """
     rows = []
     for pair in pairs() if shown is None else shown:
@@ -243,7 +252,8 @@ def planned(effect: str, scene: Scene) -> bool:
 
 
 def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
-    """Scenes across the planner's thresholds: presses and strokes, forces over three decades, times over six, six accuracies.
+    """Scenes across the planner's thresholds: presses and strokes, forces over three decades, times
+    over six, six accuracies.
 
     Some presses are of pads with inner ridges, of heights over two decades.
     """
@@ -308,11 +318,13 @@ def generated(count: int = SCENES, seed: int = SEEDS[0]) -> Iterator[Scene]:
 
 
 def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
-    """What each effect that the planner chose or left out would have been worth: one row a scene and effect.
+    """What each effect that the planner chose or left out would have been worth: one row a scene
+    and effect.
 
-    The plan is made at the accuracy that the scene asks for; what is simulated is its draft without ridges, with the plan's
-    effects and with one of them the other way. Ridges are flattened on a mesh that has them, and local refinement is taken away
-    or added on the planned mesh itself. "worth" is the largest change of a headline quantity, "share" that over the accuracy.
+    The plan is made at the accuracy that the scene asks for; what is simulated is its draft without
+    ridges, with the plan's effects and with one of them the other way. Ridges are flattened on a
+    mesh that has them, and local refinement is taken away or added on the planned mesh itself.
+    "worth" is the largest change of a headline quantity, "share" that over the accuracy.
     """
     rows = []
     for seed, scene in ((number, scene) for number in seeds for scene in generated(count, number)):
@@ -344,7 +356,9 @@ def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
 def trials(
     scene: Scene, chosen: Plan
 ) -> Iterator[tuple[str, xr.Dataset, list[tuple[Scene, Plan]]]]:
-    """Each effect of a plan that can be had either way: its name, what is compared with, and the other ways."""
+    """Each effect of a plan that can be had either way: its name, what is compared with, and the
+    other ways.
+    """
     draft = plan(scene.varied({"accuracy": "draft"}))
     draft = replace(draft, effects=chosen.effects, state=chosen.state, timed=chosen.timed)
     smooth, ridged = (with_effects(draft, ridges=on) for on in (False, True))
@@ -375,7 +389,8 @@ def _largest(found: Mapping[str, float]) -> tuple[float, str]:
 
 
 def alternatives(scene: Scene, draft: Plan) -> dict[str, list[Plan]]:
-    """For each effect that can be had either way, the plans with the other choice; the best of them counts.
+    """For each effect that can be had either way, the plans with the other choice; the best of them
+    counts.
 
     Symmetry is only taken away: where the planner refuses it, it is not there.
     """
@@ -395,7 +410,9 @@ def alternatives(scene: Scene, draft: Plan) -> dict[str, list[Plan]]:
 
 
 def verdict(dropped: bool, share: float) -> str:
-    """Of a choice whose effect is worth ``share`` of the accuracy; nan: the other choice could not be solved."""
+    """Of a choice whose effect is worth ``share`` of the accuracy; nan: the other choice could not
+    be solved.
+    """
     if np.isnan(share):
         return "no other way to compare"
     if dropped:
@@ -407,9 +424,11 @@ def verdict(dropped: bool, share: float) -> str:
 
 
 def evidence(pairs: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
-    """Changes and costs on chosen scenes (of :func:`study`), and the planner's choices in drawn ones (of :func:`verdicts`).
+    """Changes and costs on chosen scenes (of :func:`study`), and the planner's choices in drawn
+    ones (of :func:`verdicts`).
 
-    One row a chosen scene, then one an effect and choice with the number of drawn scenes and the extremes of worth over accuracy.
+    One row a chosen scene, then one an effect and choice with the number of drawn scenes and the
+    extremes of worth over accuracy.
     """
     chosen = pairs[["effect", "scene", "planned", "change", "of", "cost ratio"]].replace(
         {"planned": {True: "on", False: "off"}}
@@ -523,7 +542,9 @@ WHERE = {
 
 
 def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) -> pd.DataFrame:
-    """Every rule of the planner: value, what it decides and its evidence. ``pairs``: of :func:`study`."""
+    """Every rule of the planner: value, what it decides and its evidence. ``pairs``: of
+    :func:`study`.
+    """
 
     def planner(effect: str) -> str:
         part = found[found["effect"] == effect]

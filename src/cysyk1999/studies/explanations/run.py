@@ -1,10 +1,13 @@
-"""The thesis's presses and strokes, read otherwise in one thing at a time, and the verdicts on its statements of each reading.
+"""The thesis's presses and strokes, read otherwise in one thing at a time, and the verdicts on its
+statements of each reading.
 
-The pad was inferred from what the thesis shows of presses (study reconstruction). Of the statements that it was held out from,
-some do not hold. Here everything else that the thesis does not say is read otherwise, one thing at a time, and the comparison is
-made again with those runs: at draft accuracy, but of the published runs of all scenes where only what is read of them is another.
-A statement that holds with one of them, and not without at the same accuracy, is explained by it: it tells what the model of 1999
-may have been, not that it was. What the same reading spoils is counted beside.
+The pad was inferred from what the thesis shows of presses (study reconstruction). Of the statements
+that it was held out from, some do not hold. Here everything else that the thesis does not say is
+read otherwise, one thing at a time, and the comparison is made again with those runs: at draft
+accuracy, but of the published runs of all scenes where only what is read of them is another. A
+statement that holds with one of them, and not without at the same accuracy, is explained by it: it
+tells what the model of 1999 may have been, not that it was. What the same reading spoils is counted
+beside.
 """
 
 from __future__ import annotations
@@ -34,11 +37,13 @@ ACCURACY = "draft"
 
 @dataclass(frozen=True)
 class Reading:
-    """What is read otherwise: in words, as changes of every scene, and as changes of those with the wavy surface.
+    """What is read otherwise: in words, as changes of every scene, and as changes of those with the
+    wavy surface.
 
-    ``share``: of the force that presses the wavy surface, in the same time. keeps: what is kept while it slides, force or depth.
-    deeper: m, how much deeper than it is called a receptor lies. energy: which of a history's strain energies is read. given:
-    rows that it takes from the thesis, so that it explains nothing by them.
+    ``share``: of the force that presses the wavy surface, in the same time. keeps: what is kept
+    while it slides, force or depth. deeper: m, how much deeper than it is called a receptor lies.
+    energy: which of a history's strain energies is read. given: rows that it takes from the thesis,
+    so that it explains nothing by them.
     """
 
     words: str
@@ -170,7 +175,9 @@ def control_of(name: str) -> str:
 
 
 def simulated(scenes: Path, reading: Reading) -> dict[str, xr.Dataset]:
-    """Histories of the presses and strokes, by scene, of a folder of scenes. Raises NonConvergence."""
+    """Histories of the presses and strokes, by scene, of a folder of scenes. Raises
+    NonConvergence.
+    """
     return {
         name: simulate(reading.of(load_scene(scenes / f"{name}.yaml"), name in STROKED))
         for name in (*PRESSED, *STROKED)
@@ -180,7 +187,9 @@ def simulated(scenes: Path, reading: Reading) -> dict[str, xr.Dataset]:
 def verdicts(
     histories: Mapping[str, xr.Dataset], reading: Reading, reference_csv: str | PathLike
 ) -> pd.DataFrame:
-    """The comparison of a reading's histories: columns id, simulated, verdict; without what they do not tell."""
+    """The comparison of a reading's histories: columns id, simulated, verdict; without what they do
+    not tell.
+    """
     nothing = Measures.of({})
     called = {name: reading.called(history) for name, history in histories.items()}
     table = thesis_comparison(
@@ -204,14 +213,16 @@ COLUMNS = (
 def explanations(
     published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference_csv: str | PathLike
 ) -> pd.DataFrame:
-    """What was held out and does not hold in the published comparison, and the readings with which it holds.
+    """What was held out and does not hold in the published comparison, and the readings with which
+    it holds.
 
     Args:
         published: the comparison. found: :func:`verdicts` by reading, the controls among them.
 
     Returns:
-        A row each, columns `COLUMNS`: the readings that explain it, the number found with the first of them, and the readings
-        that do not. ``attrs["summary"]`` says how many of those held out are right, and how many more are explained, by kind.
+        A row each, columns `COLUMNS`: the readings that explain it, the number found with the first
+        of them, and the readings that do not. ``attrs["summary"]`` says how many of those held out
+        are right, and how many more are explained, by kind.
     """
     reference = read_reference(reference_csv)
     scored = _held_out(published, reference)
@@ -270,9 +281,11 @@ def _held_out(published: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
 def turned(
     published: pd.DataFrame, found: Mapping[str, pd.DataFrame], reference_csv: str | PathLike
 ) -> pd.DataFrame:
-    """How many of the statements held out each reading makes hold that do not without it, and the other way round.
+    """How many of the statements held out each reading makes hold that do not without it, and the
+    other way round.
 
-    Arguments as of :func:`explanations`. A row a reading, those first that make most hold for what they make fail.
+    Arguments as of :func:`explanations`. A row a reading, those first that make most hold for what
+    they make fail.
     """
     held_out = _held_out(published, read_reference(reference_csv))["id"]
     right = {name: table.set_index("id")["verdict"].isin(AGREES) for name, table in found.items()}

@@ -1,4 +1,6 @@
-"""Five hundred fingers in one picture: bands of predicted rate against curvature, and what a study should measure first."""
+"""Five hundred fingers in one picture: bands of predicted rate against curvature, and what a study
+should measure first.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ SHOWN = 210.0
 
 
 def frame_of(table: pd.DataFrame) -> pd.DataFrame:
-    """What is drawn, of the sweep's table: a row a finger, those that failed with their diagnosis."""
+    """What is drawn, of the sweep's table: a row a finger, those that failed with their
+    diagnosis.
+    """
     return table[
         ["scene", CURVATURE, *UNKNOWNS, *MEASURES, "estimated_error (1)", "failed", "diagnosis"]
     ]

@@ -1,10 +1,13 @@
-"""Global sensitivity of what is felt to what is not known of a finger: Sobol indices of an emulator of the sweep.
+"""Global sensitivity of what is felt to what is not known of a finger: Sobol indices of an emulator
+of the sweep.
 
-The sweep has too few scenes for Sobol indices by themselves (Saltelli's design takes N (D + 2)), and more than enough for a
-polynomial in all unknowns: total degree 2, in curvature 4 and 3 times any other. The emulator is judged by leaving scenes out
-(Q2, the share of the variance that it explains of scenes it has not seen); SALib's indices are its own.
+The sweep has too few scenes for Sobol indices by themselves (Saltelli's design takes N (D + 2)),
+and more than enough for a polynomial in all unknowns: total degree 2, in curvature 4 and 3 times
+any other. The emulator is judged by leaving scenes out (Q2, the share of the variance that it
+explains of scenes it has not seen); SALib's indices are its own.
 
-Sudret 2008, Reliab. Eng. Syst. Saf. 93:964 (polynomial emulators); Saltelli and others 2010, Comput. Phys. Commun. 181:259.
+Sudret 2008, Reliab. Eng. Syst. Saf. 93:964 (polynomial emulators); Saltelli and others 2010,
+Comput. Phys. Commun. 181:259.
 """
 
 from __future__ import annotations
@@ -42,13 +45,17 @@ FOLDS, BASE, SEED = 16, 1024, 1999
 
 
 def shares(table: pd.DataFrame) -> np.ndarray:
-    """Shares (n, 1 + unknowns) from 0 to 1 of curvature's and every unknown's distribution: ranks, as the points are even."""
+    """Shares (n, 1 + unknowns) from 0 to 1 of curvature's and every unknown's distribution: ranks,
+    as the points are even.
+    """
     columns = table[[CURVATURE, *UNKNOWNS]]
     return ((columns.rank() - 0.5) / len(columns)).to_numpy()
 
 
 def features(share: np.ndarray) -> np.ndarray:
-    """Terms (n, k) of the polynomial at shares (n, d), in Legendre polynomials; the first share is curvature's."""
+    """Terms (n, k) of the polynomial at shares (n, d), in Legendre polynomials; the first share is
+    curvature's.
+    """
     x = 2 * np.asarray(share, float) - 1
     p = [
         np.ones_like(x),
@@ -66,7 +73,9 @@ def features(share: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Emulator:
-    """A measure as a polynomial of shares; `q2`: the share of the variance that it explains of scenes left out."""
+    """A measure as a polynomial of shares; `q2`: the share of the variance that it explains of
+    scenes left out.
+    """
 
     weights: np.ndarray
     logarithmic: bool
@@ -78,7 +87,9 @@ class Emulator:
 
 
 def emulator(share: np.ndarray, values: np.ndarray) -> Emulator:
-    """Fit a measure (n,): its logarithm where all values are above zero. Scenes without a value are left out."""
+    """Fit a measure (n,): its logarithm where all values are above zero. Scenes without a value are
+    left out.
+    """
     known = np.isfinite(values)
     terms, values = features(share[known]), values[known]
     logarithmic = bool((values > 0).all())
@@ -108,7 +119,9 @@ def curvature_share(table: pd.DataFrame, curvature: float) -> float:
 
 
 def indices(table: pd.DataFrame, curvatures: tuple[float, ...] = AT) -> pd.DataFrame:
-    """Sobol indices: a row for each measure, curvature and unknown, first and total with their 95 % intervals."""
+    """Sobol indices: a row for each measure, curvature and unknown, first and total with their 95 %
+    intervals.
+    """
     from SALib.analyze import sobol
     from SALib.sample import sobol as sample
 

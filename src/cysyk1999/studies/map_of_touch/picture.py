@@ -1,4 +1,5 @@
-"""The map of touch: contours over curvature and force of what the skin and a receptor feel, and where small strain would do.
+"""The map of touch: contours over curvature and force of what the skin and a receptor feel, and
+where small strain would do.
 
 Drawn from the table of the sweep ``config/sweeps/map_of_touch.yaml`` alone.
 """
@@ -24,7 +25,9 @@ _BEND = 60.0
 
 
 def frame_of(table: pd.DataFrame) -> pd.DataFrame:
-    """What is drawn, of the sweep's table: a row a scene, those that failed with their diagnosis."""
+    """What is drawn, of the sweep's table: a row a scene, those that failed with their
+    diagnosis.
+    """
     return table[
         [
             "scene",
@@ -42,7 +45,9 @@ def frame_of(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def small_strain_changes(frame: pd.DataFrame) -> pd.DataFrame:
-    """Largest relative change (1) by small strain of depth, width, peak pressure and strain energy: force by curvature."""
+    """Largest relative change (1) by small strain of depth, width, peak pressure and strain energy:
+    force by curvature.
+    """
     at = frame[frame[RATE] == SHOWN].set_index([FORCE, K])
     finite, small = (at[at[STRAIN] == word][list(COMPARED)] for word in ("finite", "small"))
     return (small / finite - 1).abs().max(axis=1, skipna=False).unstack()
@@ -80,7 +85,9 @@ def _contours(ax: Axes, grid: pd.DataFrame, levels: np.ndarray, title: str) -> N
 
 @styled
 def contours(frame: pd.DataFrame) -> Figure:
-    """Four maps of the held press, three of the predicted rate by ramp rate, and one of what small strain changes."""
+    """Four maps of the held press, three of the predicted rate by ramp rate, and one of what small
+    strain changes.
+    """
     failed = int(frame["failed"].sum())
     error = frame.loc[frame[STRAIN] == "finite", "estimated_error (1)"]
     note = [

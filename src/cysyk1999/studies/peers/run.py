@@ -1,10 +1,12 @@
-"""The same elastic press through public finite element packages and through this one: answers and cost side by side.
+"""The same elastic press through public finite element packages and through this one: answers and
+cost side by side.
 
-Same mesh of linear quads with one pressure an element, same law (neo-Hooke with U = kappa/2 (J - 1)^2), plane strain, the whole
-pad, pressed to a depth by a plate or a cylinder without friction. Each package is a process of its own with one thread, finds the
-contact itself, and takes as few increments as it converges with; the processes take turns, so that a busy machine slows all.
-Process times are user and system time, of all of the process and of its loop alone. The peers are optional: ``pip install -e
-.[peers]``; one that is not installed has no rows.
+Same mesh of linear quads with one pressure an element, same law (neo-Hooke with U = kappa/2 (J -
+1)^2), plane strain, the whole pad, pressed to a depth by a plate or a cylinder without friction.
+Each package is a process of its own with one thread, finds the contact itself, and takes as few
+increments as it converges with; the processes take turns, so that a busy machine slows all. Process
+times are user and system time, of all of the process and of its loop alone. The peers are optional:
+``pip install -e .[peers]``; one that is not installed has no rows.
 """
 
 from __future__ import annotations
@@ -60,7 +62,8 @@ sys.exit(main(["run", *sys.argv[1:], "--quiet", "--force"]))
 
 
 def scenes(name: str, folder: Path, edge: str = "165 um") -> tuple[Path, Path]:
-    """Writes a press as a scene on the mesh it shares with the peers, as their problem, and as one on the planner's own mesh.
+    """Writes a press as a scene on the mesh it shares with the peers, as their problem, and as one
+    on the planner's own mesh.
 
     Returns:
         Both scenes.
@@ -157,7 +160,9 @@ def peer(name: str, folder: Path) -> tuple[list[str], dict[str, Any]]:
 def study(
     presses: tuple[str, ...] = tuple(PRESSES), repeats: int = 5, edge: str = "165 um"
 ) -> pd.DataFrame:
-    """One row a press and package: force, medians and spreads of process times (s), ratios to this package on the same mesh."""
+    """One row a press and package: force, medians and spreads of process times (s), ratios to this
+    package on the same mesh.
+    """
     rows = []
     installed = [name for name in PEERS if _version(name)]
     for press in presses:

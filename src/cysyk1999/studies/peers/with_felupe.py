@@ -1,4 +1,6 @@
-"""The press in FElupe, as its user would write it: a nearly incompressible solid, its own rigid contact, PARDISO."""
+"""The press in FElupe, as its user would write it: a nearly incompressible solid, its own rigid
+contact, PARDISO.
+"""
 
 import json
 import sys
@@ -6,11 +8,15 @@ import time
 
 import numpy as np
 
-STIFFNESS = 300.0  # of the contact, in those of the nodes: the force is then right to 1e-4 (30 under a cylinder, or it diverges)
+# of the contact, in those of the nodes: the force is then right to 1e-4 (30 under a cylinder, or it
+# diverges)
+STIFFNESS = 300.0
 
 
 def press(problem, increments):
-    """Force (N/m), iterations and process time (s) of the loop; FElupe's error where it does not converge."""
+    """Force (N/m), iterations and process time (s) of the loop; FElupe's error where it does not
+    converge.
+    """
     import felupe as fem
     from pypardiso import spsolve
 

@@ -1,4 +1,6 @@
-"""The press in NGSolve, as its user would write it: energies, pressure condensed, a penalty at the nodes, its Cholesky."""
+"""The press in NGSolve, as its user would write it: energies, pressure condensed, a penalty at the
+nodes, its Cholesky.
+"""
 
 import json
 import sys
@@ -10,7 +12,9 @@ STIFFNESS = 1e11  # Pa/m of the contact: the force is then right to 1e-4
 
 
 def press(problem, increments):
-    """Force (N/m), iterations and process time (s) of the loop; RuntimeError where it does not converge."""
+    """Force (N/m), iterations and process time (s) of the loop; RuntimeError where it does not
+    converge.
+    """
     import ngsolve as ngs
     from netgen.meshing import Element1D, Element2D, Mesh, MeshPoint, Pnt
     from ngsolve.solvers import Newton

@@ -1,4 +1,6 @@
-"""Candidate stimuli of slowly adapting receptors compared as predictors of impulse rates, with two constants each."""
+"""Candidate stimuli of slowly adapting receptors compared as predictors of impulse rates, with two
+constants each.
+"""
 
 from __future__ import annotations
 
@@ -32,17 +34,20 @@ BEST_DEPTH = "best of those simulated"
 
 
 def candidate_stimuli(histories: Histories, rates: pd.DataFrame) -> pd.DataFrame:
-    """Candidate stimuli as predictors of the rates at hand, each with a gain and a threshold, best first within a set of rates.
+    """Candidate stimuli as predictors of the rates at hand, each with a gain and a threshold, best
+    first within a set of rates.
 
-    Every candidate is averaged over the window the rates are of. Those under the skin are taken at 915 um, where the thesis
-    predicts from, and then at the best of the simulated depths, which is a third constant. "curvature" and "inverse contact
-    width" need no receptor and show what little a good R2 takes.
+    Every candidate is averaged over the window the rates are of. Those under the skin are taken at
+    915 um, where the thesis predicts from, and then at the best of the simulated depths, which is a
+    third constant. "curvature" and "inverse contact width" need no receptor and show what little a
+    good R2 takes.
 
     Returns:
-        One row a set of rates, candidate and depth: gain, threshold, R2, root-mean-square error of the curvatures left out one by
-        one, and the rank by that error among candidates at 915 um. Where a surface is uncertain R2 has the range of all readings.
-        The last columns need no rates: what is left at the end of the hold of what was there at its beginning, least and most
-        of the nine surfaces at 40 gf/s. The recorded rates fall.
+        One row a set of rates, candidate and depth: gain, threshold, R2, root-mean-square error of
+        the curvatures left out one by one, and the rank by that error among candidates at 915 um.
+        Where a surface is uncertain R2 has the range of all readings. The last columns need no
+        rates: what is left at the end of the hold of what was there at its beginning, least and
+        most of the nine surfaces at 40 gf/s. The recorded rates fall.
     """
     rows, surfaces = [], NINE.histories(histories)
     for title, group in rate_sets(rates[rates["receptor"] == "SA-I"]):
@@ -67,7 +72,9 @@ def candidate_stimuli(histories: Histories, rates: pd.DataFrame) -> pd.DataFrame
 
 
 def _held(surfaces: Mapping[str, xr.Dataset], name: str, depth: float) -> dict[str, float]:
-    """Least and largest share of a candidate, over surfaces, that is left at the end of the hold; depth: um."""
+    """Least and largest share of a candidate, over surfaces, that is left at the end of the hold;
+    depth: um.
+    """
     if name not in CANDIDATES or not surfaces:
         return {}
     left = [
@@ -117,7 +124,9 @@ def _common_depths(matched: Mapping[float, Sequence[xr.Dataset]]) -> list[float]
 
 
 def _inverse_width(history, window, depth):
-    """Inverse contact width, 1/m: over the hold, as in thesis Fig 4-9, since it has no bound at first touch; or the largest."""
+    """Inverse contact width, 1/m: over the hold, as in thesis Fig 4-9, since it has no bound at
+    first touch; or the largest.
+    """
     width = history["contact_width"].values
     touching = width > 0
     return windowed(

@@ -1,6 +1,8 @@
-"""Impulse rates at hand against simulated histories: which belong together, and Eq 5-1 asked for the rates.
+"""Impulse rates at hand against simulated histories: which belong together, and Eq 5-1 asked for
+the rates.
 
-Rates are published or recorded (`cysyk1999.receptors.recordings`); histories are of cylinders pressed into a human pad.
+Rates are published or recorded (`cysyk1999.receptors.recordings`); histories are of cylinders
+pressed into a human pad.
 """
 
 from __future__ import annotations
@@ -35,7 +37,8 @@ RATE_FITS = {
 
 
 def rate_sets(rates: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
-    """Rates that one set of constants may be asked to predict: of one recording, then of all recordings of one source.
+    """Rates that one set of constants may be asked to predict: of one recording, then of all
+    recordings of one source.
 
     Pressed surfaces only; a window at a time; three rates at least.
     """
@@ -53,8 +56,9 @@ def rate_sets(rates: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
 
 
 def assignments(group: pd.DataFrame) -> list[np.ndarray]:
-    """Curvatures (n,) 1/m in every reading of rates whose surface is one of two; a surface has one rate, and rates rise with
-    curvature."""
+    """Curvatures (n,) 1/m in every reading of rates whose surface is one of two; a surface has one
+    rate, and rates rise with curvature.
+    """
     first, other = (
         group["curvature_per_m"].to_numpy(float),
         group["or_curvature_per_m"].to_numpy(float),
@@ -70,8 +74,8 @@ def assignments(group: pd.DataFrame) -> list[np.ndarray]:
 def matched_histories(
     histories: Histories, group: pd.DataFrame
 ) -> dict[float, list[xr.Dataset]] | None:
-    """Histories of pressed surfaces for every force (gf) of a set of rates, by rising curvature; None if a force has fewer than
-    four.
+    """Histories of pressed surfaces for every force (gf) of a set of rates, by rising curvature;
+    None if a force has fewer than four.
 
     Of several force rates the recording's is taken, else 40 gf/s.
     """
@@ -101,7 +105,8 @@ def across(
     curvature: np.ndarray,
     number,
 ) -> np.ndarray:
-    """Numbers (n,) at the forces and curvatures of some rates: between simulated surfaces by a monotone cubic over curvature.
+    """Numbers (n,) at the forces and curvatures of some rates: between simulated surfaces by a
+    monotone cubic over curvature.
 
     number: history, window -> value.
     """
@@ -119,7 +124,8 @@ def across(
 def rate_fit(
     matched, group: pd.DataFrame, curvature: np.ndarray
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Every way of :data:`RATE_FITS` -> what it tells, with intervals over rates (k, 3), and the rates (n,) it predicts.
+    """Every way of :data:`RATE_FITS` -> what it tells, with intervals over rates (k, 3), and the
+    rates (n,) it predicts.
 
     curvature: (n,) 1/m, one reading of which surface each rate is of.
     """
@@ -143,7 +149,9 @@ def rate_fit(
 
     def static(
         rows,
-    ):  # of the energy's mean: as good as the mean of the law while the energy does not cross the threshold
+        # of the energy's mean: as good as the mean of the law while the energy does not cross the
+        # threshold
+    ):
         law = gain_and_threshold(held[rows], (data - dynamic)[rows])
         return np.array([law.gain, law.threshold])
 

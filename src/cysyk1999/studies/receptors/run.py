@@ -1,6 +1,8 @@
-"""The thesis's laws from skin to impulses: fitted to simulated histories, carried over to others, compared with rates.
+"""The thesis's laws from skin to impulses: fitted to simulated histories, carried over to others,
+compared with rates.
 
-Everything is read from cached histories: the constants of the laws with intervals, what they leave over, and where they break.
+Everything is read from cached histories: the constants of the laws with intervals, what they leave
+over, and where they break.
 """
 
 from __future__ import annotations
@@ -58,15 +60,17 @@ FIT_COLUMNS = (
 
 
 def receptor_fits(histories: Histories, coarse: Histories, rates: pd.DataFrame) -> pd.DataFrame:
-    """Every constant of Eqs 4-1 to 5-1, its interval, what the law leaves over, and where it breaks.
+    """Every constant of Eqs 4-1 to 5-1, its interval, what the law leaves over, and where it
+    breaks.
 
     Args:
-        histories, coarse: scenes and their companions, of which those of the nine surfaces, of strokes and of lower forces are
-        read. rates: of `cysyk1999.receptors.recordings.read_rates`.
+        histories, coarse: scenes and their companions, of which those of the nine surfaces, of
+        strokes and of lower forces are read. rates: of `cysyk1999.receptors.recordings.read_rates`.
 
     Returns:
-        Columns `FIT_COLUMNS`. Intervals are jackknife intervals over surfaces (Eq 4-1: over nodes, rates: over rates);
-        "discretisation" is by how much the estimate differs when fitted to the companions.
+        Columns `FIT_COLUMNS`. Intervals are jackknife intervals over surfaces (Eq 4-1: over nodes,
+        rates: over rates); "discretisation" is by how much the estimate differs when fitted to the
+        companions.
     """
     table = pd.DataFrame(
         [*_simulated_laws(histories, intervals=True), *_rate_law(histories, rates)],
@@ -137,7 +141,9 @@ def _relative(law, scenes, quantity, data, predicted, note="", depth=np.nan) -> 
 
 
 def _with_intervals(fitted, groups: Sequence, intervals: bool) -> np.ndarray:
-    """Estimates (p, 3) of what is fitted to groups, low and high last; these are not a number without intervals."""
+    """Estimates (p, 3) of what is fitted to groups, low and high last; these are not a number
+    without intervals.
+    """
     if intervals:
         return jackknife(fitted, groups)
     found = np.asarray(fitted(groups))
@@ -242,7 +248,9 @@ def _sums(histories: Histories, surfaces: dict[str, xr.Dataset], intervals: bool
 
 
 def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterator[dict]:
-    """How the sum fitted to the slow ramps does on what it was not fitted to: fast ramps, and strokes with four shifts."""
+    """How the sum fitted to the slow ramps does on what it was not fitted to: fast ramps, and
+    strokes with four shifts.
+    """
     um, title, what = depth * 1e6, "4-4, constants of ramp40", "residual over the energy"
     fast = [skin_sample(history, depth) for history in FAST.histories(histories).values()]
     if fast:
@@ -274,7 +282,9 @@ def _transferred(law: SpatialSum, histories: Histories, depth: float) -> Iterato
 
 
 def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
-    """What is left when all constants of Eq 4-4 and a constant shift are fitted to a stroke itself: what its form cannot do."""
+    """What is left when all constants of Eq 4-4 and a constant shift are fitted to a stroke itself:
+    what its form cannot do.
+    """
     best = None
     for shift in np.arange(-1.2e-3, 0.5e-3, 0.1e-3):
         sample = skin_sample(history, depth, shift)
@@ -296,7 +306,9 @@ def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
 
 
 def _share_of_skin(law: SpatialSum, sample, skin: np.ndarray) -> float:
-    """The share of the skin's lateral displacement with which the law comes closest to a stroke, to a hundredth."""
+    """The share of the skin's lateral displacement with which the law comes closest to a stroke, to
+    a hundredth.
+    """
 
     def left(share: float) -> float:
         return rms(sample.by(law, share * skin) - sample.energy)
@@ -307,7 +319,9 @@ def _share_of_skin(law: SpatialSum, sample, skin: np.ndarray) -> float:
 
 
 def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
-    """Eq 5-1 with the thesis's constants against the rates at hand, and what its constants become when fitted to them."""
+    """Eq 5-1 with the thesis's constants against the rates at hand, and what its constants become
+    when fitted to them.
+    """
     um, stated = RECEPTOR_DEPTH * 1e6, "5-1, thesis's constants"
     for name, value, unit in (
         ("A1", THESIS_RATE.per_energy, "(impulses/s)/Pa"),

@@ -1,4 +1,6 @@
-"""Receptors beside the thesis's: a tactile sensor that knows the contact pressure only, and rapidly adapting receptors."""
+"""Receptors beside the thesis's: a tactile sensor that knows the contact pressure only, and rapidly
+adapting receptors.
+"""
 
 from __future__ import annotations
 
@@ -29,15 +31,17 @@ PITCHES = (0.5e-3, 1.0e-3)
 
 
 def sensor_accuracy(histories: Histories) -> pd.DataFrame:
-    """Impulse rates of the tactile sensor against those of the full model, Eq 5-1 on the simulated strain energy, scene by scene.
+    """Impulse rates of the tactile sensor against those of the full model, Eq 5-1 on the simulated
+    strain energy, scene by scene.
 
-    The sensor's sum is fitted to the nine surfaces at 40 gf/s; all else is new to it. It is given the pressure at the pad's
-    nodes where they are, with and without the depth of indentation, and the mean pressure on the faces of coarser arrays that
-    stay in place.
+    The sensor's sum is fitted to the nine surfaces at 40 gf/s; all else is new to it. It is given
+    the pressure at the pad's nodes where they are, with and without the depth of indentation, and
+    the mean pressure on the faces of coarser arrays that stay in place.
 
     Returns:
-        One row a scene and array: what the sensor knows, spacing, root-mean-square and largest error of the rate, both in
-        impulses/s, the same over the full model's, and impulses of either over the scene.
+        One row a scene and array: what the sensor knows, spacing, root-mean-square and largest
+        error of the rate, both in impulses/s, the same over the full model's, and impulses of
+        either over the scene.
 
     Raises:
         ValueError: no surface was pressed at 40 gf/s, so there is nothing to fit the sum to.
@@ -111,8 +115,9 @@ def _weighted_rms(values, time) -> float:
 def _sensed(
     sample, time, law: SpatialSum, with_depth: bool, pitch: float | None, shift: float
 ) -> np.ndarray:
-    """Rates (time) of a sensor at the pad's nodes (they move: a new sensor a frame would be one), or of an array of a pitch
-    (m)."""
+    """Rates (time) of a sensor at the pad's nodes (they move: a new sensor a frame would be one),
+    or of an array of a pitch (m).
+    """
     if pitch is None:
         energy = law.strain_energy(
             sample.x, sample.pressure, sample.indentation if with_depth else 0.0, shift
@@ -136,17 +141,19 @@ RAPIDLY_ADAPTING = {
     ),
     "strain energy at 600 um": ("energy", ASSUMED_RATE),
 }
-"""Stimulus whose rate drives the receptor -> its key and law; thresholds, scales and the highest rate are assumed, nothing at
-hand states them."""
+"""Stimulus whose rate drives the receptor -> its key and law; thresholds, scales and the highest
+rate are assumed, nothing at hand states them.
+"""
 
 
 def rapidly_adapting(histories: Histories) -> pd.DataFrame:
-    """What the thesis reports of rapidly adapting receptors, asked of two laws: only at the ramp's beginning? whatever the
-    curvature?
+    """What the thesis reports of rapidly adapting receptors, asked of two laws: only at the ramp's
+    beginning? whatever the curvature?
 
     Returns:
-        One row a law and surface: impulses during the ramp and the hold, when the response ends as a share of the ramp (the end
-        of the last output interval with a rate, so to within an output step), the largest rate.
+        One row a law and surface: impulses during the ramp and the hold, when the response ends as
+        a share of the ramp (the end of the last output interval with a rate, so to within an output
+        step), the largest rate.
     """
     rows = []
     for name, (key, law) in RAPIDLY_ADAPTING.items():

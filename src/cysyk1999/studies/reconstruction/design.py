@@ -1,4 +1,5 @@
-"""The design run: every pad under every surface that is fitted, one process, a record each as soon as it is done.
+"""The design run: every pad under every surface that is fitted, one process, a record each as soon
+as it is done.
 
     python -m cysyk1999.studies.reconstruction.design RECORDS [SECONDS]
 
@@ -20,14 +21,18 @@ from cysyk1999.studies.reconstruction.unknowns import Unknowns, read_unknowns
 from fingerpad.sweeps.records import Writer, read_records
 
 FITTED = ("flat", "158", "420", "1260", pads.PLATE)
-"""Surfaces that the posterior is made of: every second cylinder but one, so that the others are left to judge it by."""
+"""Surfaces that the posterior is made of: every second cylinder but one, so that the others are
+left to judge it by.
+"""
 UNKNOWNS = Path("config/reconstruction/unknowns.yaml")
 
 
 def run_design(
     known: Unknowns, records: Path, seconds: float = float("inf"), surfaces: Sequence[str] = FITTED
 ) -> None:
-    """Simulate the pads that `records` does not know yet, until so much time of the process has gone."""
+    """Simulate the pads that `records` does not know yet, until so much time of the process has
+    gone.
+    """
     started, drawn = time.process_time(), pd.DataFrame(known.draw())
     write = Writer(records)
     try:
@@ -61,7 +66,9 @@ def simulated(pad: Mapping[str, float], surfaces: Sequence[str]) -> dict[str, ob
 
 
 def table(records: Path) -> pd.DataFrame:
-    """A row a pad: values of the axes, of what was read (NaN where it failed), diagnosis, process time."""
+    """A row a pad: values of the axes, of what was read (NaN where it failed), diagnosis, process
+    time.
+    """
     rows = [
         {
             "pad": r["number"],

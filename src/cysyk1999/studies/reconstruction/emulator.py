@@ -1,8 +1,10 @@
-"""An emulator of the design: what a pad that was not simulated would show, and how far off that may be.
+"""An emulator of the design: what a pad that was not simulated would show, and how far off that may
+be.
 
-A quadratic polynomial in all unknowns for the large, a Gaussian process for what it leaves (universal kriging in two steps;
-Sacks and others 1989, Stat. Sci. 4:409), one set of length scales for all measures, so that a prediction of all of them costs one
-kernel. Measures above zero are emulated in their logarithm. The error stated is that of pads left out: everything but the length
+A quadratic polynomial in all unknowns for the large, a Gaussian process for what it leaves
+(universal kriging in two steps; Sacks and others 1989, Stat. Sci. 4:409), one set of length scales
+for all measures, so that a prediction of all of them costs one kernel. Measures above zero are
+emulated in their logarithm. The error stated is that of pads left out: everything but the length
 scales is fitted anew without them.
 """
 
@@ -28,9 +30,9 @@ class Emulator:
     """Predicts measures at shares of the design's ranges.
 
     Attributes:
-        names: (m,) measures. logarithmic: (m,) which are emulated in their logarithm. error: (m,) root mean square error of pads
-        left out, of the logarithm where that is emulated. q2: (m,) share of the variance explained of pads left out. pads: how
-        many it rests on.
+        names: (m,) measures. logarithmic: (m,) which are emulated in their logarithm. error: (m,)
+        root mean square error of pads left out, of the logarithm where that is emulated. q2: (m,)
+        share of the variance explained of pads left out. pads: how many it rests on.
     """
 
     names: list[str]
@@ -98,7 +100,9 @@ class Emulator:
         return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, found, 0.0)), found)
 
     def only(self, names: list[str]) -> Emulator:
-        """The same for some measures, in this order. Raises ValueError for one that it does not know."""
+        """The same for some measures, in this order. Raises ValueError for one that it does not
+        know.
+        """
         k = [self.names.index(name) for name in names]
         trend = LinearRegression()
         trend.coef_, trend.intercept_ = self._trend.coef_[k], self._trend.intercept_[k]

@@ -1,7 +1,9 @@
-"""Energies inside the epidermis: what 1999 could have done to read them so low, each tried on the most probable pad.
+"""Energies inside the epidermis: what 1999 could have done to read them so low, each tried on the
+most probable pad.
 
-The thesis's Fig 4-24 shows under its sharpest surface up to 800 Pa at 560 um and to 3000 Pa at 845 um (ticks before: 600, 2000).
-A reading that were the cause would bring all six depths in the epidermis inside, and leave the dermis where it is.
+The thesis's Fig 4-24 shows under its sharpest surface up to 800 Pa at 560 um and to 3000 Pa at 845
+um (ticks before: 600, 2000). A reading that were the cause would bring all six depths in the
+epidermis inside, and leave the dermis where it is.
 """
 
 from __future__ import annotations
@@ -45,7 +47,9 @@ KINDS = {
 
 
 def best_pad(posterior: pd.DataFrame) -> dict[str, float]:
-    """The best pad of the freest reading of a table of posteriors, on the axes of the design, with its factors."""
+    """The best pad of the freest reading of a table of posteriors, on the axes of the design, with
+    its factors.
+    """
     rows = posterior[posterior["reading"] == "both_free"].set_index("quantity")["best pad"]
     pad = {name: float(value) for name, value in rows.items()}
     return pad | {LOAD: pad[SCALED] / pad[SOFT], STIFFNESS: pad[EPIDERMIS] / pad[SOFT]}
@@ -68,7 +72,9 @@ def _row(
 
 
 def _scene(pad: Mapping[str, float], **changes) -> Scene:
-    """The sharpest surface on a pad, receptors under the centre and beside it by Gauss points of elements that meet there."""
+    """The sharpest surface on a pad, receptors under the centre and beside it by Gauss points of
+    elements that meet there.
+    """
     offsets = [
         0.0,
         46e-6,
@@ -123,7 +129,9 @@ def _variants(pad: Mapping[str, float]) -> Iterator[tuple[str, Scene]]:
 
 
 def study(pad: Mapping[str, float], evidence: Evidence) -> pd.DataFrame:
-    """A row a reading: energies of the sharpest surface by depth, peak pressure, distance from the axes, and what it means."""
+    """A row a reading: energies of the sharpest surface by depth, peak pressure, distance from the
+    axes, and what it means.
+    """
     soft, rows = pad[SOFT], []
     history = simulate(_scene(pad))
     found = _energies(history)
@@ -193,7 +201,9 @@ def study(pad: Mapping[str, float], evidence: Evidence) -> pd.DataFrame:
 
 
 def judged(table: pd.DataFrame, evidence: Evidence) -> pd.DataFrame:
-    """With the distance of the six depths from their axes, how many are inside, and the dermis's energy over the first row's."""
+    """With the distance of the six depths from their axes, how many are inside, and the dermis's
+    energy over the first row's.
+    """
     rows = evidence.rows[
         (evidence.rows["role"] == "apart") & (evidence.rows["surface"] == SHARPEST)
     ].reset_index(drop=True)
@@ -211,7 +221,9 @@ def judged(table: pd.DataFrame, evidence: Evidence) -> pd.DataFrame:
 
 
 def _averaged(history) -> dict[int, float]:
-    """Mean over an element beside the centre: Gauss points over its width, and over the three depths of a row."""
+    """Mean over an element beside the centre: Gauss points over its width, and over the three
+    depths of a row.
+    """
     beside, weights = (
         [COLUMN / 2 - GAUSS * COLUMN, COLUMN / 2, COLUMN / 2 + GAUSS * COLUMN],
         np.array([5, 8, 5]) / 18,
@@ -230,7 +242,9 @@ def _averaged(history) -> dict[int, float]:
 
 
 def _extrapolated(history) -> dict[int, float]:
-    """Linear through the two reduced Gauss points of each row of elements, to the depth that is told."""
+    """Linear through the two reduced Gauss points of each row of elements, to the depth that is
+    told.
+    """
     out = {DERMIS: features.energy(history, DERMIS * 1e-6).max()}
     for row in (WITHIN[:3], WITHIN[3:]):
         depths, found = (
@@ -245,7 +259,9 @@ def _extrapolated(history) -> dict[int, float]:
 
 
 def of_element(pad: Mapping[str, float], kind: str) -> dict[int, float]:
-    """Elastic energy (Pa) of the instantaneous pad under the load at the depths, at Gauss points next to the centre."""
+    """Elastic energy (Pa) of the instantaneous pad under the load at the depths, at Gauss points
+    next to the centre.
+    """
     scene = pads.scene(pad, SHARPEST).varied(
         {"motion": [{"press_to_force": "20 gf"}], "accuracy": {"skin_edge": COLUMN, "steps": 6}}
     )

@@ -1,9 +1,10 @@
 """The evidence: what the thesis shows of its pad, how it read it, and how far a model is from it.
 
-A row of ``config/reference/reconstruction_evidence.csv`` is an interval that the figure or text leaves to a number: of an axis,
-for example, from its last tick but one to its end, where a program that ends axes at the next tick has drawn it. A number inside
-is as good as another; beyond an end it counts by its distance in tolerances. Rows are fitted, held out (half of chapter 4: the
-surfaces and figures that the posterior does not see), or apart (energies inside the epidermis).
+A row of ``config/reference/reconstruction_evidence.csv`` is an interval that the figure or text
+leaves to a number: of an axis, for example, from its last tick but one to its end, where a program
+that ends axes at the next tick has drawn it. A number inside is as good as another; beyond an end
+it counts by its distance in tolerances. Rows are fitted, held out (half of chapter 4: the surfaces
+and figures that the posterior does not see), or apart (energies inside the epidermis).
 """
 
 from __future__ import annotations
@@ -49,14 +50,16 @@ COLUMNS = {
     "reading": Column(text=True),
     "thesis_ids": Column(text=True),
 }
-"""factor: what a simulated number is multiplied by to be what the thesis shows. tolerance: one standard deviation beyond an end.
-thesis_ids: rows of ``thesis_numbers.csv`` that say the same."""
+"""factor: what a simulated number is multiplied by to be what the thesis shows. tolerance: one
+standard deviation beyond an end. thesis_ids: rows of ``thesis_numbers.csv`` that say the same.
+"""
 
 
 def read_evidence(path: str | Path) -> pd.DataFrame:
     """The table, columns `COLUMNS`.
 
-    Raises ReferenceDataError: also for an id twice, an interval upside down or a unit that is not the measure's.
+    Raises ReferenceDataError: also for an id twice, an interval upside down or a unit that is not
+    the measure's.
     """
     table = read_table(path, COLUMNS)
     for row, record in enumerate(table.itertuples(index=False), start=2):
@@ -101,7 +104,8 @@ class Evidence:
         """What the thesis would show (..., rows).
 
         Args:
-            values: (..., rows) as simulated, of `keys`. soft: (...) factor on all moduli. plate_length: (...) mm, of chapter 3.
+            values: (..., rows) as simulated, of `keys`. soft: (...) factor on all moduli.
+            plate_length: (...) mm, of chapter 3.
         """
         return np.asarray(values) * self._scale(
             np.asarray(soft)[..., None], np.asarray(plate_length)[..., None]
@@ -123,13 +127,17 @@ class Evidence:
         return tuple(self.rows[k].to_numpy(float) for k in ("low", "high", "tolerance"))
 
     def departure(self, shown: np.ndarray, more: np.ndarray | float = 0.0) -> np.ndarray:
-        """Distance (..., rows) outside the interval in standard deviations, 0 inside; `more`: that of the prediction itself."""
+        """Distance (..., rows) outside the interval in standard deviations, 0 inside; `more`: that
+        of the prediction itself.
+        """
         low, high, tolerance = self._ends
         outside = np.maximum(np.maximum(low - shown, shown - high), 0.0)
         return outside / np.hypot(tolerance, more)
 
     def distance(self, shown: np.ndarray) -> np.ndarray:
-        """Sum of squared departures (...): 0 for a model that nothing in the rows speaks against."""
+        """Sum of squared departures (...): 0 for a model that nothing in the rows speaks
+        against.
+        """
         return (self.departure(shown) ** 2).sum(axis=-1)
 
     def by_family(self, shown: np.ndarray) -> dict[str, float]:
@@ -141,7 +149,8 @@ class Evidence:
         }
 
     def as_thesis(self, shown: np.ndarray) -> Evidence:
-        """The evidence that a model would have left: intervals as wide, its own numbers (rows,) between ticks as far apart.
+        """The evidence that a model would have left: intervals as wide, its own numbers (rows,)
+        between ticks as far apart.
 
         What is bounded from above only stays so, with a bound a third above the number.
         """

@@ -1,12 +1,15 @@
-"""From evidence to pads: posterior and evidence of each reading of the moduli, by importance sampling from the prior.
+"""From evidence to pads: posterior and evidence of each reading of the moduli, by importance
+sampling from the prior.
 
-The emulator costs microseconds a pad, and the evidence is made of intervals: of a hundred thousand pads of the prior, drawn
-evenly (scrambled Sobol points), hundreds to thousands are left. That needs no chain that could fail to mix: the evidence of a
-reading is the mean likelihood (its error from the scatter), the posterior the pads resampled by it.
+The emulator costs microseconds a pad, and the evidence is made of intervals: of a hundred thousand
+pads of the prior, drawn evenly (scrambled Sobol points), hundreds to thousands are left. That needs
+no chain that could fail to mix: the evidence of a reading is the mean likelihood (its error from
+the scatter), the posterior the pads resampled by it.
 
-A reading has its own unknowns: those of the file, and the factors on the moduli that it leaves free. The likelihood of a pad is
-``exp(-d/2)``, d the sum of squared departures from the evidence (:mod:`evidence`), the emulator's own error among the tolerances.
-All readings are judged by the same rows, so that their evidences compare.
+A reading has its own unknowns: those of the file, and the factors on the moduli that it leaves
+free. The likelihood of a pad is ``exp(-d/2)``, d the sum of squared departures from the evidence
+(:mod:`evidence`), the emulator's own error among the tolerances. All readings are judged by the
+same rows, so that their evidences compare.
 """
 
 from __future__ import annotations
@@ -31,7 +34,9 @@ SAMPLES = 1000
 LEAST_ROOM = 0.05
 """mm of fat that a pad has at least, wherever it is thinnest: more than the emulator is off."""
 INTERVAL = 0.9
-"""Of the intervals that are given: between the quantiles that leave half of the rest on either side."""
+"""Of the intervals that are given: between the quantiles that leave half of the rest on either
+side.
+"""
 
 
 @dataclass(frozen=True)
@@ -39,8 +44,9 @@ class Problem:
     """A reading of the moduli with the evidence.
 
     Attributes:
-        known: the unknowns. reading: its name. emulator: of exactly the evidence's keys, in their order. evidence: the rows.
-        room: an emulator of `pads.clearance`: pads without any cannot be. None: all can.
+        known: the unknowns. reading: its name. emulator: of exactly the evidence's keys, in their
+        order. evidence: the rows. room: an emulator of `pads.clearance`: pads without any cannot
+        be. None: all can.
     """
 
     known: Unknowns
@@ -119,8 +125,9 @@ class Posterior:
     """What is known of a reading after the evidence.
 
     Attributes:
-        problem: it. samples: (n, names), equally weighted. log_evidence, error: natural logarithm of the evidence and its error.
-        left: effective number of draws. best: (names,) the most likely of them, and least_distance there.
+        problem: it. samples: (n, names), equally weighted. log_evidence, error: natural logarithm
+        of the evidence and its error. left: effective number of draws. best: (names,) the most
+        likely of them, and least_distance there.
     """
 
     problem: Problem
@@ -172,7 +179,9 @@ def infer(problem: Problem, draws: int = DRAWS, seed: int = 1999) -> Posterior:
 
 
 def shares_of(posteriors: Iterable[Posterior]) -> pd.DataFrame:
-    """A row a reading: its evidence, and its probability where all readings were as likely before."""
+    """A row a reading: its evidence, and its probability where all readings were as likely
+    before.
+    """
     found = list(posteriors)
     logs = np.array([p.log_evidence for p in found])
     weight = np.exp(logs - logs.max())
@@ -191,8 +200,8 @@ def shares_of(posteriors: Iterable[Posterior]) -> pd.DataFrame:
 def recovery(problem: Problem, trials: int, seed: int = 7, draws: int = DRAWS) -> pd.DataFrame:
     """Whether known pads are found again from the evidence that they would have left.
 
-    Pads are drawn from the prior; what they show is read as the thesis is, between ticks. A row a trial and quantity: the
-    truth, its interval, whether it is inside.
+    Pads are drawn from the prior; what they show is read as the thesis is, between ticks. A row a
+    trial and quantity: the truth, its interval, whether it is inside.
     """
     rng, rows = np.random.default_rng(seed), []
     for trial in range(trials):

@@ -1,8 +1,9 @@
 """A pad of the study: its scenes, and what is read of them.
 
-A pad is simulated with the stated long-term moduli of dermis and fat. Where these are other by a factor, and with them the bulk
-modulus and the epidermis's, the same deformation goes with a load, pressures and energies that are other by the same factor: all
-laws here are linear in the moduli. So that factor is no axis of the design (:meth:`Evidence.shown`).
+A pad is simulated with the stated long-term moduli of dermis and fat. Where these are other by a
+factor, and with them the bulk modulus and the epidermis's, the same deformation goes with a load,
+pressures and energies that are other by the same factor: all laws here are linear in the moduli. So
+that factor is no axis of the design (:meth:`Evidence.shown`).
 """
 
 from __future__ import annotations
@@ -40,7 +41,9 @@ FORCE = 20 * 9.80665e-3
 EPIDERMIS, SOFT, POISSON = 0.15e6, 0.015e6, 0.48
 """Pa, Pa, 1; printed in section 3.4."""
 BONE_BOTTOM, APEX, BELOW, EPIDERMIS_THICKNESS = 4.0e-3, 6.0e-3, 0.85e-3, 0.85e-3
-"""m; bottom of the bone below the origin, height of the apex, thickness of the dermis and the epidermis's: as in `START`."""
+"""m; bottom of the bone below the origin, height of the apex, thickness of the dermis and the
+epidermis's: as in `START`.
+"""
 START = "long_term"
 """The specimen that pads are variations of, config/specimens/long_term.yaml."""
 CHOSEN_LENGTH = 10e-3
@@ -64,7 +67,9 @@ MEASURES: dict[str, str] = {
     **{f"energy_915_{k.replace(' ', '_')}": "Pa" for k in ENERGIES},
     "energy_rate_915": "Pa/s",
 }
-"""What is read of a ramp and hold, with its unit. top: the ramp's end; end: the hold's; energies are the highest unless "end"."""
+"""What is read of a ramp and hold, with its unit. top: the ramp's end; end: the hold's; energies
+are the highest unless "end".
+"""
 FORCES: dict[str, str] = {
     "force_05": "N/m",
     "force_10": "N/m",
@@ -106,7 +111,8 @@ def base(surface: str) -> Scene:
 
 
 def poisson_for(bulk: float) -> float:
-    """Poisson's ratio whose bulk modulus, at the same shear modulus, is that of nu = 0.48 times a factor.
+    """Poisson's ratio whose bulk modulus, at the same shear modulus, is that of nu = 0.48 times a
+    factor.
 
     ``kappa/G = 2 (1 + nu) / 3 (1 - 2 nu)``.
     """
@@ -145,7 +151,9 @@ def scene(pad: Mapping[str, float], surface: str) -> Scene:
 
 
 def clearance(pad: Mapping[str, float]) -> float:
-    """Least thickness of fat anywhere round the bone, mm; a pad that cannot be has none, or less."""
+    """Least thickness of fat anywhere round the bone, mm; a pad that cannot be has none, or
+    less.
+    """
     outline = scene(pad, PLATE).specimen.outline
     layers = outline.epidermis_thickness + outline.dermis_thickness
     bare = OutlineCurve(

@@ -1,4 +1,6 @@
-"""Two pictures: what is believed of the pad, and how pads compare with every row of the evidence."""
+"""Two pictures: what is believed of the pad, and how pads compare with every row of the
+evidence.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,9 @@ def posterior_frame(samples: pd.DataFrame, known: Unknowns) -> pd.DataFrame:
 
 @styled
 def posterior_picture(frame: pd.DataFrame) -> Figure:
-    """Histograms on the diagonal, densities of pairs below it, their correlations above it; a line for the pad chosen before."""
+    """Histograms on the diagonal, densities of pairs below it, their correlations above it; a line
+    for the pad chosen before.
+    """
     columns = list(frame.columns[1:])
     before = {
         **pads.CHOSEN,
@@ -112,7 +116,9 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
 
 
 def evidence_frame(evidence: Evidence, shown: pd.DataFrame, best: str) -> pd.DataFrame:
-    """A row a pad and row of the evidence: its interval, and where in it the number lies, 0 at the lower end, 1 at the upper."""
+    """A row a pad and row of the evidence: its interval, and where in it the number lies, 0 at the
+    lower end, 1 at the upper.
+    """
     rows = shown.merge(
         evidence.rows[
             [
@@ -136,7 +142,9 @@ def evidence_frame(evidence: Evidence, shown: pd.DataFrame, best: str) -> pd.Dat
 
 @styled
 def evidence_picture(frame: pd.DataFrame) -> Figure:
-    """Every row of the evidence as a bar from its lower to its upper end, and pads: the most probable one and others."""
+    """Every row of the evidence as a bar from its lower to its upper end, and pads: the most
+    probable one and others.
+    """
     drawn = frame[frame["pad"].str.startswith("drawn")]
     order = {family: k for k, family in enumerate(FAMILIES)}
     ids = frame.drop_duplicates("id")

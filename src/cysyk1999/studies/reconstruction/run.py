@@ -1,6 +1,8 @@
-"""The study from the design to its tables: emulator, posterior of each reading, recovery, and what chosen pads really show.
+"""The study from the design to its tables: emulator, posterior of each reading, recovery, and what
+chosen pads really show.
 
-What a posterior says of held-out rows is never taken from the emulator: pads of it are simulated under all nine surfaces.
+What a posterior says of held-out rows is never taken from the emulator: pads of it are simulated
+under all nine surfaces.
 """
 
 from __future__ import annotations
@@ -31,7 +33,9 @@ ENERGIES = {
     "instantaneous elastic": "energy_915",
     "total stress on long-term moduli": "energy_915_long-term_moduli",
 }
-"""Definitions of the energy whose curves peak at the ramp's end, as those of the thesis do (trends TR20, TR21), by measure."""
+"""Definitions of the energy whose curves peak at the ramp's end, as those of the thesis do (trends
+TR20, TR21), by measure.
+"""
 DRAWN, TRIALS, SEED = 12, 10, 1999
 """Pads of the posterior that are simulated; known pads that are to be found again."""
 FREEST = "both_free"
@@ -47,7 +51,8 @@ class Study:
     """What was found.
 
     Attributes:
-        posteriors: by reading. readings, emulator, recovered: tables. samples: of all readings, each with its share.
+        posteriors: by reading. readings, emulator, recovered: tables. samples: of all readings,
+        each with its share.
     """
 
     posteriors: Mapping[str, Posterior]
@@ -58,7 +63,9 @@ class Study:
 
 
 def emulated(known: Unknowns, evidence: Evidence, design: pd.DataFrame) -> Emulator:
-    """An emulator of all that the fitted rows need, and of the energies by other definitions, from the pads that did not fail."""
+    """An emulator of all that the fitted rows need, and of the energies by other definitions, from
+    the pads that did not fail.
+    """
     whole = design[design["diagnosis"].isna() | (design["diagnosis"] == "")]
     keys = [key for key in dict.fromkeys(evidence.keys) if key in whole]
     keys += [
@@ -70,7 +77,9 @@ def emulated(known: Unknowns, evidence: Evidence, design: pd.DataFrame) -> Emula
 
 
 def roomy(known: Unknowns, count: int = 256) -> Emulator:
-    """An emulator of the fat where it is thinnest, of the first pads of the design whatever became of them."""
+    """An emulator of the fat where it is thinnest, of the first pads of the design whatever became
+    of them.
+    """
     drawn = pd.DataFrame(known.draw()).head(count)
     room = pd.DataFrame(
         {"pad: clearance": [pads.clearance(pad) for pad in drawn.to_dict("records")]}
@@ -112,7 +121,9 @@ def study(known: Unknowns, evidence: Evidence, design: pd.DataFrame, trials: int
 
 
 def samples_of(posteriors: Mapping[str, Posterior], count: int = 1500) -> pd.DataFrame:
-    """Samples of all readings together, as many of each as its evidence makes it likely: what is believed of each unknown."""
+    """Samples of all readings together, as many of each as its evidence makes it likely: what is
+    believed of each unknown.
+    """
     share = shares_of(posteriors.values()).set_index("reading")["probability (1)"]
     rng, frames = np.random.default_rng(SEED), []
     for name, posterior in posteriors.items():
@@ -145,7 +156,9 @@ def recovery_table(recovered: pd.DataFrame) -> pd.DataFrame:
 def chosen_pads(
     posteriors: Mapping[str, Posterior], samples: pd.DataFrame, drawn: int = DRAWN
 ) -> dict[str, dict[str, float]]:
-    """Pads that are simulated under all surfaces: the one chosen before, the best of each reading, some drawn."""
+    """Pads that are simulated under all surfaces: the one chosen before, the best of each reading,
+    some drawn.
+    """
     chosen = dict(pads.CHOSEN) | {
         SCALED: pads.CHOSEN["load_over_state"],
         SOFT: 1.0,
@@ -167,7 +180,9 @@ def chosen_pads(
 def simulate_pads(
     evidence: Evidence, chosen: Mapping[str, Mapping[str, float]]
 ) -> dict[str, dict[str, float]]:
-    """What is read of pads under all surfaces of the evidence; stated moduli of dermis and fat taken for long-term ones."""
+    """What is read of pads under all surfaces of the evidence; stated moduli of dermis and fat
+    taken for long-term ones.
+    """
     surfaces, out = list(dict.fromkeys(evidence.rows["surface"])), {}
     for name, pad in chosen.items():
         made = simulated({k: pad[k] for k in pads.CHOSEN}, surfaces)
@@ -206,7 +221,9 @@ def predicted(
 def bands(
     chosen: Mapping[str, Mapping[str, float]], found: Mapping[str, Mapping[str, float]]
 ) -> pd.DataFrame:
-    """How far the pads drawn from what is believed differ: a row a surface and measure of `BANDS`, lowest and highest of them."""
+    """How far the pads drawn from what is believed differ: a row a surface and measure of `BANDS`,
+    lowest and highest of them.
+    """
     rows = []
     drawn = {name: found[name] for name in chosen if name.startswith("drawn")}
     for key in next(iter(drawn.values())):

@@ -1,6 +1,8 @@
-"""The most probable pad as ``config/specimens/thesis.yaml``, every size marked stated, inferred (with its interval) or assumed.
+"""The most probable pad as ``config/specimens/thesis.yaml``, every size marked stated, inferred
+(with its interval) or assumed.
 
-Sizes are rounded to two digits, the contact length to three: far finer than what the figures tell of them.
+Sizes are rounded to two digits, the contact length to three: far finer than what the figures tell
+of them.
 """
 
 from __future__ import annotations
@@ -31,8 +33,9 @@ ridges:                                # for scenes that ask for them; the thesi
 def most_probable(readings: pd.DataFrame) -> str:
     """The reading of the moduli with the largest evidence, of those of the headline's energy.
 
-    Of readings whose evidence differs by less than a factor of e, which is hardly any, the one that the table has first: what the
-    thesis may have meant comes before factors that it does not mention.
+    Of readings whose evidence differs by less than a factor of e, which is hardly any, the one that
+    the table has first: what the thesis may have meant comes before factors that it does not
+    mention.
     """
     rows = readings[readings["strain energy"] == readings["strain energy"].iloc[0]]
     near = rows[rows["log evidence (1)"] > rows["log evidence (1)"].max() - 1]
@@ -42,7 +45,8 @@ def most_probable(readings: pd.DataFrame) -> str:
 def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
     """The file's text, of the tables of the study: the best pad of the most probable reading.
 
-    Moduli are written as printed where the reading is a state of all of them, and else as long-term ones, times its factors.
+    Moduli are written as printed where the reading is a state of all of them, and else as long-term
+    ones, times its factors.
     """
     reading = most_probable(readings)
     rows = posterior[posterior["reading"] == reading].set_index("quantity")

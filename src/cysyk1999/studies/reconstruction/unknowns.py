@@ -1,6 +1,8 @@
-"""What the thesis does not say, with priors, and the readings of its moduli: ``config/reconstruction/unknowns.yaml``.
+"""What the thesis does not say, with priors, and the readings of its moduli:
+``config/reconstruction/unknowns.yaml``.
 
-Inside this study numbers stay in the units of the file, which are part of their names' meaning: N/m, mm, 1.
+Inside this study numbers stay in the units of the file, which are part of their names' meaning:
+N/m, mm, 1.
 """
 
 from __future__ import annotations
@@ -165,7 +167,9 @@ class Unknowns(Strict):
 
     @cached_property
     def axes(self) -> dict[str, tuple[float, float, bool]]:
-        """Axes of the design: low, high, whether even in the logarithm. All that changes a simulation, not what scales it."""
+        """Axes of the design: low, high, whether even in the logarithm. All that changes a
+        simulation, not what scales it.
+        """
         d = self.design
         own = {
             LOAD: (*(v for v, _ in d.load_over_state), True),
@@ -179,7 +183,9 @@ class Unknowns(Strict):
         return own | rest
 
     def to_unit(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Shares (n, axes) of the design's ranges at values of its axes; outside 0 to 1 where the design does not reach."""
+        """Shares (n, axes) of the design's ranges at values of its axes; outside 0 to 1 where the
+        design does not reach.
+        """
         out = []
         for name, (low, high, logarithmic) in self.axes.items():
             v = np.asarray(values[name], float)
@@ -197,7 +203,9 @@ class Unknowns(Strict):
         return found
 
     def draw(self) -> dict[str, np.ndarray]:
-        """The design: values (pads,) of its axes, of a scrambled Sobol sequence, so that any number of the first ones is even."""
+        """The design: values (pads,) of its axes, of a scrambled Sobol sequence, so that any number
+        of the first ones is even.
+        """
         from scipy.stats import qmc
 
         sobol = qmc.Sobol(len(self.axes), rng=np.random.default_rng(self.design.seed))

@@ -1,4 +1,5 @@
-"""Data of the study of ridges, read from short strokes over pads with other ridges and the scenes' strokes over outer ones.
+"""Data of the study of ridges, read from short strokes over pads with other ridges and the scenes'
+strokes over outer ones.
 
 The figures are :mod:`cysyk1999.studies.ridges.picture`'s.
 """
@@ -77,7 +78,8 @@ def frames(cases: Histories, strokes: Histories, coarse: Histories) -> dict[str,
     """Data of every figure, by its name.
 
     Args:
-        cases: short strokes, by the case's name. strokes, coarse: scenes :data:`OUTER` and the companions they have.
+        cases: short strokes, by the case's name. strokes, coarse: scenes :data:`OUTER` and the
+        companions they have.
     """
     return {
         "offset": offset_frame(cases),
@@ -103,7 +105,9 @@ def _of(cases: Histories, height: float, mesh: str) -> xr.Dataset:
 
 
 def offset_frame(cases: Histories) -> pd.DataFrame:
-    """Index over depth and offset round a ridge on the fine mesh, the boundary, and the profile at the thesis's depth."""
+    """Index over depth and offset round a ridge on the fine mesh, the boundary, and the profile at
+    the thesis's depth.
+    """
     fine = _of(cases, KEY[0], "fine")
     rows = [
         ("map", "inner ridges", x, z, directional_index(fine, z, x))
@@ -134,7 +138,9 @@ def offset_frame(cases: Histories) -> pd.DataFrame:
 
 
 def sweep_frame(cases: Histories, column: str) -> pd.DataFrame:
-    """Index of the receptors :data:`READ` against the height of the ridges or friction, with the layer each lies in."""
+    """Index of the receptors :data:`READ` against the height of the ridges or friction, with the
+    layer each lies in.
+    """
     rows = []
     for name, history in cases.items():
         case = Case.named(name)
@@ -157,7 +163,9 @@ def sweep_frame(cases: Histories, column: str) -> pd.DataFrame:
 
 
 def mesh_frame(cases: Histories) -> pd.DataFrame:
-    """Energies both ways and the index at the thesis's place: on meshes that resolve the ridges, and drawn on its elements."""
+    """Energies both ways and the index at the thesis's place: on meshes that resolve the ridges,
+    and drawn on its elements.
+    """
     rows = []
     for mesh in (*MESHES, *DRAWN):
         history = cases.get(str(Case(*KEY, mesh)))
@@ -175,7 +183,9 @@ def mesh_frame(cases: Histories) -> pd.DataFrame:
 
 
 def outer_frame(strokes: Histories, coarse: Histories) -> pd.DataFrame:
-    """Pressure of the islands at the end of the press and of the stroke, their number on the way, and the receptors' energy."""
+    """Pressure of the islands at the end of the press and of the stroke, their number on the way,
+    and the receptors' energy.
+    """
     parts = []
     for name, way in zip(OUTER, ("right", "left"), strict=True):
         stroke = loaded(strokes[name])

@@ -1,6 +1,8 @@
-"""The study of ridges: what a receptor feels of direction, against its place, ridge height, friction and mesh; outer ridges.
+"""The study of ridges: what a receptor feels of direction, against its place, ridge height,
+friction and mesh; outer ridges.
 
-Each figure is drawn from its data frame alone, see :mod:`cysyk1999.studies.ridges.frames`. The directional index is that of
+Each figure is drawn from its data frame alone, see :mod:`cysyk1999.studies.ridges.frames`. The
+directional index is that of
 :mod:`cysyk1999.measures.direction`.
 """
 
@@ -241,7 +243,9 @@ def mesh(frame: pd.DataFrame) -> Figure:
 
 @styled
 def outer(frame: pd.DataFrame) -> Figure:
-    """Islands of contact under outer ridges: pressure, number on the way, and the receptors' energy both ways."""
+    """Islands of contact under outer ridges: pressure, number on the way, and the receptors' energy
+    both ways.
+    """
     note = [
         "Simulated: flat plate, 20 gf, 10 mm/s, calibrated friction; outer ridges 60 µm high, 0.48 mm apart; islands of 3 to "
         "5 loaded nodes: "

@@ -1,6 +1,8 @@
-"""Strokes of a plate over pads with other ridges: other heights, coefficients of friction and meshes, for the study of ridges.
+"""Strokes of a plate over pads with other ridges: other heights, coefficients of friction and
+meshes, for the study of ridges.
 
-They are shorter than the scenes' strokes, what is asked for has settled by then; see :mod:`cysyk1999.measures.direction`.
+They are shorter than the scenes' strokes, what is asked for has settled by then; see
+:mod:`cysyk1999.measures.direction`.
 """
 
 from __future__ import annotations
@@ -24,14 +26,22 @@ if TYPE_CHECKING:
 WAY, STEPS = 4e-3, 24
 """Length of a case's stroke, m; time steps of press and stroke together."""
 EDGES = {"coarse": 268.8e-6, "thesis": 134.4e-6, "fine": 67.2e-6}
-"""Element edge (m) along the skin, by the mesh's name: a companion of up to twice the edge, the scenes', half of it."""
+"""Element edge (m) along the skin, by the mesh's name: a companion of up to twice the edge, the
+scenes', half of it.
+"""
 AS_DRAWN = {"curved": (False, 0.0), "straight": (True, 0.0), "shifted": (True, 0.5)}
-"""Meshes with the ridges drawn on the thesis's own 0.12 mm elements: whether sides are straight, and elements between the ridge's
-tip and the nearest element corner (the thesis does not say how its ridges were meshed)."""
+"""Meshes with the ridges drawn on the thesis's own 0.12 mm elements: whether sides are straight,
+and elements between the ridge's tip and the nearest element corner (the thesis does not say how its
+ridges were meshed).
+"""
 DEPTH, BESIDE = 915e-6, 46e-6
-"""The thesis's receptor depth and offset, m (not those of the figures, which would bring all of them in)."""
+"""The thesis's receptor depth and offset, m (not those of the figures, which would bring all of
+them in).
+"""
 FLANK, AWAY = 120e-6, 25e-6
-"""Offset of a flank of the ridges, and how far from the boundary the receptors are that follow it, m."""
+"""Offset of a flank of the ridges, and how far from the boundary the receptors are that follow it,
+m.
+"""
 GRID = (
     tuple(np.round(np.arange(700, 1101, 20) * 1e-6, 9)),
     tuple(np.round(np.arange(-240, 241, 20) * 1e-6, 9)),
@@ -41,7 +51,9 @@ GRID = (
 
 @dataclass(frozen=True)
 class Case:
-    """A short stroke: ridge height in um (0: the plain pad), coefficient of friction, name of the mesh."""
+    """A short stroke: ridge height in um (0: the plain pad), coefficient of friction, name of the
+    mesh.
+    """
 
     height: float
     friction: float
@@ -58,7 +70,9 @@ class Case:
 
 
 def boundary(outline: Outline, ridges: Ridges | None, x: float) -> float:
-    """Depth (m) at which the epidermis ends at the lateral position `x` (m, near the apex, of the boundary itself)."""
+    """Depth (m) at which the epidermis ends at the lateral position `x` (m, near the apex, of the
+    boundary itself).
+    """
     depth = outline.epidermis_thickness
     if ridges is None:
         return depth
@@ -69,7 +83,9 @@ def boundary(outline: Outline, ridges: Ridges | None, x: float) -> float:
 
 
 def tip_at_depth(outline: Outline, phase: float) -> float:
-    """Lateral position (m) at the thesis's depth of a ridge tip that the skin has at `phase` (m)."""
+    """Lateral position (m) at the thesis's depth of a ridge tip that the skin has at `phase`
+    (m).
+    """
     return phase * (1 - DEPTH / outline.apex_radius)
 
 
@@ -117,10 +133,12 @@ def run_case(base: Scene, case: Case) -> Arrays:
 
 
 def ridges_drawn(mesh: PadMesh, outline: Outline, ridges: Ridges, straight: bool) -> PadMesh:
-    """A plain mesh whose nodes are moved to where inner ridges have them, as one draws ridges on a mesh that is there.
+    """A plain mesh whose nodes are moved to where inner ridges have them, as one draws ridges on a
+    mesh that is there.
 
     Args:
-        mesh: of second-order quads. straight: whether only corners are moved and the sides between them are straight.
+        mesh: of second-order quads. straight: whether only corners are moved and the sides between
+        them are straight.
     """
     pad = RidgedPad(outline, ridges)
     points = mesh.points.copy()

@@ -1,7 +1,9 @@
-"""The catalogue of the study: the hand-picked cases, and combinations in which every pair of hard factors' levels meets.
+"""The catalogue of the study: the hand-picked cases, and combinations in which every pair of hard
+factors' levels meets.
 
-:data:`FACTORS` says what can be hard, the first level of each being the easy one; :data:`APART` says which levels cannot meet,
-and why. The combinations are the rows of a pairwise covering array (:mod:`cysyk1999.studies.stability.covering`).
+:data:`FACTORS` says what can be hard, the first level of each being the easy one; :data:`APART`
+says which levels cannot meet, and why. The combinations are the rows of a pairwise covering array
+(:mod:`cysyk1999.studies.stability.covering`).
 """
 
 from __future__ import annotations
@@ -186,8 +188,9 @@ FACTORS: dict[str, dict[str, Level]] = {
     "strain": {"finite": Level("on"), "small": Level("off")},
     "model": {"half": Level(), "whole": Level("off")},
 }
-"""Factor -> its levels, the easy one first. Half: where scene and mesh are mirror images; there a whole pad shows whether its
-state is one."""
+"""Factor -> its levels, the easy one first. Half: where scene and mesh are mirror images; there a
+whole pad shows whether its state is one.
+"""
 
 _SHARP = (
     "1260 1/m",
@@ -333,7 +336,9 @@ _MOVING = {"slide", "step"}
 
 
 def _has_reference(case: Case) -> bool:
-    """Whether a mesh of half the edges is cheap: a built one of a pad without ridges, pressed by a plate or a cylinder."""
+    """Whether a mesh of half the edges is cheap: a built one of a pad without ridges, pressed by a
+    plate or a cylinder.
+    """
     still = not any(_MOVING & set(leg) for leg in case.scene["motion"])
     smooth = (
         case.scene["stimulus"]["shape"] in ("flat", "cylinder") and "accuracy" not in case.scene

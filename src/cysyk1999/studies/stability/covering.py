@@ -1,4 +1,6 @@
-"""Rows in which every pair of hard levels of two factors meets: a pairwise covering array, drawn greedily from a seed."""
+"""Rows in which every pair of hard levels of two factors meets: a pairwise covering array, drawn
+greedily from a seed.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,16 @@ _TRIED = 5  # rows drawn for each that is taken
 def covering(
     factors: Mapping[str, Sequence[str]], allowed: Callable[[Row], bool], seed: int, most: int
 ) -> list[Row]:
-    """Rows, a level of every factor each, in which every pair of hard levels that may meet does; the same for the same seed.
+    """Rows, a level of every factor each, in which every pair of hard levels that may meet does;
+    the same for the same seed.
 
-    Each row is the best of a few drawn ones: it begins with a pair that has not met yet, and takes the level that makes most new
-    pairs, until none makes any (Cohen, Dalal, Fredman and Patton 1997, the AETG system). The other factors stay easy.
+    Each row is the best of a few drawn ones: it begins with a pair that has not met yet, and takes
+    the level that makes most new pairs, until none makes any (Cohen, Dalal, Fredman and Patton
+    1997, the AETG system). The other factors stay easy.
 
     Args:
-        factors: names and their levels, the easy one first. allowed: of a pair of levels; a row is, if all its pairs are.
-        most: hard levels in a row.
+        factors: names and their levels, the easy one first. allowed: of a pair of levels; a row is,
+        if all its pairs are. most: hard levels in a row.
     """
     levels = [(factor, level) for factor, names in factors.items() for level in names[1:]]
     draw, rows = random.Random(seed), []

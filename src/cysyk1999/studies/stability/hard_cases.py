@@ -1,7 +1,7 @@
 """Hard cases picked by hand: what makes each hard, and what counts as stable.
 
-A case is a scene in the words of a scene document, solved on a draft mesh. The same limits hold for all (:class:`Limits`); a case
-that needs another one says so where it stands.
+A case is a scene in the words of a scene document, solved on a draft mesh. The same limits hold for
+all (:class:`Limits`); a case that needs another one says so where it stands.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ def limit(value: float, text: str) -> Any:
 class Limits:
     """The worst that a stable run may measure (see :mod:`cysyk1999.studies.stability.invariants`).
 
-    The other solver's is that of a run that is factored in single precision: it ends where less than its tolerance is left.
+    The other solver's is that of a run that is factored in single precision: it ends where less
+    than its tolerance is left.
     """
 
     cuts: float = limit(0, "at most {:g} cuts")
@@ -69,10 +70,12 @@ class Case:
     """One hard case.
 
     Attributes:
-        name, group: of the case, and of cases alike. hard: what makes it hard. scene: keys of a scene document. limits: what
-            counts as stable. steps: a leg, at first (10, or four if all is steady); half the step is tried too. mesh: makes an
-            external mesh, whose file the scene then names, of the scene without one and its plan. may_fail: it is beyond the
-            method; a clean failure or an estimated error of at least a half is all that is asked for. points: of a sampled
+        name, group: of the case, and of cases alike. hard: what makes it hard. scene: keys of a
+        scene document. limits: what
+            counts as stable. steps: a leg, at first (10, or four if all is steady); half the step
+            is tried too. mesh: makes an external mesh, whose file the scene then names, of the
+            scene without one and its plan. may_fail: it is beyond the method; a clean failure or an
+            estimated error of at least a half is all that is asked for. points: of a sampled
             stimulus, mm, whose file the scene then names.
     """
 
@@ -113,7 +116,9 @@ class Case:
 
     @property
     def neighbour(self) -> Case:
-        """Its easy neighbour: the same motion of a plate (a cylinder, if nothing slides) without friction, on the usual pad."""
+        """Its easy neighbour: the same motion of a plate (a cylinder, if nothing slides) without
+        friction, on the usual pad.
+        """
         easy = {
             "specimen": {},
             "stimulus": FLAT if self.strokes else cylinder(209.97),
@@ -122,7 +127,9 @@ class Case:
         return replace(self, scene=self.scene | easy, mesh=None, points=None)
 
     def written(self, folder: Path) -> dict[str, Any]:
-        """The scene document, with the files that it names written into ``folder``: external mesh, points of the stimulus."""
+        """The scene document, with the files that it names written into ``folder``: external mesh,
+        points of the stimulus.
+        """
         document, folder = self.document, Path(folder).absolute()
         if self.points is not None:
             np.savetxt(
@@ -215,7 +222,8 @@ PRESS = force(20, 40)
 RAMP = [PRESS, hold(2)]
 #: Pressure at an edge is singular: it has no smooth course to stay near.
 EDGE = {"checkerboard": np.inf}
-#: Four load increments of a steady press: of the work between them the trapezoidal rule knows the ends only.
+#: Four load increments of a steady press: of the work between them the trapezoidal rule knows the
+#: ends only.
 STEADY = {"energy": 0.05}
 #: A few nodes in contact, which come and go one by one.
 NARROW = {"checkerboard": 0.15}

@@ -1,4 +1,6 @@
-"""What must hold of a run whatever its answer is: measures that need no reference, and differences between two runs."""
+"""What must hold of a run whatever its answer is: measures that need no reference, and differences
+between two runs.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ ENDS = ("force", "indentation_depth", "stored_energy", "contact_width", "tangent
 
 
 class Held:
-    """What holds the body (steps, 2) N/m, asked after each step of a simulation: the forces at its held nodes, summed."""
+    """What holds the body (steps, 2) N/m, asked after each step of a simulation: the forces at its
+    held nodes, summed.
+    """
 
     def __init__(self, made: Simulation):
         self._made, self._found = made, []
@@ -30,7 +34,9 @@ class Held:
         )
 
     def balance(self, history: xr.Dataset) -> float:
-        """Largest difference to what pushes it over the largest push; of half a pad, whose middle is held too, upwards only."""
+        """Largest difference to what pushes it over the largest push; of half a pad, whose middle
+        is held too, upwards only.
+        """
         pushed = np.column_stack([history.tangential_force, history.force])[
             history.interpolated.values == 0
         ][1:]
@@ -42,7 +48,9 @@ class Held:
 
 
 def mirrored(history: xr.Dataset) -> float:
-    """Largest difference of the skin's displacement to its mirror image over the largest displacement, at any time."""
+    """Largest difference of the skin's displacement to its mirror image over the largest
+    displacement, at any time.
+    """
     x, y = history.skin_displacement_x.values, history.skin_displacement_y.values
     apart = max(np.abs(x + x[:, ::-1]).max(), np.abs(y - y[:, ::-1]).max())
     return float(apart / max(np.hypot(x, y).max(), 1e-300))
@@ -54,7 +62,9 @@ def iterations(history: xr.Dataset) -> float:
 
 
 def measures(history: xr.Dataset) -> dict[str, float]:
-    """What a history tells of the run that made it (their meaning: :data:`cysyk1999.studies.stability.picture.MEASURES`)."""
+    """What a history tells of the run that made it (their meaning:
+    :data:`cysyk1999.studies.stability.picture.MEASURES`).
+    """
     ends = leg_ends(history)
     work = np.abs(history.external_work.values)
     kept = history.stored_energy + history.dissipated_energy + history.frictional_dissipation
@@ -74,8 +84,10 @@ def measures(history: xr.Dataset) -> dict[str, float]:
 
 
 def difference(one: xr.Dataset, other: xr.Dataset, names: Iterable[str] = ENDS) -> float:
-    """Largest difference at the ends of the legs, each quantity over its largest value there; a side force over no less than a
-    tenth of the force: a thousandth of that is a tenth of what forces must balance within."""
+    """Largest difference at the ends of the legs, each quantity over its largest value there; a
+    side force over no less than a tenth of the force: a thousandth of that is a tenth of what
+    forces must balance within.
+    """
     ends = leg_ends(one), leg_ends(other)
     found = {name: [end[name].values for end in ends] for name in names}
     scale = {name: max(np.abs(a).max(), 1e-12) for name, (a, _) in found.items()}

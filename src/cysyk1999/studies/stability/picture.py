@@ -39,9 +39,10 @@ MEASURES = {
     "reference": ("true error", "to half the edges, over that of a draft"),
     "off": ("off this package", "difference of the last depth or force"),
 }
-"""Measure -> its name in the picture, and what it is. Checkerboard: r.m.s. of nodal pressure less its 5-point average over the
-peak, inside the contact. Half the step: largest change of force, depth, width, stored energy and tangential force at the ends of
-the legs."""
+"""Measure -> its name in the picture, and what it is. Checkerboard: r.m.s. of nodal pressure less
+its 5-point average over the peak, inside the contact. Half the step: largest change of force,
+depth, width, stored energy and tangential force at the ends of the legs.
+"""
 OF_TEACHING = (
     "completed",
     "cuts",
@@ -65,11 +66,15 @@ OUTCOMES = {
 }
 """How runs end, and in words for many."""
 OFF = 0.05
-"""A method whose last depth or force is off the default's by more than this has not solved the case."""
+"""A method whose last depth or force is off the default's by more than this has not solved the
+case.
+"""
 
 
 def assemble(studies: Iterable[pd.DataFrame]) -> pd.DataFrame:
-    """Rows of all methods (of `cysyk1999.studies.stability.run.study`) with the column off, to the default's last state."""
+    """Rows of all methods (of `cysyk1999.studies.stability.run.study`) with the column off, to the
+    default's last state.
+    """
     frame = pd.concat(studies).sort_values("number", kind="stable", ignore_index=True)
     states = ["depth_mm", "force_N_per_m"]
     default = frame[frame["method"] == DEFAULT].set_index("case")[states]
@@ -85,7 +90,9 @@ def assemble(studies: Iterable[pd.DataFrame]) -> pd.DataFrame:
 
 
 def long(frame: pd.DataFrame) -> pd.DataFrame:
-    """One row a case, method and measure: value, limit, and the share of the limit that is used up (above 1: beyond it)."""
+    """One row a case, method and measure: value, limit, and the share of the limit that is used up
+    (above 1: beyond it).
+    """
     rows = []
     for row in frame.to_dict("records"):
         if row["outcome"] == "does not apply":
@@ -112,9 +119,11 @@ def long(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def table(frame: pd.DataFrame) -> pd.DataFrame:
-    """One row a case: hard, stable, what the default method did and measured, and how the other methods ended.
+    """One row a case: hard, stable, what the default method did and measured, and how the other
+    methods ended.
 
-    The Markdown shows five columns of it: number, case, what makes it hard, how it ended, and what came nearest to its limit.
+    The Markdown shows five columns of it: number, case, what makes it hard, how it ended, and what
+    came nearest to its limit.
     """
     default = frame[frame["method"] == DEFAULT].set_index("case")
     out = default[["group", "hard", "stable", "outcome"]].rename(
@@ -186,7 +195,9 @@ _GAP = 0.17  # inch between them, where their titles stand
 
 @styled
 def heat_map(frame: pd.DataFrame) -> Figure:
-    """Measures by cases for each method; colour tells how much of the limit is used up. ``frame``: of :func:`long`."""
+    """Measures by cases for each method; colour tells how much of the limit is used up. ``frame``:
+    of :func:`long`.
+    """
     cases = frame.drop_duplicates("case").set_index("case")["group"]
     height, width = TALLEST, PAGE_WIDTH
     fig = sheet("Stability in hard cases", [], height, laid_out=False)

@@ -1,4 +1,6 @@
-"""What a failed run's advice says to relax, and the case with that relaxed: so that the advice can be tried."""
+"""What a failed run's advice says to relax, and the case with that relaxed: so that the advice can
+be tried.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ def _loaded(share: float) -> Callable[[Case], Case]:
 
 
 def _of_layers(**keys: Any) -> Callable[[Case], Case]:
-    """The case with these keys in all its layers; with none of their own moduli where nothing is said."""
+    """The case with these keys in all its layers; with none of their own moduli where nothing is
+    said.
+    """
 
     def change(case: Case) -> Case:
         specimen = dict(case.scene.get("specimen", {}))
@@ -124,7 +128,8 @@ HARD: dict[str, tuple[str, Callable[[Case], Case]]] = {
 
 
 def relaxed(case: Case, message: str) -> Iterator[tuple[str, Case]]:
-    """What the message of a failed run says to relax, in words, and the case with it relaxed; a wrong one wants a finer mesh.
+    """What the message of a failed run says to relax, in words, and the case with it relaxed; a
+    wrong one wants a finer mesh.
 
     One thing after the other, and last all at once that is hard.
     """

@@ -1,8 +1,8 @@
 """How stable the method is in hard cases, beside simpler methods in the same cases.
 
-Each case of :mod:`cysyk1999.studies.stability.hard_cases` is simulated by the default method, through the door a user has, and by
-three methods that differ from it in one thing each, on the same nodes. What a run did is measured; what counts as stable is the
-case's.
+Each case of :mod:`cysyk1999.studies.stability.hard_cases` is simulated by the default method,
+through the door a user has, and by three methods that differ from it in one thing each, on the same
+nodes. What a run did is measured; what counts as stable is the case's.
 """
 
 from __future__ import annotations
@@ -54,10 +54,12 @@ STABLE, LABOURS, ADMITS, CLEAN, SILENT = (
     "unsound",
 )
 UNCLEAN, UNDONE = "breaks off", "not done"
-"""Outcomes of a run. Labours: it completed and what it found is within all limits, but not what it took, or another run to
-compare it with did not complete; admits its error: the error that it estimates is a half or more, or it notes what is wrong;
-unsound: it completed outside its limits and says nothing; breaks off: an error that is not a diagnosis; not done: not in
-:data:`SLOWEST`."""
+"""Outcomes of a run. Labours: it completed and what it found is within all limits, but not what it
+took, or another run to compare it with did not complete; admits its error: the error that it
+estimates is a half or more, or it notes what is wrong; unsound: it completed outside its limits and
+says nothing; breaks off: an error that is not a diagnosis; not done: not in
+:data:`SLOWEST`.
+"""
 EFFORT = ("cuts", "factorisations", "effort")
 """Measures of what a run took."""
 NOTED = {
@@ -125,13 +127,15 @@ def _split(mesh: PadMesh, element: str, change) -> PadMesh | None:
 def simulation(
     case: Case, method: str, folder: Path, refined: int = 1, finer: float = 1.0
 ) -> Simulation | None:
-    """A case ready to run by a method with its steps divided by ``refined`` and its edges by ``finer``; None where the method has
-    no such mesh."""
+    """A case ready to run by a method with its steps divided by ``refined`` and its edges by
+    ``finer``; None where the method has no such mesh.
+    """
     scene = case.read(folder)
     chosen = plan(scene)
     if finer > 1:
         chosen = finely(chosen, finer)
-    # without a slide, its step stands for steps that are given by hand: what is pressed is pressed in as many
+    # without a slide, its step stands for steps that are given by hand: what is pressed is pressed
+    # in as many
     slides = chosen.slide_step and any(leg.strokes for leg in scene.motion)
     slide_step = chosen.slide_step / refined if slides else None
     chosen = replace(chosen, steps_per_leg=case.steps_per_leg * refined, slide_step=slide_step)
@@ -152,7 +156,9 @@ def simulation(
 
 @dataclass(frozen=True)
 class Run:
-    """A case by a method: history (of a failed run up to its last converged state), message, and what was measured."""
+    """A case by a method: history (of a failed run up to its last converged state), message, and
+    what was measured.
+    """
 
     history: xr.Dataset | None
     completed: bool
@@ -180,7 +186,9 @@ class Late(BaseException):
 
 @contextmanager
 def in_time(seconds: float = SLOWEST) -> Iterator[None]:
-    """Raises :class:`Late`, which no part of a simulation takes for its own, after so much process time (s)."""
+    """Raises :class:`Late`, which no part of a simulation takes for its own, after so much process
+    time (s).
+    """
 
     def late(*_):
         raise Late
@@ -197,7 +205,9 @@ def in_time(seconds: float = SLOWEST) -> Iterator[None]:
 def _simulate(
     case: Case, method: str = METHODS[0], refined: int = 1, finer: float = 1.0
 ) -> tuple[xr.Dataset, float] | None:
-    """History of a case and how well forces balanced in it; None where the method has no such mesh."""
+    """History of a case and how well forces balanced in it; None where the method has no such
+    mesh.
+    """
     with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
         made = simulation(case, method, Path(folder), refined, finer)
         if made is None:
@@ -209,7 +219,9 @@ def _simulate(
 
 
 def run(case: Case, method: str = METHODS[0], compare: bool = True) -> Run | None:
-    """Simulate a case by a method, and again to :func:`compared`; None where the method has no mesh for it."""
+    """Simulate a case by a method, and again to :func:`compared`; None where the method has no mesh
+    for it.
+    """
     found = _run(case, method)
     return compared(case, found) if compare and found is not None else found
 
@@ -268,10 +280,12 @@ def _is_mirrored(case: Case) -> bool:
 
 
 def compared(case: Case, found: Run) -> Run:
-    """A run by the default method, judged also by runs beside it; one that broke off, or may, is left as it is.
+    """A run by the default method, judged also by runs beside it; one that broke off, or may, is
+    left as it is.
 
-    The effort of its easy neighbour always; half the step, the second solver and the reference in some, for they cost as much as
-    all the rest (:data:`HALVED`, :data:`SECOND_SOLVER`, :data:`REFERENCE`).
+    The effort of its easy neighbour always; half the step, the second solver and the reference in
+    some, for they cost as much as all the rest (:data:`HALVED`, :data:`SECOND_SOLVER`,
+    :data:`REFERENCE`).
     """
     if not found.completed or case.may_fail:
         return found
@@ -297,7 +311,9 @@ def _apart(
     refined: int = 1,
     finer: float = 1.0,
 ) -> float:
-    """Difference to another run of a case; infinite where that is not completed, nan where it is not done in time."""
+    """Difference to another run of a case; infinite where that is not completed, nan where it is
+    not done in time.
+    """
     try:
         return difference(_simulate(case, METHODS[0], refined, finer)[0], history, names)
     except NonConvergence:
@@ -338,7 +354,9 @@ def _sound_so_far(kept: xr.Dataset) -> bool:
 
 
 def cured(case: Case, found: Run) -> str:
-    """What of a case that is not stable, relaxed as its message says, makes it so; in words, empty where nothing does."""
+    """What of a case that is not stable, relaxed as its message says, makes it so; in words, empty
+    where nothing does.
+    """
     message = found.message
     if HERE not in message:  # of a run that was completed a note says it
         with tempfile.TemporaryDirectory() as folder:
@@ -354,7 +372,8 @@ def cured(case: Case, found: Run) -> str:
 
 
 def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
-    """One row a case: what makes it hard, what counts as stable, the outcome and every measure with its limit.
+    """One row a case: what makes it hard, what counts as stable, the outcome and every measure with
+    its limit.
 
     Of the whole catalogue, or of one of so many parts of it, which may be made side by side.
 

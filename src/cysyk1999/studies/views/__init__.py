@@ -1,1 +1,3 @@
-"""Pictures of what happens inside: fields, meshes, maps over a stroke, responses, and how the whole compares with the thesis."""
+"""Pictures of what happens inside: fields, meshes, maps over a stroke, responses, and how the whole
+compares with the thesis.
+"""

@@ -45,8 +45,9 @@ def output(history: xr.Dataset, time: float) -> int:
 def elements(
     history: xr.Dataset, snapshot: int, window: tuple[float, float, float, float]
 ) -> pd.DataFrame:
-    """Deformed elements within a window (left, right, low, high in mm): corners, layer, and strain energy density if there is
-    one."""
+    """Deformed elements within a window (left, right, low, high in mm): corners, layer, and strain
+    energy density if there is one.
+    """
     nodes = history["element_nodes"].values[:, : kind_of(history.sizes["element_node"]).corners]
     points = 1e3 * (
         history["node_position"].values + history["snapshot_displacement"].values[snapshot]
@@ -69,7 +70,9 @@ def elements(
 
 
 def lines(history: xr.Dataset, snapshot: int | None, corneum: bool = False) -> pd.DataFrame:
-    """Deformed boundaries of the layers (undeformed: snapshot None), and the underside of the stimulus."""
+    """Deformed boundaries of the layers (undeformed: snapshot None), and the underside of the
+    stimulus.
+    """
     points, cells = history["node_position"].values, history["element_nodes"].values
     region = history["element_region"].values
     moved = 0.0 if snapshot is None else history["snapshot_displacement"].values[snapshot]
@@ -129,7 +132,9 @@ def _named(parts: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def overview(histories: Histories) -> pd.DataFrame:
-    """A cylinder pressed and held: section, pressure and field at the top of the ramp, energy, rate and impulses over time."""
+    """A cylinder pressed and held: section, pressure and field at the top of the ramp, energy, rate
+    and impulses over time.
+    """
     history = histories["fields_k210"]
     snapshot, index = at(history, 0.5), output(history, 0.5)
     rate = predicted_rate(history)
@@ -173,7 +178,9 @@ LEVELS = ("draft", "thesis", "fine")
 
 
 def mesh_close_up(histories: Histories) -> pd.DataFrame:
-    """Deformed meshes of the three levels under the sharpest cylinder and under convexities, and their pressures."""
+    """Deformed meshes of the three levels under the sharpest cylinder and under convexities, and
+    their pressures.
+    """
     parts = {}
     for surface, half, low in (("k1260", 0.75, 4.4), ("wavy", 2.6, 4.4)):
         for level in LEVELS:
@@ -194,7 +201,9 @@ def mesh_close_up(histories: Histories) -> pd.DataFrame:
 
 
 def ridges_both_ways(histories: Histories) -> pd.DataFrame:
-    """Strain energy round the inner ridges with the plate pressed, and stroked to the right (to the left: its mirror image)."""
+    """Strain energy round the inner ridges with the plate pressed, and stroked to the right (to the
+    left: its mirror image).
+    """
     history = histories["ridged_press"]
     parts = {}
     for panel, time in (("pressed", 0.5), ("stroked to the right", 1.0)):
@@ -217,7 +226,9 @@ INSTANTS = (0.25e-3, 0.5e-3, 1.0e-3, 20.0e-3)
 
 
 def space_time(histories: Histories) -> pd.DataFrame:
-    """Pressure, strain energy at 915 um and speed of slip over the place on the skin and the stroke distance."""
+    """Pressure, strain energy at 915 um and speed of slip over the place on the skin and the stroke
+    distance.
+    """
     stroke = loaded(histories[STROKE])
     x, along, time = stroke["receptor_offset"].values, distance(stroke), stroke["time"].values
     order = np.argsort(x)
@@ -270,7 +281,9 @@ def _dragged(stroke: xr.Dataset, on: np.ndarray) -> pd.DataFrame:
 
 
 def stick_slip(histories: Histories) -> pd.DataFrame:
-    """Pressure times the coefficient of friction and the traction along the contact, where it sticks and where it slips."""
+    """Pressure times the coefficient of friction and the traction along the contact, where it
+    sticks and where it slips.
+    """
     stroke = loaded(histories[STROKE])
     friction, parts = scene_of(stroke).friction, {}
     for place_of in INSTANTS:
@@ -310,7 +323,9 @@ def _share_sticking(stroke: xr.Dataset) -> np.ndarray:
 
 
 def adaptation(histories: Histories) -> pd.DataFrame:
-    """Predicted responses of a slowly and a rapidly adapting receptor to two ramps and holds: rates and a few trials."""
+    """Predicted responses of a slowly and a rapidly adapting receptor to two ramps and holds: rates
+    and a few trials.
+    """
     stimulus, law = RAPIDLY_ADAPTING["curvature of the skin"]
     parts = {}
     for programme, words in (("ramp40", "40 gf/s"), ("ramp150", "150 gf/s")):
@@ -334,7 +349,9 @@ def adaptation(histories: Histories) -> pd.DataFrame:
 
 
 def assumptions(histories: Histories) -> pd.DataFrame:
-    """The section with every size, modulus and boundary condition by whether the thesis states it, it follows, or is assumed."""
+    """The section with every size, modulus and boundary condition by whether the thesis states it,
+    it follows, or is assumed.
+    """
     history = histories["fields_flat"]
     scene = scene_of(history)
     pad, layers = scene.specimen.outline, {name: scene.specimen.material(name) for name in REGIONS}

@@ -51,7 +51,9 @@ def _field(ax: Axes, rows: pd.DataFrame, norm, mesh: float = 0.0):
 
 
 def _energies(frame: pd.DataFrame, low: float = 2e-3) -> LogNorm:
-    """A scale from a share of the largest energies, rounded, to them, whatever a singular point has."""
+    """A scale from a share of the largest energies, rounded, to them, whatever a singular point
+    has.
+    """
     high = float(np.nanpercentile(frame[SED].dropna(), 99.7))
     return LogNorm(high * low, high)
 
@@ -421,7 +423,9 @@ def space_time(frame: pd.DataFrame) -> Figure:
 
 @style.styled
 def stick_slip(frame: pd.DataFrame) -> Figure:
-    """Where the contact sticks and where it slips, at four instants, and the share that sticks over the stroke."""
+    """Where the contact sticks and where it slips, at four instants, and the share that sticks over
+    the stroke.
+    """
     fig = style.study_figure(
         "Stick and slip along the contact of a stroke, 10 mm/s",
         [
@@ -585,8 +589,9 @@ def assumptions(frame: pd.DataFrame) -> Figure:
 
 
 def scorecard_rows(table: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:
-    """Rows of the comparison that are results with a number: where the simulated one lies, as a share of the thesis's number, or
-    of the end of its axis or range."""
+    """Rows of the comparison that are results with a number: where the simulated one lies, as a
+    share of the thesis's number, or of the end of its axis or range.
+    """
     rows = table[
         table["role"].eq("result")
         & table["simulated"].notna()
@@ -711,8 +716,9 @@ def _short(text: str) -> str:
 
 
 def candidate_rows(table: pd.DataFrame) -> pd.DataFrame:
-    """Ranked candidates of every set of recorded rates: how much of the rates each explains, and the range by how "
-    "they are read."""
+    """Ranked candidates of every set of recorded rates: how much of the rates each explains, and
+    the range by how " "they are read.
+    """
     rows = table[
         table["rank"].notna() & ~table["rates"].str.startswith("TouchSim")
     ]  # recorded ones, not another model's
@@ -737,7 +743,9 @@ def candidate_rows(table: pd.DataFrame) -> pd.DataFrame:
 
 @style.styled
 def candidate_stimuli(frame: pd.DataFrame) -> Figure:
-    """Candidates for what a slowly adapting receptor responds to, ranked by the recorded rates they explain."""
+    """Candidates for what a slowly adapting receptor responds to, ranked by the recorded rates they
+    explain.
+    """
     sets = list(frame["rates"].drop_duplicates())
     order = frame.groupby("candidate")["r_squared (1)"].median().sort_values(ascending=False).index
     fig = style.study_figure(

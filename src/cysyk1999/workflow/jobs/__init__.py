@@ -1,1 +1,3 @@
-"""What the workflow's jobs do, a module each: `run(job)` reads the files that `job` names and writes those it names."""
+"""What the workflow's jobs do, a module each: `run(job)` reads the files that `job` names and
+writes those it names.
+"""

@@ -1,4 +1,6 @@
-"""Scenes outside the study at several accuracies -> what their runs believe of their error, and the truth."""
+"""Scenes outside the study at several accuracies -> what their runs believe of their error, and the
+truth.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,6 @@
-"""Scenes drawn at random from a class of stimulus -> what their runs believe of their error, and the truth."""
+"""Scenes drawn at random from a class of stimulus -> what their runs believe of their error, and
+the truth.
+"""
 
 import tempfile
 from pathlib import Path

@@ -1,4 +1,6 @@
-"""Presses on meshes of every kind of element that users bring -> what they are wrong by, and the largest errors."""
+"""Presses on meshes of every kind of element that users bring -> what they are wrong by, and the
+largest errors.
+"""
 
 import tempfile
 from pathlib import Path

@@ -1,4 +1,6 @@
-"""Pads with ridges of several sizes, pressed on more and fewer elements -> what their strain energies are wrong by."""
+"""Pads with ridges of several sizes, pressed on more and fewer elements -> what their strain
+energies are wrong by.
+"""
 
 from cysyk1999.publishing.write import publish_table
 from cysyk1999.studies.accuracy.ridges import SURFACES, table

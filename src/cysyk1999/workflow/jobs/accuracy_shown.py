@@ -10,7 +10,9 @@ from cysyk1999.studies.accuracy.shown import shown
 
 
 def run(job):
-    """`histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `table`, of the figures `numbers`."""
+    """`histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `table`, of the figures
+    `numbers`.
+    """
     folder = Path(job.reference[0]).parent
     figures = [(FIGURES[number], FIGURES[number].measurements(folder)) for number in job.numbers]
     results, finer = (

@@ -1,4 +1,6 @@
-"""Strokes drawn at random over plates or over waves -> what they are wrong by on every mesh and with every length of steps."""
+"""Strokes drawn at random over plates or over waves -> what they are wrong by on every mesh and
+with every length of steps.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,6 @@
-"""The records of all runs -> errors and costs, observed orders, the planner's error table, the presets."""
+"""The records of all runs -> errors and costs, observed orders, the planner's error table, the
+presets.
+"""
 
 import json
 from pathlib import Path
@@ -15,7 +17,9 @@ from fingerpad import load_scene
 
 
 def run(job):
-    """`records` (JSON), `scenes` in the order of FAMILY -> `tables`: accuracy, accuracy_orders, accuracy_planner, presets."""
+    """`records` (JSON), `scenes` in the order of FAMILY -> `tables`: accuracy, accuracy_orders,
+    accuracy_planner, presets.
+    """
     records = {
         record["name"]: record
         for path in job.records

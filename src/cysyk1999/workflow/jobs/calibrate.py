@@ -1,4 +1,6 @@
-"""Steady forces of subjects and the elastic curve -> the constant of each, how certain, and a specimen of each."""
+"""Steady forces of subjects and the elastic curve -> the constant of each, how certain, and a
+specimen of each.
+"""
 
 import json
 from pathlib import Path
@@ -10,7 +12,9 @@ from cysyk1999.studies.calibration.force import calibrate, write_specimens
 
 
 def run(job):
-    """`forces`, `histories`, `coarse` -> `data` (CSV, named as the calibration's frames), the folder `specimens`."""
+    """`forces`, `histories`, `coarse` -> `data` (CSV, named as the calibration's frames), the
+    folder `specimens`.
+    """
     histories, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
     forces = read_force_depth(job.forces)
     result = calibrate(histories, coarse, forces)

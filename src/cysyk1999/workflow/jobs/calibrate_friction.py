@@ -1,4 +1,6 @@
-"""Strokes with several coefficients and the thesis's stretch of the skin -> the coefficient of friction, how certain."""
+"""Strokes with several coefficients and the thesis's stretch of the skin -> the coefficient of
+friction, how certain.
+"""
 
 from pathlib import Path
 
@@ -11,7 +13,9 @@ from cysyk1999.studies.calibration.friction import calibrate_friction
 
 
 def run(job):
-    """`sweep`, `histories`, the tables `thesis` and `published` -> `data`: friction, friction_estimates."""
+    """`sweep`, `histories`, the tables `thesis` and `published` -> `data`: friction,
+    friction_estimates.
+    """
     histories, sweep = read_results(job.histories)[0], read_results(job.sweep)[0].values()
     result = calibrate_friction(
         sweep, histories, pd.read_csv(job.thesis[0]), read_friction(job.published[0])

@@ -1,4 +1,6 @@
-"""The force of a ramp and hold, the elastic curves and measured time constants -> the Prony series, how certain."""
+"""The force of a ramp and hold, the elastic curves and measured time constants -> the Prony series,
+how certain.
+"""
 
 from pathlib import Path
 
@@ -11,7 +13,9 @@ from fingerpad.specimen import read_pad_mesh
 
 
 def run(job):
-    """`relaxation`, `histories` of plate, long_term and `scene`, its `mesh`, `accuracy` -> `data`: prony, estimates."""
+    """`relaxation`, `histories` of plate, long_term and `scene`, its `mesh`, `accuracy` -> `data`:
+    prony, estimates.
+    """
     scene, mesh = load_scene(job.scene[0]), read_pad_mesh(job.mesh[0])
     if job.accuracy != ["as_stated"]:
         scene = scene.with_accuracy(job.accuracy[0])

@@ -1,4 +1,6 @@
-"""Both parts of the study -> the picture, and the tables: evidence, choices and rules of the planner."""
+"""Both parts of the study -> the picture, and the tables: evidence, choices and rules of the
+planner.
+"""
 
 import pandas as pd
 

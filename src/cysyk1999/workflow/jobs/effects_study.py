@@ -1,4 +1,6 @@
-"""A part of the study (changes: of chosen scenes, choices: of the planner in scenes drawn at random) -> its rows."""
+"""A part of the study (changes: of chosen scenes, choices: of the planner in scenes drawn at
+random) -> its rows.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,6 @@
-"""The thesis's scenes, read otherwise in one thing -> the verdicts on its statements of those runs."""
+"""The thesis's scenes, read otherwise in one thing -> the verdicts on its statements of those
+runs.
+"""
 
 from pathlib import Path
 

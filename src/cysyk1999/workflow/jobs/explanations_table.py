@@ -1,4 +1,6 @@
-"""Verdicts by reading -> what of the thesis's statements holds with which of them, and what each turns: two tables."""
+"""Verdicts by reading -> what of the thesis's statements holds with which of them, and what each
+turns: two tables.
+"""
 
 import pandas as pd
 

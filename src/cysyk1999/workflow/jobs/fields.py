@@ -6,7 +6,9 @@ from fingerpad.simulation import solve
 
 
 def run(job):
-    """`scenes` -> `histories`: of the fields strain energy alone, at the snapshots that a scene asks for."""
+    """`scenes` -> `histories`: of the fields strain energy alone, at the snapshots that a scene
+    asks for.
+    """
     for path, history in zip(job.scenes, job.histories, strict=True):
         scene = load_scene(path)
         made = solve(scene, fields=bool(scene.outputs.snapshots))

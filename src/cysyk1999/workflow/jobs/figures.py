@@ -1,4 +1,6 @@
-"""Histories and meshes -> figures of one chapter and the plotted data beside each, with what the thesis says of it."""
+"""Histories and meshes -> figures of one chapter and the plotted data beside each, with what the
+thesis says of it.
+"""
 
 import importlib
 from dataclasses import astuple
@@ -16,7 +18,9 @@ from fingerpad.measures.kept import Each
 
 
 def run(job):
-    """`histories`, `meshes`, `coarse`, the table `reference`, measured data beside it -> `pictures` of the `modules`."""
+    """`histories`, `meshes`, `coarse`, the table `reference`, measured data beside it -> `pictures`
+    of the `modules`.
+    """
     (reference,) = job.reference
     specs = {
         spec.number: spec
@@ -39,7 +43,9 @@ def run(job):
 
 
 def with_statement(spec, frame, results, reference):
-    """The frame of a figure with a row that holds what the thesis says of it, judged by the figure's own scenes."""
+    """The frame of a figure with a row that holds what the thesis says of it, judged by the
+    figure's own scenes.
+    """
     histories, meshes, coarse = (
         Each(each.__getitem__, filter(each.__contains__, spec.needs)) for each in results
     )

@@ -1,4 +1,6 @@
-"""The table of the sweep -> the picture of five hundred fingers, and what each measure is sensitive to."""
+"""The table of the sweep -> the picture of five hundred fingers, and what each measure is sensitive
+to.
+"""
 
 import pandas as pd
 

@@ -1,4 +1,6 @@
-"""Every number that is read of a scene, its mesh, its history and its companion -> one long table."""
+"""Every number that is read of a scene, its mesh, its history and its companion -> one long
+table.
+"""
 
 from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.table import measures_table, write_measures

@@ -7,7 +7,9 @@ from cysyk1999.publishing.write import publish, read_frame
 
 
 def run(job):
-    """Each of `data` (CSV) -> that of `pictures` in its place, by what `STUDIES` of the module `study` has under its name."""
+    """Each of `data` (CSV) -> that of `pictures` in its place, by what `STUDIES` of the module
+    `study` has under its name.
+    """
     studies = importlib.import_module(job.study[0]).STUDIES
     for data, picture in zip(job.data, job.pictures, strict=True):
         frame, name = read_frame(Path(data)), Path(picture).stem

@@ -1,4 +1,6 @@
-"""Unknowns with their ranges -> pads drawn evenly, and what they show. Goes on from the records of a run that was stopped."""
+"""Unknowns with their ranges -> pads drawn evenly, and what they show. Goes on from the records of
+a run that was stopped.
+"""
 
 from pathlib import Path
 

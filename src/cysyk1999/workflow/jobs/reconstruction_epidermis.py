@@ -1,4 +1,6 @@
-"""The most probable pad -> what readings of 1999 could have made of the energies inside its epidermis: a table."""
+"""The most probable pad -> what readings of 1999 could have made of the energies inside its
+epidermis: a table.
+"""
 
 import pandas as pd
 

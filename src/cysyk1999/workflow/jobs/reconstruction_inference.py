@@ -1,4 +1,6 @@
-"""Evidence and pads simulated -> posterior, readings, emulator, recovery, what chosen pads show, and the most probable one."""
+"""Evidence and pads simulated -> posterior, readings, emulator, recovery, what chosen pads show,
+and the most probable one.
+"""
 
 from pathlib import Path
 
@@ -22,8 +24,8 @@ from fingerpad.files import write_text
 
 
 def run(job):
-    """`unknowns`, `evidence`, `design` -> `tables` (posterior, readings, emulator, recovery, families),
-    `parts` (samples, predicted, bands), `specimen`.
+    """`unknowns`, `evidence`, `design` -> `tables` (posterior, readings, emulator, recovery,
+    families), `parts` (samples, predicted, bands), `specimen`.
     """
     evidence = Evidence(read_evidence(job.evidence[0]))
     found = study(read_unknowns(job.unknowns[0]), evidence, pd.read_csv(job.design[0]))

@@ -15,7 +15,9 @@ from cysyk1999.studies.reconstruction.unknowns import read_unknowns
 
 
 def run(job):
-    """`unknowns`, `evidence`, `parts`: samples, predicted; `readings` -> `pictures`: posterior, evidence."""
+    """`unknowns`, `evidence`, `parts`: samples, predicted; `readings` -> `pictures`: posterior,
+    evidence.
+    """
     samples, shown = map(pd.read_csv, job.parts)
     frame = posterior_frame(samples, read_unknowns(job.unknowns[0]))
     publish(posterior_picture(frame), frame, job.pictures[0])

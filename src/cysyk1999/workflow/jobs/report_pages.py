@@ -1,4 +1,6 @@
-"""Published pictures and tables -> a page each, for the report: what it is, what the thesis says of it, how to cite it."""
+"""Published pictures and tables -> a page each, for the report: what it is, what the thesis says of
+it, how to cite it.
+"""
 
 import re
 from pathlib import Path
@@ -10,7 +12,9 @@ CITE = "fingerpad (see CITATION.cff), after J. P. Cysyk, Skin Dynamics in the Ta
 
 
 def run(job):
-    """`shown` and `published` (pictures, CSV files of tables), their `titles`; `judged` (chapters' pages, or none) -> `pages`."""
+    """`shown` and `published` (pictures, CSV files of tables), their `titles`; `judged` (chapters'
+    pages, or none) -> `pages`.
+    """
     judged = "".join(Path(path).read_text(encoding="utf-8") for path in getattr(job, "judged", ()))
     sources = [Path(path) for path in (*getattr(job, "shown", ()), *getattr(job, "published", ()))]
     for source, title, target in zip(sources, job.titles, job.pages, strict=True):

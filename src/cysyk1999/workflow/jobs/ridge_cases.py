@@ -1,4 +1,6 @@
-"""A stroke with another height of the ridges or coefficient of friction, or on another mesh -> its histories."""
+"""A stroke with another height of the ridges or coefficient of friction, or on another mesh -> its
+histories.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,6 @@
-"""Cases and whole strokes -> the directional index against place, height, friction and mesh, and contact in islands."""
+"""Cases and whole strokes -> the directional index against place, height, friction and mesh, and
+contact in islands.
+"""
 
 from pathlib import Path
 

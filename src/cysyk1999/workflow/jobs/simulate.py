@@ -1,4 +1,6 @@
-"""Scenes and their companions -> plans, meshes and histories of their whole motions, one after the other in one process."""
+"""Scenes and their companions -> plans, meshes and histories of their whole motions, one after the
+other in one process.
+"""
 
 import json
 from itertools import groupby
@@ -15,8 +17,9 @@ from fingerpad.specimen import mesh_for, read_pad_mesh, write_pad
 def run(job):
     """`scenes` -> plan.json, mesh.msh, summary.json beside each of `histories`.
 
-    `accuracies`: as_stated or what replaces it. `strides`: 0 of the scene itself, of a companion on a coarser mesh how many steps
-    are one; where that leaves as many as before, as of steady presses, nothing is solved anew.
+    `accuracies`: as_stated or what replaces it. `strides`: 0 of the scene itself, of a companion on
+    a coarser mesh how many steps are one; where that leaves as many as before, as of steady
+    presses, nothing is solved anew.
     """
     cases = zip(job.scenes, job.accuracies, map(int, job.strides), job.histories, strict=True)
     for (path, accuracy, coarser), group in groupby(cases, lambda case: (*case[:2], case[2] > 0)):

@@ -1,4 +1,6 @@
-"""Histories of the nine surfaces -> the definitions of strain energy over the ramp and hold, and which fall in the hold."""
+"""Histories of the nine surfaces -> the definitions of strain energy over the ramp and hold, and
+which fall in the hold.
+"""
 
 from cysyk1999.measures.inputs import read_results
 from cysyk1999.publishing.write import publish, without_round_off

@@ -1,4 +1,6 @@
-"""A stroke, as a draft -> its histories with other coefficients of friction in place of the scene's."""
+"""A stroke, as a draft -> its histories with other coefficients of friction in place of the
+scene's.
+"""
 
 from fingerpad import load_scene, plan
 from fingerpad.results import write_history

@@ -9,7 +9,9 @@ from cysyk1999.publishing.write import publish_table
 
 
 def run(job):
-    """`summaries` (summary.json of each scene) -> `table`: a row a scene and leg, units in the columns' names."""
+    """`summaries` (summary.json of each scene) -> `table`: a row a scene and leg, units in the
+    columns' names.
+    """
     rows = []
     for path in map(Path, job.summaries):
         for number, leg in enumerate(json.loads(path.read_text(encoding="utf-8"))["legs"], start=1):

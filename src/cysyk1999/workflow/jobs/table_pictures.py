@@ -10,7 +10,9 @@ from cysyk1999.studies.views import picture as views
 
 
 def run(job):
-    """`tables`, `reference` -> `pictures`: scorecard of thesis_comparison, candidate_stimuli of the table of that name."""
+    """`tables`, `reference` -> `pictures`: scorecard of thesis_comparison, candidate_stimuli of the
+    table of that name.
+    """
     tables = {Path(path).stem: pd.read_csv(path) for path in job.tables}
     for path in job.pictures:
         if Path(path).stem == "scorecard":

@@ -1,4 +1,6 @@
-"""The measures of all scenes and the thesis's numbers -> the tables that are made of them, the comparison in pages."""
+"""The measures of all scenes and the thesis's numbers -> the tables that are made of them, the
+comparison in pages.
+"""
 
 from pathlib import Path
 

@@ -1,7 +1,8 @@
-"""The effects that a plan decides on: one file each, with its question, its rules, its decision and the scenes that show it.
+"""The effects that a plan decides on: one file each, with its question, its rules, its decision and
+the scenes that show it.
 
-A new one is a file that ends in ``EFFECT = PlannedEffect(...)`` and its name here. Scene language, plan, simulation, the study of
-effects, its tables and its picture read the register.
+A new one is a file that ends in ``EFFECT = PlannedEffect(...)`` and its name here. Scene language,
+plan, simulation, the study of effects, its tables and its picture read the register.
 """
 
 from collections.abc import Iterator

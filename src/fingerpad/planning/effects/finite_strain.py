@@ -18,7 +18,8 @@ class FiniteStrainRules:
 
 
 def small_strain_error(case: Case) -> float:
-    """Of small strain in the headline quantities, at most: over depth / soft thickness; under edges also the strain itself.
+    """Of small strain in the headline quantities, at most: over depth / soft thickness; under edges
+    also the strain itself.
 
     And by how much the layers' laws depart from the one that small strain is the limit of.
     """

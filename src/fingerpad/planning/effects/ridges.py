@@ -52,7 +52,9 @@ class RidgeRules:
 
 
 def decide(case: Case) -> Effect:
-    """On where the specimen has ridges, unless they are low inner ones that change less of a press than the accuracy."""
+    """On where the specimen has ridges, unless they are low inner ones that change less of a press
+    than the accuracy.
+    """
     specimen, rules = case.scene.specimen, case.rules
     ridges, layers = specimen.ridges, specimen.layers
     if ridges is None:
@@ -85,7 +87,9 @@ def _felt(scene: Scene, rules: RidgeRules) -> bool:
 
 
 def error_beside(inner: Any, elements: float, rules: RidgeRules) -> float:
-    """Relative error of strain energies beside inner ridges, with so many elements from one ridge to the next."""
+    """Relative error of strain energies beside inner ridges, with so many elements from one ridge
+    to the next.
+    """
     from fingerpad.specimen.ridges import wave_of
 
     return rules.ridge_error * inner.height / wave_of(inner) * elements**-rules.ridge_order
@@ -94,10 +98,12 @@ def error_beside(inner: Any, elements: float, rules: RidgeRules) -> float:
 def meshed(
     scene: Scene, size: MeshSize, tolerance: float | None, moves: bool, rules: RidgeRules
 ) -> tuple[MeshSize, float]:
-    """The mesh made finer among ridges that receptors are beside, as a ``tolerance`` asks for, and the error that is left there.
+    """The mesh made finer among ridges that receptors are beside, as a ``tolerance`` asks for, and
+    the error that is left there.
 
     Args:
-        tolerance: relative; None: edges are given by hand. moves: does the pad move along the surface?
+        tolerance: relative; None: edges are given by hand. moves: does the pad move along the
+        surface?
     """
     from fingerpad.specimen.layered import apex_column
     from fingerpad.specimen.pad import all_over
@@ -121,7 +127,9 @@ def meshed(
 
 
 def resolved(effect: Effect, layered: tuple, edge: float) -> tuple[Effect, float]:
-    """The effect with how finely ridges are meshed, and the skin's edge (m) under the apex; ``edge`` without ridges."""
+    """The effect with how finely ridges are meshed, and the skin's edge (m) under the apex;
+    ``edge`` without ridges.
+    """
     from fingerpad.specimen.layered import apex_column, ridge_resolution, skin_edge
     from fingerpad.specimen.ridges import wave_of
 

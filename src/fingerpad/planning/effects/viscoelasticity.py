@@ -24,7 +24,9 @@ class ViscoelasticityRules:
 
 
 def moduli_state(case: Case) -> str:
-    """Moduli with which the scene is solved without time: "instantaneous" if it is over before anything relaxes."""
+    """Moduli with which the scene is solved without time: "instantaneous" if it is over before
+    anything relaxes.
+    """
     return _decide(case)[1]
 
 
@@ -60,7 +62,8 @@ def _decide(case: Case) -> tuple[Effect, str]:
         if leg.strokes:
             if case.profile.steepness == 0 and scene.friction == 0:
                 continue  # a smooth plate sliding changes nothing
-            # the narrowest contact is a new one, and the skin has stretched anew, after half its width
+            # the narrowest contact is a new one, and the skin has stretched anew, after half its
+            # width
             duration = min(duration, case.contact.half_width / leg.speed)
         loading.append(leg.quickest or duration)
     limit = rules.lag_share * tolerance

@@ -12,7 +12,9 @@ from fingerpad.units import format_quantity
 
 
 class Rounded(Shape):
-    """A rectangle of ``width`` m whose lower edges are rounded with radius ``fillet`` m (0: sharp)."""
+    """A rectangle of ``width`` m whose lower edges are rounded with radius ``fillet`` m (0:
+    sharp).
+    """
 
     singular: ClassVar[bool] = True
 
@@ -47,7 +49,8 @@ class Rounded(Shape):
         gradient = np.zeros(points.shape)
         gradient[:, 0] = np.where(outside, sign * dx / corner, np.where(side, sign, 0.0))
         gradient[:, 1] = np.where(outside, -dy / corner, np.where(side, 0.0, -1.0))
-        # a sharp corner has no curvature of its own to offer: its level sets are circles only away from it
+        # a sharp corner has no curvature of its own to offer: its level sets are circles only away
+        # from it
         curvature = np.where(outside & (corner > 1e-9), 1 / corner, 0.0)
         return distance, gradient, curvature
 

@@ -30,9 +30,11 @@ def _needs_its_file(schema: dict[str, Any]) -> None:
 
 
 class Sampled(CurvedShape):
-    """Rigid profile given by points of its lower surface: y is up, the solid lies above, and x = 0 is over the pad's apex.
+    """Rigid profile given by points of its lower surface: y is up, the solid lies above, and x = 0
+    is over the pad's apex.
 
-    Only differences of y matter: the profile comes down until it touches. figures/studies/profile_convention.png shows it.
+    Only differences of y matter: the profile comes down until it touches.
+    figures/studies/profile_convention.png shows it.
     """
 
     internal: ClassVar = frozenset({"x", "y", "read_as"})
@@ -41,11 +43,17 @@ class Sampled(CurvedShape):
     model_config = ConfigDict(json_schema_extra=_needs_its_file)
     shape: Literal["sampled"] = "sampled"
     csv: Path | None = None
-    """File with the columns `x (mm)` and `y (mm)`, or another unit of length in them; x strictly increasing."""
+    """File with the columns `x (mm)` and `y (mm)`, or another unit of length in them; x strictly
+    increasing.
+    """
     smooth: quantity("length", words=("auto", "none")) = "auto"
-    """Structure finer than nodes can feel: `auto` filters it out where there is any, `none` keeps it, or a cut-off wavelength."""
+    """Structure finer than nodes can feel: `auto` filters it out where there is any, `none` keeps
+    it, or a cut-off wavelength.
+    """
     ends: Literal["open", "level", "slope"] = "open"
-    """What lies beyond the points: nothing (`open`), a `level` surface, or the `slope` of the last two, for ever."""
+    """What lies beyond the points: nothing (`open`), a `level` surface, or the `slope` of the last
+    two, for ever.
+    """
     x: SkipJsonSchema[tuple[float, ...]]
     y: SkipJsonSchema[tuple[float, ...]]
     read_as: SkipJsonSchema[tuple[str, ...]] = Field((), exclude=True, repr=False)
@@ -148,7 +156,9 @@ def _read_profile(path: Path) -> tuple[tuple[float, ...], tuple[float, ...], tup
 
 
 def _profile_columns(header: tuple[str, ...]) -> dict[str, tuple[int, float]]:
-    """x, the heights, and z where there are both y and z -> where the column is, and its unit in m. Raises `TableError`."""
+    """x, the heights, and z where there are both y and z -> where the column is, and its unit in m.
+    Raises `TableError`.
+    """
     found: dict[str, tuple[int, float]] = {}
     for k, name in enumerate(header):
         if match := _COLUMN.fullmatch(name):
@@ -186,9 +196,11 @@ class Points(Curve):
     """A single-valued profile given by samples, joined by straight lines.
 
     Args:
-        x, y: (n,) m; x strictly increasing. The lowest point is moved to height zero.
-        ends: what is beyond the first and the last sample: nothing ("open"), a "level" surface at their heights, or the "slope"
-            of the lines there, for ever. smooth: "auto", "none" or a cut-off wavelength, m (see :meth:`felt`).
+        x, y: (n,) m; x strictly increasing. The lowest point is moved to height zero. ends: what is
+        beyond the first and the last sample: nothing ("open"), a "level" surface at their heights,
+        or the "slope"
+            of the lines there, for ever. smooth: "auto", "none" or a cut-off wavelength, m (see
+            :meth:`felt`).
         rounding: m, radius with which open ends turn away from the skin.
 
     Raises:
@@ -218,7 +230,9 @@ class Points(Curve):
             self.reach = self.known
 
     def _end(self, x, y, rounding):
-        """x, y (k,) m and curvature (k,) 1/m of the pieces that follow the last of two samples on the right."""
+        """x, y (k,) m and curvature (k,) 1/m of the pieces that follow the last of two samples on
+        the right.
+        """
         (x, last), (y, height) = x, y
         if self.ends == "level":
             return [last + (last - x)], [height], [0.0]
@@ -256,7 +270,8 @@ class Points(Curve):
         within = super()._farthest(x, y, height)
         left = x < (self.known[0] + self.known[1]) / 2
         beyond = np.where(left, self.known[0] - x, x - self.known[1])
-        # away from the steep sides the samples' own slopes count; beside them, how far their end is away
+        # away from the steep sides the samples' own slopes count; beside them, how far their end is
+        # away
         end = np.hypot(beyond, y - np.where(left, *self.samples[1][[0, -1]]))
         inside = np.where(
             -beyond > within, np.abs(y - height) * share_of_height(self.steepness), within
@@ -264,13 +279,17 @@ class Points(Curve):
         return np.where(beyond > 0, np.minimum(within, end), inside)
 
     def cutoffs(self, edge):
-        """Cut-off wavelengths (m) that come into question for a skin with nodes ``edge`` m apart; 0 is none."""
+        """Cut-off wavelengths (m) that come into question for a skin with nodes ``edge`` m apart; 0
+        is none.
+        """
         if self.smooth == "none":
             return [0.0]
         return cutoffs(*self.samples, edge) if self.smooth == "auto" else [self.smooth]
 
     def felt(self, edge):
-        """The profile without what may be noise to a skin with nodes ``edge`` m apart: after the longest of its cut-offs."""
+        """The profile without what may be noise to a skin with nodes ``edge`` m apart: after the
+        longest of its cut-offs.
+        """
         return self.at(self.cutoffs(edge)[-1], edge)
 
     def at(self, smoothing, edge):
@@ -280,7 +299,9 @@ class Points(Curve):
         return felt
 
     def bulge(self, x: float, half_width: float) -> float:
-        """Curvature (1/m) around the place near ``x`` m that stands out most, fitted over ``half_width`` m to either side."""
+        """Curvature (1/m) around the place near ``x`` m that stands out most, fitted over
+        ``half_width`` m to either side.
+        """
         near = np.linspace(x - half_width, x + half_width, 65)
         height = self.outline(near)
         if not np.isfinite(height).sum() > 3:
@@ -292,7 +313,9 @@ class Points(Curve):
         return float(2 * np.polyfit(near[there] - lowest, height[there], 2)[0])
 
     def moved(self, first: float, last: float) -> float:
-        """Largest change (m) of the measured heights by the smoothing between two places (m), one as a whole apart."""
+        """Largest change (m) of the measured heights by the smoothing between two places (m), one
+        as a whole apart.
+        """
         x, y = self.measured
         near = (x >= first) & (x <= last)
         if not self.smoothing or not near.any():

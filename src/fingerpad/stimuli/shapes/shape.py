@@ -1,4 +1,6 @@
-"""What all shapes have in common, and their register: scenes, their schema, the planner and the solver find them there."""
+"""What all shapes have in common, and their register: scenes, their schema, the planner and the
+solver find them there.
+"""
 
 from __future__ import annotations
 
@@ -92,7 +94,8 @@ class CurvedShape(Shape):
 
 
 def shape_from(data: Mapping[str, Any], context: Any = None) -> Shape:
-    """The shape that `data` describes: SI numbers, or with the `context` of a document text with units.
+    """The shape that `data` describes: SI numbers, or with the `context` of a document text with
+    units.
 
     Raises:
         Problem, ValidationError: it is none, or one of its values is wrong.

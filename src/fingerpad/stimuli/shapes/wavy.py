@@ -17,7 +17,8 @@ from fingerpad.units import format_quantity
 
 
 class Wavy(CurvedShape):
-    """Rigid surface of cylindrical convexities joined by concavities between two flats, after the thesis's chapter 5.
+    """Rigid surface of cylindrical convexities joined by concavities between two flats, after the
+    thesis's chapter 5.
 
     x = 0, the start of the lead-in, is over the middle of the pad when the motion begins.
     """
@@ -26,7 +27,9 @@ class Wavy(CurvedShape):
     curvatures: Annotated[tuple[quantity("curvature"), ...], BeforeValidator(filled)] = tuple(
         1e3 / radius for radius in (38.1, 25.4, 19.05, 12.7, 9.525, 6.35, 4.7625, 3.175)
     )
-    """Curvatures of the convexities, in their order; a concavity has the radius of the convexity after it."""
+    """Curvatures of the convexities, in their order; a concavity has the radius of the convexity
+    after it.
+    """
     half_angle: quantity("angle") = math.radians(9.0)
     """Angle by which every arc turns to either side of its middle."""
     lead_in: Length = 8e-3
@@ -40,7 +43,8 @@ class Wavy(CurvedShape):
     def _check(self) -> Self:
         if self.half_angle >= math.radians(45.0):
             raise Problem("is outside the range", "above 0 deg and below 45 deg", ("half_angle",))
-        # a fillet of radius r ends on the flat: (lead_in + R sin)^2 = (R + r)^2 - (R cos + r)^2 at most
+        # a fillet of radius r ends on the flat: (lead_in + R sin)^2 = (R + r)^2 - (R cos + r)^2 at
+        # most
         sine, drop = math.sin(self.half_angle), 1 - math.cos(self.half_angle)
         ends = ((self.lead_in, 1 / self.curvatures[0]), (self.run_out, 1 / self.curvatures[-1]))
         largest = min(
@@ -63,9 +67,10 @@ class Wavy(CurvedShape):
     def curve(self) -> Curve:
         """Convex arcs, joined by hollow ones, between two flats at height zero.
 
-        Every arc turns by ``half_angle`` to either side of its middle, so arcs share their tangents where they meet, all at
-        height zero; between two convexities the radius is that of the second. The flats meet the first and the last arc at
-        reentrant corners, sharp or rounded by a hollow arc. Inferred from the axes and the text of the thesis's chapter 5.
+        Every arc turns by ``half_angle`` to either side of its middle, so arcs share their tangents
+        where they meet, all at height zero; between two convexities the radius is that of the
+        second. The flats meet the first and the last arc at reentrant corners, sharp or rounded by
+        a hollow arc. Inferred from the axes and the text of the thesis's chapter 5.
         """
         radius = 1 / np.asarray(self.curvatures, float)
         # convex, then hollow and convex for each further one
@@ -88,7 +93,9 @@ class Wavy(CurvedShape):
 
 
 def _fillet(radius: float, half_angle: float, fillet: float) -> tuple[float, float, float]:
-    """Where the rounding of a corner ends: m on the flat, along x on the arc and down there, all from the corner."""
+    """Where the rounding of a corner ends: m on the flat, along x on the arc and down there, all
+    from the corner.
+    """
     # its centre lies below the flat, as far from the arc's centre as both radii
     across = fillet + radius * np.cos(half_angle)
     along = np.sqrt((radius + fillet) ** 2 - across**2)
