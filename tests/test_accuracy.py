@@ -468,6 +468,7 @@ def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Data
         "indentation_depth": [0.0, press, *[press] * count],
         "centre_pressure": [0.0, 1.0, *pressures],
     }
+    columns["peak_pressure"] = columns["centre_pressure"]
     return xr.Dataset({name: ("time", np.array(values)) for name, values in columns.items()})
 
 

@@ -46,6 +46,7 @@ from fingerpad.planning.unbounded import (
     seen_corners,
 )
 from fingerpad.receptors.material_points import MaterialPoints
+from fingerpad.receptors.recovery import ReceptorError
 from fingerpad.results import (
     FIELDS,
     Arrays,
@@ -58,7 +59,13 @@ from fingerpad.results import (
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
-from fingerpad.specimen.measures import below_outline, below_skin, skin_ends, touched_side
+from fingerpad.specimen.measures import (
+    below_outline,
+    below_skin,
+    layers_below,
+    skin_ends,
+    touched_side,
+)
 from fingerpad.specimen.near import same_place
 from fingerpad.specimen.pad import PadMesh, skin_chain
 from fingerpad.stimuli.motion import INSTANT, NO_TIME, among, apart
@@ -70,6 +77,8 @@ _plan = plan
 
 #: Unprojected volumetric stiffness under edge indenters, in shear moduli.
 EDGE_STIFFNESS = 5.0
+PASSED = "a finer skin mesh, a wider or blunter stimulus, or a smaller force"
+"""What to try where a stimulus goes through."""
 _UNLOADED = 0.5  # of a force that was reached before
 _WIDTHS = 64  # of the contact, at which its error is looked up
 _NO_CONTACT = 1e-5  # m, half-width that stands for none
@@ -264,9 +273,18 @@ class Simulation:
         if self.mesh.half:
             points = np.abs(points * [1, 0]) + points * [0, 1]
         self.depth, self.offset = depth, offset
-        return MaterialPoints(
-            self.body, points, instantaneous if self.prony else None, self.mesh.half
-        )
+        try:
+            return MaterialPoints(
+                self.body, points, instantaneous if self.prony else None, self.mesh.half
+            )
+        except ReceptorError as error:
+            room = min(
+                sum(thickness for _, thickness in layers_below(self.whole, x))
+                for x in receptors.offsets
+            )
+            raise ReceptorError(
+                f"{error}; allowed: depths below {room * 1e3:.3g} mm, where the pad ends"
+            ) from None
 
     def _skin(self):
         chain = skin_chain(self.mesh)
@@ -274,7 +292,9 @@ class Simulation:
         apex = _apex(self.mesh.points[chain])
         spacing = float(np.hypot(np.diff(x), np.diff(y)).min())
         reach = 1.4 * self.plan.contact.half_width
-        near = np.flatnonzero((np.abs(x - x[apex]) <= reach) & touched_side(y))
+        near = np.flatnonzero(
+            (np.abs(x - x[apex]) <= reach) & touched_side(self.mesh.points[chain])
+        )
         start = (int(near.min()) - 8, int(near.max()) + 9)
         return Skin(chain, self.mesh.curves["skin"], spacing, start)
 
@@ -311,7 +331,19 @@ class Simulation:
         total = self._nominal_end()
         counts = {"iterations": 0, "cutbacks": 0}
 
+        height = float(np.ptp(self.mesh.points[:, 1]))
+
         def after(record: Record):
+            if record.depth > height:
+                reason = (
+                    f"the stimulus is {1e3 * record.depth:.3g} mm deep in a pad that is "
+                    f"{1e3 * height:.3g} mm high"
+                )
+                raise NonConvergence(
+                    done[-1].time if done else 0.0,
+                    f"{reason}, so it has passed between nodes",
+                    PASSED,
+                )
             states.append(self._sampled(done[-1].time if done else 0.0))
             done.append(record)
             if among(wanted, record.time):
@@ -457,9 +489,9 @@ class Simulation:
             return Unbounded()
         x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance
         x = np.concatenate([x, -x]) if self.mesh.half else x
-        near = self.plan.contact_edge + self.profile.edge_radius
+        near = self.plan.contact_edge
         if self.plan.unresolved_edge:
-            corners = np.array(self.profile.edges)
+            corners = self.profile.tangents()
         else:
             pressure, half_width = (record.nodal_force / record.length).max(), np.ptp(x) / 2
             there = slice(*np.searchsorted(self.corners[:, 0], [x.min() - near, x.max() + near]))
@@ -778,8 +810,7 @@ def _leg_ends(records) -> list[int]:
 
 def _apex(skin: np.ndarray) -> int:
     """Index of the skin node (ns, 2) nearest to x = 0 on the side that is touched."""
-    x, y = skin.T
-    return int(np.argmin(np.where(touched_side(y), np.abs(x), np.inf)))
+    return int(np.argmin(np.where(touched_side(skin), np.abs(skin[:, 0]), np.inf)))
 
 
 class _Unfolding:

@@ -1,8 +1,7 @@
 """Tables that people bring: text files as instruments, spreadsheets and numpy write them.
 
-A table is a header and rows of cells, parted by commas, semicolons, tabs or spaces. Every reader of
-a user's table (profiles, forces, recordings, motions, samples of a sweep) starts here, so all of
-them take the same files and refuse the same ones.
+A table is a header and rows of cells, parted by commas, semicolons, tabs or spaces. Every reader of a user's table (profiles,
+forces, recordings, motions, samples of a sweep) starts here, so all of them take the same files and refuse the same ones.
 """
 
 from __future__ import annotations
@@ -24,10 +23,14 @@ SAVE_AS = "a CSV file in UTF-8"
 _PARTED = {"\t": "tabs", ";": "semicolons", ",": "commas", " ": "spaces"}
 """Delimiters and their names; the first that a header holds parts its columns."""
 _COMMENT = ("#", "%")
+_WRONG_CELL = re.compile(r'\s*"?#(?:REF!|N/A|DIV/0!|VALUE!|NAME\?|NULL!|NUM!)(?=[",;\s]|$)')
+"""What a spreadsheet writes where it has no value, which is no comment."""
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _WITH_COMMA = re.compile(r"[+-]?(?:\d+,\d*|,\d+)(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:[,.' \u00a0\u202f]\d{3})+(?:[.,]\d*)?")
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+_POINTED = re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+")
+_HUNDREDS = re.compile(r"[+-]?[1-9]\d\d")
 _WRITE_POINTS = "numbers such as 1234.5, with a decimal point and no other sign"
 
 
@@ -83,17 +86,19 @@ class Table:
             text = text.replace(",", ".", 1) if _WITH_COMMA.fullmatch(text) else text
         if _NUMBER.fullmatch(text) and abs(value := float(text)) < float("inf"):
             return value
-        what = f"has '{cell[:40]}' in row {line}, column '{self.header[column]}', which is no finite number"
+        what = (
+            f"has '{cell[:40]}' in row {line}, column '{self.header[column]}', which is no "
+            "finite number"
+        )
         raise TableError(what, _WRITE_POINTS)
 
 
 def read_table(path: str | Path) -> Table:
     """Read a table from a text file.
 
-    The encoding may be UTF-8, UTF-16 or Windows-1252. Lines that start with ``#`` or ``%`` are
-    comments; where the first other line is numbers, the last comment before it is the header.
-    Columns are parted by tabs, semicolons, commas or spaces, as in the header. Decimal commas are
-    read where they cannot be anything else.
+    The encoding may be UTF-8, UTF-16 or Windows-1252. Lines that start with ``#`` or ``%`` are comments; where the first other
+    line is numbers, the last comment before it is the header. Columns are parted by tabs, semicolons, commas or spaces, as in the
+    header. Decimal commas are read where they cannot be anything else.
 
     Raises
     ------
@@ -147,9 +152,7 @@ def _decoded(content: bytes) -> tuple[str, list[str]]:
 
 
 def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
-    """Names of the columns, what parts them, and the (number, text) of the lines below that say
-    something.
-    """
+    """Names of the columns, what parts them, and the (number, text) of the lines below that say something."""
     lines = [
         (number, line)
         for number, line in enumerate(io.StringIO(text, newline=""), start=1)
@@ -161,18 +164,14 @@ def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
         lines = lines[1:]
         if told not in _PARTED:
             raise TableError(f"parts its columns by '{told}'", "tabs, semicolons or commas")
-    said = [line for _, line in lines if not line.lstrip().startswith(_COMMENT)]
+    said = [line for _, line in lines if not _is_comment(line)]
     if not said:
         raise TableError("holds no rows")
     first = said[0]
     delimiter = told or _delimiter(first)
     header = _cells(first, delimiter)
     if all(map(_like_a_number, header)):
-        before = [
-            line
-            for number, line in lines[: _place(lines, first)]
-            if line.lstrip().startswith(_COMMENT)
-        ]
+        before = [line for number, line in lines[: _place(lines, first)] if _is_comment(line)]
         first = before[-1].lstrip().lstrip("".join(_COMMENT)) if before else ""
         delimiter = told or _delimiter(first)
         header = _cells(first, delimiter)
@@ -190,11 +189,11 @@ def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
             raise TableError(f"has the column '{name[:40]}' twice", "each column once")
         if len(name) > MOST_LETTERS:
             raise TableError(f"has a column's name of {len(name)} letters", f"up to {MOST_LETTERS}")
-    return (
-        header,
-        delimiter,
-        [(number, line) for number, line in lines if not line.lstrip().startswith(_COMMENT)],
-    )
+    return header, delimiter, [(number, line) for number, line in lines if not _is_comment(line)]
+
+
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(_COMMENT) and not _WRONG_CELL.match(line)
 
 
 def _place(lines: list[tuple[int, str]], text: str) -> int:
@@ -246,7 +245,10 @@ def _like_a_number(cell: str) -> bool:
 
 
 def _wrong_count(line: int, cells: list[str], header: list[str], delimiter: str) -> TableError:
-    what = f"has {len(cells)} cells in row {line}, {len(header)} in its header ({', '.join(header)[:60]})"
+    what = (
+        f"has {len(cells)} cells in row {line}, {len(header)} in its header "
+        f"({', '.join(header)[:60]})"
+    )
     if (
         delimiter == ","
         and len(cells) > len(header)
@@ -261,9 +263,19 @@ def _wrong_count(line: int, cells: list[str], header: list[str], delimiter: str)
 
 
 def _decimal_comma(rows: list[list[str]], lines: list[int], delimiter: str) -> bool:
-    """Whether numbers have decimal commas; `TableError` where they may be thousands, or where both
-    signs are used.
-    """
+    """Whether numbers have decimal commas; `TableError` where they may be thousands, or where both signs are used."""
+    for cells in zip(*rows, strict=True) if delimiter == ";" else ():
+        pointed = [(line, cell) for line, cell in zip(lines, cells, strict=True) if "." in cell]
+        if (
+            pointed
+            and all(_POINTED.fullmatch(cell) for _, cell in pointed)
+            and any(map(_HUNDREDS.fullmatch, cells))
+        ):
+            line, cell = pointed[0]
+            raise TableError(
+                f"has '{cell}' in row {line} beside whole numbers, which may be thousands",
+                _WRITE_POINTS,
+            )
     found, certain, points = "", delimiter == ";", False
     for line, cells in zip(lines, rows, strict=True):
         for cell in cells:

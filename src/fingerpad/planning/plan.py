@@ -507,7 +507,7 @@ def _unbounded(scene, profile, external, pad, contact, edge: float, unresolved: 
     half_width, (low, high) = contact.half_width, way_of(scene)
     pressure = 2 / np.pi * pressing_force(scene, pad, contact) / half_width
     corners = (
-        np.array(profile.edges)
+        profile.tangents()
         if unresolved
         else seen_corners(profile.corners(), pad.stiff, pressure, edge / 2, half_width)
     )

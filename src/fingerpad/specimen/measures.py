@@ -1,6 +1,4 @@
-"""Measures of a meshed pad: the skin's apex, layer thicknesses, and points at a depth below the
-skin.
-"""
+"""Measures of a meshed pad: the skin's apex, layer thicknesses, and points at a depth below the skin."""
 
 from __future__ import annotations
 
@@ -19,20 +17,24 @@ def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
     else:
         shape = np.stack([(1 - s) / 2, (1 + s) / 2])
     fine = np.einsum("as,fai->fsi", shape, points[facets]).reshape(-1, 2)
-    return np.vstack([fine, fine * [-1, 1]]) if mesh.half else fine
+    return np.vstack([fine[::-1] * [-1, 1], fine]) if mesh.half else fine
 
 
-def touched_side(y: np.ndarray) -> np.ndarray:
-    """Whether heights ``y`` (n,) of a skin are of the half that is touched; of a flat skin all
-    are.
+def touched_side(skin: np.ndarray) -> np.ndarray:
+    """Whether points (n, 2) m along a skin are on the side that is touched.
+
+    All are of a skin that never turns back, however high it is; of others those of the upper half, and those above x = 0.
     """
-    return y >= y.max() - 0.5 * np.ptp(y)
+    (x, y), way = skin.T, np.diff(skin[:, 0])
+    if not len(way) or (way >= -1e-9 * np.ptp(x)).all():
+        return np.ones(len(x), bool)
+    forward = np.append(way > 0, way[-1] > 0)
+    middle = y[np.argmin(np.where(forward, np.abs(x), np.inf))]
+    return y >= min(y.max() - 0.5 * np.ptp(y), middle)
 
 
 def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
-    """Nodes at which the skin ends, and the angle (rad) between it and the boundary that goes on,
-    through the material.
-    """
+    """Nodes at which the skin ends, and the angle (rad) between it and the boundary that goes on, through the material."""
     skin = mesh.curves["skin"][:, :2]
     others = np.concatenate(
         [facets[:, :2] for name, facets in mesh.curves.items() if name != "skin"]
@@ -52,9 +54,8 @@ def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
     return found
 
 
-def layers_below(mesh: PadMesh) -> list[tuple[str, float]]:
-    """Names and thicknesses (m) of the layers straight below the skin at x = 0, down to the first
-    gap or the base.
+def layers_below(mesh: PadMesh, middle: float = 0.0) -> list[tuple[str, float]]:
+    """Names and thicknesses (m) of the layers straight below the skin at x = ``middle`` m, down to the first gap or the base.
 
     Raises:
         MeshError: the skin does not cross x = 0.
@@ -64,7 +65,9 @@ def layers_below(mesh: PadMesh) -> list[tuple[str, float]]:
         raise MeshError(
             "mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0"
         )
-    at = 1e-6 * np.ptp(mesh.points[:, 0])  # beside the middle, where nodes often are
+    at = middle + (1 if middle <= 0 else -1) * 1e-6 * np.ptp(
+        mesh.points[:, 0]
+    )  # beside the middle, where nodes often are
     start, end = mesh.points[element_edges(mesh.cells, mesh.element)[:, :2].T]
     count = len(mesh.cells)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -97,8 +100,7 @@ def apex_radius(mesh: PadMesh) -> float:
 
 
 def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
-    """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft
-    tissue to the bone, m.
+    """Radius of curvature of the skin at x = 0, thickness of the epidermis there, and of all soft tissue to the bone, m.
 
     Raises:
         MeshError: there is no skin, or no bone below it, at x = 0.
@@ -130,20 +132,17 @@ def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
 def apex_edge(mesh: PadMesh) -> float:
     """Length (m) of the skin's element edges around x = 0 on the side that is touched."""
     ends = mesh.points[mesh.curves["skin"][:, :2]]
-    high = ends[..., 1].mean(1) >= ends[..., 1].max() - 0.5 * np.ptp(
-        ends[..., 1]
-    )  # of a flat skin: all
+    high = touched_side(ends.mean(axis=1))
     lengths = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     nearest = np.argsort(np.where(high, np.abs(ends[..., 0].mean(1)), np.inf))[:4]
     return float(lengths[nearest].mean())
 
 
 def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Points (n, 2) m at lateral position ``offsets`` whose distance to the undeformed skin is
-    ``depths`` (n,) m.
+    """Points (n, 2) m at lateral position ``offsets`` whose distance to the undeformed skin is ``depths`` (n,) m.
 
-    On the axis of a symmetric pad that is straight below the apex; elsewhere depth is measured
-    along the skin's normal, as the layers are.
+    On the axis of a symmetric pad that is straight below the apex; elsewhere depth is measured along the skin's normal, as
+    the layers are.
 
     Raises:
         MeshError: no point of that depth exists at that offset.
@@ -155,12 +154,12 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
         return np.zeros((0, 2))
     skin = _fine_skin(mesh)
     order = np.argsort(skin[:, 0])
-    upper = skin[order]
-    upper = upper[touched_side(upper[:, 1])]
+    upper = skin[order[touched_side(skin)[order]]]
     beside = offsets[(offsets < upper[0, 0]) | (offsets > upper[-1, 0])]
     if len(beside):
         raise MeshError(
-            f"receptors: there is no skin over x = {beside[0] * 1e3:.3g} mm; allowed: offsets from {upper[0, 0] * 1e3:.3g} mm to "
+            f"receptors: there is no skin over x = {beside[0] * 1e3:.3g} mm; allowed: offsets "
+            f"from {upper[0, 0] * 1e3:.3g} mm to "
             f"{upper[-1, 0] * 1e3:.3g} mm"
         )
     high = np.interp(offsets, upper[:, 0], upper[:, 1])
@@ -180,17 +179,16 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
     found = (low + high) / 2
     if np.any(np.abs(below(found) - depths) > 1e-3 * depths):
         raise MeshError(
-            "receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue"
+            "receptors: no point of the pad lies at that depth and offset; allowed: depths inside "
+            "the soft tissue"
         )
     return np.column_stack([offsets, found])
 
 
 def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Points (n, 2) m at lateral position ``offsets`` whose depth below the smooth outline is
-    ``depths`` (n,) m.
+    """Points (n, 2) m at lateral position ``offsets`` whose depth below the smooth outline is ``depths`` (n,) m.
 
-    For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as
-    :func:`below_skin`.
+    For pads with outer ridges, whose own skin is no measure of depth; otherwise the same as :func:`below_skin`.
 
     Raises:
         MeshError: no point of that depth exists at that offset.
@@ -208,6 +206,7 @@ def below_outline(outline: OutlineLike, depths: np.ndarray, offsets: np.ndarray)
     found = curve.point(np.where(offsets == 0, 0.0, high), depths)
     if np.any(np.abs(found[:, 0] - np.abs(offsets)) > 1e-9):
         raise MeshError(
-            "receptors: no point of the pad lies at that depth and offset; allowed: depths inside the soft tissue"
+            "receptors: no point of the pad lies at that depth and offset; allowed: depths inside "
+            "the soft tissue"
         )
     return found * np.column_stack((np.where(offsets < 0, -1.0, 1.0), np.ones(len(depths))))
