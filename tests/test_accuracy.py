@@ -367,6 +367,7 @@ def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Data
     count = len(way)
     columns = {"leg": [0, 0, *[1] * count], "stroke_distance": [0.0, 0.0, *(1e-3 * np.array(way))]}
     columns |= {"indentation_depth": [0.0, press, *[press] * count], "centre_pressure": [0.0, 1.0, *pressures]}
+    columns["peak_pressure"] = columns["centre_pressure"]
     return xr.Dataset({name: ("time", np.array(values)) for name, values in columns.items()})
 
 

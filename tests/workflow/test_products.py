@@ -174,6 +174,7 @@ def test_studies_make_their_tables_and_figures(thesis):
                     "accuracy_strokes",
                     "accuracy_belief",
                     "accuracy_drawn",
+                    "accuracy_own",
                     "accuracy_shown",
                 ),
                 ("csv", "md"),
