@@ -1,11 +1,15 @@
 """What newcomers try first, and what they are told."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import fingerpad
 from fingerpad.cli import main
 from fingerpad.results import ResultError, read_history, summary, write_history
+from fingerpad.specimen.files import write_pad
+from own_meshes import SLAB, slab_mesh
 
 pytestmark = pytest.mark.unit
 
@@ -81,3 +85,26 @@ def test_width_of_the_contact_and_of_what_touches(tmp_path):
     np.testing.assert_allclose(smooth.touching_width, smooth.contact_width)
     write_history(history, tmp_path / "h.nc")
     assert "touching_width" in read_history(tmp_path / "h.nc")
+
+
+TOPS = {
+    "hollow": lambda x: 5e-3 + 0.2 * x**2,
+    "deeply hollow": lambda x: 4e-3 + 10 * x**2,
+    "tilted": lambda x: 5e-3 + 0.01 * x,
+    "with a step": lambda x: np.where(x < 1e-3, 4e-3, 5e-3),
+}
+
+
+@pytest.mark.parametrize("top", TOPS)
+def test_the_middle_of_a_skin_is_over_zero_however_high_it_is_there(tmp_path, top):
+    """And receptors are found below all of it; no node is at x = 0 exactly."""
+    flat = slab_mesh(0.5e-3, left=-10.2e-3, right=9.8e-3, low=-10.2e-3, high=9.8e-3)
+    x, y = flat.points.T
+    bent = replace(flat, points=np.column_stack([x, y * TOPS[top](x) / 5e-3]))
+    write_pad(bent.raised(), tmp_path / "m.msh")
+    scene = SLAB(tmp_path / "m.msh") | {"outputs": {"receptors": {"depths": ["0.5 mm"], "offsets": ["-4 mm", "0 mm", "4 mm"]}}}
+    history = fingerpad.simulate(scene)
+    middle = np.argmin(np.abs(history.skin_x.values))
+    assert history.skin_arc.values[middle] == 0 and np.argmin(np.abs(history.skin_arc.values)) == middle
+    np.testing.assert_array_equal(history.centre_lateral_displacement, history.skin_displacement_x[:, middle])
+    np.testing.assert_array_equal(history.centre_pressure, history.contact_pressure[:, middle])

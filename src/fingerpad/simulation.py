@@ -211,7 +211,7 @@ class Simulation:
         apex = _apex(self.mesh.points[chain])
         spacing = float(np.hypot(np.diff(x), np.diff(y)).min())
         reach = 1.4 * self.plan.contact.half_width
-        near = np.flatnonzero((np.abs(x - x[apex]) <= reach) & touched_side(y))
+        near = np.flatnonzero((np.abs(x - x[apex]) <= reach) & touched_side(self.mesh.points[chain]))
         start = (int(near.min()) - 8, int(near.max()) + 9)
         return Skin(chain, self.mesh.curves["skin"], spacing, start)
 
@@ -571,8 +571,7 @@ def _leg_ends(records) -> list[int]:
 
 def _apex(skin: np.ndarray) -> int:
     """Index of the skin node (ns, 2) nearest to x = 0 on the side that is touched."""
-    x, y = skin.T
-    return int(np.argmin(np.where(touched_side(y), np.abs(x), np.inf)))
+    return int(np.argmin(np.where(touched_side(skin), np.abs(skin[:, 0]), np.inf)))
 
 
 class _Unfolding:

@@ -135,6 +135,8 @@ def in_contact(history: xr.Dataset, index: int, margin: int = 1) -> np.ndarray:
 
 def centre_node(history: xr.Dataset) -> int:
     """Index of the skin node at the apex (x = 0, on the upper side)."""
+    if "skin_arc" in history.variables:
+        return int(np.argmin(np.abs(history.variables["skin_arc"].values)))
     x, y = history.variables["skin_x"].values, history.variables["skin_y"].values
     return int(np.argmin(np.where(y > 0, abs(x), np.inf)))
 

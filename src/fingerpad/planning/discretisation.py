@@ -17,7 +17,7 @@ from fingerpad.planning.schedule import leg_durations
 from fingerpad.scenes.scene import Discretisation, Scene
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import apex_edge, touched_side
-from fingerpad.specimen.pad import MeshSize, PadMesh, all_over
+from fingerpad.specimen.pad import MeshSize, PadMesh, all_over, skin_chain
 from fingerpad.stimuli.profile import Profile
 
 _THIN = 1e-3  # m, of layers altogether, below which presets are in their size
@@ -255,8 +255,8 @@ def height_at_receptors(scene: Scene, external: PadMesh) -> float | None:
     receptors = scene.outputs.receptors
     if not receptors.depths or not receptors.offsets:
         return None
-    skin = external.points[np.unique(external.curves["skin"])]
-    upper = skin[touched_side(skin[:, 1])]
+    skin = external.points[skin_chain(external)]
+    upper = skin[touched_side(skin)]
     upper = upper[np.argsort(upper[:, 0])]
     corners = external.points[external.cells]
     low, high = corners.min(axis=1), corners.max(axis=1)

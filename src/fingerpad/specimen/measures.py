@@ -17,12 +17,20 @@ def _fine_skin(mesh: PadMesh, per_edge: int = 16) -> np.ndarray:
     else:
         shape = np.stack([(1 - s) / 2, (1 + s) / 2])
     fine = np.einsum("as,fai->fsi", shape, points[facets]).reshape(-1, 2)
-    return np.vstack([fine, fine * [-1, 1]]) if mesh.half else fine
+    return np.vstack([fine[::-1] * [-1, 1], fine]) if mesh.half else fine
 
 
-def touched_side(y: np.ndarray) -> np.ndarray:
-    """Whether heights ``y`` (n,) of a skin are of the half that is touched; of a flat skin all are."""
-    return y >= y.max() - 0.5 * np.ptp(y)
+def touched_side(skin: np.ndarray) -> np.ndarray:
+    """Whether points (n, 2) m along a skin are on the side that is touched.
+
+    All are of a skin that never turns back, however high it is; of others those of the upper half, and those above x = 0.
+    """
+    (x, y), way = skin.T, np.diff(skin[:, 0])
+    if not len(way) or (way >= -1e-9 * np.ptp(x)).all():
+        return np.ones(len(x), bool)
+    forward = np.append(way > 0, way[-1] > 0)
+    middle = y[np.argmin(np.where(forward, np.abs(x), np.inf))]
+    return y >= min(y.max() - 0.5 * np.ptp(y), middle)
 
 
 def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
@@ -106,7 +114,7 @@ def apex_measures(mesh: PadMesh) -> tuple[float, float, float]:
 def apex_edge(mesh: PadMesh) -> float:
     """Length (m) of the skin's element edges around x = 0 on the side that is touched."""
     ends = mesh.points[mesh.curves["skin"][:, :2]]
-    high = ends[..., 1].mean(1) >= ends[..., 1].max() - 0.5 * np.ptp(ends[..., 1])  # of a flat skin: all
+    high = touched_side(ends.mean(axis=1))
     lengths = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     nearest = np.argsort(np.where(high, np.abs(ends[..., 0].mean(1)), np.inf))[:4]
     return float(lengths[nearest].mean())
@@ -126,8 +134,7 @@ def below_skin(mesh: PadMesh, depths: np.ndarray, offsets: np.ndarray) -> np.nda
         return np.zeros((0, 2))
     skin = _fine_skin(mesh)
     order = np.argsort(skin[:, 0])
-    upper = skin[order]
-    upper = upper[touched_side(upper[:, 1])]
+    upper = skin[order[touched_side(skin)[order]]]
     beside = offsets[(offsets < upper[0, 0]) | (offsets > upper[-1, 0])]
     if len(beside):
         raise MeshError(
