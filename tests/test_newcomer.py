@@ -9,6 +9,8 @@ import fingerpad
 from fingerpad.cli import main
 from fingerpad.results import ResultError, read_history, summary, write_history
 from fingerpad.specimen.files import write_pad
+from fingerpad.sweeps.design import Design
+from fingerpad.sweeps.language import load_sweep
 from own_meshes import SLAB, slab_mesh
 
 pytestmark = pytest.mark.unit
@@ -108,3 +110,25 @@ def test_the_middle_of_a_skin_is_over_zero_however_high_it_is_there(tmp_path, to
     assert history.skin_arc.values[middle] == 0 and np.argmin(np.abs(history.skin_arc.values)) == middle
     np.testing.assert_array_equal(history.centre_lateral_displacement, history.skin_displacement_x[:, middle])
     np.testing.assert_array_equal(history.centre_pressure, history.contact_pressure[:, middle])
+
+
+@pytest.mark.parametrize(
+    "over", ["table: t.csv", "specimen.contact_length: [10, 11]", "specimen.contact_length: {range: [10, 11], count: 2}"]
+)
+def test_a_sweep_takes_no_number_without_its_unit(folder, capsys, over):
+    (folder / "t.csv").write_text("specimen.contact_length,friction\n10,0.1\n11,0.2\n")
+    (folder / "sweep.yaml").write_text(f"scene: scene.yaml\nover:\n  {over}\n")
+    assert main(["sweep", "sweep.yaml"]) == 2
+    said = capsys.readouterr().err
+    assert "contact_length: 10" in said and " has no unit; allowed: a length with its unit such as" in said
+
+
+def test_a_sweep_takes_bare_numbers_where_none_has_a_unit(folder):
+    over = {
+        "friction": [0, 0.1],
+        "accuracy.steps": [4, 5],
+        "specimen.layers.fat.poisson_ratio": {"range": [0.3, 0.4], "count": 2},
+    }
+    design = Design(load_sweep({"scene": "scene.yaml", "over": over}))
+    design.check()
+    assert len(design) == 8 and type(design.scene(0).accuracy.steps) is int and type(design.scene(7).friction) is float

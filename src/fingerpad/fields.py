@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, ValidationInfo
@@ -14,6 +15,25 @@ from fingerpad.units import DIMENSIONS, QUANTITY_PATTERN, QuantityError, parse_n
 
 class SI(float):
     """A number already in SI that takes the place of text in a document being filled in."""
+
+
+class _Whole(int):
+    """A whole number as a document says it, see :func:`as_written`."""
+
+
+class _Number(float):
+    """A number as a document says it, see :func:`as_written`."""
+
+
+def as_written(value: Any) -> Any:
+    """`value` of a document, with the numbers in it told from SI numbers: where a unit is needed, they have none."""
+    if isinstance(value, (bool, SI)):
+        return value
+    if isinstance(value, Mapping):
+        return {key: as_written(each) for key, each in value.items()}
+    if isinstance(value, (list, tuple)):
+        return type(value)(map(as_written, value))
+    return _Whole(value) if type(value) is int else _Number(value) if type(value) is float else value
 
 
 def quantity(
@@ -27,7 +47,7 @@ def quantity(
     def parse(value: Any, info: ValidationInfo) -> float | str:
         if isinstance(value, str) and value in words:
             return value
-        in_python = info.context is None or isinstance(value, SI)
+        in_python = isinstance(value, SI) or (info.context is None and not isinstance(value, (_Whole, _Number)))
         kind = DIMENSIONS[dimension]
         try:
             result = parse_number(value) if in_python and not isinstance(value, str) else parse_quantity(value, dimension)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fingerpad.documents import SceneError
+from fingerpad.fields import as_written
 from fingerpad.files import is_file
 from fingerpad.scenes.scene import Scene
 from fingerpad.sweeps.language import Column, Read, Unit, quantiles, resolved
@@ -119,7 +120,7 @@ class Design:
     def scene(self, number: int) -> Scene:
         """A scene. Raises SceneError, one line, that names what is special to it."""
         try:
-            return self.read.base.varied(self.changes(number))
+            return self.read.base.varied(as_written(self.changes(number)))
         except SceneError as error:
             raise SceneError(f"{self.shown}: scene {number} ({self.said(number)}): {self.without_name(error)}") from None
 
