@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 import fingerpad
-from fingerpad.cli import main
+from fingerpad.cli import _error_line, main
+from fingerpad.planning.unbounded import in_words, seen_corners
 from fingerpad.results import ResultError, read_history, summary, write_history
 from fingerpad.specimen.files import write_pad
+from fingerpad.stimuli.shapes.sampled import Points
 from fingerpad.sweeps.design import Design
 from fingerpad.sweeps.language import load_sweep
 from own_meshes import SLAB, slab_mesh
@@ -132,3 +134,55 @@ def test_a_sweep_takes_bare_numbers_where_none_has_a_unit(folder):
     design = Design(load_sweep({"scene": "scene.yaml", "over": over}))
     design.check()
     assert len(design) == 8 and type(design.scene(0).accuracy.steps) is int and type(design.scene(7).friction) is float
+
+
+def corners_seen(x, y, **keys):
+    """x (mm) of the corners of a profile (mm) that nodes 60 um apart see under 10 kPa."""
+    corners = Points(1e-3 * np.asarray(x), 1e-3 * np.asarray(y), **keys).corners()
+    inner = corners[np.abs(corners[:, 0]) < 0.99e-3 * np.max(x)]
+    return 1e3 * seen_corners(inner, 0.2e6, 10e3, 60e-6, 2e-3)
+
+
+@pytest.mark.parametrize("samples", [121, 301, 1201, 2401, 6001])
+@pytest.mark.parametrize("slope", [0.2, 1.0, 10.0])
+def test_a_sharp_corner_is_one_at_every_sampling(samples, slope):
+    """Between two samples it is cut off by the line that joins them."""
+    x = np.linspace(-6, 6, samples)
+    np.testing.assert_allclose(np.abs(corners_seen(x, slope * np.maximum(0, np.abs(x) - 1.5))), 1.5, atol=0.021)
+    assert len(corners_seen(x, slope * np.abs(x))) == 1
+
+
+def test_a_smooth_profile_has_no_corner_however_it_is_sampled():
+    x = np.linspace(-4, 4, 1601)
+    rise = np.clip(np.abs(x) - 1.5, 0, 0.04 * np.sin(np.pi / 4))
+    rough = np.random.default_rng(0).standard_normal(x.size)
+    smooth = {
+        "circle": 5 - np.sqrt(25 - x**2),
+        "parabola": 0.1 * x**2,
+        "sine": 0.1 * np.cos(2 * np.pi * x / 3),
+        "fillet of eight samples": 0.04 - np.sqrt(0.04**2 - rise**2) + np.maximum(0, np.abs(x) - 1.5 - rise),
+        "rough": 0.1 * x**2 + 1e-4 * rough,
+        "rounded": np.round(0.1 * x**2, 4),
+    }
+    assert {name: len(corners_seen(x, y)) for name, y in smooth.items()} == dict.fromkeys(smooth, 0)
+
+
+def test_a_fillet_that_the_mesh_cannot_tell_is_marked_where_it_begins():
+    history = fingerpad.simulate(
+        {
+            "stimulus": {"shape": "bar", "width": "3 mm", "fillet": "0.5 mm"},
+            "motion": [{"press_to_force": "10 gf"}],
+            "accuracy": "draft",
+        }
+    )
+    at = history.attrs["unbounded_at"]
+    assert at == "the edges finer than the mesh at x = -1 and 1 mm" and history.contact_width[-1] > 2e-3
+
+
+def test_plurals_and_large_errors_are_words():
+    ends = Points(np.array([-1e-3, 0, 1e-3]), np.array([1e-4, 0, 1e-4]))
+    assert in_words(ends, np.array([-1e-3, 1e-3])) == ("the ends of the profile's points at x = -1 and 1 mm",)
+    assert (
+        _error_line({"run": {"estimated_error": 2.0, "largest_error": 2.0, "peak_pressure_singular": 0}})
+        == "error more than 100 %"
+    )

@@ -638,7 +638,7 @@ def _error_line(totals: dict[str, Any]) -> str:
 
     run = totals["run"]
     end = run["estimated_error"]
-    line = f"error about {percent(end)}"
+    line = f"error about {percent(end)}".replace("about more", "more")
     if run["largest_error"] > 1.5 * end:
         line += f", {percent(run['largest_error'])} at most"
     if len(run.get("runs", [])) > 1:

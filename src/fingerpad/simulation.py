@@ -341,9 +341,9 @@ class Simulation:
             return Unbounded()
         x = self.stepper.points[on, 0] + record.displacement[on, 0] + record.distance
         x = np.concatenate([x, -x]) if self.mesh.half else x
-        near = self.plan.contact_edge + self.profile.edge_radius
+        near = self.plan.contact_edge
         if self.plan.unresolved_edge:
-            corners = np.array(self.profile.edges)
+            corners = self.profile.tangents()
         else:
             pressure, half_width = (record.nodal_force / record.length).max(), np.ptp(x) / 2
             there = slice(*np.searchsorted(self.corners[:, 0], [x.min() - near, x.max() + near]))

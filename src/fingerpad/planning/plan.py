@@ -371,7 +371,7 @@ def _unbounded(scene, profile, external, pad, contact, edge: float, unresolved: 
     half_width, (low, high) = contact.half_width, way_of(scene)
     pressure = 2 / np.pi * pressing_force(scene, pad, contact) / half_width
     corners = (
-        np.array(profile.edges) if unresolved else seen_corners(profile.corners(), pad.stiff, pressure, edge / 2, half_width)
+        profile.tangents() if unresolved else seen_corners(profile.corners(), pad.stiff, pressure, edge / 2, half_width)
     )
     corners = corners[(corners >= low - half_width) & (corners <= high + half_width)]
     places, friction = list(in_words(profile, corners)), scene.friction > 0

@@ -82,14 +82,17 @@ def in_words(profile: Profile, x: np.ndarray) -> tuple[str, ...]:
     if not len(x):
         return ()
     at_end = np.isin(x, profile.reach) & (not profile.edges)
-    kinds = {"end of the profile's points": x[at_end], "edge" if profile.edges else "corner": x[~at_end]}
+    corner = ("corner", "corners")
+    if profile.edges:
+        corner = ("edge", "edges") if profile.unbounded else ("edge finer than the mesh", "edges finer than the mesh")
+    kinds = {("end of the profile's points", "ends of the profile's points"): x[at_end], corner: x[~at_end]}
     out = []
-    for name, places in kinds.items():
+    for (name, names), places in kinds.items():
         mm = np.unique(np.round(places * 1e3, 4)) + 0.0
         if len(mm) == 1:
             out.append(f"the {name} at x = {mm[0]:.4g} mm")
         elif len(mm) == 2 and mm[0] == -mm[1]:
-            out.append(f"the {name}s at x = -{mm[1]:.4g} and {mm[1]:.4g} mm")
+            out.append(f"the {names} at x = -{mm[1]:.4g} and {mm[1]:.4g} mm")
         elif len(mm):
-            out.append(f"{len(mm)} {name}s from x = {mm[0]:.4g} to {mm[-1]:.4g} mm")
+            out.append(f"{len(mm)} {names} from x = {mm[0]:.4g} to {mm[-1]:.4g} mm")
     return tuple(out)

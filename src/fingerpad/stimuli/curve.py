@@ -40,6 +40,8 @@ class Curve(Profile):
     #: rad, less than which a corner turns away from the skin without making a valley: a node on it is pushed to and fro by
     #: less than the tolerance of the forces
     flat = 2e-3
+    #: of a corner's turn, by which the surface beside it may turn and be straight
+    straight = 0.1
     #: pieces that are the surface itself and not its continuation
     own = slice(None)
 
@@ -64,6 +66,7 @@ class Curve(Profile):
             self._line[:, None], ends[:-1], (ends[:-1] + ends[1:]) / 2 - to_chord[:, None] * _normal(self._tangent)
         )  # of a line: its start
         self._reach = np.where(self._line, length, np.abs(turn))
+        self._directions = slope - turn, slope + turn
         before, after = (slope + turn)[:-1], (slope - turn)[1:]
         self._kink = np.concatenate([[0.0], after - before])  # at the start of each piece
         self._bisector = np.concatenate([[0.0], (before + after) / 2])
@@ -99,7 +102,43 @@ class Curve(Profile):
     def corners(self):
         chord = np.diff(self.x)
         here = 1 + np.flatnonzero(self._kink[1:] > 0)
-        return np.column_stack([self.x[here], self._kink[here], np.minimum(chord[here - 1], chord[here])])
+        turn, room = self._kink.copy(), np.concatenate([[0.0], np.minimum(chord[:-1], chord[1:])])
+        for first, last in self._alone():
+            whole = self._kink[first : last + 1].sum()
+            beside = min(self._straight(first - 1, -1, self.straight * whole), self._straight(last, 1, self.straight * whole))
+            if beside > room[first] and self.x[last] - self.x[first] <= self.straight * beside:
+                turn[first : last + 1], room[first : last + 1] = whole, beside
+        return np.column_stack([self.x[here], turn[here], room[here]])
+
+    def _alone(self):
+        """First and last of the one or two pieces at whose starts the surface bulges by far more than beside them.
+
+        Two, for a corner that is between two samples is cut off by the line that joins them.
+        """
+        kink = np.concatenate([[0.0], self._kink, [0.0, 0.0]])
+        for more in (0, 1):
+            bulge = kink[1 : -2 - more or None][: len(self._kink) - more]
+            if more:
+                both = bulge + kink[2:-2]
+                bulge = np.where(np.minimum(bulge, kink[2:-2]) > self.straight * both, both, 0.0)
+            beside = np.maximum(np.abs(kink[: len(bulge)]), np.abs(kink[2 + more : 2 + more + len(bulge)]))
+            for k in np.flatnonzero((bulge > 1e-4) & (beside <= self.straight * bulge)):
+                yield int(k), int(k) + more
+
+    def _straight(self, piece, step, off):
+        """How far (m) from the near end of a piece, to the right (step 1) or left (-1), the surface turns by at most ``off``."""
+        (near, far), (at, to) = self._directions[::step], (self.x[:-1], self.x[1:])[::step]
+        k, count = piece, 8
+        while 0 <= k < len(near):
+            here = np.arange(k, k + step * count, step)
+            here = here[(here >= 0) & (here < len(near))]
+            begun, done = (np.abs(each[here] - near[piece]) for each in (near, far))
+            if len(out := np.flatnonzero(np.maximum(begun, done) > off)):
+                k = here[out[0]]
+                share = max(off - begun[out[0]], 0.0) / max(done[out[0]] - begun[out[0]], off)
+                return abs(at[k] - at[piece] + share * (to[k] - at[k]))
+            k, count = here[-1] + step, 4 * count
+        return abs(to[here[-1]] - at[piece])
 
     def outline(self, x):
         return self._height(x)

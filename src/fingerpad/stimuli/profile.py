@@ -74,6 +74,10 @@ class Profile:
         """
         return Walls(np.zeros(0, int), np.zeros(0, int), np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2)))
 
+    def tangents(self) -> np.ndarray:
+        """x (k,) m at which rounded edges begin."""
+        return np.array(self.edges) - self.edge_radius * np.sign(self.edges)
+
     def corners(self) -> np.ndarray:
         """Corners that bulge at the skin, (k, 3): x (m), the angle by which the surface turns (rad), the room beside it (m)."""
         edges = self.edges if self.unbounded else ()
