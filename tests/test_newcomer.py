@@ -13,6 +13,7 @@ from fingerpad.specimen.files import write_pad
 from fingerpad.stimuli.shapes.sampled import Points
 from fingerpad.sweeps.design import Design
 from fingerpad.sweeps.language import load_sweep
+from fingerpad.tables import TableError, read_table
 from own_meshes import SLAB, slab_mesh
 
 pytestmark = pytest.mark.unit
@@ -186,3 +187,79 @@ def test_plurals_and_large_errors_are_words():
         _error_line({"run": {"estimated_error": 2.0, "largest_error": 2.0, "peak_pressure_singular": 0}})
         == "error more than 100 %"
     )
+
+
+COLUMNS_TWICE = {
+    "motion: [{table: t.csv}]": "time (s),force (N),force (gf)\n0,0,0\n1,0.1,20\n",
+    "motion: {table: t.csv}": "time (s),time (ms),force (gf)\n0,0,0\n1,10,20\n",
+    "stimulus: {shape: sampled, csv: t.csv}": "x (mm),y (mm),y (um)\n-1,0,1\n1,0,1\n",
+}
+
+
+@pytest.mark.parametrize("line", COLUMNS_TWICE)
+def test_a_quantity_in_two_columns_is_refused(folder, capsys, line):
+    (folder / "t.csv").write_text(COLUMNS_TWICE[line])
+    kept = [each for each in SCENE.splitlines() if not each.startswith(line.partition(":")[0])]
+    (folder / "scene.yaml").write_text("\n".join([*kept, line]))
+    assert main(["plan", "scene.yaml"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and " has two columns of " in said and "; allowed: one column of " in said
+
+
+@pytest.mark.parametrize("cell", ["#REF!", "#N/A", "#DIV/0!", "#VALUE!", "#NAME?", "#NULL!", '"#NUM!"'])
+@pytest.mark.parametrize("sign", ",;\t ")
+def test_what_spreadsheets_write_for_no_value_is_no_comment(folder, cell, sign):
+    lines = ["a,b", "1,2", "# N/A is a comment", "#NONE,3", f"{cell},3"]
+    (folder / "t.csv").write_text("\n".join(lines).replace(",", sign) + "\n")
+    with pytest.raises(TableError, match=r"has '.?#[A-Z/0?!]*.?' in row 5, column 'a', which is no finite number"):
+        read_table("t.csv").numbers(0)
+
+
+def test_points_between_thousands_are_refused_where_semicolons_tell_the_language(folder):
+    (folder / "t.csv").write_text("x;y\n-6;3.600\n-5;2.500\n-3;900\n")
+    with pytest.raises(TableError, match="has '3.600' in row 2 beside whole numbers, which may be thousands"):
+        read_table("t.csv")
+    (folder / "t.csv").write_text("x;y\n-6;3.600\n-5;2.5\n-3;900\n")
+    assert read_table("t.csv").numbers(1) == [3.6, 2.5, 900]
+
+
+def test_samples_take_units_in_square_brackets_and_no_index(folder, capsys):
+    (folder / "sweep.yaml").write_text("scene: scene.yaml\nover: {table: t.csv}\n")
+    (folder / "t.csv").write_text("stimulus.curvature [1/m],motion[0].press_to_force (gf)\n100,5\n210,10\n")
+    assert Design(load_sweep("sweep.yaml")).changes(1) == {
+        "stimulus.curvature": "210.0 1/m",
+        "motion[0].press_to_force": "10.0 gf",
+    }
+    (folder / "t.csv").write_text(",stimulus.curvature (1/m)\n0,100\n1,210\n")
+    assert main(["sweep", "sweep.yaml"]) == 2
+    assert (
+        "has no name for column 1; allowed: a key in each; no index: in pandas to_csv(index=False)"
+        in capsys.readouterr().err
+    )
+
+
+def test_a_folder_of_a_sweep_leaves_out_hidden_files(folder):
+    (folder / "profiles").mkdir()
+    for name in ("a.csv", ".a.csv", "._b.csv"):
+        (folder / "profiles" / name).write_text("x (mm),y (mm)\n-1,1\n0,0\n1,1\n")
+    (folder / "sweep.yaml").write_text(
+        "scene: {stimulus: {shape: sampled, csv: profiles/a.csv}, motion: [{press_to_force: 2 gf}]}\n"
+        "over: {stimulus.csv: {folder: profiles}}\n"
+    )
+    assert load_sweep("sweep.yaml").sweep.over["stimulus.csv"].labels() == ["a"]
+
+
+def test_a_receptor_below_the_pad_is_told_how_deep_it_may_be(tmp_path):
+    write_pad(slab_mesh(0.5e-3).raised(), tmp_path / "m.msh")
+    scene = SLAB(tmp_path / "m.msh") | {"outputs": {"receptors": {"depths": ["6 mm"], "offsets": ["-10 mm", "0 mm", "10 mm"]}}}
+    with pytest.raises(ValueError, match="outside the soft tissue; allowed: depths below 5 mm"):
+        fingerpad.simulate(scene)
+
+
+def test_a_stimulus_that_passes_through_the_pad_is_no_result(folder, capsys):
+    (folder / "needle.csv").write_text("x (um),y (mm)\n-30,0.9\n-20,0.4\n-10,0.1\n0,0\n10,0.1\n20,0.4\n30,0.9\n")
+    (folder / "scene.yaml").write_text(
+        "stimulus: {shape: sampled, csv: needle.csv}\nmotion: [{press_to_force: 10 gf}]\naccuracy: draft\n"
+    )
+    assert main(["run", "scene.yaml", "--out", "out", "--quiet"]) == 3
+    assert "mm deep in a pad that is" in capsys.readouterr().err

@@ -30,11 +30,12 @@ from fingerpad.planning.rules import RULES
 from fingerpad.planning.schedule import schedule
 from fingerpad.planning.unbounded import OF_STROKES, Unbounded, ends_unbounded, in_words, seen_corners
 from fingerpad.receptors.material_points import MaterialPoints
+from fingerpad.receptors.recovery import ReceptorError
 from fingerpad.results import FIELDS, Arrays, add_snapshots, arrays, peak_memory_MB, provenance, skin_arc
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.specimen import mesh_for
 from fingerpad.specimen.materials import Prony, moduli
-from fingerpad.specimen.measures import below_outline, below_skin, skin_ends, touched_side
+from fingerpad.specimen.measures import below_outline, below_skin, layers_below, skin_ends, touched_side
 from fingerpad.specimen.near import same_place
 from fingerpad.specimen.pad import PadMesh, skin_chain
 from fingerpad.stimuli.motion import INSTANT, NO_TIME, among, apart
@@ -46,6 +47,8 @@ _plan = plan
 
 #: Unprojected volumetric stiffness under edge indenters, in shear moduli.
 EDGE_STIFFNESS = 5.0
+PASSED = "a finer skin mesh, a wider or blunter stimulus, or a smaller force"
+"""What to try where a stimulus goes through."""
 _UNLOADED = 0.5  # of a force that was reached before
 _WIDTHS = 64  # of the contact, at which its error is looked up
 _NO_CONTACT = 1e-5  # m, half-width that stands for none
@@ -203,7 +206,11 @@ class Simulation:
         if self.mesh.half:
             points = np.abs(points * [1, 0]) + points * [0, 1]
         self.depth, self.offset = depth, offset
-        return MaterialPoints(self.body, points, instantaneous if self.prony else None, self.mesh.half)
+        try:
+            return MaterialPoints(self.body, points, instantaneous if self.prony else None, self.mesh.half)
+        except ReceptorError as error:
+            room = min(sum(thickness for _, thickness in layers_below(self.whole, x)) for x in receptors.offsets)
+            raise ReceptorError(f"{error}; allowed: depths below {room * 1e3:.3g} mm, where the pad ends") from None
 
     def _skin(self):
         chain = skin_chain(self.mesh)
@@ -244,7 +251,12 @@ class Simulation:
         total = self._nominal_end()
         counts = {"iterations": 0, "cutbacks": 0}
 
+        height = float(np.ptp(self.mesh.points[:, 1]))
+
         def after(record: Record):
+            if record.depth > height:
+                reason = f"the stimulus is {1e3 * record.depth:.3g} mm deep in a pad that is {1e3 * height:.3g} mm high"
+                raise NonConvergence(done[-1].time if done else 0.0, f"{reason}, so it has passed between nodes", PASSED)
             states.append(self._sampled(done[-1].time if done else 0.0))
             done.append(record)
             if among(wanted, record.time):

@@ -23,10 +23,14 @@ SAVE_AS = "a CSV file in UTF-8"
 _PARTED = {"\t": "tabs", ";": "semicolons", ",": "commas", " ": "spaces"}
 """Delimiters and their names; the first that a header holds parts its columns."""
 _COMMENT = ("#", "%")
+_WRONG_CELL = re.compile(r'\s*"?#(?:REF!|N/A|DIV/0!|VALUE!|NAME\?|NULL!|NUM!)(?=[",;\s]|$)')
+"""What a spreadsheet writes where it has no value, which is no comment."""
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _WITH_COMMA = re.compile(r"[+-]?(?:\d+,\d*|,\d+)(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:[,.' \u00a0\u202f]\d{3})+(?:[.,]\d*)?")
 _MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+_POINTED = re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+")
+_HUNDREDS = re.compile(r"[+-]?[1-9]\d\d")
 _WRITE_POINTS = "numbers such as 1234.5, with a decimal point and no other sign"
 
 
@@ -150,14 +154,14 @@ def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
         lines = lines[1:]
         if told not in _PARTED:
             raise TableError(f"parts its columns by '{told}'", "tabs, semicolons or commas")
-    said = [line for _, line in lines if not line.lstrip().startswith(_COMMENT)]
+    said = [line for _, line in lines if not _is_comment(line)]
     if not said:
         raise TableError("holds no rows")
     first = said[0]
     delimiter = told or _delimiter(first)
     header = _cells(first, delimiter)
     if all(map(_like_a_number, header)):
-        before = [line for number, line in lines[: _place(lines, first)] if line.lstrip().startswith(_COMMENT)]
+        before = [line for number, line in lines[: _place(lines, first)] if _is_comment(line)]
         first = before[-1].lstrip().lstrip("".join(_COMMENT)) if before else ""
         delimiter = told or _delimiter(first)
         header = _cells(first, delimiter)
@@ -172,7 +176,11 @@ def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
             raise TableError(f"has the column '{name[:40]}' twice", "each column once")
         if len(name) > MOST_LETTERS:
             raise TableError(f"has a column's name of {len(name)} letters", f"up to {MOST_LETTERS}")
-    return header, delimiter, [(number, line) for number, line in lines if not line.lstrip().startswith(_COMMENT)]
+    return header, delimiter, [(number, line) for number, line in lines if not _is_comment(line)]
+
+
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(_COMMENT) and not _WRONG_CELL.match(line)
 
 
 def _place(lines: list[tuple[int, str]], text: str) -> int:
@@ -227,6 +235,11 @@ def _wrong_count(line: int, cells: list[str], header: list[str], delimiter: str)
 
 def _decimal_comma(rows: list[list[str]], lines: list[int], delimiter: str) -> bool:
     """Whether numbers have decimal commas; `TableError` where they may be thousands, or where both signs are used."""
+    for cells in zip(*rows, strict=True) if delimiter == ";" else ():
+        pointed = [(line, cell) for line, cell in zip(lines, cells, strict=True) if "." in cell]
+        if pointed and all(_POINTED.fullmatch(cell) for _, cell in pointed) and any(map(_HUNDREDS.fullmatch, cells)):
+            line, cell = pointed[0]
+            raise TableError(f"has '{cell}' in row {line} beside whole numbers, which may be thousands", _WRITE_POINTS)
     found, certain, points = "", delimiter == ";", False
     for line, cells in zip(lines, rows, strict=True):
         for cell in cells:

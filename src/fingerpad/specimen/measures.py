@@ -50,8 +50,8 @@ def skin_ends(mesh: PadMesh) -> list[tuple[int, float]]:
     return found
 
 
-def layers_below(mesh: PadMesh) -> list[tuple[str, float]]:
-    """Names and thicknesses (m) of the layers straight below the skin at x = 0, down to the first gap or the base.
+def layers_below(mesh: PadMesh, middle: float = 0.0) -> list[tuple[str, float]]:
+    """Names and thicknesses (m) of the layers straight below the skin at x = ``middle`` m, down to the first gap or the base.
 
     Raises:
         MeshError: the skin does not cross x = 0.
@@ -59,7 +59,7 @@ def layers_below(mesh: PadMesh) -> list[tuple[str, float]]:
     x, y = mesh.points[skin_chain(mesh)].T
     if not (x.min() <= 0 <= x.max()):
         raise MeshError("mesh: the skin does not cross x = 0; allowed: a pad whose apex lies near x = 0")
-    at = 1e-6 * np.ptp(mesh.points[:, 0])  # beside the middle, where nodes often are
+    at = middle + (1 if middle <= 0 else -1) * 1e-6 * np.ptp(mesh.points[:, 0])  # beside the middle, where nodes often are
     start, end = mesh.points[element_edges(mesh.cells, mesh.element)[:, :2].T]
     count = len(mesh.cells)
     with np.errstate(divide="ignore", invalid="ignore"):

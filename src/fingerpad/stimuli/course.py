@@ -74,6 +74,9 @@ def _columns(table: Table) -> dict[str, tuple[int, float]]:
         if match := _COLUMN.fullmatch(name):
             unit, what = next(part for part in match.groups()[1:] if part is not None), match[1].lower()
             try:
+                if what in found:
+                    both = f"'{table.header[found[what][0]][:30]}' and '{name[:30]}'"
+                    raise TableError(f"has two columns of {what}: {both}", f"one column of {what}")
                 found[what] = k, parse_quantity(f"1 {unit}", _DIMENSIONS[what])
             except QuantityError as error:
                 raise TableError(f"has the column '{name[:40]}', which {error.problem}", _ALLOWED) from None

@@ -14,6 +14,7 @@ without a count, are drawn together in a design of points; all else is crossed w
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -189,7 +190,8 @@ class Folder(Axis):
 
     @cached_property
     def files(self) -> list[Path]:
-        return sorted(self.folder.glob(self.pattern))
+        hidden = self.pattern.startswith(".")
+        return sorted(path for path in self.folder.glob(self.pattern) if hidden or not path.name.startswith("."))
 
     def written(self):
         return [str(path) for path in self.files]
@@ -391,7 +393,9 @@ def _columns(value: Any, info: ValidationInfo) -> dict[str, Column]:
         table = read_table(path)
         found = {}
         for k, name in enumerate(table.header):
-            key, _, unit = name.removesuffix(")").partition(" (")
+            key, unit = match.groups() if (match := _WITH_UNIT.fullmatch(name)) else (name, "")
+            if not key:
+                raise TableError(f"has no name for column {k + 1}", "a key in each; no index: in pandas to_csv(index=False)")
             if unit or all(cell and _is_number(cell) for cell in (row[k] for row in table.rows)):
                 values = [f"{number!r} {unit}" if unit else number for number in table.numbers(k)]
             else:
@@ -408,6 +412,10 @@ def _columns(value: Any, info: ValidationInfo) -> dict[str, Column]:
     if not table.rows:
         raise Problem("has no rows", "a row for each scene")
     return found
+
+
+_WITH_UNIT = re.compile(r"(.+?)\s+[(\[](.*)[)\]]")
+"""A column's name: `stimulus.curvature (1/m)` or `stimulus.curvature [1/m]`."""
 
 
 def _is_number(cell: str) -> bool:

@@ -131,8 +131,11 @@ def _profile_columns(header: tuple[str, ...]) -> dict[str, tuple[int, float]]:
     for k, name in enumerate(header):
         if match := _COLUMN.fullmatch(name):
             unit = next(part for part in match.groups()[1:] if part is not None)
+            if (what := match[1].lower()) in found:
+                both = f"'{header[found[what][0]][:30]}' and '{name[:30]}'"
+                raise TableError(f"has two columns of {what}: {both}", f"one column of {what}")
             try:
-                found[match[1].lower()] = k, parse_quantity(f"1 {unit}", "length")
+                found[what] = k, parse_quantity(f"1 {unit}", "length")
             except QuantityError as error:
                 raise TableError(f"has the column '{name}', which {error.problem}", "'x (mm)', 'y (mm)', or um, or m") from None
     for name in ("x", "y"):
