@@ -3,7 +3,7 @@
 Inside the package every number is SI (m, N, Pa, s). The units are those of one `pint` registry; the
 field's gram-weight is the gram-force of 9.80665e-3 N (standard gravity, 3rd CGPM 1901, resolution
 2), written ``gf``, ``gw``, ``g wt`` or ``gram-weight``. Only products of unit names with one-digit
-powers reach pint's parser (``gf/s``, ``N/mm^2``, ``1/m``), so no text of a user's is ever evaluated.
+powers reach pint's parser (``gf/s``, ``N/mm^2``, ``1/m``), so no user's text is ever evaluated.
 """
 
 from __future__ import annotations

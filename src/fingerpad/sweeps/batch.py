@@ -46,7 +46,9 @@ def run_batch(todo: Path, records: Path) -> None:
                 continue
             history = records.parent.parent / "histories" / f"{key}.nc"
             if (deaths := _deaths(running).get(key, 0)) >= MOST_DEATHS:
-                cause = f"its process was killed {deaths} times while it ran; is there memory enough?"
+                cause = (
+                    f"its process was killed {deaths} times while it ran; is there memory enough?"
+                )
                 record = _failed(cause)
             else:
                 with _noted(running, key):

@@ -59,7 +59,8 @@ def collect(design: Mapping[str, Any], records: Iterable[Path], dataset: Path, t
     data = xr.Dataset(
         {name: (tuple(sizes), c.reshape(shape), about) for name, (c, about) in columns.items()},
         {p["name"]: _coordinate(p) for p in design["parameters"]},
-        design["about"] | {"scenes": len(design["keys"]), "failed": int(columns["failed"][0].sum())},
+        design["about"]
+        | {"scenes": len(design["keys"]), "failed": int(columns["failed"][0].sum())},
     )
     numeric = [name for name in columns if name not in ("failed", "diagnosis")]
     encoding = {name: {"zlib": True, "complevel": 1} for name in numeric}
@@ -103,7 +104,9 @@ def _columns(
             columns[name][0][at] = record.get(name, np.nan)
         for quantity, condition, unit, value in record["measures"] if at else ():
             if (quantity, condition) not in names:
-                name = names[quantity, condition] = _name(quantity, condition, others | set(columns))
+                name = names[quantity, condition] = _name(
+                    quantity, condition, others | set(columns)
+                )
                 about = {"units": unit, "long_name": _long_name(quantity, condition)}
                 about |= {"quantity": quantity, "condition": condition}
                 columns[name] = np.full(len(keys), np.nan), about

@@ -17,20 +17,10 @@ from rich.table import Table
 from rich.text import Text
 
 from fingerpad.documents import SceneError, read_yaml
-from fingerpad.files import is_file
 from fingerpad.sweeps.design import Design, Parameter
 from fingerpad.sweeps.engine import Layout, held, lay_out, run_layout
 from fingerpad.sweeps.forecast import forecast
 from fingerpad.sweeps.language import Read, load_sweep
-
-
-def is_sweep(path: Path) -> bool:
-    """Does a file describe a sweep: variations of a scene that it names?"""
-    try:
-        document = read_yaml(path) if is_file(path) else None
-    except SceneError:
-        return False  # whoever reads the file next says what is wrong with it
-    return isinstance(document, dict) and "over" in document and "scene" in document
 
 
 def read(path: Path, accuracy: str | None) -> Read:
@@ -160,8 +150,6 @@ def _watching(layout: Layout, quiet: bool) -> Iterator[Callable[[int, int], None
         TimeRemainingColumn(),
     )
     console = Console(stderr=True)
-    with Progress(
-        *columns, console=console, transient=True, speed_estimate_period=120
-    ) as progress:
+    with Progress(*columns, console=console, transient=True, speed_estimate_period=120) as progress:
         task = progress.add_task(layout.name, total=layout.missing, failed=0)
         yield lambda done, failed: progress.update(task, completed=done, failed=failed)

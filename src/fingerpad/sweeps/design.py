@@ -10,15 +10,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
 
 from fingerpad.documents import SceneError
 from fingerpad.files import is_file
 from fingerpad.measures.known import known
 from fingerpad.scenes.scene import Scene
 from fingerpad.sweeps.language import Column, Read, quantiles, resolved
-
-SAMPLERS = {"latin_hypercube": qmc.LatinHypercube, "sobol": qmc.Sobol}
 
 
 @dataclass(frozen=True)
@@ -75,7 +72,10 @@ class Design:
         drawn = [key for key in self._together if sweep.over[key].drawn]
         if not drawn:
             return {}
-        sampler = SAMPLERS[sweep.design](len(drawn), rng=np.random.default_rng(sweep.seed))
+        from scipy.stats import qmc  # a second to import
+
+        samplers = {"latin_hypercube": qmc.LatinHypercube, "sobol": qmc.Sobol}
+        sampler = samplers[sweep.design](len(drawn), rng=np.random.default_rng(sweep.seed))
         with warnings.catch_warnings():  # of samples that are no power of two
             warnings.simplefilter("ignore")
             shares = sampler.random(sweep.samples)

@@ -1,7 +1,7 @@
 """The folder of a sweep, its division into batches, and the processes that run them.
 
     sweep.json               batches with their predicted cost and memory, and earlier records
-    design.json              dimensions, parameters, and the key (digest of the content) of each scene
+    design.json              dimensions, parameters, and the key (a digest) of each scene
     todo/<batch>.json        the scenes of a batch
     batches/<batch>.jsonl    their records, .part while the batch runs
     histories/<key>.nc       where histories are kept
@@ -28,10 +28,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import xarray as xr
-
+from fingerpad.documents import SceneError
 from fingerpad.files import BUILT_IN, disk_is_full, locked, unusable, write_text
 from fingerpad.results import provenance
 from fingerpad.scenes.scene import Scene, load_scene
@@ -39,6 +38,9 @@ from fingerpad.sweeps.design import Design
 from fingerpad.sweeps.forecast import divided, forecast
 from fingerpad.sweeps.language import Read, load_sweep
 from fingerpad.sweeps.records import UNFINISHED, Writer, code, key_of, read_records
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 RULES = next(
     path
@@ -50,7 +52,7 @@ MOST_TRIES = 3
 """Processes that are started for a batch before it counts as failed."""
 
 
-class SweepError(ValueError):
+class SweepError(SceneError):
     """The sweep cannot be run like this; one line."""
 
 
@@ -447,6 +449,8 @@ def sweep(
     NotFinished
         A batch failed.
     """
+    import xarray as xr  # half a second, which the command does not need
+
     base = load_scene(scene)
     with contextlib.ExitStack() as stack:
         if out is None:

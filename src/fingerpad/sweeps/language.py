@@ -24,7 +24,6 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo
-from scipy import stats
 
 from fingerpad.documents import (
     HIDE,
@@ -134,9 +133,7 @@ _QUANTITY = {"anyOf": [{"type": "number"}, {"type": "string"}], "examples": ["15
 Quantity = Annotated[Any, BeforeValidator(_quantity), Field(json_schema_extra=_QUANTITY)]
 """A number with its unit, of any dimension: the scene says which fits."""
 _TWO = {"minItems": 2, "maxItems": 2}
-Pair = Annotated[
-    tuple[Quantity, Quantity], BeforeValidator(_pair), Field(json_schema_extra=_TWO)
-]
+Pair = Annotated[tuple[Quantity, Quantity], BeforeValidator(_pair), Field(json_schema_extra=_TWO)]
 
 
 # --- kinds of axis --------------------------------------------------------------------------------
@@ -265,6 +262,8 @@ class Range(Axis):
 
     def distribution(self) -> Any:
         """The distribution of what is drawn, of `scipy.stats`, in `unit`. Raises `Problem`."""
+        from scipy import stats  # a second to import
+
         low, high = sorted(self.ends)
         if self.spacing == "logarithmic":
             return stats.loguniform(low, high)
@@ -317,6 +316,8 @@ class Distribution(Axis):
 
     def distribution(self) -> Any:
         """The distribution of `scipy.stats`, in `unit`, not truncated. Raises `Problem`."""
+        from scipy import stats  # a second to import
+
         if self.uniform:
             low, high = self.unit.rising(self.uniform, "uniform")
             return stats.uniform(low, high - low)
@@ -493,9 +494,7 @@ class Sweep(Strict):
 
     scene: Any = Field(json_schema_extra={"anyOf": [{"type": "string"}, {"type": "object"}]})
     """The base scene: the path of a scene, relative to this file, or a scene."""
-    over: Annotated[
-        dict[str, AnyAxis], BeforeValidator(_axes), Field(json_schema_extra=_OVER)
-    ]
+    over: Annotated[dict[str, AnyAxis], BeforeValidator(_axes), Field(json_schema_extra=_OVER)]
     """Key of the scene, such as motion[0].rate -> its values: a list, a range, a distribution,
     words, or a folder of files.
 
