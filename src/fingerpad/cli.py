@@ -34,7 +34,6 @@ from fingerpad.documents import SceneError, read_yaml
 from fingerpad.files import disk_is_full, is_file, locked, read_input, staged, unusable
 from fingerpad.planning.bounds import PlanError, percent
 from fingerpad.planning.plan import Plan, plan
-from fingerpad.processes import collect_seldom
 from fingerpad.receptors.recovery import ReceptorError
 from fingerpad.scenes.families import read_scene
 from fingerpad.scenes.scene import Scene, load_scene
@@ -89,7 +88,6 @@ def main(arguments: list[str] | None = None) -> int:
     SystemExit
         By argparse, with code 2 for a wrong command line and 0 after help and version.
     """
-    collect_seldom()
     for stream in (sys.stdout, sys.stderr):  # any name of a file can be printed
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")

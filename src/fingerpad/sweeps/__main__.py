@@ -7,11 +7,9 @@ FOLDER DATASET TABLE`` gathers their records.
 import sys
 from pathlib import Path
 
-from fingerpad.processes import collect_seldom
 from fingerpad.sweeps.batch import run_batch
 from fingerpad.sweeps.collect import collect_layout
 
 if __name__ == "__main__":
-    collect_seldom()
     job, *paths = sys.argv[1:]
     {"batch": run_batch, "collect": collect_layout}[job](*map(Path, paths))

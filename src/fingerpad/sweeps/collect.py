@@ -5,7 +5,6 @@ Records are read one by one; what is held is one column of numbers for each meas
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from collections.abc import Iterable, Mapping
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from fingerpad.files import disk_is_full, write_atomically
@@ -142,33 +142,20 @@ def _coordinate(parameter: Mapping[str, Any]) -> tuple[str, np.ndarray, dict[str
 
 def _tabulate(design: Mapping[str, Any], columns: Mapping[str, Any], path: Path) -> None:
     """A row a scene: number, parameters, measures with their units, errors, diagnosis."""
-    parameters = design["parameters"]
     last = [*RUN, "failed", "diagnosis"]
-    names = [*(name for name in columns if name not in last), *last]
-    units = {name: about.get("units", "") for name, (_, about) in columns.items()}
-    units["failed"] = ""
-    header = [_header(p["name"], p["unit"]) for p in parameters]
-    header += [_header(name, units[name]) for name in names]
-    dimensions = list(design["dimensions"])
-    places = np.ndindex(*design["dimensions"].values())
-    with path.open("w", newline="", encoding="utf-8") as lines:
-        table = csv.writer(lines, lineterminator="\n")
-        table.writerow(["scene", *header])
-        for number, place in enumerate(places):
-            values = [p["values"][place[dimensions.index(p["dimension"])]] for p in parameters]
-            cells = [_cell(columns[name][0][number]) for name in names]
-            table.writerow([number, *values, *cells])
+    number = np.arange(len(design["keys"]))
+    places = np.unravel_index(number, tuple(design["dimensions"].values()))
+    place = dict(zip(design["dimensions"], places, strict=True))
+    table = {"scene": number}
+    for p in design["parameters"]:
+        values = np.array(p["values"], object)
+        table[_header(p["name"], p["unit"])] = values[place[p["dimension"]]]
+    for name in [*(name for name in columns if name not in last), *last]:
+        values, about = columns[name]
+        unit = about.get("units", "") if name != "failed" else ""
+        table[_header(name, unit)] = pd.Series(values).convert_dtypes(convert_string=False)
+    pd.DataFrame(table).to_csv(path, index=False, lineterminator="\n")
 
 
 def _header(name: str, unit: str) -> str:
     return f"{name} ({unit})" if unit else name
-
-
-def _cell(value: Any) -> Any:
-    """A number as it is shortest: whole without a point, none where there is no value."""
-    if isinstance(value, str):
-        return value
-    value = float(value)
-    if np.isnan(value):
-        return ""
-    return int(value) if value.is_integer() and abs(value) < 1e15 else repr(value)
