@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Iterator
 
+
 @contextlib.contextmanager
 def waiting(text: str) -> Iterator[None]:
     """A line and a spinner on a terminal's standard error, or in a notebook, while something takes

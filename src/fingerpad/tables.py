@@ -79,12 +79,12 @@ class Table:
     def number(self, cell: str, line: int, column: int) -> float:
         """The number in a cell; errors as in :meth:`numbers`."""
         text = cell.replace("\u2212", "-")
-        if self.decimal_comma:
-            text = text.replace(",", ".", 1) if _WITH_COMMA.fullmatch(text) else text
+        if self.decimal_comma and _WITH_COMMA.fullmatch(text):
+            text = text.replace(",", ".", 1)
         if _NUMBER.fullmatch(text) and abs(value := float(text)) < float("inf"):
             return value
-        what = f"has '{cell[:40]}' in row {line}, column '{self.header[column]}', which is no finite number"
-        raise TableError(what, _WRITE_POINTS)
+        place = f"row {line}, column '{self.header[column]}'"
+        raise TableError(f"has '{cell[:40]}' in {place}, which is no finite number", _WRITE_POINTS)
 
 
 def read_table(path: str | Path) -> Table:
@@ -147,42 +147,33 @@ def _decoded(content: bytes) -> tuple[str, list[str]]:
 
 
 def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
-    """Names of the columns, what parts them, and the (number, text) of the lines below that say
-    something.
-    """
+    """Names of the columns, what parts them, and the (number, text) of each line of cells below."""
     lines = [
         (number, line)
         for number, line in enumerate(io.StringIO(text, newline=""), start=1)
         if line.strip()
     ]
-    told = None
+    stated = None
     if lines and (match := re.fullmatch(r'"?sep=(.)"?', lines[0][1].strip())):
-        told = match[1]
+        stated = match[1]
         lines = lines[1:]
-        if told not in _PARTED:
-            raise TableError(f"parts its columns by '{told}'", "tabs, semicolons or commas")
-    said = [line for _, line in lines if not line.lstrip().startswith(_COMMENT)]
-    if not said:
+        if stated not in _PARTED:
+            raise TableError(f"parts its columns by '{stated}'", "tabs, semicolons or commas")
+    first = next((k for k, (_, line) in enumerate(lines) if not _is_comment(line)), None)
+    if first is None:
         raise TableError("holds no rows")
-    first = said[0]
-    delimiter = told or _delimiter(first)
-    header = _cells(first, delimiter)
-    if all(map(_like_a_number, header)):
-        before = [
-            line
-            for number, line in lines[: _place(lines, first)]
-            if line.lstrip().startswith(_COMMENT)
-        ]
-        first = before[-1].lstrip().lstrip("".join(_COMMENT)) if before else ""
-        delimiter = told or _delimiter(first)
-        header = _cells(first, delimiter)
-        if not before or len(header) < 2:
+    line = lines[first][1]
+    header = _cells(line, stated or _delimiter(line))
+    if all(map(_like_a_number, header)):  # the names are in the last comment before
+        comments = [line for _, line in lines[:first]]
+        line = comments[-1].lstrip().lstrip("".join(_COMMENT)) if comments else ""
+        header = _cells(line, stated or _delimiter(line))
+        if len(header) < 2:
             raise TableError(
                 "has no header: its first row is numbers",
                 "names and units of the columns above the numbers",
             )
-    else:
-        lines = lines[_place(lines, said[0]) + 1 :]
+        first -= 1
     while header and not header[-1]:
         header.pop()
     for name in header:
@@ -190,15 +181,12 @@ def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
             raise TableError(f"has the column '{name[:40]}' twice", "each column once")
         if len(name) > MOST_LETTERS:
             raise TableError(f"has a column's name of {len(name)} letters", f"up to {MOST_LETTERS}")
-    return (
-        header,
-        delimiter,
-        [(number, line) for number, line in lines if not line.lstrip().startswith(_COMMENT)],
-    )
+    rows = [(number, row) for number, row in lines[first + 1 :] if not _is_comment(row)]
+    return header, stated or _delimiter(line), rows
 
 
-def _place(lines: list[tuple[int, str]], text: str) -> int:
-    return next(k for k, (_, line) in enumerate(lines) if line is text)
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(_COMMENT)
 
 
 def _delimiter(line: str) -> str:
@@ -211,12 +199,8 @@ def _cells(line: str, delimiter: str) -> list[str]:
     """Cells of one line. A space before a unit in brackets parts nothing."""
     if delimiter == " ":
         return re.split(r"\s+(?![(\[])", line.strip())
-    return [
-        cell.strip()
-        for cell in next(
-            csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), []
-        )
-    ]
+    row = csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True)
+    return [cell.strip() for cell in next(row, [])]
 
 
 def _split(lines: list[tuple[int, str]], delimiter: str) -> Iterator[tuple[int, list[str]]]:
@@ -225,18 +209,13 @@ def _split(lines: list[tuple[int, str]], delimiter: str) -> Iterator[tuple[int, 
         for number, line in lines:
             yield number, line.split()
         return
-    at = 0
-
-    def taken() -> Iterator[str]:
-        nonlocal at
-        for number, line in lines:
-            at = number
-            yield line
-
+    texts = (line for _, line in lines)
+    rows = csv.reader(texts, delimiter=delimiter, skipinitialspace=True)
     try:
-        for row in csv.reader(taken(), delimiter=delimiter, skipinitialspace=True):
-            yield at, [cell.strip() for cell in row]
+        for row in rows:  # line_num counts the lines read so far: cells may hold ends of lines
+            yield lines[rows.line_num - 1][0], [cell.strip() for cell in row]
     except csv.Error as error:
+        at = lines[rows.line_num - 1][0]
         raise TableError(f"cannot be split into cells in row {at} ({error})") from None
 
 
@@ -246,23 +225,20 @@ def _like_a_number(cell: str) -> bool:
 
 
 def _wrong_count(line: int, cells: list[str], header: list[str], delimiter: str) -> TableError:
-    what = f"has {len(cells)} cells in row {line}, {len(header)} in its header ({', '.join(header)[:60]})"
-    if (
-        delimiter == ","
-        and len(cells) > len(header)
-        and all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells)
-    ):
-        return TableError(
-            what + ": commas part columns here", "decimal points, or semicolons between columns"
-        )
-    return TableError(
-        what, f"{len(header)} cells in each row, parted by {_PARTED[delimiter]} as the header is"
-    )
+    names = ", ".join(header)[:60]
+    what = f"has {len(cells)} cells in row {line}, {len(header)} in its header ({names})"
+    whole = all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells)
+    if delimiter == "," and len(cells) > len(header) and whole:
+        allowed = "decimal points, or semicolons between columns"
+        return TableError(f"{what}: commas part columns here", allowed)
+    parted = f"parted by {_PARTED[delimiter]} as the header is"
+    return TableError(what, f"{len(header)} cells in each row, {parted}")
 
 
 def _decimal_comma(rows: list[list[str]], lines: list[int], delimiter: str) -> bool:
-    """Whether numbers have decimal commas; `TableError` where they may be thousands, or where both
-    signs are used.
+    """Whether numbers have decimal commas.
+
+    Raises `TableError` where commas may part thousands, or where there are decimal points too.
     """
     found, certain, points = "", delimiter == ";", False
     for line, cells in zip(lines, rows, strict=True):

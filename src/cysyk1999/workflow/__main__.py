@@ -15,7 +15,6 @@ import traceback
 from types import SimpleNamespace
 
 
-
 def main(words: list[str]) -> int:
     """Run a job and return its exit code."""
     name, *words = words
