@@ -7,6 +7,7 @@ import errno
 import json
 import math
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from fingerpad.documents import SceneError, read_yaml
 from fingerpad.mechanics.stepping import NonConvergence
 from fingerpad.scenes.scene import load_scene
 from fingerpad.sweeps import batch, command, engine
-from fingerpad.sweeps.collect import collect
+from fingerpad.sweeps.collect import collect_layout
 from fingerpad.sweeps.design import Design
 from fingerpad.sweeps.forecast import divided, forecast
 from fingerpad.sweeps.language import load_sweep, sweep_json_schema
@@ -121,8 +122,8 @@ def test_a_scene_that_cannot_be_planned_is_named(tmp_path):
         forecast(design)
 
 
-def test_the_published_sweeps_and_the_example_are_valid_and_fit_their_schema(root):
-    files = sorted((root / "config" / "sweeps").glob("*.yaml"))
+def test_the_published_sweeps_and_the_example_are_valid_and_fit_their_schema():
+    files = sorted((Path(__file__).parents[1] / "config" / "sweeps").glob("*.yaml"))
     assert len(files) >= 3
     check = Draft202012Validator(sweep_json_schema())
     for file in files:
@@ -130,27 +131,18 @@ def test_the_published_sweeps_and_the_example_are_valid_and_fit_their_schema(roo
         Design(load_sweep(file)).scene(0)
 
 
-@pytest.fixture
-def root(pytestconfig):
-    return pytestconfig.rootpath
-
-
 def test_a_folder_of_profiles_with_a_broken_one_names_it(tmp_path):
+    sweep, profile = tmp_path / "sweep.yaml", "x (mm),y (mm)\n0,0\n{}\n2,0.1\n"
     for name, second in (("a", "1,0"), ("b", "0,0")):
-        (tmp_path / f"{name}.csv").write_text(f"x (mm),y (mm)\n0,0\n{second}\n2,0.1\n")
-    (tmp_path / "sweep.yaml").write_text(
-        "scene: {stimulus: {shape: sampled, csv: a.csv}, motion: [{press_to_force: 5 gf}]}\n"
-        "over: {stimulus.csv: {folder: .}}\n"
-    )
-    read = load_sweep(tmp_path / "sweep.yaml")
+        (tmp_path / f"{name}.csv").write_text(profile.format(second))
+    scene = PRESS | {"stimulus": {"shape": "sampled", "csv": "a.csv"}}
+    sweep.write_text(json.dumps({"scene": scene, "over": {"stimulus.csv": {"folder": "."}}}))
+    read = load_sweep(sweep)
     assert read.sweep.over["stimulus.csv"].labels() == ["a", "b"]
     with pytest.raises(SceneError, match=r"scene 1 .*b.csv.*x does not increase in row 3"):
         Design(read).check()
-    (tmp_path / "b.csv").write_text("x (mm),y (mm)\n0,0\n1,0.5\n2,0.1\n")
-    assert [scene.stimulus.y[1] for scene in Design(load_sweep(tmp_path / "sweep.yaml"))] == [
-        0.0,
-        0.5e-3,
-    ]
+    (tmp_path / "b.csv").write_text(profile.format("1,0.5"))
+    assert [scene.stimulus.y[1] for scene in Design(load_sweep(sweep))] == [0.0, 0.5e-3]
 
 
 # --- the design -----------------------------------------------------------------------------------
@@ -230,46 +222,20 @@ def test_names_are_the_fewest_last_words_that_tell_keys_apart():
     assert sweep_of({FAT: {"words": {"soft": "10 kPa"}, "name": "fat"}}).names == {FAT: "fat"}
 
 
-def test_the_radius_of_a_cylinder_can_be_swept():
-    design = design_of({"stimulus.radius": ["4 mm", "5 mm"]})
-    assert [scene.stimulus.curvature for scene in design] == pytest.approx([250, 200])
-
-
-def test_batches_are_a_minute_or_more_and_use_all_cores():
-    assert [len(each) for each in divided(list(range(1000)), [0.3] * 1000, 2)] == [
-        167,
-        167,
-        167,
-        167,
-        167,
-        165,
-    ]
-    assert (
-        len(divided(list(range(100)), [0.4] * 100, 2)) == 2
-    )  # 40 s are divided, so that both cores work
-    assert len(divided(list(range(10)), [0.3] * 10, 2)) == 1  # 3 s are not worth a process
-    assert len(divided(list(range(100_000)), [10.0] * 100_000, 2)) <= 1001
-    uneven = divided(list(range(20)), [100.0] * 10 + [1.0] * 10, 2)
-    assert [n for each in uneven for n in each] == list(range(20)) and max(map(len, uneven)) >= 10
-
-
-def test_a_forecast_counts_effects_and_adds_cost():
-    found = forecast(
-        design_of(
-            {
-                CURVATURE: ["79 1/m", "210 1/m"],
-                "effects": {
-                    "words": {"on": {"finite_strain": True}, "off": {"finite_strain": False}}
-                },
-            }
-        )
-    )
-    assert (
-        found.effects["finite_strain"] == 2
-        and found.effects["symmetry"] == 4
-        and len(found.cost_s) == 4
-    )
-    assert found.wall_s(2) >= max(found.cost_s) and found.memory_MB[0] > 100
+@pytest.mark.parametrize(
+    ("costs", "cores", "count"),
+    [
+        ([0.3] * 1000, 2, 6),
+        ([0.4] * 100, 2, 2),  # 40 s are divided, so that both cores work
+        ([0.3] * 10, 2, 1),  # 3 s are not worth a process
+        ([10.0] * 100_000, 2, 1000),
+        ([100.0] * 10 + [1.0] * 10, 2, 11),
+    ],
+)
+def test_batches_are_a_minute_or_more_and_use_all_cores(costs, cores, count):
+    batches = divided(list(range(len(costs))), costs, cores)
+    assert [n for batch in batches for n in batch] == list(range(len(costs)))
+    assert len(batches) == pytest.approx(count, abs=1)
 
 
 # --- records --------------------------------------------------------------------------------------
@@ -301,18 +267,15 @@ def test_a_line_that_was_cut_off_is_left_out_and_written_over(tmp_path):
 
 
 def batch_in(folder, count=4):
-    read = sweep_of({CURVATURE: [f"{100 * (n + 1)} 1/m" for n in range(count)]})
-    (folder / "todo").mkdir(parents=True)
-    design = Design(read)
-    scenes = [[n, f"key{n}", design.changes(n)] for n in range(count)]
+    design = Design(sweep_of({CURVATURE: [f"{100 * (n + 1)} 1/m" for n in range(count)]}))
     spec = {
-        "base": read.base.model_dump(mode="json"),
+        "base": design.read.base.model_dump(mode="json"),
         "keep": ["contact_width"],
         "histories": False,
-        "scenes": scenes,
+        "scenes": [[n, f"key{n}", design.changes(n)] for n in range(count)],
     }
-    (folder / "todo" / "one.json").write_text(json.dumps(spec))
-    return folder / "todo" / "one.json", folder / "batches" / "one.jsonl"
+    (folder / "one.json").write_text(json.dumps(spec))
+    return folder / "one.json", folder / "batches" / "one.jsonl"
 
 
 def pretend(monkeypatch, spoil=None):
@@ -431,21 +394,12 @@ def test_the_numbers_of_a_record_are_those_of_the_scene():
 
 def run_all(layout):
     """The batches of a layout and their collection, in this process."""
+    folder = layout.folder
     for name in layout.batches:
-        batch.run_batch(
-            layout.folder / "todo" / f"{name}.json", layout.folder / "batches" / f"{name}.jsonl"
-        )
-    files = [
-        layout.folder / name
-        for name in [*layout.known, *(f"batches/{name}.jsonl" for name in layout.batches)]
-    ]
-    design = json.loads((layout.folder / "design.json").read_text())
-    collect(design, files, layout.folder / "sweep.nc", layout.folder / "sweep.csv")
-    with (
-        xr.open_dataset(layout.folder / "sweep.nc") as dataset,
-        (layout.folder / "sweep.csv").open() as table,
-    ):
-        return dataset.load(), list(csv.DictReader(table))
+        batch.run_batch(folder / "todo" / f"{name}.json", folder / "batches" / f"{name}.jsonl")
+    collect_layout(folder, folder / "sweep.nc", folder / "sweep.csv")
+    with (folder / "sweep.csv").open() as table:
+        return xr.load_dataset(folder / "sweep.nc"), list(csv.DictReader(table))
 
 
 GRID = {CURVATURE: ["100 1/m", "200 1/m", "400 1/m"], FORCE: ["10 gf", "20 gf"]}
@@ -553,12 +507,7 @@ def test_a_scene_without_a_record_is_an_error_not_a_hole(tmp_path, monkeypatch):
     file = next((tmp_path / "batches").glob("*.jsonl"))
     file.write_bytes(b"".join(file.read_bytes().splitlines(keepends=True)[:-1]))
     with pytest.raises(ValueError, match="1 scenes have no record"):
-        collect(
-            json.loads((tmp_path / "design.json").read_text()),
-            [file],
-            tmp_path / "sweep.nc",
-            tmp_path / "sweep.csv",
-        )
+        collect_layout(tmp_path, tmp_path / "sweep.nc", tmp_path / "sweep.csv")
 
 
 # --- processes ------------------------------------------------------------------------------------

@@ -33,14 +33,18 @@ class SceneError(ValueError):
 
 
 class Problem(ValueError):
-    """One thing wrong with one key, raised inside a model; `explain` makes the line of a
-    `SceneError` of it.
+    """One thing wrong with one key, raised inside a model; `explain` turns it into a `SceneError`.
 
-    Args:
-        problem: what is wrong, written to follow the offending value.
-        allowed: what would be right; empty when the problem says it.
-        key: path below the place where the problem is raised.
-        value: the offending value; `LOOK_UP` takes it from the document, `HIDE` shows none.
+    Parameters
+    ----------
+    problem : str
+        What is wrong, written to follow the offending value.
+    allowed : str
+        What would be right; empty when the problem says it.
+    key : tuple
+        Path below the place where the problem is raised.
+    value : any
+        The offending value; `LOOK_UP` takes it from the document, `HIDE` shows none.
     """
 
     def __init__(
@@ -212,11 +216,12 @@ class _Loader(yaml.SafeLoader):
 
 
 def read_yaml(path: Path) -> Any:
-    """The document in a YAML file, as plain Python objects, parsed once as long as the file stays
-    as it is; nobody changes it.
+    """The document in a YAML file as plain Python objects, parsed once while the file is unchanged.
 
-    Raises:
-        SceneError: the file is missing or unreadable, is not YAML, or gives a key twice.
+    Raises
+    ------
+    SceneError
+        The file is missing or unreadable, is not YAML, or gives a key twice.
     """
     try:
         state = path.stat()

@@ -5,15 +5,13 @@ import os
 import sys
 from collections.abc import Iterator
 
+from rich.console import Console
+from rich.errors import LiveError
+
 
 @contextlib.contextmanager
 def waiting(text: str) -> Iterator[None]:
-    """A line and a spinner on a terminal's standard error, or in a notebook, while something takes
-    long; elsewhere nothing.
-    """
-    from rich.console import Console
-    from rich.errors import LiveError
-
+    """Show a line and a spinner on a terminal's standard error, or in a notebook."""
     console = Console(stderr=True)
     if not (console.is_terminal or console.is_jupyter):
         yield

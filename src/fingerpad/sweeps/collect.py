@@ -153,7 +153,8 @@ def _tabulate(design: Mapping[str, Any], columns: Mapping[str, Any], path: Path)
     for name in [*(name for name in columns if name not in last), *last]:
         values, about = columns[name]
         unit = about.get("units", "") if name != "failed" else ""
-        table[_header(name, unit)] = pd.Series(values).convert_dtypes(convert_string=False)
+        counts = name in ("nodes", "steps", "iterations")
+        table[_header(name, unit)] = pd.array(values, "Int64") if counts else values
     pd.DataFrame(table).to_csv(path, index=False, lineterminator="\n")
 
 
