@@ -178,7 +178,7 @@ def moved(content: bytes, draw: np.random.Generator) -> bytes:
 
 
 def soak_files(count: int, start: int, seconds: float) -> tuple[Counter, str]:
-    """Outcomes of up to `count` damaged files within some process time (s); the first failure, or ""."""
+    """Outcomes of up to `count` damaged files within some process time (s); a failure, or ""."""
     outcomes, begun = Counter(), time.process_time()
     with tempfile.TemporaryDirectory(prefix="soak-files-") as name:
         good, folder = Path(name) / "good", Path(name) / "try"
