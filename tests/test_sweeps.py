@@ -533,7 +533,7 @@ def test_a_batch_that_cannot_run_is_tried_three_times_and_named(tmp_path):
     layout = engine.lay_out(sweep_of({"friction": [0]}), tmp_path, cores=1)
     for name in layout.batches:
         (tmp_path / "todo" / f"{name}.json").write_text("cut off")
-    with pytest.raises(engine.NotFinished, match=r"0 of 1 scenes .*sweep_batch: json\..*\.log\)"):
+    with pytest.raises(engine.NotFinished, match=r"0 of 1 scenes .*: json\..*\.log\)"):
         engine.run_layout(layout, 1)
     assert not (tmp_path / "sweep.nc").exists()
 

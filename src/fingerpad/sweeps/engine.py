@@ -48,6 +48,8 @@ RULES = next(
     if path.exists()
 )
 """The Snakemake rules of a sweep, which the project's Snakefile includes."""
+JOB = [sys.executable, "-P", "-m", "fingerpad.sweeps"]
+"""The command of a batch or a collection."""
 MOST_TRIES = 3
 """Processes that are started for a batch before it counts as failed."""
 
@@ -285,17 +287,23 @@ def run_layout(
     KeyboardInterrupt
         Likewise.
     """
-    (layout.folder / "logs").mkdir(exist_ok=True)
+    folder = layout.folder
+    (folder / "logs").mkdir(exist_ok=True)
 
-    def show() -> None:
-        if watch:
-            watch(*layout.done())
+    def run(jobs: Mapping[str, list[Any]], **how: Any) -> str:
+        return _run_jobs(folder, jobs, lambda: watch and watch(*layout.done()), lock, **how)
 
     if profile:
-        problem = _by_snakemake(layout, profile, show, lock)
+        problem = run({"snakemake": _snakemake(profile)}, tries=1, cwd=folder)
     else:
-        problem = _here(layout, cores, show, lock)
-    show()
+        files = {name: folder / "batches" / f"{name}.jsonl" for name in layout.batches}
+        batches = {
+            name: [*JOB, "batch", folder / "todo" / f"{name}.json", file]
+            for name, file in files.items()
+            if not file.exists()
+        }
+        results = [folder, folder / "sweep.nc", folder / "sweep.csv"]
+        problem = run(batches, cores=cores) or run({"collect": [*JOB, "collect", *results]})
     if problem:
         done = layout.scenes - layout.missing + layout.done()[0]
         raise NotFinished(
@@ -304,40 +312,39 @@ def run_layout(
         )
 
 
-def _here(layout: Layout, cores: int, show: Callable[[], None], lock: tuple[int, ...]) -> str:
-    """Run the batches in processes of this machine; returns what went wrong, or ""."""
-    folder = layout.folder
-    records = {name: folder / "batches" / f"{name}.jsonl" for name in layout.batches}
-    jobs = {
-        name: ("batch", folder / "todo" / f"{name}.json", file)
-        for name, file in records.items()
-        if not file.exists()
-    }
-    if failed := _run_jobs(folder, jobs, cores, show, lock):
-        return f"sweep_batch: {failed}"
-    jobs = {"collect": ("collect", folder, folder / "sweep.nc", folder / "sweep.csv")}
-    failed = _run_jobs(folder, jobs, 1, show, lock)
-    return f"sweep_collect: {failed}" if failed else ""
+def _snakemake(profile: str) -> list[str]:
+    """The command that runs a sweep by a profile, in the sweep's folder."""
+    if find_spec("snakemake") is None:
+        raise SweepError(
+            "--profile: Snakemake is not installed; allowed: pip install 'fingerpad[workflow]', "
+            "or no --profile"
+        )
+    words = [sys.executable, "-P", "-m", "snakemake", "--snakefile", str(RULES)]
+    words += ["--rerun-incomplete", "--keep-going", "--nocolor", "--nolock"]
+    return [*words, "--workflow-profile", str(Path(profile).absolute()), "sweep"]
 
 
 def _run_jobs(
     folder: Path,
-    jobs: Mapping[str, tuple[str | Path, ...]],
-    cores: int,
-    show: Callable[[], None],
+    jobs: Mapping[str, list[Any]],
+    show: Callable[[], object],
     lock: tuple[int, ...],
+    cores: int = 1,
+    tries: int = MOST_TRIES,
+    cwd: Path | None = None,
 ) -> str:
-    """Run jobs of `fingerpad.sweeps`, some at a time; returns the last line of one that failed."""
-    waiting, tries, failed = list(jobs), Counter(), ""
+    """Run commands, some at a time, each with its log; returns the last line of one that failed."""
+    waiting, started, problem = list(jobs), Counter(), ""
     running: dict[str, subprocess.Popen] = {}
     try:
         while waiting or running:
             while waiting and len(running) < cores:
                 name = waiting.pop(0)
-                tries[name] += 1
+                started[name] += 1
                 with (folder / "logs" / f"{name}.log").open("w", encoding="utf-8") as log:
                     running[name] = subprocess.Popen(
-                        [sys.executable, "-P", "-m", "fingerpad.sweeps", *map(str, jobs[name])],
+                        list(map(str, jobs[name])),
+                        cwd=cwd,
                         stdin=subprocess.DEVNULL,
                         stdout=log,
                         stderr=log,
@@ -349,63 +356,28 @@ def _run_jobs(
             for name in [name for name, process in running.items() if process.poll() is not None]:
                 if not running.pop(name).returncode:
                     continue
-                if tries[name] < MOST_TRIES:
+                if started[name] < tries:
                     waiting.append(name)
                 else:
-                    failed = _last_line(folder / "logs" / f"{name}.log")
+                    problem = f"{name}: {_last_line(folder / 'logs' / f'{name}.log')}"
+        show()
     finally:
-        for process in running.values():
-            process.terminate()
-        for process in running.values():
-            process.wait()
-    return failed
+        for end in (signal.SIGINT, signal.SIGTERM):  # on the first, Snakemake cancels its jobs
+            for process in running.values():
+                with contextlib.suppress(ProcessLookupError):
+                    os.killpg(process.pid, end)
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(timeout=30)
+    return problem
 
 
-def _last_line(log: Path, starts: tuple[str, ...] = ("",)) -> str:
-    """The last line of a log that starts so, and where the rest is."""
-    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
-    last = next((line.strip() for line in reversed(lines) if line.strip().startswith(starts)), "")
-    return f"{last[:300] or 'it failed'} (all of it: {log.absolute()})"
-
-
-def _by_snakemake(
-    layout: Layout, profile: str, show: Callable[[], None], lock: tuple[int, ...]
-) -> str:
-    """Let Snakemake run the batches by a profile; returns what went wrong, or ""."""
-    if find_spec("snakemake") is None:
-        raise SweepError(
-            "--profile: Snakemake is not installed; allowed: pip install 'fingerpad[workflow]', "
-            "or no --profile"
-        )
-    folder = layout.folder.absolute()
-    # started in the folder: Snakemake takes braces in names for wildcards
-    words = [sys.executable, "-P", "-m", "snakemake", "--snakefile", str(RULES)]
-    words += ["--rerun-incomplete", "--keep-going", "--nocolor", "--nolock"]
-    words += ["--workflow-profile", str(Path(profile).absolute()), "sweep"]
-    log = folder / "logs" / "snakemake.log"
-    with log.open("w", encoding="utf-8") as file:
-        process = subprocess.Popen(
-            words,
-            cwd=folder,
-            stdin=subprocess.DEVNULL,
-            stdout=file,
-            stderr=file,
-            start_new_session=True,
-            pass_fds=lock,
-        )
-    try:
-        while process.poll() is None:
-            show()
-            time.sleep(0.5)
-    finally:
-        if process.poll() is None:  # interrupted: Snakemake first cancels jobs on the cluster
-            process.send_signal(signal.SIGINT)
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(timeout=30)
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGTERM)
-            process.wait()
-    return _last_line(log, ("sweep_batch:", "sweep_collect:")) if process.returncode else ""
+def _last_line(log: Path) -> str:
+    """The last line of a log, or of the job of Snakemake's that failed; and where the rest is."""
+    lines = log.read_text(encoding="utf-8", errors="replace").split("\n")
+    lines = [line.strip() for line in lines if line.strip()]
+    jobs = [line for line in lines if line.startswith(("sweep_batch:", "sweep_collect:"))]
+    last = (jobs or lines or ["it failed"])[-1]
+    return f"{last[:300]} (all of it: {log.absolute()})"
 
 
 def sweep(
