@@ -538,6 +538,17 @@ def test_a_batch_that_cannot_run_is_tried_three_times_and_named(tmp_path):
     assert not (tmp_path / "sweep.nc").exists()
 
 
+def test_an_interrupt_ends_the_processes(tmp_path):
+    layout = engine.lay_out(sweep_of({"friction": [0]}), tmp_path, cores=1)
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        engine.run_layout(layout, 1, watch=interrupt)
+    assert layout.done() == (0, 0) and not (tmp_path / "sweep.nc").exists()
+
+
 def test_a_profile_without_snakemake_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "find_spec", lambda _: None)
     layout = engine.lay_out(sweep_of({"friction": [0]}), tmp_path, cores=1)
