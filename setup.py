@@ -1,19 +1,25 @@
-"""What a clone reads beside the package, and of which a built package carries a copy: specimens, and the rules of sweeps."""
+"""Gives a built package a copy of what a clone has in config and workflow."""
 
 from pathlib import Path
 
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
+COPIES = {"specimens": "config/specimens/*.yaml", "": "workflow/rules/sweeps.smk"}
+"""Folder below fingerpad/built_in (`fingerpad.files.BUILT_IN`) -> the files that go there."""
 
-class BuildWithSpecimens(build_py):
-    """Also takes config/specimens and workflow/rules/sweeps.smk, into fingerpad/built_in (`fingerpad.files.BUILT_IN`)."""
+
+class BuildWithCopies(build_py):
+    """Also copies specimens and the rules of sweeps."""
 
     def _get_data_files(self):
-        names = sorted(path.name for path in Path("config/specimens").glob("*.yaml"))
-        target = Path(self.build_lib, "fingerpad", "built_in", "specimens")
-        rules = ("fingerpad", "workflow/rules", str(target.parent), ["sweeps.smk"])
-        return [*super()._get_data_files(), ("fingerpad", "config/specimens", str(target), names), rules]
+        target = Path(self.build_lib, "fingerpad", "built_in")
+        copies = []
+        for folder, pattern in COPIES.items():
+            files = sorted(Path().glob(pattern))
+            names = [file.name for file in files]
+            copies.append(("fingerpad", str(files[0].parent), str(target / folder), names))
+        return [*super()._get_data_files(), *copies]
 
 
-setup(cmdclass={"build_py": BuildWithSpecimens})
+setup(cmdclass={"build_py": BuildWithCopies})

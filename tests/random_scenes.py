@@ -37,7 +37,7 @@ class Drawn:
         return yaml.safe_dump(self.document, sort_keys=False, allow_unicode=True)
 
 
-# -- files that scenes name --------------------------------------------------------------------------------------------------
+# --- files that scenes name -----------------------------------------------------------------------
 
 PROFILES = {
     "round.csv": lambda x: 200 * x**2,
@@ -57,31 +57,6 @@ MOTIONS = {"depths.csv": ("time (s),depth (mm)", 0.3), "forces.csv": ("time (ms)
 """Header and largest value of motions that tables say."""
 MESHES = ("quad9.msh", "quad4.msh", "tri6.msh", "aside.msh")
 WRONG_MESHES = ("cut.msh", "text.msh", "nan.msh", "missing.msh")
-FILES = {
-    "round.csv": lambda x: 200 * x**2,
-    "waves.csv": lambda x: 40 * x**2 + 5e-5 * np.cos(4000 * x),
-    "noise.csv": lambda x: 100 * x**2 + np.random.default_rng(1).normal(0, 2e-6, x.size),
-    "steps.csv": lambda x: np.round(150 * x**2, 5),
-    "ramp.csv": lambda x: np.abs(x) * 0.4,
-    "beside.csv": lambda x: 200 * (x - 3e-3) ** 2,
-}
-"""Heights (m) over places (m)."""
-WRONG_PROFILES = {
-    "nan.csv": "x (mm),y (mm)\n0,0\n1,nan\n",
-    "short.csv": "x (mm),y (mm)\n0,0\n",
-    "back.csv": "x (mm),y (mm)\n1,0\n0,0\n",
-}
-MOTIONS = {"depths.csv": ("time (s),depth (mm)", 0.3), "forces.csv": ("time (ms);force (gf)", 10.0)}
-"""Header and largest value of motions that tables say."""
-MESHES = ("quad9.msh", "quad4.msh", "tri6.msh", "aside.msh")
-WRONG_MOTIONS = {
-    "depths.csv": ("time (s),depth (mm)", 0.3),
-    "forces.csv": ("time (ms);force (gf)", 10.0),
-}
-"""Header and largest value of motions that tables say."""
-MESHES = ("cut.msh", "text.msh", "nan.msh", "missing.msh")
-
-
 FILES = {
     "mesh": (MESHES, WRONG_MESHES),
     "csv": (tuple(PROFILES), tuple(WRONG_PROFILES)),
@@ -129,7 +104,7 @@ def write_files(folder: Path) -> None:
     assert read_pad_mesh(folder / "aside.msh").symmetric is False
 
 
-# -- values of the types of a schema -----------------------------------------------------------------------------------------
+# --- values of the types of a schema --------------------------------------------------------------
 
 
 def _leaves(document):
@@ -238,7 +213,7 @@ def _objects(draw, schema, defs):
     return found
 
 
-# -- documents ---------------------------------------------------------------------------------------------------------------
+# --- documents ------------------------------------------------------------------------------------
 
 STEADY = {"press_to_force": "10 gf"}
 PARTS = ("specimen", "friction", "outputs", "accuracy", "effects")

@@ -58,7 +58,7 @@ def require(so: bool, what: str) -> None:
         raise Failed(what)
 
 
-# -- commands ------------------------------------------------------------------------------------------------------------------
+# --- commands -------------------------------------------------------------------------------------
 
 
 def command(*words: str | Path) -> tuple[int, str, str]:
@@ -170,7 +170,7 @@ def _presses(leg: dict) -> bool:
     return "press_to_force" in leg or "press_to_depth" in leg or "table" in leg
 
 
-# -- many of them --------------------------------------------------------------------------------------------------------------
+# --- many of them ---------------------------------------------------------------------------------
 
 
 @dataclass
@@ -276,8 +276,9 @@ def soaked(words: list[str] | None = None) -> int:
     found = soak(options.scenes, options.seed, 60 * options.minutes)
     table = found.table()
     table.attrs["summary"] = (
-        f"{found.drawn} scenes, sweeps and broken documents drawn at random (seed {options.seed}) in {found.seconds / 60:.1f} "
-        "minutes of process time: all planned, and run coarsely where a run is predicted to take two seconds at most."
+        f"{found.drawn} scenes, sweeps and broken documents drawn at random (seed {options.seed}) "
+        f"in {found.seconds / 60:.1f} minutes of process time: all planned, and run coarsely where "
+        "a run is predicted to take two seconds at most."
     )
     print(table.attrs["summary"], table.to_string(index=False), sep="\n")
     if found.failure:

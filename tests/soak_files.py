@@ -25,6 +25,7 @@ from cysyk1999.reference_data import ReferenceDataError, read_force_depth
 from cysyk1999.studies.stability.run import Late, in_time
 from fingerpad.specimen import write_pad
 from own_meshes import SLAB, slab_mesh
+from soak import command, judged, require, said
 
 SLOWEST = 30.0
 """s of process time after which a run is let go."""
@@ -35,24 +36,7 @@ READERS = {
 }
 """Published files of measured data, and what reads files like them."""
 WORDS = ("skin", "base", "foam", "", "Skin", "fat", "bone", "3", "a b", "\u00b5", '"', "0")
-CELLS = (
-    "",
-    "nan",
-    "inf",
-    "1e999",
-    "-1",
-    "0",
-    "1e-300",
-    "abc",
-    "1,5",
-    "1.5.2",
-    "999999999999",
-    "--",
-    '"',
-    "\u00b5m",
-    "#",
-    "1;2",
-)
+CELLS = (*'nan inf 1e999 -1 0 1e-300 abc 1,5 1.5.2 999999999999 -- " \u00b5m # 1;2'.split(), "")
 
 
 def meshes(folder: Path) -> list[str]:
@@ -79,122 +63,98 @@ def meshes(folder: Path) -> list[str]:
     return [f"{name}.msh" for name in (*made, "old", "binary", "old_binary")]
 
 
-def tables(folder: Path) -> dict[str, str]:
-    """Good tables by what they are for."""
-    x = np.linspace(-5, 5, 101)
-    time_s = np.linspace(0, 1, 101)
-    made = {
-        "profile.csv": ("x (mm),y (mm)", np.column_stack([x, 0.1 * x**2]), ","),
-        "scan.csv": ("# x (um);y (um);z (um)", np.column_stack([1e3 * x, 0 * x, 100 * x**2]), ";"),
-        "motion.csv": (
-            "time (s),depth (mm)",
-            np.column_stack([time_s, np.minimum(time_s, 0.3)]),
-            ",",
-        ),
-        "force.csv": ("time (ms)\tforce (gf)", np.column_stack([1e3 * time_s, 10 * time_s]), "\t"),
-        "samples.csv": (
-            "stimulus.curvature (1/m),friction",
-            np.column_stack([[50.0, 100.0], [0.0, 0.1]]),
-            ",",
-        ),
-    }
-    for name, (header, rows, delimiter) in made.items():
-        np.savetxt(folder / name, rows, delimiter=delimiter, header=header, comments="", fmt="%.6g")
-    return {
-        "profile": "profile.csv",
-        "scan": "scan.csv",
-        "motion": "motion.csv",
-        "force": "force.csv",
-        "samples": "samples.csv",
-    }
+def tables(folder: Path) -> None:
+    """Good tables."""
+    x, time_s = np.linspace(-5, 5, 101), np.linspace(0, 1, 101)
+    depth, samples = np.minimum(time_s, 0.3), [[50.0, 0.0], [100.0, 0.1]]
+    for name, header, rows, delimiter in (
+        ("profile.csv", "x (mm),y (mm)", zip(x, 0.1 * x**2, strict=True), ","),
+        ("scan.csv", "# x (um);y (um);z (um)", zip(1e3 * x, 0 * x, 100 * x**2, strict=True), ";"),
+        ("motion.csv", "time (s),depth (mm)", zip(time_s, depth, strict=True), ","),
+        ("force.csv", "time (ms)\tforce (gf)", zip(1e3 * time_s, 10 * time_s, strict=True), "\t"),
+        ("samples.csv", "stimulus.curvature (1/m),friction", samples, ","),
+    ):
+        how = {"delimiter": delimiter, "header": header, "comments": "", "fmt": "%.6g"}
+        np.savetxt(folder / name, list(rows), **how)
 
 
-def documents(folder: Path) -> list[tuple[str, str, dict]]:
-    """The file to damage, the command and the document that names it."""
+def documents(folder: Path) -> list[tuple[str, object, dict]]:
+    """The file to damage, the command (or what reads the file), and the document that names it."""
     plain = {
         "stimulus": {"shape": "cylinder", "curvature": "100 1/m"},
         "motion": [{"press_to_force": "5 gf"}],
         "accuracy": "draft",
     }
-    found = [(name, "run", SLAB(name) | {"accuracy": "draft"}) for name in meshes(folder)]
-    names = tables(folder)
-    for what in ("profile", "scan"):
-        found.append(
-            (names[what], "run", plain | {"stimulus": {"shape": "sampled", "csv": names[what]}})
-        )
-    for what in ("motion", "force"):
-        found.append((names[what], "run", plain | {"motion": {"table": names[what]}}))
-    found.append((names["samples"], "plan", {"scene": plain, "over": {"table": names["samples"]}}))
-    found.append(("scene.yaml", "run", plain))
-    for (
-        name,
-        reader,
-    ) in READERS.items():  # what the workflow reads of measured data, without the workflow
+    tables(folder)
+    wanted = [(name, "run", SLAB(name) | {"accuracy": "draft"}) for name in meshes(folder)]
+    for name in ("profile.csv", "scan.csv"):
+        wanted.append((name, "run", plain | {"stimulus": {"shape": "sampled", "csv": name}}))
+    for name in ("motion.csv", "force.csv"):
+        wanted.append((name, "run", plain | {"motion": {"table": name}}))
+    wanted.append(("samples.csv", "plan", {"scene": plain, "over": {"table": "samples.csv"}}))
+    wanted.append(("scene.yaml", "run", plain))
+    for name, reader in READERS.items():  # files of measured data, read without the workflow
         shutil.copy(REFERENCE / name, folder / Path(name).name)
-        found.append((Path(name).name, reader, {}))
-    return found
+        wanted.append((Path(name).name, reader, plain))
+    return wanted
 
 
-# -- damage ------------------------------------------------------------------------------------------------------------------
+# --- damage ---------------------------------------------------------------------------------------
+
+
+def _lines(content, draw):
+    """Some lines are dropped, there twice, or in another order."""
+    lines = content.split(b"\n")
+    at = int(draw.integers(len(lines)))
+    some = lines[at : at + int(draw.integers(1, 2 + len(lines) // 4))]
+    shuffled = [some[k] for k in draw.permutation(len(some))]
+    new = ([], some * 2, shuffled)[draw.integers(3)]
+    return b"\n".join(lines[:at] + new + lines[at + len(some) :])
+
+
+def _bytes(content, draw):
+    """The file is cut, or some bytes are others."""
+    at = int(draw.integers(len(content) + 1))
+    if draw.integers(3) == 0:
+        return content[:at]
+    junk = draw.integers(0, 256, int(draw.integers(1, 9))).astype(np.uint8).tobytes()
+    return content[:at] + junk + content[at + int(draw.integers(2)) :]
+
+
+def _number(content, draw):
+    """A number is another one, or none."""
+    numbers = list(re.finditer(rb"-?\d+\.?\d*(?:e-?\d+)?", content))
+    if not numbers:
+        return content
+    chosen = numbers[int(draw.integers(len(numbers)))]
+    scaled = float(chosen[0]) * draw.choice([-1, 0, 0.999, 1.01, 1e3, 1e-3]) + draw.normal()
+    new = (draw.choice(CELLS), str(draw.integers(-3, 2000)), f"{scaled:.6g}")[draw.integers(3)]
+    return content[: chosen.start()] + new.encode() + content[chosen.end() :]
+
+
+def _word(content, draw):
+    """A word is another one."""
+    words = list(re.finditer(rb"[A-Za-z_]+", content))
+    if not words:
+        return content
+    chosen = words[int(draw.integers(len(words)))]
+    return content[: chosen.start()] + draw.choice(WORDS).encode() + content[chosen.end() :]
+
+
+def _recoded(content, draw):
+    """The encoding, the delimiters or the ends of lines are others."""
+    if draw.integers(3) == 0:
+        encoding = draw.choice(["utf-16", "utf-8-sig", "utf-32", "cp1252"])
+        return content.decode("latin1").encode(encoding, "replace")
+    signs = [(b",", b"; \t|"), (b".", b","), (b"\n", b"\r\0\n")]
+    old, new = signs[draw.integers(3)]
+    return content.replace(old, bytes([draw.choice(list(new))]))
 
 
 def damaged(content: bytes, draw: np.random.Generator) -> bytes:
     """A file with one thing wrong."""
-    lines = content.split(b"\n")
-    kind = draw.integers(13)
-    at = int(draw.integers(max(len(lines), 1)))
-    more = int(draw.integers(1, 1 + max(len(lines) // 4, 1)))
-    if kind == 0:
-        return b"\n".join(lines[:at] + lines[at + more :])  # a part is dropped
-    if kind == 1:
-        return b"\n".join(
-            lines[:at] + lines[at : at + more] * 2 + lines[at + more :]
-        )  # or there twice
-    if kind == 2:
-        order = lines[at : at + more]
-        draw.shuffle(order)
-        return b"\n".join(lines[:at] + order + lines[at + more :])
-    if kind == 3:
-        return content[: int(draw.integers(len(content) + 1))]  # cut
-    if kind == 4:
-        where = int(draw.integers(len(content) + 1))
-        return (
-            content[:where]
-            + bytes(draw.integers(0, 256, int(draw.integers(1, 9))).astype(np.uint8))
-            + content[where:]
-        )
-    if kind == 5 and content:
-        where = int(draw.integers(len(content)))
-        return content[:where] + bytes([int(draw.integers(256))]) + content[where + 1 :]
-    if kind in (6, 7, 8):  # a number becomes another one
-        numbers = list(re.finditer(rb"-?\d+\.?\d*(?:e-?\d+)?", content))
-        if numbers:
-            chosen = numbers[int(draw.integers(len(numbers)))]
-            new = (
-                draw.choice(CELLS).encode()
-                if kind == 6
-                else str(int(draw.integers(-3, 2000))).encode()
-                if kind == 7
-                else f"{float(chosen[0] or 0) * draw.choice([-1, 0, 0.999, 1.01, 1e3, 1e-3]) + draw.normal():.6g}".encode()
-            )
-            return content[: chosen.start()] + new + content[chosen.end() :]
-    if kind == 9:
-        words = list(re.finditer(rb"[A-Za-z_]+", content))
-        if words:
-            chosen = words[int(draw.integers(len(words)))]
-            return content[: chosen.start()] + draw.choice(WORDS).encode() + content[chosen.end() :]
-    if kind == 10:
-        encoding = draw.choice(["utf-16", "utf-8-sig", "utf-32", "cp1252"])
-        return content.decode("latin1").encode(encoding, "replace")
-    if kind == 11:
-        return (
-            content.replace(b",", draw.choice([b";", b"\t", b" ", b"|", b""]))
-            if draw.integers(2)
-            else content.replace(b".", b",")
-        )
-    if kind == 12:
-        return content.replace(b"\n", draw.choice([b"\r\n", b"\r", b"\n\n", b"\0", b""]))
-    return content
+    kinds = (_lines, _bytes, _number, _word, _recoded)
+    return draw.choice(kinds, p=[0.25, 0.2, 0.25, 0.1, 0.2])(content, draw)
 
 
 def moved(content: bytes, draw: np.random.Generator) -> bytes:
@@ -214,67 +174,57 @@ def moved(content: bytes, draw: np.random.Generator) -> bytes:
     return content[:start] + b"\n".join(lines) + content[end:]
 
 
-# -- many of them ------------------------------------------------------------------------------------------------------------
+# --- many of them ---------------------------------------------------------------------------------
 
 
 def soak_files(count: int, start: int, seconds: float) -> tuple[Counter, str]:
-    """Outcomes of up to `count` damaged files within a time (s), and of the first failure its
-    folder and why ("": none).
-    """
-    from soak import Failed, command, judged, said
-
-    outcomes, begun = Counter(), time.perf_counter()
+    """Outcomes of up to `count` damaged files within some process time (s); a failure, or ""."""
+    outcomes, begun = Counter(), time.process_time()
     with tempfile.TemporaryDirectory(prefix="soak-files-") as name:
-        good = Path(name) / "good"
+        good, folder = Path(name) / "good", Path(name) / "try"
         good.mkdir()
         wanted = documents(good)
-        (good / "scene.yaml").write_text(yaml.safe_dump(wanted[-1][2]))
         for number in range(count):
-            if time.perf_counter() - begun > seconds:
+            if time.process_time() - begun > seconds:
                 break
             draw = np.random.default_rng((start, number))
             file, verb, document = wanted[int(draw.integers(len(wanted)))]
-            folder = Path(name) / "try"
             shutil.rmtree(folder, ignore_errors=True)
             shutil.copytree(good, folder)
+            (folder / "scene.yaml").write_text(yaml.safe_dump(document))
             content = (folder / file).read_bytes()
             for _ in range(int(draw.integers(1, 4))):
-                content = (
-                    moved(content, draw)
-                    if file.endswith(".msh") and draw.random() < 0.4
-                    else damaged(content, draw)
-                )
+                mesh = file.endswith(".msh") and draw.random() < 0.4
+                content = (moved if mesh else damaged)(content, draw)
             (folder / file).write_bytes(content)
-            path = folder / "scene.yaml"
-            if file != "scene.yaml":
-                path.write_text(yaml.safe_dump(document))
-            if callable(verb):
-                try:
-                    verb(folder / file)
-                    outcomes[f"{file}: completed"] += 1
-                except ReferenceDataError as error:
-                    if "\n" in str(error):
-                        return outcomes, f"number {number} of seed {start}, {file}: {error}"
-                    outcomes[f"{file}: refused"] += 1
-                continue
-            out = folder / "out"
-            words = (
-                (verb, path) if verb == "plan" else (verb, path, "--out", out, "--quiet", "--force")
-            )
             try:
-                with in_time(SLOWEST):
-                    code, _, err = command(*words)
-                said(words, code, err)
-                if code == 0 and verb == "run":
-                    judged(out)
-                outcomes[f"{file}: {('completed', '', 'refused', 'stopped')[code]}"] += 1
-            except Late:
-                outcomes[f"{file}: not done in {SLOWEST:g} s"] += 1
-            except (Failed, Exception) as error:  # noqa: BLE001 - whatever it is, it is shown
+                outcomes[f"{file}: {_outcome(verb, folder, file)}"] += 1
+            except Exception as error:  # noqa: BLE001 - whatever it is, it is shown
                 kept = Path(tempfile.mkdtemp(prefix="soak-failed-"))
                 shutil.copytree(folder, kept, dirs_exist_ok=True)
-                return (
-                    outcomes,
-                    f"number {number} of seed {start}, {file} in {kept}: {type(error).__name__}: {error}",
-                )
+                why = f"{file} in {kept}: {type(error).__name__}: {error}"
+                return outcomes, f"number {number} of seed {start}, {why}"
     return outcomes, ""
+
+
+def _outcome(verb, folder: Path, file: str) -> str:
+    """What becomes of a damaged file: completed, refused, stopped, or not done in time."""
+    if callable(verb):
+        try:
+            verb(folder / file)
+        except ReferenceDataError as error:
+            require("\n" not in str(error), f"more than one line: {error}")
+            return "refused"
+        return "completed"
+    out = folder / "out"
+    more = () if verb == "plan" else ("--out", out, "--quiet", "--force")
+    words = (verb, folder / "scene.yaml", *more)
+    try:
+        with in_time(SLOWEST):
+            code, _, err = command(*words)
+    except Late:
+        return f"not done in {SLOWEST:g} s"
+    said(words, code, err)
+    if code == 0 and verb == "run":
+        judged(out)
+    return ("completed", "", "refused", "stopped")[code]

@@ -48,7 +48,8 @@ def many(path, head, line, size=130_000_000):
 
 
 def mesh_head(nodes, elements):
-    return f"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 {nodes} 1 {nodes}\n$EndNodes\n$Elements\n1 {elements} 1 {elements}\n"
+    counts = f"$Nodes\n1 {nodes} 1 {nodes}\n$EndNodes\n$Elements\n1 {elements} 1 {elements}\n"
+    return f"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n{counts}"
 
 
 def scene_of_much(folder):
@@ -118,7 +119,7 @@ def test_what_is_huge_is_refused_in_little_memory(tmp_path, name):
     assert sorted(path.name for path in tmp_path.iterdir()) == before
 
 
-# --- what is small, but no file to read, or leads out of the folder -----------------------------------------------------------
+# --- what is small, but no file to read, or leads out of the folder -------------------------------
 
 
 def fifo(name):

@@ -21,6 +21,7 @@ from wrong_scenes import BAD, RAMP_AND_HOLD, changed, pad_folder, specimen, writ
 pytestmark = pytest.mark.unit
 
 CONFIG = Path(__file__).parents[1] / "config"
+THREE = ["history.nc", "plan.json", "summary.json"]
 SUMMARY = {
     "legs": [
         {
@@ -118,6 +119,20 @@ def test_wrong_scenes_exit_2_with_one_line_and_write_nothing(tmp_path, capsys, n
     assert names(tmp_path) == ["config", "my_scene.yaml"]
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["run", "sweep.yaml"], "is a sweep, not a scene; allowed: fingerpad sweep"),
+        (["mesh", "sweep.yaml", "--out", "m.msh"], "is a sweep, not a scene; allowed: fingerpad"),
+        (["sweep", "my_scene.yaml"], "is a scene, not a sweep; allowed: fingerpad run"),
+    ],
+)
+def test_the_other_command_is_named(tmp_path, scene, capsys, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, {"scene": scene.name, "over": {"friction": [0, 0.5]}}, "sweep.yaml")
+    assert refused(capsys, words).startswith(f"{words[1]}: {said}")
+
+
 @pytest.mark.parametrize("command", ["plan", "run", "mesh"])
 @pytest.mark.parametrize("content", [None, b"\xff\xfe\x00", b"a: [", b""])
 def test_files_that_are_no_scene(tmp_path, capsys, command, content):
@@ -140,7 +155,7 @@ def test_wrong_accuracy_on_the_command_line(tmp_path, scene, capsys, accuracy):
 
 def test_an_output_that_is_a_file(tmp_path, scene, capsys):
     (tmp_path / "file").write_text("kept")
-    for out in ("file", "file/below"):
+    for out in ("file", "file/below", "a" * 300):
         assert "--out" in refused(capsys, ["run", scene, "--out", tmp_path / out])
     assert "--out" in refused(capsys, ["mesh", scene, "--out", tmp_path / "file" / "a.msh"])
     assert "ending in .msh" in refused(capsys, ["mesh", scene, "--out", tmp_path / "mesh.txt"])
@@ -184,36 +199,15 @@ def test_usage_errors_exit_2(arguments, capsys):
 # --- what is done ---------------------------------------------------------------------------------
 
 
-def test_version(capsys):
-    with pytest.raises(SystemExit) as caught:
-        main(["--version"])
-    assert caught.value.code == 0
-    assert capsys.readouterr().out.startswith("fingerpad 0.")
-
-
 def test_plan_as_json_and_as_a_table(scene, capsys):
     assert main(["plan", str(scene), "--json"]) == 0
     plan = json.loads(capsys.readouterr().out)
-    assert set(plan["effects"]) == {
-        "friction",
-        "viscoelasticity",
-        "finite_strain",
-        "symmetry",
-        "ridges",
-    }
     assert all(set(effect) == {"on", "why"} for effect in plan["effects"].values())
     assert {"element", "nodes", "steps"} <= set(plan["discretisation"])
 
     assert main(["plan", str(scene)]) == 0
     table = capsys.readouterr().out
-    for words in (
-        "Plan of my_scene",
-        "finite strain",
-        "friction",
-        "nodes",
-        "expected error",
-        "predicted cost",
-    ):
+    for words in ("Plan of my_scene", "finite strain", "nodes", "expected error", "predicted cost"):
         assert words in table
 
 
@@ -228,7 +222,7 @@ def test_accuracy_replaces_the_scene_s(scene, capsys):
 def test_run_writes_three_files(tmp_path, scene, solver, capsys):
     out = tmp_path / "new" / "out"
     assert main(["run", str(scene), "--out", str(out)]) == 0
-    assert names(out) == ["history.nc", "plan.json", "summary.json"]
+    assert names(out) == THREE
     assert json.loads((out / "summary.json").read_text()) == SUMMARY
     plan = json.loads((out / "plan.json").read_text())
     assert (plan.pop("scene"), plan.pop("files")) == ("my_scene", names(out))
@@ -256,21 +250,8 @@ def test_results_without_out_go_to_a_folder_of_the_scene_s_name(
 ):
     monkeypatch.chdir(tmp_path)
     assert main(["run", scene.name]) == 0
-    assert names("results/my_scene") == ["history.nc", "plan.json", "summary.json"]
+    assert names("results/my_scene") == THREE
     assert capsys.readouterr().out.endswith("results in results/my_scene\n")
-
-
-@pytest.mark.parametrize(
-    ("seconds", "said"),
-    [(None, "1.5 s; "), (0.2, "1.5 s; "), (1.2, "1.5 s, 1.2 of them to compile, once;")],
-)
-def test_a_run_says_what_it_took_to_compile(seconds, said):
-    from fingerpad.cli import _closing_line
-
-    once = {} if seconds is None else {"compiling_s": seconds}
-    assert f"5 iterations, {said}" in _closing_line(
-        SUMMARY | {"run": SUMMARY["run"] | once}, Path("results"), "gf"
-    )
 
 
 def test_quiet_says_nothing_and_vtu_adds_fields(tmp_path, solver, capsys):
@@ -329,8 +310,10 @@ def test_a_second_run_into_one_folder_is_refused_while_the_first_lives(
     """The lock is a process's: it goes when that is killed, and leaves nothing."""
     out = tmp_path / "out"
     out.mkdir()
-    code = f"import pathlib, time; from fingerpad.files import locked\nwith locked(pathlib.Path({str(out)!r})):"
-    code += " print(flush=True); time.sleep(60)"
+    code = (
+        "import time; from fingerpad.files import locked\n"
+        f"with locked({str(out)!r}): print(flush=True); time.sleep(60)"
+    )
     other = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
     try:
         other.stdout.readline()
@@ -341,7 +324,7 @@ def test_a_second_run_into_one_folder_is_refused_while_the_first_lives(
         other.wait()
     (out / ".fingerpad-leftover").mkdir()
     assert main(["run", str(scene), "--out", str(out), "--quiet"]) == 0
-    assert names(out) == ["history.nc", "plan.json", "summary.json"]
+    assert names(out) == THREE
 
 
 def test_progress_on_a_terminal(tmp_path, scene, solver, monkeypatch, capsys):
@@ -409,36 +392,7 @@ def test_interrupt_keeps_what_had_converged_beside_the_results_there_are(
     assert (out / "history.nc").read_bytes() == before
     solver.fails = None
     assert main(arguments) == 0
-    assert names(out) == ["history.nc", "plan.json", "summary.json"]
-
-
-@pytest.mark.parametrize(
-    ("error", "code"),
-    [
-        (KeyboardInterrupt(), 130),
-        (OSError(28, "No space left on device"), 3),
-        (RuntimeError("NetCDF"), 1),
-    ],
-)
-@pytest.mark.parametrize("writer", ["write_history", "write_vtu"])
-def test_a_run_stopped_while_writing_leaves_the_old_results(
-    tmp_path, scene, solver, monkeypatch, capsys, error, code, writer
-):
-    out = tmp_path / "out"
-    arguments = ["run", str(scene), "--out", str(out), "--quiet", "--vtu"]
-    assert main(arguments) == 0
-    before = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
-
-    def fail(dataset, path):
-        write_text(Path(path) / "half" if writer == "write_vtu" else path, "half")
-        raise error
-
-    monkeypatch.setattr(sys.modules["fingerpad.results"], writer, fail)
-    assert main(arguments) == code
-    assert {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()} == before
-    line = capsys.readouterr().err
-    assert line.count("\n") == 1 and "Traceback" not in line
-    assert code != 3 or (str(out) in line and "No space left" in line)
+    assert names(out) == THREE
 
 
 def test_an_unforeseen_error_is_one_line_and_a_file(tmp_path, scene, solver, monkeypatch, capsys):
@@ -471,11 +425,6 @@ def test_no_memory_is_one_line(tmp_path, scene, solver, capsys):
     assert capsys.readouterr().err.startswith(
         "fingerpad: not enough memory: Unable to allocate 30.7 GiB; try "
     )
-
-
-def test_an_output_that_is_no_path(tmp_path, scene, capsys):
-    assert "File name too long" in refused(capsys, ["run", scene, "--out", "a" * 300])
-    assert "File name too long" in refused(capsys, ["mesh", scene, "--out", "a" * 300 + ".msh"])
 
 
 # --- for real -------------------------------------------------------------------------------------
@@ -518,7 +467,7 @@ def test_as_a_process(tmp_path):
             [sys.executable, "-m", "fingerpad", *arguments], capture_output=True, text=True
         )
 
-    assert fingerpad("--version").returncode == 0
+    assert fingerpad("--version").stdout.startswith("fingerpad 0.")
     wrong = fingerpad("run", "no.yaml", "--out", str(tmp_path / "out"))
     assert (wrong.returncode, wrong.stdout, wrong.stderr) == (
         2,
@@ -526,22 +475,3 @@ def test_as_a_process(tmp_path):
         "fingerpad: no.yaml: there is no such file\n",
     )
     assert names(tmp_path) == []
-
-
-@pytest.mark.parametrize(
-    "main", ["from fingerpad.cli import main; main(['plan', 'none.yaml'])", ""]
-)
-def test_what_is_unreachable_at_the_end_is_not_looked_for(main):
-    """Of a command: without it, the interpreter's last search finds what points at itself."""
-    said = (
-        "import gc\n"
-        "class Round:\n"
-        "    def __init__(self): self.itself = self\n"
-        "    def __del__(self): print('found')\n"
-        f"{main}\n"
-        "seldom = gc.get_threshold()[0] > 10_000\n"
-        "Round()\n"
-        "print('seldom' if seldom else 'often')\n"
-    )
-    done = subprocess.run([sys.executable, "-c", said], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == (["seldom"] if main else ["often", "found"])

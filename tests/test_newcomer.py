@@ -22,49 +22,27 @@ SCENE = """stimulus: {shape: cylinder, curvature: "400 1/m"}
 motion: [{press_to_force: "20 gf", rate: "40 gf/s"}, {hold: "0.2 s"}]
 accuracy: {skin_edge: "0.8 mm", steps: 4}
 """
-SWEEP = 'scene: scene.yaml\nover: {stimulus.curvature: ["100 1/m", "200 1/m"]}\n'
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scene.yaml").write_text(SCENE)
-    (tmp_path / "sweep.yaml").write_text(SWEEP)
     return tmp_path
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["run", "sweep.yaml"], "sweep.yaml: is a sweep, not a scene; allowed: fingerpad sweep"),
-        (
-            ["mesh", "sweep.yaml", "--out", "m.msh"],
-            "sweep.yaml: is a sweep, not a scene; allowed: fingerpad sweep",
-        ),
-        (["sweep", "scene.yaml"], "scene.yaml: is a scene, not a sweep; allowed: fingerpad run"),
-    ],
-)
-def test_the_other_command_is_named(folder, capsys, words, said):
-    assert main(words) == 2
-    assert said in capsys.readouterr().err
-
-
-def test_a_history_is_read_by_its_folder(folder):
-    assert main(["run", "scene.yaml", "--out", "out", "--quiet"]) == 0
-    assert read_history("out").equals(read_history("out/history.nc"))
+def test_a_history_is_read_by_its_folder_and_has_one_number_for_the_error(folder, capsys):
+    assert main(["run", "scene.yaml", "--out", "out"]) == 0
+    history = read_history("out")
+    error = history.attrs["estimated_error"]
+    assert history.equals(read_history("out/history.nc"))
+    assert f"error about {100 * error:.2g} %" in capsys.readouterr().out
+    assert summary(history)["run"]["estimated_error"] == error
     (folder / "empty").mkdir()
     with pytest.raises(FileNotFoundError):
         read_history("empty")
     with pytest.raises(ResultError, match="no NetCDF file"):
         read_history("scene.yaml")
-
-
-def test_one_number_for_the_error(folder, capsys):
-    assert main(["run", "scene.yaml", "--out", "out"]) == 0
-    history = read_history("out")
-    error = history.attrs["estimated_error"]
-    assert f"error about {100 * error:.2g} %" in capsys.readouterr().out
-    assert summary(history)["run"]["estimated_error"] == error
 
 
 def test_kinds_of_receptor_by_any_of_their_names(folder):

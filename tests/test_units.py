@@ -9,9 +9,7 @@ from hypothesis import strategies as st
 from fingerpad.units import (
     DIMENSIONS,
     QUANTITY_PATTERN,
-    USUAL,
     QuantityError,
-    _looked_up,
     format_quantity,
     parse_number,
     parse_quantity,
@@ -53,11 +51,6 @@ UNITS = {
 EVERY_UNIT = [
     (kind, unit, factor) for kind, units in UNITS.items() for unit, factor in units.items()
 ]
-
-
-@pytest.mark.parametrize(("unit", "dimension"), USUAL)
-def test_usual_units_are_as_pint_has_them(unit, dimension):
-    assert USUAL[unit, dimension] == _looked_up(unit, dimension)
 
 
 numbers = st.floats(min_value=1e-6, max_value=1e6).map(lambda x: float(f"{x:.9g}"))

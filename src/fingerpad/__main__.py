@@ -1,8 +1,23 @@
-"""``python -m fingerpad``: the command line without its script on the path."""
+"""The command ``fingerpad``, or ``python -m fingerpad``."""
 
+import resource
 import sys
 
-from fingerpad.cli import main
+LEAST_BYTES = 0.9e9
+"""Of addresses that the libraries take before anything is solved."""
+
+
+def main() -> int:
+    """Run the command line, where there is memory enough to import it; the exit code."""
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit != resource.RLIM_INFINITY and limit < LEAST_BYTES:
+        need = f"a limit (ulimit -v) below {LEAST_BYTES / 1e9:.2g} GB"
+        print(f"fingerpad: not enough memory: {need}", file=sys.stderr)
+        return 3
+    from fingerpad.cli import main as command
+
+    return command()
+
 
 if __name__ == "__main__":
     sys.exit(main())

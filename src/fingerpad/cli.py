@@ -1,5 +1,4 @@
-"""The command ``fingerpad``, or ``python -m fingerpad``: plan, run or mesh one scene, without the
-workflow; plan or run a sweep.
+"""The command ``fingerpad``: plan, run or mesh a scene; plan or run a sweep.
 
 Exit codes: 0 done; 1 an error of the program (one line; the details are in a file); 2 the input is
 wrong (one line on standard error: file, key, what is wrong, what is allowed); 3 the simulation
@@ -14,45 +13,40 @@ import contextlib
 import errno
 import json
 import os
+import platform
+import shutil
 import sys
+import tempfile
+import traceback
 import warnings
 from collections.abc import Callable, Iterable, Iterator
+from importlib.metadata import version
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from fingerpad.processes import collect_seldom
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
 
-if TYPE_CHECKING:
-    from fingerpad.planning.plan import Plan
-    from fingerpad.scenes.scene import Scene
+from fingerpad.documents import SceneError, read_yaml
+from fingerpad.files import disk_is_full, is_file, locked, read_input, staged, unusable
+from fingerpad.planning.bounds import PlanError, percent
+from fingerpad.planning.plan import Plan, plan
+from fingerpad.receptors.recovery import ReceptorError
+from fingerpad.scenes.families import read_scene
+from fingerpad.scenes.scene import Scene, load_scene
+from fingerpad.specimen.outline import OutlineError
+from fingerpad.specimen.pad import MeshError
+from fingerpad.units import QuantityError, parse_quantity, unit_of
 
 DONE, UNFORESEEN, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
-#: what a run may write into its folder; plan.json names what it did write, and nothing else is ever
-#: removed
 RESULTS = ("plan.json", "history.nc", "summary.json", "last_converged.nc")
+"""Files that a run may write; plan.json names those it did write, and no other is ever removed."""
+FIELDS = ("vtu/*.vtu", "vtu/*.series", "vtu/*.pvd")
 _GAPS = 0.97
 """Share of a contact's width that touches, below which it has gaps."""
-LEAST_BYTES = 0.9e9
-"""Of addresses that the libraries take before anything is solved."""
-FIELDS = ("vtu/*.vtu", "vtu/*.series", "vtu/*.pvd")
-
-# errors of wrong input: where they are defined, and the key they are about when they do not name it
-_ERRORS = {
-    "SceneError": ("documents", ""),
-    "SweepError": ("sweeps.engine", ""),
-    "PlanError": ("planning.bounds", ""),
-    "OutlineError": ("specimen.outline", "specimen.outline"),
-    "MeshError": ("specimen.pad", "specimen.mesh"),
-    "ReceptorError": ("receptors.recovery", "outputs.receptors"),
-}
-
-
-_SURROUNDINGS = frozenset(
-    getattr(errno, name)
-    for name in "ENOSPC EDQUOT EIO EACCES EPERM EROFS EFBIG EMFILE ENFILE ENOMEM ENODEV ESTALE ETIMEDOUT ENAMETOOLONG EBUSY "
-    "EEXIST ENOTDIR EISDIR ELOOP".split()
-)
-"""Errors of the system that no program can do anything about."""
 
 
 class _Refusal(ValueError):
@@ -63,120 +57,98 @@ class _NotWritten(OSError):
     """Results that could not be written; its text is the one line shown."""
 
 
+KEYS = {OutlineError: "specimen.outline", MeshError: "specimen.mesh"}
+KEYS |= {ReceptorError: "outputs.receptors"}
+"""Errors that do not name a key -> the key that they are about."""
+INPUT_ERRORS = (_Refusal, SceneError, PlanError, *KEYS)
+
+_OF_THE_SYSTEM = frozenset(
+    getattr(errno, name)
+    for name in "ENOSPC EDQUOT EIO EACCES EPERM EROFS EFBIG EMFILE ENFILE ENOMEM ENODEV ESTALE "
+    "ETIMEDOUT ENAMETOOLONG EBUSY EEXIST ENOTDIR EISDIR ELOOP".split()
+)
+"""Errors of the system that no program can do anything about."""
+
+
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command line and return the exit code.
+    """Run the command line.
 
-    Args:
-        arguments: the words after ``fingerpad``; those of the process when None.
+    Parameters
+    ----------
+    arguments : list of str, optional
+        The words after ``fingerpad``; those of the process without.
 
-    Raises:
-        SystemExit: by argparse, with code 2 for a wrong command line and 0 after help and version.
+    Returns
+    -------
+    int
+        The exit code.
+
+    Raises
+    ------
+    SystemExit
+        By argparse, with code 2 for a wrong command line and 0 after help and version.
     """
-    collect_seldom()
-    os.environ.setdefault(
-        "PYDANTIC_DISABLE_PLUGINS", "__all__"
-    )  # it would look for them in every package there is
     for stream in (sys.stdout, sys.stderr):  # any name of a file can be printed
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
-    # what libraries warn of is for the file of an unforeseen error, not for the user
+    # warnings of libraries are for the file of an unforeseen error, not for the user
     with warnings.catch_warnings(record=not sys.warnoptions) as heard:
         if not sys.warnoptions:
             warnings.simplefilter("default")
-        return _guarded(arguments, heard)
-
-
-def _guarded(arguments: list[str] | None, heard: list[warnings.WarningMessage] | None) -> int:
-    """The exit code of a command, whatever becomes of it."""
-    try:
         try:
-            options = _parser().parse_args(arguments)
-            if _too_little_memory():
-                return _say(
-                    f"not enough memory: a limit (ulimit -v) below {LEAST_BYTES / 1e9:.2g} GB",
-                    NOT_COMPLETED,
-                )
-            return options.command(options)
-        finally:
-            sys.stdout.flush()
-    except KeyboardInterrupt:
+            try:
+                options = _parser().parse_args(arguments)
+                return options.command(options) or DONE
+            finally:
+                sys.stdout.flush()
+        except (Exception, KeyboardInterrupt) as error:
+            return _failure(error, heard or [])
+
+
+def _failure(error: Exception | KeyboardInterrupt, heard: list[warnings.WarningMessage]) -> int:
+    """Show an error in one line; the exit code for it."""
+    text = str(error)
+    if isinstance(error, KeyboardInterrupt):
         return _say("interrupted", INTERRUPTED)
-    except BrokenPipeError:
-        return _deaf()
-    except _input_errors() as error:
-        return _say(str(error), WRONG_INPUT)
-    except _NotWritten as error:
-        return _say(str(error), NOT_COMPLETED)
-    except MemoryError as error:
-        return _say(
-            f"not enough memory: {error or 'out of memory'}; try a coarser accuracy or fewer receptors",
-            NOT_COMPLETED,
-        )
-    except Exception as error:
-        if (why := _of_the_machine(error)) is not None:
-            if getattr(error, "filename", None) is None:
-                _deaf()
-            return _say(why, NOT_COMPLETED)
-        return _unforeseen(error, heard)
+    if isinstance(error, BrokenPipeError):
+        return _silence()
+    if isinstance(error, INPUT_ERRORS):
+        return _say(text, WRONG_INPUT)
+    if isinstance(error, _NotWritten):
+        return _say(text, NOT_COMPLETED)
+    if isinstance(error, MemoryError):
+        advice = "try a coarser accuracy or fewer receptors"
+        return _say(f"not enough memory: {text or 'out of memory'}; {advice}", NOT_COMPLETED)
+    if isinstance(error, OSError) and error.errno in _OF_THE_SYSTEM:
+        if error.filename:
+            return _say(f"'{error.filename}' fails: {error.strerror}", NOT_COMPLETED)
+        _silence()
+        return _say(f"output cannot be written: {error.strerror}", NOT_COMPLETED)
+    if isinstance(error, ImportError) and "cannot be loaded" in text:
+        return _say(text, NOT_COMPLETED)
+    if isinstance(error, ImportError) and ("failed to map" in text or "cannot allocate" in text):
+        what = f"not enough memory to load what a run needs: {text}"
+        return _say(f"{what}; try a larger limit (ulimit -v)", NOT_COMPLETED)
+    return _unforeseen(error, heard)
 
 
-def _too_little_memory() -> bool:
-    """Whether a limit leaves less than the libraries take, which then do not fail but try for
-    ever.
-    """
-    import resource
-
-    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
-    return limit != resource.RLIM_INFINITY and limit < LEAST_BYTES
-
-
-def _of_the_machine(error: Exception) -> str | None:
-    """What to say of an error that is not the program's but of its surroundings: disk, rights,
-    memory; None of others.
-    """
-    if isinstance(error, OSError) and error.errno in _SURROUNDINGS:
-        return (
-            f"'{error.filename}' fails: {error.strerror}"
-            if error.filename
-            else f"output cannot be written: {error.strerror}"
-        )
-    if isinstance(error, ImportError) and "cannot be loaded" in str(error):
-        return str(error)
-    if isinstance(error, ImportError) and any(
-        words in str(error) for words in ("failed to map", "cannot allocate")
-    ):
-        return (
-            f"not enough memory to load what a run needs: {error}; try a larger limit (ulimit -v)"
-        )
-    return None
-
-
-def _deaf() -> int:
-    """The reader of standard output has gone: leave nothing for the interpreter to flush into
-    it.
-    """
+def _silence() -> int:
+    """Leave nothing for the interpreter to flush into standard output, whose reader has gone."""
     with contextlib.suppress(OSError):  # it may be no file
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return DONE
 
 
-def _unforeseen(error: Exception, heard: list[warnings.WarningMessage] | None) -> int:
-    """One line for an error nobody has thought of; everything that helps to find it goes into a
-    file.
-    """
-    import platform
-    import tempfile
-    import traceback
-    from importlib.metadata import version
-
-    warned = "".join(
-        f"{w.category.__name__}: {w.message} ({w.filename}:{w.lineno})\n" for w in heard or ()
-    )
+def _unforeseen(error: Exception, heard: list[warnings.WarningMessage]) -> int:
+    """Show an unforeseen error in one line; all that helps to find it goes into a file."""
+    warned = [f"{w.category.__name__}: {w.message} ({w.filename}:{w.lineno})" for w in heard]
     lines = (
-        f"fingerpad {version('fingerpad')}, Python {platform.python_version()}, {platform.platform()}",
+        f"fingerpad {version('fingerpad')}, Python {platform.python_version()}",
+        platform.platform(),
         f"arguments: {sys.argv[1:]}",
         "".join(traceback.format_exception(error)),
-        warned and f"warnings:\n{warned}",
+        "warnings:",
+        *warned,
     )
     try:
         handle, name = tempfile.mkstemp(prefix="fingerpad-error-", suffix=".txt")
@@ -184,9 +156,9 @@ def _unforeseen(error: Exception, heard: list[warnings.WarningMessage] | None) -
             file.write("\n".join(lines))
     except OSError as reason:
         name = f"no file ({reason.strerror})"
-    said = " ".join(str(error).split())
-    said = said if len(said) <= 200 else said[:200] + " ..."
-    cause = ": ".join(filter(None, [type(error).__name__, said]))
+    text = " ".join(str(error).split())
+    text = text if len(text) <= 200 else text[:200] + " ..."
+    cause = ": ".join(filter(None, [type(error).__name__, text]))
     return _say(
         f"internal error, {cause}: details in {name}, please report it with the scene", UNFORESEEN
     )
@@ -196,7 +168,12 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="fingerpad", description="Simulate touch on a human fingerpad."
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    parser.add_argument(
+        "--version",
+        action="version",
+        version=f"fingerpad {version('fingerpad')}",
+        help="show the version and exit",
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     plan = commands.add_parser(
@@ -275,49 +252,41 @@ def _cores(text: str) -> int:
     return int(text)
 
 
-class _Version(argparse.Action):
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        import fingerpad
-
-        print(f"fingerpad {fingerpad.__version__}")
-        parser.exit()
-
-
 # --- commands -------------------------------------------------------------------------------------
 
 
-def _plan(options: argparse.Namespace) -> int:
-    from fingerpad.sweeps import command
+def _plan(options: argparse.Namespace) -> None:
+    if _is_sweep(options.scene):
+        from fingerpad.sweeps import command
 
-    if command.is_sweep(options.scene):
         command.plan(options.scene, options.accuracy, options.cores, options.json)
-        return DONE
-    scene, plan = _prepare(options)
+        return
+    scene, chosen = _prepare(options)
     if options.json:
-        print(json.dumps(plan.to_dict(), indent=2))
+        print(json.dumps(chosen.to_dict(), indent=2))
     else:
-        _print_plan(scene, plan)
-    return DONE
+        _print_plan(scene, chosen)
 
 
 def _run(options: argparse.Namespace) -> int:
     out = options.out or Path("results") / options.scene.stem
     _check_writable(out, directory=True)
-    scene, plan = _prepare(options)
+    scene, chosen = _prepare(options)
     unit = _force_unit(options.scene)
 
+    # these compile kernels: a plan does not need them
     from fingerpad.mechanics.stepping import NonConvergence
     from fingerpad.results import summary, write_history, write_vtu
     from fingerpad.simulation import solve
 
-    with _folder(out, scene, plan, options) as folder:
-        _check_room(out, plan.result_bytes(scene, options.vtu))
+    with _folder(out, scene, chosen, options) as folder:
+        _check_room(out, chosen.result_bytes(scene, options.vtu))
         try:
             with (
                 _naming(options.scene, scene),
                 _progress(scene.name, quiet=options.quiet) as progress,
             ):
-                dataset = solve(scene, plan=plan, progress=progress, fields=options.vtu)
+                dataset = solve(scene, plan=chosen, progress=progress, fields=options.vtu)
         except NonConvergence as error:
             return _say(folder.rescue(error), NOT_COMPLETED)
         except KeyboardInterrupt as stop:
@@ -342,80 +311,70 @@ def _run(options: argparse.Namespace) -> int:
 
 def _sweep(options: argparse.Namespace) -> int:
     from fingerpad.sweeps import command
+    from fingerpad.sweeps.engine import NotFinished
 
     if options.out:
         _check_writable(options.out, directory=True)
-    return command.sweep(options)
+    try:
+        command.sweep(options)
+    except NotFinished as error:
+        return _say(str(error), NOT_COMPLETED)
+    return DONE
 
 
-def _mesh(options: argparse.Namespace) -> int:
-    from fingerpad.specimen import quality_of, write_pad
+def _mesh(options: argparse.Namespace) -> None:
+    from fingerpad.specimen import mesh_for, quality_of, write_pad
 
     if options.out.suffix != ".msh":
         raise _Refusal(f"--out: '{options.out}' is not a mesh file; allowed: a name ending in .msh")
     _check_writable(options.out, directory=False)
-    mesh = _mesh_for(options.scene, *_prepare(options))
+    scene, chosen = _prepare(options)
+    with _naming(options.scene, scene):
+        mesh = mesh_for(scene, chosen)
     with _directory(options.out.parent), _unwritable(options.out):
         write_pad(mesh, options.out)
     for name, value in quality_of(mesh).items():
         print(f"{name}: {value:.6g}" if isinstance(value, float) else f"{name}: {value}")
-    return DONE
 
 
-# --- scene, plan and mesh, with errors that name the file -----------------------------------------
+# --- scene and plan, with errors that name the file -----------------------------------------------
+
+
+def _is_sweep(path: Path) -> bool:
+    """Does a file describe a sweep: variations of a scene that it names?"""
+    try:
+        document = read_yaml(path) if is_file(path) else None
+    except SceneError:
+        return False  # whoever reads the file next says what is wrong with it
+    return isinstance(document, dict) and "over" in document and "scene" in document
 
 
 def _prepare(options: argparse.Namespace) -> tuple[Scene, Plan]:
-    """The scene, at the accuracy asked for, and its plan."""
-    from fingerpad.scenes.scene import SceneError, load_scene
-    from fingerpad.sweeps.command import is_sweep
-
-    if is_sweep(options.scene):
-        raise _Refusal(
-            f"{options.scene}: is a sweep, not a scene; allowed: fingerpad sweep, or fingerpad plan"
-        )
+    """The scene, at the accuracy of the command line, and its plan."""
+    if _is_sweep(options.scene):
+        allowed = "fingerpad sweep, or fingerpad plan"
+        raise _Refusal(f"{options.scene}: is a sweep, not a scene; allowed: {allowed}")
     scene = load_scene(options.scene)
     if options.accuracy is not None:
         try:
             scene = scene.with_accuracy(options.accuracy)
         except SceneError as error:
             raise _Refusal(str(error).replace(f"{scene.name}: accuracy", "--accuracy", 1)) from None
-
-    from fingerpad.planning.plan import plan
-
     with _naming(options.scene, scene):
         return scene, plan(scene)
 
 
-def _mesh_for(path: Path, scene: Scene, plan: Plan) -> Any:
-    from fingerpad.specimen import mesh_for
-
-    with _naming(path, scene):
-        return mesh_for(scene, plan)
-
-
-def _input_errors() -> tuple[type[ValueError], ...]:
-    """What counts as wrong input; a module that was not imported cannot have raised its error."""
-    loaded = (
-        (sys.modules.get(f"fingerpad.{module}"), name) for name, (module, _) in _ERRORS.items()
-    )
-    return (_Refusal, *(getattr(module, name) for module, name in loaded if hasattr(module, name)))
-
-
 @contextlib.contextmanager
 def _naming(path: Path, scene: Scene) -> Iterator[None]:
-    """Puts file and key before the message of an error met after the scene was read."""
+    """Put file and key before the message of an error met after the scene was read."""
     try:
         yield
-    except _input_errors() as error:
+    except INPUT_ERRORS as error:
         message = str(error).removeprefix(f"{scene.name}: ")
-        key = _ERRORS.get(type(error).__name__, ("", ""))[1]
+        key = KEYS.get(type(error), "")
         if key == "specimen.mesh" and scene.specimen.mesh is None:
-            key = next(
-                f"specimen.{shape}"
-                for shape in ("outline", "slab", "half_round")
-                if getattr(scene.specimen, shape)
-            )
+            shapes = ("outline", "slab", "half_round")
+            key = next(f"specimen.{name}" for name in shapes if getattr(scene.specimen, name))
         message = message.removeprefix(f"{key.rpartition('.')[2]}: ")
         raise _Refusal(": ".join(filter(None, [str(path), key, message]))) from None
 
@@ -425,8 +384,6 @@ def _naming(path: Path, scene: Scene) -> Iterator[None]:
 
 def _check_writable(path: Path, directory: bool) -> None:
     """Refuses an output path that cannot be written, without writing anything."""
-    from fingerpad.files import unusable
-
     if wrong := unusable(path):
         raise _Refusal(f"--out: '{path}' has {wrong} in its name; allowed: a name without")
     try:
@@ -447,12 +404,9 @@ def _check_writable(path: Path, directory: bool) -> None:
 
 def _check_room(path: Path, needed: float) -> None:
     """Refuses a run whose results will not find room, before it is run."""
-    from fingerpad.files import disk_is_full
-
     if disk_is_full(path, needed):
-        raise _Refusal(
-            f"--out: '{path}' has no room for about {needed / 1e6:.2g} MB of results; allowed: a folder that has"
-        )
+        what = f"has no room for about {needed / 1e6:.2g} MB of results"
+        raise _Refusal(f"--out: '{path}' {what}; allowed: a folder that has")
 
 
 @contextlib.contextmanager
@@ -490,14 +444,13 @@ def _folder(path: Path, scene: Scene, plan: Plan, options: argparse.Namespace) -
     """The folder of the results, held for this process alone; refused if it holds what is not this
     scene's.
     """
-    from fingerpad.files import locked
-
     with _directory(path), contextlib.ExitStack() as held:
         try:
             held.enter_context(locked(path))
         except BlockingIOError:
+            allowed = "another folder, or later"
             raise _Refusal(
-                f"--out: '{path}' is being written by another run; allowed: another folder, or later"
+                f"--out: '{path}' is being written by another run; allowed: {allowed}"
             ) from None
         patterns = () if options.force else RESULTS + FIELDS if options.vtu else RESULTS
         folder = _Folder(path, scene.name, plan.to_dict(), patterns)
@@ -515,8 +468,6 @@ class _Folder:
     def __init__(
         self, path: Path, scene: str, plan: dict[str, Any], patterns: Iterable[str]
     ) -> None:
-        from fingerpad.files import read_input
-
         self.path, self.scene, self.plan, self.patterns = path, scene, plan, tuple(patterns)
         try:
             self.before = json.loads(read_input(path / "plan.json", "table"))
@@ -529,9 +480,8 @@ class _Folder:
         """Refuses to replace results of another scene, and files that no run has written."""
         cure = "allowed: another --out, or --force to replace"
         if self.patterns and self.files and self.before.get("scene") != self.scene:
-            raise _Refusal(
-                f"--out: '{self.path}' holds the results of the scene '{self.before.get('scene')}'; {cure} them"
-            )
+            what = f"holds the results of the scene '{self.before.get('scene')}'"
+            raise _Refusal(f"--out: '{self.path}' {what}; {cure} them")
         for found in self._foreign():
             raise _Refusal(
                 f"--out: '{found}' was not written by a run that is known here; {cure} it"
@@ -557,8 +507,6 @@ class _Folder:
             raise _NotWritten(f"{reason}; {self._elsewhere(fill)}") from None
 
     def _replace(self, fill: Callable[[Path], None], keeping: bool) -> None:
-        from fingerpad.files import staged
-
         with staged(self.path, "plan.json", () if keeping else self.files) as stage:
             fill(stage)
             self._describe(stage, self.files if keeping else [])
@@ -578,9 +526,6 @@ class _Folder:
         """Writes the results to a temporary place instead, and says where; or that they are
         lost.
         """
-        import shutil
-        import tempfile
-
         place = None
         try:
             place = Path(tempfile.mkdtemp(prefix=f"fingerpad-{self.path.absolute().name}-"))
@@ -650,12 +595,6 @@ def _say(message: str, code: int) -> int:
 
 
 def _print_plan(scene: Scene, plan: Plan) -> None:
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    from fingerpad.planning.bounds import percent
-
     console = Console(highlight=False)
     effects = Table("effect", "", "why", title=f"Plan of {scene.name}", title_justify="left")
     for name, effect in plan.effects.items():
@@ -695,10 +634,6 @@ def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], Non
         yield None
         return
 
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
     columns = (
         TextColumn(escape(name)),
         BarColumn(),
@@ -725,10 +660,6 @@ def _progress(name: str, quiet: bool) -> Iterator[Callable[[dict[str, Any]], Non
 
 def _force_unit(path: Path) -> str:
     """The unit in which a scene file states a force, or gf."""
-    from fingerpad.documents import SceneError
-    from fingerpad.scenes.families import read_scene
-    from fingerpad.units import QuantityError, unit_of
-
     if path.exists() and not path.is_file():  # a pipe cannot be read again
         return "gf"
     try:
@@ -741,8 +672,6 @@ def _force_unit(path: Path) -> str:
 
 
 def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
-    from fingerpad.units import parse_quantity
-
     last, run = totals["legs"][-1], totals["run"]
     force = last["force_N"] / parse_quantity(f"1 {unit}", "force")
     once = run.get("compiling_s", 0.0)
@@ -752,7 +681,8 @@ def _closing_line(totals: dict[str, Any], directory: Path, unit: str) -> str:
         f", {touching:.3g} mm of it touching" if touching < _GAPS * last["contact_width_mm"] else ""
     )
     return (
-        f"depth {last['depth_mm']:.3g} mm, force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "
+        f"depth {last['depth_mm']:.3g} mm, "
+        f"force {force:#.3g} {unit} ({last['force_N_per_m']:.3g} N/m), "
         f"contact {last['contact_width_mm']:.3g} mm wide{gaps}; {run['steps']} steps, "
         f"{run['newton_iterations']} iterations, {run['wall_s']:.2g} s{compiled}; "
         f"{_error_line(totals)}; results in {directory}"
@@ -763,8 +693,6 @@ def _error_line(totals: dict[str, Any]) -> str:
     """The error at the end and, where it is much larger, the largest on the way; what was asked
     for; and what it leaves out.
     """
-    from fingerpad.planning.bounds import percent
-
     run = totals["run"]
     end = run["estimated_error"]
     line = f"error about {percent(end)}".replace("about more", "more")

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import ast
 import difflib
-import inspect
 import reprlib
-import textwrap
 from collections.abc import Hashable, Iterable, Mapping
-from functools import cache, lru_cache
-from inspect import get_annotations
-from itertools import pairwise
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -38,14 +33,18 @@ class SceneError(ValueError):
 
 
 class Problem(ValueError):
-    """One thing wrong with one key, raised inside a model; `explain` makes the line of a
-    `SceneError` of it.
+    """One thing wrong with one key, raised inside a model; `explain` turns it into a `SceneError`.
 
-    Args:
-        problem: what is wrong, written to follow the offending value.
-        allowed: what would be right; empty when the problem says it.
-        key: path below the place where the problem is raised.
-        value: the offending value; `LOOK_UP` takes it from the document, `HIDE` shows none.
+    Parameters
+    ----------
+    problem : str
+        What is wrong, written to follow the offending value.
+    allowed : str
+        What would be right; empty when the problem says it.
+    key : tuple
+        Path below the place where the problem is raised.
+    value : any
+        The offending value; `LOOK_UP` takes it from the document, `HIDE` shows none.
     """
 
     def __init__(
@@ -137,26 +136,6 @@ def explain(
     return SceneError(error_line(file, location, problem, document))
 
 
-@cache
-def _described(model: type[BaseModel]) -> dict[str, str]:
-    """What is written under the fields of a model, its own and inherited ones."""
-    found: dict[str, str] = {}
-    for each in reversed(model.__mro__):
-        if not (
-            issubclass(each, BaseModel) and set(get_annotations(each)) & model.model_fields.keys()
-        ):
-            continue
-        body = ast.parse(textwrap.dedent(inspect.getsource(each))).body[0].body
-        for field, under in pairwise(body):
-            if (
-                isinstance(field, ast.AnnAssign)
-                and isinstance(under, ast.Expr)
-                and isinstance(under.value, ast.Constant)
-            ):
-                found[field.target.id] = inspect.cleandoc(under.value.value)
-    return found
-
-
 def _parts(schema: Any) -> list[dict[str, Any]]:
     """A field's JSON schema and those it is made of, at any depth."""
     inner = (
@@ -170,9 +149,9 @@ def _parts(schema: Any) -> list[dict[str, Any]]:
 class Strict(BaseModel):
     """Frozen model that says itself which key is unknown, missing or not a mapping."""
 
-    # reading sources (use_attribute_docstrings) and building every model by itself make up half of
-    # the time a scene takes
-    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", defer_build=True, use_attribute_docstrings=True
+    )
     internal: ClassVar[frozenset[str]] = frozenset()
     """Fields that a document may not set."""
     hints: ClassVar[Mapping[str, str]] = {}
@@ -189,19 +168,10 @@ class Strict(BaseModel):
     @classmethod
     def _allowed(cls, key: str) -> str:
         """What a field is, and an example of it where its type has one."""
-        what = _described(cls).get(key, "a value").split("\n")[0]
+        what = (cls.model_fields[key].description or "a value").split("\n")[0]
         parts = _parts(cls.model_json_schema()["properties"].get(key))
         examples = [example for part in parts for example in part.get("examples", ())]
         return f"{what.rstrip('.')}, such as '{examples[0]}'" if examples else what
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core: Any, handler: Any) -> Any:
-        """With what is written under the fields."""
-        schema = handler(core)
-        properties = handler.resolve_ref_schema(schema).get("properties", {})
-        for key in properties.keys() & _described(cls).keys():
-            properties[key]["description"] = _described(cls)[key]
-        return schema
 
     @model_validator(mode="wrap")
     @classmethod
@@ -246,11 +216,12 @@ class _Loader(yaml.SafeLoader):
 
 
 def read_yaml(path: Path) -> Any:
-    """The document in a YAML file, as plain Python objects, parsed once as long as the file stays
-    as it is; nobody changes it.
+    """The document in a YAML file as plain Python objects, parsed once while the file is unchanged.
 
-    Raises:
-        SceneError: the file is missing or unreadable, is not YAML, or gives a key twice.
+    Raises
+    ------
+    SceneError
+        The file is missing or unreadable, is not YAML, or gives a key twice.
     """
     try:
         state = path.stat()
@@ -314,3 +285,16 @@ def _written_out(node: yaml.Node, known: dict[int, float]) -> float:
         parts = (part for each in inner for part in (each if isinstance(each, tuple) else (each,)))
         known[id(node)] = 1 + sum(_written_out(part, known) for part in parts)
     return known[id(node)]
+
+
+def tidy_schema(schema: Any) -> Any:
+    """A JSON schema without generated titles and nulls."""
+    if isinstance(schema, list):
+        return [tidy_schema(item) for item in schema if item != {"type": "null"}]
+    if not isinstance(schema, dict):
+        return schema
+    return {
+        key: tidy_schema(value)
+        for key, value in schema.items()
+        if key != "title" and (key, value) != ("default", None)
+    }

@@ -1,13 +1,13 @@
-"""Files appear whole under their final name or not at all; a folder is written by one process at a
-time.
+"""Files appear whole under their final name or not at all; one process at a time writes a folder.
 
-And what is read of files that somebody brings, and where the package's own files are.
+Also the reading of users' files, and the place of the package's own files.
 """
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import fcntl
 import glob
 import os
 import platform
@@ -18,6 +18,8 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
+
+from platformdirs import user_cache_path
 
 _PACKAGE = Path(__file__).resolve().parent
 BUILT_IN = (
@@ -37,12 +39,22 @@ PATIENCE = 4.0
 
 
 def read_input(path: str | Path, kind: str) -> bytes:
-    """What is in a file that somebody brings, of a kind of :data:`MOST_BYTES`; nothing is waited
-    for, and no more is held.
+    """The content of a user's file, without waiting for it and up to a size.
 
-    Raises:
-        OSError: there is no such file, it cannot be read, is a device or too large, or is a pipe
-        that nobody writes to; its ``strerror`` says so. ValueError: this can be no path.
+    Parameters
+    ----------
+    path : path
+        The file; a pipe may be silent for `PATIENCE` seconds.
+    kind : str
+        A key of `MOST_BYTES`.
+
+    Raises
+    ------
+    OSError
+        There is no such file, it cannot be read, is a device or too large, or is a pipe that nobody
+        writes to; its ``strerror`` says so.
+    ValueError
+        The path cannot be one.
     """
     most = MOST_BYTES[kind]
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0))
@@ -136,11 +148,7 @@ def write_text(path: str | Path, text: str) -> None:
 
 @cache
 def cache_folder(name: str) -> Path | None:
-    """A folder of the user's cache for what is slow to find out again; None where there is none
-    that can be written.
-    """
-    from platformdirs import user_cache_path
-
+    """A folder of the user's cache; None where there is none that can be written."""
     try:
         folder = user_cache_path("fingerpad", ensure_exists=True) / name
         folder.mkdir(exist_ok=True)
@@ -151,27 +159,26 @@ def cache_folder(name: str) -> Path | None:
 
 @contextlib.contextmanager
 def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
-    """Hold a directory for this process; the lock ends with the process, however that ends, and
-    leaves no file.
+    """Lock a directory for this process; the lock ends with the process and leaves no file.
 
-    Yields the descriptors by which it is held: processes to which they are passed hold it too.
+    Yields
+    ------
+    tuple of int
+        Descriptors of the lock: a process to which they are passed holds it too.
 
-    Raises:
-        BlockingIOError: another process holds it.
+    Raises
+    ------
+    BlockingIOError
+        Another process holds it.
     """
-    try:
-        import fcntl
-    except ImportError:  # a system without it has no such lock
-        yield ()
-        return
     handle = os.open(directory, os.O_RDONLY)
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise
-        except OSError:  # a file system without locks
-            pass
+        except OSError as error:
+            if isinstance(error, BlockingIOError):
+                raise
+        # another error comes from a file system without locks
         yield (handle,)
     finally:
         os.close(handle)
@@ -181,14 +188,25 @@ def locked(directory: str | Path) -> Iterator[tuple[int, ...]]:
 def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> Iterator[Path]:
     """A scratch folder whose files appear in ``directory`` only when all of them were written.
 
-    Args:
-        directory: an existing folder. first: name of the file that appears before the others.
-        removing: names (relative, with
-            "/") of files that go then, unless they were written anew; their folders go when nothing
-            else is in them.
+    Parameters
+    ----------
+    directory : Path
+        An existing folder.
+    first : str
+        Name of the file that appears before the others.
+    removing : iterable of str
+        Relative names (with "/") of files that are removed then, unless they were written anew;
+        their folders are removed when they are empty.
 
-    Raises:
-        OSError: something cannot be written; ``directory`` is as it was.
+    Yields
+    ------
+    Path
+        The scratch folder.
+
+    Raises
+    ------
+    OSError
+        Something cannot be written; ``directory`` is as it was.
     """
     for leftover in directory.glob(f"{SCRATCH}*"):  # of a process that was killed
         shutil.rmtree(leftover, ignore_errors=True)
@@ -213,9 +231,7 @@ def staged(directory: Path, first: str = "", removing: Iterable[str] = ()) -> It
 
 
 def _exchange(names: list[str], new: Path, directory: Path, old: Path) -> None:
-    """The files ``names`` of a directory become those of ``new``, or go where that has none; on any
-    error none of them does.
-    """
+    """Replace files of a directory by those in ``new``, remove those it lacks; all or none."""
     folders = list(dict.fromkeys((directory / name).parent for name in names if "/" in name))
     made = [folder for folder in folders if not folder.exists()]
     done: list[str] = []
@@ -246,9 +262,7 @@ def _exchange(names: list[str], new: Path, directory: Path, old: Path) -> None:
 
 
 def _keep(file: Path, copy: Path) -> None:
-    """A second name for a file, if there is one; where a file system has no such thing, it moves
-    there.
-    """
+    """Link a file, if it exists, under a second name; without links in a file system, move it."""
     if file.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
     copy.parent.mkdir(parents=True, exist_ok=True)
@@ -262,9 +276,7 @@ def _keep(file: Path, copy: Path) -> None:
 
 
 def disk_is_full(directory: Path, least: float = 1 << 16) -> OSError | None:
-    """The error of a disk with less than ``least`` bytes left, for who asks before, and for
-    libraries that do not say why they failed; None when there is room.
-    """
+    """The error of a disk with less than ``least`` bytes left; None when there is room."""
     if shutil.disk_usage(directory).free < least:
         return OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     return None

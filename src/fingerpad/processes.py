@@ -1,35 +1,17 @@
-"""What a process is given, and what it need not do."""
+"""What a process shows while it waits, and the threads it was given."""
 
-import atexit
 import contextlib
-import gc
 import os
 import sys
 from collections.abc import Iterator
 
-SPARSE = 20_000
-"""Objects made between two searches for unreachable ones: with Python's own 700 they take a tenth
-of a short run's time.
-"""
-
-
-def collect_seldom() -> None:
-    """Look for unreachable objects seldom, and not at all when the process ends: all that it has
-    goes then anyway.
-    """
-    gc.set_threshold(SPARSE)
-    atexit.unregister(gc.freeze)
-    atexit.register(gc.freeze)
+from rich.console import Console
+from rich.errors import LiveError
 
 
 @contextlib.contextmanager
 def waiting(text: str) -> Iterator[None]:
-    """A line and a spinner on a terminal's standard error, or in a notebook, while something takes
-    long; elsewhere nothing.
-    """
-    from rich.console import Console
-    from rich.errors import LiveError
-
+    """Show a line and a spinner on a terminal's standard error, or in a notebook."""
     console = Console(stderr=True)
     if not (console.is_terminal or console.is_jupyter):
         yield

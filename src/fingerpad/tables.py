@@ -1,7 +1,8 @@
 """Tables that people bring: text files as instruments, spreadsheets and numpy write them.
 
-A table is a header and rows of cells, parted by commas, semicolons, tabs or spaces. Every reader of a user's table (profiles,
-forces, recordings, motions, samples of a sweep) starts here, so all of them take the same files and refuse the same ones.
+A table is a header and rows of cells, parted by commas, semicolons, tabs or spaces. Every reader of
+a user's table (profiles, forces, recordings, motions, samples of a sweep) starts here, so all of
+them take the same files and refuse the same ones.
 """
 
 from __future__ import annotations
@@ -23,14 +24,13 @@ SAVE_AS = "a CSV file in UTF-8"
 _PARTED = {"\t": "tabs", ";": "semicolons", ",": "commas", " ": "spaces"}
 """Delimiters and their names; the first that a header holds parts its columns."""
 _COMMENT = ("#", "%")
-_WRONG_CELL = re.compile(r'\s*"?#(?:REF!|N/A|DIV/0!|VALUE!|NAME\?|NULL!|NUM!)(?=[",;\s]|$)')
-"""What a spreadsheet writes where it has no value, which is no comment."""
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _WITH_COMMA = re.compile(r"[+-]?(?:\d+,\d*|,\d+)(?:[eE][+-]?\d+)?")
-_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:[,.' \u00a0\u202f]\d{3})+(?:[.,]\d*)?")
-_MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+_WRONG_CELL = re.compile(r'\s*"?#(?:REF!|N/A|DIV/0!|VALUE!|NAME\?|NULL!|NUM!)(?=[",;\s]|$)')
 _POINTED = re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+")
 _HUNDREDS = re.compile(r"[+-]?[1-9]\d\d")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:[,.' \u00a0\u202f]\d{3})+(?:[.,]\d*)?")
+_MAYBE_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _WRITE_POINTS = "numbers such as 1234.5, with a decimal point and no other sign"
 
 
@@ -82,23 +82,21 @@ class Table:
     def number(self, cell: str, line: int, column: int) -> float:
         """The number in a cell; errors as in :meth:`numbers`."""
         text = cell.replace("\u2212", "-")
-        if self.decimal_comma:
-            text = text.replace(",", ".", 1) if _WITH_COMMA.fullmatch(text) else text
+        if self.decimal_comma and _WITH_COMMA.fullmatch(text):
+            text = text.replace(",", ".", 1)
         if _NUMBER.fullmatch(text) and abs(value := float(text)) < float("inf"):
             return value
-        what = (
-            f"has '{cell[:40]}' in row {line}, column '{self.header[column]}', which is no "
-            "finite number"
-        )
-        raise TableError(what, _WRITE_POINTS)
+        place = f"row {line}, column '{self.header[column]}'"
+        raise TableError(f"has '{cell[:40]}' in {place}, which is no finite number", _WRITE_POINTS)
 
 
 def read_table(path: str | Path) -> Table:
     """Read a table from a text file.
 
-    The encoding may be UTF-8, UTF-16 or Windows-1252. Lines that start with ``#`` or ``%`` are comments; where the first other
-    line is numbers, the last comment before it is the header. Columns are parted by tabs, semicolons, commas or spaces, as in the
-    header. Decimal commas are read where they cannot be anything else.
+    The encoding may be UTF-8, UTF-16 or Windows-1252. Lines that start with ``#`` or ``%`` are
+    comments; where the first other line is numbers, the last comment before it is the header.
+    Columns are parted by tabs, semicolons, commas or spaces, as in the header. Decimal commas are
+    read where they cannot be anything else.
 
     Raises
     ------
@@ -152,36 +150,33 @@ def _decoded(content: bytes) -> tuple[str, list[str]]:
 
 
 def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
-    """Names of the columns, what parts them, and the (number, text) of the lines below that say something."""
+    """Names of the columns, what parts them, and the (number, text) of each line of cells below."""
     lines = [
         (number, line)
         for number, line in enumerate(io.StringIO(text, newline=""), start=1)
         if line.strip()
     ]
-    told = None
+    stated = None
     if lines and (match := re.fullmatch(r'"?sep=(.)"?', lines[0][1].strip())):
-        told = match[1]
+        stated = match[1]
         lines = lines[1:]
-        if told not in _PARTED:
-            raise TableError(f"parts its columns by '{told}'", "tabs, semicolons or commas")
-    said = [line for _, line in lines if not _is_comment(line)]
-    if not said:
+        if stated not in _PARTED:
+            raise TableError(f"parts its columns by '{stated}'", "tabs, semicolons or commas")
+    first = next((k for k, (_, line) in enumerate(lines) if not _is_comment(line)), None)
+    if first is None:
         raise TableError("holds no rows")
-    first = said[0]
-    delimiter = told or _delimiter(first)
-    header = _cells(first, delimiter)
-    if all(map(_like_a_number, header)):
-        before = [line for number, line in lines[: _place(lines, first)] if _is_comment(line)]
-        first = before[-1].lstrip().lstrip("".join(_COMMENT)) if before else ""
-        delimiter = told or _delimiter(first)
-        header = _cells(first, delimiter)
-        if not before or len(header) < 2:
+    line = lines[first][1]
+    header = _cells(line, stated or _delimiter(line))
+    if all(map(_like_a_number, header)):  # the names are in the last comment before
+        comments = [line for _, line in lines[:first]]
+        line = comments[-1].lstrip().lstrip("".join(_COMMENT)) if comments else ""
+        header = _cells(line, stated or _delimiter(line))
+        if len(header) < 2:
             raise TableError(
                 "has no header: its first row is numbers",
                 "names and units of the columns above the numbers",
             )
-    else:
-        lines = lines[_place(lines, said[0]) + 1 :]
+        first -= 1
     while header and not header[-1]:
         header.pop()
     for name in header:
@@ -189,15 +184,12 @@ def _header(text: str) -> tuple[list[str], str, list[tuple[int, str]]]:
             raise TableError(f"has the column '{name[:40]}' twice", "each column once")
         if len(name) > MOST_LETTERS:
             raise TableError(f"has a column's name of {len(name)} letters", f"up to {MOST_LETTERS}")
-    return header, delimiter, [(number, line) for number, line in lines if not _is_comment(line)]
+    rows = [(number, row) for number, row in lines[first + 1 :] if not _is_comment(row)]
+    return header, stated or _delimiter(line), rows
 
 
 def _is_comment(line: str) -> bool:
     return line.lstrip().startswith(_COMMENT) and not _WRONG_CELL.match(line)
-
-
-def _place(lines: list[tuple[int, str]], text: str) -> int:
-    return next(k for k, (_, line) in enumerate(lines) if line is text)
 
 
 def _delimiter(line: str) -> str:
@@ -210,12 +202,8 @@ def _cells(line: str, delimiter: str) -> list[str]:
     """Cells of one line. A space before a unit in brackets parts nothing."""
     if delimiter == " ":
         return re.split(r"\s+(?![(\[])", line.strip())
-    return [
-        cell.strip()
-        for cell in next(
-            csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True), []
-        )
-    ]
+    row = csv.reader([line.strip("\r\n")], delimiter=delimiter, skipinitialspace=True)
+    return [cell.strip() for cell in next(row, [])]
 
 
 def _split(lines: list[tuple[int, str]], delimiter: str) -> Iterator[tuple[int, list[str]]]:
@@ -224,18 +212,13 @@ def _split(lines: list[tuple[int, str]], delimiter: str) -> Iterator[tuple[int, 
         for number, line in lines:
             yield number, line.split()
         return
-    at = 0
-
-    def taken() -> Iterator[str]:
-        nonlocal at
-        for number, line in lines:
-            at = number
-            yield line
-
+    texts = (line for _, line in lines)
+    rows = csv.reader(texts, delimiter=delimiter, skipinitialspace=True)
     try:
-        for row in csv.reader(taken(), delimiter=delimiter, skipinitialspace=True):
-            yield at, [cell.strip() for cell in row]
+        for row in rows:  # line_num counts the lines read so far: cells may hold ends of lines
+            yield lines[rows.line_num - 1][0], [cell.strip() for cell in row]
     except csv.Error as error:
+        at = lines[rows.line_num - 1][0]
         raise TableError(f"cannot be split into cells in row {at} ({error})") from None
 
 
@@ -245,37 +228,28 @@ def _like_a_number(cell: str) -> bool:
 
 
 def _wrong_count(line: int, cells: list[str], header: list[str], delimiter: str) -> TableError:
-    what = (
-        f"has {len(cells)} cells in row {line}, {len(header)} in its header "
-        f"({', '.join(header)[:60]})"
-    )
-    if (
-        delimiter == ","
-        and len(cells) > len(header)
-        and all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells)
-    ):
-        return TableError(
-            what + ": commas part columns here", "decimal points, or semicolons between columns"
-        )
-    return TableError(
-        what, f"{len(header)} cells in each row, parted by {_PARTED[delimiter]} as the header is"
-    )
+    names = ", ".join(header)[:60]
+    what = f"has {len(cells)} cells in row {line}, {len(header)} in its header ({names})"
+    whole = all(re.fullmatch(r"[+-]?\d*", cell) for cell in cells)
+    if delimiter == "," and len(cells) > len(header) and whole:
+        allowed = "decimal points, or semicolons between columns"
+        return TableError(f"{what}: commas part columns here", allowed)
+    parted = f"parted by {_PARTED[delimiter]} as the header is"
+    return TableError(what, f"{len(header)} cells in each row, {parted}")
 
 
 def _decimal_comma(rows: list[list[str]], lines: list[int], delimiter: str) -> bool:
-    """Whether numbers have decimal commas; `TableError` where they may be thousands, or where both signs are used."""
+    """Whether numbers have decimal commas.
+
+    Raises `TableError` where commas may part thousands, or where there are decimal points too.
+    """
     for cells in zip(*rows, strict=True) if delimiter == ";" else ():
         pointed = [(line, cell) for line, cell in zip(lines, cells, strict=True) if "." in cell]
-        if (
-            pointed
-            and all(_POINTED.fullmatch(cell) for _, cell in pointed)
-            and any(map(_HUNDREDS.fullmatch, cells))
-        ):
+        thousands = all(_POINTED.fullmatch(cell) for _, cell in pointed)
+        if pointed and thousands and any(map(_HUNDREDS.fullmatch, cells)):
             line, cell = pointed[0]
-            raise TableError(
-                f"has '{cell}' in row {line} beside whole numbers, which may be thousands",
-                _WRITE_POINTS,
-            )
+            what = f"has '{cell}' in row {line} beside whole numbers, which may be thousands"
+            raise TableError(what, _WRITE_POINTS)
     found, certain, points = "", delimiter == ";", False
     for line, cells in zip(lines, rows, strict=True):
         for cell in cells:

@@ -1,10 +1,9 @@
 """Units at the border: strings such as ``"20 gf"`` become SI floats, and back for messages.
 
-Inside the package every number is SI (m, N, Pa, s). One `pint` registry serves the whole package;
-the field's gram-weight is the gram-force of 9.80665e-3 N (standard gravity, 3rd CGPM 1901,
-resolution 2), written ``gf``, ``gw``, ``g wt`` or ``gram-weight``. Only products of unit names with
-one-digit powers are understood (``gf/s``, ``N/mm^2``, ``1/m``), so no text of a user's is ever
-evaluated.
+Inside the package every number is SI (m, N, Pa, s). The units are those of one `pint` registry; the
+field's gram-weight is the gram-force of 9.80665e-3 N (standard gravity, 3rd CGPM 1901, resolution
+2), written ``gf``, ``gw``, ``g wt`` or ``gram-weight``. Only products of unit names with one-digit
+powers reach pint's parser (``gf/s``, ``N/mm^2``, ``1/m``), so no user's text is ever evaluated.
 """
 
 from __future__ import annotations
@@ -13,22 +12,27 @@ import math
 import re
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    import pint
+import pint
 
 
 @dataclass(frozen=True)
 class Dimension:
-    """What a quantity may be: its SI unit, the units it is shown in, and an example for messages.
+    """A dimension that quantities have.
 
-    Attributes:
-        name: key in `DIMENSIONS`.
-        si: coherent SI unit.
-        shown: unit used by `format_quantity`.
-        noun: how a message calls it ("a force rate").
-        example: a valid value.
+    Attributes
+    ----------
+    name : str
+        Key in `DIMENSIONS`.
+    si : str
+        Coherent SI unit.
+    shown : str
+        Unit used by `format_quantity`.
+    noun : str
+        Its name in a message ("a force rate").
+    example : str
+        A valid value.
     """
 
     name: str
@@ -53,72 +57,39 @@ DIMENSIONS: dict[str, Dimension] = {
     )
 }
 
-USUAL: dict[tuple[str, str], float] = {
-    (unit, dimension): factor
-    for dimension, units in {
-        "length": {"m": 1.0, "mm": 1e-3, "um": 1e-6},
-        "curvature": {"1/m": 1.0},
-        "force": {"N": 1.0, "gf": 9.80665e-3},
-        "force_rate": {"N/s": 1.0, "gf/s": 9.80665e-3},
-        "pressure": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6},
-        "speed": {"m/s": 1.0, "mm/s": 1e-3},
-        "time": {"s": 1.0},
-        "dimensionless": {"1": 1.0},
-    }.items()
-    for unit, factor in units.items()
-}
-"""Factors to SI of the units that scenes are mostly written in, as pint has them; importing it
-takes a third of a second.
-"""
-
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(
     rf"(?P<number>{_NUMBER})(?:\s*/\s*(?P<divisor>[0-9]+)(?=\s))?\s*(?P<unit>.*)", re.DOTALL
 )
-_FACTOR = re.compile(
-    r"(?P<name>1|%|[A-Za-zµμ]+(?:_[A-Za-zµμ]+)*)(?:(?:\^|\*\*)(?P<power>-?[1-9])(?![0-9]))?"
-)
-_SEPARATOR = re.compile(r"\s*(?P<sign>[/*·])\s*|\s+")
+_NAME = r"(?:1|%|[A-Za-zµμ]+(?:_[A-Za-zµμ]+)*)"
+_FACTOR = rf"{_NAME}(?:(?:\^|\*\*)-?[1-9](?![0-9]))?"
+_PRODUCT = re.compile(rf"{_FACTOR}(?:(?:\s*[/*·]\s*|\s+){_FACTOR})*")
 _GRAM_WEIGHT = re.compile(r"\b(?:g|gram)[\s-]*(?:wt|weight)\b")
+_LONGEST = 40
+"""Letters of a unit."""
 
 QUANTITY_PATTERN = rf"^\s*{_NUMBER}(\s*/\s*[0-9]+)?\s*[^0-9\s.+-].*$|^\s*{_NUMBER}\s+1\s*/.*$"
 """JSON schema pattern of a number followed by a unit; `parse_quantity` checks the dimension."""
+
+REGISTRY = pint.UnitRegistry()
+REGISTRY.define("gram_weight = gram_force = gw")
 
 
 class QuantityError(ValueError):
     """A quantity that cannot be read.
 
-    Attributes:
-        problem: what is wrong, to follow the offending value ("has no unit").
-        allowed: what would be right.
+    Attributes
+    ----------
+    problem : str
+        What is wrong, to follow the offending value ("has no unit").
+    allowed : str
+        What would be right.
     """
 
     def __init__(self, problem: str, allowed: str) -> None:
         super().__init__(f"{problem}; allowed: {allowed}")
         self.problem = problem
         self.allowed = allowed
-
-
-@cache
-def registry() -> pint.UnitRegistry:
-    """The package's one pint registry, made at first use (importing pint takes a fifth of a
-    second).
-    """
-    import pint
-
-    from fingerpad.files import cache_folder
-
-    # pint keeps its parsed definitions in the user's cache folder, where there is one: a tenth of a
-    # second a process
-    folder = cache_folder("pint")
-    try:
-        ureg = pint.UnitRegistry(cache_folder=folder)
-    except Exception:  # noqa: BLE001 - whatever becomes of a file that another process has not written to its end
-        for file in folder.iterdir() if folder else ():
-            file.unlink(missing_ok=True)
-        ureg = pint.UnitRegistry()
-    ureg.define("gram_weight = gram_force = gw")
-    return ureg
 
 
 def allowed(dimension: str) -> str:
@@ -132,85 +103,64 @@ def allowed(dimension: str) -> str:
 @cache
 def _unit(text: str) -> pint.Unit:
     """Unit of a product of names such as ``gf/s``; `ValueError` when a part is not known."""
-    ureg = registry()
-    import pint
-
-    text = _GRAM_WEIGHT.sub("gf", text.strip()).replace("²", "^2")
-    unit = ureg.Unit("")
-    if text.startswith("/"):
-        text = "1" + text
-    position, sign = 0, 1
-    while True:
-        factor = _FACTOR.match(text, position)
-        if not factor:
-            raise ValueError(text)
-        name = factor["name"]
-        if name != "1":
-            try:
-                unit *= _named(ureg, name) ** (sign * int(factor["power"] or 1))
-            except (pint.PintError, AssertionError, TypeError, ValueError, AttributeError) as error:
-                raise ValueError(name) from error
-        position = factor.end()
-        if position == len(text):
-            return unit
-        separator = _SEPARATOR.match(text, position)
-        if not separator:
-            raise ValueError(text)
-        sign = -1 if separator["sign"] == "/" else 1
-        position = separator.end()
+    product = _GRAM_WEIGHT.sub("gf", text.strip()).replace("²", "^2").replace("·", "*")
+    if product.startswith("/"):
+        product = f"1{product}"
+    if not _PRODUCT.fullmatch(product):
+        raise ValueError(text)
+    try:
+        return REGISTRY.parse_units(re.sub(_NAME, _known_name, product))
+    except (pint.PintError, AssertionError, TypeError, ValueError, AttributeError) as error:
+        raise ValueError(text) from error
 
 
-def _named(ureg: pint.UnitRegistry, name: str) -> pint.Unit:
-    """The unit of a name; words such as Newton may begin with a capital."""
+def _known_name(match: re.Match[str]) -> str:
+    """A unit's name as pint has it; words such as Newton may begin with a capital."""
+    name = match[0]
     if name == "%":
-        return ureg.parse_units("percent")
-    word = len(name) > 3 and name.lower() in ureg
-    return ureg.parse_units(name.lower() if word and name not in ureg else name)
-
-
-def _factor_to_si(unit_text: str, dimension: str) -> float:
-    """Multiplier from a unit to SI; `QuantityError` when unknown or of another dimension."""
-    usual = USUAL.get((unit_text, dimension))
-    return _looked_up(unit_text, dimension) if usual is None else usual
+        return "percent"
+    word = len(name) > 3 and name not in REGISTRY and name.lower() in REGISTRY
+    return name.lower() if word else name
 
 
 @cache
-def _looked_up(unit_text: str, dimension: str) -> float:
-    """`_factor_to_si` as pint has it."""
-    import pint
-
-    kind = DIMENSIONS[dimension]
+def _factor_to_si(text: str, dimension: str) -> float:
+    """Multiplier from a unit to SI; `QuantityError` when unknown or of another dimension."""
     try:
-        unit = _unit(unit_text)
+        unit, target = _unit(text), _unit(DIMENSIONS[dimension].si)
     except ValueError:
-        raise QuantityError(f"has the unknown unit '{unit_text}'", allowed(dimension)) from None
-    target = _unit(kind.si)
+        raise QuantityError(f"has the unknown unit '{text}'", allowed(dimension)) from None
     if _root(unit) != _root(target):
-        raise QuantityError(f"has the wrong dimension: it is {_describe(unit)}", allowed(dimension))
-    ureg = registry()
+        known = dimension_of(text)
+        what = DIMENSIONS[known].noun if known else f"of dimension {unit.dimensionality}"
+        raise QuantityError(f"has the wrong dimension: it is {what}", allowed(dimension))
     try:
-        return float(ureg.Quantity(1.0, unit).to(target).magnitude)
+        return float(REGISTRY.Quantity(1.0, unit).to(target).magnitude)
     except (pint.PintError, ArithmeticError, ValueError):
-        raise QuantityError(f"has the unusable unit '{unit_text}'", allowed(dimension)) from None
+        raise QuantityError(f"has the unusable unit '{text}'", allowed(dimension)) from None
 
 
 def _root(unit: pint.Unit) -> pint.Unit:
     """Product of base units that tells dimensions apart, angles from plain numbers too."""
-    return registry().get_root_units(unit)[1]
+    return REGISTRY.get_root_units(unit)[1]
 
 
-def _describe(unit: pint.Unit) -> str:
-    for kind in DIMENSIONS.values():
-        if _root(unit) == _root(_unit(kind.si)):
-            return kind.noun
-    return f"of dimension {unit.dimensionality}"
+def dimension_of(unit: str) -> str | None:
+    """The dimension of a unit, a key of `DIMENSIONS`; None if it is unknown or of no use here."""
+    try:
+        root = _root(_unit(unit))
+    except ValueError:
+        return None
+    return next((name for name, kind in DIMENSIONS.items() if _root(_unit(kind.si)) == root), None)
 
 
 def parse_number(value: Any) -> float:
     """A dimensionless number given as a number or as text ("0.02", "2 %").
 
-    Raises:
-        QuantityError: not a number, a unit of some dimension, infinite or not a number.
+    Raises
+    ------
+    QuantityError
+        It is not a number, has a unit of some dimension, or is not finite.
     """
     if isinstance(value, str):
         return parse_quantity(value, "dimensionless")
@@ -228,45 +178,51 @@ def parse_number(value: Any) -> float:
 def parse_quantity(text: Any, dimension: str) -> float:
     """SI value of a number with a unit.
 
-    Args:
-        text: such as ``"40 gf/s"``, ``"0.85 mm"``, ``"1260 1/m"``, ``"1/16 inch"``. A dimensionless
-        one may
-            be bare (``"0.02"``) or in per cent.
-        dimension: a key of `DIMENSIONS`.
+    Parameters
+    ----------
+    text : str
+        Such as ``"40 gf/s"``, ``"0.85 mm"``, ``"1260 1/m"``, ``"1/16 inch"``. A dimensionless one
+        may be bare (``"0.02"``) or in per cent.
+    dimension : str
+        A key of `DIMENSIONS`.
 
-    Returns:
-        The value in the coherent SI unit of the dimension (m, 1/m, N, N/s, Pa, m/s, s, 1); always
-        finite.
+    Returns
+    -------
+    float
+        The value in the coherent SI unit of the dimension (m, 1/m, N, N/s, Pa, m/s, s, rad, 1);
+        always finite.
 
-    Raises:
-        QuantityError: not text, no unit, unknown unit, another dimension, or not finite.
+    Raises
+    ------
+    QuantityError
+        It is not text, has no unit, an unknown unit or another dimension, or is not finite.
+
+    Examples
+    --------
+    >>> parse_quantity("0.85 mm", "length")
+    0.00085
     """
     if isinstance(text, (int, float)) and not isinstance(text, bool):
         raise QuantityError("has no unit", allowed(dimension))
     if not isinstance(text, str):
         raise QuantityError(f"is not {DIMENSIONS[dimension].noun}", allowed(dimension))
-    match = _QUANTITY.fullmatch(text.strip())
-    if not match:
-        raise QuantityError("does not start with a finite number", allowed(dimension))
+    match = _match(text, allowed(dimension))
     unit = match["unit"].strip()
     if re.match(r",\d", unit):
         raise QuantityError("has a decimal comma", f"{allowed(dimension)}, with a decimal point")
     if not unit and dimension != "dimensionless":
         raise QuantityError("has no unit", allowed(dimension))
-    if len(unit) > 40:
+    if len(unit) > _LONGEST:
         raise QuantityError("has an unknown unit", allowed(dimension))
     factor = _factor_to_si(unit, dimension) if unit else 1.0
     if dimension == "dimensionless" and unit not in ("", "1", "%", "percent"):
         raise QuantityError(f"has the unit '{unit}'", allowed(dimension))
     try:
-        number = float(match["number"]) / float(match["divisor"] or 1.0)
+        number = _number(match)
         # dividing by a whole number keeps "0.85 mm" the float nearest to 0.00085
         inverse = round(1.0 / factor)
-        value = (
-            number / inverse
-            if inverse > 1 and math.isclose(inverse * factor, 1.0, rel_tol=1e-15)
-            else number * factor
-        )
+        exact = inverse > 1 and math.isclose(inverse * factor, 1.0, rel_tol=1e-15)
+        value = number / inverse if exact else number * factor
     except (ZeroDivisionError, OverflowError):
         value = math.nan
     if not math.isfinite(value):
@@ -274,29 +230,37 @@ def parse_quantity(text: Any, dimension: str) -> float:
     return value
 
 
-def unit_of(text: str) -> str:
-    """The unit of a quantity as it is written: ``"gf"`` of ``"20 gf"``.
-
-    Raises:
-        QuantityError: the text does not start with a number.
-    """
+def _match(text: str, allowed: str = "a number with its unit") -> re.Match[str]:
     match = _QUANTITY.fullmatch(text.strip())
     if not match:
-        raise QuantityError("does not start with a finite number", "a number with its unit")
-    return match["unit"].strip()
+        raise QuantityError("does not start with a finite number", allowed)
+    return match
 
 
-def number_of(text: str) -> float:
-    """The number of a quantity as it is written: 20.0 of ``"20 gf"``. Raises as :func:`unit_of`."""
-    match = _QUANTITY.fullmatch(text.strip())
-    if not match:
-        raise QuantityError("does not start with a finite number", "a number with its unit")
+def _number(match: re.Match[str]) -> float:
     return float(match["number"]) / float(match["divisor"] or 1.0)
 
 
+def unit_of(text: str) -> str:
+    """The unit of a quantity as it is written: ``"gf"`` of ``"20 gf"``.
+
+    Raises
+    ------
+    QuantityError
+        The text does not start with a number.
+    """
+    return _match(text)["unit"].strip()
+
+
+def number_of(text: str) -> float:
+    """The number of a quantity as it is written: 20.0 of ``"20 gf"``. Raises as `unit_of`."""
+    return _number(_match(text))
+
+
 def format_quantity(value: float, dimension: str) -> str:
-    """Text of an SI value in the unit the field uses, such as ``"20 gf"``; `parse_quantity` reads
-    it back.
+    """Text of an SI value in the unit the field uses, such as ``"20 gf"``.
+
+    `parse_quantity` reads it back.
     """
     kind = DIMENSIONS[dimension]
     if dimension == "dimensionless":

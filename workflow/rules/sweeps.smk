@@ -1,17 +1,17 @@
-"""A sweep: batches of its scenes, each in one process, and what they found as one dataset and one table.
+"""A sweep: batches of its scenes, each in one process, then one dataset and one table.
 
-Inputs:  the folder of a sweep as `fingerpad.sweeps.engine` lays it out: sweep.json, design.json, todo/<batch>.json.
+Inputs:  sweep.json, design.json, todo/<batch>.json (`fingerpad.sweeps.engine`).
 Outputs: batches/<batch>.jsonl, sweep.nc, sweep.csv.
 
-`fingerpad sweep FILE --out DIR` lays a folder out and runs these rules in it; so does
-`snakemake sweep --config sweep=FILE [sweep_out=DIR]` through the project's Snakefile.
+`fingerpad sweep FILE --out DIR --profile PROFILE` lays a folder out and runs these rules in it; so
+does `snakemake sweep --config sweep=FILE [sweep_out=DIR]` through the project's Snakefile.
 """
 
 import shlex
 import sys
 from pathlib import Path
 
-from fingerpad.sweeps.engine import SweepError, held, lay_out, read_layout
+from fingerpad.sweeps.engine import held, lay_out, read_layout
 from fingerpad.sweeps.forecast import SECONDS_PROCESS
 
 if "sweep" in config and workflow.is_main_process:
@@ -24,7 +24,7 @@ if "sweep" in config and workflow.is_main_process:
         held_folder = held(folder)
         held_folder.__enter__()  # for as long as this process lives
         SWEEP = lay_out(read, folder, workflow.resource_settings.cores or 1)
-    except (SceneError, SweepError) as error:  # one line, without Snakemake's words round it
+    except SceneError as error:  # one line, without Snakemake's words round it
         print(error, file=sys.stderr)
         sys.exit(2)
 else:
@@ -37,7 +37,7 @@ TELL = ">{log:q} 2>&1 || {{ echo \"{rule}: $(tail -n 1 {log:q})\" >&2; exit 1; }
 
 
 def predicted(wildcards, attempt):
-    """Minutes of a batch: what the plan predicts, threefold for slower machines; twice as much at each retry."""
+    """Minutes of a batch: thrice the plan's prediction; twice as much at each retry."""
     seconds = SECONDS_PROCESS + SWEEP.batches[wildcards.batch]["cost_s"]
     return int((3 * seconds / 60 + 5) * 2 ** (attempt - 1))
 
@@ -90,4 +90,5 @@ rule sweep_collect:
         folder=HERE,
         digest=SWEEP.digest,
     shell:
-        "{params.python} -m fingerpad.sweeps collect {params.folder:q} {output.dataset:q} {output.table:q} " + TELL
+        "{params.python} -m fingerpad.sweeps collect {params.folder:q} "
+        "{output.dataset:q} {output.table:q} " + TELL

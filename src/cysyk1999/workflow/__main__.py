@@ -14,12 +14,9 @@ import sys
 import traceback
 from types import SimpleNamespace
 
-from fingerpad.processes import collect_seldom
-
 
 def main(words: list[str]) -> int:
     """Run a job and return its exit code."""
-    collect_seldom()
     name, *words = words
     keys: dict[str, list[str]] = {}
     for word in words:

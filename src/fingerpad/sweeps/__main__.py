@@ -1,19 +1,15 @@
-"""One job of a sweep, in a process of its own, for the rules of ``sweeps.smk``.
+"""One job of a sweep in a process of its own.
 
 ``python -m fingerpad.sweeps batch TODO RECORDS`` runs scenes; ``python -m fingerpad.sweeps collect
-FOLDER DATASET TABLE`` gathers what they left.
+FOLDER DATASET TABLE`` gathers their records.
 """
 
 import sys
 from pathlib import Path
 
-from fingerpad.processes import collect_seldom
 from fingerpad.sweeps.batch import run_batch
 from fingerpad.sweeps.collect import collect_layout
 
-JOBS = {"batch": run_batch, "collect": collect_layout}
-
 if __name__ == "__main__":
-    collect_seldom()
     job, *paths = sys.argv[1:]
-    JOBS[job](*map(Path, paths))
+    {"batch": run_batch, "collect": collect_layout}[job](*map(Path, paths))

@@ -1,63 +1,64 @@
-"""Scenes of a sweep in one process, one after the other: imports, kernels and grids of equal pads
-are shared.
+"""Scenes of a sweep in one process, one after the other, with a record of each.
 
-Each scene's record is written when it is done. A scene that cannot be simulated is a record with
-its diagnosis; one that has killed its process twice is not tried again.
+A scene that cannot be simulated is a record with its diagnosis; one that has killed its process
+twice is not tried again. Imports, kernels and the meshes of equal pads are shared.
 """
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import json
 import signal
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from fingerpad.measures.known import known
+from fingerpad.measures.measure import Together
+from fingerpad.planning.plan import plan
+from fingerpad.results import states_found, write_history
 from fingerpad.scenes.scene import Scene, scene_of_record
+from fingerpad.simulation import simulate
 from fingerpad.sweeps.records import UNFINISHED, Writer
 
 MOST_DEATHS = 2
-"""Of processes in a scene, after which it counts as failed."""
+"""Processes that a scene may kill before it counts as failed."""
+OF_THE_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS)
 
 
 def run_batch(todo: Path, records: Path) -> None:
-    """Run the scenes of the file `todo` that `records` does not know yet.
+    """Run the scenes of the file `todo` that have no record in `records` yet.
 
-    Raises:
-        OSError: a record or a history cannot be written; all records before are there.
+    Raises
+    ------
+    OSError
+        A record or a history cannot be written; all records before are there.
     """
-    spec = json.loads(todo.read_text(encoding="utf-8"))
-    base = scene_of_record(spec["base"])
-    unfinished = records.with_suffix(UNFINISHED)
-    before = signal.signal(
-        signal.SIGTERM, _stop
-    )  # whoever ends this process in order is not the scene's fault
-    write, watch = Writer(unfinished), _Watch(records.with_suffix(".at"))
+    batch = json.loads(todo.read_text(encoding="utf-8"))
+    base, unfinished = scene_of_record(batch["base"]), records.with_suffix(UNFINISHED)
+    before = signal.signal(signal.SIGTERM, _stop)  # an end in order is not the scene's fault
+    write, running = Writer(unfinished), records.with_suffix(".at")
     try:
-        for number, key, changes in spec["scenes"]:
+        for number, key, changes in batch["scenes"]:
             if key in write.known:
                 continue
-            if (deaths := watch.deaths(key)) >= MOST_DEATHS:
-                record = _failed(
+            history = records.parent.parent / "histories" / f"{key}.nc"
+            if (deaths := _deaths(running).get(key, 0)) >= MOST_DEATHS:
+                cause = (
                     f"its process was killed {deaths} times while it ran; is there memory enough?"
                 )
+                record = _failed(cause)
             else:
-                with watch.over(key):
-                    record = _one(
-                        base,
-                        number,
-                        changes,
-                        spec,
-                        records.parent.parent / "histories" / f"{key}.nc",
-                    )
+                with _noted(running, key):
+                    record = _record(base, changes, batch, history)
             write({"key": key, "number": number} | record)
-            write.known.add(key)
             print(number, key, record["diagnosis"] or "done", flush=True)
     finally:
         write.close()
         signal.signal(signal.SIGTERM, before)
+    running.unlink(missing_ok=True)
     unfinished.replace(records)
 
 
@@ -65,46 +66,45 @@ def _stop(*_: Any) -> None:
     raise KeyboardInterrupt
 
 
-def _one(
-    base: Scene, number: int, changes: Mapping[str, Any], spec: Mapping[str, Any], file: Path
+def _record(
+    base: Scene, changes: Mapping[str, Any], batch: Mapping[str, Any], history: Path
 ) -> dict[str, Any]:
-    """The record of a scene, whatever becomes of it; OSError only if its history cannot be
-    written.
-    """
+    """The record of a scene, simulated or failed; OSError if its history cannot be written."""
     started = time.perf_counter()
     try:
-        return measured(base.varied(changes), spec["keep"], file if spec["histories"] else None)
-    except OSError as error:
-        if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EACCES, errno.EROFS):
-            raise
-        return _failed(f"{type(error).__name__}: {error}")
+        scene = base.varied(changes)
+        return measured(scene, batch["keep"], history if batch["histories"] else None)
     except Exception as error:  # noqa: BLE001 - one bad scene never stops a sweep
-        own = type(error).__module__.startswith("fingerpad.")  # which say in one line what is wrong
-        said = str(error) if own else f"{type(error).__name__}: {error}"
-        return _failed(said, time.perf_counter() - started)
+        if isinstance(error, OSError) and error.errno in OF_THE_DISK:
+            raise
+        name = type(error).__name__
+        own = type(error).__module__.startswith("fingerpad.")  # whose message says it all
+        return _failed(str(error) if own else f"{name}: {error}", time.perf_counter() - started)
 
 
 def _failed(diagnosis: str, wall: float = 0.0) -> dict[str, Any]:
-    return {
-        "diagnosis": " ".join(diagnosis.split())[:500],
-        "measures": [],
-        "wall_s": round(wall, 4),
-    }
+    text = " ".join(diagnosis.split())[:500]
+    return {"diagnosis": text, "measures": [], "wall_s": round(wall, 4)}
 
 
 def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[str, Any]:
-    """Simulate a scene and read the measures `keep` of it: a record.
+    """Simulate a scene and measure it.
 
-    Measures are [quantity, condition, unit, value] each. `file`: where the history is kept.
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    keep : list of str
+        Names of measures.
+    file : Path, optional
+        Where the history is kept.
+
+    Returns
+    -------
+    dict
+        The record; its measures are [quantity, condition, unit, value] each.
     """
-    from fingerpad.measures.known import known
-    from fingerpad.measures.measure import Together
-    from fingerpad.planning.plan import plan
-    from fingerpad.results import states_found, write_history
-    from fingerpad.simulation import simulate
-
-    chosen = plan(scene)
-    history = simulate(scene, plan=chosen)
+    history = simulate(scene, plan=plan(scene))
     cost = json.loads(history.attrs["cost"])
     values, runs, measures = [], Together({scene.name: history}), known(keep)
     for name in keep:
@@ -132,36 +132,26 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
 
 
 def _resident_MB() -> float:
-    """Memory that the process holds now, MB; 0 where that is not told."""
+    """Memory of the process, MB; 0 where the system does not say."""
     try:
         return round(int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6, 1)
     except (OSError, ValueError):
         return 0.0
 
 
-class _Watch:
-    """Remembers in a file which scene runs, so that the process after one that was killed knows in
-    which.
-    """
+def _deaths(running: Path) -> dict[str, int]:
+    """Key of the scene that killed the process before -> how often it did."""
+    try:
+        return json.loads(running.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
 
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        try:
-            self._died: dict[str, int] = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            self._died = {}
-        self._key = ""
 
-    def deaths(self, key: str) -> int:
-        """How many processes have died in a scene."""
-        return self._died.get(key, 0)
-
-    def over(self, key: str) -> _Watch:
-        self._key = key
-        return self
-
-    def __enter__(self) -> None:
-        self._path.write_text(json.dumps({self._key: self.deaths(self._key) + 1}), encoding="utf-8")
-
-    def __exit__(self, *_: Any) -> None:
-        self._path.unlink(missing_ok=True)
+@contextlib.contextmanager
+def _noted(running: Path, key: str) -> Iterator[None]:
+    """Note in a file that a scene runs; the note stays if the process is killed."""
+    running.write_text(json.dumps({key: _deaths(running).get(key, 0) + 1}), encoding="utf-8")
+    try:
+        yield
+    finally:
+        running.unlink(missing_ok=True)

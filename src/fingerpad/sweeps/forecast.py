@@ -1,22 +1,21 @@
-"""What a sweep will cost: every scene planned, nothing solved; and its scenes in batches of about
-equal cost.
-"""
+"""What a sweep will cost: every scene planned, nothing solved; and batches of about equal cost."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from fingerpad.documents import SceneError
+from fingerpad.planning.bounds import PlanError
+from fingerpad.planning.plan import plan
 from fingerpad.planning.rules import RULES
+from fingerpad.specimen.outline import OutlineError
+from fingerpad.specimen.pad import MeshError
 from fingerpad.sweeps.design import Design
 
 SECONDS_PROCESS = 6.0
-"""Of one reference core, before the first scene of a process: imports and kernels (see
-benchmarks).
-"""
+"""Before the first scene of a process: imports and kernels (see benchmarks)."""
 SECONDS_SCENE = 0.22
 """Of each scene beside its solution: mesh, history, measures, record (see benchmarks)."""
 MEMORY_MB = 400.0
@@ -24,10 +23,9 @@ MEMORY_MB = 400.0
 RECORD_BYTES = 3000.0
 """Of each scene on the disk: in todo, records, dataset and table."""
 BATCH_S = 60.0
-"""What a batch should cost at least; a sweep that has fewer of these than cores is divided further,
-down to LEAST_S.
-"""
+"""Least cost of a batch, where every core has one."""
 LEAST_S = 8.0
+"""Least cost of a batch, where there are fewer batches than cores."""
 MOST_BATCHES = 1000
 """Of a sweep: schedulers and Snakemake are slow with more."""
 
@@ -36,66 +34,79 @@ MOST_BATCHES = 1000
 class Forecast:
     """What scenes will cost.
 
-    Attributes:
-        cost_s: of each scene, s of one core. memory_MB, result_bytes: of each. effects: name -> in
-        how many scenes it is on. worst_error: the largest that is expected.
+    Attributes
+    ----------
+    cost_s, memory_MB, result_bytes : list of float
+        Of each scene; the cost is of one core.
+    nodes : list of int
+        Nodes of each scene's mesh.
+    effects : Counter
+        Name -> number of scenes with the effect on.
+    worst_error : float
+        The largest expected error.
     """
 
     cost_s: list[float] = field(default_factory=list)
     memory_MB: list[float] = field(default_factory=list)
     result_bytes: list[float] = field(default_factory=list)
+    nodes: list[int] = field(default_factory=list)
     effects: Counter[str] = field(default_factory=Counter)
-    nodes: tuple[int, int] = (0, 0)
     worst_error: float = 0.0
 
-    def wall_s(self, cores: int, numbers: Iterable[int] | None = None) -> float:
-        """Time (s) on some cores, of these scenes or of all."""
-        costs = self.cost_s if numbers is None else [self.cost_s[n] for n in numbers]
-        if not costs:
-            return 0.0
-        batches = divided(list(range(len(costs))), costs, cores)
-        each = [SECONDS_PROCESS + sum(costs[n] for n in batch) for batch in batches]
-        return max(sum(each) / cores, max(each))
+    def wall_s(self, cores: int) -> float:
+        """Time (s) of all scenes on some cores."""
+        batches = divided(list(range(len(self.cost_s))), self.cost_s, cores)
+        costs = [SECONDS_PROCESS + sum(self.cost_s[n] for n in batch) for batch in batches]
+        return max(sum(costs) / cores, max(costs))
 
 
 def forecast(design: Design, progress: Callable[[int], object] | None = None) -> Forecast:
-    """Plan every scene. Raises SceneError, one line, for a scene that cannot be planned."""
-    from fingerpad.planning.bounds import PlanError
-    from fingerpad.planning.plan import plan
-    from fingerpad.specimen.outline import OutlineError
-    from fingerpad.specimen.pad import MeshError
+    """Plan every scene.
 
-    found = Forecast()
-    nodes = []
+    Parameters
+    ----------
+    design : Design
+        The scenes.
+    progress : callable, optional
+        Called with the number of scenes that are planned.
+
+    Raises
+    ------
+    SceneError
+        A scene cannot be planned; one line.
+    """
+    total = Forecast()
     for number, scene in enumerate(design):
         try:
-            how = plan(scene)
+            chosen = plan(scene)
         except (PlanError, OutlineError, MeshError) as error:
-            raise SceneError(
-                f"{design.shown}: scene {number} ({design.said(number)}): {design.without_name(error)}"
-            ) from None
-        found.cost_s.append(SECONDS_SCENE + how.predicted_cost_s - RULES.seconds_start)
-        found.memory_MB.append(
-            MEMORY_MB + 1e-6 * how.nodes * (RULES.bytes_node + RULES.bytes_step * how.steps)
-        )
-        found.result_bytes.append(
-            RECORD_BYTES + (how.result_bytes(scene) if design.read.sweep.histories else 0.0)
-        )
-        found.effects.update(name for name, effect in how.effects.items() if effect.on)
-        found.worst_error = max(found.worst_error, how.estimated_error)
-        nodes.append(how.nodes)
+            raise design.error(number, error) from None
+        history = chosen.result_bytes(scene) if design.read.sweep.histories else 0.0
+        solved = chosen.nodes * (RULES.bytes_node + RULES.bytes_step * chosen.steps)
+        total.cost_s.append(SECONDS_SCENE + chosen.predicted_cost_s - RULES.seconds_start)
+        total.memory_MB.append(MEMORY_MB + 1e-6 * solved)
+        total.result_bytes.append(RECORD_BYTES + history)
+        total.nodes.append(chosen.nodes)
+        total.effects.update(name for name, effect in chosen.effects.items() if effect.on)
+        total.worst_error = max(total.worst_error, chosen.estimated_error)
         if progress:
             progress(number + 1)
-    found.nodes = min(nodes), max(nodes)
-    return found
+    return total
 
 
 def divided(numbers: list[int], cost_s: list[float], cores: int = 1) -> list[list[int]]:
-    """Scenes in batches of about equal cost: a minute or more each, on all cores where that leaves
-    LEAST_S a batch.
+    """Scenes in batches of about equal cost.
 
-    Args:
-        numbers: of the scenes to be run, rising. cost_s: of every scene of the sweep.
+    A batch costs `BATCH_S` or more; where that makes fewer batches than cores, `LEAST_S` or more.
+
+    Parameters
+    ----------
+    numbers : list of int
+        The scenes to be run, rising.
+    cost_s : list of float
+        Of every scene of the sweep.
+    cores : int
+        Processes at a time.
     """
     if not numbers:
         return []

@@ -1,11 +1,11 @@
-"""The sweep language: a base scene, the keys that vary, the design, what is kept; read from YAML
-and checked.
+"""The sweep language: a base scene, the keys that vary, the design, and what is kept.
 
     scene: ../scenes/press10.yaml
     over:
-      stimulus.curvature: ["79 1/m", "210 1/m", "630 1/m"] motion[0].press_to_force: {range: ["2
-      gf", "200 gf"], count: 9, spacing: logarithmic} specimen.layers.fat.youngs_modulus:
-      {lognormal: {median: "15 kPa", factor: 1.5}, within: ["5 kPa", "40 kPa"]}
+      stimulus.curvature: ["79 1/m", "210 1/m", "630 1/m"]
+      motion[0].press_to_force: {range: ["2 gf", "200 gf"], count: 9, spacing: logarithmic}
+      specimen.layers.fat.youngs_modulus:
+        {lognormal: {median: "15 kPa", factor: 1.5}, within: ["5 kPa", "40 kPa"]}
 
 An axis is a list of values, a range, a distribution, words with a value each, or a folder of files.
 Distributions, and ranges without a count, are drawn together in a design of points; all else is
@@ -17,79 +17,95 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, ValidationInfo
 
-from fingerpad.documents import HIDE, Problem, SceneError, Strict, explain, nearest, read_yaml
+from fingerpad.documents import (
+    HIDE,
+    Problem,
+    SceneError,
+    Strict,
+    explain,
+    nearest,
+    read_yaml,
+    tidy_schema,
+)
 from fingerpad.fields import filled, listed, number, whole
 from fingerpad.files import expanded
+from fingerpad.measures.known import OF_ANY, known
 from fingerpad.scenes.scene import LEVELS, Scene, load_scene
 from fingerpad.tables import TableError, read_table
-from fingerpad.units import DIMENSIONS, QuantityError, number_of, parse_quantity, unit_of
+from fingerpad.units import QuantityError, dimension_of, number_of, parse_quantity, unit_of
 
 MOST = 1_000_000
 """Scenes of a sweep."""
+STANDARD = ("indentation_depth", "contact_width", "normal_force", "peak_pressure", "strain_energy")
+"""Measures kept unless a sweep says which."""
+RESERVED = "scene draw failed diagnosis estimated_error cpu_s nodes steps iterations".split()
+"""Names in the results that no axis can have."""
 _FILES = ("csv", "mesh", "table")
 """Keys whose values are paths."""
 
 
-# --- numbers with one unit ----------------------------------------------------------------------------------------------
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 @dataclass(frozen=True)
 class Unit:
-    """The unit that an axis is stated in: its text ("1": none), the dimension, and its size in
-    SI.
+    """The unit of an axis.
+
+    Attributes
+    ----------
+    text : str
+        As written; "1" for numbers without a unit.
+    dimension : str
+        A key of `fingerpad.units.DIMENSIONS`.
     """
 
     text: str
     dimension: str
-    si: float
 
     @classmethod
     def of(cls, value: Any) -> Unit:
         """The unit of a quantity as it is written. Raises `Problem`."""
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            return cls("1", "dimensionless", 1.0)
+        if _is_number(value):
+            return cls("1", "dimensionless")
         if not isinstance(value, str):
-            raise Problem(
-                "is not a number with its unit",
-                "text such as '15 kPa', or a number where none is needed",
-            )
+            allowed = "text such as '15 kPa', or a number where none is needed"
+            raise Problem("is not a number with its unit", allowed)
         try:
             text = unit_of(value) or "1"
         except QuantityError as error:
             raise Problem(error.problem, error.allowed) from None
-        for dimension in DIMENSIONS:
-            try:
-                return cls(text, dimension, parse_quantity(f"1 {text}", dimension))
-            except QuantityError:
-                continue
-        raise Problem("has an unknown unit", "a number with its unit such as '15 kPa'")
+        if (dimension := dimension_of(text)) is None:
+            raise Problem("has an unknown unit", "a number with its unit such as '15 kPa'")
+        return cls(text, dimension)
 
-    def read(self, value: Any) -> float:
-        """A quantity in this unit. Raises `Problem` if it is none, or of another dimension."""
-        if (
-            self.dimension == "dimensionless"
-            and isinstance(value, (int, float))
-            and not isinstance(value, bool)
-        ):
+    def read(self, value: Any, *key: str) -> float:
+        """A quantity in this unit. Raises `Problem`, at `key`, if it has another dimension."""
+        if self.dimension == "dimensionless" and _is_number(value):
             return float(value)
         try:
-            found = parse_quantity(value, self.dimension)
-            # a number in this unit as it is written, without a way through SI and back
-            return (
-                number_of(value)
-                if unit_of(value) == self.text
-                else float(f"{found / self.si:.12g}")
-            )
+            si = parse_quantity(value, self.dimension)
+            if unit_of(value) == self.text:  # as written, not by way of SI
+                return number_of(value)
+            return float(f"{si / parse_quantity(f'1 {self.text}', self.dimension):.12g}")
         except QuantityError as error:
-            raise Problem(error.problem, error.allowed) from None
+            raise Problem(error.problem, error.allowed, key) from None
+
+    def rising(self, pair: tuple[Any, Any], key: str) -> tuple[float, float]:
+        """Two rising quantities in this unit. Raises `Problem` at `key`."""
+        low, high = (self.read(value, key) for value in pair)
+        if not low < high:
+            raise Problem("is not rising", "two values, the lower one first", (key,))
+        return low, high
 
     def written(self, value: float) -> str | float:
         """A number in this unit as a scene takes it."""
@@ -101,29 +117,31 @@ def _quantity(value: Any) -> Any:
     return value
 
 
-_QUANTITY = {"anyOf": [{"type": "number"}, {"type": "string"}], "examples": ["15 kPa"]}
-Quantity = Annotated[Any, BeforeValidator(_quantity), Field(json_schema_extra=_QUANTITY)]
-"""A number with its unit, of any dimension: the scene says which fits."""
-
-
 def _pair(value: Any) -> Any:
     if len(listed(value)) != 2:
         raise Problem("is not a pair", "two values, the lower one first")
     return tuple(value)
 
 
-Pair = Annotated[
-    tuple[Quantity, Quantity],
-    BeforeValidator(_pair),
-    Field(json_schema_extra={"minItems": 2, "maxItems": 2}),
-]
+def _pattern(value: Any) -> Any:
+    path = not isinstance(value, str) or {"/", "\0"} & set(value) or "**" in value
+    if path or value in ("", ".", ".."):
+        raise Problem("is not the pattern of a file's name", "one such as *.csv, without folders")
+    return value
 
 
-# --- what an axis can be ------------------------------------------------------------------------------------------------
+_QUANTITY = {"anyOf": [{"type": "number"}, {"type": "string"}], "examples": ["15 kPa"]}
+Quantity = Annotated[Any, BeforeValidator(_quantity), Field(json_schema_extra=_QUANTITY)]
+"""A number with its unit, of any dimension: the scene says which fits."""
+_TWO = {"minItems": 2, "maxItems": 2}
+Pair = Annotated[tuple[Quantity, Quantity], BeforeValidator(_pair), Field(json_schema_extra=_TWO)]
+
+
+# --- kinds of axis --------------------------------------------------------------------------------
 
 
 class Axis(Strict):
-    """What all axes have: how the axis is called in the results."""
+    """What all axes have: a name in the results."""
 
     name: str | None = None
     """What it is called in the results; left out, the last words of its key."""
@@ -143,7 +161,7 @@ class Axis(Strict):
         raise NotImplementedError
 
     def labels(self) -> list[Any]:
-        """What its values are in the results: numbers in `unit`, or words."""
+        """Its values in the results: numbers in `unit`, or words."""
         raise NotImplementedError
 
 
@@ -154,7 +172,7 @@ class Values(Axis):
     """The values, as a scene takes them."""
 
     @cached_property
-    def _unit(self) -> Unit | None:
+    def unit(self):
         try:
             unit = Unit.of(self.values[0])
             for value in self.values:
@@ -163,19 +181,15 @@ class Values(Axis):
             return None
         return unit
 
-    @property
-    def unit(self):
-        return self._unit
-
     def written(self):
         return list(self.values)
 
     def labels(self):
-        return (
-            [self._unit.read(value) for value in self.values]
-            if self._unit
-            else [_word(value) for value in self.values]
-        )
+        return [self.unit.read(v) if self.unit else _word(v) for v in self.values]
+
+
+class Column(Values):
+    """A column of a table of samples; a scene takes one row of all columns."""
 
 
 class Words(Axis):
@@ -191,23 +205,6 @@ class Words(Axis):
         return list(self.words)
 
 
-def _pattern(value: Any) -> Any:
-    if (
-        not isinstance(value, str)
-        or value in ("", ".", "..")
-        or {"/", "\0"} & set(value)
-        or "**" in value
-    ):
-        raise Problem("is not the pattern of a file's name", "one such as *.csv, without folders")
-    return value
-
-
-class Column(Values):
-    """A column of a table of samples: its values belong to those of the table's other columns, row
-    by row.
-    """
-
-
 class Folder(Axis):
     """Every file of a folder: profiles, for example."""
 
@@ -218,12 +215,7 @@ class Folder(Axis):
 
     @cached_property
     def files(self) -> list[Path]:
-        hidden = self.pattern.startswith(".")
-        return sorted(
-            path
-            for path in self.folder.glob(self.pattern)
-            if hidden or not path.name.startswith(".")
-        )
+        return sorted(self.folder.glob(self.pattern))
 
     def written(self):
         return [str(path) for path in self.files]
@@ -255,7 +247,7 @@ class Range(Axis):
     @property
     def ends(self) -> tuple[float, float]:
         """Both ends in `unit`. Raises `Problem`."""
-        low, high = (_at("range", self.unit.read, value) for value in self.range)
+        low, high = (self.unit.read(value, "range") for value in self.range)
         if low == high:
             raise Problem("is no range", "two values that differ", ("range",))
         if self.spacing == "logarithmic" and not (low > 0 and high > 0):
@@ -263,29 +255,20 @@ class Range(Axis):
         return low, high
 
     def labels(self):
-        import numpy as np
-
-        low, high = self.ends
-        steps = (
-            np.geomspace(low, high, self.count)
-            if self.spacing == "logarithmic"
-            else np.linspace(low, high, self.count)
-        )
-        return [float(f"{value:.12g}") for value in steps]
+        steps = np.geomspace if self.spacing == "logarithmic" else np.linspace
+        return [float(f"{value:.12g}") for value in steps(*self.ends, self.count)]
 
     def written(self):
         return [self.unit.written(value) for value in self.labels()]
 
     def distribution(self) -> Any:
-        """The same as a distribution of scipy's, uniform or log-uniform."""
-        from scipy import stats
+        """The distribution of what is drawn, of `scipy.stats`, in `unit`. Raises `Problem`."""
+        from scipy import stats  # a second to import
 
         low, high = sorted(self.ends)
-        return (
-            stats.loguniform(low, high)
-            if self.spacing == "logarithmic"
-            else stats.uniform(low, high - low)
-        )
+        if self.spacing == "logarithmic":
+            return stats.loguniform(low, high)
+        return stats.uniform(low, high - low)
 
 
 class Normal(Strict):
@@ -328,65 +311,60 @@ class Distribution(Axis):
 
     @property
     def unit(self):
-        return Unit.of(
-            self.uniform[0]
-            if self.uniform
-            else self.normal.mean
-            if self.normal
-            else self.lognormal.median
-        )
+        if self.uniform:
+            return Unit.of(self.uniform[0])
+        return Unit.of(self.normal.mean if self.normal else self.lognormal.median)
 
     def distribution(self) -> Any:
-        """The distribution of scipy's, in `unit`, not truncated. Raises `Problem`."""
-        from scipy import stats
+        """The distribution of `scipy.stats`, in `unit`, not truncated. Raises `Problem`."""
+        from scipy import stats  # a second to import
 
-        unit = self.unit
         if self.uniform:
-            low, high = _rising("uniform", self.uniform, unit)
+            low, high = self.unit.rising(self.uniform, "uniform")
             return stats.uniform(low, high - low)
         if self.normal:
-            sd = _at("normal", lambda value: _at("sd", unit.read, value), self.normal.sd)
+            sd = self.unit.read(self.normal.sd, "normal", "sd")
             if not sd > 0:
-                raise Problem(
-                    "is not above zero", "a standard deviation above zero", ("normal", "sd")
-                )
-            return stats.norm(unit.read(self.normal.mean), sd)
-        median = unit.read(self.lognormal.median)
+                allowed = "a standard deviation above zero"
+                raise Problem("is not above zero", allowed, ("normal", "sd"))
+            return stats.norm(self.unit.read(self.normal.mean), sd)
+        median = self.unit.read(self.lognormal.median)
         if not median > 0:
             raise Problem("is not above zero", "a median above zero", ("lognormal", "median"))
         return stats.lognorm(math.log(self.lognormal.factor), scale=median)
 
 
 def quantiles(axis: Range | Distribution, shares: Any) -> Any:
-    """Values (n,) of a drawn axis, in its unit, at shares (n,) from 0 to 1 of its (truncated)
-    distribution. Raises `Problem`.
+    """Quantiles of a drawn axis.
+
+    Parameters
+    ----------
+    axis : Range or Distribution
+        The axis; its distribution may be truncated.
+    shares : array, shape (n,)
+        Probabilities from 0 to 1.
+
+    Returns
+    -------
+    array, shape (n,)
+        Values in the unit of the axis.
+
+    Raises
+    ------
+    Problem
+        The axis has no distribution.
     """
-    found = axis.distribution()
+    whole_axis = axis.distribution()
     low, high = 0.0, 1.0
     if getattr(axis, "within", None):
-        low, high = found.cdf(_rising("within", axis.within, axis.unit))
+        low, high = whole_axis.cdf(axis.unit.rising(axis.within, "within"))
         if not high > low:
-            raise Problem(
-                "leaves nothing of the distribution", "a range that has some of it", ("within",)
-            )
-    return found.ppf(low + shares * (high - low))
+            allowed = "a range that has some of it"
+            raise Problem("leaves nothing of the distribution", allowed, ("within",))
+    return whole_axis.ppf(low + shares * (high - low))
 
 
-def _rising(key: str, pair: tuple[Any, Any], unit: Unit) -> tuple[float, float]:
-    low, high = (_at(key, unit.read, value) for value in pair)
-    if not low < high:
-        raise Problem("is not rising", "two values, the lower one first", (key,))
-    return low, high
-
-
-def _at(key: str, do: Callable, value: Any) -> Any:
-    try:
-        return do(value)
-    except Problem as problem:
-        raise problem.below(key) from None
-
-
-_KINDS: dict[str, type[Axis]] = {
+KINDS: dict[str, type[Axis]] = {
     "values": Values,
     "words": Words,
     "folder": Folder,
@@ -395,41 +373,27 @@ _KINDS: dict[str, type[Axis]] = {
     "normal": Distribution,
     "lognormal": Distribution,
 }
-"""Key that an axis is known by -> what it is."""
+"""Key that an axis is known by -> its kind."""
 
 
 def _axis(value: Any, info: ValidationInfo) -> Axis:
+    """An axis of the kind that its keys say."""
     if isinstance(value, Axis):
         return value
     if not isinstance(value, Mapping):
         value = {"values": filled(value)}
-    kinds = [kind for kind in _KINDS if kind in value]
+    kinds = [kind for kind in KINDS if kind in value]
     if len(kinds) != 1:
-        known = [*_KINDS, "name", "within", "source", "count", "spacing", "pattern"]
-        wrong = next((key for key in value if key not in known), None)
-        what = f"is not a known key{nearest(wrong, known)}" if wrong else "says not one thing"
+        fields = [*KINDS, "name", "within", "source", "count", "spacing", "pattern"]
         allowed = "a list of values, or one of range, uniform, normal, lognormal, words, folder"
-        raise Problem(what, allowed, (str(wrong)[:60],) if wrong else (), HIDE if wrong else value)
+        for key in value:
+            if key not in fields:
+                what = f"is not a known key{nearest(key, fields)}"
+                raise Problem(what, allowed, (str(key)[:60],), HIDE)
+        raise Problem("does not say one thing", allowed, value=value)
     if kinds == ["folder"] and isinstance(value["folder"], str) and info.context is not None:
         value = {**value, "folder": info.context.parent / expanded(value["folder"])}
-    return _checked(_KINDS[kinds[0]], value, info.context)
-
-
-def _checked(kind: type[Axis], value: Mapping[str, Any], context: Any) -> Axis:
-    try:
-        axis = kind.model_validate(value, context=context)
-    except ValidationError as error:
-        first = error.errors()[0]
-        cause = first.get("ctx", {}).get("error")
-        problem = getattr(cause, "problem", None) or f"is not valid: {first['msg']}"
-        key = tuple(
-            part
-            for part in first["loc"]
-            if part in value or isinstance(part, int) or part in ("mean", "sd", "median")
-        )
-        raise Problem(
-            problem, getattr(cause, "allowed", ""), key + getattr(cause, "key", ())
-        ) from None
+    axis = KINDS[kinds[0]].model_validate(value, context=info.context)
     if axis.drawn:
         quantiles(axis, 0.5)
     elif not axis.labels():
@@ -437,91 +401,100 @@ def _checked(kind: type[Axis], value: Mapping[str, Any], context: Any) -> Axis:
     return axis
 
 
-def _over(value: Any, info: ValidationInfo) -> dict[str, Axis]:
+def _axes(value: Any, info: ValidationInfo) -> dict[str, Any]:
+    """The mapping of keys to axes, with the columns of a table in place of its path."""
     if not isinstance(value, Mapping) or not value:
         raise Problem(
             "is not a mapping of keys",
             "keys of the scene such as stimulus.curvature, each with its values",
         )
-    axes = {}
-    for key, given in value.items():
-        if key == "table":
-            axes |= _at("table", lambda each: _columns(each, info), given)
-        else:
-            axes[str(key)] = _at(str(key), lambda each: _axis(each, info), given)
+    axes = {str(key): axis for key, axis in value.items()}
+    if "table" in axes:
+        try:
+            columns = _columns(axes["table"], info)
+        except TableError as error:
+            raise Problem(error.problem, error.allowed, ("table",)) from None
+        before = list(axes).index("table")
+        items = list(axes.items())
+        axes = dict(items[:before]) | columns | dict(items[before + 1 :])
     return axes
 
 
 def _columns(value: Any, info: ValidationInfo) -> dict[str, Column]:
-    """The axes of a table of samples: its columns are keys of the scene, with the unit of their
-    values in brackets.
-    """
+    """The axes of a table of samples, whose header is keys with units. Raises `TableError`."""
     if not isinstance(value, (str, Path)):
-        raise Problem("is not a path", "the path of a CSV file whose columns are keys of the scene")
+        what = "the path of a CSV file whose columns are keys of the scene"
+        raise TableError("is not a path", what)
     path = expanded(value) if info.context is None else info.context.parent / expanded(value)
     try:
         table = read_table(path)
-        found = {}
-        for k, name in enumerate(table.header):
-            key, unit = match.groups() if (match := _WITH_UNIT.fullmatch(name)) else (name, "")
-            if not key:
-                raise TableError(
-                    f"has no name for column {k + 1}",
-                    "a key in each; no index: in pandas to_csv(index=False)",
-                )
-            if unit or all(cell and _is_number(cell) for cell in (row[k] for row in table.rows)):
-                values = [f"{number!r} {unit}" if unit else number for number in table.numbers(k)]
-            else:
-                values = [row[k] for row in table.rows]
-            if key in found:
-                raise TableError(f"has two columns of the key '{key[:60]}'", "each key once")
-            found[key] = _checked(Column, {"values": values}, info.context) if values else None
     except FileNotFoundError:
-        raise Problem(
-            "is not an existing file", "the path of a CSV file, relative to the sweep"
-        ) from None
-    except TableError as error:
-        raise Problem(error.problem, error.allowed) from None
+        what = "the path of a CSV file, relative to the sweep"
+        raise TableError("is not an existing file", what) from None
     except OSError as error:
-        raise Problem(f"cannot be read ({error.strerror})", "a CSV file") from None
+        raise TableError(f"cannot be read ({error.strerror})", "a CSV file") from None
     if not table.rows:
-        raise Problem("has no rows", "a row for each scene")
-    return found
+        raise TableError("has no rows", "a row for each scene")
+    columns = {}
+    for k, name in enumerate(table.header):
+        key, unit = match.groups() if (match := _WITH_UNIT.fullmatch(name)) else (name, "")
+        if not key:
+            what = f"has no name for column {k + 1}"
+            raise TableError(what, "a key in each; no index: in pandas to_csv(index=False)")
+        cells = [row[k] for row in table.rows]
+        if unit or all(map(_like_a_number, cells)):
+            cells = [f"{value!r} {unit}" if unit else value for value in table.numbers(k)]
+        if key in columns:
+            raise TableError(f"has two columns of the key '{key[:60]}'", "each key once")
+        columns[key] = Column(values=cells)
+    return columns
 
 
 _WITH_UNIT = re.compile(r"(.+?)\s+[(\[](.*)[)\]]")
 """A column's name: `stimulus.curvature (1/m)` or `stimulus.curvature [1/m]`."""
 
 
-def _is_number(cell: str) -> bool:
+def _like_a_number(cell: str) -> bool:
     try:
         return math.isfinite(float(cell.replace(",", ".", 1)))
     except ValueError:
         return False
 
 
-# --- the sweep ----------------------------------------------------------------------------------------------------------
-
-
 def _keep(value: Any) -> Any:
-    from fingerpad.measures.known import OF_ANY, known
-
     measures = known(filled(value))
-    for i, name in enumerate(filled(value)):
+    for i, name in enumerate(value):
         if name not in measures:
             allowed = f"{', '.join(OF_ANY)}, and those of measures.csv"
             raise Problem(f"is not a measure{nearest(name, measures)}", allowed, (i,))
         if measures[name].beside or measures[name].of == "mesh":
-            raise Problem(
-                "is not a measure of one history", "measures of one history or of a scene", (i,)
-            )
+            allowed = "measures of one history or of a scene"
+            raise Problem("is not a measure of one history", allowed, (i,))
     return tuple(dict.fromkeys(value))
 
 
-STANDARD = ("indentation_depth", "contact_width", "normal_force", "peak_pressure", "strain_energy")
-"""Measures kept unless a sweep says which."""
+# --- the sweep ------------------------------------------------------------------------------------
 
-_AXES = [Values, Words, Folder, Range, Distribution]
+
+AnyAxis = Annotated[
+    Any,
+    BeforeValidator(
+        _axis,
+        json_schema_input_type=Annotated[list[Any], Field(min_length=1)]
+        | Values
+        | Words
+        | Folder
+        | Range
+        | Distribution,
+    ),
+]
+_TABLE = {
+    "type": "string",
+    "description": "CSV file: a column for each key, its unit in brackets, "
+    "and a row for each scene.",
+}
+_OVER = {"properties": {"table": _TABLE}, "minProperties": 1}
+_ACCURACY = {"anyOf": [{"enum": list(LEVELS)}, {"type": "number"}, {"type": "object"}]}
 
 
 class Sweep(Strict):
@@ -529,7 +502,7 @@ class Sweep(Strict):
 
     scene: Any = Field(json_schema_extra={"anyOf": [{"type": "string"}, {"type": "object"}]})
     """The base scene: the path of a scene, relative to this file, or a scene."""
-    over: Annotated[dict[str, Any], BeforeValidator(_over)]
+    over: Annotated[dict[str, AnyAxis], BeforeValidator(_axes), Field(json_schema_extra=_OVER)]
     """Key of the scene, such as motion[0].rate -> its values: a list, a range, a distribution,
     words, or a folder of files.
 
@@ -546,19 +519,24 @@ class Sweep(Strict):
     """Measures to keep, by name."""
     histories: bool = False
     """Whether the history of every scene is kept, as a file."""
-    accuracy: Any = Field(
-        default=None,
-        json_schema_extra={
-            "anyOf": [{"enum": list(LEVELS)}, {"type": "number"}, {"type": "object"}]
-        },
-    )
+    accuracy: Any = Field(default=None, json_schema_extra=_ACCURACY)
     """Accuracy in place of what the scene says."""
 
 
 @dataclass(frozen=True)
 class Read:
-    """A sweep as it was read: its name, the file (None in Python), what it says, and the base scene
-    at its accuracy.
+    """A sweep as it was read.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    file : Path
+        Its file, which need not exist.
+    sweep : Sweep
+        What it says.
+    base : Scene
+        The base scene at its accuracy.
     """
 
     name: str
@@ -568,23 +546,26 @@ class Read:
 
     @cached_property
     def names(self) -> dict[str, str]:
-        """Key -> what the axis is called: the fewest last words of the key that no other has."""
-        keys = {key: key.replace("[", ".").replace("]", "").split(".") for key in self.sweep.over}
-        found = {}
-        for key, parts in keys.items():
-            most = max(map(len, keys.values()))
+        """Key -> name of the axis: the fewest last words of the key that no other key has."""
+        words = {k: k.replace("[", ".").replace("]", "").split(".") for k in self.sweep.over}
+        most = max(map(len, words.values()))
+        names = {}
+        for key, parts in words.items():
+            taken = [others for other, others in words.items() if other != key]
+            taken += [[name] for name in RESERVED]
             # a bare number says nothing
-            least = next(
-                (n for n in range(1, len(parts) + 1) if not parts[-n].isdigit()), len(parts)
+            counts = range(1, len(parts) + 1)
+            least = next((n for n in counts if not parts[-n].isdigit()), len(parts))
+            enough = next(
+                (
+                    n
+                    for n in range(least, most + 1)
+                    if all(others[-n:] != parts[-n:] for others in taken)
+                ),
+                most,
             )
-            others = [words for other, words in keys.items() if other != key]
-            enough = (
-                n
-                for n in range(least, most + 1)
-                if not any(words[-n:] == parts[-n:] for words in others)
-            )
-            found[key] = self.sweep.over[key].name or "_".join(parts[-next(enough, most) :])
-        return found
+            names[key] = self.sweep.over[key].name or "_".join(parts[-enough:])
+        return names
 
 
 def load_sweep(
@@ -592,12 +573,19 @@ def load_sweep(
 ) -> Read:
     """Read and check a sweep.
 
-    Args:
-        source: YAML file, or a dictionary, whose paths are relative to the working directory. name:
-        of a dictionary's sweep. scene: the base scene, in place of the one that the sweep says.
+    Parameters
+    ----------
+    source : path or dict
+        YAML file, or a dictionary, whose paths are relative to the working directory.
+    name : str
+        Name of a dictionary's sweep.
+    scene : Scene, optional
+        The base scene, in place of the sweep's own.
 
-    Raises:
-        SceneError: the file cannot be read or anything in it is wrong; its text is one line.
+    Raises
+    ------
+    SceneError
+        The file cannot be read or anything in it is wrong; its text is one line.
     """
     given = isinstance(source, Mapping)
     path = Path(f"{name}.yaml") if given else Path(source)
@@ -613,7 +601,10 @@ def load_sweep(
     if sweep.accuracy is not None:
         base = base.with_accuracy(sweep.accuracy)
     read = Read(path.stem, path, sweep, base)
-    _check(read, shown)
+    try:
+        _check(read)
+    except Problem as problem:
+        raise SceneError(f"{shown}: {problem}") from None
     return read
 
 
@@ -622,114 +613,67 @@ def _base(scene: Any, path: Path) -> Scene:
         return load_scene(scene, str(path.with_suffix("")))
     if not isinstance(scene, str):
         raise SceneError(
-            f"{path}: scene: is not a scene; allowed: the path of a scene relative to this file, or a scene"
+            f"{path}: scene: is not a scene; "
+            "allowed: the path of a scene relative to this file, or a scene"
         )
     return load_scene(path.parent / expanded(scene))
 
 
-def _check(read: Read, shown: Any) -> None:
-    """What concerns several keys."""
+def _check(read: Read) -> None:
+    """Raise `Problem` for what concerns several keys."""
     sweep, axes = read.sweep, read.sweep.over
     drawn = [key for key, axis in axes.items() if axis.drawn]
-
-    def wrong(key: str, problem: str, allowed: str) -> SceneError:
-        return SceneError(f"{shown}: {key}: {problem}; allowed: {allowed}")
-
+    tabled = [len(axis.values) for axis in axes.values() if isinstance(axis, Column)]
     if drawn and sweep.design == "grid":
-        more = "a count, or " if isinstance(axes[drawn[0]], Range) else ""
-        raise wrong(
-            f"over.{drawn[0]}",
-            "is drawn, but the design is a grid",
-            f"{more}design: latin_hypercube or sobol",
-        )
+        count = "a count, or " if isinstance(axes[drawn[0]], Range) else ""
+        allowed = f"{count}design: latin_hypercube or sobol"
+        raise Problem("is drawn, but the design is a grid", allowed, ("over", drawn[0]))
     if not drawn and sweep.design != "grid":
-        raise wrong(
-            "design",
-            f"{sweep.design} draws, but no key is a distribution",
-            "a distribution, or design: grid",
-        )
+        what = f"{sweep.design} draws, but no key is a distribution"
+        raise Problem(what, "a distribution, or design: grid", ("design",))
     if drawn and sweep.samples is None:
-        raise wrong("samples", "is missing", "how many points are drawn")
+        raise Problem("is missing", "how many points are drawn", ("samples",))
     if not drawn and sweep.samples is not None:
-        raise wrong("samples", "is given, but nothing is drawn", "a distribution, or no samples")
+        allowed = "a distribution, or no samples"
+        raise Problem("is given, but nothing is drawn", allowed, ("samples",))
+    if tabled and drawn:
+        allowed = "a list, or a column of the table"
+        raise Problem("is drawn beside a table of samples", allowed, ("over", drawn[0]))
     names = list(read.names.values())
     for name in names:
-        if names.count(name) > 1 or not name.replace("_", "").isalnum():
-            raise wrong(
-                "over",
-                f"the name {name!r} is {'given twice' if names.count(name) > 1 else 'not one word'}",
-                "a name each",
-            )
-    tabled = [len(axis.values) for axis in axes.values() if isinstance(axis, Column)]
-    if tabled and drawn:
-        raise wrong(
-            f"over.{drawn[0]}",
-            "is drawn beside a table of samples",
-            "a list, or a column of the table",
-        )
-    listed = math.prod(
+        twice = names.count(name) > 1
+        if twice or not name.replace("_", "").isalnum():
+            what = f"the name {name!r} is {'given twice' if twice else 'not one word'}"
+            raise Problem(what, "a name each", ("over",))
+    counts = [
         len(axis.labels())
         for axis in axes.values()
         if not axis.drawn and not isinstance(axis, Column)
-    )
-    count = (sweep.samples or 1) * listed * (tabled[0] if tabled else 1)
+    ]
+    count = (sweep.samples or 1) * math.prod(counts + tabled[:1])
     if count > MOST:
-        raise wrong("over", f"makes {count} scenes", f"up to {MOST}")
+        raise Problem(f"makes {count} scenes", f"up to {MOST}", ("over",))
 
 
 def resolved(key: str, value: Any, folder: Path) -> Any:
     """A value of a key with the paths in it absolute: those relative to `folder`."""
     if isinstance(value, Mapping):
-        return {name: resolved(name, each, folder) for name, each in value.items()}
+        return {name: resolved(name, part, folder) for name, part in value.items()}
     if key.rpartition(".")[2] in _FILES and isinstance(value, str):
         return str((folder / expanded(value)).absolute())
     return value
 
 
 def _word(value: Any) -> str:
+    """A value as one word or a few, for the results."""
     if isinstance(value, Mapping):
-        return ", ".join(f"{key} {_word(each)}" for key, each in value.items())
-    return (
-        Path(value).stem
-        if isinstance(value, str) and value.endswith((".csv", ".msh"))
-        else str(value)
-    )
+        return ", ".join(f"{key} {_word(part)}" for key, part in value.items())
+    if isinstance(value, str) and value.endswith((".csv", ".msh")):
+        return Path(value).stem
+    return str(value)
 
 
 def sweep_json_schema() -> dict[str, Any]:
     """JSON schema of a sweep as people write it."""
-    schema = Sweep.model_json_schema()
-    kinds = {kind.__name__: kind.model_json_schema() for kind in _AXES}
-    defs = schema.setdefault("$defs", {})
-    for kind in kinds.values():
-        defs |= kind.pop("$defs", {})
-    defs |= kinds
-    anyof = [{"type": "array", "minItems": 1}, *({"$ref": f"#/$defs/{name}"} for name in kinds)]
-    table = {
-        "type": "string",
-        "description": "CSV file: a column for each key, its unit in brackets, and a row for each scene.",
-    }
-    schema["properties"]["over"] |= {
-        "properties": {"table": table},
-        "additionalProperties": {"anyOf": anyof},
-        "minProperties": 1,
-    }
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **_tidy(schema),
-        "title": "A fingerpad sweep",
-    }
-
-
-def _tidy(schema: Any) -> Any:
-    """Without generated titles and nulls."""
-    if isinstance(schema, list):
-        return [_tidy(item) for item in schema if item != {"type": "null"}]
-    if not isinstance(schema, dict):
-        return schema
-    tidy = {
-        key: _tidy(value)
-        for key, value in schema.items()
-        if key != "title" and not (key == "default" and value is None)
-    }
-    return tidy
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    return schema | tidy_schema(Sweep.model_json_schema()) | {"title": "A fingerpad sweep"}
