@@ -215,7 +215,9 @@ class Folder(Axis):
 
     @cached_property
     def files(self) -> list[Path]:
-        return sorted(self.folder.glob(self.pattern))
+        hidden = self.pattern.startswith(".")
+        found = self.folder.glob(self.pattern)
+        return sorted(path for path in found if hidden or not path.name.startswith("."))
 
     def written(self):
         return [str(path) for path in self.files]
