@@ -12,12 +12,15 @@ import json
 import statistics
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.studies.stability.hard_cases import (
     FLAT,
     RAMP,
@@ -603,3 +606,8 @@ def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) 
         for name, text in fixed.items()
     ]
     return pd.DataFrame(rows)
+
+
+def effects_study(job: SimpleNamespace) -> None:
+    """Job: `part` -> `data`."""
+    write_frame({"changes": study, "choices": verdicts}[job.part[0]](), Path(job.data[0]))
