@@ -74,8 +74,10 @@ def effects(frame: pd.DataFrame) -> Figure:
     height = 5.0
     scenes = len(frame.loc[frame["panel"] == "planner", ["seed", "scene"]].drop_duplicates())
     note = (
-        "Simulated. Change of any headline quantity over its largest value, and process time, with and without the effect on one "
-        f"draft mesh. b: {scenes} random scenes; what is left out may be worth the accuracy asked for (line), what is carried at "
+        "Simulated. Change of any headline quantity over its largest value, and process time, "
+        "with and without the effect on one "
+        f"draft mesh. b: {scenes} random scenes; what is left out may be worth the accuracy asked "
+        "for (line), what is carried at "
         "least a tenth of it (dashed)."
     )
     fig = sheet("What effects change and cost", wrapped([note], NOTE_WIDTH), height, laid_out=False)

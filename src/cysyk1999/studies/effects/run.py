@@ -336,7 +336,10 @@ def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
             worth, of = _worth(scene, base, ways)
             on = planned(effect, scene)
             dropped = on if effect == "symmetry" else not on
-            edge = f"edge {chosen.contact_edge * 1e6:.3g} um, contact {chosen.contact.half_width * 1e6:.3g} um to either side"
+            edge = (
+                f"edge {chosen.contact_edge * 1e6:.3g} um, contact "
+                f"{chosen.contact.half_width * 1e6:.3g} um to either side"
+            )
             rows.append(
                 {
                     "seed": seed,

@@ -205,9 +205,12 @@ def heat_map(frame: pd.DataFrame) -> Figure:
     fig = sheet("Stability in hard cases", [], height, laid_out=False)
     picked = int((~cases.index.str.match(r"\d+: ")).sum())
     intro = (
-        f"Simulated. Each of the {len(cases)} columns is a case (figures/tables/stability.md lists them by number): {picked} "
-        "picked by hand, and combinations in which every\ntwo hard levels of eleven factors meet, by stimulus. A row is a "
-        "measure of how the run went: its worst value over the worst that still counts\nas stable. The methods below differ "
+        f"Simulated. Each of the {len(cases)} columns is a case (figures/tables/stability.md "
+        f"lists them by number): {picked} "
+        "picked by hand, and combinations in which every\ntwo hard levels of eleven factors meet, "
+        "by stimulus. A row is a "
+        "measure of how the run went: its worst value over the worst that still counts\nas "
+        "stable. The methods below differ "
         "from this package in one thing each."
     )
     fig.text(
