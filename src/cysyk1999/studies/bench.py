@@ -88,7 +88,10 @@ def newton_iteration(repeats: int = 15) -> list[list]:
         b = seconds(lambda: plain.factor(data), 1)[1]
         schur.append(seconds(lambda: stepper.solver.factor(data), 1)[1] / b)
     nodes = len(body.space.points)
-    how = f"{nodes} nodes, {body.space.size} unknowns, {len(stepper.zone.nodes)} skin nodes in the contact zone"
+    how = (
+        f"{nodes} nodes, {body.space.size} unknowns, {len(stepper.zone.nodes)} skin nodes in "
+        "the contact zone"
+    )
     ratio, schur_ratio = statistics.median(ratios), statistics.median(schur)
     return [
         ["Newton iteration / (factor + solve)", ratio, "1", "<= 1.8", ratio <= 1.8, repeats, how],
@@ -114,7 +117,10 @@ def ramp_and_hold(repeats: int = 3) -> list[list]:
         history = simulate(scene, chosen)
         _, median, _ = seconds(lambda scene=scene, chosen=chosen: simulate(scene, chosen), repeats)
         steps, iterations = states_found(history), int(history.newton_iterations.sum())
-        how = f"{chosen.nodes} nodes (half pad), {steps} steps, {iterations} Newton iterations, meshing included"
+        how = (
+            f"{chosen.nodes} nodes (half pad), {steps} steps, {iterations} Newton iterations, "
+            "meshing included"
+        )
         rows.append([f"ramp and hold, {name}", median, "s", "<= 3", median <= 3, repeats, how])
     return rows
 
@@ -132,7 +138,10 @@ def ridges(repeats: int = 3) -> list[list]:
         ratios.append(ridged / plain)
     nodes = plans[1].nodes / plans[0].nodes
     ratio = statistics.median(ratios) / nodes
-    how = f"ramp and hold, flat: {plans[0].nodes} and {plans[1].nodes} nodes (half pad), {ratio * nodes:.2f} times the process time"
+    how = (
+        f"ramp and hold, flat: {plans[0].nodes} and {plans[1].nodes} nodes (half pad), "
+        f"{ratio * nodes:.2f} times the process time"
+    )
     return [
         [
             "inner ridges, cost a node over the plain pad's",
@@ -165,7 +174,10 @@ def strokes() -> list[list]:
     )
     outputs = np.diff(histories[0].stroke_distance.values).max() * 1e3
     nodes = " and ".join(map(str, sorted({chosen.nodes for chosen in plans})))
-    how = f"{nodes} nodes, {steps} steps, {cuts} cuts, 80 mm each at 1 to 40 mm/s, outputs every {outputs:.2g} mm"
+    how = (
+        f"{nodes} nodes, {steps} steps, {cuts} cuts, 80 mm each at 1 to 40 mm/s, outputs every "
+        f"{outputs:.2g} mm"
+    )
     ratio = statistics.median(ratios)
     return [
         ["five full strokes", total, "s", "<= 240", total <= 240, 1, how],
@@ -176,7 +188,8 @@ def strokes() -> list[list]:
             "<= 500",
             ratio <= 500,
             1,
-            f"{how}; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; on its own mesh, in double precision",
+            f"{how}; median of the five, {min(ratios):.0f} to {max(ratios):.0f}; on its own mesh, "
+            "in double precision",
         ],
         [
             "iterations a step of a stroke",
@@ -256,7 +269,8 @@ def overhead(repeats: int = 5) -> list[list]:
     """
     code = (
         "import fingerpad, fingerpad.results, fingerpad.simulation as s;"
-        f"scene = fingerpad.load_scene({str(SCENES / 'ramp40_flat.yaml')!r}); s.Simulation(scene, fingerpad.plan(scene), None)"
+        f"scene = fingerpad.load_scene({str(SCENES / 'ramp40_flat.yaml')!r}); s.Simulation(scene, "
+        "fingerpad.plan(scene), None)"
     )
     times = []
     for _ in range(repeats):
@@ -345,7 +359,10 @@ def main() -> None:
     print(table.drop(columns="machine").to_markdown(index=False))
     print(machine)
     write_atomically(options.out, lambda path: table.to_csv(path, index=False))
-    text = f"{table.drop(columns='machine').to_markdown(index=False)}\n\nMedians, process time unless wall is said; {machine}.\n"
+    text = (
+        f"{table.drop(columns='machine').to_markdown(index=False)}\n\nMedians, process time "
+        f"unless wall is said; {machine}.\n"
+    )
     write_atomically(
         options.out.with_suffix(".md"), lambda path: path.write_text(text, encoding="utf-8")
     )

@@ -132,8 +132,10 @@ def of_worker(kind: str, scenes: int) -> list[dict[str, Any]]:
         todo, records = folder / "todo" / "all.json", folder / "batches" / "all.jsonl"
         todo.write_text(json.dumps(whole))
         code = (
-            "import resource, sys; from pathlib import Path; from fingerpad.sweeps.batch import run_batch; "
-            "run_batch(Path(sys.argv[1]), Path(sys.argv[2])); t = resource.getrusage(resource.RUSAGE_SELF); "
+            "import resource, sys; from pathlib import Path; from fingerpad.sweeps.batch import "
+            "run_batch; "
+            "run_batch(Path(sys.argv[1]), Path(sys.argv[2])); t = "
+            "resource.getrusage(resource.RUSAGE_SELF); "
             "print('CPU', t.ru_utime + t.ru_stime, t.ru_maxrss / 1024)"
         )
         done = subprocess.run(
@@ -217,10 +219,13 @@ def of_collecting(scenes: int, measures: int = 30) -> list[dict[str, Any]]:
             )
         )
         code = (
-            "import json, resource, sys; from pathlib import Path; from fingerpad.sweeps.collect import collect; "
+            "import json, resource, sys; from pathlib import Path; from fingerpad.sweeps.collect "
+            "import collect; "
             "p = Path(sys.argv[1]); "
-            "collect(json.loads((p / 'design.json').read_text()), [p / 'all.jsonl'], p / 'a.nc', p / 'a.csv'); "
-            "t = resource.getrusage(resource.RUSAGE_SELF); print(t.ru_utime + t.ru_stime, t.ru_maxrss / 1024)"
+            "collect(json.loads((p / 'design.json').read_text()), [p / 'all.jsonl'], p / 'a.nc', "
+            "p / 'a.csv'); "
+            "t = resource.getrusage(resource.RUSAGE_SELF); print(t.ru_utime + t.ru_stime, "
+            "t.ru_maxrss / 1024)"
         )
         done = subprocess.run(
             [sys.executable, "-c", code, folder], capture_output=True, text=True, check=True

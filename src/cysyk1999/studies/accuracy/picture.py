@@ -5,6 +5,8 @@ from its data frame.
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -23,6 +25,8 @@ from cysyk1999.publishing.style import (
     study_figure,
     styled,
 )
+from cysyk1999.publishing.write import publish
+from cysyk1999.studies.accuracy.errors import FRAMES
 
 COST, CHANGE, TIME = "cost (1 = default)", "error (%)", "process time (s)"
 COLOURS = {name: look["color"] for name, look in MEANINGS["element"].items()}
@@ -135,8 +139,10 @@ def error(frame: pd.DataFrame) -> Figure:
         frame,
         "What accuracy costs: ramp and hold",
         [
-            "Simulated. Largest error of plate, 210 and 1260 1/m, top of the ramp and end of the hold, against a limit "
-            "extrapolated in mesh and steps (grey: its uncertainty). Process time of one thread. Left edge: two models of "
+            "Simulated. Largest error of plate, 210 and 1260 1/m, top of the ramp and end of the "
+            "hold, against a limit "
+            "extrapolated in mesh and steps (grey: its uncertainty). Process time of one thread. "
+            "Left edge: two models of "
             "before, end of the hold."
         ],
     )
@@ -149,8 +155,10 @@ def error_stroke(frame: pd.DataFrame) -> Figure:
         frame,
         "What accuracy costs: a stroke by a flat plate",
         [
-            "Simulated. Error: the largest of the top of the ramp and four places of a stroke of 6 mm with the "
-            "calibrated friction, against a limit extrapolated in mesh and steps (grey: its own uncertainty). The peak rate of "
+            "Simulated. Error: the largest of the top of the ramp and four places of a stroke of "
+            "6 mm with the "
+            "calibrated friction, against a limit extrapolated in mesh and steps (grey: its own "
+            "uncertainty). The peak rate of "
             "strain energy is that of the press before."
         ],
     )
@@ -162,8 +170,10 @@ def growth(frame: pd.DataFrame) -> Figure:
     fig = study_figure(
         "How cost grows with the mesh",
         [
-            "Simulated: mean of ramp and hold by plate, 210 and 1260 1/m, 40 steps; nodes of the whole pad, half of which is "
-            "solved. Time with meshing; exponents of it from 3000 nodes on. Memory with the interpreter and its libraries."
+            "Simulated: mean of ramp and hold by plate, 210 and 1260 1/m, 40 steps; nodes of the "
+            "whole pad, half of which is "
+            "solved. Time with meshing; exponents of it from 3000 nodes on. Memory with the "
+            "interpreter and its libraries."
         ],
         3.3,
     )
@@ -202,9 +212,12 @@ def belief(frame: pd.DataFrame) -> Figure:
     fig = study_figure(
         "Does a run know its error?",
         [
-            f"Simulated: {asked['scene'].nunique()} scenes outside the study. Truth: largest difference of depth, width, "
-            "pressures and strain energies at the legs' ends, of strokes root mean square, to a finer run, which believes in "
-            f"{own.min():.1f} to {own.max():.1f} % itself. Below the line the belief covers the truth: {covered} of "
+            f"Simulated: {asked['scene'].nunique()} scenes outside the study. Truth: largest "
+            "difference of depth, width, "
+            "pressures and strain energies at the legs' ends, of strokes root mean square, to a "
+            "finer run, which believes in "
+            f"{own.min():.1f} to {own.max():.1f} % itself. Below the line the belief covers the "
+            f"truth: {covered} of "
             f"{len(asked)} runs."
         ],
         3.9,
@@ -260,9 +273,12 @@ def drawn(frame: pd.DataFrame) -> Figure:
     fig = study_figure(
         "Does a run know its error under any stimulus?",
         [
-            f"Simulated: {asked['scene'].nunique()} random scenes, each asked for 10, 5 or, beside ridges, 2 %. Truth: largest "
-            "difference of depth, width, pressures and strain energies at the legs' ends, of strokes root mean square, to edges "
-            f"at least 1.7 times as short. Below the line the belief covers the truth: {int(covers.sum())} of {len(asked)} runs."
+            f"Simulated: {asked['scene'].nunique()} random scenes, each asked for 10, 5 or, "
+            "beside ridges, 2 %. Truth: largest "
+            "difference of depth, width, pressures and strain energies at the legs' ends, of "
+            "strokes root mean square, to edges "
+            "at least 1.7 times as short. Below the line the belief covers the truth: "
+            f"{int(covers.sum())} of {len(asked)} runs."
         ],
         3.9,
     )
@@ -293,8 +309,10 @@ def ridges(frame: pd.DataFrame) -> Figure:
     fig = study_figure(
         "How many elements does a ridge need?",
         [
-            "Simulated. Errors of strain energies about inner ridges, 15 µm or more off their boundary, at the top of a ramp to "
-            "20 gram-weight, against 48 elements from ridge to ridge. Points: nineteen places in twenty have no more; bars: to "
+            "Simulated. Errors of strain energies about inner ridges, 15 µm or more off their "
+            "boundary, at the top of a ramp to "
+            "20 gram-weight, against 48 elements from ridge to ridge. Points: nineteen places in "
+            "twenty have no more; bars: to "
             "the largest. Lines: what a run expects."
         ],
         3.3,
@@ -345,10 +363,14 @@ def shown(frame: pd.DataFrame) -> Figure:
     fig = study_figure(
         "Are the errors in the figures those of their curves?",
         [
-            f"Simulated: {len(frame)} curves and numbers, each with the first figure that shows it. Truth: what they change by "
-            "on a mesh with half the edges, and what by their order of convergence is left then, root mean square. Stated: mesh, "
-            f"time steps and sampling. Below the line the error stated covers the truth: {int(covered.sum())} of {len(frame)}; "
-            f"up to twice it does in {int((true <= 2 * stated).sum())}. True errors above 3 %: {int(above.sum())}."
+            f"Simulated: {len(frame)} curves and numbers, each with the first figure that shows "
+            "it. Truth: what they change by "
+            "on a mesh with half the edges, and what by their order of convergence is left then, "
+            "root mean square. Stated: mesh, "
+            "time steps and sampling. Below the line the error stated covers the truth: "
+            f"{int(covered.sum())} of {len(frame)}; "
+            f"up to twice it does in {int((true <= 2 * stated).sum())}. True errors above 3 %: "
+            f"{int(above.sum())}."
         ],
         3.9,
     )
@@ -391,3 +413,11 @@ STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
     "accuracy_shown": shown,
 }
 """Figure name -> drawing function of its data frame."""
+
+
+def accuracy_pictures(job: SimpleNamespace) -> None:
+    """Job: `table` -> `pictures`."""
+    table = pd.read_csv(job.table[0], dtype={"scene": str, "accuracy": str})
+    for picture in map(Path, job.pictures):
+        frame = FRAMES[picture.stem](table)
+        publish(STUDIES[picture.stem](frame), frame, picture)

@@ -17,12 +17,16 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
+from cysyk1999.measures.inputs import read_coarse, read_results
+from cysyk1999.publishing.write import write_frame
+from cysyk1999.reference_data import read_force_depth
 from cysyk1999.studies.calibration.least_squares import Fit, fit, group_interval
 from fingerpad.files import write_text
 from fingerpad.stimuli.motion import NO_TIME
@@ -67,7 +71,8 @@ class ElasticCurve:
         depth = np.asarray(depth, float)
         if depth.size and not (depth.min() >= 0 and depth.max() <= self.depth[-1] * (1 + 1e-9)):
             raise ValueError(
-                f"a depth of {depth.max() * 1e3:g} mm is beyond the elastic curve, 0 to {self.depth[-1] * 1e3:g} mm"
+                f"a depth of {depth.max() * 1e3:g} mm is beyond the elastic curve, 0 to "
+                f"{self.depth[-1] * 1e3:g} mm"
             )
         return curve(np.minimum(depth, self.depth[-1]))
 
@@ -148,7 +153,8 @@ def plate_forces(data: pd.DataFrame) -> dict[str, pd.DataFrame]:
     for subject, group in out.items():
         if len(group) < 2:
             raise ValueError(
-                f"subject '{subject}' has one steady force under a {PLATE}; a fit needs at least two depths"
+                f"subject '{subject}' has one steady force under a {PLATE}; a fit needs at least "
+                "two depths"
             )
     shared = (
         chosen.groupby("depth_mm")
@@ -502,7 +508,10 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
         note=f"moduli {ratio}, epidermis {young / 1e6:g} MPa; {length * 1e3:g} mm contact length",
     )
     for who, found in constants.items():
-        note = f"equal weights in N, {length * 1e3:g} mm contact length, moduli {ratio}; interval from the misfit, not from noise"
+        note = (
+            f"equal weights in N, {length * 1e3:g} mm contact length, moduli {ratio}; interval "
+            "from the misfit, not from noise"
+        )
         add("constant", who, "modulus constant", _of(found), "1", found, note)
         add(
             "constant",
@@ -655,10 +664,13 @@ def specimen_text(who: str, found: Fit, specimen: Mapping, data: pd.DataFrame) -
     title = "mean of the subjects" if who == MEAN else f"subject {who}"
     lines = [
         "# yaml-language-server: $schema=../../workflow/schemas/specimen.schema.json",
-        f"# Calibrated by `snakemake calibration` to steady forces under a flat plate, {title}: {found.count} depths,",
+        f"# Calibrated by `snakemake calibration` to steady forces under a flat plate, {title}: "
+        f"{found.count} depths,",
         f"# {_cited(chosen)}.",
-        f"# The thesis's moduli times {s:.4g} (95 % interval {low:.3g} to {high:.3g}, from the misfit), at a",
-        f"# contact length of {length:g} mm: force alone tells only their product, {s * length:.4g} mm.",
+        f"# The thesis's moduli times {s:.4g} (95 % interval {low:.3g} to {high:.3g}, from the "
+        "misfit), at a",
+        f"# contact length of {length:g} mm: force alone tells only their product, "
+        f"{s * length:.4g} mm.",
         "layers:",
     ]
     for name in ("epidermis", "dermis", "fat"):
@@ -693,3 +705,16 @@ def write_specimens(
     for path, (who, found) in zip(paths, result.constants.items(), strict=True):
         write_text(path, specimen_text(who, found, specimen, data))
     return paths
+
+
+def calibrate_forces(job: SimpleNamespace) -> None:
+    """Job: `forces`, `histories`, `coarse` -> `data` (CSV, named as the calibration's frames), the
+    folder `specimens`.
+    """
+    histories, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
+    forces = read_force_depth(job.forces)
+    result = calibrate(histories, coarse, forces)
+    for path in map(Path, job.data):
+        write_frame(getattr(result, path.stem), path)
+    scene = json.loads(histories["calibration_plate"].attrs["scene"])
+    write_specimens(job.specimens[0], result, scene["specimen"], forces)

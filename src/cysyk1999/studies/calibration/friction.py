@@ -12,13 +12,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
+from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.quantities import DISTANCE, LATERAL
+from cysyk1999.publishing.write import without_round_off, write_frame
+from cysyk1999.reference_data import read_friction
 from cysyk1999.studies.calibration.force import ESTIMATE_COLUMNS
 from fingerpad.results import scene_of
 
@@ -109,7 +114,8 @@ class StretchCurve:
         for name, values in self.values.items():
             if not (np.diff(values) < 0).all():
                 raise ValueError(
-                    f"the {name} lateral displacement does not fall with every larger coefficient of friction"
+                    f"the {name} lateral displacement does not fall with every larger coefficient "
+                    "of friction"
                 )
 
     @cached_property
@@ -128,7 +134,8 @@ class StretchCurve:
         if not values[-1] <= lateral <= values[0]:
             ends = f"{values[0] * 1e3:.3g} to {values[-1] * 1e3:.3g} mm"
             raise ValueError(
-                f"a {name} lateral displacement of {lateral * 1e3:.3g} mm is beyond the strokes, {ends}"
+                f"a {name} lateral displacement of {lateral * 1e3:.3g} mm is beyond the strokes, "
+                f"{ends}"
             )
         curve = PchipInterpolator(self.coefficient, values - lateral)
         return float(curve.roots(extrapolate=False)[0])
@@ -275,10 +282,16 @@ def _estimates(curve, varied, target, axis, published) -> pd.DataFrame:
     )
     for side, shift in (("least", ABOUT), ("most", -ABOUT)):
         value = curve.coefficient_at(target + shift)
-        note = f"mean stretch {-1e3 * (target + shift):.3g} mm; about is read as +-{about:g} mm, not a 95 % interval"
+        note = (
+            f"mean stretch {-1e3 * (target + shift):.3g} mm; about is read as +-{about:g} mm, "
+            "not a 95 % interval"
+        )
         add(study, f"{side} coefficient for about {mean}", value, note=note)
     for side, name, lateral in (("least", "highest", axis[1]), ("most", "lowest", axis[0])):
-        note = f"the {name} displacement over the waves reaches {1e3 * lateral:g} mm, the end of the axis of Fig 5-15"
+        note = (
+            f"the {name} displacement over the waves reaches {1e3 * lateral:g} mm, the end of "
+            "the axis of Fig 5-15"
+        )
         add(
             study,
             f"{side} coefficient within the axis of Fig 5-15",
@@ -338,3 +351,15 @@ def _estimates(curve, varied, target, axis, published) -> pd.DataFrame:
         note = f"{row.kind}: {value}; {row.condition}; {row.how_obtained}; {row.source}"
         add("friction: published", quantity, middle, note=note, subject=row.contact)
     return pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)
+
+
+def calibrate_friction_job(job: SimpleNamespace) -> None:
+    """Job: `sweep`, `histories`, the tables `thesis` and `published` -> `data`: friction,
+    friction_estimates.
+    """
+    histories, sweep = read_results(job.histories)[0], read_results(job.sweep)[0].values()
+    result = calibrate_friction(
+        sweep, histories, pd.read_csv(job.thesis[0]), read_friction(job.published[0])
+    )
+    for path, frame in zip(job.data, (result.friction, result.estimates), strict=True):
+        write_frame(without_round_off(frame), Path(path))

@@ -19,15 +19,22 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from scipy.optimize import nnls
 
+from cysyk1999.measures.inputs import read_results
+from cysyk1999.publishing.write import write_frame
+from cysyk1999.reference_data import read_relaxation
 from cysyk1999.studies.calibration.force import ESTIMATE_COLUMNS, ElasticCurve
 from cysyk1999.studies.calibration.least_squares import Fit, fit
+from fingerpad import load_scene, plan, simulate
 from fingerpad.scenes.scene import PronyTerm, Scene
+from fingerpad.specimen import read_pad_mesh
 from fingerpad.specimen.materials import Prony
 from fingerpad.stimuli.motion import geometric
 
@@ -407,7 +414,10 @@ def _estimates(
             subject="thesis",
         )
         add("Prony series: stated in the thesis", f"tau_{k}", tau, "s", subject="thesis")
-    note = f"force simulated with the thesis's series, noise {NOISE:.1%} of the peak (seed {SEED}); no measured time courses at hand"
+    note = (
+        f"force simulated with the thesis's series, noise {NOISE:.1%} of the peak (seed "
+        f"{SEED}); no measured time courses at hand"
+    )
     for title, used in (
         ("Prony series: hereditary integral alone", found.hereditary),
         ("Prony series: corrected by one simulation", found.corrected),
@@ -454,7 +464,10 @@ def _estimates(
         study = f"amplitudes told by a ramp at {record['series']}"
         quantity = f"95 % half-width of the amplitude at {record['tau (s)']:g} s"
         share = record["largest share of force (1)"]
-        note = f"for noise of {NOISE:.1%}; a branch of unit strength adds at most {share:.3g} of the held force"
+        note = (
+            f"for noise of {NOISE:.1%}; a branch of unit strength adds at most {share:.3g} of "
+            "the held force"
+        )
         add(study, quantity, record["half_width (1)"], "1", note=note)
     add(
         "cost",
@@ -465,3 +478,25 @@ def _estimates(
         subject="",
     )
     return pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)
+
+
+def calibrate_prony(job: SimpleNamespace) -> None:
+    """Job: `relaxation`, `histories` of plate, long_term and `scene`, its `mesh`, `accuracy` -> `data`:
+    prony, estimates.
+    """
+    scene, mesh = load_scene(job.scene[0]), read_pad_mesh(job.mesh[0])
+    if job.accuracy != ["as_stated"]:
+        scene = scene.with_accuracy(job.accuracy[0])
+    how = plan(scene)
+
+    def full(prony):
+        return (
+            simulate(with_series(scene, prony), how, mesh=mesh).force.values
+            * scene.specimen.contact_length
+        )
+
+    histories, _, _ = read_results(job.histories)
+    plate, other, held = (histories[Path(path).parent.name] for path in job.histories)
+    result = study(plate, other, held, read_relaxation(job.relaxation[0]), full)
+    for path, frame in zip(job.data, (result.prony, result.estimates), strict=True):
+        write_frame(frame, Path(path))

@@ -4,6 +4,7 @@ that.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import matplotlib as mpl
@@ -22,6 +23,8 @@ from cysyk1999.publishing.style import (
     styled,
     wrapped,
 )
+from cysyk1999.publishing.write import publish, publish_table
+from cysyk1999.studies.effects.run import evidence, rules_table
 from fingerpad.planning.effects import EFFECTS
 
 LEAST = 1e-6
@@ -71,8 +74,10 @@ def effects(frame: pd.DataFrame) -> Figure:
     height = 5.0
     scenes = len(frame.loc[frame["panel"] == "planner", ["seed", "scene"]].drop_duplicates())
     note = (
-        "Simulated. Change of any headline quantity over its largest value, and process time, with and without the effect on one "
-        f"draft mesh. b: {scenes} random scenes; what is left out may be worth the accuracy asked for (line), what is carried at "
+        "Simulated. Change of any headline quantity over its largest value, and process time, "
+        "with and without the effect on one "
+        f"draft mesh. b: {scenes} random scenes; what is left out may be worth the accuracy asked "
+        "for (line), what is carried at "
         "least a tenth of it (dashed)."
     )
     fig = sheet("What effects change and cost", wrapped([note], NOTE_WIDTH), height, laid_out=False)
@@ -197,3 +202,16 @@ def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
             _dot(f"wrong ({wrong})", color=WARNING, mfc="white"),
         ],
     )
+
+
+def effects_picture(job: SimpleNamespace) -> None:
+    """Job: `parts`: changes, choices -> `picture`, `tables`: effects, planner_choices, planner_rules."""
+    changes, choices = map(pd.read_csv, job.parts)
+    frame = assemble(changes, choices)
+    publish(effects(frame), frame, job.picture[0])
+    for table, path in zip(
+        (evidence(changes, choices), choices, rules_table(changes, choices)),
+        job.tables,
+        strict=True,
+    ):
+        publish_table(table, path)

@@ -12,12 +12,15 @@ import json
 import statistics
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.studies.stability.hard_cases import (
     FLAT,
     RAMP,
@@ -333,7 +336,10 @@ def verdicts(count: int = SCENES, seeds: Iterable[int] = SEEDS) -> pd.DataFrame:
             worth, of = _worth(scene, base, ways)
             on = planned(effect, scene)
             dropped = on if effect == "symmetry" else not on
-            edge = f"edge {chosen.contact_edge * 1e6:.3g} um, contact {chosen.contact.half_width * 1e6:.3g} um to either side"
+            edge = (
+                f"edge {chosen.contact_edge * 1e6:.3g} um, contact "
+                f"{chosen.contact.half_width * 1e6:.3g} um to either side"
+            )
             rows.append(
                 {
                     "seed": seed,
@@ -603,3 +609,8 @@ def rules_table(pairs: pd.DataFrame, found: pd.DataFrame, rules: Rules = RULES) 
         for name, text in fixed.items()
     ]
     return pd.DataFrame(rows)
+
+
+def effects_study(job: SimpleNamespace) -> None:
+    """Job: `part` -> `data`."""
+    write_frame({"changes": study, "choices": verdicts}[job.part[0]](), Path(job.data[0]))

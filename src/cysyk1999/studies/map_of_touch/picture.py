@@ -6,12 +6,15 @@ Drawn from the table of the sweep ``config/sweeps/map_of_touch.yaml`` alone.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cysyk1999.publishing.style import FIELD, INK, study_figure, styled
+from cysyk1999.publishing.write import publish
 
 K, FORCE, RATE, STRAIN = "curvature (1/m)", "force (gf)", "rate (gf/s)", "strain"
 DEPTH, WIDTH = "indentation_depth_end (mm)", "contact_width_end (mm)"
@@ -91,9 +94,12 @@ def contours(frame: pd.DataFrame) -> Figure:
     failed = int(frame["failed"].sum())
     error = frame.loc[frame[STRAIN] == "finite", "estimated_error (1)"]
     note = [
-        f"{len(frame)} simulated presses and holds of 1 s, {failed} not converged (white); estimated error "
-        f"{100 * error.median():.0f} % in the middle, {100 * error.max():.0f} % at most. Dots: the thesis's surfaces. a to d: "
-        "end of the hold, ramp of 40 gf/s; e to g: largest rate by Eq 5-1, which has no ceiling; h: the most of a to d.",
+        f"{len(frame)} simulated presses and holds of 1 s, {failed} not converged (white); "
+        "estimated error "
+        f"{100 * error.median():.0f} % in the middle, {100 * error.max():.0f} % at most. Dots: "
+        "the thesis's surfaces. a to d: "
+        "end of the hold, ramp of 40 gf/s; e to g: largest rate by Eq 5-1, which has no ceiling; "
+        "h: the most of a to d.",
     ]
     fig = study_figure("A map of touch: curvature, force and ramp rate", note, 4.9)
     axes = fig.subplots(2, 4, sharex=True, sharey=True)
@@ -146,3 +152,9 @@ def contours(frame: pd.DataFrame) -> Figure:
     for ax in axes[:, 0]:
         ax.set_ylabel("force (gf)")
     return fig
+
+
+def map_of_touch(job: SimpleNamespace) -> None:
+    """Job: `scenes` (CSV) -> `picture`, its data beside it."""
+    frame = frame_of(pd.read_csv(job.scenes[0]))
+    publish(contours(frame), frame, job.picture[0])

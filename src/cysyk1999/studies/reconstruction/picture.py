@@ -4,6 +4,8 @@ evidence.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -18,11 +20,13 @@ from cysyk1999.publishing.style import (
     study_figure,
     styled,
 )
+from cysyk1999.publishing.write import publish
 from cysyk1999.studies.reconstruction import pads
-from cysyk1999.studies.reconstruction.evidence import FAMILIES, Evidence
+from cysyk1999.studies.reconstruction.evidence import FAMILIES, Evidence, read_evidence
 from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT
 from cysyk1999.studies.reconstruction.run import CHOSEN, SHOWN
-from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns
+from cysyk1999.studies.reconstruction.specimen import most_probable
+from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns, read_unknowns
 
 LABELS = {
     SCALED: "line load\n(N/m)",
@@ -66,7 +70,8 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
         f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01
     )
     note = [
-        f"{len(frame)} samples; readings of the moduli: {told}. Factors: on the moduli as long-term ones, of instantaneous ones "
+        f"{len(frame)} samples; readings of the moduli: {told}. Factors: on the moduli as "
+        "long-term ones, of instantaneous ones "
         "the series leaves 0.576. Numbers: rank correlations. Orange: the pad chosen before.",
     ]
     fig = study_figure("What the thesis's figures say of its pad", note, TALLEST)
@@ -150,8 +155,10 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     ids = frame.drop_duplicates("id")
     ids = ids.assign(k=ids["family"].map(order)).sort_values("k", kind="stable")
     note = [
-        "Bars: the interval that a figure leaves, all drawn as long; what is between its ends counts as met. White: not fitted. "
-        f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. Numbers beyond three lengths of the bar "
+        "Bars: the interval that a figure leaves, all drawn as long; what is between its ends "
+        "counts as met. White: not fitted. "
+        f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. Numbers "
+        "beyond three lengths of the bar "
         "stand at the margin.",
     ]
     fig = study_figure("The evidence, row by row", note, TALLEST, header=0.2)
@@ -183,3 +190,15 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
         fig, [handle(name, ls="none", **look) for name, (_, look) in reversed(looks.items())]
     )
     return fig
+
+
+def reconstruction_pictures(job: SimpleNamespace) -> None:
+    """Job: `unknowns`, `evidence`, `parts`: samples, predicted; `readings` -> `pictures`: posterior,
+    evidence.
+    """
+    samples, shown = map(pd.read_csv, job.parts)
+    frame = posterior_frame(samples, read_unknowns(job.unknowns[0]))
+    publish(posterior_picture(frame), frame, job.pictures[0])
+    best = f"best of {most_probable(pd.read_csv(job.readings[0]))}"
+    frame = evidence_frame(Evidence(read_evidence(job.evidence[0])), shown, best)
+    publish(evidence_picture(frame), frame, job.pictures[1])

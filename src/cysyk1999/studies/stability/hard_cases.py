@@ -248,7 +248,10 @@ def _picked():
 
     group = "sharp"
     for curvature in (2.5e3, 5e3, 1e4):
-        hard = f"radius {1e3 / curvature:g} mm, of the order of a draft node spacing (0.13 mm) or below it"
+        hard = (
+            f"radius {1e3 / curvature:g} mm, of the order of a draft node spacing (0.13 mm) or "
+            "below it"
+        )
         yield Case(
             f"needle {curvature:g} 1/m",
             group,
@@ -356,7 +359,8 @@ def _picked():
     yield Case(
         "friction 0.33 pressed on a whole pad",
         group,
-        "the load on a sharp curve outweighs the skin's stiffness along it; three or four nodes stick or slip",
+        "the load on a sharp curve outweighs the skin's stiffness along it; three or four nodes "
+        "stick or slip",
         {
             "stimulus": cylinder(1333),
             "friction": 0.33,
@@ -377,7 +381,10 @@ def _picked():
             "friction": 0.7,
             "motion": [depth(0.03, 1), slide(14, speed, "depth"), slide(-14, speed, "depth")],
         }
-        hard = "a hollow leaves the lightly pressed pad: forces vanish, their scale too, and contact returns"
+        hard = (
+            "a hollow leaves the lightly pressed pad: forces vanish, their scale too, and "
+            "contact returns"
+        )
         yield Case(
             f"stroke at {speed} mm/s loses contact",
             group,

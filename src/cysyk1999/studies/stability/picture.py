@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from types import SimpleNamespace
 
 import matplotlib as mpl
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from cysyk1999.publishing.style import GREY, INK, PAGE_WIDTH, TALLEST, sheet, styled
+from cysyk1999.publishing.write import publish, publish_table
 
 METHODS = {
     "default": "this package",
@@ -203,9 +205,12 @@ def heat_map(frame: pd.DataFrame) -> Figure:
     fig = sheet("Stability in hard cases", [], height, laid_out=False)
     picked = int((~cases.index.str.match(r"\d+: ")).sum())
     intro = (
-        f"Simulated. Each of the {len(cases)} columns is a case (figures/tables/stability.md lists them by number): {picked} "
-        "picked by hand, and combinations in which every\ntwo hard levels of eleven factors meet, by stimulus. A row is a "
-        "measure of how the run went: its worst value over the worst that still counts\nas stable. The methods below differ "
+        f"Simulated. Each of the {len(cases)} columns is a case (figures/tables/stability.md "
+        f"lists them by number): {picked} "
+        "picked by hand, and combinations in which every\ntwo hard levels of eleven factors meet, "
+        "by stimulus. A row is a "
+        "measure of how the run went: its worst value over the worst that still counts\nas "
+        "stable. The methods below differ "
         "from this package in one thing each."
     )
     fig.text(
@@ -339,3 +344,11 @@ def _legend(fig: Figure, drawn, height: float, width: float) -> None:
         x, y = 1.8 + 2.75 * column, 0.82 - 0.108 * row
         fig.text(x / width, y / height, name, fontsize=5.6, va="top", fontweight="bold")
         fig.text((x + 0.78) / width, y / height, meaning, fontsize=5.6, va="top")
+
+
+def stability_picture(job: SimpleNamespace) -> None:
+    """Job: `methods` (CSV) -> `picture`, `table`."""
+    frame = assemble([pd.read_csv(path) for path in job.methods])
+    publish_table(table(frame), job.table[0])
+    data = long(frame)
+    publish(heat_map(data), data, job.picture[0])

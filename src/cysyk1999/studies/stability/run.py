@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ import pandas as pd
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.studies.accuracy.belief import finer as finely
 from cysyk1999.studies.accuracy.meshes import quarters, triangles
 from cysyk1999.studies.stability.catalogue import CATALOGUE, HALVED, REFERENCE, SECOND_SOLVER
@@ -420,3 +422,9 @@ def study(method: str, part: int = 1, parts: int = 1) -> pd.DataFrame:
         rows.append(row)
         print(f"{method}, {case.name}: {done.outcome} {done.message}", flush=True)
     return pd.DataFrame(rows)
+
+
+def stability_method(job: SimpleNamespace) -> None:
+    """Job: `method`, `part` (such as 1/4) -> `data`."""
+    part, parts = map(int, job.part[0].split("/"))
+    write_frame(study(job.method[0].replace("_", " "), part, parts), Path(job.data[0]))
