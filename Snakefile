@@ -7,7 +7,7 @@ Outputs: the figures, tables and results that the configuration names, in the fo
     .venv/bin/snakemake chapter4
     .venv/bin/snakemake figures/thesis/fig_4-10.png
     .venv/bin/snakemake --configfile mine.yaml         a study of your own: name and scenes suffice
-    .venv/bin/snakemake map_of_touch five_hundred_fingers    two sweeps, not part of all; about ten minutes of one core
+    .venv/bin/snakemake map_of_touch    a sweep, not part of all; about ten minutes of one core
     .venv/bin/snakemake sweep --config sweep=mine.yaml [sweep_out=DIR]    a sweep of your own: config/sweeps/example.yaml
     .venv/bin/snakemake -s /path/to/fingerpad/Snakefile --configfile mine.yaml     from another folder
 

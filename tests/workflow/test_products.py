@@ -21,7 +21,7 @@ from fingerpad.planning.plan import companion
 pytestmark = pytest.mark.workflow
 
 ROOT = Path(__file__).resolve().parents[2]
-STUDY_FIGURES = ("fit", "identifiability", "residuals", "prony", "friction")
+STUDY_FIGURES = ("fit", "identifiability", "residuals", "friction")
 RIDGES = ("offset", "height", "friction", "mesh", "outer")
 
 

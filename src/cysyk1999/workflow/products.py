@@ -36,7 +36,7 @@ COMPANIONS = {"coarse_mesh": 1, "coarse": 2}
 """Companions of a scene, on a coarser mesh: the folder of their results, and how many of its steps
 are one.
 """
-RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rapidly_adapting")
+RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy")
 TABLES = ("thesis_comparison", "sensitivity")
 PARTS = ("animations", "views", "all_tables", "calibration", "ridges", "meanings")
 """What is part of the default target beside figures and simulations."""
@@ -610,8 +610,8 @@ class Products:
     # -- studies -----------------------------------------------------------------------------------------------------------
 
     def calibration(self) -> Iterator[Job]:
-        """The pad calibrated to measured forces; the Prony series and friction, if the
-        configuration has their scenes.
+        """The pad calibrated to measured forces; and friction, if the configuration has its
+        scenes.
         """
         c = self.config
         if not c.calibration_scenes:
@@ -633,16 +633,6 @@ class Products:
             {"data": data(*names, *estimates), "specimens": [self.result("specimens")]},
             priority=1,
         )
-        if RAMP in c.calibration_scenes:
-            read = {
-                "relaxation": [self.at("config/reference/relaxation.csv")],
-                "mesh": self.meshes([RAMP]),
-                "histories": self.histories([PLATE, "calibration_long_term", RAMP]),
-                **self._read(RAMP),
-            }
-            values = self._told(RAMP) | {"accuracy": [str(c.accuracy or "as_stated")]}
-            yield Job("calibrate_prony", read, {"data": data("prony", "prony_estimates")}, values)
-            names, estimates = [*names, "prony"], [*estimates, "prony_estimates"]
         if c.friction_coefficients:
             sweep = [self.result(f"friction/{mu:g}/history.nc") for mu in c.friction_coefficients]
             read, told = self._read(STROKE), self._told(STROKE)
@@ -984,22 +974,13 @@ class Products:
 
     def map_of_touch(self) -> Iterator[Job]:
         """A sweep over curvature, force and rate."""
-        yield from self._published_sweep("map_of_touch", {})
-
-    def five_hundred_fingers(self) -> Iterator[Job]:
-        """A sweep over what is not known of a finger."""
-        yield from self._published_sweep(
-            "five_hundred_fingers", {"table": self.tables(["five_hundred_fingers"])}
-        )
-
-    def _published_sweep(self, name: str, more: dict[str, list[str]]) -> Iterator[Job]:
-        folder = f"results/sweeps/{name}"
+        name, folder = "map_of_touch", "results/sweeps/map_of_touch"
         read = {"sweep": [self.at(f"config/sweeps/{name}.yaml")], "files": [self.thesis_specimen()]}
         made, table = {"dataset": [f"{folder}/sweep.nc"]}, f"{folder}/sweep.csv"
         run = ("fingerpad.sweeps.batch", "fingerpad.sweeps.__main__")
         many = {"mem_mb": 2000, "runtime": 120, "threads": ALL_CORES}
         yield Job("sweep", read, made, called=f"sweep_{name}", modules=run, also=[table], **many)
-        yield Job(name, {"scenes": [table]}, {"picture": self.pictures([name])} | more)
+        yield Job(name, {"scenes": [table]}, {"picture": self.pictures([name])})
 
     # -- for people and archives -------------------------------------------------------------------------------------------
 
@@ -1109,7 +1090,6 @@ class Products:
             self.reconstruction,
             self.explanations,
             self.map_of_touch,
-            self.five_hundred_fingers,
             self.report,
         )
         jobs = [job for part in parts for job in part()]

@@ -20,5 +20,5 @@ def run(job):
     result = calibrate_friction(
         sweep, histories, pd.read_csv(job.thesis[0]), read_friction(job.published[0])
     )
-    for path, frame in zip(job.data, (result.friction, result.estimates), strict=True):
+    for path, frame in zip(job.data, result, strict=True):
         write_frame(without_round_off(frame), Path(path))
