@@ -10,8 +10,7 @@ from __future__ import annotations
 import pandas as pd
 
 from cysyk1999.studies.reconstruction import pads
-from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT
-from cysyk1999.studies.reconstruction.unknowns import SCALED
+from cysyk1999.studies.reconstruction.unknowns import EPIDERMIS, SCALED, SOFT
 
 RIDGES = """
 ridges:                                # for scenes that ask for them; the thesis draws inner ridges (Fig 5-25) without sizes,
@@ -66,14 +65,14 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
     nu = pads.poisson_for(value("bulk_modulus", 6))
     moduli = [
         1e-6 * e * value(k) * (1 + nu) / (1 + pads.POISSON)
-        for e, k in ((pads.EPIDERMIS, EPIDERMIS), (pads.SOFT, SOFT))
+        for e, k in ((pads.YOUNG_EPIDERMIS, EPIDERMIS), (pads.YOUNG_SOFT, SOFT))
     ]
     state, told = "long_term", (interval(EPIDERMIS, 0.15), interval(SOFT, 0.015))
     if reading == state or reading == "instantaneous":  # as printed
         state, nu, moduli, told = (
             reading,
             pads.POISSON,
-            [1e-6 * pads.EPIDERMIS, 1e-6 * pads.SOFT],
+            [1e-6 * pads.YOUNG_EPIDERMIS, 1e-6 * pads.YOUNG_SOFT],
             ("stated", "stated"),
         )
     skin, fat = 1e3 * pads.EPIDERMIS_THICKNESS, value("fat_thickness", 2)
