@@ -74,9 +74,8 @@ def study(law=lambda mu: 1.5e-3 * mu, histories=None, sweep=SWEEP, numbers=NUMBE
 
 
 def estimate(found, quantity, study="friction"):
-    rows = found.estimates[
-        (found.estimates["study"] == study) & (found.estimates["quantity"] == quantity)
-    ]
+    table = found[1]
+    rows = table[(table["study"] == study) & (table["quantity"] == quantity)]
     assert len(rows) == 1
     return float(rows["estimate"].iloc[0])
 
@@ -152,7 +151,7 @@ def test_variations_scale_the_coefficient():
     assert estimate(found, "mean stretch", title) == pytest.approx(2 * 1.5 * 0.64, rel=5e-3)
     assert estimate(found, "coefficient for 1 mm", title) == pytest.approx(1 / 3, rel=5e-3)
     assert "change of the stretch by mesh and steps of the thesis's size" not in set(
-        found.estimates["quantity"]
+        found[1]["quantity"]
     )
     both = study(histories={STROKE: history(0.64, lambda mu: 1.5e-3 * mu * 1.01)})
     assert estimate(

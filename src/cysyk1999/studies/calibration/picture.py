@@ -284,70 +284,6 @@ def residuals(frame: pd.DataFrame) -> Figure:
 
 
 @styled
-def prony(frame: pd.DataFrame) -> Figure:
-    """Ramp-and-hold force and its fits, their errors, and how well amplitudes of the measured time
-    constants could be told.
-    """
-    note = [
-        "Simulated throughout, with known noise: no measured time courses are at hand. Time constants of Pawluk and Howe "
-        "(1999) are measured, without amplitudes; right: the error any amplitude would have."
-    ]
-    fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
-    grid = fig.add_gridspec(2, 2, width_ratios=(1.35, 1), height_ratios=(1.5, 1))
-    top, below, right = (
-        fig.add_subplot(grid[0, 0]),
-        fig.add_subplot(grid[1, 0]),
-        fig.add_subplot(grid[:, 1]),
-    )
-    force = frame[frame["panel"] == "force"]
-    noisy = force[force["series"] == "with noise"]
-    top.plot(noisy["time (s)"], noisy[FORCE], ".", color=GREY, ms=4, label="simulated, with noise")
-    styles = {
-        "thesis's series, hereditary": (DOTTED, CATEGORIES[3]),
-        "fitted, hereditary": (DASHED, CATEGORIES[1]),
-        "fitted, corrected": ("-", INK),
-        "Pawluk and Howe's constants": ((0, (3, 1.2, 1, 1.2)), CATEGORIES[0]),
-    }
-    for name, (style, colour) in styles.items():
-        rows = force[force["series"] == name]
-        top.plot(rows["time (s)"], rows[FORCE], color=colour, ls=style, lw=1.2, label=name)
-        below.plot(
-            rows["time (s)"], rows["difference (% of the peak)"], color=colour, ls=style, lw=1.2
-        )
-    for ax in (top, below):
-        ax.set(xscale="log", xlim=(0.015, 10.5))
-        ax.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
-    top.tick_params(labelbottom=False)
-    top.set(ylabel="force (N)", ylim=(0, 1.6 * noisy[FORCE].max()))
-    top.legend(loc="upper left", fontsize=6, ncols=2, columnspacing=0.9, handlelength=1.8)
-    below.axhline(0, color=GREY, lw=0.7)
-    below.set(xlabel="time (s)", ylabel="off the simulation\n(% of the peak)")
-    told = frame[frame["panel"] == "amplitudes"]
-    for marker, (speed, rows) in zip(MARKERS, told.groupby("series", sort=False), strict=False):
-        right.plot(
-            rows["tau (s)"],
-            rows["half_width (1)"],
-            marker=marker,
-            color=INK,
-            lw=0.9,
-            ms=5,
-            mfc="white" if marker == "o" else INK,
-            label=f"ramp of {speed}",
-        )
-    right.set(
-        xscale="log",
-        yscale="log",
-        xlabel="time constant (s)",
-        ylabel="95 % half-width of an amplitude\nover the steady force (1)",
-        title="error of an amplitude",
-    )
-    right.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
-    right.yaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
-    right.legend(loc="upper right")
-    return fig
-
-
-@styled
 def friction(frame: pd.DataFrame) -> Figure:
     """Lateral displacement along the strokes, its mean and range over the coefficient, the thesis's
     stretch, published values.
@@ -450,7 +386,6 @@ STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
     "calibration_fit": fit,
     "calibration_identifiability": identifiability,
     "calibration_residuals": residuals,
-    "calibration_prony": prony,
     "calibration_friction": friction,
 }
 """Study figure -> function of its data frame."""

@@ -17,9 +17,9 @@ from cysyk1999.measures.responses import (
     rapidly_adapting_rate,
     raster,
 )
-from cysyk1999.studies.receptors.sensing import RAPIDLY_ADAPTING
 from fingerpad.measures.features import PRESSURE, energy, force_gf, profile
 from fingerpad.measures.strokes import arcs, distance, loaded, place, profile_and_height
+from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.results import scene_of
 from fingerpad.specimen.element_kinds import kind_of
 from fingerpad.specimen.pad import REGIONS, PadMesh
@@ -29,6 +29,9 @@ CORNERS = tuple(f"corner_{k}_{axis} (mm)" for k in range(1, 5) for axis in "xy")
 STICKS, SLIPS = 1, 2  # values of the history's contact_state
 LAYER_LINES = ("skin", "dermis", "fat", "bone")
 SKIN_X, TRACTION, BOUND = "skin_x (mm)", "tangential_traction (Pa)", "friction_bound (Pa)"
+RAPIDLY_ADAPTING = RapidlyAdapting(threshold=500.0, scale=500.0, highest=100.0)
+"""Law of the rate of the skin's curvature; its constants are assumed, nothing at hand states them.
+"""
 SLIP, STATE, STICKING = "slip_speed (mm/s)", "state (1)", "sticking (%)"
 
 
@@ -326,14 +329,16 @@ def adaptation(histories: Histories) -> pd.DataFrame:
     """Predicted responses of a slowly and a rapidly adapting receptor to two ramps and holds: rates
     and a few trials.
     """
-    stimulus, law = RAPIDLY_ADAPTING["curvature of the skin"]
     parts = {}
     for programme, words in (("ramp40", "40 gf/s"), ("ramp150", "150 gf/s")):
         history = histories[f"{programme}_k210"]
         parts[f"force {words}"] = pd.DataFrame(
             {"series": "force", TIME: history["time"].values, FORCE: force_gf(history)}
         )
-        slow, fast = predicted_rate(history), rapidly_adapting_rate(history, law, stimulus)
+        slow, fast = (
+            predicted_rate(history),
+            rapidly_adapting_rate(history, RAPIDLY_ADAPTING, "curvature"),
+        )
         for kind, rate in (("slowly adapting", slow), ("rapidly adapting", fast)):
             ticks = raster(rate, 5, SEED).rename(columns={TIME: IMPULSE, "trial": "trial (1)"})
             parts[f"{kind} {words}"] = pd.concat(

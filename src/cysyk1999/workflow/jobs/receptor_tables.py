@@ -7,18 +7,17 @@ from cysyk1999.publishing.write import publish_table
 from cysyk1999.receptors.recordings import read_rates
 from cysyk1999.studies.receptors.candidate_stimuli import candidate_stimuli
 from cysyk1999.studies.receptors.run import receptor_fits
-from cysyk1999.studies.receptors.sensing import rapidly_adapting, sensor_accuracy
+from cysyk1999.studies.receptors.sensing import sensor_accuracy
 
 
 def run(job):
     """`rates`, `histories`, `coarse` -> `tables`."""
     rates = read_rates(*job.rates)
     histories, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
-    made = {
+    tables = {
         "receptor_fits": lambda: receptor_fits(histories, coarse, rates),
         "candidate_stimuli": lambda: candidate_stimuli(histories, rates),
         "sensor_accuracy": lambda: sensor_accuracy(histories),
-        "rapidly_adapting": lambda: rapidly_adapting(histories),
     }
     for table in map(Path, job.tables):
-        publish_table(made[table.stem](), table)
+        publish_table(tables[table.stem](), table)
