@@ -192,14 +192,14 @@ def test_frames_are_drawn_from_themselves(made):
             )
     depths = {*GRID[0], DEPTH}
     for history in cases.values():
-        depths |= {place(history)[0] for place in ridge_frames.READ.values()}
+        depths |= {depth for depth, _ in ridge_frames._places(history).values()}
     offsets = sorted({*GRID[1], -BESIDE, BESIDE, -FLANK, FLANK})
     for name, history in cases.items():
         felt = lambda z, x: (
             100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))
         )  # noqa: E731
         cases[name] = synthetic._receptors(history, sorted(depths), offsets, felt)
-    assert ridge_frames.specimen_of(cases["0_0.35_thesis"])[1] is None
+    assert scene_of(cases["0_0.35_thesis"]).specimen.ridges is None
     frames = ridge_frames.frames(cases, made, {})
     assert set(frames) == set(ridge_study.STUDIES)
     profile = frames["offset"][

@@ -6,7 +6,7 @@ import pandas as pd
 
 from cysyk1999.publishing.write import publish
 from cysyk1999.reference_data import read_reference
-from cysyk1999.studies.views import picture as views
+from cysyk1999.studies.views import tables as views
 
 
 def run(job):
@@ -16,10 +16,9 @@ def run(job):
     tables = {Path(path).stem: pd.read_csv(path) for path in job.tables}
     for path in job.pictures:
         if Path(path).stem == "scorecard":
-            frame, draw = (
-                views.scorecard_rows(tables["thesis_comparison"], read_reference(job.reference[0])),
-                views.scorecard,
-            )
+            reference = read_reference(job.reference[0])
+            frame = views.scorecard_rows(tables["thesis_comparison"], reference)
+            publish(views.scorecard(frame), frame, path)
         else:
-            frame, draw = views.candidate_rows(tables["candidate_stimuli"]), views.candidate_stimuli
-        publish(draw(frame), frame, path)
+            frame = views.candidate_rows(tables["candidate_stimuli"])
+            publish(views.candidate_stimuli(frame), frame, path)
