@@ -69,7 +69,7 @@ def data():
     return read_force_depth(REFERENCE / "force_depth")
 
 
-# -- the elastic curve ---------------------------------------------------------------------------------------------------
+# -- the elastic curve ----------------------------------------------------------------------------
 
 
 def scaled(factors):
@@ -132,7 +132,7 @@ def test_curve_passes_through_its_points_and_ends_where_the_simulation_ends(curv
         curve.force_at(3e-3)
 
 
-# -- the constant --------------------------------------------------------------------------------------------------------
+# -- the constant ---------------------------------------------------------------------------------
 
 
 def synthetic(curve, seed, noise=0.01):
@@ -196,7 +196,7 @@ def test_a_known_length_is_fitted_to_its_own_forces(curve, model):
     assert fit_length(curve, DEPTHS, force, model).value == pytest.approx(0.02)
 
 
-# -- the whole study -----------------------------------------------------------------------------------------------------
+# -- the whole study ------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -272,7 +272,7 @@ def test_pictures_are_functions_of_the_saved_data_and_say_where_they_are_from(na
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
 
 
-# -- specimens -----------------------------------------------------------------------------------------------------------
+# -- specimens ------------------------------------------------------------------------------------
 
 
 def test_a_scene_names_a_calibrated_specimen(result, plate, data, tmp_path):
@@ -284,7 +284,8 @@ def test_a_scene_names_a_calibrated_specimen(result, plate, data, tmp_path):
         "calibrated_mean",
     ]
     (tmp_path / "mine.yaml").write_text(
-        "specimen: {layers: calibrated_subject_2}\nstimulus: {shape: flat}\nmotion: [{press_to_depth: '1 mm'}]\n"
+        "specimen: {layers: calibrated_subject_2}\nstimulus: {shape: flat}\nmotion: "
+        "[{press_to_depth: '1 mm'}]\n"
     )
     named = load_scene(tmp_path / "mine.yaml").specimen
     s = result.constants["2"].value
@@ -304,7 +305,8 @@ def test_committed_specimens_are_those_of_the_committed_table(tmp_path):
         chosen.itertuples(), specimen_names(chosen["subject"]).values(), strict=True
     ):
         (tmp_path / "mine.yaml").write_text(
-            f"specimen: {{layers: {name}}}\nstimulus: {{shape: flat}}\nmotion: [{{press_to_depth: '1 mm'}}]\n"
+            f"specimen: {{layers: {name}}}\nstimulus: {{shape: flat}}\nmotion: "
+            f"[{{press_to_depth: '1 mm'}}]\n"
         )
         layers = load_scene(tmp_path / "mine.yaml").specimen.layers
         assert layers.epidermis.youngs_modulus == pytest.approx(1e6 * row.estimate, rel=2e-5)

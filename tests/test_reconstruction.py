@@ -12,8 +12,8 @@ import pytest
 from cysyk1999.reference_data import ReferenceDataError, read_bands, read_reference
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.design import FITTED, run_design, table
-from cysyk1999.studies.reconstruction.epidermis import judged
 from cysyk1999.studies.reconstruction.emulator import Emulator
+from cysyk1999.studies.reconstruction.epidermis import judged
 from cysyk1999.studies.reconstruction.evidence import Evidence, read_evidence
 from cysyk1999.studies.reconstruction.inference import Problem, evidences, infer, recovery
 from cysyk1999.studies.reconstruction.specimen import most_probable, specimen_text
@@ -47,7 +47,7 @@ def known():
     return read_unknowns(UNKNOWNS)
 
 
-# --- evidence ----------------------------------------------------------------------------------------------
+# --- evidence ------------------------------------------------------------------------------------
 
 
 def test_the_evidence_says_where_it_is_from_and_agrees_with_the_comparison(evidence):
@@ -124,7 +124,7 @@ def test_a_pad_is_inside_the_evidence_that_it_would_have_left(evidence):
     assert moved["low"][axis].to_numpy() == pytest.approx(high[axis])
 
 
-# --- unknowns ----------------------------------------------------------------------------------------------
+# --- unknowns ------------------------------------------------------------------------------------
 
 
 def test_priors_have_the_quantiles_that_they_state(known):
@@ -171,7 +171,7 @@ def test_wrong_unknowns_are_refused_in_one_line(tmp_path, known, change, wrong):
         read_unknowns(tmp_path / "unknowns.yaml")
 
 
-# --- pads --------------------------------------------------------------------------------------------------
+# --- pads ----------------------------------------------------------------------------------------
 
 
 def test_the_pad_chosen_before_is_on_the_axes_of_the_design():
@@ -265,7 +265,7 @@ def test_a_design_goes_on_where_it_was_stopped(tmp_path, known, monkeypatch):
     )
 
 
-# --- emulator ----------------------------------------------------------------------------------------------
+# --- emulator ------------------------------------------------------------------------------------
 
 
 def _smooth(x):
@@ -301,7 +301,7 @@ def test_the_emulator_states_the_error_that_it_makes():
     assert noisy.error[0] == pytest.approx(0.1, rel=0.35)
 
 
-# --- inference ---------------------------------------------------------------------------------------------
+# --- inference -----------------------------------------------------------------------------------
 
 
 class _Known:
@@ -377,7 +377,7 @@ def test_known_pads_are_found_again(known):
     assert len(found) == 3 * 9 and found["covered"].mean() > 0.7
 
 
-# --- inside the epidermis ----------------------------------------------------------------------------------
+# --- inside the epidermis ------------------------------------------------------------------------
 
 
 def test_a_reading_of_the_epidermal_energies_is_the_cause_only_if_all_depths_are_inside(evidence):
@@ -394,7 +394,7 @@ def test_a_reading_of_the_epidermal_energies_is_the_cause_only_if_all_depths_are
     assert found["dermis over the first row's (1)"].tolist() == [1.0, 0.5]
 
 
-# --- what is published -------------------------------------------------------------------------------------
+# --- what is published ---------------------------------------------------------------------------
 
 TABLES = CONFIG.parent / "figures/tables"
 

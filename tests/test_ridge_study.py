@@ -26,6 +26,7 @@ from cysyk1999.studies.ridges.run import (
 )
 from fingerpad import load_scene, plan, simulate
 from fingerpad.measures.features import energy
+from fingerpad.results import scene_of
 from fingerpad.scenes.scene import Receptors, Slide
 from fingerpad.scenes.specimen import Specimen
 from fingerpad.specimen import RidgedPad, mesh_for, quality_of
@@ -45,7 +46,7 @@ def made():
     return synthetic.histories()
 
 
-# -- the index -------------------------------------------------------------------------------------
+# -- the index ------------------------------------------------------------------------------------
 
 
 def test_index_is_the_contrast_of_the_two_ways(made):
@@ -120,7 +121,7 @@ def test_boundary_is_where_the_mesh_has_it(base):
     assert boundary(OUTLINE, None, 0.1e-3) == OUTLINE.epidermis_thickness
 
 
-# -- cases -----------------------------------------------------------------------------------------
+# -- cases ----------------------------------------------------------------------------------------
 
 
 def test_cases_and_figures_mean_the_same_receptor():
@@ -174,7 +175,7 @@ def test_ridges_drawn_on_the_thesiss_elements(base, name):
     assert 50e-6 < moved.max() < 80e-6
 
 
-# -- frames and rows -------------------------------------------------------------------------------
+# -- frames and rows ------------------------------------------------------------------------------
 
 
 def test_frames_are_drawn_from_themselves(made):
@@ -194,10 +195,11 @@ def test_frames_are_drawn_from_themselves(made):
     for history in cases.values():
         depths |= {depth for depth, _ in ridge_frames._places(history).values()}
     offsets = sorted({*GRID[1], -BESIDE, BESIDE, -FLANK, FLANK})
+
+    def felt(z, x):
+        return 100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))
+
     for name, history in cases.items():
-        felt = lambda z, x: (
-            100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))
-        )  # noqa: E731
         cases[name] = synthetic._receptors(history, sorted(depths), offsets, felt)
     assert scene_of(cases["0_0.35_thesis"]).specimen.ridges is None
     frames = ridge_frames.frames(cases, made, {})

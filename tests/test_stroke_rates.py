@@ -82,7 +82,7 @@ def _number(histories, id_):
     return NUMBERS[id_](Measures.of(histories))
 
 
-# --- figures -------------------------------------------------------------------------------------------
+# --- figures -------------------------------------------------------------------------------------
 
 
 def _frame(made, number, *more):
@@ -167,7 +167,7 @@ def test_rate_of_ramp_and_hold_keeps_the_jump_at_the_top(made):
     assert "flat" not in set(frame["surface"])
 
 
-# --- Eq 4-4 in strokes ---------------------------------------------------------------------------------
+# --- Eq 4-4 in strokes ---------------------------------------------------------------------------
 
 LAW, SHIFT = SpatialSum(r=0.5e-3, per_depth=3e4, constant=9.0), -0.4e-3
 
@@ -225,7 +225,7 @@ def _scaled(history, factor):
     return history.assign(strain_energy_density=history["strain_energy_density"] * factor)
 
 
-# --- claims: each holds in what is made for it, and fails in a mutant ----------------------------------
+# --- claims: each holds in what is made for it, and fails in a mutant ----------------------------
 
 
 def test_impulses_under_concavities_are_noticed(made):
@@ -338,7 +338,7 @@ def test_plate_answered_at_the_beginning_one_way_and_throughout_the_other():
     FIGURES["5-27"].draw(frame)
 
 
-# --- numbers -------------------------------------------------------------------------------------------
+# --- numbers -------------------------------------------------------------------------------------
 
 
 def test_numbers_are_those_of_the_figures(made):

@@ -3,7 +3,8 @@
 An array of pressure sensors on a robot's finger measures what the pad's surface feels. Eq 4-4 says
 what receptors under a skin would make of it, Eq 5-1 what they would send::
 
-    sensor = TactileSensor(x, law)          # places of the pressure sensors (m), a SpatialSum fitted at the receptor's depth
+    # places of the pressure sensors (m), a SpatialSum fitted at the receptor's depth
+    sensor = TactileSensor(x, law)
     rate = sensor.step(time, pressure)      # once a frame: s, Pa -> impulses/s
 
 The sum over the sensors is exact for pressures linear between them, so the constants fitted to the
