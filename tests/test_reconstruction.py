@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from cysyk1999.reference_data import ReferenceDataError, read_bands, read_reference
+from cysyk1999.reference_data import ReferenceDataError, read_reference
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.design import FITTED, run_design, table
 from cysyk1999.studies.reconstruction.emulator import Emulator
@@ -423,15 +423,6 @@ def test_the_default_specimen_is_that_of_the_committed_tables():
         rows.loc["line_load", "best pad"], rel=0.01
     )
     assert specimen.moduli == "instantaneous"
-
-
-def test_bands_of_other_pads_hold_the_default_pads_neighbours():
-    """Pads that the figures do not tell apart: each band is rising, positive, and most are narrower
-    than a factor of two.
-    """
-    found = read_bands(CONFIG / "reference/reconstruction_bands.csv")
-    assert set(found["surface"]) == set(pads.SURFACES) and (found["pads"] >= 10).all()
-    assert (found["high"] / found["low"]).median() < 2
 
 
 def test_published_results_meet_what_was_asked_of_them(evidence):

@@ -14,7 +14,6 @@ from cysyk1999.measures.direction import BESIDE, DEPTH, KEY, both_ways, directio
 from cysyk1999.measures.table import Measures
 from cysyk1999.studies.ridges import frames as ridge_frames
 from cysyk1999.studies.ridges import picture as ridge_study
-from cysyk1999.studies.ridges import run as cases_of
 from cysyk1999.studies.ridges.run import (
     AS_DRAWN,
     FLANK,
@@ -124,14 +123,6 @@ def test_boundary_is_where_the_mesh_has_it(base):
 # -- cases ----------------------------------------------------------------------------------------
 
 
-def test_cases_and_figures_mean_the_same_receptor():
-    assert (cases_of.DEPTH, cases_of.BESIDE) == (DEPTH, BESIDE)
-    assert {name: edge * 1e6 for name, edge in cases_of.EDGES.items()} == pytest.approx(
-        ridge_study.MESHES
-    )
-    assert set(AS_DRAWN) == set(ridge_study.DRAWN)
-
-
 def test_cases_are_named_and_vary_what_they_say(base):
     for name in ("75_0.35_coarse", "150_1_thesis", "0_0.35_thesis"):
         assert str(Case.named(name)) == name
@@ -193,7 +184,7 @@ def test_frames_are_drawn_from_themselves(made):
             )
     depths = {*GRID[0], DEPTH}
     for history in cases.values():
-        depths |= {depth for depth, _ in ridge_frames._places(history).values()}
+        depths |= {depth for depth, _ in ridge_frames.places(history).values()}
     offsets = sorted({*GRID[1], -BESIDE, BESIDE, -FLANK, FLANK})
 
     def felt(z, x):

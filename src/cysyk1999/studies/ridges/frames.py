@@ -38,7 +38,7 @@ from fingerpad.results import scene_of
 OUTER = ("ridged_outer_stroke_right", "ridged_outer_stroke_left")
 
 
-def _places(history: xr.Dataset) -> dict[str, tuple[float, float]]:
+def places(history: xr.Dataset) -> dict[str, tuple[float, float]]:
     """Receptors of the sweeps: (depth, offset from a tip) m."""
     flank = boundary_of(history, FLANK)
     beside = (round(flank - AWAY, 9), -FLANK), (round(flank + AWAY, 9), -FLANK)
@@ -135,7 +135,7 @@ def sweep_frame(cases: Histories, column: str) -> pd.DataFrame:
         if case.mesh != "thesis" or at[1] != held:
             continue
         coarse = cases.get(str(replace(case, mesh="coarse")))
-        for series, (depth, offset) in _places(history).items():
+        for series, (depth, offset) in places(history).items():
             layer = "epidermis" if depth < boundary_of(history, offset) else "dermis"
             index = index_and_error(history, coarse, depth, offset)
             rows.append((SIMULATED, series, layer, at[0], *index))
