@@ -14,6 +14,7 @@ from scipy.integrate import quad
 import synthetic
 from cysyk1999.measures import responses
 from cysyk1999.measures.quantities import DISTANCE, SED, TIME
+from cysyk1999.receptors import fits
 from cysyk1999.receptors.recordings import RATES, read_rates
 from cysyk1999.receptors.sensor import TactileSensor, taxel_pressure
 from cysyk1999.reference_data import ReferenceDataError
@@ -24,7 +25,7 @@ from cysyk1999.studies.views.frames import RAPIDLY_ADAPTING
 from fingerpad import load_scene, simulate
 from fingerpad.measures.features import energy, ramp_end
 from fingerpad.measures.strokes import convexities, place
-from fingerpad.receptors import fits, laws, spikes
+from fingerpad.receptors import laws, spikes
 from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, kernel_weights
 from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.scenes.scene import Discretisation
