@@ -25,9 +25,13 @@ from fingerpad.receptors.laws import SpatialSum, rectified
 class SkinSample:
     """Contact pressure on the skin and the strain energy under it, through one history.
 
-    Attributes:
-        x: (time, n) m, deformed. pressure: (time, n) Pa. indentation: (time) m. energy: (time) Pa.
-        reference: (time) m, or a number.
+    Attributes
+    ----------
+    x : (time, n) m, deformed.
+    pressure : (time, n) Pa.
+    indentation : (time) m.
+    energy : (time) Pa.
+    reference : (time) m, or a number.
     """
 
     x: np.ndarray
@@ -148,9 +152,11 @@ def r_squared(data: np.ndarray, predicted: np.ndarray) -> float:
 class GainAndThreshold:
     """Impulse rate ``gain * [stimulus - threshold]+``: the same two constants for every stimulus.
 
-    Attributes:
-        gain: (impulses/s) by unit of the stimulus, not negative. threshold: in the stimulus's unit;
-        below the least stimulus it stands for a discharge that needs none.
+    Attributes
+    ----------
+    gain : (impulses/s) by unit of the stimulus, not negative.
+    threshold : in the stimulus's unit; below the least stimulus it stands for a discharge that
+        needs none.
     """
 
     gain: float

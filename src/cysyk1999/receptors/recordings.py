@@ -46,15 +46,19 @@ of some, under one protocol. ``or_curvature_per_m`` is for a rate whose surface 
 def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
     """Impulse rates of CSV files, one after the other in the order of their names, each once.
 
-    Args:
-        paths: files, or folders, all of whose CSV files are read; a folder may have none.
+    Parameters
+    ----------
+    paths : files, or folders, all of whose CSV files are read; a folder may have none.
 
-    Returns:
-        Columns of :data:`RATES` and ``file``; no rows if there is no file.
+    Returns
+    -------
+    Columns of :data:`RATES` and ``file``; no rows if there is no file.
 
-    Raises:
-        ReferenceDataError: a file is wrong; a recording has the same rate twice; a burst is of a
-        pressed surface or another of a stroked one.
+    Raises
+    ------
+    ReferenceDataError
+        A file is wrong; a recording has the same rate twice; a burst is of a pressed surface or
+        another of a stroked one.
     """
     files = [
         file

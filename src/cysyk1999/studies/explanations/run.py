@@ -216,13 +216,16 @@ def explanations(
     """What was held out and does not hold in the published comparison, and the readings with which
     it holds.
 
-    Args:
-        published: the comparison. found: :func:`verdicts` by reading, the controls among them.
+    Parameters
+    ----------
+    published : the comparison.
+    found : :func:`verdicts` by reading, the controls among them.
 
-    Returns:
-        A row each, columns `COLUMNS`: the readings that explain it, the number found with the first
-        of them, and the readings that do not. ``attrs["summary"]`` says how many of those held out
-        are right, and how many more are explained, by kind.
+    Returns
+    -------
+    A row each, columns `COLUMNS`: the readings that explain it, the number found with the first of
+    them, and the readings that do not. ``attrs["summary"]`` says how many of those held out are
+    right, and how many more are explained, by kind.
     """
     reference = read_reference(reference_csv)
     scored = _held_out(published, reference)
@@ -261,17 +264,17 @@ def _summary(scored: pd.DataFrame, table: pd.DataFrame, reference: pd.DataFrame)
     )
     explained = scored["id"].isin(table.loc[table["explained_by"] != "", "id"])
     agrees = scored["verdict"].isin(AGREES)
-    told = []
+    counts = []
     for kind in ("values and ranges", "trends", "axes"):
         of = kinds == kind
-        told.append(
+        counts.append(
             f"{kind}: {(agrees & of).sum()} of {of.sum()} right, {(explained & of).sum()} "
             "more explained by a run"
         )
     counted = ~kinds.eq("axes")
     share = ((agrees | explained) & counted).sum() / counted.sum()
     return (
-        f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: "
+        f"**Held out, {'; '.join(counts)}.** Values, ranges and trends right or explained: "
         f"{share:.0%}."
     )
 

@@ -62,9 +62,10 @@ def boundary_of(history: xr.Dataset, x: float) -> float:
 def frames(cases: Histories, strokes: Histories, coarse: Histories) -> dict[str, pd.DataFrame]:
     """Data of every figure, by its name.
 
-    Args:
-        cases: short strokes, by the case's name. strokes, coarse: scenes :data:`OUTER` and the
-        companions they have.
+    Parameters
+    ----------
+    cases : short strokes, by the case's name.
+    strokes, coarse : scenes :data:`OUTER` and the companions they have.
     """
     return {
         "offset": offset_frame(cases),

@@ -125,9 +125,10 @@ def ridges_drawn(mesh: PadMesh, outline: Outline, ridges: Ridges, straight: bool
     """A plain mesh whose nodes are moved to where inner ridges have them, as one draws ridges on a
     mesh that is there.
 
-    Args:
-        mesh: of second-order quads. straight: whether only corners are moved and the sides between
-        them are straight.
+    Parameters
+    ----------
+    mesh : of second-order quads.
+    straight : whether only corners are moved and the sides between them are straight.
     """
     pad = RidgedPad(outline, ridges)
     points = mesh.points.copy()
