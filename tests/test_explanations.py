@@ -7,16 +7,13 @@ import pytest
 
 from cysyk1999.studies.explanations.run import (
     CONTROL,
-    PRESSED,
     PUBLISHED,
     READ_ONLY,
     READINGS,
-    STROKED,
     explanations,
     turned,
 )
 from fingerpad import load_scene
-from fingerpad.results import ENERGIES
 
 pytestmark = pytest.mark.unit
 REFERENCE = "config/reference/thesis_numbers.csv"
@@ -50,88 +47,67 @@ def test_a_reading_changes_what_it_says(name):
     assert read[1].motion[1].keep == reading.keeps
 
 
-def test_every_scene_that_is_read_is_there():
-    for scene in (*PRESSED, *STROKED):
-        load_scene(f"config/scenes/{scene}.yaml")
+def published(**verdicts):
+    columns = ["id", "figure", "quantity", "condition", "simulated", "verdict"]
+    rows = [(k, "5-12", k, "", 1.0, verdict) for k, verdict in verdicts.items()]
+    return pd.DataFrame(rows, columns=columns)
 
 
-def test_explained_is_what_holds_with_a_reading_and_not_without():
-    """TR29 fails in the comparison and without the reading, TR28 holds without it already, TR30
-    fails with it as well.
-    """
-    published = pd.DataFrame(
-        [
-            (k, "5-12", k, "", 1.0, v)
-            for k, v in (("TR28", "trend_fails"), ("TR29", "trend_fails"), ("TR30", "trend_fails"))
-        ]
-        + [("TR37", "5-9", "TR37", "", 1.0, "trend_holds")],
-        columns=["id", "figure", "quantity", "condition", "simulated", "verdict"],
-    )
-
-    def told(**verdicts):
-        rows = [(k, 2.0, f"trend_{v}") for k, v in verdicts.items()]
-        return pd.DataFrame(rows, columns=["id", "simulated", "verdict"])
-
-    found = {
-        CONTROL: told(TR28="holds", TR29="fails", TR30="fails", TR37="holds"),
-        "no friction": told(TR28="holds", TR29="holds", TR30="fails", TR37="fails"),
-    }
-    table = explanations(published, found, REFERENCE).set_index("id")
-    assert dict(table["explained_by"]) == {"TR28": "", "TR29": "no friction", "TR30": ""}
-    said = explanations(published, found, REFERENCE).attrs["summary"]
-    assert "trends: 1 of 4 right, 1 more explained by a run" in said
-    assert turned(published, found, REFERENCE).iloc[0].tolist()[::2] == ["no friction", 1]
-    assert turned(published, found, REFERENCE)["makes_fail"].tolist() == [1]
+def reading(**verdicts):
+    rows = [(k, 2.0, verdict) for k, verdict in verdicts.items()]
+    return pd.DataFrame(rows, columns=["id", "simulated", "verdict"])
 
 
-def test_a_reading_explains_nothing_by_what_it_was_given():
-    published = pd.DataFrame(
-        [
-            ("T323", "4-17", "radius", "", 8.1, "outside"),
-            ("T108", "4-9", "width", "", 0.26, "outside"),
-        ],
-        columns=["id", "figure", "quantity", "condition", "simulated", "verdict"],
-    )
-    found = {
-        name: pd.DataFrame(
-            [("T323", 7.9, verdict), ("T108", 0.3, verdict)], columns=["id", "simulated", "verdict"]
-        )
-        for name, verdict in ((CONTROL, "outside"), ("smaller radius", "inside"))
-    }
-    assert dict(explanations(published, found, REFERENCE).set_index("id")["explained_by"]) == {
-        "T323": "",
-        "T108": "smaller radius",
-    }
+HOLDS, FAILS = "trend_holds", "trend_fails"
 
 
-def test_what_is_read_only_is_held_against_the_published_runs():
-    """Another energy explains TR74, which fails in the published runs, and not TR82, which fails at
-    draft accuracy only.
-    """
-    assert READ_ONLY == (
-        PUBLISHED,
-        *(name for name, reading in READINGS.items() if reading.energy != ENERGIES[0]),
-    )
-    told = {"TR74": "5-27", "TR82": "4-3"}
-    published = pd.DataFrame(
-        [(k, figure, k, "", 1.0, "trend_fails") for k, figure in told.items()],
-        columns=["id", "figure", "quantity", "condition", "simulated", "verdict"],
-    )
-    each = {
-        CONTROL: ("holds", "fails"),
-        PUBLISHED: ("fails", "holds"),
-        "energy: network": ("holds", "holds"),
-    }
-    found = {
-        name: pd.DataFrame(
-            {"id": list(told), "simulated": 1.0, "verdict": [f"trend_{v}" for v in verdicts]}
-        )
-        for name, verdicts in each.items()
-    }
-    assert dict(explanations(published, found, REFERENCE).set_index("id")["explained_by"]) == {
-        "TR74": "energy: network",
-        "TR82": "",
-    }
-    assert turned(published, found, REFERENCE)[
-        ["reading", "makes_hold", "makes_fail"]
-    ].to_numpy().tolist() == [["energy: network", 1, 0]]
+@pytest.mark.parametrize(
+    "comparison, found, explained, counts",
+    [
+        # TR28 holds without the reading already, TR30 fails with it as well
+        (
+            {"TR28": FAILS, "TR29": FAILS, "TR30": FAILS, "TR37": HOLDS},
+            {
+                CONTROL: {"TR28": HOLDS, "TR29": FAILS, "TR30": FAILS, "TR37": HOLDS},
+                "no friction": {"TR28": HOLDS, "TR29": HOLDS, "TR30": FAILS, "TR37": FAILS},
+            },
+            {"TR28": "", "TR29": "no friction", "TR30": ""},
+            ["no friction", 1, 1],
+        ),
+        # a reading explains nothing by what it was given
+        (
+            {"T323": "outside", "T108": "outside"},
+            {
+                CONTROL: {"T323": "outside", "T108": "outside"},
+                "smaller radius": {"T323": "inside", "T108": "inside"},
+            },
+            {"T323": "", "T108": "smaller radius"},
+            ["smaller radius", 1, 0],
+        ),
+        # another energy is held against the published runs, not against those at draft accuracy
+        (
+            {"TR74": FAILS, "TR82": FAILS},
+            {
+                CONTROL: {"TR74": HOLDS, "TR82": FAILS},
+                PUBLISHED: {"TR74": FAILS, "TR82": HOLDS},
+                "energy: network": {"TR74": HOLDS, "TR82": HOLDS},
+            },
+            {"TR74": "energy: network", "TR82": ""},
+            ["energy: network", 1, 0],
+        ),
+    ],
+)
+def test_explained_is_what_holds_with_a_reading_and_not_without(
+    comparison, found, explained, counts
+):
+    found = {name: reading(**verdicts) for name, verdicts in found.items()}
+    table = explanations(published(**comparison), found, REFERENCE)
+    assert dict(table.set_index("id")["explained_by"]) == explained
+    rows = turned(published(**comparison), found, REFERENCE)
+    assert rows[["reading", "makes_hold", "makes_fail"]].to_numpy().tolist() == [counts]
+
+
+def test_summary_counts_what_is_right_and_what_is_explained():
+    found = {CONTROL: reading(TR29=FAILS), "no friction": reading(TR29=HOLDS)}
+    table = explanations(published(TR29=FAILS, TR37=HOLDS), found, REFERENCE)
+    assert "trends: 1 of 2 right, 1 more explained by a run" in table.attrs["summary"]

@@ -14,7 +14,6 @@ from cysyk1999.measures.direction import BESIDE, DEPTH, KEY, both_ways, directio
 from cysyk1999.measures.table import Measures
 from cysyk1999.studies.ridges import frames as ridge_frames
 from cysyk1999.studies.ridges import picture as ridge_study
-from cysyk1999.studies.ridges import run as cases_of
 from cysyk1999.studies.ridges.run import (
     AS_DRAWN,
     FLANK,
@@ -26,6 +25,7 @@ from cysyk1999.studies.ridges.run import (
 )
 from fingerpad import load_scene, plan, simulate
 from fingerpad.measures.features import energy
+from fingerpad.results import scene_of
 from fingerpad.scenes.scene import Receptors, Slide
 from fingerpad.scenes.specimen import Specimen
 from fingerpad.specimen import RidgedPad, mesh_for, quality_of
@@ -45,7 +45,7 @@ def made():
     return synthetic.histories()
 
 
-# -- the index -------------------------------------------------------------------------------------
+# -- the index ------------------------------------------------------------------------------------
 
 
 def test_index_is_the_contrast_of_the_two_ways(made):
@@ -120,15 +120,7 @@ def test_boundary_is_where_the_mesh_has_it(base):
     assert boundary(OUTLINE, None, 0.1e-3) == OUTLINE.epidermis_thickness
 
 
-# -- cases -----------------------------------------------------------------------------------------
-
-
-def test_cases_and_figures_mean_the_same_receptor():
-    assert (cases_of.DEPTH, cases_of.BESIDE) == (DEPTH, BESIDE)
-    assert {name: edge * 1e6 for name, edge in cases_of.EDGES.items()} == pytest.approx(
-        ridge_study.MESHES
-    )
-    assert set(AS_DRAWN) == set(ridge_study.DRAWN)
+# -- cases ----------------------------------------------------------------------------------------
 
 
 def test_cases_are_named_and_vary_what_they_say(base):
@@ -174,7 +166,7 @@ def test_ridges_drawn_on_the_thesiss_elements(base, name):
     assert 50e-6 < moved.max() < 80e-6
 
 
-# -- frames and rows -------------------------------------------------------------------------------
+# -- frames and rows ------------------------------------------------------------------------------
 
 
 def test_frames_are_drawn_from_themselves(made):
@@ -192,14 +184,15 @@ def test_frames_are_drawn_from_themselves(made):
             )
     depths = {*GRID[0], DEPTH}
     for history in cases.values():
-        depths |= {place(history)[0] for place in ridge_frames.READ.values()}
+        depths |= {depth for depth, _ in ridge_frames.places(history).values()}
     offsets = sorted({*GRID[1], -BESIDE, BESIDE, -FLANK, FLANK})
+
+    def felt(z, x):
+        return 100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))
+
     for name, history in cases.items():
-        felt = lambda z, x: (
-            100 * (2 - np.clip(x / BESIDE, -1, 1)) * np.ones((stroke.sizes["time"], 1))
-        )  # noqa: E731
         cases[name] = synthetic._receptors(history, sorted(depths), offsets, felt)
-    assert ridge_frames.specimen_of(cases["0_0.35_thesis"])[1] is None
+    assert scene_of(cases["0_0.35_thesis"]).specimen.ridges is None
     frames = ridge_frames.frames(cases, made, {})
     assert set(frames) == set(ridge_study.STUDIES)
     profile = frames["offset"][

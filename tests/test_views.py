@@ -17,7 +17,7 @@ from cysyk1999.measures.quantities import DISTANCE, IMPULSE_RATE, SED, P, X, Y
 from cysyk1999.publishing import style
 from cysyk1999.publishing.write import read_frame, write_frame
 from cysyk1999.reference_data import read_reference
-from cysyk1999.studies.views import picture as views
+from cysyk1999.studies.views import picture, tables
 from cysyk1999.studies.views.frames import BOUND, CORNERS, FRAMES, SKIN_X, STATE, STICKING, TRACTION
 from fingerpad import load_scene, simulate
 from fingerpad.documents import read_yaml
@@ -60,7 +60,7 @@ def part(view, panel, series=""):
 @pytest.mark.parametrize("view", FRAMES)
 def test_picture_is_drawn_from_what_is_published_and_fits_a_page(view, tmp_path):
     write_frame(frame(view), tmp_path / "frame.csv")
-    fig = views.VIEWS[view](read_frame(tmp_path / "frame.csv"))
+    fig = picture.VIEWS[view](read_frame(tmp_path / "frame.csv"))
     with style.theme():
         fig.draw_without_rendering()
     width, height = fig.get_size_inches() * 25.4
@@ -155,13 +155,13 @@ def test_rapidly_adapting_receptor_is_silent_in_the_hold():
     )
 
 
-# --- of tables -------------------------------------------------------------------------------------------------
+# --- of tables -----------------------------------------------------------------------------------
 
 
 def test_scorecard_counts_results_as_the_table_judges_them():
     table = pd.read_csv(ROOT / "figures/tables/thesis_comparison.csv")
     reference = read_reference(ROOT / "config/reference/thesis_numbers.csv")
-    rows = views.scorecard_rows(table, reference)
+    rows = tables.scorecard_rows(table, reference)
     judged = table[
         table["role"].eq("result") & table["verdict"].isin(("inside", "plausible", "outside"))
     ]
@@ -178,22 +178,22 @@ def test_scorecard_counts_results_as_the_table_judges_them():
         0.02,
     )  # by which a bound may be helped
     assert held["relative (1)"].between(held["id"].map(least) - error, 1 + error).all()
-    title = views.scorecard(rows).texts[0].get_text()
+    title = tables.scorecard(rows).texts[0].get_text()
     assert f"{rows['verdict'].isin(('inside', 'plausible')).sum()} of {len(rows)}" in title
 
 
 def test_candidates_are_ranked_by_the_median_of_recorded_sets():
-    rows = views.candidate_rows(pd.read_csv(ROOT / "figures/tables/candidate_stimuli.csv"))
+    rows = tables.candidate_rows(pd.read_csv(ROOT / "figures/tables/candidate_stimuli.csv"))
     assert (
         not rows["rates"].str.startswith("TouchSim").any()
         and rows.groupby("rates")["candidate"].nunique().min() >= 10
     )
-    names = [t.get_text() for t in views.candidate_stimuli(rows).axes[0].get_yticklabels()]
+    names = [t.get_text() for t in tables.candidate_stimuli(rows).axes[0].get_yticklabels()]
     medians = rows.groupby("candidate")["r_squared (1)"].median()
     assert [medians[name.replace(" × ", " x ")] for name in names] == sorted(medians, reverse=True)
 
 
-# --- moving pictures -------------------------------------------------------------------------------------------
+# --- moving pictures -----------------------------------------------------------------------------
 
 
 def test_a_press_moves_in_a_gif_and_in_a_film_and_no_singular_point_owns_the_colours(tmp_path):

@@ -14,6 +14,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from scipy.linalg import lstsq
+from scipy.optimize import minimize_scalar
+from scipy.special import stdtrit
 
 from fingerpad.receptors.laws import SpatialSum, rectified
 
@@ -22,9 +25,13 @@ from fingerpad.receptors.laws import SpatialSum, rectified
 class SkinSample:
     """Contact pressure on the skin and the strain energy under it, through one history.
 
-    Attributes:
-        x: (time, n) m, deformed. pressure: (time, n) Pa. indentation: (time) m. energy: (time) Pa.
-        reference: (time) m, or a number.
+    Attributes
+    ----------
+    x : (time, n) m, deformed.
+    pressure : (time, n) Pa.
+    indentation : (time) m.
+    energy : (time) Pa.
+    reference : (time) m, or a number.
     """
 
     x: np.ndarray
@@ -32,9 +39,7 @@ class SkinSample:
     indentation: np.ndarray
     energy: np.ndarray
     reference: np.ndarray | float = 0.0
-    _weighted: dict[float, np.ndarray] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
+    _weighted: dict[float, np.ndarray] = field(default_factory=dict, init=False, repr=False)
 
     def weighted(self, r: float) -> np.ndarray:
         """Integral (time) Pa m of Eq 4-4 with a spatial constant r (m); kept, for fits that leave
@@ -56,7 +61,7 @@ def linear(terms: np.ndarray, data: np.ndarray) -> np.ndarray:
     scales.
     """
     scale = np.maximum(np.abs(terms).max(axis=0), 1e-300)
-    return np.linalg.lstsq(terms / scale, data, rcond=None)[0] / scale
+    return lstsq(terms / scale, data)[0] / scale
 
 
 def spatial_sum(
@@ -67,37 +72,28 @@ def spatial_sum(
     """Eq 4-4 closest to the strain energies of several histories: r by search, A1 and A2 exactly at
     every r.
 
-    Args:
-        with_depth: False leaves out A1, for a device that knows the pressure only. bounds: m, of r.
+    Parameters
+    ----------
+    with_depth : False leaves out A1, for a device that knows the pressure only.
+    bounds : m, of r.
     """
-    data = np.concatenate([sample.energy for sample in samples])
+    data, depth = (
+        np.concatenate([getattr(sample, name) for sample in samples])
+        for name in ("energy", "indentation")
+    )
 
     def at(log_r: float) -> tuple[np.ndarray, np.ndarray]:
-        columns = []
-        for sample in samples:
-            weighted = sample.weighted(float(np.exp(log_r)))
-            columns.append(
-                np.column_stack(
-                    [weighted * sample.indentation, weighted] if with_depth else [weighted]
-                )
-            )
-        terms = np.vstack(columns)
+        weighted = np.concatenate([sample.weighted(float(np.exp(log_r))) for sample in samples])
+        terms = np.column_stack([weighted * depth, weighted] if with_depth else [weighted])
         return terms, linear(terms, data)
 
     def misfit(log_r: float) -> float:
         terms, constants = at(log_r)
         return float(((data - terms @ constants) ** 2).sum())
 
-    grid = np.linspace(
-        *np.log(bounds), 15
-    )  # the misfit may have more than one dip; the search starts in the deepest
-    best = int(np.argmin([misfit(log_r) for log_r in grid]))
-    around = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    log_r = _least(misfit, around, 1e-5)
-    constants = at(log_r)[1]
-    return SpatialSum(
-        float(np.exp(log_r)), float(constants[0]) if with_depth else 0.0, float(constants[-1])
-    )
+    log_r = _least(misfit, np.linspace(*np.log(bounds), 15), 1e-5)
+    *per_depth, constant = at(log_r)[1].tolist()
+    return SpatialSum(float(np.exp(log_r)), per_depth[0] if with_depth else 0.0, constant)
 
 
 def constant_shift(
@@ -110,20 +106,16 @@ def constant_shift(
     def misfit(shift: float) -> float:
         return float(((sample.by(law, shift) - sample.energy) ** 2).sum())
 
-    grid = np.linspace(*bounds, 25)
-    best = int(np.argmin([misfit(shift) for shift in grid]))
+    return _least(misfit, np.linspace(*bounds, 25), 1e-7)
+
+
+def _least(misfit: Callable[[float], float], grid: np.ndarray, tolerance: float) -> float:
+    """Where a misfit is least, searched for around the best point of a grid: it may have more than
+    one dip.
+    """
+    best = int(np.argmin([misfit(place) for place in grid]))
     around = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    return _least(misfit, around, 1e-7)
-
-
-def _least(
-    misfit: Callable[[float], float], bounds: tuple[float, float], tolerance: float
-) -> float:
-    from scipy.optimize import minimize_scalar  # here, for it is slow to import
-
-    return float(
-        minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": tolerance}).x
-    )
+    return float(minimize_scalar(misfit, bounds=around, options={"xatol": tolerance}).x)
 
 
 def jackknife(
@@ -132,18 +124,15 @@ def jackknife(
     """Estimates and confidence intervals (p, 3), low and high last, from fits that leave out one
     group each.
 
-    Args:
-        fit: groups -> parameters (p,). groups: three at least, else the intervals are not a number.
+    Parameters
+    ----------
+    fit : groups -> parameters (p,).
+    groups : three at least, else the intervals are not a number.
     """
-    whole = np.asarray(fit(groups), float)
-    n = len(groups)
-    if n < 3:
-        return np.column_stack([whole, np.full((len(whole), 2), np.nan)])
-    from scipy.special import stdtrit  # here, for it is slow to import
-
-    without = np.array([fit([*groups[:k], *groups[k + 1 :]]) for k in range(n)])
-    spread = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
-    half = stdtrit(n - 1, 0.5 + level / 2) * spread
+    whole, n, half = np.asarray(fit(groups), float), len(groups), np.nan
+    if n >= 3:
+        without = np.array([fit([*groups[:k], *groups[k + 1 :]]) for k in range(n)])
+        half = stdtrit(n - 1, 0.5 + level / 2) * np.sqrt(n - 1) * without.std(axis=0)
     return np.column_stack([whole, whole - half, whole + half])
 
 
@@ -163,9 +152,11 @@ def r_squared(data: np.ndarray, predicted: np.ndarray) -> float:
 class GainAndThreshold:
     """Impulse rate ``gain * [stimulus - threshold]+``: the same two constants for every stimulus.
 
-    Attributes:
-        gain: (impulses/s) by unit of the stimulus, not negative. threshold: in the stimulus's unit;
-        below the least stimulus it stands for a discharge that needs none.
+    Attributes
+    ----------
+    gain : (impulses/s) by unit of the stimulus, not negative.
+    threshold : in the stimulus's unit; below the least stimulus it stands for a discharge that
+        needs none.
     """
 
     gain: float
@@ -221,11 +212,7 @@ def leave_one_out(stimulus: np.ndarray, rate: np.ndarray, groups: np.ndarray) ->
     """Rates (n,) predicted by the gain and threshold that the other groups give. groups: (n,)
     labels, such as curvatures.
     """
-    stimulus, rate, groups = (
-        np.asarray(stimulus, float),
-        np.asarray(rate, float),
-        np.asarray(groups),
-    )
+    stimulus, rate, groups = map(np.asarray, (stimulus, rate, groups))
     predicted = np.empty(len(rate))
     for label in np.unique(groups):
         out = groups == label

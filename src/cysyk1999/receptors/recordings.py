@@ -46,15 +46,19 @@ of some, under one protocol. ``or_curvature_per_m`` is for a rate whose surface 
 def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
     """Impulse rates of CSV files, one after the other in the order of their names, each once.
 
-    Args:
-        paths: files, or folders, all of whose CSV files are read; a folder may have none.
+    Parameters
+    ----------
+    paths : files, or folders, all of whose CSV files are read; a folder may have none.
 
-    Returns:
-        Columns of :data:`RATES` and ``file``; no rows if there is no file.
+    Returns
+    -------
+    Columns of :data:`RATES` and ``file``; no rows if there is no file.
 
-    Raises:
-        ReferenceDataError: a file is wrong; a recording has the same rate twice; a burst is of a
-        pressed surface or another of a stroked one.
+    Raises
+    ------
+    ReferenceDataError
+        A file is wrong; a recording has the same rate twice; a burst is of a pressed surface or
+        another of a stroked one.
     """
     files = [
         file
@@ -88,8 +92,8 @@ def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
     for row in together.index[together.duplicated(key)]:
         entry = together.loc[row]
         what = (
-            f"{entry['window']} of {entry['recording']} at {entry['curvature_per_m']:g} 1/m, "
-            f"{entry['force_gf']:g} gf"
+            f"{entry['window']} of {entry['recording']} at {entry['curvature_per_m']:g} "
+            f"1/m, {entry['force_gf']:g} gf"
         )
         raise ReferenceDataError(f"{entry['file']}: the {what} is given twice; allowed: each once")
     return together

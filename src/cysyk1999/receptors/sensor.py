@@ -3,7 +3,8 @@
 An array of pressure sensors on a robot's finger measures what the pad's surface feels. Eq 4-4 says
 what receptors under a skin would make of it, Eq 5-1 what they would send::
 
-    sensor = TactileSensor(x, law)          # places of the pressure sensors (m), a SpatialSum fitted at the receptor's depth
+    # places of the pressure sensors (m), a SpatialSum fitted at the receptor's depth
+    sensor = TactileSensor(x, law)
     rate = sensor.step(time, pressure)      # once a frame: s, Pa -> impulses/s
 
 The sum over the sensors is exact for pressures linear between them, so the constants fitted to the
@@ -20,12 +21,17 @@ from fingerpad.receptors.laws import THESIS_RATE, ImpulseRate, SpatialSum, kerne
 class TactileSensor:
     """Impulse rates of receptors under an array of pressure sensors.
 
-    Args:
-        x: (n,) m, places of the pressure sensors, increasing. law: Eq 4-4 at the receptors' depth.
-        rate: Eq 5-1. receptors: (m,) m or a number, lateral places of the receptors.
+    Parameters
+    ----------
+    x : (n,) m, places of the pressure sensors, increasing.
+    law : Eq 4-4 at the receptors' depth.
+    rate : Eq 5-1.
+    receptors : (m,) m or a number, lateral places of the receptors.
 
-    Raises:
-        ValueError: fewer than two sensors, or places that do not increase.
+    Raises
+    ------
+    ValueError
+        Fewer than two sensors, or places that do not increase.
     """
 
     def __init__(self, x, law: SpatialSum, rate: ImpulseRate = THESIS_RATE, receptors=0.0):
@@ -46,9 +52,11 @@ class TactileSensor:
         The rate of the strain energy is the difference to the frame before over the time between
         them; the first frame has none.
 
-        Args:
-            time: s, later than in the call before. pressure: (n,) Pa. indentation: m, for a law
-            that asks for it.
+        Parameters
+        ----------
+        time : s, later than in the call before.
+        pressure : (n,) Pa.
+        indentation : m, for a law that asks for it.
         """
         energy = self.weights @ pressure * (self.law.per_depth * indentation + self.law.constant)
         change = 0.0 if self._time is None else (energy - self._energy) / (time - self._time)
@@ -58,8 +66,11 @@ class TactileSensor:
     def rates(self, time, pressure, indentation=0.0) -> np.ndarray:
         """The same for a whole recording at once: (frames,) or (frames, m) impulses/s.
 
-        Args:
-            time: (frames,) s, increasing. pressure: (frames, n) Pa. indentation: (frames,) m.
+        Parameters
+        ----------
+        time : (frames,) s, increasing.
+        pressure : (frames, n) Pa.
+        indentation : (frames,) m.
         """
         pressure = np.asarray(pressure, float)
         scale = np.broadcast_to(
@@ -74,9 +85,10 @@ class TactileSensor:
 def taxel_pressure(x, pressure, edges) -> np.ndarray:
     """Mean pressure (..., n - 1) Pa over the faces of sensors between edges (n,) m.
 
-    Args:
-        x: (..., k) m, increasing: places of the pressures, linear in between, none outside.
-        pressure: (..., k) Pa.
+    Parameters
+    ----------
+    x : (..., k) m, increasing: places of the pressures, linear in between, none outside.
+    pressure : (..., k) Pa.
     """
     x, pressure = np.asarray(x, float), np.asarray(pressure, float)
     spacing, inside = np.diff(x), np.clip(edges, x[..., :1], x[..., -1:])

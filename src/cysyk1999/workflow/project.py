@@ -22,7 +22,7 @@ from fingerpad.scenes.families import Written, moves_along, read_scene, rests_on
 RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
 COMPANIONS = {"coarse_mesh": 1, "coarse": 2}
 """Companions of a scene on a coarser mesh: folder of their results -> time steps merged into one."""
-RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rapidly_adapting")
+RECEPTOR_TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy")
 TABLES = ("thesis_comparison", "sensitivity")
 HISTORIES = {"history", "histories", "cases", "sweep"}
 """Keys of inputs that are histories."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from cysyk1999.job import Job, part
 from cysyk1999.studies.calibration.force import calibrate_forces
 from cysyk1999.studies.calibration.friction import calibrate_friction_job
-from cysyk1999.studies.calibration.relaxation import calibrate_prony
 from cysyk1999.studies.calibration.strokes import strokes_with_friction
 
 if TYPE_CHECKING:
@@ -36,16 +35,6 @@ def calibration(project: Project) -> Iterator[Job]:
     }
     made = {"data": data(*names, *estimates), "specimens": [project.result("specimens")]}
     yield Job(calibrate_forces, read, made, name="calibrate", priority=1)
-    if RAMP in c.calibration_scenes:
-        read = {
-            "relaxation": [project.at("config/reference/relaxation.csv")],
-            "mesh": project.meshes([RAMP]),
-            "histories": project.histories([PLATE, "calibration_long_term", RAMP]),
-            **project.reads(RAMP),
-        }
-        values = project.values_of(RAMP) | {"accuracy": [str(c.accuracy or "as_stated")]}
-        yield Job(calibrate_prony, read, {"data": data("prony", "prony_estimates")}, values)
-        names, estimates = [*names, "prony"], [*estimates, "prony_estimates"]
     if c.friction_coefficients:
         histories = [
             project.result(f"friction/{mu:g}/history.nc") for mu in c.friction_coefficients

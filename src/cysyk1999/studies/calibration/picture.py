@@ -19,6 +19,7 @@ from cysyk1999.publishing.style import (
     DOTTED,
     GREY,
     INK,
+    MARKERS,
     SOLID,
     ordered,
     spread,
@@ -28,7 +29,6 @@ from cysyk1999.publishing.style import (
 from fingerpad.measures.features import is_simulated
 
 DEPTH, FORCE, COEFFICIENT = "depth (mm)", "force (N)", "coefficient (1)"
-MARKERS = "os^Dv<>P"
 TOUCHED = "#c9dbe8"
 """Shade of what is about a number."""
 MODEL_LINES = {
@@ -38,14 +38,14 @@ MODEL_LINES = {
 }
 
 
-def _colours(names: Sequence[str]) -> dict[str, object]:
-    """Colour of each subject; the mean in ink."""
-    looks = ordered("subject", [name for name in names if name != "mean"])
-    return {name: look["color"] for name, look in looks.items()} | {"mean": INK}
-
-
-def _title_of(who: str) -> str:
-    return who if who == "mean" else f"subject {who}"
+def _looks(names: Sequence[str]) -> dict[str, dict]:
+    """Marker of each subject, and its name for a legend; the mean a star in ink."""
+    subjects = [name for name in names if name != "mean"]
+    looks = {"mean": {"color": INK, "marker": "*", "ms": 8, "label": "mean"}}
+    for name, look in ordered("subject", subjects).items():
+        mark = {"color": look["color"], "marker": MARKERS[list(names).index(name) % len(MARKERS)]}
+        looks[name] = mark | {"ms": 4.5, "label": f"subject {name}"}
+    return {name: {"ls": "none"} | looks[name] for name in names}
 
 
 @styled
@@ -53,76 +53,46 @@ def fit(frame: pd.DataFrame) -> Figure:
     """Measured steady forces, fitted curves with 95 % bands and the thesis's constant; the mean
     with the bone moved.
     """
-    note = [
-        "Lines: simulated, steady state; moduli times a fitted constant (dotted: its 95 % "
-        "confidence), dashed: the moduli stated "
-        f"in the thesis. Points: {_measured(frame)}."
-    ]
-    fig = study_figure("Calibration: steady force under a flat plate", note, 3.4)
-    left, right = fig.subplots(1, 2, sharey=True)
     simulated = is_simulated(frame)
+    note = (
+        "Lines: simulated, steady state; moduli times a fitted constant (dotted: its 95 % "
+        "confidence), dashed: the moduli stated in the thesis. "
+        f"Points: {'; '.join(frame.loc[~simulated, 'source'].unique())}."
+    )
+    fig = study_figure("Calibration: steady force under a flat plate", [note], 3.4)
+    left, right = fig.subplots(1, 2, sharey=True)
     subjects = frame[frame["panel"] == "subjects"]
-    names = list(subjects.loc[~simulated, "series"].unique())
-    colours = _colours(names)
-    for k, who in enumerate(names):
+    looks = _looks(subjects.loc[~simulated, "series"].unique())
+    for who, look in looks.items():
         rows = subjects[subjects["series"] == who]
-        line, points = rows[is_simulated(rows)], rows[~is_simulated(rows)]
-        mean = who == "mean"
-        ends = {"color": colours[who], "lw": 0.5, "ls": DOTTED}
-        for end in (
-            "force_low (N)",
-            "force_high (N)",
-        ):  # lines, for overlapping bands show seams that look like curves
-            left.plot(line[DEPTH], line[end], **ends)
-        left.plot(line[DEPTH], line[FORCE], color=colours[who], lw=1.8 if mean else 1.1)
-        marker = "*" if mean else MARKERS[k % len(MARKERS)]
-        left.plot(
-            points[DEPTH],
-            points[FORCE],
-            marker,
-            color=colours[who],
-            ms=8 if mean else 4.5,
-            label=_title_of(who),
-        )
+        line, points = rows[simulated[rows.index]], rows[~simulated[rows.index]]
+        colour = look["color"]
+        # the ends as lines, for overlapping bands show seams that look like curves
+        for end in ("force_low (N)", "force_high (N)"):
+            left.plot(line[DEPTH], line[end], color=colour, lw=0.5, ls=DOTTED)
+        left.plot(line[DEPTH], line[FORCE], color=colour, lw=1.8 if who == "mean" else 1.1)
+        left.plot(points[DEPTH], points[FORCE], **look)
     stated = subjects[subjects["series"] == "thesis"]
     left.plot(stated[DEPTH], stated[FORCE], color=GREY, ls=DASHED)
     top = max(1.6, 1.1 * float(frame.loc[~simulated, FORCE].max()))
-    inside = stated[stated[FORCE] < 0.93 * top].iloc[-1]
-    left.annotate(
-        "moduli stated\nin the thesis",
-        (inside[DEPTH], inside[FORCE]),
-        xytext=(-4, 0),
-        textcoords="offset points",
-        ha="right",
-        va="center",
-        color=GREY,
-    )
-    left.set(
-        xlabel="indentation depth (mm)",
-        ylabel="force (N)",
-        title="each subject, and the mean",
-        ylim=(0, top),
-        xlim=(0, 2.5),
-    )
+    inside = stated.loc[stated[FORCE] < 0.93 * top, [DEPTH, FORCE]].iloc[-1]
+    place = {"textcoords": "offset points", "ha": "right", "va": "center", "color": GREY}
+    left.annotate("moduli stated\nin the thesis", inside, (-4, 0), **place)
+    left.set(xlabel="indentation depth (mm)", ylabel="force (N)", xlim=(0, 2.5), ylim=(0, top))
+    left.set_title("each subject, and the mean")
     left.legend(title="measured", loc="upper left", alignment="left")
     bone = frame[frame["panel"] == "bone"]
     styles = ((0, (4, 1.8)), "-", (0, (1, 1.2)))
     for style, (name, rows) in zip(styles, bone.groupby("series", sort=False), strict=False):
         right.plot(rows[DEPTH], rows[FORCE], color=INK, ls=style, lw=1.3, label=name)
-    last = subjects[(subjects["series"] == names[-1]) & ~is_simulated(subjects)]
-    right.plot(last[DEPTH], last[FORCE], "*" if names[-1] == "mean" else "o", color=INK, ms=8)
-    right.set(
-        xlabel="indentation depth (mm)",
-        title=f"{_title_of(names[-1])}, the bone moved, the same constant",
-        xlim=(0, 2.5),
-    )
+    last, look = list(looks.items())[-1]
+    rows = subjects[(subjects["series"] == last) & ~is_simulated(subjects)]
+    marker = "*" if last == "mean" else "o"
+    right.plot(rows[DEPTH], rows[FORCE], marker, color=INK, ms=8)
+    right.set(xlabel="indentation depth (mm)", xlim=(0, 2.5))
+    right.set_title(f"{look['label']}, the bone moved, the same constant")
     right.legend(loc="upper left", title="fat under the apex", alignment="left")
     return fig
-
-
-def _measured(frame: pd.DataFrame) -> str:
-    sources = frame.loc[~is_simulated(frame), "source"].drop_duplicates()
-    return "; ".join(sources)
 
 
 @styled
@@ -131,10 +101,10 @@ def identifiability(frame: pd.DataFrame) -> Figure:
     across.
     """
     note = [
-        "Rise of the sum of squares of simulated against measured forces above its least, over "
-        "the squared scatter of the fit. "
-        "Along the valley nothing changes: force tells modulus × contact length, nothing of "
-        "either alone."
+        "Rise of the sum of squares of simulated against measured forces above its least, "
+        "over the squared scatter of the fit. "
+        "Along the valley nothing changes: force tells modulus × contact length, nothing "
+        "of either alone."
     ]
     fig = study_figure("Calibration: what force can tell", note, 3.7)
     left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
@@ -229,31 +199,24 @@ def residuals(frame: pd.DataFrame) -> Figure:
     length that force asks for.
     """
     note = [
-        "Measured forces less simulated ones, whose contact length has one parameter, fitted with "
-        "the thesis's moduli. "
-        "Elliptical patch: proportional to the width; plane sections: each pressed by itself. "
-        "Thin, a marker a subject; thick: "
+        "Measured forces less simulated ones, whose contact length has one parameter, "
+        "fitted with the thesis's moduli. "
+        "Elliptical patch: proportional to the width; plane sections: each pressed by "
+        "itself. Thin, a marker a subject; thick: "
         "the mean."
     ]
     fig = study_figure("Calibration: a contact that grows", note, 3.4)
     left, right = fig.subplots(1, 2)
     residual = frame[frame["panel"] == "residuals"]
     subjects = residual["subject"].unique()
+    looks = _looks(subjects)
     thick = "mean" if "mean" in subjects else subjects[0]
     for model, (style, colour) in MODEL_LINES.items():
         for who, rows in residual[residual["series"] == model].groupby("subject"):
-            mean = who == thick
-            marker = "*" if mean else MARKERS[list(subjects).index(who) % len(MARKERS)]
-            left.plot(
-                rows[DEPTH],
-                1e3 * rows["residual (N)"],
-                color=colour,
-                ls=style,
-                lw=1.8 if mean else 0.6,
-                marker=marker,
-                ms=4.5 if mean else 2.5,
-                label=model if mean else None,
-            )
+            look = {"lw": 0.6, "ms": 2.5, "marker": looks[who]["marker"]}
+            if who == thick:
+                look = {"lw": 1.8, "ms": 4.5, "marker": "*", "label": model}
+            left.plot(rows[DEPTH], 1e3 * rows["residual (N)"], color=colour, ls=style, **look)
     left.axhline(0, color=GREY, lw=0.7)
     left.set(
         xlabel="indentation depth (mm)", ylabel="measured less simulated (mN)", title="residuals"
@@ -263,17 +226,8 @@ def residuals(frame: pd.DataFrame) -> Figure:
     left.legend(loc="upper left")
     length = frame[frame["panel"] == "length"]
     needed, fitted = length[length["series"] == "needed"], length[length["series"] != "needed"]
-    colours = _colours(list(needed["subject"].unique()))
-    for k, (who, rows) in enumerate(needed.groupby("subject", sort=False)):
-        marker = "*" if who == "mean" else MARKERS[k % len(MARKERS)]
-        right.plot(
-            rows[DEPTH],
-            rows["effective_length (mm)"],
-            marker,
-            color=colours[who],
-            ms=8 if who == "mean" else 4.5,
-            label=_title_of(who),
-        )
+    for who, rows in needed.groupby("subject", sort=False):
+        right.plot(rows[DEPTH], rows["effective_length (mm)"], **looks[who])
     for model, rows in fitted.groupby("series", sort=False):
         style, colour = MODEL_LINES[model]
         right.plot(rows[DEPTH], rows["effective_length (mm)"], color=colour, ls=style)
@@ -289,71 +243,6 @@ def residuals(frame: pd.DataFrame) -> Figure:
 
 
 @styled
-def prony(frame: pd.DataFrame) -> Figure:
-    """Ramp-and-hold force and its fits, their errors, and how well amplitudes of the measured time
-    constants could be told.
-    """
-    note = [
-        "Simulated throughout, with known noise: no measured time courses are at hand. Time "
-        "constants of Pawluk and Howe "
-        "(1999) are measured, without amplitudes; right: the error any amplitude would have."
-    ]
-    fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
-    grid = fig.add_gridspec(2, 2, width_ratios=(1.35, 1), height_ratios=(1.5, 1))
-    top, below, right = (
-        fig.add_subplot(grid[0, 0]),
-        fig.add_subplot(grid[1, 0]),
-        fig.add_subplot(grid[:, 1]),
-    )
-    force = frame[frame["panel"] == "force"]
-    noisy = force[force["series"] == "with noise"]
-    top.plot(noisy["time (s)"], noisy[FORCE], ".", color=GREY, ms=4, label="simulated, with noise")
-    styles = {
-        "thesis's series, hereditary": (DOTTED, CATEGORIES[3]),
-        "fitted, hereditary": (DASHED, CATEGORIES[1]),
-        "fitted, corrected": ("-", INK),
-        "Pawluk and Howe's constants": ((0, (3, 1.2, 1, 1.2)), CATEGORIES[0]),
-    }
-    for name, (style, colour) in styles.items():
-        rows = force[force["series"] == name]
-        top.plot(rows["time (s)"], rows[FORCE], color=colour, ls=style, lw=1.2, label=name)
-        below.plot(
-            rows["time (s)"], rows["difference (% of the peak)"], color=colour, ls=style, lw=1.2
-        )
-    for ax in (top, below):
-        ax.set(xscale="log", xlim=(0.015, 10.5))
-        ax.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
-    top.tick_params(labelbottom=False)
-    top.set(ylabel="force (N)", ylim=(0, 1.6 * noisy[FORCE].max()))
-    top.legend(loc="upper left", fontsize=6, ncols=2, columnspacing=0.9, handlelength=1.8)
-    below.axhline(0, color=GREY, lw=0.7)
-    below.set(xlabel="time (s)", ylabel="off the simulation\n(% of the peak)")
-    told = frame[frame["panel"] == "amplitudes"]
-    for marker, (speed, rows) in zip(MARKERS, told.groupby("series", sort=False), strict=False):
-        right.plot(
-            rows["tau (s)"],
-            rows["half_width (1)"],
-            marker=marker,
-            color=INK,
-            lw=0.9,
-            ms=5,
-            mfc="white" if marker == "o" else INK,
-            label=f"ramp of {speed}",
-        )
-    right.set(
-        xscale="log",
-        yscale="log",
-        xlabel="time constant (s)",
-        ylabel="95 % half-width of an amplitude\nover the steady force (1)",
-        title="error of an amplitude",
-    )
-    right.xaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
-    right.yaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
-    right.legend(loc="upper right")
-    return fig
-
-
-@styled
 def friction(frame: pd.DataFrame) -> Figure:
     """Lateral displacement along the strokes, its mean and range over the coefficient, the thesis's
     stretch, published values.
@@ -361,10 +250,10 @@ def friction(frame: pd.DataFrame) -> Figure:
     panels = {name: rows for name, rows in frame.groupby("panel", sort=False)}
     published = panels["published"]
     note = [
-        "Simulated (the first two convexities, 20 gf, 10 mm/s). Blue: about 1 mm, the stretch the "
-        "thesis states; dotted: the "
-        "axis of its Fig. 5-15. Published coefficients were measured by others: sources in the "
-        "CSV.",
+        "Simulated (the first two convexities, 20 gf, 10 mm/s). Blue: about 1 mm, the "
+        "stretch the thesis states; dotted: the "
+        "axis of its Fig. 5-15. Published coefficients were measured by others: sources in "
+        "the CSV.",
     ]
     fig = study_figure("Calibration: friction from the stretch of the skin", note, 3.8)
     grid = fig.add_gridspec(2, 2, height_ratios=(3.2, 1))
@@ -413,17 +302,10 @@ def friction(frame: pd.DataFrame) -> Figure:
     low, high = curve["lowest (mm)"].min(), curve["highest (mm)"].max()
     on_white = {"fc": "white", "ec": "none", "alpha": 0.7, "pad": 0.6}
     names = spread(variations[LATERAL], 0.08 * (high - low), low, high) if len(variations) else ()
+    open_mark = {"color": CATEGORIES[3], "ms": 4, "mfc": "white"}
     for marker, row, place in zip("<>^v", variations.to_dict("records"), names, strict=False):
         right.plot([row[COEFFICIENT], 0.5], [row[LATERAL], place], color=GREY, lw=0.5, zorder=1)
-        right.plot(
-            row[COEFFICIENT],
-            row[LATERAL],
-            marker,
-            color=CATEGORIES[3],
-            ms=4,
-            mfc="white",
-            ls="none",
-        )
+        right.plot(row[COEFFICIENT], row[LATERAL], marker, **open_mark)
         right.text(0.51, place, row["series"], va="center", color=INK, fontsize=6.5, bbox=on_white)
     right.margins(y=0.1)
     right.set(
@@ -458,7 +340,6 @@ STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
     "calibration_fit": fit,
     "calibration_identifiability": identifiability,
     "calibration_residuals": residuals,
-    "calibration_prony": prony,
     "calibration_friction": friction,
 }
 """Study figure -> function of its data frame."""

@@ -13,7 +13,7 @@ beside.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from types import SimpleNamespace
@@ -40,18 +40,22 @@ ACCURACY = "draft"
 
 @dataclass(frozen=True)
 class Reading:
-    """What is read otherwise: in words, as changes of every scene, and as changes of those with the
-    wavy surface.
+    """One thing read otherwise.
 
-    ``share``: of the force that presses the wavy surface, in the same time. keeps: what is kept
-    while it slides, force or depth. deeper: m, how much deeper than it is called a receptor lies.
-    energy: which of a history's strain energies is read. given: rows that it takes from the thesis,
-    so that it explains nothing by them.
+    Attributes
+    ----------
+    words : what it is.
+    everywhere, stroked : changes of every scene, and of those with the wavy surface.
+    share : of the force that presses the wavy surface, in the same time.
+    keeps : what is kept while it slides, force or depth.
+    deeper : m, how much deeper than it is called a receptor lies.
+    energy : which of a history's strain energies is read.
+    given : rows that it takes from the thesis, so that it explains nothing by them.
     """
 
     words: str
-    everywhere: Mapping[str, Any]
-    stroked: Mapping[str, Any]
+    everywhere: Mapping[str, Any] = field(default_factory=dict)
+    stroked: Mapping[str, Any] = field(default_factory=dict)
     share: float = 1.0
     keeps: str = "force"
     deeper: float = 0.0
@@ -60,13 +64,12 @@ class Reading:
 
     def of(self, scene: Scene, stroked: bool) -> Scene:
         """A scene read so."""
-        changes = (
-            {"accuracy": ACCURACY} | dict(self.everywhere) | (dict(self.stroked) if stroked else {})
-        )
+        changes = {"accuracy": ACCURACY, **self.everywhere, **(self.stroked if stroked else {})}
         if stroked and self.share != 1:
             press = scene.motion[0]
             changes |= {"motion[0].press_to_force": self.share * press.force}
-            changes |= {"motion[0].rate": self.share * press.rate} if press.rate else {}
+            if press.rate:
+                changes["motion[0].rate"] = self.share * press.rate
         if stroked and isinstance(scene.motion[1], Slide):
             changes["motion[1].keep"] = self.keeps
         if self.deeper:
@@ -90,58 +93,51 @@ class Reading:
         )
 
 
-def _everywhere(words: str, **changes: Any) -> Reading:
-    return Reading(words, {key.replace("__", "."): value for key, value in changes.items()}, {})
-
-
 CONTROL, PUBLISHED = "as it is", "as published"
+OUTLINE = "specimen.outline"
+STIFFNESS = "specimen.layers.epidermis.youngs_modulus"
 READINGS: dict[str, Reading] = {
-    CONTROL: Reading("the comparison's own scenes", {}, {}),
-    PUBLISHED: Reading("the comparison's own runs", {}, {}),
-    "long-term moduli": _everywhere(
-        "the printed moduli are long-term ones", specimen__moduli="long_term"
+    CONTROL: Reading("the comparison's own scenes"),
+    PUBLISHED: Reading("the comparison's own runs"),
+    "long-term moduli": Reading(
+        "the printed moduli are long-term ones", {"specimen.moduli": "long_term"}
     ),
-    "larger radius": _everywhere(
-        "apex radius 10.5 mm, of a published section", specimen__outline__apex_radius="10.5 mm"
+    "larger radius": Reading(
+        "apex radius 10.5 mm, of a published section", {f"{OUTLINE}.apex_radius": "10.5 mm"}
     ),
-    "smaller radius": replace(
-        _everywhere(
-            "apex radius 7.9 mm, of the printed fan of nodes",
-            specimen__outline__apex_radius="7.9 mm",
-        ),
+    "smaller radius": Reading(
+        "apex radius 7.9 mm, of the printed fan of nodes",
+        {f"{OUTLINE}.apex_radius": "7.9 mm"},
         given=("T323",),
     ),
-    "more fat": _everywhere(
+    "more fat": Reading(
         "5.65 mm of fat, the end of its interval",
-        specimen__outline__bone_centre_height="-2.675 mm",
-        specimen__outline__bone_half_height="1.325 mm",
+        {
+            f"{OUTLINE}.bone_centre_height": "-2.675 mm",
+            f"{OUTLINE}.bone_half_height": "1.325 mm",
+        },
     ),
-    "wider bone": _everywhere(
+    "wider bone": Reading(
         "bone half-width 4.87 mm, the end of its interval",
-        specimen__outline__bone_half_width="4.87 mm",
+        {f"{OUTLINE}.bone_half_width": "4.87 mm"},
     ),
-    "softer epidermis": _everywhere(
-        "half the printed modulus of the epidermis",
-        specimen__layers__epidermis__youngs_modulus="75 kPa",
+    "softer epidermis": Reading("half the printed modulus of the epidermis", {STIFFNESS: "75 kPa"}),
+    "stiffer epidermis": Reading(
+        "twice the printed modulus of the epidermis", {STIFFNESS: "300 kPa"}
     ),
-    "stiffer epidermis": _everywhere(
-        "twice the printed modulus of the epidermis",
-        specimen__layers__epidermis__youngs_modulus="300 kPa",
-    ),
-    "longer contact": _everywhere(
-        "force spread over 20 mm, not 11.4 mm, of pad", specimen__contact_length="20 mm"
+    "longer contact": Reading(
+        "force spread over 20 mm, not 11.4 mm, of pad", {"specimen.contact_length": "20 mm"}
     ),
     "more friction": Reading(
         "the wavy surface has twice the friction, 0.7, where it is stepped too",
-        {},
-        {"friction": 0.7},
+        stroked={"friction": 0.7},
     ),
-    "no friction": Reading("the wavy surface slides without friction", {}, {"friction": 0.0}),
-    "half the force": Reading("the wavy surface is pressed with 10 gram-weight", {}, {}, 0.5),
-    "twice the force": Reading("the wavy surface is pressed with 40 gram-weight", {}, {}, 2.0),
+    "no friction": Reading("the wavy surface slides without friction", stroked={"friction": 0.0}),
+    "half the force": Reading("the wavy surface is pressed with 10 gram-weight", share=0.5),
+    "twice the force": Reading("the wavy surface is pressed with 40 gram-weight", share=2.0),
     **{
         f"energy: {name}": Reading(
-            f"strain energy is that of {words}", {}, {}, energy=f"strain_energy_{variable}"
+            f"strain energy is that of {words}", energy=f"strain_energy_{variable}"
         )
         for name, words, variable in (
             ("long-term", "the total stress on long-term moduli", "long_term_moduli"),
@@ -151,15 +147,11 @@ READINGS: dict[str, Reading] = {
         )
     },
     "receptors higher": Reading(
-        "receptors lie 80 um nearer the skin than they are called", {}, {}, deeper=-80e-6
+        "receptors lie 80 um nearer the skin than they are called", deeper=-80e-6
     ),
-    "receptors deeper": Reading(
-        "receptors lie 80 um deeper than they are called", {}, {}, deeper=80e-6
-    ),
+    "receptors deeper": Reading("receptors lie 80 um deeper than they are called", deeper=80e-6),
     "depth kept": Reading(
         "the depth that 20 gram-weight press to is kept while the wavy surface slides",
-        {},
-        {},
         keeps="depth",
     ),
 }
@@ -219,13 +211,16 @@ def explanations(
     """What was held out and does not hold in the published comparison, and the readings with which
     it holds.
 
-    Args:
-        published: the comparison. found: :func:`verdicts` by reading, the controls among them.
+    Parameters
+    ----------
+    published : the comparison.
+    found : :func:`verdicts` by reading, the controls among them.
 
-    Returns:
-        A row each, columns `COLUMNS`: the readings that explain it, the number found with the first
-        of them, and the readings that do not. ``attrs["summary"]`` says how many of those held out
-        are right, and how many more are explained, by kind.
+    Returns
+    -------
+    A row each, columns `COLUMNS`: the readings that explain it, the number found with the first of
+    them, and the readings that do not. ``attrs["summary"]`` says how many of those held out are
+    right, and how many more are explained, by kind.
     """
     reference = read_reference(reference_csv)
     scored = _held_out(published, reference)
@@ -256,25 +251,23 @@ def explanations(
 
 
 def _summary(scored: pd.DataFrame, table: pd.DataFrame, reference: pd.DataFrame) -> str:
-    form = reference["form"]
-    kinds = (
-        scored["id"]
-        .map(form)
-        .map(lambda each: {"axis": "axes", "trend": "trends"}.get(each, "values and ranges"))
+    names = {"axis": "axes", "trend": "trends"}
+    kinds = scored["id"].map(
+        reference["form"].map(lambda form: names.get(form, "values and ranges"))
     )
     explained = scored["id"].isin(table.loc[table["explained_by"] != "", "id"])
     agrees = scored["verdict"].isin(AGREES)
-    told = []
+    counts = []
     for kind in ("values and ranges", "trends", "axes"):
         of = kinds == kind
-        told.append(
-            f"{kind}: {(agrees & of).sum()} of {of.sum()} right, {(explained & of).sum()} more "
-            "explained by a run"
+        counts.append(
+            f"{kind}: {(agrees & of).sum()} of {of.sum()} right, "
+            f"{(explained & of).sum()} more explained by a run"
         )
     counted = ~kinds.eq("axes")
     share = ((agrees | explained) & counted).sum() / counted.sum()
     return (
-        f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: "
+        f"**Held out, {'; '.join(counts)}.** Values, ranges and trends right or explained: "
         f"{share:.0%}."
     )
 

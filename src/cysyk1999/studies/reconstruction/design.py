@@ -3,7 +3,7 @@ as it is done.
 
     python -m cysyk1999.studies.reconstruction.design RECORDS [SECONDS]
 
-goes on where it was stopped and ends after so many seconds of the process, at the end of a pad.
+continues where it was stopped and ends after so many seconds of the process, at the end of a pad.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import json
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -29,26 +30,20 @@ left to judge it by.
 UNKNOWNS = Path("config/reconstruction/unknowns.yaml")
 
 
-def run_design(
-    known: Unknowns, records: Path, seconds: float = float("inf"), surfaces: Sequence[str] = FITTED
-) -> None:
-    """Simulate the pads that `records` does not know yet, until so much time of the process has
+def run_design(known: Unknowns, records: Path, seconds: float = float("inf")) -> None:
+    """Simulate the pads that `records` does not have yet, until so much time of the process has
     gone.
     """
     started, drawn = time.process_time(), pd.DataFrame(known.draw())
-    write = Writer(records)
-    try:
+    with closing(Writer(records)) as write:
         for number, row in drawn.iterrows():
             if time.process_time() - started > seconds:
                 break
             pad = {k: float(f"{v:.6g}") for k, v in row.items()}
             key = f"{number} {json.dumps(pad)}"
-            if key in write.known:
-                continue
-            write({"key": key, "number": number, "pad": pad} | simulated(pad, surfaces))
-            print(number, f"{time.process_time() - started:.0f} s", flush=True)
-    finally:
-        write.close()
+            if key not in write.known:
+                write({"key": key, "number": number, "pad": pad} | simulated(pad, FITTED))
+                print(number, f"{time.process_time() - started:.0f} s", flush=True)
 
 
 def simulated(pad: Mapping[str, float], surfaces: Sequence[str]) -> dict[str, object]:
@@ -60,11 +55,8 @@ def simulated(pad: Mapping[str, float], surfaces: Sequence[str]) -> dict[str, ob
         except Exception as error:  # noqa: BLE001 - one bad pad never stops the design
             diagnosis = " ".join(f"{surface}: {type(error).__name__}: {error}".split())[:300]
             break
-    return {
-        "values": values,
-        "diagnosis": diagnosis,
-        "cpu_s": round(time.process_time() - started, 3),
-    }
+    cost = round(time.process_time() - started, 3)
+    return {"values": values, "diagnosis": diagnosis, "cpu_s": cost}
 
 
 def table(records: Path) -> pd.DataFrame:
@@ -72,13 +64,7 @@ def table(records: Path) -> pd.DataFrame:
     time.
     """
     rows = [
-        {
-            "pad": r["number"],
-            **r["pad"],
-            **r["values"],
-            "diagnosis": r["diagnosis"],
-            "cpu_s": r["cpu_s"],
-        }
+        {"pad": r["number"], **r["pad"], **r["values"]} | {k: r[k] for k in ("diagnosis", "cpu_s")}
         for r in read_records(records)
     ]
     return pd.DataFrame(rows).sort_values("pad", ignore_index=True)

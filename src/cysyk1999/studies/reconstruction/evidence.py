@@ -62,19 +62,17 @@ def read_evidence(path: str | Path) -> pd.DataFrame:
     the measure's.
     """
     table = read_table(path, COLUMNS)
+
+    def wrong(where: str, value: object, allowed: str) -> ReferenceDataError:
+        return ReferenceDataError(f"{path}: {where}: '{value}'; allowed: {allowed}")
+
     for row, record in enumerate(table.itertuples(index=False), start=2):
-        unit = pads.units(record.surface).get(record.measure)
-        expected = "N" if unit == "N/m" else unit
-        if expected != record.unit:
-            raise ReferenceDataError(
-                f"{path}: row {row}, column unit: '{record.unit}'; allowed: "
-                f"{expected or 'no such measure'}"
-            )
+        unit = pads.units(record.surface).get(record.measure, "no such measure")
+        unit = "N" if unit == "N/m" else unit
+        if unit != record.unit:
+            raise wrong(f"row {row}, column unit", record.unit, unit)
         if not record.low < record.high:
-            raise ReferenceDataError(
-                f"{path}: row {row}, column high: '{record.high:g}'; allowed: more than "
-                f"{record.low:g}"
-            )
+            raise wrong(f"row {row}, column high", f"{record.high:g}", f"more than {record.low:g}")
     if not table["id"].is_unique:
         twice = table["id"][table["id"].duplicated()].iloc[0]
         raise ReferenceDataError(f"{path}: column id: '{twice}' is there twice; allowed: each once")
@@ -85,98 +83,75 @@ def read_evidence(path: str | Path) -> pd.DataFrame:
 class Evidence:
     """Rows of the evidence, ready for many predictions at once.
 
-    Attributes:
-        rows: the table. keys: "surface: measure" of each row.
+    Attributes
+    ----------
+    rows : DataFrame
+        The table, columns `COLUMNS`.
     """
 
     rows: pd.DataFrame
 
     @cached_property
     def keys(self) -> list[str]:
-        """What each row is read of."""
-        return [
-            f"{s}: {m}" for s, m in zip(self.rows["surface"], self.rows["measure"], strict=True)
-        ]
+        """What each row is read of: "surface: measure"."""
+        return list(self.rows["surface"] + ": " + self.rows["measure"])
+
+    @cached_property
+    def _numbers(self) -> dict[str, np.ndarray]:
+        """Columns as arrays: many small predictions are judged."""
+        columns = ("low", "high", "tolerance", "factor", "unit")
+        return {name: self.rows[name].to_numpy() for name in columns}
 
     def of_role(self, *roles: str) -> Evidence:
         """The rows of some roles."""
         return Evidence(self.rows[self.rows["role"].isin(roles)].reset_index(drop=True))
 
-    def shown(self, values: np.ndarray, soft: np.ndarray, plate_length: np.ndarray) -> np.ndarray:
-        """What the thesis would show (..., rows).
+    def values(self, simulated: Mapping[str, float]) -> np.ndarray:
+        """Simulated numbers (rows,) by the rows' keys; NaN for what was not simulated."""
+        return np.array([simulated.get(key, np.nan) for key in self.keys])
 
-        Args:
-            values: (..., rows) as simulated, of `keys`. soft: (...) factor on all moduli.
-            plate_length: (...) mm, of chapter 3.
+    def shown(self, values: np.ndarray, soft, plate_length) -> np.ndarray:
+        """What the thesis would show.
+
+        Parameters
+        ----------
+        values : (..., rows) as simulated, of `keys`.
+        soft : (...) factor on all moduli.
+        plate_length : (...) mm, of chapter 3.
+
+        Returns
+        -------
+        (..., rows) in the rows' units.
         """
-        return np.asarray(values) * self._scale(
-            np.asarray(soft)[..., None], np.asarray(plate_length)[..., None]
-        )
+        soft, length = (np.asarray(number, float)[..., None] for number in (soft, plate_length))
+        unit, factor = self._numbers["unit"], self._numbers["factor"]
+        scale = np.where(np.isin(unit, pads.SCALE_FREE), 1.0, soft)
+        return values * (factor * scale * np.where(unit == "N", 1e-3 * length, 1.0))
 
-    def _scale(self, soft: np.ndarray, plate_length: np.ndarray) -> np.ndarray:
-        factor, scaled, force = self._units
-        return factor * np.where(scaled, soft, 1.0) * np.where(force, 1e-3 * plate_length, 1.0)
-
-    @cached_property
-    def _units(self) -> tuple[np.ndarray, ...]:
-        """Of each row: its factor, whether it grows with the moduli, whether it is a force."""
-        unit = self.rows["unit"].to_numpy(str)
-        return self.rows["factor"].to_numpy(float), ~np.isin(unit, pads.SCALE_FREE), unit == "N"
-
-    @cached_property
-    def _ends(self) -> tuple[np.ndarray, ...]:
-        """Of each row: lower end, upper end, tolerance."""
-        return tuple(self.rows[k].to_numpy(float) for k in ("low", "high", "tolerance"))
-
-    def departure(self, shown: np.ndarray, more: np.ndarray | float = 0.0) -> np.ndarray:
-        """Distance (..., rows) outside the interval in standard deviations, 0 inside; `more`: that
-        of the prediction itself.
+    def departure(self, shown: np.ndarray, deviation: np.ndarray | float = 0.0) -> np.ndarray:
+        """Distance (..., rows) outside the interval in standard deviations, 0 inside; `deviation`:
+        that of the prediction itself.
         """
-        low, high, tolerance = self._ends
+        low, high, tolerance = (self._numbers[k] for k in ("low", "high", "tolerance"))
         outside = np.maximum(np.maximum(low - shown, shown - high), 0.0)
-        return outside / np.hypot(tolerance, more)
+        return outside / np.hypot(tolerance, deviation)
 
     def distance(self, shown: np.ndarray) -> np.ndarray:
-        """Sum of squared departures (...): 0 for a model that nothing in the rows speaks
-        against.
-        """
+        """Sum of squared departures (...): 0 for a model inside all intervals."""
         return (self.departure(shown) ** 2).sum(axis=-1)
-
-    def by_family(self, shown: np.ndarray) -> dict[str, float]:
-        """Distance of one prediction (rows,) by family."""
-        squared = self.departure(shown) ** 2
-        families = self.rows["family"].to_numpy()
-        return {
-            family: float(squared[families == family].sum()) for family in dict.fromkeys(families)
-        }
 
     def as_thesis(self, shown: np.ndarray) -> Evidence:
         """The evidence that a model would have left: intervals as wide, its own numbers (rows,)
         between ticks as far apart.
 
-        What is bounded from above only stays so, with a bound a third above the number.
+        A number that is bounded from above only stays so, with a bound a third above it. Of a time
+        course only the sign, or the side of one, is known.
         """
-        rows = self.rows.copy()
-        width = rows["high"] - rows["low"]
-        one_sided = rows["low"].to_numpy() == 0
-        low = np.floor((shown - rows["low"]) / width) * width + rows["low"]
-        sign = (
-            rows["family"].to_numpy() == "time course"
-        )  # of these only the sign, or the side of one, is told
-        ratio = (
-            sign
-            & (rows["unit"].to_numpy() == "1")
-            & rows["measure"].str.contains("over").to_numpy()
-        )
-        low = np.where(one_sided, 0.0, low)
-        high = np.where(one_sided, np.maximum(1.3 * shown, 1e-9), low + width)
-        for told, at, least, most in ((sign & ~ratio, 0.0, -1.0, 1.0), (ratio, SEEN, 0.0, 2.0)):
-            above = shown > at
-            low = np.where(told, np.where(above, at, least), low)
-            high = np.where(told, np.where(above, most, at), high)
+        rows, least, width = self.rows, self.rows["low"], self.rows["high"] - self.rows["low"]
+        low = np.floor((shown - least) / width) * width + least
+        bounded, course = least == 0, rows["family"] == "time course"
+        ratio = course & (rows["unit"] == "1") & rows["measure"].str.contains("over")
+        cases = [ratio & (shown > SEEN), ratio, course & (shown > 0), course, bounded]
+        low = np.select(cases, [SEEN, 0.0, 0.0, -1.0, 0.0], low)
+        high = np.select(cases, [2.0, SEEN, 1.0, 0.0, np.maximum(1.3 * shown, 1e-9)], low + width)
         return Evidence(rows.assign(low=low, high=high))
-
-
-def values_of(found: Mapping[str, float], evidence: Evidence) -> np.ndarray:
-    """Simulated numbers (rows,) by the evidence's keys; NaN for what was not simulated."""
-    return np.array([found.get(key, np.nan) for key in evidence.keys])

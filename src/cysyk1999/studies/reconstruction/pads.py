@@ -14,23 +14,14 @@ import numpy as np
 import xarray as xr
 
 from cysyk1999.measures.of_presses import ENERGIES
-from cysyk1999.studies.reconstruction.unknowns import LOAD, STIFFNESS
+from cysyk1999.studies.reconstruction.unknowns import EPIDERMIS, LOAD, SCALED, SOFT, STIFFNESS
 from fingerpad.measures import features
 from fingerpad.scenes.scene import Scene, load_scene
 from fingerpad.simulation import simulate
 from fingerpad.specimen.outline import OutlineCurve
 
-SURFACES = {
-    "flat": None,
-    "79": 78.74,
-    "105": 104.99,
-    "158": 157.48,
-    "210": 209.97,
-    "315": 314.96,
-    "420": 419.95,
-    "630": 629.92,
-    "1260": 1259.84,
-}
+CURVATURES = (None, 78.74, 104.99, 157.48, 209.97, 314.96, 419.95, 629.92, 1259.84)
+SURFACES = dict(zip("flat 79 105 158 210 315 420 630 1260".split(), CURVATURES, strict=True))
 """Curvatures (1/m) of the nine surfaces."""
 PLATE, FAST = "plate", " at 150 gf/s"
 """The flat plate at 2 mm/s to 2 mm; what a surface is called at the faster ramp."""
@@ -38,7 +29,7 @@ DEPTHS = (560, 600, 640, 765, 800, 845, 870, 915, 960)
 """um; of the thesis's receptors."""
 FORCE = 20 * 9.80665e-3
 """N; 20 gram-weight."""
-EPIDERMIS, SOFT, POISSON = 0.15e6, 0.015e6, 0.48
+YOUNG_EPIDERMIS, YOUNG_SOFT, POISSON = 0.15e6, 0.015e6, 0.48
 """Pa, Pa, 1; printed in section 3.4."""
 BONE_BOTTOM, APEX, BELOW, EPIDERMIS_THICKNESS = 4.0e-3, 6.0e-3, 0.85e-3, 0.85e-3
 """m; bottom of the bone below the origin, height of the apex, thickness of the dermis and the
@@ -52,16 +43,9 @@ ACCURACY = {"tolerance": 0.05, "once": True}
 SCALE_FREE = ("mm", "1")
 """Units of what does not change with a factor on all moduli and the load."""
 MEASURES: dict[str, str] = {
-    "depth_top": "mm",
-    "depth_end": "mm",
-    "width_top": "mm",
-    "width_end": "mm",
-    "peak": "Pa",
-    "centre_peak": "Pa",
-    "centre_end": "Pa",
-    "first_over_dip": "1",
-    "top_over_dip": "1",
-    "late_change": "1",
+    **dict.fromkeys(("depth_top", "depth_end", "width_top", "width_end"), "mm"),
+    **dict.fromkeys(("peak", "centre_peak", "centre_end"), "Pa"),
+    **dict.fromkeys(("first_over_dip", "top_over_dip", "late_change"), "1"),
     **{f"energy_{z}": "Pa" for z in DEPTHS},
     **{f"energy_end_{z}": "Pa" for z in DEPTHS},
     **{f"energy_915_{k.replace(' ', '_')}": "Pa" for k in ENERGIES},
@@ -70,44 +54,28 @@ MEASURES: dict[str, str] = {
 """What is read of a ramp and hold, with its unit. top: the ramp's end; end: the hold's; energies
 are the highest unless "end".
 """
-FORCES: dict[str, str] = {
-    "force_05": "N/m",
-    "force_10": "N/m",
-    "force_15": "N/m",
-    "force_20": "N/m",
-    "force_held": "N/m",
-}
+PLATE_DEPTHS = (0.5, 1.0, 1.5, 2.0)
+FORCES: dict[str, str] = dict.fromkeys(
+    (*(f"force_{round(10 * d):02d}" for d in PLATE_DEPTHS), "force_held"), "N/m"
+)
 """What is read of the plate: line loads on the way at 0.5 to 2 mm, and after the hold."""
 
 
 def base(surface: str) -> Scene:
     """The scene of a surface on the pad of `START`."""
     name, fast, _ = surface.partition(FAST)
+    specimen = dict.fromkeys(("outline", "layers", "prony"), START)
+    specimen["contact_length"] = f"{1e3 * CHOSEN_LENGTH:g} mm"
+    document = {"specimen": specimen, "accuracy": ACCURACY, "stimulus": {"shape": "flat"}}
     if name == PLATE:
-        motion = [{"press_to_depth": "2 mm", "speed": "2 mm/s"}, {"hold": "6 s"}]
-        document = {"stimulus": {"shape": "flat"}, "motion": motion}
+        document["motion"] = [{"press_to_depth": "2 mm", "speed": "2 mm/s"}, {"hold": "6 s"}]
     else:
-        curvature = SURFACES[name]
-        stimulus = (
-            {"shape": "flat"}
-            if curvature is None
-            else {"shape": "cylinder", "curvature": f"{curvature} 1/m"}
-        )
-        motion = [
-            {"press_to_force": "20 gf", "rate": "150 gf/s" if fast else "40 gf/s"},
-            {"hold": "2 s"},
-        ]
-        receptors = {"receptors": {"depths": [f"{z} um" for z in DEPTHS]}}
-        document = {"stimulus": stimulus, "motion": motion, "outputs": receptors}
-    specimen = {
-        "outline": START,
-        "layers": START,
-        "prony": START,
-        "contact_length": f"{1e3 * CHOSEN_LENGTH:g} mm",
-    }
-    return load_scene(
-        document | {"specimen": specimen, "accuracy": ACCURACY}, f"reconstruction_{surface}"
-    )
+        rate = "150 gf/s" if fast else "40 gf/s"
+        document["motion"] = [{"press_to_force": "20 gf", "rate": rate}, {"hold": "2 s"}]
+        document["outputs"] = {"receptors": {"depths": [f"{z} um" for z in DEPTHS]}}
+        if curvature := SURFACES[name]:
+            document["stimulus"] = {"shape": "cylinder", "curvature": f"{curvature} 1/m"}
+    return load_scene(document, f"reconstruction_{surface}")
 
 
 def poisson_for(bulk: float) -> float:
@@ -123,26 +91,23 @@ def poisson_for(bulk: float) -> float:
 def changes(pad: Mapping[str, float]) -> dict[str, object]:
     """What is special to a pad's scenes: values of the design's axes as keys of a scene (SI)."""
     nu = poisson_for(pad["bulk_modulus"])
-    soft = SOFT * (1 + nu) / (1 + POISSON)  # the shear modulus stays
+    soft = YOUNG_SOFT * (1 + nu) / (1 + POISSON)  # the shear modulus stays
+    stiff = pad[STIFFNESS] * soft * YOUNG_EPIDERMIS / YOUNG_SOFT
     bone_top = APEX - 1e-3 * (pad["epidermis_thickness"] + pad["fat_thickness"]) - BELOW
-    found: dict[str, object] = {
-        "specimen.outline.apex_radius": 1e-3 * pad["apex_radius"],
-        "specimen.outline.epidermis_thickness": 1e-3 * pad["epidermis_thickness"],
-        "specimen.outline.bone_half_height": (bone_top + BONE_BOTTOM) / 2,
-        "specimen.outline.bone_centre_height": (bone_top - BONE_BOTTOM) / 2,
-        "specimen.outline.bone_half_width": 1e-3 * pad["bone_half_width"],
-        "specimen.outline.nail_half_width": 1e-3 * pad["nail_half_width"],
-        "specimen.contact_length": FORCE / pad[LOAD],
-        **{
-            f"specimen.layers.{layer}.poisson_ratio": nu for layer in ("epidermis", "dermis", "fat")
-        },
-        "specimen.layers.epidermis.youngs_modulus": pad[STIFFNESS] * soft * EPIDERMIS / SOFT,
-        "specimen.layers.dermis.youngs_modulus": soft,
-        "specimen.layers.fat.youngs_modulus": soft,
+    outline = {
+        name: 1e-3 * pad[name]
+        for name in ("apex_radius", "epidermis_thickness", "bone_half_width", "nail_half_width")
     }
+    outline["bone_half_height"] = (bone_top + BONE_BOTTOM) / 2
+    outline["bone_centre_height"] = (bone_top - BONE_BOTTOM) / 2
+    values: dict[str, object] = {f"specimen.outline.{k}": v for k, v in outline.items()}
+    for layer, young in {"epidermis": stiff, "dermis": soft, "fat": soft}.items():
+        values[f"specimen.layers.{layer}.youngs_modulus"] = young
+        values[f"specimen.layers.{layer}.poisson_ratio"] = nu
+    values["specimen.contact_length"] = FORCE / pad[LOAD]
     if pad["friction"] > 0:
-        found["friction"] = float(pad["friction"])
-    return found
+        values["friction"] = float(pad["friction"])
+    return values
 
 
 def scene(pad: Mapping[str, float], surface: str) -> Scene:
@@ -156,32 +121,28 @@ def clearance(pad: Mapping[str, float]) -> float:
     """
     outline = scene(pad, PLATE).specimen.outline
     layers = outline.epidermis_thickness + outline.dermis_thickness
-    bare = OutlineCurve(
-        outline.model_copy(update={"epidermis_thickness": 1e-5, "dermis_thickness": 1e-5})
-    )
+    thin = {"epidermis_thickness": 1e-5, "dermis_thickness": 1e-5}
+    bare = OutlineCurve(outline.model_copy(update=thin))
     skin = bare.point(np.linspace(0.0, np.pi, 121))
-    return 1e3 * float(np.hypot(*(skin - bare.bone_point(bare.bone_foot(skin))).T).min() - layers)
+    gap = np.linalg.norm(skin - bare.bone_point(bare.bone_foot(skin)), axis=1)
+    return 1e3 * float(gap.min() - layers)
 
 
 def of_plate(history: xr.Dataset) -> dict[str, float]:
     """`FORCES` of a history."""
-    depth, force = 1e3 * features.depth(history), history["force"].values
-    top = features.ramp_end(history)
-    found = {
-        f"force_{round(10 * d):02d}": float(np.interp(d, depth[: top + 1], force[: top + 1]))
-        for d in (0.5, 1.0, 1.5, 2.0)
-    }
-    return found | {"force_held": float(force[-1])}
+    ramp, force = slice(features.ramp_end(history) + 1), history["force"].values
+    at = np.interp(PLATE_DEPTHS, 1e3 * features.depth(history)[ramp], force[ramp])
+    return dict(zip(FORCES, [*at.tolist(), float(force[-1])], strict=True))
 
 
 def of_press(history: xr.Dataset) -> dict[str, float]:
     """`MEASURES` of a history."""
     top, time = features.ramp_end(history), history["time"].values
     depth, width = 1e3 * features.depth(history), 1e3 * features.width(history)
-    centre = features.centre_pressure(history)
+    centre, ramp = features.centre_pressure(history), slice(top + 1)
 
     def at(share: np.ndarray | float) -> np.ndarray:
-        return np.interp(share, time[: top + 1] / time[top], centre[: top + 1])
+        return np.interp(share, time[ramp] / time[top], centre[ramp])
 
     dip = at(np.linspace(0.4, 0.8, 41)).min()
     out = {
@@ -200,13 +161,10 @@ def of_press(history: xr.Dataset) -> dict[str, float]:
         energy = features.energy(history, z * 1e-6)
         out |= {f"energy_{z}": energy.max(), f"energy_end_{z}": energy[-1]}
     for name, variable in ENERGIES.items():
-        out[f"energy_915_{name.replace(' ', '_')}"] = features.energy(
-            history, 915e-6, name=variable
-        ).max()
-    out["energy_rate_915"] = features.energy_rate(history, 915e-6)[
-        "strain_energy_rate (Pa/s)"
-    ].max()
-    return {k: float(v) for k, v in out.items()}
+        energy = features.energy(history, 915e-6, name=variable)
+        out[f"energy_915_{name.replace(' ', '_')}"] = energy.max()
+    rate = features.energy_rate(history, 915e-6)["strain_energy_rate (Pa/s)"]
+    return {k: float(v) for k, v in (out | {"energy_rate_915": rate.max()}).items()}
 
 
 def read(pad: Mapping[str, float], surface: str) -> dict[str, float]:
@@ -232,3 +190,5 @@ CHOSEN = {
     "friction": 0.0,
 }
 """The pad of `START`, chosen one size at a time, on the axes of the design."""
+CHOSEN_BEFORE = CHOSEN | {SCALED: CHOSEN[LOAD], SOFT: 1.0, EPIDERMIS: 1.0, "plate_length": 10.0}
+"""The same pad with all that an inferred one has."""

@@ -23,10 +23,15 @@ from cysyk1999.publishing.style import (
 from cysyk1999.publishing.write import publish
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.evidence import FAMILIES, Evidence, read_evidence
-from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT
 from cysyk1999.studies.reconstruction.run import CHOSEN, SHOWN
 from cysyk1999.studies.reconstruction.specimen import most_probable
-from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns, read_unknowns
+from cysyk1999.studies.reconstruction.unknowns import (
+    EPIDERMIS,
+    SCALED,
+    SOFT,
+    Unknowns,
+    read_unknowns,
+)
 
 LABELS = {
     SCALED: "line load\n(N/m)",
@@ -58,13 +63,6 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
     for the pad chosen before.
     """
     columns = list(frame.columns[1:])
-    before = {
-        **pads.CHOSEN,
-        SCALED: pads.CHOSEN["load_over_state"],
-        "plate_length": 10.0,
-        SOFT: 1.0,
-        EPIDERMIS: 1.0,
-    }
     shares = frame["reading"].value_counts(normalize=True)
     told = ", ".join(
         f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01
@@ -75,48 +73,40 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
         "the series leaves 0.576. Numbers: rank correlations. Orange: the pad chosen before.",
     ]
     fig = study_figure("What the thesis's figures say of its pad", note, TALLEST)
-    n = len(columns)
+    n, values = len(columns), frame[columns]
     axes = fig.subplots(n, n)
-    values = frame[columns]
     rank = values.corr(method="spearman").to_numpy()
-    for i, row in enumerate(columns):
-        for j, column in enumerate(columns):
-            ax = axes[i, j]
-            ax.tick_params(labelsize=6, length=2)
-            if j > i:
-                ax.axis("off")
-                words = f"{rank[i, j]:+.2f}".replace("-", "−")
-                ax.text(
-                    0.5,
-                    0.5,
-                    words,
-                    ha="center",
-                    va="center",
-                    color=INK if abs(rank[i, j]) >= 0.3 else GREY,
-                )
-                continue
-            if i == j:
-                ax.hist(values[row], bins=2 * BINS, color="0.6")
-                ax.set_yticks([])
-            else:
-                ax.hist2d(values[column], values[row], bins=BINS, cmap="Greys", rasterized=True)
-                ax.axhline(before[SHOWN[i]], color=CATEGORIES[1], lw=0.8)
-            low, high = values[column].min(), values[column].max()
-            pad = 0.04 * max(high - low, 1e-9)
-            ax.set_xlim(low - pad, high + pad)
-            if low - pad <= before[SHOWN[j]] <= high + pad:
-                ax.axvline(before[SHOWN[j]], color=CATEGORIES[1], lw=0.8)
-            if i > j:
-                low, high = values[row].min(), values[row].max()
-                ax.set_ylim(low - 0.04 * max(high - low, 1e-9), high + 0.04 * max(high - low, 1e-9))
-            if i < n - 1:
-                ax.set_xticklabels([])
-            else:
-                ax.set_xlabel(LABELS[SHOWN[j]], fontsize=6.5)
-            if j > 0 or i == 0:
-                ax.set_yticklabels([])
-            if j == 0 and i > 0:
-                ax.set_ylabel(LABELS[SHOWN[i]], fontsize=6.5)
+    margin = 0.04 * (values.max() - values.min()).clip(lower=1e-9)
+    limits = np.column_stack([values.min() - margin, values.max() + margin])
+    chosen = [pads.CHOSEN_BEFORE[name] for name in SHOWN]
+    line = {"color": CATEGORIES[1], "lw": 0.8}
+    for (i, j), ax in np.ndenumerate(axes):
+        ax.tick_params(labelsize=6, length=2)
+        row, column = values[columns[i]], values[columns[j]]
+        if j > i:
+            ax.axis("off")
+            words = f"{rank[i, j]:+.2f}".replace("-", "−")
+            colour = INK if abs(rank[i, j]) >= 0.3 else GREY
+            ax.text(0.5, 0.5, words, ha="center", va="center", color=colour)
+            continue
+        if i == j:
+            ax.hist(row, bins=2 * BINS, color="0.6")
+            ax.set_yticks([])
+        else:
+            ax.hist2d(column, row, bins=BINS, cmap="Greys", rasterized=True)
+            ax.axhline(chosen[i], **line)
+            ax.set_ylim(limits[i])
+        ax.set_xlim(limits[j])
+        if limits[j, 0] <= chosen[j] <= limits[j, 1]:
+            ax.axvline(chosen[j], **line)
+        if i < n - 1:
+            ax.set_xticklabels([])
+        else:
+            ax.set_xlabel(LABELS[SHOWN[j]], fontsize=6.5)
+        if j > 0 or i == 0:
+            ax.set_yticklabels([])
+        else:
+            ax.set_ylabel(LABELS[SHOWN[i]], fontsize=6.5)
     return fig
 
 
@@ -124,23 +114,8 @@ def evidence_frame(evidence: Evidence, shown: pd.DataFrame, best: str) -> pd.Dat
     """A row a pad and row of the evidence: its interval, and where in it the number lies, 0 at the
     lower end, 1 at the upper.
     """
-    rows = shown.merge(
-        evidence.rows[
-            [
-                "id",
-                "figure",
-                "surface",
-                "measure",
-                "low",
-                "high",
-                "tolerance",
-                "unit",
-                "role",
-                "family",
-            ]
-        ],
-        on="id",
-    )
+    columns = "id figure surface measure low high tolerance unit role family".split()
+    rows = shown.merge(evidence.rows[columns], on="id")
     rows["pad"] = rows["pad"].replace(best, BEST)
     return rows.assign(place=(rows["shown"] - rows["low"]) / (rows["high"] - rows["low"]))
 
@@ -155,27 +130,25 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     ids = frame.drop_duplicates("id")
     ids = ids.assign(k=ids["family"].map(order)).sort_values("k", kind="stable")
     note = [
-        "Bars: the interval that a figure leaves, all drawn as long; what is between its ends "
-        "counts as met. White: not fitted. "
-        f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. Numbers "
-        "beyond three lengths of the bar "
+        "Bars: the interval that a figure leaves, all drawn as long; what is between its "
+        "ends counts as met. White: not fitted. "
+        f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. "
+        "Numbers beyond three lengths of the bar "
         "stand at the margin.",
     ]
     fig = study_figure("The evidence, row by row", note, TALLEST, header=0.2)
     looks = {
-        "drawn": (drawn, {"marker": "o", "ms": 2.4, "color": GREY, "alpha": 0.6}),
-        "chosen one at a time": (
-            frame[frame["pad"] == CHOSEN],
-            {"marker": "D", "ms": 3.2, "color": CATEGORIES[1]},
-        ),
-        BEST: (frame[frame["pad"] == BEST], {"marker": "o", "ms": 3.4, "color": CATEGORIES[0]}),
+        "drawn": {"marker": "o", "ms": 2.4, "color": GREY, "alpha": 0.6},
+        CHOSEN: {"marker": "D", "ms": 3.2, "color": CATEGORIES[1]},
+        BEST: {"marker": "o", "ms": 3.4, "color": CATEGORIES[0]},
     }
     for ax, roles in zip(fig.subplots(1, 2), (("fitted", "apart"), ("held_out",)), strict=True):
         rows = pd.concat([ids[ids["role"] == role] for role in roles])
         at = dict(zip(rows["id"], range(len(rows)), strict=True))
         shades = np.where(rows["role"] == "fitted", "0.86", "white")
         ax.barh(range(len(rows)), 1, height=0.72, color=shades, edgecolor="0.7", lw=0.5)
-        for part, look in looks.values():
+        for name, look in looks.items():
+            part = drawn if name == "drawn" else frame[frame["pad"] == name]
             part = part[np.isfinite(part["place"]) & part["id"].isin(rows["id"])]
             ax.plot(part["place"].clip(*CLIP), part["id"].map(at), ls="none", mec="none", **look)
         names = [
@@ -186,9 +159,8 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
         ax.set_title(" and ".join(ROLES[role] for role in roles))
         ax.set_xlabel("place in the interval, its ends at 0 and 1")
         ax.axhline((rows["role"] == roles[0]).sum() - 0.5, color=INK, lw=0.6)
-    header_legend(
-        fig, [handle(name, ls="none", **look) for name, (_, look) in reversed(looks.items())]
-    )
+    handles = [handle(name, ls="none", **look) for name, look in reversed(looks.items())]
+    header_legend(fig, handles)
     return fig
 
 

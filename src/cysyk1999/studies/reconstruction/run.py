@@ -19,18 +19,24 @@ from cysyk1999.publishing.write import publish_table, write_frame
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.design import simulated
 from cysyk1999.studies.reconstruction.emulator import Emulator
-from cysyk1999.studies.reconstruction.evidence import ROLES, Evidence, read_evidence, values_of
+from cysyk1999.studies.reconstruction.evidence import ROLES, Evidence, read_evidence
 from cysyk1999.studies.reconstruction.inference import (
-    EPIDERMIS,
-    SOFT,
+    TAILS,
     Posterior,
     Problem,
+    evidences,
     infer,
+    probabilities,
     recovery,
-    shares_of,
 )
 from cysyk1999.studies.reconstruction.specimen import specimen_text
-from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns, read_unknowns
+from cysyk1999.studies.reconstruction.unknowns import (
+    EPIDERMIS,
+    SCALED,
+    SOFT,
+    Unknowns,
+    read_unknowns,
+)
 from fingerpad.files import write_text
 
 CHOSEN = "chosen one at a time"
@@ -39,7 +45,7 @@ ENERGIES = {
     "total stress on long-term moduli": "energy_915_long-term_moduli",
 }
 """Definitions of the energy whose curves peak at the ramp's end, as those of the thesis do (trends
-TR20, TR21), by measure.
+TR20, TR21), by measure. The first is the headline's.
 """
 DRAWN, TRIALS, SEED = 12, 10, 1999
 """Pads of the posterior that are simulated; known pads that are to be found again."""
@@ -50,14 +56,19 @@ BANDS = ("width_top", "width_end", "peak", *(f"energy_{z}" for z in pads.DEPTHS)
 SHOWN = (SCALED, "plate_length", "apex_radius", "fat_thickness", "bone_half_width", SOFT, EPIDERMIS)
 """What the picture of the posterior shows."""
 
+Pads = Mapping[str, Mapping[str, float]]
+"""By a pad's name: its unknowns, or what was read of it."""
+
 
 @dataclass(frozen=True)
 class Study:
-    """What was found.
+    """Results of the study.
 
-    Attributes:
-        posteriors: by reading. readings, emulator, recovered: tables. samples: of all readings,
-        each with its share.
+    Attributes
+    ----------
+    posteriors : by reading.
+    readings, emulator, recovered : tables.
+    samples : of all readings, each with its share.
     """
 
     posteriors: Mapping[str, Posterior]
@@ -68,59 +79,49 @@ class Study:
 
 
 def emulated(known: Unknowns, evidence: Evidence, design: pd.DataFrame) -> Emulator:
-    """An emulator of all that the fitted rows need, and of the energies by other definitions, from
-    the pads that did not fail.
+    """An emulator of everything that the fitted rows need, and of the energies by other
+    definitions, from the pads that did not fail.
     """
     whole = design[design["diagnosis"].isna() | (design["diagnosis"] == "")]
-    keys = [key for key in dict.fromkeys(evidence.keys) if key in whole]
-    keys += [
-        c for c in whole if any(c.endswith(f": {m}") for m in ENERGIES.values()) and c not in keys
-    ]
-    return Emulator.fit(
-        known.to_unit({name: whole[name].to_numpy() for name in known.axes}), whole[keys]
-    )
+    needed = [key for key in evidence.keys if key in whole]
+    ends = tuple(f": {measure}" for measure in ENERGIES.values())
+    keys = list(dict.fromkeys([*needed, *(name for name in whole if name.endswith(ends))]))
+    return Emulator.fit(known.to_unit(whole), whole[keys])
 
 
-def roomy(known: Unknowns, count: int = 256) -> Emulator:
-    """An emulator of the fat where it is thinnest, of the first pads of the design whatever became
-    of them.
-    """
+def room_of(known: Unknowns, count: int = 256) -> Emulator:
+    """An emulator of the fat where it is thinnest, from the first pads of the design."""
     drawn = pd.DataFrame(known.draw()).head(count)
-    room = pd.DataFrame(
-        {"pad: clearance": [pads.clearance(pad) for pad in drawn.to_dict("records")]}
-    )
-    return Emulator.fit(known.to_unit({name: drawn[name].to_numpy() for name in known.axes}), room)
-
-
-def defined_by(evidence: Evidence, measure: str) -> Evidence:
-    """The evidence with the strain energy at 915 um taken for another definition."""
-    rows = evidence.rows.assign(measure=evidence.rows["measure"].replace("energy_915", measure))
-    return Evidence(rows)
+    room = [pads.clearance(pad) for pad in drawn.to_dict("records")]
+    return Emulator.fit(known.to_unit(drawn), pd.DataFrame({"pad: clearance": room}))
 
 
 def study(known: Unknowns, evidence: Evidence, design: pd.DataFrame, trials: int = TRIALS) -> Study:
     """Everything that needs no further simulation."""
     fitted = evidence.of_role("fitted")
-    emulator = emulated(known, fitted, design)
-    room, posteriors, tables = roomy(known), {}, []
-    for definition, measure in ENERGIES.items():
-        rows = defined_by(fitted, measure)
-        found = {
-            name: infer(Problem(known, name, emulator.only(rows.keys), rows, room))
-            for name in known.readings
-        }
-        print(definition, {name: round(p.log_evidence, 2) for name, p in found.items()}, flush=True)
-        tables.append(shares_of(found.values()).assign(**{"strain energy": definition}))
-        posteriors = posteriors or found  # of the headline's definition
+    emulator, room = emulated(known, fitted, design), room_of(known)
+
+    def problem(reading: str, measure: str = "energy_915") -> Problem:
+        renamed = fitted.rows["measure"].replace("energy_915", measure)
+        rows = Evidence(fitted.rows.assign(measure=renamed))
+        return Problem(known, reading, emulator.only(rows.keys), rows, room)
+
+    found = {
+        definition: {name: infer(problem(name, measure)) for name in known.readings}
+        for definition, measure in ENERGIES.items()
+    }
+    tables = [
+        evidences(posteriors.values()).assign(**{"strain energy": definition})
+        for definition, posteriors in found.items()
+    ]
     readings = pd.concat(tables, ignore_index=True)
-    weight = np.exp(readings["log evidence (1)"] - readings["log evidence (1)"].max())
-    readings["probability (1)"] = weight / weight.sum()
-    recovered = recovery(Problem(known, FREEST, emulator.only(fitted.keys), fitted, room), trials)
+    readings["probability (1)"] = probabilities(readings["log evidence (1)"])
+    posteriors = next(iter(found.values()))
     return Study(
         posteriors,
         readings,
         pd.concat([emulator.summary(), room.summary()], ignore_index=True),
-        recovered,
+        recovery(problem(FREEST), trials),
         samples_of(posteriors),
     )
 
@@ -129,33 +130,30 @@ def samples_of(posteriors: Mapping[str, Posterior], count: int = 1500) -> pd.Dat
     """Samples of all readings together, as many of each as its evidence makes it likely: what is
     believed of each unknown.
     """
-    share = shares_of(posteriors.values()).set_index("reading")["probability (1)"]
+    share = evidences(posteriors.values()).set_index("reading")["probability (1)"]
     rng, frames = np.random.default_rng(SEED), []
     for name, posterior in posteriors.items():
-        pick = rng.integers(len(posterior.samples), size=max(round(count * share[name]), 0))
+        pick = rng.integers(len(posterior.samples), size=round(count * share[name]))
         pad = posterior.problem.pad(posterior.samples[pick])
-        frames.append(pd.DataFrame({"reading": name, **pad}) if len(pick) else pd.DataFrame())
-    return pd.concat([f for f in frames if len(f)], ignore_index=True)
+        if len(pick):
+            frames.append(pd.DataFrame({"reading": name, **pad}))
+    return pd.concat(frames, ignore_index=True)
 
 
 def posterior_table(posteriors: Mapping[str, Posterior], samples: pd.DataFrame) -> pd.DataFrame:
     """Intervals of every reading, and of all together by their probabilities."""
     tables = [p.table() for p in posteriors.values()]
     together = tables[0][["quantity", "unit"]].assign(reading="all readings by their probability")
-    quantiles = samples[list(together["quantity"])].quantile([0.5, 0.05, 0.95]).T.to_numpy()
+    quantiles = samples[list(together["quantity"])].quantile([0.5, *TAILS]).T.to_numpy()
     together[["median", "low 5 %", "high 95 %"]] = quantiles
     return pd.concat([together, *tables], ignore_index=True)[list(tables[0].columns)]
 
 
 def recovery_table(recovered: pd.DataFrame) -> pd.DataFrame:
     """How often each quantity was covered, and all together."""
-    by = recovered.groupby("quantity", sort=False)["covered"].agg(["sum", "count"]).reset_index()
-    whole = pd.DataFrame(
-        [{"quantity": "all", "sum": recovered["covered"].sum(), "count": len(recovered)}]
-    )
-    return pd.concat([by, whole], ignore_index=True).rename(
-        columns={"sum": "covered", "count": "trials"}
-    )
+    rows = pd.concat([recovered, recovered.assign(quantity="all")])
+    by = rows.groupby("quantity", sort=False)["covered"].agg(["sum", "count"]).reset_index()
+    return by.rename(columns={"sum": "covered", "count": "trials"})
 
 
 def chosen_pads(
@@ -164,68 +162,41 @@ def chosen_pads(
     """Pads that are simulated under all surfaces: the one chosen before, the best of each reading,
     some drawn.
     """
-    chosen = dict(pads.CHOSEN) | {
-        SCALED: pads.CHOSEN["load_over_state"],
-        SOFT: 1.0,
-        EPIDERMIS: 1.0,
-        "plate_length": 10.0,
-    }
-    found = {CHOSEN: chosen}
+    chosen = {CHOSEN: dict(pads.CHOSEN_BEFORE)}
     for name, posterior in posteriors.items():
-        pad = posterior.problem.pad(posterior.best[None])
-        found[f"best of {name}"] = {k: float(v[0]) for k, v in pad.items()}
-    pick = np.random.default_rng(SEED).choice(
-        len(samples), size=min(drawn, len(samples)), replace=False
-    )
-    for k, row in enumerate(samples.iloc[pick].to_dict("records"), start=1):
-        found[f"drawn {k}"] = {name: float(v) for name, v in row.items() if name != "reading"}
-    return found
+        pad = posterior.problem.pad(posterior.best)
+        chosen[f"best of {name}"] = {k: float(v) for k, v in pad.items()}
+    rng, count = np.random.default_rng(SEED), min(drawn, len(samples))
+    rows = samples.drop(columns="reading").iloc[rng.choice(len(samples), count, replace=False)]
+    return chosen | {f"drawn {k}": row for k, row in enumerate(rows.to_dict("records"), start=1)}
 
 
-def simulate_pads(
-    evidence: Evidence, chosen: Mapping[str, Mapping[str, float]]
-) -> dict[str, dict[str, float]]:
+def simulate_pads(evidence: Evidence, chosen: Pads) -> dict[str, dict[str, float]]:
     """What is read of pads under all surfaces of the evidence; stated moduli of dermis and fat
     taken for long-term ones.
     """
-    surfaces, out = list(dict.fromkeys(evidence.rows["surface"])), {}
+    surfaces, out = list(evidence.rows["surface"].unique()), {}
     for name, pad in chosen.items():
-        made = simulated({k: pad[k] for k in pads.CHOSEN}, surfaces)
-        out[name] = made["values"]
-        print(name, made["diagnosis"] or "done", made["cpu_s"], flush=True)
+        result = simulated({k: pad[k] for k in pads.CHOSEN}, surfaces)
+        out[name] = result["values"]
+        print(name, result["diagnosis"] or "done", result["cpu_s"], flush=True)
     return out
 
 
-def predicted(
-    evidence: Evidence,
-    chosen: Mapping[str, Mapping[str, float]],
-    found: Mapping[str, Mapping[str, float]],
-) -> pd.DataFrame:
+def predicted(evidence: Evidence, chosen: Pads, found: Pads) -> pd.DataFrame:
     """What pads show, row by row of the evidence; simulated, not emulated.
 
     Columns pad, id, shown, departure (in standard deviations of the row).
     """
     frames = []
     for name, pad in chosen.items():
-        shown = evidence.shown(
-            values_of(found[name], evidence), np.array(pad[SOFT]), np.array(pad["plate_length"])
-        )
-        frames.append(
-            pd.DataFrame(
-                {
-                    "pad": name,
-                    "id": evidence.rows["id"],
-                    "shown": shown,
-                    "departure": evidence.departure(shown),
-                }
-            )
-        )
+        shown = evidence.shown(evidence.values(found[name]), pad[SOFT], pad["plate_length"])
+        row = {"pad": name, "id": evidence.rows["id"], "shown": shown}
+        frames.append(pd.DataFrame(row | {"departure": evidence.departure(shown)}))
     return pd.concat(frames, ignore_index=True)
 
 
-def bands(
-    chosen: Mapping[str, Mapping[str, float]], found: Mapping[str, Mapping[str, float]]
-) -> pd.DataFrame:
+def bands(chosen: Pads, found: Pads) -> pd.DataFrame:
     """How far the pads drawn from what is believed differ: a row a surface and measure of `BANDS`,
     lowest and highest of them.
     """
@@ -233,51 +204,33 @@ def bands(
     drawn = {name: found[name] for name in chosen if name.startswith("drawn")}
     for key in next(iter(drawn.values())):
         surface, measure = key.split(": ")
-        if measure in BANDS and surface in pads.SURFACES:
-            unit = pads.MEASURES[measure]
-            shown = [
-                values[key] * (1.0 if unit in pads.SCALE_FREE else chosen[name][SOFT])
-                for name, values in drawn.items()
-                if key in values
-            ]
-            row = {
-                "surface": surface,
-                "measure": measure,
-                "unit": unit,
-                "low": min(shown),
-                "high": max(shown),
-            }
-            rows.append(
-                row
-                | {
-                    "pads": len(shown),
-                    "source": "pads drawn from the posterior of snakemake reconstruction, simulated",
-                }
-            )
-    return pd.DataFrame(rows)
+        if measure not in BANDS or surface not in pads.SURFACES:
+            continue
+        unit = pads.MEASURES[measure]
+        shown = [
+            values[key] * (1.0 if unit in pads.SCALE_FREE else chosen[name][SOFT])
+            for name, values in drawn.items()
+            if key in values
+        ]
+        row = {"surface": surface, "measure": measure, "unit": unit}
+        rows.append(row | {"low": min(shown), "high": max(shown), "pads": len(shown)})
+    source = "pads drawn from the posterior of snakemake reconstruction, simulated"
+    return pd.DataFrame(rows).assign(source=source)
 
 
-def families(
-    evidence: Evidence, found: pd.DataFrame, chosen: Mapping[str, Mapping[str, float]]
-) -> pd.DataFrame:
+def families(evidence: Evidence, found: pd.DataFrame, chosen: Pads) -> pd.DataFrame:
     """Distance of each pad by family and role, rows inside, and the pad itself: a row a pad."""
     rows = found.merge(evidence.rows[["id", "role", "family"]], on="id")
     rows = rows.assign(squared=rows["departure"] ** 2, inside=rows["departure"] == 0)
     out = []
-    for name, each in rows.groupby("pad", sort=False):
-        row = {"pad": name, **{k: chosen[name][k] for k in SHOWN}}
+    for name, of_pad in rows.groupby("pad", sort=False):
+        row = {"pad": name} | {k: chosen[name][k] for k in SHOWN}
         for role in ROLES:
-            of = each[each["role"] == role]
-            row[f"distance, {role.replace('_', ' ')} (1)"] = of["squared"].sum(min_count=1)
-            row[f"inside, {role.replace('_', ' ')}"] = f"{int(of['inside'].sum())} of {len(of)}"
-        row |= {
-            f"{family} (1)": value
-            for family, value in each[each["role"] == "fitted"]
-            .groupby("family", sort=False)["squared"]
-            .sum()
-            .items()
-        }
-        out.append(row)
+            of, title = of_pad[of_pad["role"] == role], role.replace("_", " ")
+            row[f"distance, {title} (1)"] = of["squared"].sum(min_count=1)
+            row[f"inside, {title}"] = f"{of['inside'].sum()} of {len(of)}"
+        fitted = of_pad[of_pad["role"] == "fitted"].groupby("family", sort=False)["squared"].sum()
+        out.append(row | fitted.add_suffix(" (1)").to_dict())
     return pd.DataFrame(out)
 
 

@@ -10,23 +10,31 @@ from __future__ import annotations
 import pandas as pd
 
 from cysyk1999.studies.reconstruction import pads
-from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT
-from cysyk1999.studies.reconstruction.unknowns import SCALED
+from cysyk1999.studies.reconstruction.unknowns import EPIDERMIS, SCALED, SOFT
 
-RIDGES = """
-ridges:                                # for scenes that ask for them; the thesis draws inner ridges (Fig 5-25) without sizes,
-                                       # facts behind these in config/reference/ridges.csv
-  half_width: "3.4 mm"                 # assumed: the contact under 20 gf and the way that friction drags it
-  inner:
-    pitch: "0.48 mm"                   # one below each papillary ridge: Stuecker and others 2001, 485 (71) um
-    height: "0.15 mm"                  # assumed: the middle of 0.1 to 0.2 mm
-    shape: smooth                      # assumed
-    phase: tip                         # assumed
-    limiting: 0                        # assumed: none
-  outer:                               # period: the inner pitch
-    height: "60 um"                    # Stuecker and others 2001, 59 (19) um
-    shape: smooth                      # assumed
-""".strip()
+RIDGES = (
+    (
+        "ridges:",
+        "for scenes that ask for them; the thesis draws inner ridges (Fig 5-25) without sizes,",
+    ),
+    ("", "facts behind these in config/reference/ridges.csv"),
+    (
+        '  half_width: "3.4 mm"',
+        "assumed: the contact under 20 gf and the way that friction drags it",
+    ),
+    ("  inner:", ""),
+    (
+        '    pitch: "0.48 mm"',
+        "one below each papillary ridge: Stuecker and others 2001, 485 (71) um",
+    ),
+    ('    height: "0.15 mm"', "assumed: the middle of 0.1 to 0.2 mm"),
+    ("    shape: smooth", "assumed"),
+    ("    phase: tip", "assumed"),
+    ("    limiting: 0", "assumed: none"),
+    ("  outer:", "period: the inner pitch"),
+    ('    height: "60 um"', "Stuecker and others 2001, 59 (19) um"),
+    ("    shape: smooth", "assumed"),
+)
 """What no figure of the pressed pad tells: sizes of ridges."""
 
 
@@ -66,14 +74,14 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
     nu = pads.poisson_for(value("bulk_modulus", 6))
     moduli = [
         1e-6 * e * value(k) * (1 + nu) / (1 + pads.POISSON)
-        for e, k in ((pads.EPIDERMIS, EPIDERMIS), (pads.SOFT, SOFT))
+        for e, k in ((pads.YOUNG_EPIDERMIS, EPIDERMIS), (pads.YOUNG_SOFT, SOFT))
     ]
     state, told = "long_term", (interval(EPIDERMIS, 0.15), interval(SOFT, 0.015))
     if reading == state or reading == "instantaneous":  # as printed
         state, nu, moduli, told = (
             reading,
             pads.POISSON,
-            [1e-6 * pads.EPIDERMIS, 1e-6 * pads.SOFT],
+            [1e-6 * pads.YOUNG_EPIDERMIS, 1e-6 * pads.YOUNG_SOFT],
             ("stated", "stated"),
         )
     skin, fat = 1e3 * pads.EPIDERMIS_THICKNESS, value("fat_thickness", 2)
@@ -96,8 +104,8 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
         (
             "half_width",
             9.5,
-            "assumed: within the axes of Fig 3-5; a published section: 9.75 (Wang and Gerling "
-            "2014)",
+            "assumed: within the axes of Fig 3-5; a published section: 9.75 (Wang and "
+            "Gerling 2014)",
         ),
         ("depth_below", 6.2, "assumed: within the axes of Fig 3-5"),
         (
@@ -131,10 +139,10 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
     lines = [
         "# yaml-language-server: $schema=../../workflow/schemas/specimen.schema.json",
         f"# The pad that the thesis's figures are most likely of: {says}",
-        f"# (probability {share:.2f} among those of figures/tables/reconstruction_readings.md). "
-        "Stated: printed in the thesis.",
-        "# Inferred: from chapter 3 and half of chapter 4 (`snakemake reconstruction`): with "
-        "intervals of 90 %, in mm, of",
+        f"# (probability {share:.2f} among those of "
+        "figures/tables/reconstruction_readings.md). Stated: printed in the thesis.",
+        "# Inferred: from chapter 3 and half of chapter 4 (`snakemake reconstruction`): "
+        "with intervals of 90 %, in mm, of",
         "# figures/tables/reconstruction_posterior.md. Assumed: of neither.",
         "outline:",
         *(_line(f'  {name}: "{size:.4g} mm"', why) for name, size, why in sizes),
@@ -150,7 +158,7 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
         _line("prony:", "stated: Eq 3-1; shear, normalised by the instantaneous modulus"),
         '  - {g: 0.055, tau: "3.25 s"}',
         '  - {g: 0.3691, tau: "0.3414 s"}',
-        *RIDGES.splitlines(),
+        *(_line(*row) for row in RIDGES),
         _line(f'contact_length: "{length:.3g} mm"', f"inferred: {low:.3g} to {high:.3g}"),
         _line('receptor_depths: ["600 um", "915 um"]', "stated: Figs 4-23 and 4-27"),
     ]
@@ -158,4 +166,4 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
 
 
 def _line(text: str, why: str) -> str:
-    return f"{text:<38} # {why}"
+    return f"{text:<38} # {why}" if why else text

@@ -14,46 +14,54 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
-from scipy.special import ndtr, ndtri
+from scipy.stats import qmc, truncnorm
 
 from fingerpad.documents import Problem, Strict, explain, read_yaml
 
 SCALED = "line_load"
 """The unknown that a pad is simulated with over the state of dermis and fat."""
 LOAD, STIFFNESS = "load_over_state", "stiffness_over_state"
+SOFT, EPIDERMIS = "soft_factor", "epidermis_factor"
 UNITS = ("N/m", "mm", "1")
 
 
-def _read(value: Any) -> tuple[float, str]:
+def _number(value: Any) -> tuple[float, str]:
     """``"17 N/m"`` -> 17.0, "N/m"."""
     number, _, unit = str(value).strip().partition(" ")
     unit = unit.strip() or "1"
     try:
-        found = float(number)
+        size = float(number)
     except ValueError:
-        raise Problem(
-            "is not a number with a unit", "a number, then one of " + ", ".join(UNITS)
-        ) from None
-    if unit not in UNITS or not np.isfinite(found):
-        raise Problem(
-            "is not a number with a known unit", "a number, then one of " + ", ".join(UNITS)
-        )
-    return found, unit
+        size = np.nan
+    if unit not in UNITS or not np.isfinite(size):
+        allowed = "a number, then one of " + ", ".join(UNITS)
+        raise Problem("is not a number with a known unit", allowed)
+    return size, unit
 
 
-def _pair(value: Any) -> tuple[tuple[float, str], tuple[float, str]]:
+def _pair(value: Any) -> tuple[tuple[float, str], ...]:
     if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise Problem(
-            "is not two values", 'two values, the lower one first, such as ["3 mm", "7 mm"]'
-        )
-    low, high = (_read(each) for each in value)
+        allowed = 'two values, the lower one first, such as ["3 mm", "7 mm"]'
+        raise Problem("is not two values", allowed)
+    low, high = map(_number, value)
     if low[1] != high[1] or not low[0] < high[0]:
         raise Problem("is not rising", "two values of one unit, the lower one first")
     return low, high
 
 
+def _factors(value: Any) -> tuple[float, ...]:
+    factors = tuple(map(float, value if isinstance(value, (list, tuple)) else [value]))
+    rising = list(factors) == sorted(set(factors))
+    if not rising or len(factors) not in (1, 2) or not all(0 < v < 10 for v in factors):
+        raise Problem("is not a factor or two", "[1], or two rising factors such as [0.5, 1.1]")
+    return factors
+
+
 Pair = Annotated[Any, BeforeValidator(_pair, json_schema_input_type=tuple[str, str])]
-Number = Annotated[Any, BeforeValidator(_read, json_schema_input_type=str)]
+Number = Annotated[Any, BeforeValidator(_number, json_schema_input_type=str)]
+Factors = Annotated[
+    tuple[float, ...], BeforeValidator(_factors, json_schema_input_type=list[float])
+]
 
 
 class Normal(Strict):
@@ -80,22 +88,14 @@ class Unknown(Strict):
     @model_validator(mode="after")
     def _one(self) -> Unknown:
         if (self.prior is None) == (self.normal is None):
-            raise Problem(
-                "says not one prior",
-                "prior: uniform or logarithmic, or normal: {mean: ..., sd: ...}",
-                ("prior",),
-            )
+            allowed = "prior: uniform or logarithmic, or normal: {mean: ..., sd: ...}"
+            raise Problem("must have one prior", allowed, ("prior",))
         return self
 
     @property
-    def low(self) -> float:
-        """Least value."""
-        return self.range[0][0]
-
-    @property
-    def high(self) -> float:
-        """Largest value."""
-        return self.range[1][0]
+    def axis(self) -> tuple[float, float, bool]:
+        """Least and largest value, and whether the prior is logarithmic."""
+        return self.range[0][0], self.range[1][0], self.prior == "logarithmic"
 
     @property
     def unit(self) -> str:
@@ -104,29 +104,11 @@ class Unknown(Strict):
 
     def at(self, share: np.ndarray) -> np.ndarray:
         """Values at shares from 0 to 1 of the prior."""
-        if self.prior == "uniform":
-            return self.low + (self.high - self.low) * share
-        if self.prior == "logarithmic":
-            return self.low * (self.high / self.low) ** share
+        if self.normal is None:
+            return _between(share, *self.axis)
         mean, sd = self.normal.mean[0], self.normal.sd[0]
-        low, high = ndtr((self.low - mean) / sd), ndtr((self.high - mean) / sd)
-        return mean + sd * ndtri(low + (high - low) * share)
-
-
-def _factors(value: Any) -> tuple[float, ...]:
-    found = tuple(float(v) for v in value) if isinstance(value, (list, tuple)) else (float(value),)
-    if (
-        not 1 <= len(found) <= 2
-        or not all(0 < v < 10 for v in found)
-        or sorted(set(found)) != list(found)
-    ):
-        raise Problem("is not a factor or two", "[1], or two rising factors such as [0.5, 1.1]")
-    return found
-
-
-Factors = Annotated[
-    tuple[float, ...], BeforeValidator(_factors, json_schema_input_type=list[float])
-]
+        low, high = ((end - mean) / sd for end, _ in self.range)
+        return truncnorm.ppf(share, low, high, mean, sd)
 
 
 class Reading(Strict):
@@ -140,6 +122,25 @@ class Reading(Strict):
     """The bulk modulus's factor, where the reading says it."""
     says: str
     """The reading in words."""
+
+    @property
+    def _factors(self) -> dict[str, tuple[float, ...]]:
+        return {SOFT: self.soft, EPIDERMIS: self.epidermis or ()}
+
+    @property
+    def fixed(self) -> dict[str, float]:
+        """Values that the reading says, by name."""
+        bulk = {} if self.bulk_modulus is None else {"bulk_modulus": self.bulk_modulus}
+        return {k: v[0] for k, v in self._factors.items() if len(v) == 1} | bulk
+
+    @property
+    def free(self) -> dict[str, Unknown]:
+        """Factors that the reading leaves free, by name."""
+        return {
+            name: Unknown(range=ends, prior="logarithmic", source=self.says)
+            for name, ends in self._factors.items()
+            if len(ends) == 2
+        }
 
 
 class Design(Strict):
@@ -170,47 +171,42 @@ class Unknowns(Strict):
         """Axes of the design: low, high, whether even in the logarithm. All that changes a
         simulation, not what scales it.
         """
-        d = self.design
-        own = {
-            LOAD: (*(v for v, _ in d.load_over_state), True),
-            STIFFNESS: (*(v for v, _ in d.stiffness_over_state), True),
+        scaled = {
+            name: (*(value for value, _ in getattr(self.design, name)), True)
+            for name in (LOAD, STIFFNESS)
         }
-        rest = {
-            k: (u.low, u.high, u.prior == "logarithmic")
-            for k, u in self.unknowns.items()
-            if k not in (SCALED, "plate_length")
-        }
-        return own | rest
+        skipped = (SCALED, "plate_length")
+        return scaled | {k: u.axis for k, u in self.unknowns.items() if k not in skipped}
 
     def to_unit(self, values: Mapping[str, np.ndarray]) -> np.ndarray:
         """Shares (n, axes) of the design's ranges at values of its axes; outside 0 to 1 where the
         design does not reach.
         """
-        out = []
+        shares = []
         for name, (low, high, logarithmic) in self.axes.items():
-            v = np.asarray(values[name], float)
-            out.append(
-                np.log(v / low) / np.log(high / low) if logarithmic else (v - low) / (high - low)
-            )
-        return np.stack(np.broadcast_arrays(*out), axis=-1)
+            scale = np.log if logarithmic else np.asarray
+            low, high, value = scale(low), scale(high), scale(values[name])
+            shares.append((value - low) / (high - low))
+        return np.stack(np.broadcast_arrays(*shares), axis=-1)
 
     def from_unit(self, shares: np.ndarray) -> dict[str, np.ndarray]:
         """Values of the axes at shares (..., axes)."""
-        found = {}
-        for k, (name, (low, high, logarithmic)) in enumerate(self.axes.items()):
-            s = shares[..., k]
-            found[name] = low * (high / low) ** s if logarithmic else low + (high - low) * s
-        return found
+        return {
+            name: _between(shares[..., k], *ax) for k, (name, ax) in enumerate(self.axes.items())
+        }
 
     def draw(self) -> dict[str, np.ndarray]:
         """The design: values (pads,) of its axes, of a scrambled Sobol sequence, so that any number
         of the first ones is even.
         """
-        from scipy.stats import qmc
-
+        pads = self.design.pads
         sobol = qmc.Sobol(len(self.axes), rng=np.random.default_rng(self.design.seed))
-        shares = sobol.random(2 ** int(np.ceil(np.log2(self.design.pads))))[: self.design.pads]
-        return self.from_unit(shares)
+        return self.from_unit(sobol.random(2 ** int(np.ceil(np.log2(pads))))[:pads])
+
+
+def _between(share: np.ndarray, low: float, high: float, logarithmic: bool) -> np.ndarray:
+    """Values at shares of a range."""
+    return low * (high / low) ** share if logarithmic else low + (high - low) * share
 
 
 def unknowns_json_schema() -> dict[str, Any]:
@@ -219,7 +215,7 @@ def unknowns_json_schema() -> dict[str, Any]:
 
 
 def read_unknowns(path: str | Path) -> Unknowns:
-    """Read and check the file. Raises SceneError, one line."""
+    """Read and check the file; SceneError, one line, if it is wrong."""
     document = read_yaml(Path(path))
     try:
         return Unknowns.model_validate(document, context=Path(path))

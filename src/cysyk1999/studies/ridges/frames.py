@@ -7,7 +7,6 @@ The figures are :mod:`cysyk1999.studies.ridges.picture`'s.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -39,51 +38,38 @@ from cysyk1999.studies.ridges.run import AWAY, FLANK, GRID, Case, boundary, tip_
 from fingerpad.measures.features import PRESSURE, SIMULATED, Histories, energy, profile
 from fingerpad.measures.strokes import loaded
 from fingerpad.results import scene_of
-from fingerpad.scenes.specimen import Outline, Ridges
 
 OUTER = ("ridged_outer_stroke_right", "ridged_outer_stroke_left")
-Place = Callable[[xr.Dataset], tuple[float, float]]
-READ: dict[str, Place] = dict(
-    zip(
-        RECEPTORS_SWEPT,
-        (
-            lambda h: (DEPTH, -BESIDE),
-            lambda h: (round(boundary_of(h, FLANK) - AWAY, 9), -FLANK),
-            lambda h: (round(boundary_of(h, FLANK) + AWAY, 9), -FLANK),
-        ),
-        strict=True,
-    )
-)
-"""Receptors of the sweeps: (depth, offset from a tip) m."""
 
 
-def specimen_of(history: xr.Dataset) -> tuple[Outline, Ridges | None]:
-    """Outline and ridges (None without) of a history's scene."""
-    specimen = scene_of(history).specimen
-    return specimen.outline, specimen.ridges
+def places(history: xr.Dataset) -> dict[str, tuple[float, float]]:
+    """Receptors of the sweeps: (depth, offset from a tip) m."""
+    flank = boundary_of(history, FLANK)
+    beside = (round(flank - AWAY, 9), -FLANK), (round(flank + AWAY, 9), -FLANK)
+    return dict(zip(RECEPTORS_SWEPT, ((DEPTH, -BESIDE), *beside), strict=True))
 
 
 def tip_of(history: xr.Dataset) -> float:
     """Lateral position (m) of the ridge's tip nearest to x = 0, at the thesis's depth."""
-    outline, ridges = specimen_of(history)
-    return (
-        0.0
-        if ridges is None or isinstance(ridges.inner.phase, str)
-        else tip_at_depth(outline, ridges.inner.phase)
-    )
+    specimen = scene_of(history).specimen
+    if specimen.ridges is None or isinstance(specimen.ridges.inner.phase, str):
+        return 0.0
+    return tip_at_depth(specimen.outline, specimen.ridges.inner.phase)
 
 
 def boundary_of(history: xr.Dataset, x: float) -> float:
     """Depth (m) at which the epidermis of a history's pad ends at an offset (m) from the tip."""
-    return boundary(*specimen_of(history), tip_of(history) + x)
+    specimen = scene_of(history).specimen
+    return boundary(specimen.outline, specimen.ridges, tip_of(history) + x)
 
 
 def frames(cases: Histories, strokes: Histories, coarse: Histories) -> dict[str, pd.DataFrame]:
     """Data of every figure, by its name.
 
-    Args:
-        cases: short strokes, by the case's name. strokes, coarse: scenes :data:`OUTER` and the
-        companions they have.
+    Parameters
+    ----------
+    cases : short strokes, by the case's name.
+    strokes, coarse : scenes :data:`OUTER` and the companions they have.
     """
     return {
         "offset": offset_frame(cases),
@@ -99,9 +85,8 @@ def index_and_error(
 ) -> tuple[float, float]:
     """Directional index at a place, and its difference to a companion's (NaN without)."""
     value = directional_index(fine, *place)
-    return value, abs(value - directional_index(coarse, *place)) if coarse is not None else float(
-        "nan"
-    )
+    other = float("nan") if coarse is None else directional_index(coarse, *place)
+    return value, abs(value - other)
 
 
 def _of(cases: Histories, height: float, mesh: str) -> xr.Dataset:
@@ -120,7 +105,8 @@ def offset_frame(cases: Histories) -> pd.DataFrame:
     ]
     parts = [pd.DataFrame(rows, columns=["panel", "series", OFFSET, RECEPTOR, INDEX])]
     x = np.linspace(GRID[1][0], GRID[1][-1], 121)
-    depths = [boundary(*specimen_of(fine), at) for at in x]
+    specimen = scene_of(fine).specimen
+    depths = [boundary(specimen.outline, specimen.ridges, at) for at in x]
     parts.append(pd.DataFrame({"panel": "boundary", OFFSET: x, RECEPTOR: depths}))
     pairs = {
         "no ridges": (_of(cases, 0, "thesis"), _of(cases, 0, "coarse")),
@@ -142,26 +128,22 @@ def offset_frame(cases: Histories) -> pd.DataFrame:
 
 
 def sweep_frame(cases: Histories, column: str) -> pd.DataFrame:
-    """Index of the receptors :data:`READ` against the height of the ridges or friction, with the
+    """Index of three receptors against the height of the ridges or friction, with the
     layer each lies in.
     """
     rows = []
     for name, history in cases.items():
         case = Case.named(name)
-        at, other, fixed = (
-            (case.height, case.friction, KEY[1])
-            if column == HEIGHT
-            else (case.friction, case.height, KEY[0])
-        )
-        if case.mesh != "thesis" or other != fixed:
+        at, held = (case.height, case.friction), KEY[1]
+        if column == FRICTION:
+            at, held = at[::-1], KEY[0]
+        if case.mesh != "thesis" or at[1] != held:
             continue
         coarse = cases.get(str(replace(case, mesh="coarse")))
-        for series, place in READ.items():
-            depth, offset = place(history)
+        for series, (depth, offset) in places(history).items():
             layer = "epidermis" if depth < boundary_of(history, offset) else "dermis"
-            rows.append(
-                (SIMULATED, series, layer, at, *index_and_error(history, coarse, depth, offset))
-            )
+            index = index_and_error(history, coarse, depth, offset)
+            rows.append((SIMULATED, series, layer, at[0], *index))
     frame = pd.DataFrame(rows, columns=["source", "series", "layer", column, INDEX, BAND])
     return frame.sort_values(["series", column], ignore_index=True)
 

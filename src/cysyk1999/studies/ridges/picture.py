@@ -43,46 +43,31 @@ RECEPTORS_SWEPT = (
     "epidermis, 25 µm above the flank",
     "dermis, 25 µm below the flank",
 )
-LOOKS = dict(
-    zip(
-        RECEPTORS_SWEPT,
-        ((INK, "o", "-"), (CATEGORIES[1], "s", DASHED), (CATEGORIES[0], "^", DOTTED)),
-        strict=True,
+LOOKS = {
+    name: {"color": colour, "marker": marker, "ls": line}
+    for name, colour, marker, line in zip(
+        RECEPTORS_SWEPT, (INK, *CATEGORIES[1::-1]), "os^", ("-", DASHED, DOTTED), strict=True
     )
-)
+}
 DEFINITION = (
-    "Simulated. Index: (right − left) / (right + left) of the strain energy under a "
-    "plate, over 2 to 4 mm of stroke. "
+    "Simulated. Index: (right − left) / (right + left) of the strain energy under a plate, "
+    "over 2 to 4 mm of stroke. "
 )
 
 
-# --- pictures --------------------------------------------------------------------------------------------------
+# --- pictures ------------------------------------------------------------------------------------
 
 
-def _curve(
-    ax: Axes, rows: pd.DataFrame, x: str, colour: str, marker: str, line, label: str
-) -> None:
-    """A curve with its band of discretisation error."""
+def _curve(ax: Axes, rows: pd.DataFrame, x: str, look: dict, label: str) -> None:
+    """A curve with its discretisation error: bars at heights, between which nothing is known, a
+    band elsewhere.
+    """
+    index, error, colour = rows[INDEX], rows[BAND], look["color"]
     if x != HEIGHT:
-        ax.fill_between(
-            rows[x],
-            rows[INDEX] - rows[BAND],
-            rows[INDEX] + rows[BAND],
-            color=colour,
-            alpha=0.25,
-            lw=0,
-        )
-    ax.plot(
-        rows[x],
-        rows[INDEX],
-        color=colour,
-        ls="none" if x == HEIGHT else line,
-        marker=marker,
-        ms=3.5,
-        label=label,
-    )
-    if x == HEIGHT:  # five heights tell nothing of what lies between
-        ax.errorbar(rows[x], rows[INDEX], rows[BAND], fmt="none", ecolor=colour, elinewidth=0.8)
+        ax.fill_between(rows[x], index - error, index + error, color=colour, alpha=0.25, lw=0)
+    ax.plot(rows[x], index, ms=3.5, label=label, **look | ({"ls": "none"} if x == HEIGHT else {}))
+    if x == HEIGHT:
+        ax.errorbar(rows[x], index, error, fmt="none", ecolor=colour, elinewidth=0.8)
 
 
 @styled
@@ -90,8 +75,8 @@ def offset(frame: pd.DataFrame) -> Figure:
     """Map round a ridge above, profile at the thesis's depth below."""
     profile_rows = frame[frame["panel"] == "profile"]
     note = [
-        f"{DEFINITION}Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the "
-        "thesis's receptors. Fine mesh, "
+        f"{DEFINITION}Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; "
+        "circles: the thesis's receptors. Fine mesh, "
         "not smoothed; band: difference to twice the edge.",
     ]
     fig = study_figure("Ridges: directional index round a ridge", note, 5.4)
@@ -124,18 +109,20 @@ def offset(frame: pd.DataFrame) -> Figure:
     top.set(ylim=(1105, 695), ylabel="depth below the skin (µm)")
     top.text(-244, 712, "epidermis", va="top", fontsize=6.5)
     top.text(-244, 1092, "dermis", va="bottom", fontsize=6.5)
-    looks = {"no ridges": (GREY, "", (0, (4, 1.8))), "inner ridges": (HIGHLIGHT, "o", "-")}
-    for series, (colour, marker, line) in looks.items():
-        rows = profile_rows[profile_rows["series"] == series]
-        _curve(ax, rows, OFFSET, colour, marker, line, series)
+    looks = {
+        "no ridges": {"color": GREY, "marker": "", "ls": DASHED},
+        "inner ridges": {"color": HIGHLIGHT, "marker": "o", "ls": "-"},
+    }
+    for series, look in looks.items():
+        _curve(ax, profile_rows[profile_rows["series"] == series], OFFSET, look, series)
     inner = profile_rows[profile_rows["series"] == "inner ridges"].set_index(OFFSET)
     epidermis = edge.loc[edge[RECEPTOR] > DEPTH * 1e6, OFFSET]
     ax.axvspan(epidermis.min(), epidermis.max(), color=LAYER_COLOURS["epidermis"], alpha=0.35, lw=0)
     ax.text(0, -0.72, "epidermis", ha="center", fontsize=6.5)
     value, error = inner.loc[-BESIDE * 1e6, [INDEX, BAND]]
     ax.annotate(
-        f"{value:.2f} ± {max(error, 0.005):.2g} at −46 µm:\n{(1 + value) / (1 - value):.1f} times "
-        "the energy",
+        f"{value:.2f} ± {max(error, 0.005):.2g} at −46 µm:\n{(1 + value) / (1 - value):.1f} "
+        "times the energy",
         (-BESIDE * 1e6, value),
         (-75, 0.45),
         ha="right",
@@ -158,23 +145,17 @@ def _sweep(frame: pd.DataFrame, column: str, title: str, xlabel: str, extra: str
     note = [DEFINITION + extra + " Band: difference to up to twice the edge."]
     fig = study_figure(title, note, 4.2)
     ax = fig.subplots()
-    for series, (colour, marker, line) in LOOKS.items():
+    for series, look in LOOKS.items():
         rows = frame[frame["series"] == series].sort_values(column)
-        if series == next(iter(LOOKS)) and column == HEIGHT:  # its layer changes with the height
-            for layer, part in rows.groupby("layer", sort=False):
-                _curve(ax, part, column, colour, marker, line, series if layer == "dermis" else "")
-                if layer == "epidermis":
-                    first = part.iloc[0]
-                    ax.annotate(
-                        "in the epidermis",
-                        (first[column], first[INDEX]),
-                        (0, 7),
-                        textcoords="offset points",
-                        ha="center",
-                        fontsize=7,
-                    )
-        else:
-            _curve(ax, rows, column, colour, marker, line, series)
+        if series != RECEPTORS_SWEPT[0] or column != HEIGHT:
+            _curve(ax, rows, column, look, series)
+            continue
+        for layer, part in rows.groupby("layer", sort=False):  # it changes with the height
+            _curve(ax, part, column, look, series if layer == "dermis" else "")
+            if layer == "epidermis":
+                first = part[[column, INDEX]].iloc[0]
+                place = {"textcoords": "offset points", "ha": "center", "fontsize": 7}
+                ax.annotate("in the epidermis", first, (0, 7), **place)
     ax.axhline(0, color=GREY, lw=0.6)
     ax.set(xlabel=xlabel, ylabel="directional index", ylim=(-0.8, 0.8))
     ax.margins(x=0.03)
@@ -214,7 +195,8 @@ def mesh(frame: pd.DataFrame) -> Figure:
     drawn = frame[frame["panel"] == "drawn"]
     note = [
         DEFINITION
-        + f"Receptor {DEPTH * 1e6:.0f} µm deep, {BESIDE * 1e6:.0f} µm left of a tip. Open: ridges on elements of the "
+        + f"Receptor {DEPTH * 1e6:.0f} µm deep, {BESIDE * 1e6:.0f} µm left of a tip. Open: "
+        "ridges on elements of the "
         "thesis's size (four to a pitch, one to a height), in three ways.",
     ]
     fig = study_figure("Ridges: how far to believe the directional index", note, 3.9)
@@ -255,63 +237,40 @@ def outer(frame: pd.DataFrame) -> Figure:
     both ways.
     """
     note = [
-        "Simulated: flat plate, 20 gf, 10 mm/s, calibrated friction; outer ridges 60 µm high, "
-        "0.48 mm apart; islands of 3 to "
+        "Simulated: flat plate, 20 gf, 10 mm/s, calibrated friction; outer ridges 60 µm "
+        "high, 0.48 mm apart; islands of 3 to "
         "5 loaded nodes: "
         f"their peaks are the mesh's. Receptors {DEPTH * 1e6:.0f} µm deep, that at 0 in the "
         "epidermis of the tip.",
     ]
     fig = study_figure("Ridges of the skin too: contact in islands", note, 5.0)
-    grid = fig.add_gridspec(2, 2)
-    axes = [fig.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, 0], grid[1, 1])]
-    part = lambda panel, series: frame[(frame["panel"] == panel) & (frame["series"] == series)]  # noqa: E731
-    for series, look in {
-        "pressed": {"color": GREY, "lw": 1.0},
-        "stroked by 50 mm": {"color": HIGHLIGHT, "lw": 1.0},
-    }.items():
+    axes = fig.subplots(2, 2).ravel()
+
+    def part(panel: str, series: str) -> pd.DataFrame:
+        return frame[(frame["panel"] == panel) & (frame["series"] == series)]
+
+    for series, colour in {"pressed": GREY, "stroked by 50 mm": HIGHLIGHT}.items():
         rows = part("pressure", series)
-        axes[0].plot(rows[X], rows[P] / 1e3, label=series, **look)
-    axes[0].set(
-        xlabel="x (mm)", ylabel="contact pressure (kPa)", title="contact pressure", xlim=(-4, 4)
-    )
-    axes[0].set_ylim(0, 1.28 * frame[P].max() / 1e3)
+        axes[0].plot(rows[X], rows[P] / 1e3, label=series, color=colour, lw=1.0)
+    axes[0].set(xlabel="x (mm)", ylabel="contact pressure (kPa)", title="contact pressure")
+    axes[0].set(xlim=(-4, 4), ylim=(0, 1.28 * frame[P].max() / 1e3))
     axes[0].legend(loc="upper left", ncols=2)
-    for series, look in {
-        "simulated mesh": {"color": INK},
-        "companion": {"color": GREY, "ls": (0, (3, 1.5))},
-    }.items():
+    coarser = {"color": GREY, "ls": (0, (3, 1.5)), "label": "coarser mesh"}
+    for series, look in {"simulated mesh": {"color": INK}, "companion": coarser}.items():
         rows = part("islands", series)
         if len(rows):
-            axes[1].step(
-                rows[DISTANCE],
-                rows["islands (1)"],
-                where="post",
-                label=series.replace("companion", "coarser mesh"),
-                **look,
-            )
-    axes[1].set(
-        xlabel="stroke distance (mm)",
-        ylabel="islands",
-        title="number of islands",
-        xlim=(0, 50),
-        ylim=(0, None),
-    )
+            look = {"where": "post", "label": series} | look
+            axes[1].step(rows[DISTANCE], rows["islands (1)"], **look)
+    axes[1].set(ylabel="islands", title="number of islands", ylim=(0, None))
     axes[1].yaxis.set_major_locator(MultipleLocator(2))
     axes[1].legend(loc="lower right")
-    top = 1.05 * frame[SED].max()
-    for ax, way in ((axes[2], "right"), (axes[3], "left")):
+    for ax, way in zip(axes[2:], ("right", "left"), strict=True):
         for series, (colour, line) in RECEPTORS.items():
-            rows = part(way, series)
-            ax.plot(
-                rows[DISTANCE],
-                rows[SED],
-                color=colour,
-                ls=line,
-                label=f"x = {series}".replace("-", "−"),
-            )
-        ax.set(
-            xlabel="stroke distance (mm)", title=f"plate to the {way}", xlim=(0, 50), ylim=(0, top)
-        )
+            rows, label = part(way, series), f"x = {series}".replace("-", "−")
+            ax.plot(rows[DISTANCE], rows[SED], color=colour, ls=line, label=label)
+        ax.set(title=f"plate to the {way}", ylim=(0, 1.05 * frame[SED].max()))
+    for ax in axes[1:]:
+        ax.set(xlabel="stroke distance (mm)", xlim=(0, 50))
     axes[2].set_ylabel("strain energy density (Pa)")
     axes[3].legend(loc="center right", bbox_to_anchor=(1.0, 0.52))
     return fig
@@ -319,7 +278,7 @@ def outer(frame: pd.DataFrame) -> Figure:
 
 RECEPTORS = {
     "-46 µm": (HIGHLIGHT, "-"),
-    "0 µm": (INK, (0, (4, 1.8))),
+    "0 µm": (INK, DASHED),
     "46 µm": (CATEGORIES[1], (0, (1, 1.2))),
 }
 STUDIES = {"offset": offset, "height": height, "friction": friction, "mesh": mesh, "outer": outer}

@@ -10,21 +10,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cysyk1999.measures.direction import BESIDE, DEPTH
 from fingerpad import load_scene
 from fingerpad.planning.plan import plan
 from fingerpad.results import Arrays, write_history
 from fingerpad.scenes.scene import Discretisation, Receptors, Scene, Slide
+from fingerpad.scenes.specimen import Outline, Ridges
 from fingerpad.simulation import solve
-from fingerpad.specimen import OutlineCurve, RidgedPad, mesh_for
-
-if TYPE_CHECKING:
-    from fingerpad.scenes.scene import Outline
-    from fingerpad.scenes.specimen import Ridges
-    from fingerpad.specimen import PadMesh
+from fingerpad.specimen import OutlineCurve, PadMesh, RidgedPad, mesh_for
 
 WAY, STEPS = 4e-3, 24
 """Length of a case's stroke, m; time steps of press and stroke together."""
@@ -37,17 +33,13 @@ AS_DRAWN = {"curved": (False, 0.0), "straight": (True, 0.0), "shifted": (True, 0
 and elements between the ridge's tip and the nearest element corner (the thesis does not say how its
 ridges were meshed).
 """
-DEPTH, BESIDE = 915e-6, 46e-6
-"""The thesis's receptor depth and offset, m (not those of the figures, which would bring all of
-them in).
-"""
 FLANK, AWAY = 120e-6, 25e-6
 """Offset of a flank of the ridges, and how far from the boundary the receptors are that follow it,
 m.
 """
-GRID = (
-    tuple(np.round(np.arange(700, 1101, 20) * 1e-6, 9)),
-    tuple(np.round(np.arange(-240, 241, 20) * 1e-6, 9)),
+GRID = tuple(
+    tuple(np.round(np.arange(first, last + 1, 20) * 1e-6, 9).tolist())
+    for first, last in ((700, 1100), (-240, 240))
 )
 """Depths and offsets of a map round a ridge, m."""
 
@@ -100,13 +92,12 @@ def case_scene(base: Scene, case: Case) -> Scene:
     phase = drawn[1] * edge if drawn else 0.0
     ridges, tip = None, tip_at_depth(outline, phase)
     if case.height:
-        changes = {"height": case.height * 1e-6, "phase": phase or "tip"}
-        ridges = base.varied(
-            {f"specimen.ridges.inner.{key}": value for key, value in changes.items()}
-        ).specimen.ridges
+        inner = "specimen.ridges.inner"
+        changes = {f"{inner}.height": case.height * 1e-6, f"{inner}.phase": phase or "tip"}
+        ridges = base.varied(changes).specimen.ridges
     flank = boundary(outline, ridges, tip + FLANK)
-    depths = sorted({*GRID[0], DEPTH, round(flank - AWAY, 9), round(flank + AWAY, 9)})
-    offsets = sorted({*GRID[1], -BESIDE, BESIDE})
+    depths = {*GRID[0], DEPTH, round(flank - AWAY, 9), round(flank + AWAY, 9)}
+    offsets = (round(tip + x, 9) for x in sorted({*GRID[1], -BESIDE, BESIDE}))
     press, slide, *_ = base.motion
     return base.varied(
         {
@@ -114,9 +105,7 @@ def case_scene(base: Scene, case: Case) -> Scene:
             "specimen.ridges": ridges,
             "friction": case.friction,
             "motion": (press, Slide(slide=-WAY, speed=slide.speed)),
-            "outputs.receptors": Receptors(
-                depths=tuple(depths), offsets=tuple(round(tip + x, 9) for x in offsets)
-            ),
+            "outputs.receptors": Receptors(depths=tuple(sorted(depths)), offsets=tuple(offsets)),
             "accuracy": Discretisation(skin_edge=edge, steps=STEPS),
             "effects": {"ridges": False} if drawn else {},
         }
@@ -139,14 +128,15 @@ def ridges_drawn(mesh: PadMesh, outline: Outline, ridges: Ridges, straight: bool
     """A plain mesh whose nodes are moved to where inner ridges have them, as one draws ridges on a
     mesh that is there.
 
-    Args:
-        mesh: of second-order quads. straight: whether only corners are moved and the sides between
-        them are straight.
+    Parameters
+    ----------
+    mesh : of second-order quads.
+    straight : whether only corners are moved and the sides between them are straight.
     """
     pad = RidgedPad(outline, ridges)
     points = mesh.points.copy()
     near = np.flatnonzero((np.abs(points[:, 0]) < pad.extent + 1e-3) & (points[:, 1] > 0))
-    s, depth = _named(pad.curve, points[near])
+    s, depth = _coordinates(pad.curve, points[near])
     moved = (np.abs(s) < pad.extent) & (depth > pad.above) & (depth < pad.below)
     near, s, depth = near[moved], s[moved], depth[moved]
     points[near] = pad.curve.point(pad.curve.theta_at(s), pad.depth(s, depth))
@@ -160,7 +150,7 @@ def ridges_drawn(mesh: PadMesh, outline: Outline, ridges: Ridges, straight: bool
     return replace(mesh, points=points)
 
 
-def _named(curve: OutlineCurve, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _coordinates(curve: OutlineCurve, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Arc lengths from the apex and depths (m) of points (n, 2) near the apex, by Newton steps."""
     s = curve.arc_length(curve.theta_at_x(points[:, 0]))
     for _ in range(20):

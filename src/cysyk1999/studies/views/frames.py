@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 import xarray as xr
+from scipy.interpolate import LinearNDInterpolator
 
 from cysyk1999.figures.geometry import boundaries, inward
 from cysyk1999.measures.quantities import DISTANCE, FORCE, IMPULSE, IMPULSE_RATE, SED, TIME, P, X, Y
@@ -17,9 +18,9 @@ from cysyk1999.measures.responses import (
     rapidly_adapting_rate,
     raster,
 )
-from cysyk1999.studies.receptors.sensing import RAPIDLY_ADAPTING
 from fingerpad.measures.features import PRESSURE, energy, force_gf, profile
 from fingerpad.measures.strokes import arcs, distance, loaded, place, profile_and_height
+from fingerpad.receptors.rapidly_adapting import RapidlyAdapting
 from fingerpad.results import scene_of
 from fingerpad.specimen.element_kinds import kind_of
 from fingerpad.specimen.pad import REGIONS, PadMesh
@@ -29,6 +30,9 @@ CORNERS = tuple(f"corner_{k}_{axis} (mm)" for k in range(1, 5) for axis in "xy")
 STICKS, SLIPS = 1, 2  # values of the history's contact_state
 LAYER_LINES = ("skin", "dermis", "fat", "bone")
 SKIN_X, TRACTION, BOUND = "skin_x (mm)", "tangential_traction (Pa)", "friction_bound (Pa)"
+RAPIDLY_ADAPTING = RapidlyAdapting(threshold=500.0, scale=500.0, highest=100.0)
+"""Law of the rate of the skin's curvature; its constants are assumed, nothing at hand states them.
+"""
 SLIP, STATE, STICKING = "slip_speed (mm/s)", "state (1)", "sticking (%)"
 
 
@@ -52,14 +56,9 @@ def elements(
     points = 1e3 * (
         history["node_position"].values + history["snapshot_displacement"].values[snapshot]
     )
+    x, y = points[nodes].mean(axis=1).T
     left, right, low, high = window
-    middle = points[nodes].mean(axis=1)
-    inside = (
-        (middle[:, 0] > left)
-        & (middle[:, 0] < right)
-        & (middle[:, 1] > low)
-        & (middle[:, 1] < high)
-    )
+    inside = (x > left) & (x < right) & (y > low) & (y < high)
     corners = points[nodes[inside]].reshape(inside.sum(), -1)
     rows = pd.DataFrame(corners.round(4), columns=CORNERS[: corners.shape[1]])
     rows.insert(0, "series", "element")
@@ -96,8 +95,6 @@ def lines(history: xr.Dataset, snapshot: int | None, corneum: bool = False) -> p
 
 def receptors(history: xr.Dataset, snapshot: int) -> pd.DataFrame:
     """Receptors where they have gone."""
-    from scipy.interpolate import LinearNDInterpolator  # here, for it is slow to import
-
     points = 1e3 * history["node_position"].values
     moved = 1e3 * history["snapshot_displacement"].values[snapshot]
     near = (abs(points[:, 0]) < 1.0) & (points[:, 1] > 3.5)
@@ -128,7 +125,7 @@ def _named(parts: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
     return pd.concat([rows.assign(panel=panel) for panel, rows in parts.items()], ignore_index=True)
 
 
-# --- one case, from the surface to impulses ----------------------------------------------------------------
+# --- one case, from the surface to impulses ------------------------------------------------------
 
 
 def overview(histories: Histories) -> pd.DataFrame:
@@ -172,7 +169,7 @@ def fields(histories: Histories) -> pd.DataFrame:
     return _named(parts)
 
 
-# --- meshes ------------------------------------------------------------------------------------------------
+# --- meshes --------------------------------------------------------------------------------------
 
 LEVELS = ("draft", "thesis", "fine")
 
@@ -218,7 +215,7 @@ def ridges_both_ways(histories: Histories) -> pd.DataFrame:
     return _named(parts)
 
 
-# --- a stroke ----------------------------------------------------------------------------------------------
+# --- a stroke ------------------------------------------------------------------------------------
 
 STROKE = "stroke_map_10"
 INSTANTS = (0.25e-3, 0.5e-3, 1.0e-3, 20.0e-3)
@@ -238,46 +235,28 @@ def space_time(histories: Histories) -> pd.DataFrame:
     slipped = (
         stroke["slip"].values[:, skin] / np.maximum(np.diff(time, prepend=time[0]), 1e-9)[:, None]
     )  # of each step
-    parts, pressure = [], stroke[PRESSURE].values[:, skin]
+    parts, at_rest = [], stroke["skin_x"].values[skin]
     for k in on:
-        p, speed = (
-            np.interp(x[order], stroke["skin_x"].values[skin], each[k])
-            for each in (pressure, slipped)
-        )
-        row = {
-            DISTANCE: 1e3 * along[k],
-            SKIN_X: 1e3 * x[order],
-            P: p,
-            SLIP: 1e3 * abs(speed) * (p > 0),
-        }
-        parts.append(pd.DataFrame(row | {SED: stroke["strain_energy_density"].values[k, order]}))
-    rows = pd.concat(parts, ignore_index=True).round(4).assign(series="map")
+        p = np.interp(x[order], at_rest, stroke[PRESSURE].values[k, skin])
+        speed = np.interp(x[order], at_rest, slipped[k])
+        row = {DISTANCE: 1e3 * along[k], SKIN_X: 1e3 * x[order], P: p}
+        row |= {SLIP: 1e3 * abs(speed) * (p > 0)}
+        row |= {SED: stroke["strain_energy_density"].values[k, order]}
+        parts.append(pd.DataFrame(row))
     shape = profile_and_height(stroke)[0]
     s = np.linspace(along[0] - 4e-3, along[-1] + 4e-3, 801)
-    surface = pd.DataFrame(
-        {"series": "surface", DISTANCE: 1e3 * s, "height (mm)": 1e3 * shape.outline(s)}
-    )
-    marks = pd.DataFrame(
-        [
-            {
-                "series": "convexity",
-                "curvature (1/m)": arc.curvature,
-                DISTANCE: 1e3 * (arc.start + arc.end) / 2,
-            }
-            for arc in arcs(stroke)
-            if arc.curvature > 0
-        ]
-    )
-    return pd.concat([rows, surface.dropna(), marks, _dragged(stroke, on)], ignore_index=True)
-
-
-def _dragged(stroke: xr.Dataset, on: np.ndarray) -> pd.DataFrame:
-    """The point of the surface over the receptor at the centre, which the surface drags along."""
-    where = {
-        DISTANCE: 1e3 * distance(stroke)[on],
-        "over_the_receptor (mm)": 1e3 * place(stroke)[on],
-    }
-    return pd.DataFrame(where).assign(series="centre")
+    surface = {"series": "surface", DISTANCE: 1e3 * s, "height (mm)": 1e3 * shape.outline(s)}
+    marks = [
+        {"series": "convexity", "curvature (1/m)": a.curvature, DISTANCE: 500 * (a.start + a.end)}
+        for a in arcs(stroke)
+        if a.curvature > 0
+    ]
+    # the point of the surface over the receptor at the centre, which the surface drags along
+    centre = {DISTANCE: 1e3 * along[on], "over_the_receptor (mm)": 1e3 * place(stroke)[on]}
+    more = [pd.DataFrame(surface).dropna(), pd.DataFrame(marks), pd.DataFrame(centre)]
+    more[-1]["series"] = "centre"
+    maps = pd.concat(parts, ignore_index=True).round(4).assign(series="map")
+    return pd.concat([maps, *more], ignore_index=True)
 
 
 def stick_slip(histories: Histories) -> pd.DataFrame:
@@ -286,54 +265,44 @@ def stick_slip(histories: Histories) -> pd.DataFrame:
     """
     stroke = loaded(histories[STROKE])
     friction, parts = scene_of(stroke).friction, {}
-    for place_of in INSTANTS:
-        k = int(np.argmin(abs(distance(stroke) - place_of)))
+    for instant in INSTANTS:
+        k = int(np.argmin(abs(distance(stroke) - instant)))
         x, p = profile(stroke, k)
+        rows = {SKIN_X: 1e3 * x, P: p, BOUND: friction * p}
+        rows |= {TRACTION: abs(stroke["tangential_traction"].values[k])}
+        rows |= {STATE: stroke["contact_state"].values[k]}
         shown = (stroke["skin_y"].values > 0) & (abs(x) < 4e-3)
-        rows = {
-            "series": "contact",
-            SKIN_X: 1e3 * x[shown],
-            P: p[shown],
-            BOUND: friction * p[shown],
-        }
-        rows |= {TRACTION: abs(stroke["tangential_traction"].values[k, shown])}
-        rows |= {STATE: stroke["contact_state"].values[k, shown]}
-        parts[f"{1e3 * distance(stroke)[k]:.2f} mm"] = pd.DataFrame(rows)
-    whole = pd.DataFrame(
-        {
-            "series": "whole",
-            DISTANCE: 1e3 * distance(stroke),
-            STICKING: 100 * _share_sticking(stroke),
-            "ratio (1)": abs(stroke["tangential_force"].values)
-            / np.maximum(stroke["force"].values, 1e-12),
-        }
-    )
-    return _named(parts | {"whole": whole})
+        panel = pd.DataFrame({"series": "contact"} | rows)[shown]
+        parts[f"{1e3 * distance(stroke)[k]:.2f} mm"] = panel
+    pressure = stroke[PRESSURE].values
+    stuck = np.where(stroke["contact_state"].values == STICKS, pressure, 0.0).sum(axis=1)
+    whole = {
+        "series": "whole",
+        DISTANCE: 1e3 * distance(stroke),
+        STICKING: 100 * stuck / np.maximum(pressure.sum(axis=1), 1e-12),
+        "ratio (1)": abs(stroke["tangential_force"].values)
+        / np.maximum(stroke["force"].values, 1e-12),
+    }
+    return _named(parts | {"whole": pd.DataFrame(whole)})
 
 
-def _share_sticking(stroke: xr.Dataset) -> np.ndarray:
-    """Share of the load that is carried where the skin sticks."""
-    p = stroke[PRESSURE].values
-    return np.where(stroke["contact_state"].values == STICKS, p, 0.0).sum(axis=1) / np.maximum(
-        p.sum(axis=1), 1e-12
-    )
-
-
-# --- responses ---------------------------------------------------------------------------------------------
+# --- responses -----------------------------------------------------------------------------------
 
 
 def adaptation(histories: Histories) -> pd.DataFrame:
     """Predicted responses of a slowly and a rapidly adapting receptor to two ramps and holds: rates
     and a few trials.
     """
-    stimulus, law = RAPIDLY_ADAPTING["curvature of the skin"]
     parts = {}
     for programme, words in (("ramp40", "40 gf/s"), ("ramp150", "150 gf/s")):
         history = histories[f"{programme}_k210"]
         parts[f"force {words}"] = pd.DataFrame(
             {"series": "force", TIME: history["time"].values, FORCE: force_gf(history)}
         )
-        slow, fast = predicted_rate(history), rapidly_adapting_rate(history, law, stimulus)
+        slow, fast = (
+            predicted_rate(history),
+            rapidly_adapting_rate(history, RAPIDLY_ADAPTING, "curvature"),
+        )
         for kind, rate in (("slowly adapting", slow), ("rapidly adapting", fast)):
             ticks = raster(rate, 5, SEED).rename(columns={TIME: IMPULSE, "trial": "trial (1)"})
             parts[f"{kind} {words}"] = pd.concat(
@@ -345,7 +314,7 @@ def adaptation(histories: Histories) -> pd.DataFrame:
     return _named(parts)
 
 
-# --- what the model rests on -------------------------------------------------------------------------------
+# --- what the model rests on ---------------------------------------------------------------------
 
 
 def assumptions(histories: Histories) -> pd.DataFrame:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from cysyk1999.job import Job, part
 from cysyk1999.studies.strain_energy_meanings import strain_energy_meanings
 from cysyk1999.studies.views.frames import FRAMES
-from cysyk1999.studies.views.picture import draw_views, table_pictures
+from cysyk1999.studies.views.picture import draw_views
+from cysyk1999.studies.views.tables import table_pictures
 from fingerpad.scenes.families import moves_along
 
 if TYPE_CHECKING:
