@@ -1,5 +1,5 @@
-"""What is not to be had: plans that would need more than the machine has end here, before anything
-is allocated.
+"""Limits: plans that need more than the machine has are refused here, before anything is
+allocated.
 """
 
 from __future__ import annotations
