@@ -16,8 +16,8 @@ from fingerpad.measures.features import (
     centre_pressure,
     energy,
 )
-from fingerpad.measures.kept import Each
-from fingerpad.measures.measure import Together
+from fingerpad.measures.kept import LazyMapping
+from fingerpad.measures.measure import Runs
 
 pytestmark = pytest.mark.unit
 
@@ -70,13 +70,13 @@ def test_loaded_outputs_are_the_last_of_each_stroke_distance(made):
 
 def test_what_is_loaded_already_is_not_made_again(made, slow):
     assert st.loaded(slow) is slow
-    runs = Together(made)
+    runs = Runs(made)
     assert runs.strokes["stroke_10"] is runs.strokes["stroke_10"]
     assert runs.strokes["stroke_10"].identical(st.loaded(made["stroke_10"]))
 
 
 def test_to_ask_whether_there_is_a_result_does_not_open_it():
-    opened = Each(lambda name: pytest.fail(f"{name} was opened"), ["stroke_10"])
+    opened = LazyMapping(lambda name: pytest.fail(f"{name} was opened"), ["stroke_10"])
     assert "stroke_10" in opened and "stroke_20" not in opened
 
 
