@@ -18,12 +18,19 @@ def strip_stresses(x, z, edges, pressures):
     """Stresses ``(sigma_x, sigma_z, tau_xz)`` below strips of uniform pressure, Pa, of the shape of
     ``x`` and ``z`` together.
 
-    Args:
-        x, z: m, z > 0. edges: (n + 1,) m, ascending ends of the strips. pressures: (n,) Pa,
-        compression positive.
+    Parameters
+    ----------
+    x, z
+        m, z > 0.
+    edges
+        (n + 1,) m, ascending ends of the strips.
+    pressures
+        (n,) Pa, compression positive.
 
-    Raises:
-        ValueError: a point does not lie inside the body, or the edges do not ascend.
+    Raises
+    ------
+    ValueError
+        A point does not lie inside the body, or the edges do not ascend.
     """
     x, z = np.broadcast_arrays(np.asarray(x, float), np.asarray(z, float))
     positive(z=z)
@@ -71,10 +78,15 @@ def strain_energy_density(sigma_x, sigma_z, tau_xz, shear, bulk, poisson):
 def press(force, radius, youngs_modulus, poisson, thickness):
     """A rigid plate or cylinder on the half-plane: ``(depth m, half width m, peak pressure Pa)``.
 
-    Args:
-        force: N/m. radius: m, 1/(1/pad + curvature). thickness: m, the depth of the point that the
-        sinking refers to (the
-            bone's): a half-plane has no other.
+    Parameters
+    ----------
+    force
+        N/m.
+    radius
+        m, 1/(1/pad + curvature).
+    thickness
+        m, the depth of the point that the sinking refers to (the bone's): a half-plane has no
+        other.
     """
     modulus = hertz.composite_modulus(youngs_modulus, poisson)
     half_width = hertz.half_width(force, radius, modulus)

@@ -55,11 +55,15 @@ def press(force, tension, radius, half_width, curvature=0.0):
     """Press a rigid cylinder of ``curvature`` (1/m; 0: a plate) by ``force`` (N/m) into a membrane
     of ``tension`` (N/m).
 
-    Args:
-        radius, half_width: m, of the membrane at rest.
+    Parameters
+    ----------
+    radius, half_width
+        m, of the membrane at rest.
 
-    Raises:
-        ValueError: arguments out of range, or no equilibrium with this force.
+    Raises
+    ------
+    ValueError
+        Arguments out of range, or no equilibrium with this force.
     """
     positive(force=force, tension=tension)
     # how far the contact reaches: an angle of the cylinder, or a length of the plate
