@@ -8,12 +8,9 @@ spoils it.
 
 import numpy as np
 
-from ._check import positive
-
 
 def full_contact_pressure(amplitude, wavelength, modulus):
     """Mean pressure p* = pi E* h / lambda at which the contact is complete, Pa."""
-    positive(amplitude=amplitude, wavelength=wavelength, modulus=modulus)
     return np.pi * modulus * amplitude / wavelength
 
 
@@ -47,7 +44,6 @@ def pressure(x, half_width, amplitude, wavelength, modulus):
 
     p = 2 pbar cos(psi)/sin^2(psi_a) sqrt(sin^2(psi_a) - sin^2(psi)), psi = pi x/lambda.
     """
-    positive(half_width=half_width)
     mean = mean_pressure(half_width, amplitude, wavelength, modulus)
     edge = np.sin(np.pi * half_width / wavelength) ** 2
     psi = np.pi * np.asarray(x, dtype=float) / wavelength
