@@ -44,14 +44,6 @@ def pressure(x, half_width, peak_pressure):
     )
 
 
-def load_fraction(x, half_width):
-    """Share of the force carried within ``|x|`` of the centre, (2/pi)(s sqrt(1 - s^2) + asin s), s
-    = x/a.
-    """
-    s = np.clip(np.abs(np.asarray(x, dtype=float)) / half_width, 0, 1)
-    return 2 / np.pi * (s * np.sqrt(1 - s**2) + np.arcsin(s))
-
-
 def stresses(x, z, half_width, peak_pressure):
     """Stresses ``(sigma_x, sigma_z, tau_xz)`` below the contact, Pa (McEwen 1949; Johnson 1985, Eq.
     4.49).

@@ -25,10 +25,3 @@ def radial_displacement(
     mean, shear = _constants(inner_radius, outer_radius, internal, external)
     r = np.asarray(r, dtype=float)
     return (1 + poisson) / youngs_modulus * ((1 - 2 * poisson) * mean * r + shear / r)
-
-
-def stresses(r, inner_radius, outer_radius, poisson, internal=0.0, external=0.0):
-    """Stresses ``(radial, hoop, axial)`` at ``r``, Pa; axial = 2 nu A by plane strain."""
-    mean, shear = _constants(inner_radius, outer_radius, internal, external)
-    r = np.asarray(r, dtype=float)
-    return mean - shear / r**2, mean + shear / r**2, np.full_like(r, 2 * poisson * mean)

@@ -10,15 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 
-def thin_layer_half_width(force, radius, thickness, youngs_modulus):
-    """Half width of a rigid cylinder on a thin bonded incompressible layer, a = (45 P R b^3/(2
-    E))^(1/5), m.
-
-    ``thickness`` b, m; valid for a >> b. Johnson (1985), section 5.8: P = 2 E a^5/(45 R b^3).
-    """
-    return (45 * force * radius * thickness**3 / (2 * youngs_modulus)) ** 0.2
-
-
 def thin_layer_force(half_width, radius, thickness, youngs_modulus):
     """Force P = 2 E a^5/(45 R b^3), N/m."""
     return 2 * youngs_modulus * half_width**5 / (45 * radius * thickness**3)

@@ -7,7 +7,6 @@ Not valid once the contact recedes: T. C. T. Ting (1966).
 """
 
 import numpy as np
-from scipy.integrate import quad
 
 from . import prony_point
 
@@ -53,31 +52,3 @@ def held_width_force(t, half_width, radius, shear_modulus, g, tau):
     ``t``.
     """
     return np.pi * half_width**2 / radius * shear_modulus * prony_point.relaxation(t, g, tau)
-
-
-def ramp_force(t, rate, radius, shear_modulus, g, tau):
-    """Force while a^2 = ``rate`` t, N/m: (pi k/R) G_0 [(1 - sum g) t + sum g_i tau_i (1 -
-    exp(-t/tau_i))].
-    """
-    g, tau = prony_point._series(g, tau)
-    t = np.asarray(t, dtype=float)
-    memory = -(g * tau * np.expm1(-t[..., None] / tau)).sum(-1)
-    return np.pi * rate / radius * shear_modulus * ((1 - g.sum()) * t + memory)
-
-
-def force_by_quadrature(t, width_squared_rate, radius, relaxation_modulus):
-    """Force at one time for any G(t) and any smooth a^2 starting from zero, N/m, by numerical
-    convolution.
-
-    ``width_squared_rate`` s -> d(a^2)/ds, m^2/s; ``relaxation_modulus`` t -> G, Pa; both callables
-    of a float.
-    """
-    integral, _ = quad(
-        lambda s: relaxation_modulus(t - s) * width_squared_rate(s),
-        0,
-        t,
-        epsabs=0,
-        epsrel=1e-11,
-        limit=200,
-    )
-    return np.pi / radius * integral

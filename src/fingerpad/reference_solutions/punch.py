@@ -16,20 +16,6 @@ def pressure(x, half_width, force):
         return np.where(square >= 0, force / (np.pi * np.sqrt(np.maximum(square, 0))), 0.0)
 
 
-def load_fraction(x, half_width):
-    """Share of the force carried within ``|x|`` of the centre, (2/pi) asin(x/a)."""
-    return 2 / np.pi * np.arcsin(np.clip(np.abs(np.asarray(x, dtype=float)) / half_width, 0, 1))
-
-
-def surface_drop(x, half_width, force, modulus):
-    """How far the free surface at |x| >= a lies above the punch's face, m.
-
-    (2 P/(pi E*)) ln[x/a + sqrt(x^2/a^2 - 1)], ``modulus`` E* = E/(1 - nu^2). Zero under the punch.
-    """
-    s = np.maximum(1.0, np.abs(np.asarray(x, dtype=float)) / half_width)
-    return 2 * force / (np.pi * modulus) * np.arccosh(s)
-
-
 def stick_exponent(poisson):
     """Exponent eta = ln(3 - 4 nu)/(2 pi) of the edge field under full stick.
 

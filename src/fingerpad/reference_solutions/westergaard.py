@@ -29,16 +29,6 @@ def mean_pressure(half_width, amplitude, wavelength, modulus):
     )
 
 
-def half_width(mean_pressure, amplitude, wavelength, modulus):
-    """Half width of each contact at a mean pressure in [0, p*], m; ``ValueError`` outside that
-    range.
-    """
-    ratio = np.asarray(mean_pressure) / full_contact_pressure(amplitude, wavelength, modulus)
-    if np.any((ratio < 0) | (ratio > 1)):
-        raise ValueError("mean_pressure must lie between 0 and the full-contact pressure")
-    return wavelength / np.pi * np.arcsin(np.sqrt(ratio))
-
-
 def pressure(x, half_width, amplitude, wavelength, modulus):
     """Contact pressure at ``x``, Pa, of the shape of ``x``; zero outside the contacts.
 
