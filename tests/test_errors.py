@@ -396,14 +396,6 @@ def test_errors_above_two_per_cent_are_drawn_as_a_band_as_high_as_they_are():
     assert line.get_color() == "C3" and (
         band.get_facecolor()[0, :3] == pytest.approx((0.839, 0.153, 0.157), abs=0.01)
     )
-    part = axs.curve(
-        ax,
-        _rows(mesh=3.4)[:4],
-        "x (mm)",
-        "y (Pa)",
-        whole=_rows(mesh=3.4).assign(**{"y (Pa)": 400.0}),
-    )
-    assert part and ax.collections[-1].get_paths()[0].vertices[:, 1].max() == pytest.approx(216)
 
 
 def test_lines_of_one_family_share_one_error_and_one_that_hardly_rises_does_not_decide_it():
@@ -454,13 +446,3 @@ def test_the_error_stated_of_points_that_are_joined_is_that_of_their_line():
     assert found[PARTS[0]].tolist() == pytest.approx(
         [np.hypot(0.5, 1.0) / np.hypot(0.01, 1.0), 2.0]
     )
-    assert axs.error_text(frame) == "Largest error: mesh 50.0 %, steps 0.0 %, sampling 0.0 %"
-    assert (
-        axs.error_text(frame, [("line", "shown")])
-        == "Largest error of a line: mesh 2.0 %, steps 0.0 %, sampling 0.0 %"
-    )
-    assert axs.error_text(rows.assign(**dict.fromkeys(PARTS, np.nan)), [("line", "shown")]) == ""
-    own = axs.error_text(
-        rows.assign(**{PARTS[0]: np.nan, PARTS[1]: 1.0}), [("line", "shown")]
-    )  # on a mesh of the user's own
-    assert own == "Largest error of a line: mesh not known, steps 1.0 %, sampling 0.0 %"
