@@ -632,7 +632,8 @@ def test_a_candidate_that_made_the_rates_wins(made_up):
         mean = impulse_rates.windowed(history, history.time.values, energy(history, 915e-6), "hold")
         k = responses.curvature_of(history)
         rows.append(
-            f"made up,SA-I,monkey,cylinder,{k},,20,40,0,hold,{max(0.1 * (mean - 50), 0)},,,none,none"
+            f"made up,SA-I,monkey,cylinder,{k},,20,40,0,hold,"
+            f"{max(0.1 * (mean - 50), 0)},,,none,none"
         )
     table = candidates.candidate_stimuli(histories, _read(rows))
     best = table.iloc[0]
