@@ -12,10 +12,10 @@ import pandas as pd
 from cysyk1999.measures.inputs import read_results
 from cysyk1999.publishing.write import publish_table
 from fingerpad import load_scene, plan
+from fingerpad import simulate as run
 from fingerpad.files import write_atomically, write_text
 from fingerpad.planning.plan import companion
 from fingerpad.results import FIELDS, summary, write_history
-from fingerpad.simulation import solve
 from fingerpad.specimen import mesh_for, read_pad_mesh, write_pad
 from fingerpad.specimen.quality import quality_table
 
@@ -44,7 +44,7 @@ def simulate(job: SimpleNamespace) -> None:
             else:
                 write_atomically(file, lambda p, content=content: p.write_bytes(content))
             if how.outputs not in solved:
-                solved[how.outputs] = solve(scene, how, mesh=mesh)
+                solved[how.outputs] = run(scene, how, mesh=mesh)
             result = solved[how.outputs]
             write_text(file.with_name("summary.json"), json.dumps(summary(result), indent=2) + "\n")
             write_history(result, history)
@@ -55,9 +55,9 @@ def simulate_fields(job: SimpleNamespace) -> None:
     """`scenes` -> `histories` with the whole field of strain energy at the snapshots of each."""
     for path, history in zip(job.scenes, job.histories, strict=True):
         scene = load_scene(path)
-        result = solve(scene, fields=bool(scene.outputs.snapshots))
-        for name in FIELDS.keys() - {"strain_energy_density"}:
-            result.variables.pop(f"snapshot_{name}", None)
+        result = run(scene, fields=bool(scene.outputs.snapshots))
+        others = [f"snapshot_{name}" for name in FIELDS if name != "strain_energy_density"]
+        result = result.drop_vars(others, errors="ignore")
         write_history(result, history)
         print(history, result.attrs["cost"], flush=True)
 

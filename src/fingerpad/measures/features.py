@@ -8,18 +8,15 @@ table, takes longer than what is done with them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from fingerpad.receptors.laws import rate_by_leg
-from fingerpad.results import scene_of
+from fingerpad.results import receptor_index, scene_of
+from fingerpad.specimen.pad import PadMesh
 from fingerpad.units import parse_quantity
-
-if TYPE_CHECKING:
-    from fingerpad.specimen.pad import PadMesh
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
 """Labels of the nine surfaces, broad to sharp: curvature in 1/m as the thesis rounds it."""
@@ -30,7 +27,7 @@ SIMULATED = "simulated"
 RAMP_FRACTIONS = (0.2, 0.4, 0.6, 0.8)
 
 Histories = Mapping[str, xr.Dataset]
-Meshes = Mapping[str, "PadMesh"]
+Meshes = Mapping[str, PadMesh]
 Trace = Callable[[xr.Dataset], np.ndarray]
 Feature = Callable[[xr.Dataset], float | np.ndarray]
 
@@ -80,20 +77,6 @@ def force_gf(history: xr.Dataset) -> np.ndarray:
     """Normal force in gram-force (time): line load times the scene's contact length."""
     length = scene_of(history).specimen.contact_length
     return history.variables["force"].values * length / parse_quantity("1 gf", "force")
-
-
-def receptor_index(history: xr.Dataset, depth: float, offset: float = 0.0) -> int:
-    """Index of the receptor at `depth` and `offset` (m). Raises KeyError if the scene has none
-    there.
-    """
-    miss = np.hypot(
-        history.variables["receptor_depth"].values - depth,
-        history.variables["receptor_offset"].values - offset,
-    )
-    index = int(miss.argmin())
-    if miss[index] > 1e-6:
-        raise KeyError(f"no receptor at depth {depth * 1e6:g} um, offset {offset * 1e3:g} mm")
-    return index
 
 
 def receptors_at(history: xr.Dataset, depth: float) -> np.ndarray:

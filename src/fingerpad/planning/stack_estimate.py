@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.special import j1
 
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.reference_solutions.layered import Layer, stack_compliance
@@ -36,7 +37,8 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
         if UNNAMED in external.curves:
             free.append(f"{len(external.curves[UNNAMED])} boundary edges in none of these curves")
         lines.append(
-            f"a mesh of {external.element}, {wide:.3g} mm wide and {high:.3g} mm high: {', '.join(external.regions)}; "
+            f"a mesh of {external.element}, {wide:.3g} mm wide and {high:.3g} mm high: "
+            f"{', '.join(external.regions)}; "
             f"held: {', '.join(external.fixed)}; free: {', '.join([SKIN, *free])}"
         )
         lines.append(_where_met(external))
@@ -57,7 +59,8 @@ def specimen_said(specimen, external: PadMesh | None) -> tuple[str, ...]:
                 else f" and the core of radius {(stack.radius - stack.soft_thickness) * 1e3:.3g} mm"
             )
             lines.append(
-                f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; free: {SKIN}"
+                f"a half-round of radius {stack.radius * 1e3:.3g} mm: {layers}; held: base{core}; "
+                f"free: {SKIN}"
             )
     return (*lines, *(f"not given: {left_out}" for left_out in specimen.assumed))
 
@@ -67,9 +70,15 @@ def _where_met(external: PadMesh) -> str:
     skin = external.points[external.curves[SKIN][:, :2], 0] * 1e3
     low, high = skin.min() + 0.0, skin.max() + 0.0
     height, _ = meeting_place(external)
-    said = f"the indenter meets the skin at x = 0, y = {height * 1e3:.4g} mm; the skin goes from x = {low:.4g} to {high:.4g} mm"
+    said = (
+        f"the indenter meets the skin at x = 0, y = {height * 1e3:.4g} mm; the skin goes from "
+        f"x = {low:.4g} to {high:.4g} mm"
+    )
     if min(-low, high) < 0.05 * (high - low):
-        said += ", so this is the end of the skin: where friction acts or the body goes on beside it, peak pressure is unbounded"
+        said += (
+            ", so this is the end of the skin: where friction acts or the body goes on beside "
+            "it, peak pressure is unbounded"
+        )
     return said
 
 
@@ -80,8 +89,10 @@ def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> P
     A finger is judged by the thesis's measures, any other stack of layers by the layers below its
     middle.
 
-    Raises:
-        MeshError: the skin of the mesh does not cross x = 0.
+    Raises
+    ------
+    MeshError
+        The skin of the mesh does not cross x = 0.
     """
     relax = 1.0
     if specimen.moduli == "instantaneous" and specimen.prony:
@@ -150,10 +161,12 @@ class StackEstimate(PadEstimate):
     """A stack of layers, SI; ``apex_radius`` is 1000 m for a flat one, ``epidermis_thickness`` that
     of the outermost layer.
 
-    Args:
-        half_width: m, of the surface, or of the face that is pressed on it. layers: (thickness m,
-        Young's modulus Pa, Poisson's
-            ratio) of each, outside to inside.
+    Parameters
+    ----------
+    half_width
+        m, of the surface, or of the face that is pressed on it.
+    layers
+        (thickness m, Young's modulus Pa, Poisson's ratio) of each, outside to inside.
     """
 
     half_width: float = np.inf
@@ -179,8 +192,6 @@ class StackEstimate(PadEstimate):
         """Sinking (m) in the middle of a Hertzian pressure of 1 N/m, and how much less its edge
         sinks.
         """
-        from scipy.special import j1  # here, for it is slow to import
-
         k, sinking = self._spectrum
         load = 2 * j1(k * half_width) / (k * half_width) * sinking
         return float(load.sum()), float((load * (1 - np.cos(k * half_width))).sum())

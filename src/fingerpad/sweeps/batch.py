@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from fingerpad.measures.known import known
-from fingerpad.measures.measure import Together
+from fingerpad.measures.measure import Runs
 from fingerpad.planning.plan import plan
 from fingerpad.results import states_found, write_history
 from fingerpad.scenes.scene import Scene, scene_of_record
@@ -106,7 +106,7 @@ def measured(scene: Scene, keep: list[str], file: Path | None = None) -> dict[st
     """
     history = simulate(scene, plan=plan(scene))
     cost = json.loads(history.attrs["cost"])
-    values, runs, measures = [], Together({scene.name: history}), known(keep)
+    values, runs, measures = [], Runs({scene.name: history}), known(keep)
     for name in keep:
         measure = measures[name]
         if measure.where(scene):

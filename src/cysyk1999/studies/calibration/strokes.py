@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 from fingerpad import load_scene, plan
 from fingerpad.results import write_history
-from fingerpad.simulation import solve
+from fingerpad.simulation import simulate
 
 
 def strokes_with_friction(job: SimpleNamespace) -> None:
@@ -14,4 +14,4 @@ def strokes_with_friction(job: SimpleNamespace) -> None:
     stroke = load_scene(job.scene[0]).with_accuracy("draft")
     for coefficient, history in zip(job.coefficients, job.histories, strict=True):
         scene = stroke.varied({"friction": float(coefficient)})
-        write_history(solve(scene, plan(scene)), history)
+        write_history(simulate(scene, plan(scene)), history)

@@ -12,14 +12,15 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import xarray as xr
 
 from cysyk1999.measures.direction import BESIDE, DEPTH
 from fingerpad import load_scene
 from fingerpad.planning.plan import plan
-from fingerpad.results import Arrays, write_history
+from fingerpad.results import write_history
 from fingerpad.scenes.scene import Discretisation, Receptors, Scene, Slide
 from fingerpad.scenes.specimen import Outline, Ridges
-from fingerpad.simulation import solve
+from fingerpad.simulation import simulate
 from fingerpad.specimen import OutlineCurve, PadMesh, RidgedPad, mesh_for
 
 WAY, STEPS = 4e-3, 24
@@ -112,7 +113,7 @@ def case_scene(base: Scene, case: Case) -> Scene:
     )
 
 
-def run_case(base: Scene, case: Case) -> Arrays:
+def run_case(base: Scene, case: Case) -> xr.Dataset:
     """The history of a case, without labels. Raises what :func:`fingerpad.simulate` does."""
     scene = case_scene(base, case)
     chosen = plan(scene)
@@ -121,7 +122,7 @@ def run_case(base: Scene, case: Case) -> Arrays:
         mesh = ridges_drawn(
             mesh, scene.specimen.outline, scene.specimen.ridges, AS_DRAWN[case.mesh][0]
         )
-    return solve(scene, chosen, mesh=mesh)
+    return simulate(scene, chosen, mesh=mesh)
 
 
 def ridges_drawn(mesh: PadMesh, outline: Outline, ridges: Ridges, straight: bool) -> PadMesh:
