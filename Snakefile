@@ -17,6 +17,7 @@ rule (workflow/rules/jobs.smk). The profile is found by itself, through the link
 
 import os
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 os.environ["MPLBACKEND"] = "agg"  # a notebook from which the workflow is started has another one
@@ -101,6 +102,19 @@ rule chapter5:
         PROJECT.targets("animations", figures="5-"),
 
 
+def wanted(target):
+    """The files of a part; none, and a line, without the package that only it needs."""
+
+    def files(wildcards):
+        if target.extra and not find_spec(target.extra):
+            line = f"{target.name}: {target.extra} is not installed; pip install -e .[{target.name}]"
+            print(line, file=sys.stderr)
+            return []
+        return PROJECT.targets(target.name)
+
+    return files
+
+
 for target in PROJECT.part_targets():  # the studies and other parts
 
     rule:
@@ -108,6 +122,7 @@ for target in PROJECT.part_targets():  # the studies and other parts
             target.name
         localrule: True
         input:
-            PROJECT.targets(target.name),
+            wanted(target),
 
-    workflow.get_rule(target.name).docstring = target.title
+    if workflow.is_rule(target.name):  # in a workflow that takes this one as a module it has another name
+        workflow.get_rule(target.name).docstring = target.title

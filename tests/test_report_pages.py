@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from cysyk1999.publishing.html import of_markdown, page, picture
-from cysyk1999.workflow.jobs.report_pages import run
+from cysyk1999.publishing.html import report_pages as run
 
 pytestmark = pytest.mark.unit
 FIGURES = Path(__file__).parents[1] / "figures"

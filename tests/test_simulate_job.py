@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from cysyk1999.workflow.jobs.simulate import run
+from cysyk1999.workflow.simulate import simulate as run
 from fingerpad.results import read_history
 from fingerpad.specimen import read_pad_mesh
 

@@ -128,6 +128,7 @@ class Part:
     name: str
     jobs: Callable[[Project], Iterator[Job]]
     in_default: bool
+    extra: str
 
     @property
     def title(self) -> str:
@@ -138,11 +139,22 @@ class Part:
 _PARTS: dict[str, Part] = {}
 
 
-def part(name: str, in_default: bool = False) -> Callable:
-    """Decorate a function that yields the jobs of a part; `in_default`: ``snakemake`` alone makes it."""
+def part(name: str, in_default: bool = False, extra: str = "") -> Callable:
+    """Decorate a function that yields the jobs of a part.
+
+    Parameters
+    ----------
+    name : str
+        Name of the part, a target of the workflow.
+    in_default : bool
+        Whether ``snakemake`` alone makes it.
+    extra : str
+        Package that only this part needs and an extra of its name's brings; without it the target
+        makes nothing, and says so.
+    """
 
     def register(jobs: Callable[[Project], Iterator[Job]]) -> Callable:
-        _PARTS[name] = Part(name, jobs, in_default)
+        _PARTS[name] = Part(name, jobs, in_default, extra)
         return jobs
 
     return register

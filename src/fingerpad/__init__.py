@@ -9,7 +9,7 @@ Five functions do the work:
 - ``sweep(scene, over)``: many variations of it, as one `xarray.Dataset`.
 - ``respond(history)``: impulse rates and impulses of its receptors.
 
-``read_history``, ``read_plan`` and ``open_sweep`` read what was written; ``write_history`` writes a
+``read_history`` and ``read_plan`` read what was written; ``write_history`` writes a
 history and ``summary`` sums it up. ``history.fingerpad`` is the accessor of a history. The errors
 to catch are here too. Each name is imported at its first use.
 """
@@ -31,7 +31,6 @@ HOMES = {
     "SceneError": "fingerpad.documents",
     "SweepError": "fingerpad.sweeps.engine",
     "load_scene": "fingerpad.scenes.scene",
-    "open_sweep": "fingerpad.sweeps.collect",
     "plan": "fingerpad.planning.plan",
     "read_history": "fingerpad.results",
     "read_plan": "fingerpad.planning.plan",

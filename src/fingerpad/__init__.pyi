@@ -15,7 +15,6 @@ from fingerpad.scenes.scene import load_scene as load_scene
 from fingerpad.simulation import simulate as simulate
 from fingerpad.specimen.outline import OutlineError as OutlineError
 from fingerpad.specimen.pad import MeshError as MeshError
-from fingerpad.sweeps.collect import open_sweep as open_sweep
 from fingerpad.sweeps.engine import NotFinished as NotFinished
 from fingerpad.sweeps.engine import SweepError as SweepError
 from fingerpad.sweeps.engine import sweep as sweep

@@ -131,7 +131,7 @@ def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
         }
         undeclared = {path for path in read - allowed - own if "__pycache__" not in path}
         assert not undeclared, f"{job.name} opens what it does not declare"
-        runs.add(job.run)
+        runs.add(job.kind)
     assert runs >= {
         "simulate",
         "figures",

@@ -10,6 +10,7 @@ import os
 import sys
 import traceback
 from importlib import import_module
+from pathlib import Path
 from types import SimpleNamespace
 
 
@@ -34,7 +35,8 @@ def main(words: list[str]) -> int:
     except Exception as error:  # noqa: BLE001 - whatever it is, it is shown
         cause = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
         traceback.print_exc()
-        print(f"{name}: {' '.join(cause.split())} (all of it: {log})", file=terminal, flush=True)
+        rule = Path(log).stem
+        print(f"{rule}: {' '.join(cause.split())} (all of it: {log})", file=terminal, flush=True)
         return 1
     return 0
 

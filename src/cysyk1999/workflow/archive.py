@@ -194,13 +194,14 @@ def _crate(file: str, finished: Finished, results: str, folder: Path) -> ROCrate
     ) -> None:
         times = {"startTime": _time(start), "endTime": _time(end)}
         status = {"actionStatus": "http://schema.org/CompletedActionStatus"}
-        crate.add_action(
+        entity = crate.add_action(
             workflow,
             identifier=f"#{name}",
             object=[parts[path] for path in dict.fromkeys(map(home, read)) if path in parts],
             result=[parts[path] for path in dict.fromkeys(map(home, made))],
             properties={"name": name} | times | status,
         )
+        crate.root_dataset.append_to("mentions", entity)
 
     started = min(record["starttime"] for _, record in finished)
     action("run", started, finished[-1][1]["endtime"], inputs, [*outputs, "costs.csv"])

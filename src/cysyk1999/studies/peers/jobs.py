@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from cysyk1999.workflow.project import Project
 
 
-@part("peers")
+@part("peers", extra="felupe")
 def peers(project: Project) -> Iterator[Job]:
     """The same press through public finite element packages, if they are installed: a table."""
     files = [project.thesis_specimen(), project.at("config/specimens/homogeneous.yaml")]

@@ -20,7 +20,6 @@ import subprocess
 import sys
 import tempfile
 from importlib.metadata import PackageNotFoundError, version
-from importlib.util import find_spec
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -247,6 +246,4 @@ def _version(name: str) -> str:
 
 def peers_table(job: SimpleNamespace) -> None:
     """Job: -> `table`."""
-    if find_spec("felupe") is None:
-        raise ValueError("FElupe is not installed; pip install -e .[peers]")
     publish_table(study(), job.table[0])
