@@ -134,12 +134,12 @@ def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
         runs.add(job.kind)
     assert runs >= {
         "simulate",
-        "figures",
-        "measures",
+        "draw_figures",
+        "measure",
         "tables",
-        "calibrate",
-        "pictures",
-        "joined",
+        "calibrate_forces",
+        "draw_study",
+        "join_tables",
         "receptor_tables",
     }
 
