@@ -22,7 +22,7 @@ import yaml
 
 from cysyk1999.receptors.recordings import read_rates
 from cysyk1999.reference_data import ReferenceDataError, read_force_depth
-from cysyk1999.studies.stability.run import Late, in_time
+from cysyk1999.studies.common.plans import OutOfTime, time_limit
 from fingerpad.specimen import write_pad
 from own_meshes import SLAB, slab_mesh
 
@@ -262,13 +262,13 @@ def soak_files(count: int, start: int, seconds: float) -> tuple[Counter, str]:
                 (verb, path) if verb == "plan" else (verb, path, "--out", out, "--quiet", "--force")
             )
             try:
-                with in_time(SLOWEST):
+                with time_limit(SLOWEST):
                     code, _, err = command(*words)
                 said(words, code, err)
                 if code == 0 and verb == "run":
                     judged(out)
                 outcomes[f"{file}: {('completed', '', 'refused', 'stopped')[code]}"] += 1
-            except Late:
+            except OutOfTime:
                 outcomes[f"{file}: not done in {SLOWEST:g} s"] += 1
             except (Failed, Exception) as error:  # noqa: BLE001 - whatever it is, it is shown
                 kept = Path(tempfile.mkdtemp(prefix="soak-failed-"))

@@ -38,7 +38,7 @@ def scenes():
     return {family: load_scene(SCENES / f"{name}.yaml") for family, name in FAMILY.items()}
 
 
-# -- orders and limits ------------------------------------------------------------------------------------------------------
+# -- orders and limits ---
 
 
 @pytest.mark.parametrize("order", [1.0, 1.5, 2.0])
@@ -73,7 +73,7 @@ def test_an_order_that_is_not_believed_is_reported_but_not_extrapolated_with():
     assert fast.uncertainty == pytest.approx(3 * abs(step))
 
 
-# -- meshes and points ------------------------------------------------------------------------------------------------------
+# -- meshes and points ---
 
 
 @pytest.mark.parametrize(("kind", "parts"), [("quad4", 4), ("tri6", 2)])
@@ -157,7 +157,7 @@ def test_a_point_is_measured(scenes, element):
     )
 
 
-# -- errors of made-up runs --------------------------------------------------------------------------------------------------
+# -- errors of made-up runs ---
 
 
 @pytest.fixture(scope="module")
@@ -279,7 +279,7 @@ def test_presets_have_error_and_cost(table):
     assert worst["draft"] > worst["thesis"] > worst["fine"]
 
 
-# -- what the planner goes by -----------------------------------------------------------------------------------------------
+# -- what the planner goes by ---
 
 
 def test_planner_believes_at_least_the_committed_errors():
@@ -376,7 +376,7 @@ def test_tolerance_is_met_by_the_cheapest(scenes, curvature):
     assert work == sorted(work) and work[0] < work[-1]
 
 
-# -- belief ------------------------------------------------------------------------------------------------------------------
+# -- belief ---
 
 
 def test_scenes_outside_the_study_can_be_planned_and_differ(scenes):
@@ -502,7 +502,7 @@ def test_beliefs_cover_the_truth(scenes, name):
     assert belief.covered(rows) == 1 and (rows["true error (%)"].dropna() > 0).all()
 
 
-# -- figures state theirs ----------------------------------------------------------------------------------------------------
+# -- figures state theirs ---
 
 GEOMETRY = {"3-4", "3-5", "5-25"}
 """Figures of the pad itself, for which nothing is solved."""
@@ -559,7 +559,7 @@ def test_belief_covers_the_truth_nine_times_in_ten_in_every_class_of_stimulus():
     assert (covered >= 0.9).all(), covered
 
 
-# -- errors that figures state ------------------------------------------------------------------------------------------------
+# -- errors that figures state ---
 
 
 def test_stated_errors_stand_beside_those_of_the_curves():

@@ -189,7 +189,7 @@ def _row(record, reference, cpu, default) -> dict[str, Any]:
     }
 
 
-# -- the historical models ----------------------------------------------------------------------------------------------
+# -- the historical models ---
 
 
 def half_plane_modulus(scene, width: float) -> float:
@@ -272,7 +272,7 @@ def _historical(name, constant, family, scene, reference, default) -> dict[str, 
     }
 
 
-# -- what follows from the errors -----------------------------------------------------------------------------------------
+# -- what follows from the errors ---
 
 
 def orders_table(records: Records) -> pd.DataFrame:

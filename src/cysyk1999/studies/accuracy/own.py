@@ -115,7 +115,7 @@ def table(rows: pd.DataFrame) -> pd.DataFrame:
     return found
 
 
-# --- unseen ones ----------------------------------------------------------------------------------------------------------
+# --- unseen ones ---
 
 
 def drawn_own(draw: np.random.Generator) -> dict[str, Any]:

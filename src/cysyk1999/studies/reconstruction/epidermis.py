@@ -15,13 +15,12 @@ import numpy as np
 import pandas as pd
 
 from cysyk1999.measures.of_presses import ENERGIES
-from cysyk1999.studies.accuracy.meshes import quarters
-from cysyk1999.studies.effects.run import with_effects
+from cysyk1999.studies.common.meshes import split
+from cysyk1999.studies.common.plans import with_effects
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.evidence import Evidence
 from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT
 from cysyk1999.studies.reconstruction.unknowns import LOAD, SCALED, STIFFNESS
-from cysyk1999.studies.stability.run import Teaching
 from fingerpad.measures import features
 from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
@@ -268,12 +267,8 @@ def of_element(pad: Mapping[str, float], kind: str) -> dict[int, float]:
     chosen = with_effects(plan(scene), "instantaneous", viscoelasticity=False)
     mesh = mesh_for(scene, chosen)
     if kind == "Q1":
-        mesh = quarters(mesh)
-    run = (
-        Simulation(scene, chosen, None)
-        if kind == "Q2P1"
-        else Teaching(scene, replace(chosen, element=kind), mesh, True)
-    )
+        mesh = split(mesh, "quad4")
+    run = Simulation(scene, replace(chosen, element=kind), mesh)
     run.solve(None)
     space, u = run.body.space, run.body.u
     gradient = np.eye(2) + np.einsum("eqai,eaj->eqji", space.grad, u[space.cells])
