@@ -361,11 +361,12 @@ def test_a_full_disk_is_an_error_of_the_system(run, tmp_path, monkeypatch):
     left.
     """
     monkeypatch.setattr(shutil, "disk_usage", lambda _: types.SimpleNamespace(free=0))
-    monkeypatch.setattr(
-        netCDF4,
-        "Dataset",
-        lambda *_, **__: (_ for _ in ()).throw(RuntimeError("NetCDF: HDF error")),
-    )
+
+    def fails(history, path, **_):
+        Path(path).write_text("half")
+        raise RuntimeError("NetCDF: HDF error")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fails)
     with pytest.raises(OSError, match="No space left") as caught:
         write_history(run[3], tmp_path / "history.nc")
     assert caught.value.errno == errno.ENOSPC and not list(tmp_path.iterdir())

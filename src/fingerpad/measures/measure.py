@@ -114,7 +114,7 @@ def measures_of(module: ModuleType) -> dict[str, Measure]:
     }
 
 
-# --- kinds of scenes -------------------------------------------------------------------------------------
+# --- kinds of scenes ----------------------------------------------------------------------
 
 
 def named(scenes: Iterable[str]) -> Callable[[Scene], bool]:

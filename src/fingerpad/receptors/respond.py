@@ -61,7 +61,8 @@ def respond(
     """
     if not isinstance(history, xr.Dataset):
         raise TypeError(
-            f"a history is what simulate or read_history returns, not {type(history).__name__} {str(history)[:60]!r}"
+            f"a history is what simulate or read_history returns, not {type(history).__name__} "
+            f"{str(history)[:60]!r}"
         )
     afferents = [afferents] if isinstance(afferents, str) else afferents
     laws = (
@@ -72,7 +73,8 @@ def respond(
     time, leg = history["time"].values, history["leg"].values
     if not time[-1] - time[0] > NO_TIME:
         raise ValueError(
-            "nothing in this history takes time, so it has no rates: give a leg a rate, a speed or a hold"
+            "nothing in this history takes time, so it has no rates: give a leg a rate, a speed "
+            "or a hold"
         )
     at, energy, change = rate_by_leg(time, history["strain_energy_density"].values, leg)
     rates = np.array(
