@@ -8,10 +8,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from cysyk1999.studies.common.documents import FLAT, scene_of
 from cysyk1999.studies.effects.picture import assemble, looks
 from cysyk1999.studies.effects.picture import effects as picture
 from cysyk1999.studies.effects.run import pairs, rules_table, study
-from cysyk1999.studies.common.documents import FLAT, scene_of
 from fingerpad.planning import effects
 from fingerpad.planning.effects import EFFECTS, in_order, registered
 from fingerpad.planning.plan import RULES, Plan, PlanError, plan

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cysyk1999.workflow.sources import imported_sources
+from cysyk1999.sources import imported_sources
 from fingerpad.provenance import code_digest
 
 pytestmark = pytest.mark.unit
@@ -15,11 +15,15 @@ def names(*modules: str) -> set[str]:
 def test_figures_rest_on_laws_of_receptors_and_not_on_mechanics():
     found = names("cysyk1999.figures.registry")
     assert {"figures/registry.py", "receptors/laws.py", "fingerpad/__init__.py"} <= found
-    assert not {name for name in found if name.startswith("mechanics/") or name == "planning/plan.py"}
+    assert not {
+        name for name in found if name.startswith("mechanics/") or name == "planning/plan.py"
+    }
 
 
 def test_a_verb_of_the_package_brings_what_it_runs():
-    assert {"mechanics/stepping.py", "fingerpad/simulation.py"} <= names("cysyk1999.workflow.jobs.simulate")
+    assert {"mechanics/stepping.py", "fingerpad/simulation.py"} <= names(
+        "cysyk1999.workflow.simulate"
+    )
 
 
 def test_the_digest_follows_names_and_contents(tmp_path):

@@ -12,8 +12,10 @@ import pytest
 import yaml
 
 from cysyk1999.config import read_config
-from cysyk1999.workflow.chapters import offered
-from cysyk1999.workflow.products import Job, Products
+from cysyk1999.figures.registry import CHAPTERS
+from cysyk1999.job import Job
+from cysyk1999.studies.views.frames import FRAMES
+from cysyk1999.workflow.project import Project
 from fingerpad import load_scene, plan
 from fingerpad.documents import SceneError
 from fingerpad.planning.plan import companion
@@ -31,9 +33,9 @@ class Plan:
     def __init__(self, document: dict | str) -> None:
         if isinstance(document, str):
             document = yaml.safe_load((ROOT / "config" / f"{document}.yaml").read_text())
-        self.products = Products(read_config(document, "config.yaml"), "config.yaml", ROOT)
-        self.config = self.products.config
-        self.jobs = {job.name: job for job in self.products.jobs()}
+        self.project = Project(read_config(document, "config.yaml"), "config.yaml", ROOT)
+        self.config = self.project.config
+        self.jobs = {job.name: job for job in self.project.jobs()}
         self.maker = {path: job for job in self.jobs.values() for path in made(job)}
 
     def needed(self, targets: Iterable[str]) -> set[str]:
@@ -47,16 +49,7 @@ class Plan:
         return names
 
     def default(self) -> set[str]:
-        parts = (
-            "catalogue",
-            "animations",
-            "views",
-            "all_tables",
-            "calibration",
-            "ridges",
-            "meanings",
-        )
-        return self.needed(self.products.targets(*parts, figures=""))
+        return self.needed(self.project.default())
 
     def rerun(self, edited: str) -> set[str]:
         """Kinds of jobs of the default target that rest on a file of the project themselves."""
@@ -68,12 +61,12 @@ class Plan:
         }
 
     def scenes(self, names: Iterable[str]) -> set[str]:
-        jobs = [self.jobs[name] for name in names if self.jobs[name].run == "simulate"]
+        jobs = [self.jobs[name] for name in names if self.jobs[name].kind == "simulate"]
         return {Path(path).parent.name for job in jobs for path in job.outputs["histories"]}
 
 
 def made(job: Job) -> list[str]:
-    return [*(path for paths in job.outputs.values() for path in paths), *job.beside]
+    return job.made
 
 
 def inputs(job: Job) -> list[str]:
@@ -95,7 +88,7 @@ def smoke():
 
 def test_every_file_has_one_maker_and_every_job_a_name(thesis):
     outputs = [path for job in thesis.jobs.values() for path in made(job)]
-    assert len(outputs) == len(set(outputs)) and len(thesis.jobs) == len(thesis.products.jobs())
+    assert len(outputs) == len(set(outputs)) and len(thesis.jobs) == len(thesis.project.jobs())
     assert all(name.isidentifier() for name in thesis.jobs)
 
 
@@ -104,7 +97,7 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
     assert len(names) <= 90
     outputs = {path for name in names for path in made(thesis.jobs[name])}
     assert {
-        f"figures/thesis/fig_{n}.{kind}" for n in thesis.products.specs for kind in ("png", "csv")
+        f"figures/thesis/fig_{n}.{kind}" for n in thesis.project.specs for kind in ("png", "csv")
     } <= outputs
     assert {
         f"figures/tables/{name}.{kind}"
@@ -122,7 +115,7 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
         "figures/studies/animation_stroke_10.gif",
         "results/thesis/specimens",
     } <= outputs
-    views = {*offered()["VIEWS"], "scorecard", "candidate_stimuli"}
+    views = {*FRAMES, "scorecard", "candidate_stimuli"}
     assert {f"figures/studies/{n}.{kind}" for n in views for kind in ("png", "csv")} <= outputs
     assert {
         f"results/thesis/pdf/{n}.pdf" for n in ("fig_4-10", "overview", "calibration_fit")
@@ -134,7 +127,7 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
         Path(p).parent.name for p in outputs if p.startswith("results/thesis/simulations/")
     } == every
     coarse = {Path(p).parent.name for p in outputs if p.startswith("results/thesis/coarse/")}
-    compared = {scene for figure in thesis.products.drawn for scene in figure.companions}
+    compared = {scene for figure in thesis.project.drawn for scene in figure.read_companions}
     assert coarse == {
         *thesis.config.scenes,
         *compared,
@@ -151,9 +144,9 @@ def test_default_is_at_most_ninety_jobs_and_makes_all_the_figures_and_tables(the
 @pytest.mark.parametrize("configuration", ["thesis", "smoke"])
 def test_companions_have_fewer_nodes_than_what_they_accompany(configuration, request):
     """Half as many, but for what a coarser mesh has as well: the bone, ridges, a sharp edge."""
-    products = request.getfixturevalue(configuration).products
-    for name in sorted(products.coarse & {*products.config.scenes, "calibration_plate"}):
-        scene, own = load_scene(products.scene(name)), products.config.accuracy
+    project = request.getfixturevalue(configuration).project
+    for name in sorted(project.coarse & {*project.config.scenes, "calibration_plate"}):
+        scene, own = load_scene(project.scene(name)), project.config.accuracy
         how = plan(scene if own is None else scene.with_accuracy(own))
         assert 0.3 * how.nodes < companion(scene, how).nodes < 0.75 * how.nodes, name
 
@@ -161,7 +154,7 @@ def test_companions_have_fewer_nodes_than_what_they_accompany(configuration, req
 def test_companions_are_solved_beside_their_scenes_on_one_mesh_with_all_steps_and_with_every_two_made_one(
     thesis,
 ):
-    (job,) = [job for job in thesis.jobs.values() if job.called == "simulate_stroke_10"]
+    (job,) = [job for job in thesis.jobs.values() if job.name == "simulate_stroke_10"]
     folder = "results/thesis/{}/stroke_10/history.nc"
     assert job.outputs["histories"] == [
         folder.format(kind) for kind in ("simulations", "coarse_mesh", "coarse")
@@ -175,27 +168,27 @@ def test_the_table_of_measures_has_every_companion_there_is(thesis):
     no error.
     """
     coarse = {Path(p).parent.name for p in thesis.jobs["measures"].inputs["coarse"]}
-    assert coarse == thesis.products.coarse and "ramp150_k315" in coarse
+    assert coarse == thesis.project.coarse and "ramp150_k315" in coarse
 
 
 def test_studies_are_not_part_of_the_default(thesis):
-    runs = {thesis.jobs[name].run for name in thesis.default()}
+    runs = {thesis.jobs[name].kind for name in thesis.default()}
     assert not runs & {
         "accuracy_sweep",
         "accuracy_belief",
         "stability_method",
         "effects_study",
-        "peers",
+        "peers_table",
     }
 
 
 @pytest.mark.parametrize("chapter", ["3", "4", "5"])
 def test_a_chapter_makes_its_figures_only(thesis, chapter):
-    targets = thesis.products.targets(figures=f"{chapter}-")
+    targets = thesis.project.targets(figures=f"{chapter}-")
     names = thesis.needed(targets)
-    assert {thesis.jobs[name].run for name in names} == {"simulate", "figures"}
+    assert {thesis.jobs[name].kind for name in names} == {"simulate", "draw_figures"}
     drawn = {Path(p).stem for name in names for p in thesis.jobs[name].outputs.get("pictures", [])}
-    assert drawn == {f"fig_{n}" for n in thesis.products.specs if n.startswith(f"{chapter}-")}
+    assert drawn == {f"fig_{n}" for n in thesis.project.specs if n.startswith(f"{chapter}-")}
 
 
 def test_a_figure_simulates_the_families_it_needs_only(thesis):
@@ -207,18 +200,18 @@ def test_a_figure_simulates_the_families_it_needs_only(thesis):
 
 
 def test_ridges_and_calibration_simulate_their_own_scenes_only(thesis):
-    names = thesis.needed(thesis.products.targets("ridges"))
+    names = thesis.needed(thesis.project.targets("ridges"))
     assert all(scene.startswith("ridged_outer_stroke_") for scene in thesis.scenes(names))
-    names = thesis.needed(thesis.products.targets("calibration"))
+    names = thesis.needed(thesis.project.targets("calibration"))
     assert thesis.scenes(names) == {
         *thesis.config.calibration_scenes,
         *thesis.config.friction_scenes,
     }
-    assert not {"figures", "tables"} & {thesis.jobs[name].run for name in names}
+    assert not {"draw_figures", "tables"} & {thesis.jobs[name].kind for name in names}
 
 
 def test_studies_make_their_tables_and_figures(thesis):
-    jobs = [thesis.jobs[name] for name in thesis.needed(thesis.products.targets("accuracy"))]
+    jobs = [thesis.jobs[name] for name in thesis.needed(thesis.project.targets("accuracy"))]
     assert {Path(p).name for job in jobs for p in made(job) if p.startswith("figures/")} == {
         f"{name}.{kind}"
         for names, kinds in (
@@ -233,6 +226,7 @@ def test_studies_make_their_tables_and_figures(thesis):
                     "accuracy_strokes",
                     "accuracy_belief",
                     "accuracy_drawn",
+                    "accuracy_own",
                     "accuracy_shown",
                 ),
                 ("csv", "md"),
@@ -253,16 +247,16 @@ def test_studies_make_their_tables_and_figures(thesis):
         for name in names
         for kind in kinds
     }
-    runs = [job.run for job in jobs]
+    runs = [job.kind for job in jobs]
     assert runs.count("accuracy_sweep") == 24
-    simulated = [job for job in jobs if job.run == "simulate"]  # for the errors that figures state
-    (shown,) = (job for job in jobs if job.run == "accuracy_shown")
+    simulated = [job for job in jobs if job.kind == "simulate"]  # for the errors that figures state
+    (shown,) = (job for job in jobs if job.kind == "accuracy_shown")
     assert all(
         set(job.outputs["histories"]) & {*shown.inputs["histories"], *shown.inputs["coarse"]}
         for job in simulated
     )
-    assert {Path(p).stem for p in thesis.products.targets("stability")} == {"stability"}
-    assert {Path(p).stem for p in thesis.products.targets("effects")} == {
+    assert {Path(p).stem for p in thesis.project.targets("stability")} == {"stability"}
+    assert {Path(p).stem for p in thesis.project.targets("effects")} == {
         "effects",
         "planner_choices",
         "planner_rules",
@@ -275,7 +269,7 @@ def test_smoke_writes_under_its_results_only_and_skips_what_it_lacks(smoke):
     assert all(Path(path).is_relative_to("results/smoke") for path in outputs)
     assert smoke.scenes(names) == {*smoke.config.scenes, *smoke.config.calibration_scenes}
     assert not {"calibrate_friction", "ridge_cases", "catalogue"} & {
-        smoke.jobs[name].run for name in names
+        smoke.jobs[name].kind for name in names
     }
 
 
@@ -283,7 +277,7 @@ def test_smoke_writes_under_its_results_only_and_skips_what_it_lacks(smoke):
 
 
 def test_the_report_has_a_page_a_figure_study_and_table_in_the_order_of_numbers(thesis):
-    jobs = {name: job for name, job in thesis.jobs.items() if job.run == "report_pages"}
+    jobs = {name: job for name, job in thesis.jobs.items() if job.kind == "report_pages"}
     assert {job.category for job in jobs.values()} == {
         "Chapter 3",
         "Chapter 4",
@@ -293,11 +287,9 @@ def test_the_report_has_a_page_a_figure_study_and_table_in_the_order_of_numbers(
     }
     assert not set(jobs) & thesis.default()
     four = [
-        job.reported("pages", page)
-        for job in (jobs["report_chapter_4"],)
-        for page in job.outputs["pages"]
+        job.labels[page] for job in (jobs["report_chapter_4"],) for page in job.outputs["pages"]
     ]
-    order = sorted((entry["labels"] for entry in four), key=lambda labels: labels["no."])
+    order = sorted(four, key=lambda labels: labels["no."])
     assert [labels["figure"] for labels in order[:2]] == ["4-2", "4-3"] and order[-1][
         "figure"
     ] == "4-29"
@@ -318,8 +310,16 @@ def test_the_report_has_a_page_a_figure_study_and_table_in_the_order_of_numbers(
 
 
 def test_published_studies_are_shown_and_not_made_for_the_report(thesis):
-    needed = {thesis.jobs[name].run for name in thesis.needed(thesis.products.targets("report"))}
-    assert not needed & {"accuracy_sweep", "stability_method", "effects_study", "peers", "sweep"}
+    needed = {
+        thesis.jobs[name].kind for name in thesis.needed(thesis.project.targets("report_pages"))
+    }
+    assert not needed & {
+        "accuracy_sweep",
+        "stability_method",
+        "effects_study",
+        "peers_table",
+        "run_sweep",
+    }
     assert "figures/studies/stability.png" in thesis.jobs["report_studies"].values["published"]
 
 
@@ -327,10 +327,10 @@ def test_published_studies_are_shown_and_not_made_for_the_report(thesis):
 
 
 def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
-    for module in {figure.module for figure in thesis.products.drawn}:
+    for module in CHAPTERS:
         path = "src/" + module.replace(".", "/") + ".py"
         names = thesis.rerun(path)
-        assert names and {thesis.jobs[name].run for name in names} == {"figures"}
+        assert names and {thesis.jobs[name].kind for name in names} == {"draw_figures"}
         own = {name for name in names if module in thesis.jobs[name].values["modules"]}
         assert own == {
             name
@@ -343,8 +343,8 @@ def test_an_edited_chapter_redraws_that_chapter_and_nothing_else(thesis):
 
 def test_an_edited_figure_grammar_redraws_figures_only(thesis):
     names = thesis.rerun("src/cysyk1999/figures/grammar.py")
-    assert {thesis.jobs[name].run for name in names} == {"figures"}
-    assert names == {name for name in thesis.default() if thesis.jobs[name].run == "figures"}
+    assert {thesis.jobs[name].kind for name in names} == {"draw_figures"}
+    assert names == {name for name in thesis.default() if thesis.jobs[name].kind == "draw_figures"}
 
 
 def test_an_edited_claim_remakes_the_tables_and_the_figures_that_say_whether_it_holds(thesis):
@@ -354,21 +354,23 @@ def test_an_edited_claim_remakes_the_tables_and_the_figures_that_say_whether_it_
             "catalogue",
         }  # which counts verdicts
     for module in ("trends_pressing", "said"):
-        runs = {thesis.jobs[name].run for name in thesis.rerun(f"src/cysyk1999/claims/{module}.py")}
-        assert runs == {"figures"} | (
+        runs = {
+            thesis.jobs[name].kind for name in thesis.rerun(f"src/cysyk1999/claims/{module}.py")
+        }
+        assert runs == {"draw_figures"} | (
             {"tables", "catalogue"} if module == "trends_pressing" else set()
         )
 
 
 def test_an_edited_kernel_reruns_simulations(thesis):
     names = thesis.rerun("src/fingerpad/mechanics/kernels.py")
-    runs = {thesis.jobs[name].run for name in names}
+    runs = {thesis.jobs[name].kind for name in names}
     assert {"simulate", "strokes_with_friction", "ridge_cases"} <= runs and not {
-        "figures",
+        "draw_figures",
         "tables",
-        "measures",
+        "measure",
     } & runs
-    assert all(name in names for name in thesis.default() if thesis.jobs[name].run == "simulate")
+    assert all(name in names for name in thesis.default() if thesis.jobs[name].kind == "simulate")
 
 
 def test_sources_are_found_from_wherever_they_are_asked_for(thesis, tmp_path, monkeypatch):
@@ -383,8 +385,8 @@ def test_sources_are_found_from_wherever_they_are_asked_for(thesis, tmp_path, mo
 
 
 def test_an_edited_job_reruns_itself_only(thesis):
-    assert thesis.rerun("src/cysyk1999/workflow/jobs/calibrate.py") == {"calibrate"}
-    assert not thesis.rerun("src/cysyk1999/workflow/products.py") and not thesis.rerun(
+    assert thesis.rerun("src/cysyk1999/studies/ridges/frames.py") == {"ridge_data"}
+    assert not thesis.rerun("src/cysyk1999/workflow/project.py") and not thesis.rerun(
         "src/cysyk1999/config.py"
     )
 
@@ -413,7 +415,7 @@ def written(document: dict) -> dict[str, list[str]]:
     return {
         name: [*job.values["written"], *job.inputs["files"]]
         for name, job in jobs.items()
-        if job.run == "simulate"
+        if job.kind == "simulate"
     }
 
 

@@ -1,58 +1,60 @@
-"""A rule for every job of the configuration: cysyk1999.workflow.products says what each reads and writes, its module what it does.
+"""A rule for every job, and a target for every part, that the package's modules `jobs` declare.
 
-Inputs beside those are a list of the package's files that the job imports, found by following imports, with their digests, and the
-environment as it was installed: by content, so that an edit reruns what it can change. One list in place of a hundred files, which
-Snakemake would all read again for every job.
+A rule's inputs also hold a list of the source files that the job imports, with their digests, and the environment as it was
+installed: an edit reruns what it can change. One list stands for a hundred files, which Snakemake would read for every job.
 """
 
 import os
 import shlex
-from importlib.util import find_spec
 from pathlib import Path
 
+from cysyk1999.job import parts
 from fingerpad.files import write_text
 
-# The environment as it was installed by the Makefile, else as it is locked: a changed package reruns what uses it.
+# The environment as the Makefile installed it, else as it is locked.
 INSTALLED = ROOT / ".venv" / "installed.lock"
 ENVIRONMENT = os.path.relpath(INSTALLED if INSTALLED.exists() else ROOT / "requirements.lock")
 
 
-def shown(job):
-    """The outputs of a job by their keys, marked for the report, histories as never empty."""
+def marked(job):
+    """The outputs of a job by key: pages for the report, histories as never empty."""
     for key, paths in job.outputs.items():
-        flags = [(path, job.reported(key, path)) for path in paths]
-        marked = [report(path, **how) if how else path for path, how in flags]
-        yield key, ensure(marked, non_empty=True) if key == "histories" else directory(marked) if key == "specimens" else marked
+        if key == "pages":
+            paths = [report(p, category=job.category, labels=dict(job.labels[p])) for p in paths]
+        if key == "histories":
+            paths = ensure(paths, non_empty=True)
+        yield key, directory(paths) if key == "specimens" else paths
 
 
 def command(job):
-    """The shell command of a job once its files are known, files and parameters by their keys."""
+    """The shell command of a job, once its files are known."""
 
-    def told(wildcards, input, output):
-        given = {"input": input, "output": output}
-        words = ["env", f"FINGERPAD_VECTORS={job.vectors}"] if job.vectors else []
-        words += [sys.executable, "-m", "cysyk1999.workflow", job.run, "--log", log_of(job)]
+    def words(wildcards, input, output):
+        places = {"input": input, "output": output}
+        start = ["env", f"FINGERPAD_VECTORS={job.pdf}"] if job.pdf else []
+        start += [sys.executable, "-m", "cysyk1999.workflow", f"{job.do.__module__}:{job.kind}"]
+        start += ["--log", log_of(job)]
         for place, key in job.words:
-            values = job.values[key] if place == "params" else given[place].get(key)
-            words += [f"--{key}", *([values] if isinstance(values, str) else values)]
-        return shlex.join(map(str, words))
+            values = job.values[key] if place == "params" else places[place].get(key)
+            start += [f"--{key}", *([values] if isinstance(values, str) else values)]
+        return shlex.join(map(str, start))
 
-    return told
+    return words
 
 
 def code_of(job):
-    """The job's list of sources, written anew only where one of them has changed."""
-    path = Path(PRODUCTS.result(f"code/{job.name}.txt"))
+    """The job's list of sources, written only where one of them has changed."""
+    path = Path(PROJECT.result(f"code/{job.name}.txt"))
     if not (path.exists() and path.read_text(encoding="utf-8") == job.code):
         write_text(path, job.code)
     return str(path)
 
 
 def log_of(job):
-    return PRODUCTS.result(f"logs/{job.name}.log")
+    return PROJECT.result(f"logs/{job.name}.log")
 
 
-for job in PRODUCTS.jobs():
+for job in PROJECT.jobs():
 
     rule:
         name:
@@ -63,7 +65,7 @@ for job in PRODUCTS.jobs():
             **{key: ancient(paths) if key == "scene_files" else paths for key, paths in job.inputs.items()},
         output:
             *job.beside,
-            **dict(shown(job)),
+            **dict(marked(job)),
         params:
             **job.values,
             command=command(job),
@@ -76,11 +78,3 @@ for job in PRODUCTS.jobs():
             runtime=job.runtime,
         shell:
             "{params.command}"
-
-
-def peers_if_installed(wildcards):
-    """The table, or nothing but a line that says why."""
-    if find_spec("felupe"):
-        return PRODUCTS.targets("peers")
-    print("peers: FElupe is not installed, so there is nothing to compare with; pip install -e .[peers]", file=sys.stderr)
-    return []

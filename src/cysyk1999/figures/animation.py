@@ -13,6 +13,7 @@ import io
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import matplotlib as mpl
@@ -31,7 +32,7 @@ from fingerpad.files import write_atomically
 from fingerpad.measures.features import PRESSURE, force_gf, profile
 from fingerpad.measures.measure import speed_of
 from fingerpad.measures.strokes import profile_and_height
-from fingerpad.results import scene_of
+from fingerpad.results import read_history, scene_of
 from fingerpad.specimen.element_kinds import kind_of
 
 if TYPE_CHECKING:
@@ -283,3 +284,9 @@ def _borders(points: np.ndarray, cells: np.ndarray, region: np.ndarray) -> np.nd
     mesh = (skfem.MeshTri if cells.shape[1] == 3 else skfem.MeshQuad)(points.T, cells.T)
     one, other = mesh.f2t
     return mesh.facets[:, (other < 0) | (region[one] != region[other])].T
+
+
+def animations(job: SimpleNamespace) -> None:
+    """Job: `histories` with whole fields -> `gifs` and `films`."""
+    for history, gif, film in zip(job.histories, job.gifs, job.films, strict=True):
+        animate(read_history(history), gif, film)

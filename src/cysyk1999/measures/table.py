@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -21,6 +22,7 @@ import xarray as xr
 
 from cysyk1999.measures import of_presses, of_scenes, of_strokes
 from cysyk1999.measures.errors import Companion, Companions, Errors, thinned
+from cysyk1999.measures.inputs import read_results
 from fingerpad.files import write_atomically
 from fingerpad.measures.features import Feature, Histories, Meshes
 from fingerpad.measures.kept import Each
@@ -235,3 +237,9 @@ def read_measures(path: str | PathLike) -> pd.DataFrame:
         column: [float(v) if v else np.nan for v in table[column]] for column in ("value", *INSTEAD)
     }
     return table.assign(**numbers)
+
+
+def measure(job: SimpleNamespace) -> None:
+    """Job: `histories`, `meshes`, `coarse` -> `measures`."""
+    histories, meshes, coarse = read_results([*job.histories, *job.meshes, *job.coarse])
+    write_measures(measures_table(histories, coarse, meshes), job.measures[0])

@@ -5,7 +5,9 @@ whole or not at all.
 from __future__ import annotations
 
 import os
+from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -192,3 +194,17 @@ def publish_table(frame: pd.DataFrame, csv_path: str | os.PathLike) -> None:
 
 
 publish_table.__doc__ = publish_table.__doc__ % FLOAT_FORMAT
+
+
+def join_tables(job: SimpleNamespace) -> None:
+    """Job: `parts` (CSV), one below the other -> `table`."""
+    parts = [read_frame(Path(part)) for part in job.parts]
+    publish_table(pd.concat(parts, ignore_index=True), job.table[0])
+
+
+def draw_study(job: SimpleNamespace) -> None:
+    """Job: each of `data` (CSV) -> the picture in its place, by `STUDIES` of the module `study`."""
+    draw = import_module(job.study[0]).STUDIES
+    for data, picture in zip(job.data, job.pictures, strict=True):
+        frame, name = read_frame(Path(data)), Path(picture).stem
+        publish(draw[name if name in draw else Path(data).stem](frame), frame, picture)

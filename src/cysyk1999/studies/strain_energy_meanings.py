@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import textwrap
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -28,9 +29,11 @@ from matplotlib.figure import Figure
 
 from cysyk1999.figures import axes as axs
 from cysyk1999.measures.errors import Companions, curve_errors, over_time
+from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.quantities import SED, TIME
 from cysyk1999.measures.runs import NINE
 from cysyk1999.publishing import style
+from cysyk1999.publishing.write import publish, without_round_off
 from fingerpad.measures.features import SIMULATED, SURFACES, Histories, energy, ramp_end, scene_name
 
 MEANINGS = {
@@ -141,3 +144,10 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
     ]
     ax.legend(handles=handles, loc="upper left", ncols=3)
     return fig
+
+
+def strain_energy_meanings(job: SimpleNamespace) -> None:
+    """Job: `histories`, `coarse` -> `picture`."""
+    histories, _, coarse = read_results([*job.histories, *job.coarse])
+    frame = without_round_off(frame_meanings(histories, coarse))
+    publish(fig_meanings(frame), frame, job.picture[0])

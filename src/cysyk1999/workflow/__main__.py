@@ -1,26 +1,21 @@
-"""Do one job of the workflow: ``python -m cysyk1999.workflow JOB --log FILE --key VALUE ... --key
-VALUE ...``
+"""Do one job: ``python -m cysyk1999.workflow MODULE:FUNCTION --log FILE --KEY WORD ... --KEY WORD ...``
 
-JOB is a module of :mod:`cysyk1999.workflow.jobs`, a key the name of some of its files or
-parameters. Everything printed goes into the log; if the job fails, its last line is also shown
-where the workflow was started.
+The function takes the words by their keys. Everything printed goes into the log; if the job fails, its last line is also
+shown where the workflow was started.
 """
 
 from __future__ import annotations
 
-import importlib
 import os
 import sys
 import traceback
+from importlib import import_module
 from types import SimpleNamespace
-
-from fingerpad.processes import collect_seldom
 
 
 def main(words: list[str]) -> int:
     """Run a job and return its exit code."""
-    collect_seldom()
-    name, *words = words
+    (module, name), words = words[0].split(":"), words[1:]
     keys: dict[str, list[str]] = {}
     for word in words:
         if word.startswith("--"):
@@ -33,7 +28,7 @@ def main(words: list[str]) -> int:
         os.dup2(stream.fileno(), 1)
         os.dup2(stream.fileno(), 2)
     try:
-        importlib.import_module(f"cysyk1999.workflow.jobs.{name}").run(SimpleNamespace(**keys))
+        getattr(import_module(module), name)(SimpleNamespace(**keys))
     except KeyboardInterrupt:
         return 130
     except Exception as error:  # noqa: BLE001 - whatever it is, it is shown

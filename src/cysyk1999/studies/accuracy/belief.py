@@ -12,13 +12,17 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.studies.accuracy.run import DEPTHS
+from fingerpad import load_scene
 from fingerpad.planning.plan import Plan, plan
 from fingerpad.results import states_found
 from fingerpad.scenes.scene import Cylinder, Flat, Hold, PressToDepth, PressToForce, Scene, Slide
@@ -210,3 +214,11 @@ def beliefs(scene: Scene, name: str, levels: tuple = LEVELS) -> list[dict[str, A
         error, worst = difference(run, truth) if run is not truth else (np.nan, "")
         rows.append({"scene": name, "accuracy": str(level)} | record(run, error, worst))
     return rows
+
+
+def accuracy_belief(job: SimpleNamespace) -> None:
+    """Job: `names` of the scenes, `scene` that they vary -> `rows` (CSV), one for each scene."""
+    for name, path in zip(job.names, job.rows, strict=True):
+        write_frame(
+            pd.DataFrame(beliefs(prepared(name, load_scene(job.scene[0])), name)), Path(path)
+        )

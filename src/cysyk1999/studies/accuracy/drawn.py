@@ -11,13 +11,17 @@ half width.
 from __future__ import annotations
 
 import json
+import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.studies.accuracy.belief import FINEST, QUANTITIES, difference, finer, record
 from cysyk1999.studies.accuracy.own import finer_own, unseen, write_own
 from cysyk1999.studies.accuracy.ridges import TRUTH
@@ -283,3 +287,11 @@ def _beliefs_on_own(
             ("draft", FINEST), histories, ((error, worst), (np.nan, "")), strict=True
         )
     ]
+
+
+def accuracy_drawn(job: SimpleNamespace) -> None:
+    """Job: `kind`, the class -> `rows` (CSV) of all its scenes."""
+    with tempfile.TemporaryDirectory() as folder:
+        scenes = [(name, kind, document) for name, kind, document in drawn() if kind == job.kind[0]]
+        rows = [row for scene in scenes for row in beliefs(*scene, Path(folder))]
+    write_frame(pd.DataFrame(rows), Path(job.rows[0]))

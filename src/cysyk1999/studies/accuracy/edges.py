@@ -13,13 +13,16 @@ import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from cysyk1999.measures.errors import norm
-from cysyk1999.studies.accuracy.run import DEPTHS
+from cysyk1999.publishing.write import publish_table
+from cysyk1999.studies.accuracy.run import DEPTHS, EDGED
+from fingerpad import load_scene
 from fingerpad.mechanics import contact_points
 from fingerpad.planning.plan import plan
 from fingerpad.receptors.laws import rate_by_leg
@@ -185,3 +188,8 @@ def rows(surface: str, scene: Scene) -> list[dict[str, object]]:
 def table(scenes: dict[str, Scene]) -> pd.DataFrame:
     """All surfaces."""
     return pd.DataFrame([row for surface, scene in scenes.items() for row in rows(surface, scene)])
+
+
+def accuracy_edges(job: SimpleNamespace) -> None:
+    """Job: `scenes` in the order of EDGED -> `table`."""
+    publish_table(table(dict(zip(EDGED, map(load_scene, job.scenes), strict=True))), job.table[0])

@@ -4,15 +4,19 @@ what the planner goes by.
 
 from __future__ import annotations
 
+import json
 import statistics
 import timeit
 from collections.abc import Iterable, Mapping
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 from scipy.optimize import brentq
 
+from cysyk1999.publishing.write import publish_table
 from cysyk1999.studies.accuracy.convergence import Limit, fitted_order, limit
 from cysyk1999.studies.accuracy.run import (
     DEFAULT_ROWS,
@@ -26,6 +30,7 @@ from cysyk1999.studies.accuracy.run import (
     Point,
     seconds,
 )
+from fingerpad import load_scene
 from fingerpad.reference_solutions import hertz, phillips_johnson, waterbed
 
 Records = Mapping[str, dict[str, Any]]
@@ -485,3 +490,18 @@ FRAMES = {
 """Figure name -> its data frame, of the table of accuracy, of beliefs, or of errors shown, of which
 each curve is drawn once.
 """
+
+
+def accuracy_tables(job: SimpleNamespace) -> None:
+    """Job: `records` (JSON), `scenes` in the order of FAMILY -> `tables`: accuracy, accuracy_orders,
+    accuracy_planner, presets.
+    """
+    records = {
+        record["name"]: record
+        for path in job.records
+        for record in json.loads(Path(path).read_text(encoding="utf-8"))
+    }
+    accuracy = accuracy_table(records, dict(zip(FAMILY, map(load_scene, job.scenes), strict=True)))
+    made = (accuracy, orders_table(records), planner_table(records), presets_table(accuracy))
+    for table, path in zip(made, job.tables, strict=True):
+        publish_table(table, path)

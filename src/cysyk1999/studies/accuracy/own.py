@@ -8,18 +8,22 @@ makes them, fine at the skin and coarser inside.
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import gmsh
 import numpy as np
 import pandas as pd
 
+from cysyk1999.publishing.write import publish_table, write_frame
 from cysyk1999.studies.accuracy.belief import difference, finest
 from cysyk1999.studies.accuracy.run import split
 from cysyk1999.studies.stability.hard_cases import FLAT, cylinder, force
+from fingerpad import load_scene
 from fingerpad.planning.plan import plan
 from fingerpad.scenes.scene import Scene
 from fingerpad.specimen.build import build_pad_mesh
@@ -250,3 +254,11 @@ def unseen(seed: int, count: int) -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Name, class and document of presses on meshes drawn at random."""
     for number in range(count):
         yield f"own_{number}", "own", drawn_own(np.random.default_rng((seed, 1000 + number)))
+
+
+def accuracy_own(job: SimpleNamespace) -> None:
+    """Job: `scene`, one of the family -> `rows` and `table`."""
+    with tempfile.TemporaryDirectory() as folder:
+        rows = measured(load_scene(job.scene[0]), Path(folder))
+    write_frame(rows, Path(job.rows[0]))
+    publish_table(table(rows), job.table[0])

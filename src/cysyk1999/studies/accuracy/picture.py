@@ -5,6 +5,8 @@ from its data frame.
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -23,6 +25,8 @@ from cysyk1999.publishing.style import (
     study_figure,
     styled,
 )
+from cysyk1999.publishing.write import publish
+from cysyk1999.studies.accuracy.errors import FRAMES
 
 COST, CHANGE, TIME = "cost (1 = default)", "error (%)", "process time (s)"
 COLOURS = {name: look["color"] for name, look in MEANINGS["element"].items()}
@@ -391,3 +395,11 @@ STUDIES: dict[str, Callable[[pd.DataFrame], Figure]] = {
     "accuracy_shown": shown,
 }
 """Figure name -> drawing function of its data frame."""
+
+
+def accuracy_pictures(job: SimpleNamespace) -> None:
+    """Job: `table` -> `pictures`."""
+    table = pd.read_csv(job.table[0], dtype={"scene": str, "accuracy": str})
+    for picture in map(Path, job.pictures):
+        frame = FRAMES[picture.stem](table)
+        publish(STUDIES[picture.stem](frame), frame, picture)

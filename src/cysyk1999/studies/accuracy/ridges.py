@@ -12,12 +12,15 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cysyk1999.publishing.write import publish_table
 from cysyk1999.studies.ridges.run import boundary
+from fingerpad import load_scene
 from fingerpad.planning.effects.ridges import error_beside
 from fingerpad.planning.plan import plan
 from fingerpad.planning.rules import RULES
@@ -119,3 +122,10 @@ def rows(surface: str, base: Scene) -> list[dict[str, object]]:
 def table(scenes: dict[str, Scene]) -> pd.DataFrame:
     """All surfaces."""
     return pd.DataFrame([row for surface, scene in scenes.items() for row in rows(surface, scene)])
+
+
+def accuracy_ridges(job: SimpleNamespace) -> None:
+    """Job: `scenes` in the order of SURFACES -> `table`."""
+    publish_table(
+        table(dict(zip(SURFACES, map(load_scene, job.scenes), strict=True))), job.table[0]
+    )

@@ -15,10 +15,13 @@ import time
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from multiprocessing import get_context
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fingerpad import load_scene
+from fingerpad.files import write_text
 from fingerpad.planning.plan import RULES, Plan, plan
 from fingerpad.specimen.build import build_pad_mesh, count_nodes
 from fingerpad.specimen.pad import PadMesh
@@ -334,3 +337,12 @@ def seconds(record: dict[str, Any], yardstick: float) -> float:
     return yardstick * statistics.median(
         a / b for a, b in zip(cost["cpu_s"], cost["yardstick_s"], strict=True)
     )
+
+
+def accuracy_sweep(job: SimpleNamespace) -> None:
+    """Job: `sweep`, `scene` -> `records` (JSON)."""
+    records = []
+    for record in measure_all(sweeps()[job.sweep[0]], load_scene(job.scene[0])):
+        print(record["name"], f"{record['cost']['cpu_s'][0]:.1f} s", record["failure"], flush=True)
+        records.append(record)
+    write_text(job.records[0], json.dumps(records, indent=1) + "\n")

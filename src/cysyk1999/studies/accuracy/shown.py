@@ -9,14 +9,23 @@ follows by the order with which curves converge.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from cysyk1999.figures.grammar import Figure
+from cysyk1999.figures.registry import FIGURES
 from cysyk1999.measures.errors import MESH, PARTS, Companion, Companions, Curve, norm
+from cysyk1999.measures.inputs import read_results
+from cysyk1999.publishing.write import publish_table
+from cysyk1999.reference_data import read_reference
+from fingerpad import load_scene, plan, simulate
 from fingerpad.measures.features import Histories, Meshes
+from fingerpad.planning.plan import companion
+from fingerpad.results import write_history
 
 FINER = 0.5
 """Edges of the finer runs over those of the scenes."""
@@ -92,3 +101,23 @@ def shown(
 
 
 _SERIES = ("panel", "surface", "series", "pad", "phase", "place", "convexity")
+
+
+def accuracy_finer(job: SimpleNamespace) -> None:
+    """Job: `scenes` -> `histories`."""
+    for scene, history in zip(map(load_scene, job.scenes), job.histories, strict=True):
+        write_history(simulate(scene, companion(scene, plan(scene), coarser=FINER)), history)
+        print(history, flush=True)
+
+
+def accuracy_shown(job: SimpleNamespace) -> None:
+    """Job: `histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `table`, of the figures
+    `numbers`.
+    """
+    folder = Path(job.reference[0]).parent
+    figures = [(FIGURES[number], FIGURES[number].measurements(folder)) for number in job.numbers]
+    results, finer = (
+        read_results([*job.histories, *job.meshes, *job.coarse]),
+        read_results(job.finer)[0],
+    )
+    publish_table(shown(figures, results, finer, read_reference(job.reference[0])), job.table[0])

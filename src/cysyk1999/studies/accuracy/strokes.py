@@ -14,10 +14,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import cycle
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 
+from cysyk1999.publishing.write import publish_table, read_frame, write_frame
 from cysyk1999.studies.accuracy.belief import difference
 from cysyk1999.studies.accuracy.drawn import drawn
 from cysyk1999.studies.accuracy.run import DEFAULT_ROWS, DEFAULT_STEPS
@@ -116,3 +119,20 @@ def strokes_table(found: pd.DataFrame) -> pd.DataFrame:
     )
     both.columns = [f"{over}, {which}" for which, over in both.columns]
     return both.map(lambda error: float(f"{error:.2g}")).reset_index()
+
+
+def accuracy_strokes(job: SimpleNamespace) -> None:
+    """Job: `over`, what is stroked -> `rows` (CSV) of all strokes."""
+    over = job.over[0]
+    rows = [
+        row for name, scene in strokes(over).items() for row in stroke_errors(over, name, scene)
+    ]
+    write_frame(pd.DataFrame(rows), Path(job.rows[0]))
+
+
+def accuracy_strokes_table(job: SimpleNamespace) -> None:
+    """Job: `parts` (CSV), one below the other -> `table`."""
+    publish_table(
+        strokes_table(pd.concat([read_frame(Path(part)) for part in job.parts], ignore_index=True)),
+        job.table[0],
+    )

@@ -17,12 +17,16 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
+from cysyk1999.measures.inputs import read_coarse, read_results
+from cysyk1999.publishing.write import write_frame
+from cysyk1999.reference_data import read_force_depth
 from cysyk1999.studies.calibration.least_squares import Fit, fit, group_interval
 from fingerpad.files import write_text
 from fingerpad.stimuli.motion import NO_TIME
@@ -693,3 +697,16 @@ def write_specimens(
     for path, (who, found) in zip(paths, result.constants.items(), strict=True):
         write_text(path, specimen_text(who, found, specimen, data))
     return paths
+
+
+def calibrate_forces(job: SimpleNamespace) -> None:
+    """Job: `forces`, `histories`, `coarse` -> `data` (CSV, named as the calibration's frames), the
+    folder `specimens`.
+    """
+    histories, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
+    forces = read_force_depth(job.forces)
+    result = calibrate(histories, coarse, forces)
+    for path in map(Path, job.data):
+        write_frame(getattr(result, path.stem), path)
+    scene = json.loads(histories["calibration_plate"].attrs["scene"])
+    write_specimens(job.specimens[0], result, scene["specimen"], forces)

@@ -12,13 +12,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
+from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.quantities import DISTANCE, LATERAL
+from cysyk1999.publishing.write import without_round_off, write_frame
+from cysyk1999.reference_data import read_friction
 from cysyk1999.studies.calibration.force import ESTIMATE_COLUMNS
 from fingerpad.results import scene_of
 
@@ -338,3 +343,15 @@ def _estimates(curve, varied, target, axis, published) -> pd.DataFrame:
         note = f"{row.kind}: {value}; {row.condition}; {row.how_obtained}; {row.source}"
         add("friction: published", quantity, middle, note=note, subject=row.contact)
     return pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)
+
+
+def calibrate_friction_job(job: SimpleNamespace) -> None:
+    """Job: `sweep`, `histories`, the tables `thesis` and `published` -> `data`: friction,
+    friction_estimates.
+    """
+    histories, sweep = read_results(job.histories)[0], read_results(job.sweep)[0].values()
+    result = calibrate_friction(
+        sweep, histories, pd.read_csv(job.thesis[0]), read_friction(job.published[0])
+    )
+    for path, frame in zip(job.data, (result.friction, result.estimates), strict=True):
+        write_frame(without_round_off(frame), Path(path))

@@ -19,15 +19,22 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from scipy.optimize import nnls
 
+from cysyk1999.measures.inputs import read_results
+from cysyk1999.publishing.write import write_frame
+from cysyk1999.reference_data import read_relaxation
 from cysyk1999.studies.calibration.force import ESTIMATE_COLUMNS, ElasticCurve
 from cysyk1999.studies.calibration.least_squares import Fit, fit
+from fingerpad import load_scene, plan, simulate
 from fingerpad.scenes.scene import PronyTerm, Scene
+from fingerpad.specimen import read_pad_mesh
 from fingerpad.specimen.materials import Prony
 from fingerpad.stimuli.motion import geometric
 
@@ -465,3 +472,25 @@ def _estimates(
         subject="",
     )
     return pd.DataFrame(rows, columns=ESTIMATE_COLUMNS)
+
+
+def calibrate_prony(job: SimpleNamespace) -> None:
+    """Job: `relaxation`, `histories` of plate, long_term and `scene`, its `mesh`, `accuracy` -> `data`:
+    prony, estimates.
+    """
+    scene, mesh = load_scene(job.scene[0]), read_pad_mesh(job.mesh[0])
+    if job.accuracy != ["as_stated"]:
+        scene = scene.with_accuracy(job.accuracy[0])
+    how = plan(scene)
+
+    def full(prony):
+        return (
+            simulate(with_series(scene, prony), how, mesh=mesh).force.values
+            * scene.specimen.contact_length
+        )
+
+    histories, _, _ = read_results(job.histories)
+    plate, other, held = (histories[Path(path).parent.name] for path in job.histories)
+    result = study(plate, other, held, read_relaxation(job.relaxation[0]), full)
+    for path, frame in zip(job.data, (result.prony, result.estimates), strict=True):
+        write_frame(frame, Path(path))

@@ -4,6 +4,8 @@ that.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
@@ -20,7 +22,8 @@ from cysyk1999.publishing.style import (
     styled,
     wrapped,
 )
-from cysyk1999.studies.effects.run import FIELDS, REFINED, WRONG
+from cysyk1999.publishing.write import publish, publish_table
+from cysyk1999.studies.effects.run import FIELDS, REFINED, WRONG, evidence, rules_table
 from fingerpad.planning.effects import EFFECTS
 
 LEAST = 1e-6
@@ -182,3 +185,16 @@ def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
             _dot(f"wrong ({wrong})", color=WARNING, mfc="white"),
         ],
     )
+
+
+def effects_picture(job: SimpleNamespace) -> None:
+    """Job: `parts`: changes, choices -> `picture`, `tables`: effects, planner_choices, planner_rules."""
+    changes, choices = map(pd.read_csv, job.parts)
+    frame = assemble(changes, choices)
+    publish(effects(frame), frame, job.picture[0])
+    for table, path in zip(
+        (evidence(changes, choices), choices, rules_table(changes, choices)),
+        job.tables,
+        strict=True,
+    ):
+        publish_table(table, path)

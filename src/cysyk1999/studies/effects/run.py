@@ -11,12 +11,15 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.studies.common.documents import (
     FLAT,
     RAMP,
@@ -465,3 +468,8 @@ def _text(value: Any) -> str:
     if isinstance(value, Mapping):
         return ", ".join(f"{name}: {1e6 * preset.skin_edge:g} um" for name, preset in value.items())
     return str(value) if isinstance(value, float | int) else "table"
+
+
+def effects_study(job: SimpleNamespace) -> None:
+    """Job: `part` -> `data`."""
+    write_frame({"changes": study, "choices": verdicts}[job.part[0]](), Path(job.data[0]))

@@ -16,14 +16,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pandas as pd
 import xarray as xr
 
 from cysyk1999.claims.comparison import AGREES, score_of, thesis_comparison
+from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.runs import FAST, NINE
 from cysyk1999.measures.table import Instead, Measures
+from cysyk1999.publishing.write import publish_table, write_frame
 from cysyk1999.reference_data import read_reference
 from fingerpad.measures.strokes import FULL, STEPPED, SUB
 from fingerpad.results import ENERGIES
@@ -312,3 +315,30 @@ def turned(
     return table.iloc[
         (table["makes_fail"] - table["makes_hold"]).argsort(kind="stable")
     ].reset_index(drop=True)
+
+
+def explanation(job: SimpleNamespace) -> None:
+    """Job: The reading `name` of the scenes in the folder `scenes`, the table `reference` -> `data`."""
+    reading = READINGS[job.name[0]]
+    write_frame(
+        verdicts(simulated(Path(job.scenes[0]), reading), reading, job.reference[0]),
+        Path(job.data[0]),
+    )
+
+
+def explanations_read(job: SimpleNamespace) -> None:
+    """Job: The readings `names` of all `histories`, the table `reference` -> `data`."""
+    histories, _, _ = read_results(job.histories)
+    for name, data in zip(job.names, job.data, strict=True):
+        write_frame(verdicts(histories, READINGS[name], job.reference[0]), Path(data))
+
+
+def explanations_table(job: SimpleNamespace) -> None:
+    """Job: `readings` by their `names`, the `comparison`, the table `reference` -> `tables`."""
+    known = (
+        pd.read_csv(job.comparison[0]),
+        dict(zip(job.names, map(pd.read_csv, job.readings), strict=True)),
+        job.reference[0],
+    )
+    for table, path in zip((explanations(*known), turned(*known)), job.tables, strict=True):
+        publish_table(table, path)

@@ -6,12 +6,15 @@ Drawn from the table of the sweep ``config/sweeps/map_of_touch.yaml`` alone.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cysyk1999.publishing.style import FIELD, INK, study_figure, styled
+from cysyk1999.publishing.write import publish
 
 K, FORCE, RATE, STRAIN = "curvature (1/m)", "force (gf)", "rate (gf/s)", "strain"
 DEPTH, WIDTH = "indentation_depth_end (mm)", "contact_width_end (mm)"
@@ -146,3 +149,9 @@ def contours(frame: pd.DataFrame) -> Figure:
     for ax in axes[:, 0]:
         ax.set_ylabel("force (gf)")
     return fig
+
+
+def map_of_touch(job: SimpleNamespace) -> None:
+    """Job: `scenes` (CSV) -> `picture`, its data beside it."""
+    frame = frame_of(pd.read_csv(job.scenes[0]))
+    publish(contours(frame), frame, job.picture[0])

@@ -20,13 +20,16 @@ import subprocess
 import sys
 import tempfile
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import yaml
 
+from cysyk1999.publishing.write import publish_table
 from cysyk1999.studies.accuracy.meshes import quarters
 from cysyk1999.studies.peers import with_felupe, with_ngsolve
 from fingerpad import load_scene, plan
@@ -240,3 +243,10 @@ def _version(name: str) -> str:
         return version(name)
     except PackageNotFoundError:
         return ""
+
+
+def peers_table(job: SimpleNamespace) -> None:
+    """Job: -> `table`."""
+    if find_spec("felupe") is None:
+        raise ValueError("FElupe is not installed; pip install -e .[peers]")
+    publish_table(study(), job.table[0])

@@ -8,11 +8,14 @@ over, and where they break.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from cysyk1999.measures.inputs import read_coarse, read_results
 from cysyk1999.measures.quantities import NODE, P
 from cysyk1999.measures.responses import (
     DEPTHS,
@@ -28,7 +31,10 @@ from cysyk1999.measures.responses import (
     strokes,
 )
 from cysyk1999.measures.runs import FAST, NINE
+from cysyk1999.publishing.write import publish_table
 from cysyk1999.receptors.fits import constant_shift, jackknife, r_squared, rms, spatial_sum
+from cysyk1999.receptors.recordings import read_rates
+from cysyk1999.studies.receptors.candidate_stimuli import candidate_stimuli
 from cysyk1999.studies.receptors.impulse_rates import (
     RATE_FITS,
     assignments,
@@ -37,6 +43,7 @@ from cysyk1999.studies.receptors.impulse_rates import (
     rate_fit,
     rate_sets,
 )
+from cysyk1999.studies.receptors.sensing import rapidly_adapting, sensor_accuracy
 from fingerpad.measures.features import Histories, scene_name
 from fingerpad.measures.strokes import SUB
 from fingerpad.receptors.laws import NODE_TERMS, TERM_UNITS, THESIS_RATE, SpatialSum
@@ -352,3 +359,20 @@ def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
                 value, low, high = constants[k]
                 row = _number(law, title, name, value, unit, note * (k == 0), um, low, high)
                 yield row | _left_over(data, predicted, "impulses/s") if k == 0 else row
+
+
+TABLES = ("receptor_fits", "candidate_stimuli", "sensor_accuracy", "rapidly_adapting")
+
+
+def receptor_tables(job: SimpleNamespace) -> None:
+    """Job: `rates`, `histories`, `coarse` -> `tables`."""
+    rates = read_rates(*job.rates)
+    histories, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
+    made = {
+        "receptor_fits": lambda: receptor_fits(histories, coarse, rates),
+        "candidate_stimuli": lambda: candidate_stimuli(histories, rates),
+        "sensor_accuracy": lambda: sensor_accuracy(histories),
+        "rapidly_adapting": lambda: rapidly_adapting(histories),
+    }
+    for table in map(Path, job.tables):
+        publish_table(made[table.stem](), table)

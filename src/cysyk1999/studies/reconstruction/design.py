@@ -13,9 +13,11 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 
 import pandas as pd
 
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.unknowns import Unknowns, read_unknowns
 from fingerpad.sweeps.records import Writer, read_records
@@ -84,3 +86,10 @@ def table(records: Path) -> pd.DataFrame:
 
 if __name__ == "__main__":
     run_design(read_unknowns(UNKNOWNS), Path(sys.argv[1]), *map(float, sys.argv[2:3]))
+
+
+def reconstruction_design(job: SimpleNamespace) -> None:
+    """Job: `unknowns`, `records` -> `design`."""
+    records = Path(job.records[0])
+    run_design(read_unknowns(job.unknowns[0]), records)
+    write_frame(table(records), Path(job.design[0]))

@@ -10,15 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 
 from cysyk1999.measures.of_presses import ENERGIES
+from cysyk1999.publishing.write import publish_table
 from cysyk1999.studies.common.meshes import split
 from cysyk1999.studies.common.plans import with_effects
 from cysyk1999.studies.reconstruction import pads
-from cysyk1999.studies.reconstruction.evidence import Evidence
+from cysyk1999.studies.reconstruction.evidence import Evidence, read_evidence
 from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT
 from cysyk1999.studies.reconstruction.unknowns import LOAD, SCALED, STIFFNESS
 from fingerpad.measures import features
@@ -286,3 +288,9 @@ def of_element(pad: Mapping[str, float], kind: str) -> dict[int, float]:
         order = np.argsort(depth[same])
         out[z] = float(np.interp(z * 1e-6, depth[same][order], energy.ravel()[same][order]))
     return out
+
+
+def reconstruction_epidermis(job: SimpleNamespace) -> None:
+    """Job: `evidence`, `posterior` -> `table`."""
+    evidence = Evidence(read_evidence(job.evidence[0]))
+    publish_table(study(best_pad(pd.read_csv(job.posterior[0])), evidence), job.table[0])

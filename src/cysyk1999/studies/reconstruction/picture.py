@@ -4,6 +4,8 @@ evidence.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -18,11 +20,13 @@ from cysyk1999.publishing.style import (
     study_figure,
     styled,
 )
+from cysyk1999.publishing.write import publish
 from cysyk1999.studies.reconstruction import pads
-from cysyk1999.studies.reconstruction.evidence import FAMILIES, Evidence
+from cysyk1999.studies.reconstruction.evidence import FAMILIES, Evidence, read_evidence
 from cysyk1999.studies.reconstruction.inference import EPIDERMIS, SOFT
 from cysyk1999.studies.reconstruction.run import CHOSEN, SHOWN
-from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns
+from cysyk1999.studies.reconstruction.specimen import most_probable
+from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns, read_unknowns
 
 LABELS = {
     SCALED: "line load\n(N/m)",
@@ -183,3 +187,15 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
         fig, [handle(name, ls="none", **look) for name, (_, look) in reversed(looks.items())]
     )
     return fig
+
+
+def reconstruction_pictures(job: SimpleNamespace) -> None:
+    """Job: `unknowns`, `evidence`, `parts`: samples, predicted; `readings` -> `pictures`: posterior,
+    evidence.
+    """
+    samples, shown = map(pd.read_csv, job.parts)
+    frame = posterior_frame(samples, read_unknowns(job.unknowns[0]))
+    publish(posterior_picture(frame), frame, job.pictures[0])
+    best = f"best of {most_probable(pd.read_csv(job.readings[0]))}"
+    frame = evidence_frame(Evidence(read_evidence(job.evidence[0])), shown, best)
+    publish(evidence_picture(frame), frame, job.pictures[1])

@@ -9,14 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 
+from cysyk1999.publishing.write import publish_table, write_frame
 from cysyk1999.studies.reconstruction import pads
 from cysyk1999.studies.reconstruction.design import simulated
 from cysyk1999.studies.reconstruction.emulator import Emulator
-from cysyk1999.studies.reconstruction.evidence import ROLES, Evidence, values_of
+from cysyk1999.studies.reconstruction.evidence import ROLES, Evidence, read_evidence, values_of
 from cysyk1999.studies.reconstruction.inference import (
     EPIDERMIS,
     SOFT,
@@ -26,7 +29,9 @@ from cysyk1999.studies.reconstruction.inference import (
     recovery,
     shares_of,
 )
-from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns
+from cysyk1999.studies.reconstruction.specimen import specimen_text
+from cysyk1999.studies.reconstruction.unknowns import SCALED, Unknowns, read_unknowns
+from fingerpad.files import write_text
 
 CHOSEN = "chosen one at a time"
 ENERGIES = {
@@ -274,3 +279,29 @@ def families(
         }
         out.append(row)
     return pd.DataFrame(out)
+
+
+def reconstruction_inference(job: SimpleNamespace) -> None:
+    """Job: `unknowns`, `evidence`, `design` -> `tables` (posterior, readings, emulator, recovery,
+    families), `parts` (samples, predicted, bands), `specimen`.
+    """
+    evidence = Evidence(read_evidence(job.evidence[0]))
+    found = study(read_unknowns(job.unknowns[0]), evidence, pd.read_csv(job.design[0]))
+    chosen = chosen_pads(found.posteriors, found.samples)
+    simulated = simulate_pads(evidence, chosen)
+    shown, posterior = (
+        predicted(evidence, chosen, simulated),
+        posterior_table(found.posteriors, found.samples),
+    )
+    tables = (
+        posterior,
+        found.readings,
+        found.emulator,
+        recovery_table(found.recovered),
+        families(evidence, shown, chosen),
+    )
+    for table, path in zip(tables, job.tables, strict=True):
+        publish_table(table, path)
+    for part, path in zip((found.samples, shown, bands(chosen, simulated)), job.parts, strict=True):
+        write_frame(part, Path(path))
+    write_text(job.specimen[0], specimen_text(posterior, found.readings))

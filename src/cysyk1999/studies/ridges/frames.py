@@ -9,13 +9,17 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from cysyk1999.measures.direction import BESIDE, DEPTH, KEY, both_ways, directional_index, islands
+from cysyk1999.measures.inputs import read_coarse, read_results
 from cysyk1999.measures.quantities import DISTANCE, SED, P, X
+from cysyk1999.publishing.write import without_round_off, write_frame
 from cysyk1999.studies.ridges.picture import (
     BAND,
     DRAWN,
@@ -214,3 +218,11 @@ def outer_frame(strokes: Histories, coarse: Histories) -> pd.DataFrame:
     frame = pd.concat(parts, ignore_index=True)
     frame.insert(0, "source", SIMULATED)
     return frame
+
+
+def ridge_data(job: SimpleNamespace) -> None:
+    """Job: `cases`, `histories`, `coarse` -> `data` (CSV, named as the study's frames)."""
+    strokes, coarse = read_results(job.histories)[0], read_coarse(job.coarse)
+    made = frames(read_results(job.cases)[0], strokes, coarse)
+    for path in map(Path, job.data):
+        write_frame(without_round_off(made[path.stem]), path)

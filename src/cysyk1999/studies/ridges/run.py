@@ -8,12 +8,16 @@ They are shorter than the scenes' strokes, what is asked for has settled by then
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
+from fingerpad import load_scene
 from fingerpad.planning.plan import plan
+from fingerpad.results import write_history
 from fingerpad.scenes.scene import Discretisation, Receptors, Scene, Slide
 from fingerpad.simulation import simulate
 from fingerpad.specimen import OutlineCurve, RidgedPad, mesh_for
@@ -167,3 +171,9 @@ def _named(curve: OutlineCurve, points: np.ndarray) -> tuple[np.ndarray, np.ndar
         along = np.sum((points - skin) * np.column_stack((normal[:, 1], -normal[:, 0])), axis=1)
         s = s + along / (1 - depth * curve.curvature(theta))
     return s, depth
+
+
+def ridge_cases(job: SimpleNamespace) -> None:
+    """Job: `scene` -> `histories`, whose folders name the cases."""
+    for history in map(Path, job.histories):
+        write_history(run_case(load_scene(job.scene[0]), Case.named(history.parent.name)), history)

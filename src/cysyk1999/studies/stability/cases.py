@@ -24,6 +24,7 @@ from fingerpad.specimen.pad import MeshError, PadMesh
 from fingerpad.specimen.quality import check_orientation
 
 FOLDER = CONFIG / "stability"
+FILES = sorted(path.name for path in FOLDER.iterdir())
 METHODS = {
     "default": "this package",
     "full Q1": "full Q1 elements (lock)",

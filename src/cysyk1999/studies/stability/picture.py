@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from types import SimpleNamespace
 
 import matplotlib as mpl
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from cysyk1999.publishing.style import GREY, INK, PAGE_WIDTH, TALLEST, sheet, styled
+from cysyk1999.publishing.write import publish, publish_table
 from cysyk1999.studies.stability.cases import DEFAULT, METHODS, TEACHING
 
 MEASURES = {
@@ -319,3 +321,11 @@ def _legend(fig: Figure, drawn, height: float, width: float) -> None:
         x, y = 1.8 + 2.75 * column, 0.82 - 0.108 * row
         fig.text(x / width, y / height, name, fontsize=5.6, va="top", fontweight="bold")
         fig.text((x + 0.78) / width, y / height, meaning, fontsize=5.6, va="top")
+
+
+def stability_picture(job: SimpleNamespace) -> None:
+    """Job: `methods` (CSV) -> `picture`, `table`."""
+    frame = assemble([pd.read_csv(path) for path in job.methods])
+    publish_table(table(frame), job.table[0])
+    data = long(frame)
+    publish(heat_map(data), data, job.picture[0])

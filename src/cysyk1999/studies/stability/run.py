@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ import pandas as pd
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.studies.common.meshes import split
 from cysyk1999.studies.common.plans import OutOfTime, time_limit
 from cysyk1999.studies.common.plans import finer as finer_plan
@@ -331,3 +333,9 @@ def _row(case: Case, method: str) -> dict[str, Any]:
         row["depth_mm"] = 1e3 * history.indentation_depth.values[-1]
         row["force_N_per_m"] = history.force.values[-1]
     return row
+
+
+def stability_method(job: SimpleNamespace) -> None:
+    """Job: `method`, `part` (such as 1/4) -> `data`."""
+    part, parts = map(int, job.part[0].split("/"))
+    write_frame(study(job.method[0].replace("_", " "), part, parts), Path(job.data[0]))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -12,11 +14,16 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from cysyk1999.measures.inputs import read_results
 from cysyk1999.measures.quantities import DISTANCE, FORCE, IMPULSE, IMPULSE_RATE, SED, TIME, P, X, Y
 from cysyk1999.publishing import style
+from cysyk1999.publishing.write import publish, without_round_off
+from cysyk1999.reference_data import read_reference
+from cysyk1999.studies.views import picture as views
 from cysyk1999.studies.views.frames import (
     BOUND,
     CORNERS,
+    FRAMES,
     LEVELS,
     SKIN_X,
     SLIP,
@@ -799,3 +806,28 @@ VIEWS: dict[str, Callable[[pd.DataFrame], Figure]] = {
     )
 }
 """Name of a picture -> its drawing function of its data frame."""
+
+
+def draw_views(job: SimpleNamespace) -> None:
+    """Job: `histories` -> `pictures`, named as in VIEWS."""
+    histories, _, _ = read_results(job.histories)
+    for picture in job.pictures:
+        name = Path(picture).stem
+        frame = without_round_off(FRAMES[name][0](histories))
+        publish(VIEWS[name](frame), frame, picture)
+
+
+def table_pictures(job: SimpleNamespace) -> None:
+    """Job: `tables`, `reference` -> `pictures`: scorecard of thesis_comparison, candidate_stimuli of the
+    table of that name.
+    """
+    tables = {Path(path).stem: pd.read_csv(path) for path in job.tables}
+    for path in job.pictures:
+        if Path(path).stem == "scorecard":
+            frame, draw = (
+                views.scorecard_rows(tables["thesis_comparison"], read_reference(job.reference[0])),
+                views.scorecard,
+            )
+        else:
+            frame, draw = views.candidate_rows(tables["candidate_stimuli"]), views.candidate_stimuli
+        publish(draw(frame), frame, path)

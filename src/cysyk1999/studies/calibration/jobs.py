@@ -1,0 +1,70 @@
+"""The jobs of the calibration: modulus, Prony series and friction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from cysyk1999.job import Job, part
+from cysyk1999.studies.calibration.force import calibrate_forces
+from cysyk1999.studies.calibration.friction import calibrate_friction_job
+from cysyk1999.studies.calibration.relaxation import calibrate_prony
+from cysyk1999.studies.calibration.strokes import strokes_with_friction
+
+if TYPE_CHECKING:
+    from cysyk1999.workflow.project import Project
+
+RAMP, PLATE, STROKE = "calibration_ramp_hold", "calibration_plate", "stroke_sub_10"
+
+
+@part("calibration", in_default=True)
+def calibration(project: Project) -> Iterator[Job]:
+    """The pad calibrated to measured forces: figures, table and specimens."""
+    c = project.config
+    if not c.calibration_scenes:
+        return
+    names, estimates = ["fit", "identifiability", "residuals"], ["estimates"]
+
+    def data(*names: str) -> list[str]:
+        return [project.result(f"calibration/{name}.csv") for name in names]
+
+    steady = [scene for scene in c.calibration_scenes if scene != RAMP]
+    read = {
+        "forces": project.forces,
+        "histories": project.histories(steady),
+        "coarse": project.companions([PLATE]),
+    }
+    made = {"data": data(*names, *estimates), "specimens": [project.result("specimens")]}
+    yield Job(calibrate_forces, read, made, name="calibrate", priority=1)
+    if RAMP in c.calibration_scenes:
+        read = {
+            "relaxation": [project.at("config/reference/relaxation.csv")],
+            "mesh": project.meshes([RAMP]),
+            "histories": project.histories([PLATE, "calibration_long_term", RAMP]),
+            **project.reads(RAMP),
+        }
+        values = project.values_of(RAMP) | {"accuracy": [str(c.accuracy or "as_stated")]}
+        yield Job(calibrate_prony, read, {"data": data("prony", "prony_estimates")}, values)
+        names, estimates = [*names, "prony"], [*estimates, "prony_estimates"]
+    if c.friction_coefficients:
+        histories = [
+            project.result(f"friction/{mu:g}/history.nc") for mu in c.friction_coefficients
+        ]
+        for k in (0, 1):  # two processes for two cores
+            coefficients = [f"{mu:g}" for mu in c.friction_coefficients[k::2]]
+            values = project.values_of(STROKE) | {"coefficients": coefficients}
+            made, name = {"histories": histories[k::2]}, f"strokes_with_friction_{k + 1}"
+            more = {"mem_mb": 2000, "priority": 1}
+            yield Job(strokes_with_friction, project.reads(STROKE), made, values, name, **more)
+        read = {
+            "thesis": [project.at("config/reference/thesis_numbers.csv")],
+            "published": [project.at("config/reference/friction.csv")],
+            "sweep": histories,
+            "histories": project.histories(c.friction_scenes),
+        }
+        made = {"data": data("friction", "friction_estimates")}
+        yield Job(calibrate_friction_job, read, made, name="calibrate_friction", priority=1)
+        names, estimates = [*names, "friction"], [*estimates, "friction_estimates"]
+    picture = "cysyk1999.studies.calibration.picture"
+    yield project.study_pictures("calibration", names, data(*names), picture)
+    yield project.joined("calibration_table", "calibration", data(*estimates))

@@ -1,0 +1,17 @@
+"""Strokes with several coefficients of friction."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+from fingerpad import load_scene, plan
+from fingerpad.results import write_history
+from fingerpad.simulation import simulate
+
+
+def strokes_with_friction(job: SimpleNamespace) -> None:
+    """Job: `scene`, `coefficients` -> `histories`, one for each coefficient."""
+    stroke = load_scene(job.scene[0]).with_accuracy("draft")
+    for coefficient, history in zip(job.coefficients, job.histories, strict=True):
+        scene = stroke.varied({"friction": float(coefficient)})
+        write_history(simulate(scene, plan(scene)), history)

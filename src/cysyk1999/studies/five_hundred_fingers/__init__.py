@@ -1,1 +1,0 @@
-"""Five hundred fingers: what of a finger matters, and for what."""

@@ -1,0 +1,30 @@
+"""The jobs of the study of hard cases."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from cysyk1999.job import Job, part
+from cysyk1999.studies.stability.cases import FILES, PARTS
+from cysyk1999.studies.stability.picture import stability_picture
+from cysyk1999.studies.stability.run import stability_method
+
+if TYPE_CHECKING:
+    from cysyk1999.workflow.project import Project
+
+
+@part("stability")
+def stability(project: Project) -> Iterator[Job]:
+    """How stable the method is in hard cases, beside simpler methods: a heat map and a table."""
+    cases = [project.at(f"config/stability/{name}") for name in FILES]
+    read, data = {"files": [project.thesis_specimen(), *cases]}, []
+    for method, parts in PARTS.items():
+        name = method.replace(" ", "_")
+        for k in range(1, parts + 1):
+            data.append(project.result(f"stability/{name}_{k}.csv"))
+            values = {"method": [name], "part": [f"{k}/{parts}"]}
+            made = {"data": data[-1:]}
+            yield Job(stability_method, read, made, values, f"stability_{name}_{k}", runtime=30)
+    made = {"picture": project.pictures(["stability"]), "table": project.tables(["stability"])}
+    yield Job(stability_picture, {"methods": data}, made)

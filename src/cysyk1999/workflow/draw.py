@@ -1,0 +1,43 @@
+"""What the job of figures does."""
+
+from __future__ import annotations
+
+from dataclasses import astuple
+from importlib import import_module
+from pathlib import Path
+from types import SimpleNamespace
+
+import pandas as pd
+
+from cysyk1999.claims.said import said
+from cysyk1999.figures.axes import statement_row
+from cysyk1999.measures.inputs import read_results
+from cysyk1999.measures.table import Instead, Measures
+from cysyk1999.publishing.write import publish
+from cysyk1999.reference_data import read_reference
+from fingerpad.measures.kept import Each
+
+
+def draw_figures(job: SimpleNamespace) -> None:
+    """`histories`, `meshes`, `coarse`, the table `reference` -> `pictures` of the `modules`."""
+    (reference,) = job.reference
+    specs = {s.number: s for module in job.modules for s in import_module(module).FIGURES}
+    results = read_results([*job.histories, *job.meshes, *job.coarse])
+    table = read_reference(reference)
+    for picture in job.pictures:
+        spec = specs[Path(picture).stem.removeprefix("fig_")]
+        frame = spec.frame(*results, table, *spec.measurements(Path(reference).parent))
+        frame = with_statement(spec, frame, results, table)
+        publish(spec.draw(frame), frame, picture)
+
+
+def with_statement(spec, frame, results, reference):
+    """The frame of a figure, and a row with what the thesis says of it, judged by its own scenes."""
+    histories, meshes, coarse = (
+        Each(found.__getitem__, filter(found.__contains__, spec.needs)) for found in results
+    )
+    measures, coarser = Measures.of(histories, meshes), Instead.of(histories, coarse)
+    statement = said(spec.number, measures, coarser, reference)
+    if statement is None:
+        return frame
+    return pd.concat([frame, pd.DataFrame([statement_row(*astuple(statement))])], ignore_index=True)
