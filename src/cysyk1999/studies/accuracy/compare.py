@@ -78,7 +78,7 @@ def belief(
     quantities: Iterable[str] = QUANTITIES,
     **more: Any,
 ) -> dict[str, Any]:
-    """The error that a run states, how wrong it is and in what (no truth: unknown), and its cost."""
+    """The error that a run states, its true one (no truth: unknown) and in what, and its cost."""
     error, worst = (np.nan, "") if truth is None else difference(history, truth, quantities)
     cost = json.loads(history.attrs["cost"])
     return {

@@ -426,8 +426,8 @@ each curve is drawn once.
 
 
 def accuracy_tables(job: SimpleNamespace) -> None:
-    """Job: `records` (JSON), `scenes` in the order of FAMILY -> `tables`: accuracy, accuracy_orders,
-    accuracy_planner, presets.
+    """Job: `records` (JSON), `scenes` in the order of FAMILY -> `tables`: accuracy,
+    accuracy_orders, accuracy_planner, presets.
     """
     records = {
         record["name"]: record

@@ -39,7 +39,10 @@ PICTURES = {
 
 @part("accuracy")
 def accuracy(project: Project) -> Iterator[Job]:
-    """What accuracy costs in time, and whether runs know their error: figures and tables; about 1.5 h of one core."""
+    """What accuracy costs in time, and whether runs know their error: figures and tables.
+
+    About 1.5 h of one core.
+    """
     yield from _sweeps(project)
     for do, scenes in (
         (accuracy_edges, EDGED.values()),
@@ -113,5 +116,5 @@ def _shown(project: Project) -> Iterator[Job]:
         "finer": [*map(path, sorted(finer))],
     }
     values = {"numbers": [figure.number for figure in figures]}
-    made = {"table": project.tables(["accuracy_shown"])}
+    made = {"data": project.tables(["accuracy_shown"])}
     yield Job(accuracy_shown, read, made, values, mem_mb=4000)

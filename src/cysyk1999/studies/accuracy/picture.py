@@ -197,7 +197,8 @@ def belief(frame: pd.DataFrame) -> Figure:
     own = frame.loc[frame[TRUE].isna(), BELIEVED]
     fig, left, right = _belief(
         "Does a run know its error?",
-        f"Simulated: {asked['scene'].nunique()} scenes outside the study. Truth: largest difference "
+        f"Simulated: {asked['scene'].nunique()} scenes outside the study. Truth: largest "
+        "difference "
         "of depth, width, pressures and strain energies at the legs' ends, of strokes root mean "
         f"square, to a finer run, which believes in {own.min():.1f} to {own.max():.1f} % itself. "
         f"Below the line the belief covers the truth: {covers.sum()} of {len(asked)} runs.",

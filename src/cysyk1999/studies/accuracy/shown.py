@@ -20,7 +20,7 @@ from cysyk1999.figures.grammar import Figure
 from cysyk1999.figures.registry import FIGURES
 from cysyk1999.measures.errors import MESH, PARTS, Companion, Companions, Curve, norm
 from cysyk1999.measures.inputs import read_results
-from cysyk1999.publishing.write import publish_table
+from cysyk1999.publishing.write import write_frame
 from cysyk1999.reference_data import read_reference
 from fingerpad import load_scene, plan, simulate
 from fingerpad.measures.features import Histories, Meshes
@@ -111,13 +111,11 @@ def accuracy_finer(job: SimpleNamespace) -> None:
 
 
 def accuracy_shown(job: SimpleNamespace) -> None:
-    """Job: `histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `table`, of the figures
-    `numbers`.
+    """Job: `histories`, `meshes`, `coarse`, `finer`, the table `reference` -> `data` (CSV) of the
+    figures `numbers`.
     """
     folder = Path(job.reference[0]).parent
     figures = [(FIGURES[number], FIGURES[number].measurements(folder)) for number in job.numbers]
-    results, finer = (
-        read_results([*job.histories, *job.meshes, *job.coarse]),
-        read_results(job.finer)[0],
-    )
-    publish_table(shown(figures, results, finer, read_reference(job.reference[0])), job.table[0])
+    results = read_results([*job.histories, *job.meshes, *job.coarse])
+    finer, reference = read_results(job.finer)[0], read_reference(job.reference[0])
+    write_frame(shown(figures, results, finer, reference), Path(job.data[0]))

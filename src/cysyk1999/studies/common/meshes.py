@@ -1,4 +1,4 @@
-"""Meshes made of a built one on its nodes: other elements, and the worse shapes of users' meshes."""
+"""Meshes made of a built one on its nodes: other elements, and worse shapes, as users have."""
 
 from dataclasses import replace
 

@@ -4,6 +4,7 @@ that.
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import matplotlib as mpl
@@ -22,7 +23,7 @@ from cysyk1999.publishing.style import (
     styled,
     wrapped,
 )
-from cysyk1999.publishing.write import publish, publish_table
+from cysyk1999.publishing.write import publish, publish_table, write_frame
 from cysyk1999.studies.effects.run import FIELDS, REFINED, WRONG, evidence, rules_table
 from fingerpad.planning.effects import EFFECTS
 
@@ -188,13 +189,12 @@ def _planner(ax, rows: pd.DataFrame, scenes: int) -> None:
 
 
 def effects_picture(job: SimpleNamespace) -> None:
-    """Job: `parts`: changes, choices -> `picture`, `tables`: effects, planner_choices, planner_rules."""
+    """Job: `parts`: changes, choices -> `picture`, `tables`: effects, planner_rules, `data`: the
+    planner's choices.
+    """
     changes, choices = map(pd.read_csv, job.parts)
     frame = assemble(changes, choices)
     publish(effects(frame), frame, job.picture[0])
-    for table, path in zip(
-        (evidence(changes, choices), choices, rules_table(changes, choices)),
-        job.tables,
-        strict=True,
-    ):
-        publish_table(table, path)
+    for table, path in zip((evidence, rules_table), job.tables, strict=True):
+        publish_table(table(changes, choices), path)
+    write_frame(choices, Path(job.data[0]))
