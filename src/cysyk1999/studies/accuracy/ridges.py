@@ -19,7 +19,7 @@ import xarray as xr
 
 from cysyk1999.publishing.write import publish_table
 from cysyk1999.studies.accuracy.compare import resized
-from cysyk1999.studies.ridges.run import boundary
+from cysyk1999.studies.common.ridges import boundary
 from fingerpad import load_scene
 from fingerpad.planning.effects.ridges import error_beside
 from fingerpad.planning.plan import plan
