@@ -1,7 +1,7 @@
-"""Does a run know its error? Scenes that the study of accuracy has not seen, each at several
-accuracies and on the preset "fine", made finer in narrow contacts, which has an error of its own.
+"""Does a run know its error? Scenes that the study of accuracy has not seen, at several accuracies.
 
-A run knows its error where what it states covers what it is wrong by
+The truth is a run on the preset "fine", made finer in narrow contacts; it has an error of its own.
+A run knows its error if the error it states covers the one it has
 (:func:`cysyk1999.studies.accuracy.compare.difference`).
 """
 

@@ -1,10 +1,10 @@
-"""Does the edge of the contact move continuously? Kinks of the curves of a ramp and hold, with
-other smoothing and meshes.
+"""Does the edge of the contact move continuously? Kinks in the curves of a ramp and hold.
 
-Contact that begins node by node leaves a kink in every curve whenever one joins. Contact at points
-inside elements (:mod:`fingerpad.mechanics.contact_points`) leaves less than can be seen, if its
-pressures are smoothed enough to be those of one edge and not so much that the contact widens. How
-far the pressures across the contact are off is a matter of the nodes along the skin alone.
+Contact that begins node by node leaves a kink in every curve when a node joins. Contact at points
+inside elements (:mod:`fingerpad.mechanics.contact_points`) leaves none that can be seen, if its
+pressures are smoothed: too little, and they alternate; too much, and the contact widens. The study
+varies the smoothing and the mesh. How wrong the pressures across the contact are depends on the
+nodes along the skin alone.
 """
 
 from __future__ import annotations

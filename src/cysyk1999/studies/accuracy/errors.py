@@ -1,5 +1,5 @@
-"""Runs of the study of accuracy -> reference, errors, costs: what its tables and figures show and
-what the planner goes by.
+"""Records of the study of accuracy -> reference values, errors and costs: its tables and the data
+of its figures, and the errors that the planner uses.
 """
 
 from __future__ import annotations

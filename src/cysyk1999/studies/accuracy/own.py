@@ -1,9 +1,8 @@
-"""Meshes of one's own: what their elements make wrong of which quantity, and whether runs on unseen
-ones know it.
+"""Errors on meshes of one's own, by element and quantity; and unseen meshes drawn at random.
 
-The table is measured on the inferred pad, its mesh split into the elements that users bring; the
-unseen ones are drawn at random: slabs and half-rings of two layers, in triangles and quads as gmsh
-makes them, fine at the skin and coarser inside.
+The table is measured on the inferred pad, its mesh split into the elements that users bring. The
+unseen meshes are slabs and half-rings of two layers, in triangles and quads as gmsh makes them,
+fine at the skin and coarser inside.
 """
 
 from __future__ import annotations

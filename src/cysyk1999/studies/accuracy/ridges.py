@@ -1,11 +1,10 @@
-"""What pads with inner ridges are wrong by, by the number of elements from one ridge to the next.
+"""Errors on pads with inner ridges, by the number of elements from one ridge to the next.
 
 Strain energies beside ridges depend on the columns of elements among them and hardly on anything
-else of the mesh, so these are what is varied, about ridges of several heights and pitches, and the
-truth has more of them than any other. The errors are those of strain energy at the top of a ramp,
-everywhere about the boundary of epidermis and dermis; next to the boundary itself, where strain
-energy jumps and a receptor lies in one layer or the other by a hair, they are larger and not
-counted.
+else of the mesh. So these are varied, for ridges of several heights and pitches, and the truth has
+more of them than any other. The errors are those of strain energy at the top of a ramp, everywhere
+about the boundary of epidermis and dermis. Next to the boundary itself strain energy jumps, and
+a receptor can lie in one layer or the other: there errors are larger and not counted.
 """
 
 from __future__ import annotations
@@ -32,16 +31,16 @@ from fingerpad.specimen.ridges import wave_of
 SIZES = ((0.15, 0.48), (0.02, 0.48), (0.05, 0.48), (0.3, 0.48), (0.15, 0.3), (0.15, 0.8))
 """Heights and pitches of ridges in mm, the specimen's own first."""
 ELEMENTS = (8, 12, 18, 26)
-"""From one ridge to the next."""
+"""Numbers of elements from one ridge to the next."""
 TRUTH = 48
-"""And of the truth."""
+"""Elements of the truth."""
 SURFACES = ("flat", "210")
 """Of the study's scenes, that the pad is pressed by."""
 STEPS = 10
 OFF = 15e-6
 """How far (m) from the boundary of epidermis and dermis a place is that counts."""
 PLACES = (-0.5, -0.35, -0.25, -0.1, 0.0, 0.1, 0.25, 0.35)
-"""In pitches from a ridge's tip."""
+"""Places of receptors, in pitches from a ridge's tip."""
 DEPTH_STEP = 10e-6
 
 

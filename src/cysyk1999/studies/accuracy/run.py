@@ -1,4 +1,4 @@
-"""What accuracy costs in time: the runs of the study, one point each, and what is measured of them.
+"""What accuracy costs in time: the runs of the study, one point each, and their measurements.
 
 A point is a scene of the family with one discretisation. The plane of elements and mesh sizes is
 complete; time steps, Newton tolerance, small strain and presets are varied one at a time from the
@@ -193,9 +193,7 @@ RULER = Point("flat", rows=2)
 
 
 def measure_all(sweep: list[Point], scene: Scene) -> Iterator[dict[str, Any]]:
-    """What :func:`measure` says of each point; each in a process of its own, with the kernels
-    loaded before.
-    """
+    """Records of :func:`measure`, each from a process of its own with the kernels loaded."""
     processes = get_context("fork")
     with processes.Pool(1) as pool:  # compiles, so that its memory counts for no point
         pool.apply(_load_kernels, (sweep, scene))
@@ -219,7 +217,7 @@ def _ruler(scene: Scene) -> tuple[Scene, Plan]:
 
 
 def measure(point: Point, scene: Scene, repeats: int = 3) -> dict[str, Any]:
-    """Run a point and say what it answers and costs.
+    """Run a point and record its answers and costs.
 
     Parameters
     ----------

@@ -1,9 +1,8 @@
-"""Are the errors that figures state those of their curves? Stated errors beside changes on meshes
-with half the edges.
+"""Are the errors that figures state those of their curves?
 
-A figure is made twice: with the companions of its scenes, whose errors it states, and with finer
-runs in their place. What a curve changes by then is nearly all that it is wrong by; the rest
-follows by the order with which curves converge.
+A figure is made twice: with the companions of its scenes, from which it states its errors, and with
+runs on meshes of half the edges in their place. What a curve changes by then is nearly all of its
+error; the rest follows from the order with which curves converge.
 """
 
 from __future__ import annotations
@@ -40,7 +39,7 @@ MADE_FINER = (
     "ridged_stroke_",
     "ridged_40_",
 )
-"""How names of scenes begin that are made finer: all that figures read but chapter 3's and the
+"""First letters of the scenes that are made finer: all of figures but chapter 3's and the
 homogeneous pad.
 """
 STATED, STATED_MESH, TRUE = "stated error (%)", "stated mesh error (%)", "true error (%)"

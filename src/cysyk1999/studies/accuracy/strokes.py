@@ -1,12 +1,11 @@
-"""What strokes are wrong by, on meshes and with steps of several lengths: over plates and over
-waves, drawn at random.
+"""Errors of strokes on meshes and with steps of several lengths, over plates and over waves.
 
-Each run is held to one on the finest mesh with steps half as long, as
-:func:`~cysyk1999.studies.accuracy.compare.difference` has it, at the end of the press before, on
-which friction leaves its mark, and over the way. It does not fall evenly: where a corner of the
-waves comes to lie between nodes, and at which output the contact leaves the centre, is as it
-happens. So the largest error of the strokes counts, and the root of the mean square of all, to
-which a longer stroke, with as much in it as in many of these, comes nearer.
+The strokes are drawn at random. Each run is compared with one on the finest mesh with steps half as
+long (:func:`~cysyk1999.studies.accuracy.compare.difference`), at the end of the press before, on
+which friction leaves its mark, and over the way. Errors do not fall evenly: they depend on where a
+corner of the waves lies between nodes, and at which output the contact leaves the centre. So two
+numbers count: the largest error of all strokes, and the root of their mean square, which a longer
+stroke comes nearer to, for it has as much in it as many of these.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ MESHES, STEPS = (2, 4, 7, 10, 14), (10, 20, 40)
 default's mesh.
 """
 FINEST = 22, 40
-"""Elements and steps of what the others are held to."""
+"""Elements and steps of the truth."""
 STROKED_OVER = PLATES, WAVES
 SEEDS, COUNT = (22, 23), 60
 """Of the scenes drawn, and how many of each, of which the strokes over waves are taken: as they
@@ -45,7 +44,7 @@ are, and over a plate instead.
 RATE, SPEEDS = "40 gf/s", ("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s")
 """With which the same are pressed and, one after the other, stroked, where the skin relaxes."""
 LARGEST, MEAN = "largest", "root mean square"
-"""Of the errors of all strokes."""
+"""Columns: of the errors of all strokes."""
 
 
 def strokes(over: str, seeds: tuple[int, ...] = SEEDS) -> dict[str, Scene]:
@@ -88,10 +87,10 @@ def stroke_errors(over: str, name: str, scene: Scene) -> Iterator[dict[str, obje
 
 
 def strokes_table(found: pd.DataFrame) -> pd.DataFrame:
-    """Relative errors by mesh, and what fewer or more steps than the default's add to them; none
-    below one that is finer.
+    """Relative errors by mesh, and what fewer or more steps than the default's add to them.
 
-    found: of all scenes, as of :func:`stroke_errors`.
+    ``found`` has the rows of :func:`stroke_errors` of all scenes. No error is below that of a finer
+    mesh or shorter step.
     """
     errors = found.groupby(["over", "rows", "steps"])["error"]
     of_all = pd.DataFrame(
