@@ -7,12 +7,12 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 
 from cysyk1999.studies.common.documents import FLAT, depth, force, slide
 from cysyk1999.studies.stability.cases import (
-    APART,
     COMBINED,
-    FACTORS,
+    FOLDER,
     PICKED,
     Case,
 )
@@ -24,6 +24,8 @@ from fingerpad.planning.hardness import hard_in
 from fingerpad.results import leg_ends
 
 pytestmark = pytest.mark.stability
+COMBINATIONS = yaml.safe_load((FOLDER / "combinations.yaml").read_text(encoding="utf-8"))
+FACTORS: dict[str, list[str]] = COMBINATIONS["factors"]
 
 
 # -- combinations ---
@@ -37,7 +39,7 @@ def pairs(levels):
 def apart():
     """Pairs of levels that cannot meet."""
     found = set()
-    for entry in APART:
+    for entry in COMBINATIONS["apart"]:
         (one, first), (other, second) = (item for item in entry.items() if item[0] != "why")
         assert entry["why"] and set(first) <= set(FACTORS[one]), entry
         assert set(second) <= set(FACTORS[other]), entry

@@ -213,22 +213,15 @@ MESHES: dict[str, Callable[[Scene, Plan], PadMesh]] = {
 
 def _case(name: str, entry: Mapping[str, Any]) -> Case:
     levels = entry.get("levels", {})
-    hard = "; ".join(
-        f"{factor} {level}" for factor, level in levels.items() if factor != "stimulus"
-    )
-    known = {"hard": hard} | entry
-    known["limits"] = Limits(**entry.get("limits", {}))
-    return Case(name, **known)
+    others = (f"{name} {level}" for name, level in levels.items() if name != "stimulus")
+    limits = Limits(**entry.get("limits", {}))
+    return Case(name, **{"hard": "; ".join(others)} | entry | {"limits": limits})
 
 
-_COMBINATIONS = yaml.safe_load((FOLDER / "combinations.yaml").read_text(encoding="utf-8"))
-FACTORS: dict[str, list[str]] = _COMBINATIONS["factors"]
-"""Factor -> its levels, the easy one first."""
-APART: list[dict[str, Any]] = _COMBINATIONS["apart"]
-"""Levels of two factors that cannot meet, and why."""
-PICKED = {
-    name: _case(name, entry)
-    for name, entry in yaml.safe_load((FOLDER / "picked.yaml").read_text(encoding="utf-8")).items()
-}
-COMBINED = {name: _case(name, entry) for name, entry in _COMBINATIONS["cases"].items()}
+def _cases(file: str) -> dict[str, Case]:
+    entries = yaml.safe_load((FOLDER / file).read_text(encoding="utf-8"))
+    return {name: _case(name, entry) for name, entry in entries.get("cases", entries).items()}
+
+
+PICKED, COMBINED = _cases("picked.yaml"), _cases("combinations.yaml")
 CATALOGUE: dict[str, Case] = PICKED | COMBINED
