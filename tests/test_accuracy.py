@@ -447,6 +447,7 @@ def a_history(press: float, way: list[float], pressures: list[float]) -> xr.Data
     columns |= {
         "indentation_depth": [0.0, press, *[press] * count],
         "centre_pressure": [0.0, 1.0, *pressures],
+        "peak_pressure": [0.0, 1.0, *pressures],
     }
     return xr.Dataset({name: ("time", np.array(values)) for name, values in columns.items()})
 
