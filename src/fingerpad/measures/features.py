@@ -8,7 +8,6 @@ table, takes longer than what is done with them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -16,10 +15,8 @@ import xarray as xr
 
 from fingerpad.receptors.laws import rate_by_leg
 from fingerpad.results import receptor_index, scene_of
+from fingerpad.specimen.pad import PadMesh
 from fingerpad.units import parse_quantity
-
-if TYPE_CHECKING:
-    from fingerpad.specimen.pad import PadMesh
 
 SURFACES = ("flat", "79", "105", "158", "210", "315", "420", "630", "1260")
 """Labels of the nine surfaces, broad to sharp: curvature in 1/m as the thesis rounds it."""
@@ -30,7 +27,7 @@ SIMULATED = "simulated"
 RAMP_FRACTIONS = (0.2, 0.4, 0.6, 0.8)
 
 Histories = Mapping[str, xr.Dataset]
-Meshes = Mapping[str, "PadMesh"]
+Meshes = Mapping[str, PadMesh]
 Trace = Callable[[xr.Dataset], np.ndarray]
 Feature = Callable[[xr.Dataset], float | np.ndarray]
 

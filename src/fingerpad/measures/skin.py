@@ -29,14 +29,20 @@ def local_curvature(x: np.ndarray, y: np.ndarray, node: int, window: float = WIN
     under a convexity.
 
     Parameters
-    ---------- x, y : (..., nodes) m; positions along the line, from left to right over the upper
-    side of the pad. node : index of the node, at least `LEAST_NODES` away from both ends. window :
-    m; half of the arc length fitted over, widened where it holds fewer than `LEAST_NODES` to either
-    side.
+    ----------
+    x, y
+        (..., nodes) m; positions along the line, from left to right over the upper side of the pad.
+    node
+        Index of the node, at least `LEAST_NODES` away from both ends.
+    window
+        m; half of the arc length fitted over, widened where it holds fewer than `LEAST_NODES` to
+        either side.
 
     Returns
-    ------- (...,) 1/m. The weights fall off as (1 - (s / window)**2)**2 with the arc length s from
-    the node.
+    -------
+    np.ndarray
+        (...,) 1/m. The weights fall off as (1 - (s / window)**2)**2 with the arc length s from the
+        node.
     """
     x, y = np.asarray(x, float), np.asarray(y, float)
     return _curvature(x, y, _way(x, y), node, window)

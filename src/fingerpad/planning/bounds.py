@@ -1,10 +1,11 @@
-"""What is not to be had: plans that would need more than the machine has end here, before anything
-is allocated.
+"""Limits: plans that need more than the machine has are refused here, before anything is
+allocated.
 """
 
 from __future__ import annotations
 
 import os
+import resource
 from typing import Any
 
 from fingerpad.scenes.scene import Scene
@@ -65,8 +66,6 @@ def _memory() -> tuple[float, str]:
     """Bytes of memory that a run can have: the machine's, or what is left of a limit on addresses,
     and words for such a limit.
     """
-    import resource
-
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)
     machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if limit == resource.RLIM_INFINITY or limit - _PROGRAM_BYTES >= machine:

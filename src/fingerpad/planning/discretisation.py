@@ -148,8 +148,10 @@ def element_for(by_hand: Discretisation | None, external: PadMesh | None) -> str
     """The element to solve with: the one asked for, if the mesh has it or can be raised to it, else
     the mesh's own.
 
-    Raises:
-        PlanError: it does not fit the mesh.
+    Raises
+    ------
+    PlanError
+        It does not fit the mesh.
     """
     kind = external.element if external else "quad9"
     natural = KINDS[kind].solved
@@ -173,8 +175,12 @@ def raised_for(
     """An external mesh, its linear quads raised to quadratic ones where the accuracy needs it, and
     why it was ("": it was not).
 
-    Args:
-        tolerance: relative, what is asked. error: expected of a contact on a mesh.
+    Parameters
+    ----------
+    tolerance
+        Relative, what is asked.
+    error
+        Expected of a contact on a mesh.
     """
     if external.element != "quad4":
         return external, ""

@@ -48,9 +48,14 @@ class StrokeErrors:
     """Relative errors of strokes drawn at random, a press and a way: the largest, and the root of
     the mean square of all.
 
-    Attributes:
-        mesh: elements across the epidermis -> both. time: steps of a leg -> what both are more than
-        with the default's steps. way: m, the middle of those drawn (1 to 2.5 mm).
+    Attributes
+    ----------
+    mesh
+        Elements across the epidermis -> both.
+    time
+        Steps of a leg -> what both are more than with the default's steps.
+    way
+        m, the middle of those drawn (1 to 2.5 mm).
     """
 
     mesh: Mapping[int, tuple[float, float]]
@@ -93,13 +98,21 @@ class MeasuredErrors:
     presses those of an earlier version of that table where they were larger. Between half widths
     errors are interpolated in logarithms.
 
-    Attributes:
-        half_widths: m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the
-        ramp. edge: m, along the skin, where 7 elements go across the epidermis. mesh: elements
-        across the epidermis -> error (half_widths). time: steps of a leg
-        -> error (half_widths). energy: as mesh, of the strain energies alone: what the elements
-        under a contact that is refined for leave wrong; of the narrowest those of loads drawn at
-        random where they were larger. strokes: by what is stroked over.
+    Attributes
+    ----------
+    half_widths
+        m, of the contact with 1260 1/m, 210 1/m and the flat plate at the top of the ramp.
+    edge
+        m, along the skin, where 7 elements go across the epidermis.
+    mesh
+        Elements across the epidermis -> error (half_widths).
+    time
+        Steps of a leg -> error (half_widths).
+    energy
+        As mesh, of the strain energies alone: what the elements under a contact that is refined for
+        leave wrong; of the narrowest those of loads drawn at random where they were larger.
+    strokes
+        By what is stroked over.
     """
 
     half_widths: tuple[float, ...] = (0.37e-3, 1.09e-3, 2.3e-3)
@@ -167,10 +180,15 @@ class OwnErrors:
     gram-weight, on meshes of edges of 30 to 450 um, each against a fine run
     (figures/tables/accuracy_own.csv).
 
-    Attributes:
-        shares: edge of the skin over half width of the contact. table: element -> quantity ->
-        errors (shares). height: element -> error of strain energy where the height of the elements
-        that receptors are in is their depth; it goes with the power 1.5.
+    Attributes
+    ----------
+    shares
+        Edge of the skin over half width of the contact.
+    table
+        Element -> quantity -> errors (shares).
+    height
+        Element -> error of strain energy where the height of the elements that receptors are in is
+        their depth; it goes with the power 1.5.
     """
 
     shares: tuple[float, ...] = (0.03, 0.06, 0.12, 0.25, 0.5, 1.0)
@@ -215,11 +233,19 @@ def own_errors(
     """Expected relative error by quantity on a mesh of one's own, from :class:`OwnErrors`; of a
     stroke the law's, for all alike.
 
-    Args:
-        element: key of the element it is solved with. edge: m, skin edge in the contact.
-        half_width: m, of the contact. at_receptors: largest height of the elements that receptors
-        are in, over their depth; None: no receptors, whose strain energy is then not asked for.
-        steps, stroke, bumpy: as in :func:`estimated_error`.
+    Parameters
+    ----------
+    element
+        Key of the element it is solved with.
+    edge
+        m, skin edge in the contact.
+    half_width
+        m, of the contact.
+    at_receptors
+        Largest height of the elements that receptors are in, over their depth; None: no receptors,
+        whose strain energy is then not asked for.
+    steps, stroke, bumpy
+        As in :func:`estimated_error`.
     """
     known, share = rules.own, edge / half_width
     factor = rules.safety * (rules.bumps if bumpy else 1.0)
@@ -261,12 +287,21 @@ def estimated_error(
     Of a leg that strokes: the root mean square over its way, relative to the largest value on it.
     Of presses at least what an edge of the contact between two nodes may be misplaced by.
 
-    Args:
-        edge: m, skin edge in the contact. half_width: m, of the contact: estimated before a run,
-        found after it. steps: of a leg; None when neither time nor a way matters. stroke: the pad's
-        along the surface, if there is one. body_edge: m, skin edge around the contact where that is
-        coarser: no finer than the widest contact measured needs it. bumpy: has the surface bumps of
-        its own within the contact, as measured ones have?
+    Parameters
+    ----------
+    edge
+        m, skin edge in the contact.
+    half_width
+        m, of the contact: estimated before a run, found after it.
+    steps
+        Of a leg; None when neither time nor a way matters.
+    stroke
+        The pad's along the surface, if there is one.
+    body_edge
+        m, skin edge around the contact where that is coarser: no finer than the widest contact
+        measured needs it.
+    bumpy
+        Whether the surface has bumps of its own within the contact, as measured ones have.
     """
     factor = rules.safety * (rules.bumps if bumpy else 1.0)
     found = [_measured_error(edge, half_width, steps, stroke, rules, factor)]

@@ -9,16 +9,12 @@ will be.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fingerpad.roots import root
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
 
 _CLOSE = 1e-12
 """Of a half-width or a force, near enough to that sought."""
@@ -110,8 +106,14 @@ class PadEstimate:
         Ciavarella, Hills and Monno 1998, J. Mech. Eng. Sci. 212, eq. 11, on a half-plane as stiff
         as the epidermis.
 
-        Args:
-            force: N/m. flat: m, half-width of the face between the roundings; radius: m, of these.
+        Parameters
+        ----------
+        force
+            N/m.
+        flat
+            m, half-width of the face between the roundings.
+        radius
+            m, of these.
         """
         load = 2 * force * radius / self.stiff
         if flat < 1e-3 * radius:
@@ -138,8 +140,12 @@ class PadEstimate:
         wider than the contact it would make alone stands out; what is narrower is flattened, and
         counts as part of what is wider.
 
-        Args:
-            force: N/m. outline: height of the surface (n,) m at (n,) m; NaN where there is none.
+        Parameters
+        ----------
+        force
+            N/m.
+        outline
+            Height of the surface (n,) m at (n,) m; NaN where there is none.
         """
         widest = self.pressed(force, 0.0).half_width
         least = widest

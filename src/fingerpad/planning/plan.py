@@ -7,8 +7,8 @@ choice can be overridden in the scene. The thresholds and measured constants sta
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -40,21 +40,22 @@ from fingerpad.planning.discretisation import (
     usual_edge,
     wander_of,
 )
-from fingerpad.planning.effect import Case, Effect, LeftOut
+from fingerpad.planning.effect import Case, Effect, Parts
 from fingerpad.planning.effects import EFFECTS, in_order, parts_of
 from fingerpad.planning.errors import COARSER, estimated_error, own_errors, stroke_of
 from fingerpad.planning.estimates import ContactEstimate
 from fingerpad.planning.plan_data import Plan, read_plan
-from fingerpad.planning.rules import RULES, Rules
+from fingerpad.planning.rules import RULES, Preset, Rules
 from fingerpad.planning.schedule import expected_states, schedule
 from fingerpad.planning.stack_estimate import pad_estimate, specimen_said
 from fingerpad.planning.surface import surface_of
 from fingerpad.planning.unbounded import Unbounded, ends_unbounded, in_words, seen_corners
-from fingerpad.scenes.scene import Scene, load_scene
+from fingerpad.scenes.scene import Discretisation, Scene, load_scene
 from fingerpad.specimen import counted, shortest_edge
 from fingerpad.specimen.element_kinds import KINDS
 from fingerpad.specimen.measures import apex_edge, skin_ends
-from fingerpad.specimen.pad import PadMesh
+from fingerpad.specimen.pad import MeshSize, PadMesh
+from fingerpad.stimuli.profile import Profile
 
 __all__ = ["RULES", "Plan", "PlanError", "Rules", "companion", "plan", "read_plan", "refined"]
 
@@ -131,73 +132,31 @@ def _planned(
         every = steps_per_leg // preset.steps
     scheduled = list(schedule(scene, steps_per_leg, timed, slide_step, every=every))
     outputs, steps = len(scheduled), expected_states(scheduled, slide_step)
-    time = steps_per_leg / every if timed or moves else None
-    narrowest = earliest_half_width(scene, contact, timed)
-    bumpy = scene.stimulus.irregular
-
-    raised, errors, height, size, at_receptors = "", {}, None, None, 0.0
-    if external is not None:
-
-        def own(mesh: PadMesh, element: str) -> dict[str, float]:
-            at_receptors = height_at_receptors(scene, mesh)
-            return own_errors(
-                element,
-                apex_edge(mesh),
-                narrowest,
-                at_receptors,
-                time,
-                stroke,
-                rules=rules,
-                bumpy=bumpy,
-            )
-
-        def on_mesh(mesh: PadMesh) -> float:
-            at_edges, _ = edges_error(profile, apex_edge(mesh), rounding, rules)
-            return max(*own(mesh, KINDS[mesh.element].solved).values(), at_edges)
-
-        external, raised = raised_for(by_hand, external, tolerance, on_mesh)
-        element = element_for(by_hand, external)
-        errors, height = own(external, element), height_at_receptors(scene, external)
-        nodes, smallest = len(external.points), shortest_edge(external)
-        edge = at_edge = apex_edge(external)
-        in_contact = max(errors.values())
+    contact_error = {
+        "half_width": earliest_half_width(scene, contact, timed),
+        "steps": steps_per_leg / every if timed or moves else None,
+        "stroke": stroke,
+        "bumpy": scene.stimulus.irregular,
+        "rules": rules,
+    }
+    if external is None:
+        mesh = _built(case, preset, by_hand, effects, parts, rounding, contact_error)
     else:
-        element = element_for(by_hand, None)
-        # on its way over a surface the contact is also flat
-        widest = worst_contact(scene, pad, profile, 0.0) if moves and profile.uneven else contact
-        wander = wander_of(scene, pad, profile, parts.friction, rules) if moves else 0.0
-        size = mesh_size_for(
-            scene, preset, profile, contact, widest.half_width, wander, rounding, rules
-        )
-        # a contact that moves leaves the middle, where a stroked pad is finer
-        at_apex = [] if moves else [edge for x, edge in size.focus if x == 0]
-        edge = min([size.skin_edge, *at_apex])
-        at_focus = min([edge, *(each for _, each in size.focus)])
-        for name, effect in effects.items():
-            if effect.on and EFFECTS[name].mesh:
-                meshed = EFFECTS[name].mesh(case, size, edge)
-                effects[name] = replace(effect, why=f"{effect.why}: {meshed.said}")
-                size, edge = meshed.size, meshed.edge
-                at_receptors = max(at_receptors, meshed.error)
-        check_size(scene, size, rules)
-        nodes, smallest = counted(scene.specimen, size, parts.ridges)
-        at_edge = min(edge, at_focus)
-        if profile.edge_radius and scene.tolerance is None:
-            # presets are fine beside the face, not where it ends and the pressure is largest
-            at_edge = min(at_edge + np.log(size.growth) * profile.edge_radius, size.skin_edge)
-        in_contact = estimated_error(
-            edge, narrowest, time, stroke, size.skin_edge, rules=rules, bumpy=bumpy
-        )
-    if parts.half:
-        nodes = nodes // 2 + 1
+        mesh = _given(case, by_hand, rounding, contact_error)
+    nodes = mesh.nodes // 2 + 1 if parts.half else mesh.nodes
     check_memory(scene, nodes, outputs, rules)
 
-    pressed = partial(worst_contact, scene, pad, profile)
-    force = pressing_force(scene, pad, contact)
-    may_change = rules.profile_share * tolerance
-    surface = surface_of(measured, edge, way_of(scene), pad, pressed, force, may_change)
-    at_edges, edges_said = edges_error(profile, at_edge, rounding, rules)
-    mesh_error = surface.error + max(in_contact, at_edges, at_receptors)
+    surface = surface_of(
+        measured,
+        mesh.edge,
+        way_of(scene),
+        pad,
+        partial(worst_contact, scene, pad, profile),
+        pressing_force(scene, pad, contact),
+        rules.profile_share * tolerance,
+    )
+    at_edges, edges_said = edges_error(profile, mesh.edge_at_edges, rounding, rules)
+    mesh_error = surface.error + max(mesh.in_contact, at_edges, mesh.at_receptors)
     without = {name: left_out[name].error for name, effect in effects.items() if not effect.on}
     for name, error in list(without.items()):
         total = sum(without.values()) + mesh_error
@@ -209,51 +168,158 @@ def _planned(
                 f"{mesh_error:.1%}: too much for both",
             )
             del without[name]
-    elements = "in the mesh" if size is None else "among ridges"
     sources = {
-        f"edges of {micrometres(edge)} um in a contact of {micrometres(narrowest)} um to either "
-        "side": in_contact,
+        f"edges of {micrometres(mesh.edge)} um in a contact of "
+        f"{micrometres(contact_error['half_width'])} um to either side": mesh.in_contact,
         edges_said: at_edges,
-        f"elements {elements} that receptors are in": at_receptors,
+        f"elements {mesh.place} that receptors are in": mesh.at_receptors,
         **{EFFECTS[name].instead: error for name, error in without.items()},
         "what the mesh cannot feel of the profile": surface.error,
     }
-    unresolved = not profile.unbounded and peak_is_unbounded(profile, at_edge, rounding, rules)
-    final = measured.at(surface.smoothing, edge)
+    unresolved = peak_is_unbounded(profile, mesh.edge_at_edges, rounding, rules)
+    unresolved = unresolved and not profile.unbounded
+    final = measured.at(surface.smoothing, mesh.edge)
+    instantaneous = any(each.moduli == "instantaneous" for each in left_out.values())
     return Plan(
-        effects=effects,
-        state=_moduli(left_out.values()),
-        element=element,
-        mesh_size=size,
+        effects=effects | mesh.effects,
+        state="instantaneous" if instantaneous else "long_term",
+        element=mesh.element,
+        mesh_size=mesh.size,
         contact=contact,
         steps_per_leg=steps_per_leg,
         slide_step=slide_step,
         steps=steps,
         timed=timed,
         nodes=nodes,
-        smallest_edge=smallest,
+        smallest_edge=mesh.smallest,
         inertia_ratio=inertia,
-        contact_edge=edge,
+        contact_edge=mesh.edge,
         estimated_error=sum(without.values()) + mesh_error,
         predicted_cost_s=_cost(nodes, steps, effects, rules),
         small_strain_error=sum(without.values()),
-        least_error=max(at_edges, at_receptors),
+        least_error=max(at_edges, mesh.at_receptors),
         error_from=max(sources, key=sources.get),
         asked_error=scene.tolerance,
         once=scene.once,
-        unbounded=_unbounded(scene, final, external, pad, contact, edge, unresolved),
-        specimen=(
-            *specimen_said(scene.specimen, external),
-            *filter(None, [raised]),
-            *measured.notes,
-        ),
+        unbounded=_unbounded(case, final, mesh.external, mesh.edge, unresolved),
+        specimen=(*specimen_said(scene.specimen, mesh.external), *mesh.notes, *measured.notes),
         surface=surface,
         strokes=moves,
         outputs=outputs,
         every=every,
         unresolved_edge=unresolved,
-        errors=errors,
-        receptor_height=height,
+        errors=mesh.errors,
+        receptor_height=mesh.receptor_height,
+    )
+
+
+@dataclass(frozen=True)
+class _Mesh:
+    """The mesh of a plan, and what it is expected to be wrong by.
+
+    ``edge``: m, of the skin under the apex; ``edge_at_edges``: m, where the profile has edges.
+    ``in_contact``, ``at_receptors``: relative errors. ``effects``: whose reasons name the mesh.
+    """
+
+    element: str
+    nodes: int
+    smallest: float
+    edge: float
+    edge_at_edges: float
+    in_contact: float
+    place: str
+    size: MeshSize | None = None
+    at_receptors: float = 0.0
+    effects: Mapping[str, Effect] = field(default_factory=dict)
+    external: PadMesh | None = None
+    errors: Mapping[str, float] = field(default_factory=dict)
+    receptor_height: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+def _built(
+    case: Case,
+    preset: Preset,
+    by_hand: Discretisation | None,
+    effects: Mapping[str, Effect],
+    parts: Parts,
+    rounding: float,
+    contact_error: Mapping[str, Any],
+) -> _Mesh:
+    """A mesh that is built for the scene."""
+    scene, profile, pad, rules = case.scene, case.profile, case.pad, case.rules
+    # on its way over a surface the contact is also flat
+    widest = case.contact
+    if case.moves and profile.uneven:
+        widest = worst_contact(scene, pad, profile, 0.0)
+    wander = wander_of(scene, pad, profile, parts.friction, rules) if case.moves else 0.0
+    size = mesh_size_for(
+        scene, preset, profile, case.contact, widest.half_width, wander, rounding, rules
+    )
+    # a contact that moves leaves the middle, where a stroked pad is finer
+    at_apex = [] if case.moves else [edge for x, edge in size.focus if x == 0]
+    edge = min([size.skin_edge, *at_apex])
+    finest = min([edge, *(each for _, each in size.focus)])
+    at_receptors, meshed_effects = 0.0, {}
+    for name, effect in effects.items():
+        if effect.on and EFFECTS[name].mesh:
+            meshed = EFFECTS[name].mesh(case, size, edge)
+            meshed_effects[name] = replace(effect, why=f"{effect.why}: {meshed.said}")
+            size, edge = meshed.size, meshed.edge
+            at_receptors = max(at_receptors, meshed.error)
+    check_size(scene, size, rules)
+    nodes, smallest = counted(scene.specimen, size, parts.ridges)
+    edge_at_edges = min(edge, finest)
+    if profile.edge_radius and scene.tolerance is None:
+        # presets are fine beside the face, not where it ends and the pressure is largest
+        grown = edge_at_edges + np.log(size.growth) * profile.edge_radius
+        edge_at_edges = min(grown, size.skin_edge)
+    return _Mesh(
+        element_for(by_hand, None),
+        nodes,
+        smallest,
+        edge,
+        edge_at_edges,
+        estimated_error(edge, body_edge=size.skin_edge, **contact_error),
+        "among ridges",
+        size,
+        at_receptors,
+        meshed_effects,
+    )
+
+
+def _given(
+    case: Case,
+    by_hand: Discretisation | None,
+    rounding: float,
+    contact_error: Mapping[str, Any],
+) -> _Mesh:
+    """The scene's own mesh, raised to quadratic elements where the accuracy needs it."""
+    scene, profile = case.scene, case.profile
+
+    def errors(mesh: PadMesh, element: str) -> dict[str, float]:
+        height = height_at_receptors(scene, mesh)
+        return own_errors(element, apex_edge(mesh), at_receptors=height, **contact_error)
+
+    def largest(mesh: PadMesh) -> float:
+        at_edges, _ = edges_error(profile, apex_edge(mesh), rounding, case.rules)
+        return max(*errors(mesh, KINDS[mesh.element].solved).values(), at_edges)
+
+    external, raised = raised_for(by_hand, case.external, case.tolerance, largest)
+    element, edge = element_for(by_hand, external), apex_edge(external)
+    by_quantity = errors(external, element)
+    return _Mesh(
+        element,
+        len(external.points),
+        shortest_edge(external),
+        edge,
+        edge,
+        max(by_quantity.values()),
+        "in the mesh",
+        external=external,
+        errors=by_quantity,
+        receptor_height=height_at_receptors(scene, external),
+        notes=tuple(filter(None, [raised])),
     )
 
 
@@ -270,16 +336,13 @@ def _inertia(scene: Scene, contact: ContactEstimate, rules: Rules) -> float:
     return inertia
 
 
-def _moduli(left_out: Iterable[LeftOut]) -> str:
-    """Moduli to solve with where time is left out."""
-    states = {each.moduli for each in left_out}
-    return "instantaneous" if "instantaneous" in states else "long_term"
-
-
-def _unbounded(scene, profile, external, pad, contact, edge: float, unresolved: bool) -> Unbounded:
+def _unbounded(
+    case: Case, profile: Profile, external: PadMesh | None, edge: float, unresolved: bool
+) -> Unbounded:
     """Where contact is expected at which pressure has no bound."""
-    half_width, (low, high) = contact.half_width, way_of(scene)
-    pressure = 2 / np.pi * pressing_force(scene, pad, contact) / half_width
+    scene, pad, half_width = case.scene, case.pad, case.contact.half_width
+    low, high = way_of(scene)
+    pressure = 2 / np.pi * pressing_force(scene, pad, case.contact) / half_width
     corners = (
         np.array(profile.edges)
         if unresolved

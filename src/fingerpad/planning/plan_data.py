@@ -157,7 +157,7 @@ class Plan:
         error = self.estimated_error if planned else error
         if self.asked_error is None or error <= self.asked_error * (1 + 1e-9):
             return None
-        had = "not to be had: expected" if planned else "got"
+        had = "cannot be reached: expected" if planned else "got"
         return f"asked {percent(self.asked_error)}, {had} {percent(error)}: {self.error_from}"
 
     def result_bytes(self, scene: Scene, fields: bool = False) -> float:

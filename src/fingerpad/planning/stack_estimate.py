@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.special import j1
 
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
 from fingerpad.reference_solutions.layered import Layer, stack_compliance
@@ -88,8 +89,10 @@ def pad_estimate(specimen, external: PadMesh | None, reach: float = np.inf) -> P
     A finger is judged by the thesis's measures, any other stack of layers by the layers below its
     middle.
 
-    Raises:
-        MeshError: the skin of the mesh does not cross x = 0.
+    Raises
+    ------
+    MeshError
+        The skin of the mesh does not cross x = 0.
     """
     relax = 1.0
     if specimen.moduli == "instantaneous" and specimen.prony:
@@ -158,10 +161,12 @@ class StackEstimate(PadEstimate):
     """A stack of layers, SI; ``apex_radius`` is 1000 m for a flat one, ``epidermis_thickness`` that
     of the outermost layer.
 
-    Args:
-        half_width: m, of the surface, or of the face that is pressed on it. layers: (thickness m,
-        Young's modulus Pa, Poisson's
-            ratio) of each, outside to inside.
+    Parameters
+    ----------
+    half_width
+        m, of the surface, or of the face that is pressed on it.
+    layers
+        (thickness m, Young's modulus Pa, Poisson's ratio) of each, outside to inside.
     """
 
     half_width: float = np.inf
@@ -187,8 +192,6 @@ class StackEstimate(PadEstimate):
         """Sinking (m) in the middle of a Hertzian pressure of 1 N/m, and how much less its edge
         sinks.
         """
-        from scipy.special import j1  # here, for it is slow to import
-
         k, sinking = self._spectrum
         load = 2 * j1(k * half_width) / (k * half_width) * sinking
         return float(load.sum()), float((load * (1 - np.cos(k * half_width))).sum())

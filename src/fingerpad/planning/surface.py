@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import erf
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fingerpad.planning.bounds import percent
 from fingerpad.planning.estimates import ContactEstimate, PadEstimate
+from fingerpad.stimuli.profile import Profile
 from fingerpad.stimuli.smoothing import WAVE, finer_than
-
-if TYPE_CHECKING:
-    from fingerpad.stimuli.profile import Profile
-
 
 _FELT_BY_NOBODY = 0.05e-6  # m
 _ROUGH = 0.3
@@ -26,11 +22,16 @@ _LESS_ROUGH = ": average several scans, or give a longer stimulus.smooth"
 class Surface:
     """What a mesh makes of a measured profile.
 
-    Attributes:
-        smoothing: m, cut-off wavelength of the filter it goes through; 0 where nothing is finer
-        than the mesh. moved: m, largest change of its heights within reach of the pad. error:
-        relative, what the waves near the cut-off may change of depth and pressure. end: m, x of the
-        last point, where contact is expected to reach it.
+    Attributes
+    ----------
+    smoothing
+        m, cut-off wavelength of the filter it goes through; 0 where nothing is finer than the mesh.
+    moved
+        m, largest change of its heights within reach of the pad.
+    error
+        Relative, what the waves near the cut-off may change of depth and pressure.
+    end
+        m, x of the last point, where contact is expected to reach it.
     """
 
     smoothing: float = 0.0
@@ -87,11 +88,16 @@ def surface_of(
     else the one with the least: a finer mesh feels finer shapes, but where they are noise it would
     only find more of it.
 
-    Args:
-        way: m, least and largest x of the profile that comes over the pad's apex. pressed: the
-        deepest contact with a surface of
-            a curvature (1/m). force: N/m, that presses at most. allowed: relative error that may be
-            left to the profile.
+    Parameters
+    ----------
+    way
+        m, least and largest x of the profile that comes over the pad's apex.
+    pressed
+        The deepest contact with a surface of a curvature (1/m).
+    force
+        N/m, that presses at most.
+    allowed
+        Relative error that may be left to the profile.
     """
     if not np.isfinite(profile.known).all():
         return Surface()

@@ -47,11 +47,15 @@ TERM_UNITS = {
 def pressure_terms(law: str, **quantities: np.ndarray) -> np.ndarray:
     """Terms (..., n) of the nodal pressure of Eq 4-1, 4-2 or 4-3.
 
-    Args:
-        law: a key of :data:`NODE_TERMS`. quantities, broadcast together: ``edge_distance``, m, from
-        the node to the nearer edge of the contact; ``displacement``, m, of the node into the pad
-        less that of the skin at the contact's edge; ``speed``, m/s, of that displacement at the
-        node; ``curvature``, 1/m, of the surface. Only those that the law names are looked at.
+    Parameters
+    ----------
+    law
+        A key of :data:`NODE_TERMS`.
+    quantities
+        Broadcast together: ``edge_distance``, m, from the
+        node to the nearer edge of the contact; ``displacement``, m, of the node into the pad less
+        that of the skin at the contact's edge; ``speed``, m/s, of that displacement at the node;
+        ``curvature``, 1/m, of the surface. Only those that the law names are looked at.
     """
     given = {
         "inverse edge distance": lambda: 1 / np.asarray(quantities["edge_distance"]),
@@ -72,8 +76,14 @@ def kernel_weights(x: np.ndarray, reference: np.ndarray | float, r: float) -> np
     integrals of the hat functions with the kernel), so that a skin of nodes 67 um apart and an
     array of sensors 1 mm apart mean the same sum. No pressure is assumed beyond the ends.
 
-    Args:
-        x: (..., n) m, increasing. reference: (...) m. r: spatial constant, m.
+    Parameters
+    ----------
+    x
+        (..., n) m, increasing.
+    reference
+        (...) m.
+    r
+        Spatial constant, m.
     """
     s = np.asarray(x, float) - np.asarray(reference, float)[..., None]
     far = np.abs(s)
@@ -94,8 +104,14 @@ class SpatialSum:
     thesis sums over its nodes; an integral does not depend on their spacing (its constants are
     these times that spacing).
 
-    Attributes:
-        r: spatial constant, m. per_depth: A1, 1/m^2. constant: A2, 1/m.
+    Attributes
+    ----------
+    r
+        Spatial constant, m.
+    per_depth
+        A1, 1/m^2.
+    constant
+        A2, 1/m.
     """
 
     r: float
@@ -120,10 +136,16 @@ class SpatialSum:
     def strain_energy(self, x, pressure, indentation=0.0, reference=0.0) -> np.ndarray:
         """Strain energy density (...), Pa.
 
-        Args:
-            x: (..., n) m, places of the pressures, deformed. pressure: (..., n) Pa. indentation:
-            (...) m, of the skin over the receptor. reference: (...) m, lateral place of the
-            receptor: where it is at rest plus what it has shifted by.
+        Parameters
+        ----------
+        x
+            (..., n) m, places of the pressures, deformed.
+        pressure
+            (..., n) Pa.
+        indentation
+            (...) m, of the skin over the receptor.
+        reference
+            (...) m, lateral place of the receptor: where it is at rest plus what it has shifted by.
         """
         return self.weighted_pressure(x, pressure, reference) * (
             self.per_depth * np.asarray(indentation) + self.constant
@@ -144,9 +166,18 @@ class ImpulseRate:
     the brackets plainly; that each is rectified follows from its Fig 5-19, which shows the energy
     cut at its threshold and the positive rate only.
 
-    Attributes:
-        per_energy: A1, (impulses/s)/Pa. per_rate: A2, impulses/Pa. threshold: Pa. rate_threshold:
-        Pa/s. spontaneous: A3 of Eq 4-5, impulses/s; Eq 5-1 has none.
+    Attributes
+    ----------
+    per_energy
+        A1, (impulses/s)/Pa.
+    per_rate
+        A2, impulses/Pa.
+    threshold
+        Pa.
+    rate_threshold
+        Pa/s.
+    spontaneous
+        A3 of Eq 4-5, impulses/s; Eq 5-1 has none.
     """
 
     per_energy: float
@@ -183,9 +214,15 @@ def rate_by_leg(time, values, leg) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     an integral over time sees the jump where it is. A leg that takes no time has no rate and is
     left out.
 
-    Args:
-        time: (n,) s, not falling. values: (n, ...). leg: (n,) whole numbers that do not fall; the
-        first sample of a leg belongs to the leg before it as well.
+    Parameters
+    ----------
+    time
+        (n,) s, not falling.
+    values
+        (n, ...).
+    leg
+        (n,) whole numbers that do not fall; the first sample of a leg belongs to the leg before it
+        as well.
     """
     time, values, leg = np.asarray(time, float), np.asarray(values, float), np.asarray(leg)
     ends = np.flatnonzero(np.diff(leg) > 0)
@@ -206,8 +243,12 @@ def time_above(time, trace, threshold: float = 0.0) -> float:
     """How long (s) a trace is above a threshold; it is linear between samples, and crossings are
     found between them.
 
-    Args:
-        time: (n,) s, not falling; a repeated time is a jump. trace: (n,).
+    Parameters
+    ----------
+    time
+        (n,) s, not falling; a repeated time is a jump.
+    trace
+        (n,).
     """
     over = np.asarray(trace, float) - threshold
     low, high = np.minimum(over[:-1], over[1:]), np.maximum(over[:-1], over[1:])

@@ -21,9 +21,14 @@ class RapidlyAdapting:
     """Impulse rate from the rate of a stimulus: ``highest * (1 - exp(-[|rate| - threshold]+ /
     scale))``.
 
-    Attributes:
-        threshold: in the unit of the stimulus by second; slower changes are not felt. scale:
-        likewise, of the approach to saturation. highest: impulses/s.
+    Attributes
+    ----------
+    threshold
+        In the unit of the stimulus by second; slower changes are not felt.
+    scale
+        Likewise, of the approach to saturation.
+    highest
+        Impulses/s.
     """
 
     threshold: float

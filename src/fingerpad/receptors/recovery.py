@@ -44,9 +44,12 @@ class Location:
 class Sums:
     """Weighted sums, one a receptor, of what is sampled: a matrix (nr, samples) by its rows.
 
-    Attributes:
-        weights, index: (m,) of all rows after each other, and of which sample. starts: (nr,) where
-        each row begins.
+    Attributes
+    ----------
+    weights, index
+        (m,) of all rows after each other, and of which sample.
+    starts
+        (nr,) where each row begins.
     """
 
     weights: np.ndarray
@@ -64,12 +67,16 @@ def containing(space, points, tolerance=1e-6):
     Scikit-fem has no finder for curved elements, and its inverse of a curved map takes no point
     outside.
 
-    Returns:
+    Returns
+    -------
+    result
         The points' indices (m,), ascending and for each the element with the nearest centre first;
         their :class:`Location` (m,).
 
-    Raises:
-        ReceptorError: a point lies in no element.
+    Raises
+    ------
+    ReceptorError
+        A point lies in no element.
     """
     centres = space.centres
     near = nearest(points, centres, 24)
@@ -153,13 +160,21 @@ def recovery(space, layers, points, mirrored):
     layer of one row, and in elements of the teaching cases, values are those of the elements that
     the receptor lies in.
 
-    Args:
-        space: :class:`fingerpad.mechanics.space.Space`. layers: (ne,) number of each element's
-        material. points: (nr, 2) m. mirrored: the mesh is half of one that is symmetric in x = 0;
-        what is fitted goes over the axis.
+    Parameters
+    ----------
+    space
+        :class:`fingerpad.mechanics.space.Space`.
+    layers
+        (ne,) number of each element's material.
+    points
+        (nr, 2) m.
+    mirrored
+        The mesh is half of one that is symmetric in x = 0; what is fitted goes over the axis.
 
-    Raises:
-        ReceptorError: a point lies in no element.
+    Raises
+    ------
+    ReceptorError
+        A point lies in no element.
     """
     if not len(points):
         return Location(np.zeros(0, int), np.zeros((0, 2))), None
@@ -192,8 +207,10 @@ def _fits(space, layers, points, owner, found, mirrored):
     """{point: (samples (m,), weights (m,))}, samples numbered element by element; only of points
     where a fit is good.
 
-    Args:
-        owner, found: of :func:`_mean_of_neighbours`.
+    Parameters
+    ----------
+    owner, found
+        Of :func:`_mean_of_neighbours`.
     """
     nodes = space.points[space.cells[found.element]]
     inverse = np.linalg.inv(np.einsum("nai,naj->nij", space.element.shape(found.xi)[1], nodes))

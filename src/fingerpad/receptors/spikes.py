@@ -34,16 +34,23 @@ def impulses(
 ) -> np.ndarray:
     """Times (m,) s of impulses at an instantaneous rate.
 
-    Args:
-        time: (n,) s, not falling; a repeated time is a jump of the rate. rate: (n,) impulses/s, not
-        negative, linear in between. variation: coefficient of variation of the threshold. 0 is
-        deterministic: an impulse whenever the integral of the rate passes a whole number. Otherwise
-        a trial also starts anywhere in an interval (length-biased, so that the mean number of
-        impulses is the integral of the rate). seed: of the variability; needed if there is any.
+    Parameters
+    ----------
+    time
+        (n,) s, not falling; a repeated time is a jump of the rate.
+    rate
+        (n,) impulses/s, not negative, linear in between.
+    variation
+        Coefficient of variation of the threshold. 0 is deterministic: an impulse whenever the
+        integral of the rate passes a whole number. Otherwise a trial also starts anywhere in an
+        interval (length-biased, so that the mean number of impulses is the integral of the rate).
+    seed
+        Of the variability; needed if there is any.
 
-    Raises:
-        ValueError: a rate is negative or not finite, times fall, or there is variability without a
-        seed.
+    Raises
+    ------
+    ValueError
+        A rate is negative or not finite, times fall, or there is variability without a seed.
     """
     time, rate = np.asarray(time, float), np.asarray(rate, float)
     if not np.isfinite(rate).all() or (rate < 0).any():
@@ -105,10 +112,16 @@ def binned_rate(trains: Sequence[np.ndarray], edges) -> np.ndarray:
 def instantaneous_frequency(train, at=None) -> np.ndarray:
     """Inverse of the interval between impulses, 1/s.
 
-    Args:
-        train: (m,) s, increasing. at: (...) s; left out, one frequency an interval, (m - 1,).
+    Parameters
+    ----------
+    train
+        (m,) s, increasing.
+    at
+        (...) s; left out, one frequency an interval, (m - 1,).
 
-    Returns:
+    Returns
+    -------
+    np.ndarray
         At the times `at` that of the interval they fall into, 0 before the first impulse and from
         the last one on.
     """

@@ -9,15 +9,12 @@ and 7.4.
 
 import numpy as np
 
-from ._check import positive
-
 
 def stick_ratio(tangential_force, normal_force, friction):
     """Half width of the stick zone over that of the contact, c/a = sqrt(1 - Q/(mu P)).
 
     Raises ``ValueError`` unless 0 <= Q <= mu P.
     """
-    positive(normal_force=normal_force, friction=friction)
     share = np.asarray(tangential_force, dtype=float) / (friction * normal_force)
     if np.any((share < 0) | (share > 1)):
         raise ValueError(
@@ -33,7 +30,6 @@ def traction(x, half_width, peak_pressure, friction, stick_ratio):
     The second term only inside the stick zone |x| < c. Raises ``ValueError`` for a stick ratio
     outside [0, 1].
     """
-    positive(half_width=half_width)
     if not 0 <= stick_ratio <= 1:
         raise ValueError("stick_ratio must lie in [0, 1]")
     s = np.asarray(x, dtype=float) / half_width

@@ -5,8 +5,6 @@ Sources: Coulomb (1785); benchmark CGS-4 of NAFEMS report R0081 (F/G at tan(alph
 
 import numpy as np
 
-from ._check import positive
-
 
 def limit_ratio(slope, friction):
     """Sideways force over normal force F/G = (tan(alpha) + mu)/(1 - mu tan(alpha)) at which sliding
@@ -16,7 +14,6 @@ def limit_ratio(slope, friction):
     suffices (mu tan(alpha) >= 1).
     """
     slope, friction = np.asarray(slope, dtype=float), np.asarray(friction, dtype=float)
-    if np.any(friction < 0):
-        raise ValueError(f"friction must not be negative, got {friction}")
-    positive(one_minus_friction_times_slope=1 - friction * slope)
+    if np.any(friction < 0) or np.any(friction * slope >= 1):
+        raise ValueError(f"no force suffices on a slope of {slope} with a friction of {friction}")
     return (slope + friction) / (1 - friction * slope)

@@ -7,10 +7,8 @@ Not valid once the contact recedes: T. C. T. Ting (1966).
 """
 
 import numpy as np
-from scipy.integrate import quad
 
 from . import prony_point
-from ._check import positive
 
 
 def _growing(half_width):
@@ -27,7 +25,6 @@ def force_from_width(times, half_widths, radius, shear_modulus, g, tau):
     ``shear_modulus`` is G_0, Pa. The width jumps to its first value at ``times[0]``. Raises
     ``ValueError`` when the contact shrinks, or for bad series.
     """
-    positive(radius=radius, shear_modulus=shear_modulus)
     squared = _growing(half_widths)
     return np.pi / radius * prony_point.stress_from_strain(times, squared, g, tau, shear_modulus)
 
@@ -37,7 +34,6 @@ def width_from_force(times, forces, radius, shear_modulus, g, tau):
 
     a^2 = (R/pi) int J(t - s) dP. Raises ``ValueError`` when the resulting contact shrinks.
     """
-    positive(radius=radius, shear_modulus=shear_modulus)
     squared = radius / np.pi * prony_point.strain_from_stress(times, forces, g, tau, shear_modulus)
     if np.any(np.diff(squared) < -1e-12 * np.max(np.abs(squared))):
         raise ValueError("the contact must not shrink")
@@ -48,7 +44,6 @@ def step_creep_width(t, radius, force, shear_modulus, g, tau):
     """Half width under a force applied at once and held, sqrt(P R J(t)/pi), m, of the shape of
     ``t``.
     """
-    positive(radius=radius, force=force, shear_modulus=shear_modulus)
     return np.sqrt(force * radius / (np.pi * shear_modulus) * prony_point.creep(t, g, tau))
 
 
@@ -56,35 +51,4 @@ def held_width_force(t, half_width, radius, shear_modulus, g, tau):
     """Force while a contact made at once is held, P(t) = pi a^2 G(t)/R, N/m, of the shape of
     ``t``.
     """
-    positive(half_width=half_width, radius=radius, shear_modulus=shear_modulus)
     return np.pi * half_width**2 / radius * shear_modulus * prony_point.relaxation(t, g, tau)
-
-
-def ramp_force(t, rate, radius, shear_modulus, g, tau):
-    """Force while a^2 = ``rate`` t, N/m: (pi k/R) G_0 [(1 - sum g) t + sum g_i tau_i (1 -
-    exp(-t/tau_i))].
-    """
-    positive(rate=rate, radius=radius, shear_modulus=shear_modulus)
-    g, tau = prony_point._series(g, tau)
-    t = np.asarray(t, dtype=float)
-    memory = -(g * tau * np.expm1(-t[..., None] / tau)).sum(-1)
-    return np.pi * rate / radius * shear_modulus * ((1 - g.sum()) * t + memory)
-
-
-def force_by_quadrature(t, width_squared_rate, radius, relaxation_modulus):
-    """Force at one time for any G(t) and any smooth a^2 starting from zero, N/m, by numerical
-    convolution.
-
-    ``width_squared_rate`` s -> d(a^2)/ds, m^2/s; ``relaxation_modulus`` t -> G, Pa; both callables
-    of a float.
-    """
-    positive(t=t, radius=radius)
-    integral, _ = quad(
-        lambda s: relaxation_modulus(t - s) * width_squared_rate(s),
-        0,
-        t,
-        epsabs=0,
-        epsrel=1e-11,
-        limit=200,
-    )
-    return np.pi / radius * integral

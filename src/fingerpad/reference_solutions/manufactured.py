@@ -14,8 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ._check import positive
-
 
 @dataclass(frozen=True)
 class Field:
@@ -67,7 +65,6 @@ def gradient_of_potential(amplitude, wavenumber):
     ``amplitude`` m, ``wavenumber`` k 1/m. Its divergence is -2 k amplitude sin(kx + 0.3) cos(ky -
     0.2).
     """
-    positive(wavenumber=wavenumber)
     return _trigonometric(amplitude, wavenumber, curl=False)
 
 
@@ -77,7 +74,6 @@ def divergence_free(amplitude, wavenumber):
     ``amplitude`` m, ``wavenumber`` k 1/m. The body force does not depend on kappa, so nu -> 0.5
     makes sense.
     """
-    positive(wavenumber=wavenumber)
     return _trigonometric(amplitude, wavenumber, curl=True)
 
 
@@ -130,7 +126,6 @@ def isochoric_shears(amplitude, wavenumber):
 
     ``amplitude`` a m, ``wavenumber`` k 1/m. Finite strain without change of volume.
     """
-    positive(wavenumber=wavenumber)
     a, k = amplitude, wavenumber
 
     def parts(points):
@@ -247,5 +242,4 @@ def nearly_incompressible(isochoric, dilatant, bulk_modulus, pressure_modulus):
     Small strain: pressure = pressure_modulus x div of ``dilatant`` when ``isochoric`` is free of
     divergence.
     """
-    positive(bulk_modulus=bulk_modulus, pressure_modulus=pressure_modulus)
     return isochoric + (pressure_modulus / bulk_modulus) * dilatant

@@ -11,25 +11,32 @@ pressure that was found. Sources: J. R. Phillips and K. O. Johnson, J. Neurophys
 import numpy as np
 
 from . import hertz
-from ._check import poisson_ratio, positive
 
 
 def strip_stresses(x, z, edges, pressures):
     """Stresses ``(sigma_x, sigma_z, tau_xz)`` below strips of uniform pressure, Pa, of the shape of
     ``x`` and ``z`` together.
 
-    Args:
-        x, z: m, z > 0. edges: (n + 1,) m, ascending ends of the strips. pressures: (n,) Pa,
-        compression positive.
+    Parameters
+    ----------
+    x, z
+        m, z > 0.
+    edges
+        (n + 1,) m, ascending ends of the strips.
+    pressures
+        (n,) Pa, compression positive.
 
-    Raises:
-        ValueError: a point does not lie inside the body, or the edges do not ascend.
+    Raises
+    ------
+    ValueError
+        A point does not lie inside the body, or the edges do not ascend.
     """
     x, z = np.broadcast_arrays(np.asarray(x, float), np.asarray(z, float))
-    positive(z=z)
     edges, pressures = np.asarray(edges, float), np.asarray(pressures, float)
     if len(edges) != len(pressures) + 1 or not (np.diff(edges) > 0).all():
         raise ValueError("edges must ascend and be one more than pressures")
+    if not (z > 0).all():
+        raise ValueError("points must lie inside the body, z > 0")
     angle = np.arctan2(z[..., None], x[..., None] - edges)
     opened, sine, cosine = (
         np.diff(values, axis=-1) for values in (angle, np.sin(2 * angle), np.cos(2 * angle))
@@ -46,8 +53,6 @@ def strains(sigma_x, sigma_z, tau_xz, youngs_modulus, poisson):
     """Principal strains in the plane ``(tensile, compressive)``, both signed, of a plane-strain
     state of stress (Pa).
     """
-    positive(youngs_modulus=youngs_modulus)
-    poisson_ratio(poisson=poisson)
     plane, contraction = (1 - poisson**2) / youngs_modulus, poisson * (1 + poisson) / youngs_modulus
     along, down = plane * sigma_x - contraction * sigma_z, plane * sigma_z - contraction * sigma_x
     radius = np.hypot((along - down) / 2, tau_xz * (1 + poisson) / youngs_modulus)
@@ -60,8 +65,6 @@ def strain_energy_density(sigma_x, sigma_z, tau_xz, shear, bulk, poisson):
     ``shear`` may be that of another time than the one the stresses (of ``poisson``) were found
     with.
     """
-    positive(shear=shear, bulk=bulk)
-    poisson_ratio(poisson=poisson)
     sigma_y = poisson * (sigma_x + sigma_z)
     mean = (sigma_x + sigma_y + sigma_z) / 3
     square = sigma_x**2 + sigma_y**2 + sigma_z**2 - 3 * mean**2 + 2 * tau_xz**2
@@ -71,10 +74,15 @@ def strain_energy_density(sigma_x, sigma_z, tau_xz, shear, bulk, poisson):
 def press(force, radius, youngs_modulus, poisson, thickness):
     """A rigid plate or cylinder on the half-plane: ``(depth m, half width m, peak pressure Pa)``.
 
-    Args:
-        force: N/m. radius: m, 1/(1/pad + curvature). thickness: m, the depth of the point that the
-        sinking refers to (the
-            bone's): a half-plane has no other.
+    Parameters
+    ----------
+    force
+        N/m.
+    radius
+        m, 1/(1/pad + curvature).
+    thickness
+        m, the depth of the point that the sinking refers to (the bone's): a half-plane has no
+        other.
     """
     modulus = hertz.composite_modulus(youngs_modulus, poisson)
     half_width = hertz.half_width(force, radius, modulus)

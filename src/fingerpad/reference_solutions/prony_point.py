@@ -9,8 +9,6 @@ J. R. Hughes,
 
 import numpy as np
 
-from ._check import positive
-
 
 def _series(g, tau):
     g, tau = np.atleast_1d(np.asarray(g, dtype=float)), np.atleast_1d(np.asarray(tau, dtype=float))
@@ -18,7 +16,6 @@ def _series(g, tau):
         raise ValueError("g and tau must be sequences of the same length")
     if np.any(g < 0) or g.sum() >= 1:
         raise ValueError("g must not be negative and must sum to less than one")
-    positive(tau=tau)
     return g, tau
 
 
@@ -26,7 +23,7 @@ def relaxation(t, g, tau):
     """Relaxation function G(t)/G_0, of the shape of ``t`` (s, >= 0): 1 at once, 1 - sum g in the
     long term.
 
-    Raises ``ValueError`` for a negative g, sum g >= 1, a tau <= 0 or unequal lengths (all functions
+    Raises ``ValueError`` for a negative g, sum g >= 1 or unequal lengths (all functions
     here do).
     """
     g, tau = _series(g, tau)

@@ -10,7 +10,6 @@ with its *instantaneous* moduli.
 """
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from . import prony_point
 
@@ -42,16 +41,3 @@ def elastic_force_under_force_control(times, forces, g, tau):
     if np.any(np.diff(elastic) < -1e-12 * np.max(np.abs(elastic))):
         raise ValueError("the elastic force must not decrease: the contact must not shrink")
     return elastic
-
-
-def depth_under_force_control(times, forces, g, tau, curve_depths, curve_forces):
-    """Depth at ``times``, m, shape ``(n,)``, for applied ``forces`` and a sampled elastic
-    force-depth curve.
-
-    The curve (m, N/m, both increasing) is interpolated by a monotone cubic. Raises ``ValueError``
-    when a force lies outside it.
-    """
-    wanted = elastic_force_under_force_control(times, forces, g, tau)
-    if wanted.min() < curve_forces[0] or wanted.max() > curve_forces[-1]:
-        raise ValueError("the elastic curve does not reach the force asked for")
-    return PchipInterpolator(curve_forces, curve_depths)(wanted)

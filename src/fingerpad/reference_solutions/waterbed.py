@@ -15,8 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from ._check import positive
-
 
 @dataclass(frozen=True)
 class Pressed:
@@ -38,14 +36,12 @@ def line_load_profile(x, depth, half_length):
     depth (1 - 4 s + 3 s^2), s = |x|/L: parabolas that leave the fluid's area as it is. The force is
     8 T depth / L.
     """
-    positive(half_length=half_length)
     s = np.abs(np.asarray(x, float)) / half_length
     return np.where(s <= 1, depth * (1 - 4 * s + 3 * s**2), 0.0)
 
 
 def rest_height(radius, half_width):
     """Height (m) of the unloaded membrane's apex over its chord."""
-    positive(radius=radius, half_width=half_width)
     if not half_width < radius:
         raise ValueError("half_width must be smaller than the radius")
     return radius - np.sqrt(radius**2 - half_width**2)
@@ -55,13 +51,16 @@ def press(force, tension, radius, half_width, curvature=0.0):
     """Press a rigid cylinder of ``curvature`` (1/m; 0: a plate) by ``force`` (N/m) into a membrane
     of ``tension`` (N/m).
 
-    Args:
-        radius, half_width: m, of the membrane at rest.
+    Parameters
+    ----------
+    radius, half_width
+        m, of the membrane at rest.
 
-    Raises:
-        ValueError: arguments out of range, or no equilibrium with this force.
+    Raises
+    ------
+    ValueError
+        There is no equilibrium with this force.
     """
-    positive(force=force, tension=tension)
     # how far the contact reaches: an angle of the cylinder, or a length of the plate
     low, high = 0.0, np.arcsin(min(half_width * curvature, 1.0)) if curvature else half_width
     for _ in range(60):

@@ -160,9 +160,16 @@ def gram(q, w):
 class WeakForm:
     """The forms on one mesh.
 
-    Args:
-        points: (n, 2) m. cells: (ne, nodes) in the order of gmsh. element: key of :data:`ELEMENTS`.
-        kappa, pointwise: (ne,) Pa.
+    Parameters
+    ----------
+    points
+        (n, 2) m.
+    cells
+        (ne, nodes) in the order of gmsh.
+    element
+        Key of :data:`ELEMENTS`.
+    kappa, pointwise
+        (ne,) Pa.
     """
 
     points: np.ndarray

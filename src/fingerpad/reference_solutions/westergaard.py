@@ -8,12 +8,9 @@ spoils it.
 
 import numpy as np
 
-from ._check import positive
-
 
 def full_contact_pressure(amplitude, wavelength, modulus):
     """Mean pressure p* = pi E* h / lambda at which the contact is complete, Pa."""
-    positive(amplitude=amplitude, wavelength=wavelength, modulus=modulus)
     return np.pi * modulus * amplitude / wavelength
 
 
@@ -32,22 +29,11 @@ def mean_pressure(half_width, amplitude, wavelength, modulus):
     )
 
 
-def half_width(mean_pressure, amplitude, wavelength, modulus):
-    """Half width of each contact at a mean pressure in [0, p*], m; ``ValueError`` outside that
-    range.
-    """
-    ratio = np.asarray(mean_pressure) / full_contact_pressure(amplitude, wavelength, modulus)
-    if np.any((ratio < 0) | (ratio > 1)):
-        raise ValueError("mean_pressure must lie between 0 and the full-contact pressure")
-    return wavelength / np.pi * np.arcsin(np.sqrt(ratio))
-
-
 def pressure(x, half_width, amplitude, wavelength, modulus):
     """Contact pressure at ``x``, Pa, of the shape of ``x``; zero outside the contacts.
 
     p = 2 pbar cos(psi)/sin^2(psi_a) sqrt(sin^2(psi_a) - sin^2(psi)), psi = pi x/lambda.
     """
-    positive(half_width=half_width)
     mean = mean_pressure(half_width, amplitude, wavelength, modulus)
     edge = np.sin(np.pi * half_width / wavelength) ** 2
     psi = np.pi * np.asarray(x, dtype=float) / wavelength
