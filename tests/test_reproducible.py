@@ -12,7 +12,6 @@ from fingerpad import load_scene, simulate
 from fingerpad.cli import main
 from fingerpad.mechanics import dense, linear_solver
 from fingerpad.results import write_history
-from fingerpad.simulation import simulate
 from wrong_scenes import changed, write
 
 pytestmark = pytest.mark.unit

@@ -146,7 +146,8 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         files = sorted(map(Path, [paths] if isinstance(paths, (str, Path)) else paths))
     if not files:
         raise ReferenceDataError(
-            f"{paths}: holds no CSV file; allowed: at least one with columns {', '.join(FORCE_DEPTH)}"
+            f"{paths}: holds no CSV file; allowed: at least one with columns "
+            f"{', '.join(FORCE_DEPTH)}"
         )
     frames = [read_table(file, FORCE_DEPTH) for file in files]
     for file, frame in zip(files, frames, strict=True):
@@ -156,7 +157,8 @@ def read_force_depth(paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
             if key in seen:
                 what = f"subject '{key[0]}', {key[1]}, {key[2]:g} mm, {key[3]:g} mm/s"
                 raise ReferenceDataError(
-                    f"{file}: row {record.Index}: {what} is in row {seen[key]} already; allowed: each once"
+                    f"{file}: row {record.Index}: {what} is in row {seen[key]} already; allowed: "
+                    "each once"
                 )
             seen[key] = record.Index
     files_of = Counter(subject for frame in frames for subject in frame["subject"].unique())
@@ -177,7 +179,8 @@ def read_relaxation(path: str | Path) -> pd.DataFrame:
     for series, total in totals[totals >= 1].items():
         row = frame.index[frame["series"] == series][0]
         raise ReferenceDataError(
-            f"{path}: row {row}, column g: series '{series}' sums to {total:g}; allowed: less than 1"
+            f"{path}: row {row}, column g: series '{series}' sums to {total:g}; allowed: less "
+            "than 1"
         )
     return frame
 

@@ -23,7 +23,7 @@ import pytest
 import yaml
 
 from cysyk1999.config import read_config
-from cysyk1999.workflow.products import Products
+from cysyk1999.workflow.project import Project
 from fingerpad.results import read_history
 
 pytestmark = [pytest.mark.workflow, pytest.mark.slow]
@@ -38,7 +38,7 @@ COMPANIONS = {
 TOUCHED = (
     "src/fingerpad/mechanics/stepping.py",
     "src/cysyk1999/publishing/style.py",
-    "src/cysyk1999/workflow/jobs/simulate.py",
+    "src/cysyk1999/workflow/simulate.py",
     "config/scenes/ramp40.yaml",
     "config/specimens/thesis.yaml",
     "config/reference/thesis_numbers.csv",
@@ -102,7 +102,7 @@ def test_every_file_a_job_opens_is_an_input_of_its_rule(finished):
     before = os.getcwd()
     os.chdir(finished.root)
     try:
-        jobs = Products(config, "smoke.yaml", finished.root).jobs()
+        jobs = Project(config, "smoke.yaml", finished.root).jobs()
         declared = {f"results/smoke/logs/{job.name}.log": job for job in jobs}
         inputs = {
             log: {
@@ -474,7 +474,7 @@ def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clon
     config = read_config(
         yaml.safe_load((clone.root / "config" / "thesis.yaml").read_text()), "thesis.yaml"
     )
-    for job in Products(config, "thesis.yaml", clone.root).jobs():
+    for job in Project(config, "thesis.yaml", clone.root).jobs():
         for path in (path for paths in (*job.outputs.values(), job.beside) for path in paths):
             file = clone.root / path
             if file.name == "specimens":
@@ -493,7 +493,7 @@ def test_snakemake_reruns_in_the_full_configuration_what_an_edit_can_change(clon
     ):
         with ExitStack() as edits:
             for path in paths:
-                edits.enter_context(clone.edited(f"src/fingerpad/{path}"))
+                edits.enter_context(clone.edited(f"src/cysyk1999/{path}"))
             jobs = clone.planned()
         assert {
             name if name == "tables" else "_".join(name.split("_")[:2]) for name in jobs

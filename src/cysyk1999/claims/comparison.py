@@ -147,12 +147,16 @@ def summary(table: pd.DataFrame, reference: pd.DataFrame) -> str:
 
     given = table[table["role"].isin(GIVEN) & table["verdict"].ne("not_comparable")]["verdict"]
     return (
-        f"**Held out: {told('value or range')} values and ranges of the thesis are met; {told('axis')} axes of its figures are "
+        f"**Held out: {told('value or range')} values and ranges of the thesis are met; "
+        f"{told('axis')} axes of its figures are "
         f"filled, their largest curve between the last two ticks; {told('trend')} trends hold.** "
-        f"Not counted: {given.isin(('inside', 'plausible')).sum()} of {len(given)} inputs and counts are as in the thesis; "
+        f"Not counted: {given.isin(('inside', 'plausible')).sum()} of {len(given)} inputs and "
+        "counts are as in the thesis; "
         f"{table['id'].map(reference['same_as']).ne('').sum()} rows repeat another's number; "
-        f"{table['id'].map(reference['score']).eq('none').sum()} trends hold by construction or are not the thesis's own; "
-        f"{table['id'].map(reference['form']).eq('unlike').sum()} rows show recordings or cannot be read."
+        f"{table['id'].map(reference['score']).eq('none').sum()} trends hold by construction or "
+        "are not the thesis's own; "
+        f"{table['id'].map(reference['form']).eq('unlike').sum()} rows show recordings or cannot "
+        "be read."
     )
 
 

@@ -46,7 +46,8 @@ def pages(csv: str | PathLike, reference: pd.DataFrame) -> dict[str, str]:
     chapter = table["figure"].map(chapter_of)
     said = {key: _page(key, table[chapter == key], axis[chapter == key]) for key in CHAPTERS}
     links = [
-        f"- [Chapter {key}: {about}](thesis_comparison_chapter{key}.md): {(chapter == key).sum()} rows"
+        f"- [Chapter {key}: {about}](thesis_comparison_chapter{key}.md): {(chapter == key).sum()} "
+        "rows"
         for key, about in CHAPTERS.items()
     ]
     first = ["# The thesis beside the simulations", summary(table, reference), "\n".join(links)]

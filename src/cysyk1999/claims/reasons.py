@@ -13,7 +13,10 @@ from cysyk1999.claims.rows import Number
 from cysyk1999.measures.runs import NINE
 from cysyk1999.measures.table import Measures
 
-_PAD = "of pads that the thesis's figures do not tell apart some are inside and some are not, or none is (study reconstruction)"
+_PAD = (
+    "of pads that the thesis's figures do not tell apart some are inside and some are not, or "
+    "none is (study reconstruction)"
+)
 _RADIUS = "inferred from chapters 3 and 4; the fan of printed node positions gives 7.8 to 8.0 mm"
 LARGE_RADIUS = "sensitivity_radius_flat"
 """The flat plate on a pad with the apex radius of a published section."""
@@ -30,7 +33,10 @@ def _radius(m: Measures, number: Number) -> str:
         radius, inverse = m("apex_radius", LARGE_RADIUS), m("inverse_width", LARGE_RADIUS, "end")
     except KeyError:
         return _RADIUS
-    return f"{_RADIUS}; {radius:.1f} mm, of a published section, gives {inverse:.3f} 1/mm under the flat plate (T106)"
+    return (
+        f"{_RADIUS}; {radius:.1f} mm, of a published section, gives {inverse:.3f} 1/mm under "
+        "the flat plate (T106)"
+    )
 
 
 REASONS: dict[str, str | Callable[[Measures, Number], str]] = {

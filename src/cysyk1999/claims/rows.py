@@ -68,7 +68,8 @@ class Number:
         """
         if row["measure"] not in MEASURES:
             raise ValueError(
-                f"{row.name}: measure '{row['measure']}' is not one of {', '.join(sorted(MEASURES))}"
+                f"{row.name}: measure '{row['measure']}' is not one of "
+                f"{', '.join(sorted(MEASURES))}"
             )
         unit = MEASURES[row["measure"]].unit
         if unit != row["units"]:

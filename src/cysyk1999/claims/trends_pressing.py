@@ -212,7 +212,10 @@ def same_width_without_layers(m):
 @trend("TR14")
 def peak_moves_out(m):
     early, top, end = (m("peak_place", K210, k) for k in ("early", "top", "end"))
-    note = f"peak at {early:.2f} mm early in the ramp, {top:.2f} mm at its top, {end:.2f} mm at the end"
+    note = (
+        f"peak at {early:.2f} mm early in the ramp, {top:.2f} mm at its top, {end:.2f} mm at "
+        "the end"
+    )
     return Trend(early < top <= end and end > early, end, note)
 
 
@@ -263,7 +266,10 @@ def stands_out_less_when_deep(m):
 def pressure_gives_energy(m):
     left = m.find("residual_of_eq_4_4", PLATE)
     falls = sum(fall > 0 for fall in m.find("fall_by_eq_4_4", PLATE).values())
-    note = f"residual {min(left.values()):.0%} to {max(left.values()):.0%}; falls in the hold by Eq 4-4 under {falls} surfaces"
+    note = (
+        f"residual {min(left.values()):.0%} to {max(left.values()):.0%}; falls in the hold by "
+        f"Eq 4-4 under {falls} surfaces"
+    )
     return everywhere({label: share <= AGREES for label, share in left.items()}, note, PANELS)
 
 
@@ -389,7 +395,10 @@ def ridges_set_the_sharpest_apart(m):
         apart(NINE, "915 um"),
         *(apart(RIDGED_NINE, at) for at in PLACES.values()),
     )
-    note = f"1260 over 630 1/m: {plain:.3f} without ridges, with ridges {centre:.3f} at the centre, {beside:.3f} at 46 um"
+    note = (
+        f"1260 over 630 1/m: {plain:.3f} without ridges, with ridges {centre:.3f} at the "
+        f"centre, {beside:.3f} at 46 um"
+    )
     return Trend(min(centre, beside) > plain, centre / plain, note)
 
 
@@ -407,5 +416,6 @@ def ridges_change_the_magnitude(m):
     )
     return everywhere(
         outcome,
-        f"largest energy over the plain pad's {note}; the centre lies in the epidermis of the ridge's tip",
+        f"largest energy over the plain pad's {note}; the centre lies in the epidermis of the "
+        "ridge's tip",
     )

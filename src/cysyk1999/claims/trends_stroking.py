@@ -51,7 +51,10 @@ def by_speed(m, quantity, speeds=tuple(SPEEDS)):
 def pressure_follows_curvature(m, scene):
     likeness, slope = m("curvature_correlation", scene, "centre"), m("curvature_factor", scene)
     offset, misfit = (m("curvature_fit", scene, k) for k in ("offset", "misfit"))
-    note = f"pressure = {slope:.1f} Pa m x curvature + {offset:.0f} Pa; root mean square misfit {misfit:.0f} Pa"
+    note = (
+        f"pressure = {slope:.1f} Pa m x curvature + {offset:.0f} Pa; root mean square misfit "
+        f"{misfit:.0f} Pa"
+    )
     return Trend(likeness >= FOLLOWS, likeness, f"correlation {likeness:.3f}, {note}")
 
 
@@ -98,7 +101,10 @@ def velocity_hardly_matters(m, quantity, trace):
     spread, change = spreads(found), {k: 100 * (found[-1][k] / found[0][k] - 1) for k in found[0]}
     worst, whole = max(spread, key=spread.get), m("spread_of_traces", FULL["1"], trace)
     note = f"peaks change by up to {max(map(abs, change.values())):.0f} %; "
-    note += f"they spread by {np.mean(list(spread.values())):.1f} % on average, at most {spread[worst]:.1f} % (K = {worst}); "
+    note += (
+        f"they spread by {np.mean(list(spread.values())):.1f} % on average, at most "
+        f"{spread[worst]:.1f} % (K = {worst}); "
+    )
     note += f"whole traces by {whole:.1f} %; change of the peaks from 1 to 40 mm/s " + listed(
         change, "%", 2
     )
@@ -140,7 +146,10 @@ def alike_stepped_and_stroked(m):
     shift, likeness = m("lag_of_stepped", SUB["10"]), m("likeness_of_stepped", SUB["10"])
     stroked, stepped = (m("centre_pressure", scene, "mean") for scene in (SUB["10"], STEPPED))
     shifts = ", ".join(f"{s:.2f}" for s in m.find("profile_shift", SUB["10"]).values())
-    note = f"correlation {likeness:.3f} at a lag of {shift:.2f} mm; profiles at the three locations {shifts} mm to the left"
+    note = (
+        f"correlation {likeness:.3f} at a lag of {shift:.2f} mm; profiles at the three "
+        f"locations {shifts} mm to the left"
+    )
     note += f"; mean pressure {stroked:.0f} Pa stroked, {stepped:.0f} Pa stepped"
     return Trend(likeness >= FOLLOWS and abs(stroked / stepped - 1) <= ALIKE, likeness, note)
 
@@ -373,7 +382,10 @@ def sharpest_answered_to_the_rate(m):
 @trend("TR47")
 def no_direction_without_ridges(m):
     index, spread = m("direction", PLAIN["right"]), m("spread_of_three", PLAIN["right"])
-    note = f"directional index {index:.2g} at -46 um; the three receptors differ by {spread:.1f} % at most"
+    note = (
+        f"directional index {index:.2g} at -46 um; the three receptors differ by {spread:.1f} "
+        "% at most"
+    )
     return Trend(abs(index) <= UNFELT, index, note)
 
 
@@ -392,7 +404,10 @@ def receptors_differ(m):
         )
     )
     note = ", ".join(f"{v:.0f} Pa at {k}" for k, v in values.items())
-    note += f" at the end; the centre lies in the epidermis of the tip, 20 um deeper, in the dermis, it is {tip:.0f} Pa"
+    note += (
+        " at the end; the centre lies in the epidermis of the tip, 20 um deeper, in the "
+        f"dermis, it is {tip:.0f} Pa"
+    )
     ratio = max(values.values()) / min(values.values())
     return Trend(
         left / right >= 2,
@@ -409,7 +424,10 @@ def direction_is_felt(m, strokes):
         right, left = (
             m("energy_at_end", strokes[way], "915 um, -46 um") for way in ("right", "left")
         )
-        note = f"at -46 um {right:.0f} Pa at the end of the stroke to the right, {left:.0f} Pa to the left"
+        note = (
+            f"at -46 um {right:.0f} Pa at the end of the stroke to the right, {left:.0f} Pa to "
+            "the left"
+        )
     except KeyError:
         note = "stroke to the left by mirror image"
     return Trend(abs(index) >= FELT, index, f"directional index {index:.2f}; {note}")
@@ -425,7 +443,8 @@ def responds_throughout_one_way_only(m):
     )
     through, ceases = least > threshold, start > threshold > late
     note = (
-        f"at -46 um to the right {least:.0f} Pa at least after 2 mm; to the left {start:.0f} Pa at the start, "
+        f"at -46 um to the right {least:.0f} Pa at least after 2 mm; to the left {start:.0f} Pa "
+        "at the start, "
         f"{late:.0f} Pa at most after 2 mm; threshold {threshold:.0f} Pa (Eq 5-1)"
     )
     return Trend(through and ceases, float(through) + float(ceases), note)

@@ -76,7 +76,8 @@ def judge(value: float, error: float, entry: Mapping) -> tuple[str, str]:
         if np.isfinite(tick) and value < tick - helped(tick):
             return (
                 "outside",
-                f"{1 - value / tick:.0%} below the last tick but one, {tick:g}: the axis would have ended there",
+                f"{1 - value / tick:.0%} below the last tick but one, {tick:g}: the axis would "
+                "have ended there",
             )
         if np.isnan(tick) and value < FILL * high - helped(FILL * high):
             return "outside", f"fills only {value / high:.0%} of the axis"

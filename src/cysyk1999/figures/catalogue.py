@@ -43,7 +43,8 @@ def read_catalogue(path: str | PathLike) -> pd.DataFrame:
     bare = table[~table["kind"].isin(DRAWABLE) & (table["stand_in"] == "")]
     if len(bare):
         raise ValueError(
-            f"{path}: figure {bare['number'].iloc[0]} is a {bare['kind'].iloc[0]} and nothing stands in for it"
+            f"{path}: figure {bare['number'].iloc[0]} is a {bare['kind'].iloc[0]} and nothing "
+            "stands in for it"
         )
     return table
 
@@ -63,12 +64,17 @@ def readme(
     )
     parts = [
         "# Figures",
-        "Written by the workflow from `config/reference/figures.csv`, the titles of the figures drawn and the table that compares"
+        "Written by the workflow from `config/reference/figures.csv`, the titles of the figures "
+        "drawn and the table that compares"
         " them with the thesis; do not edit.",
-        f"The thesis (Cysyk 1999) has {len(catalogue)} figures. {len(here)} are drawn here from simulations, on the thesis's"
-        " axes, each with the plotted data beside it (`thesis/fig_*.csv`). None of the thesis's recordings and photographs is"
-        " public: no recording is drawn, and a figure that stands in for one says *predicted* in the picture. *Holds*: how"
-        " many of the thesis's numbers, axes and trends that belong to a figure are met here, of those that can be answered.",
+        f"The thesis (Cysyk 1999) has {len(catalogue)} figures. {len(here)} are drawn here from "
+        "simulations, on the thesis's"
+        " axes, each with the plotted data beside it (`thesis/fig_*.csv`). None of the thesis's "
+        "recordings and photographs is"
+        " public: no recording is drawn, and a figure that stands in for one says *predicted* in "
+        "the picture. *Holds*: how"
+        " many of the thesis's numbers, axes and trends that belong to a figure are met here, of "
+        "those that can be answered.",
         "## Drawn here",
         _table(
             ("figure", "shows", "holds", "kind in the thesis", "in place of what is not public"),
@@ -101,7 +107,8 @@ def readme(
         ]
     parts += [
         "## Beyond the thesis",
-        "`tables/`: numbers, as CSV and Markdown. `studies/`: calibration, moving pictures and further studies.",
+        "`tables/`: numbers, as CSV and Markdown. `studies/`: calibration, moving pictures and "
+        "further studies.",
     ]
     return "\n\n".join(parts) + "\n"
 

@@ -133,7 +133,10 @@ def three_sections(fig: Picture, frame: pd.DataFrame, spec: Figure) -> None:
 
     thick = apex["stratum corneum"] - apex["dermis"], apex["dermis"] - apex["fat"]
     offset_construction(axes[1], lines, thick)
-    text = f"epidermis {thick[0]:.2f} mm, dermis {thick[1]:.2f} mm\ndots: so far along the normals of the skin"
+    text = (
+        f"epidermis {thick[0]:.2f} mm, dermis {thick[1]:.2f} mm\ndots: so far along the "
+        "normals of the skin"
+    )
     axes[1].text(0, 9.3, text, va="top", **small)
 
     fill(axes[2], lines, merged=False)
@@ -294,9 +297,10 @@ def misfit_at_the_rim(rows: pd.DataFrame) -> str:
     last = points.iloc[-1]
     curve = rows[is_simulated(rows) & (rows["series"] == last["series"])].sort_values(X)
     here = float(np.interp(last[X], curve[X], curve[DEFLECTION]))
-    return f"at {last[X]:g} mm,\n{last['series']} deep:\n{last[DEFLECTION]:+.2f} measured\n{here:+.2f} model".replace(
-        "-", "−"
-    )
+    return (
+        f"at {last[X]:g} mm,\n{last['series']} deep:\n{last[DEFLECTION]:+.2f} "
+        f"measured\n{here:+.2f} model"
+    ).replace("-", "−")
 
 
 def one_bracket(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
@@ -367,8 +371,10 @@ def model_and_subjects(ax: Axes, frame: pd.DataFrame, spec: Figure) -> None:
         mean = [others.loc[np.isclose(others[DEPTH], at), NEWTON].mean() for at in ends]
         over = np.interp(ends, model[DEPTH], model[NEWTON]) / mean
         words = (
-            f"model over the mean of the subjects: {over[0]:.1f} at {ends[0]:g} mm, {over[1]:.1f} at {ends[1]:g} mm.\n"
-            "A plane section touches as long a stretch of the finger\nat every depth; a finger touches more of it the deeper."
+            f"model over the mean of the subjects: {over[0]:.1f} at {ends[0]:g} mm, {over[1]:.1f} "
+            f"at {ends[1]:g} mm.\n"
+            "A plane section touches as long a stretch of the finger\nat every depth; a finger "
+            "touches more of it the deeper."
         )
         ax.text(0.03, 0.55, words, transform=ax.transAxes, va="top", fontsize=6.5)
     looks = style.ordered("subject", others["series"])

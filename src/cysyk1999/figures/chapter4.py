@@ -93,7 +93,10 @@ def one_panel(x_label: float, height: float = 2.7) -> Panels:
     return Panels(height=height, fill=Lines(ends=x_label))
 
 
-OTHER_PADS = "Faint bars: the span of other pads that the thesis's figures do not tell apart (figures/tables/reconstruction_posterior.md)."
+OTHER_PADS = (
+    "Faint bars: the span of other pads that the thesis's figures do not tell apart "
+    "(figures/tables/reconstruction_posterior.md)."
+)
 
 
 # --- rows of their own -----------------------------------------------------------------------------------

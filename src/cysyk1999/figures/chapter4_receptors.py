@@ -99,15 +99,23 @@ PRINTED = ("T083", "T084", "T085", "T086", "T087")
 RATES = "impulse_rates"
 SPREAD = "standard deviation (impulses/s)"
 """Column of what is recorded: over repetitions, where it is given."""
-LAW_NOTE = "Eq 5-1 with the thesis's constants (0.081 (impulses/s)/Pa, 150 Pa; 0.0182 impulses/Pa, 100 Pa/s)"
+LAW_NOTE = (
+    "Eq 5-1 with the thesis's constants (0.081 (impulses/s)/Pa, 150 Pa; 0.0182 "
+    "impulses/Pa, 100 Pa/s)"
+)
 DEEP = f"{LAW_NOTE}, 915 µm under the centre."
 STEADY_NOTE = f"{DEEP} Steady: mean of the last half of the hold."
 GOODWIN = "Goodwin 1995, first second", "monkey, spheres; ours: cylinders"
 HALF_SPACE = "half-space; ours: layered pad"
-SCALED = "The thesis prints no constants for this depth: energies are scaled to their mean at 915 µm over the nine surfaces."
+SCALED = (
+    "The thesis prints no constants for this depth: energies are scaled to their mean at 915 "
+    "µm over the nine surfaces."
+)
 BESIDE = (
-    "Left: mean over the hold; the recorded rates are not public. Goodwin, Browning and Wheat (1995), digitised by a third "
-    "party: impulses in the first second (force rate not stated). TouchSim (Saal et al. 2017): a half-space."
+    "Left: mean over the hold; the recorded rates are not public. Goodwin, Browning and Wheat "
+    "(1995), digitised by a third "
+    "party: impulses in the first second (force rate not stated). TouchSim (Saal et al. 2017): a "
+    "half-space."
 )
 PEAK_WORDS = "peak rate (impulses/s)"
 OF_THE_LARGEST = "of the largest"
@@ -319,7 +327,10 @@ def energy_by_pressure(data: Data) -> pd.DataFrame:
     """
     runs = list(data.runs(NINE))
     law = fit_sum([history for _, history, _ in runs], RECEPTOR_DEPTH)
-    source = f"{SIMULATED}: Eq 4-4 with r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m"
+    source = (
+        f"{SIMULATED}: Eq 4-4 with r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 "
+        f"{law.constant:.3g} 1/m"
+    )
     shown = partial(energy, depth=RECEPTOR_DEPTH)
     parts = [
         energy_from_pressure(history, RECEPTOR_DEPTH, law).assign(
@@ -919,9 +930,12 @@ FIGURES = (
         measured=RATES,
         how="of the largest rate",
         remarks=(
-            f"{LAW_NOTE}, strain energy 915 µm under the centre; integrate-and-fire, coefficient of variation of the "
-            f"intervals {VARIATION} (assumed), seed {SEED}. Right: mean predicted rate of the hold; grey: rates printed "
-            "beside the recordings in Fig. 4-2 of Cysyk (1999), from a scan, where a rate between two rows may belong to "
+            f"{LAW_NOTE}, strain energy 915 µm under the centre; integrate-and-fire, coefficient "
+            "of variation of the "
+            f"intervals {VARIATION} (assumed), seed {SEED}. Right: mean predicted rate of the "
+            "hold; grey: rates printed "
+            "beside the recordings in Fig. 4-2 of Cysyk (1999), from a scan, where a rate between "
+            "two rows may belong to "
             "either.",
         ),
     ),
@@ -935,7 +949,8 @@ FIGURES = (
         Panels(height=3.4, fill=nine_frequencies, limit="", set={"xlim": (0, 2)}),
         rows=frequencies,
         remarks=(
-            f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses (integrate-and-fire, "
+            f"{DEEP} Thin: mean instantaneous frequency of {AVERAGED} trains of impulses "
+            "(integrate-and-fire, "
             f"coefficient of variation {VARIATION}, assumed); wide: the rate they are made from.",
         ),
     ),
@@ -991,8 +1006,10 @@ FIGURES = (
         Own(height=6.2, header=0.16, paint=twelve_nodes),
         rows=nodes_by_law,
         remarks=(
-            "Eq 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the edge's) + A3, from the peak "
-            "of a node on; constants by least squares. Nodes count from one spacing inside the edge on.",
+            "Eq 4-1, p = A1 / (distance to the contact's edge) + A2 (displacement below the "
+            "edge's) + A3, from the peak "
+            "of a node on; constants by least squares. Nodes count from one spacing inside the "
+            "edge on.",
         ),
     ),
     of_rates(
@@ -1011,8 +1028,10 @@ FIGURES = (
         Beside(height=3.1, fill=stamped_law, ratios=(1.55, 1), others={"published": GOODWIN}),
         {GIVEN_RATE: "T161", CURVATURE: "T162"},
         remarks=(
-            f"{DEEP} Left: mean over the hold, as in the thesis, whose recorded rates are not public. Right: Goodwin, "
-            "Browning and Wheat (1995), digitised by a third party, impulses in the first second at 20 gf; gain and "
+            f"{DEEP} Left: mean over the hold, as in the thesis, whose recorded rates are not "
+            "public. Right: Goodwin, "
+            "Browning and Wheat (1995), digitised by a third party, impulses in the first second "
+            "at 20 gf; gain and "
             "threshold of the line fitted to them.",
         ),
     ),
@@ -1038,8 +1057,10 @@ FIGURES = (
         FAST,
         width=style.COLUMN_WIDTH,
         remarks=(
-            f"{DEEP[:-1]}; nothing is fitted here. Squares: mean rates printed beside Fig. 4-2 of Cysyk (1999), read "
-            "from a scan (17.0 without its point); a bar joins the two surfaces that a rate may belong to.",
+            f"{DEEP[:-1]}; nothing is fitted here. Squares: mean rates printed beside Fig. 4-2 of "
+            "Cysyk (1999), read "
+            "from a scan (17.0 without its point); a bar joins the two surfaces that a rate may "
+            "belong to.",
         ),
     ),
     from_depth("4-26", RECEPTOR_DEPTH, "T203"),

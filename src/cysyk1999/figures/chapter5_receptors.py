@@ -81,7 +81,10 @@ BY_PRESSURE = {
 RASTER, HISTOGRAM = "raster", "histogram"
 FOUR = SPEEDS.only(("5 mm/s", "10 mm/s", "20 mm/s", "40 mm/s"))
 EIGHT = NINE.only(CYLINDERS)
-BURST = "A burst is the time during which the strain energy is above 150 Pa; its rate is the mean predicted rate over that time."
+BURST = (
+    "A burst is the time during which the strain energy is above 150 Pa; its rate is the mean "
+    "predicted rate over that time."
+)
 RESPONSES = {"peak": "ramp and hold, peak", "end": "ramp and hold, steady state"}
 WITHIN = NINE.only(WITHIN_350)
 STROKED = "stroked at 10 mm/s"
@@ -92,7 +95,8 @@ RATE_WORDS = "predicted rate\n(impulses/s)"
 def equation(depth: float = DEEP) -> str:
     """What the pictures say of their rates."""
     return (
-        "Predicted, not recorded: Eq 5-1 with the thesis's constants and the simulated strain energy "
+        "Predicted, not recorded: Eq 5-1 with the thesis's constants and the simulated strain "
+        "energy "
         f"{depth * 1e6:.0f} µm under the centre."
     )
 
@@ -390,7 +394,8 @@ def plate_note(frame: pd.DataFrame) -> list[str]:
     """The errors of either way: relative to next to no response one tells little."""
     error = f"{axs.error_text(frame)}. " if axs.error_text(frame) else ""
     return [
-        f"Predicted by Eq 5-1, not measured. {error}Receptor 46 µm right of a ridge's tip, 915 µm deep."
+        f"Predicted by Eq 5-1, not measured. {error}Receptor 46 µm right of a ridge's tip, 915 µm "
+        "deep."
     ]
 
 
@@ -432,7 +437,10 @@ def say_plateaus(panels: Mapping[object, Axes], frame: pd.DataFrame) -> None:
     """Between bursts the frequency is that of one long interval."""
     room_for_brackets(panels, frame)
     first = next(iter(panels.values()))
-    text = "level stretches: one interval from burst to burst; brackets: thesis's axis (?: reading uncertain)"
+    text = (
+        "level stretches: one interval from burst to burst; brackets: thesis's axis (?: "
+        "reading uncertain)"
+    )
     first.text(
         0.99,
         0.97,
@@ -588,7 +596,8 @@ FIGURES = (
         surface=(0, 80),
         extra=three_laws,
         remarks=(
-            "The error is that of the simulated energy. Eq 4-4 has the constants that fit the nine pressed surfaces;",
+            "The error is that of the simulated energy. Eq 4-4 has the constants that fit the "
+            "nine pressed surfaces;",
             "its constant shift is the one that fits the stroke at 10 mm/s.",
         ),
     ),

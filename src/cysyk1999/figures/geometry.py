@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 LAYERS = tuple(style.LAYER_COLOURS)
 """Layers from the outside in, and the bone."""
-NOTE = "The model's own geometry and mesh, not measured; the MRI sections of Cysyk (1999) are not available."
+NOTE = (
+    "The model's own geometry and mesh, not measured; the MRI sections of Cysyk (1999) are not "
+    "available."
+)
 
 
 def stratum_corneum(history: xr.Dataset) -> float:

@@ -248,7 +248,10 @@ class Data:
             if id_ not in self.reference.index:
                 continue
             entry = self.reference.loc[id_]
-            source = f"thesis axis range ({id_}{', reading uncertain' if entry['kind'] == 'garbled' else ''})"
+            source = (
+                "thesis axis range "
+                f"({id_}{', reading uncertain' if entry['kind'] == 'garbled' else ''})"
+            )
             of = {} if panel is None else {key: panel}
             rows += [{**of, "source": source, column: entry[end]} for end in ("low", "high")]
         return pd.DataFrame(rows)

@@ -36,7 +36,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Picture
 
 WAYS = {"right": "plate to the right (thesis)", "left": "plate to the left"}
-LAYERED = "The tip of a ridge is at x = 0, 925 µm deep: at 915 µm the centre lies in the epidermis, x = ±46 µm in the dermis."
+LAYERED = (
+    "The tip of a ridge is at x = 0, 925 µm deep: at 915 µm the centre lies in the "
+    "epidermis, x = ±46 µm in the dermis."
+)
 WINDOW = (5.0, 7.0)  # mm, half the width and the height of what Fig 5-25 shows
 DETAIL = (-0.85, 0.85, 4.15, 6.05)  # mm
 FLAT = RIDGED_NINE.only(("flat",)).without_companions()
@@ -233,7 +236,8 @@ FIGURES = (
         meshes=True,
         note=lambda frame: [NOTE],
         remarks=(
-            "The thesis states neither pitch nor height of its ridges: 0.48 mm and 0.15 mm here, see "
+            "The thesis states neither pitch nor height of its ridges: 0.48 mm and 0.15 mm here, "
+            "see "
             "config/reference/ridges.csv.",
             "Circles: the receptors of Figs 5-28 and 5-29.",
         ),

@@ -50,7 +50,10 @@ def of_markdown(text: str) -> str:
     )
 
 
-CITE = "fingerpad (see CITATION.cff), after J. P. Cysyk, Skin Dynamics in the Tactile Sensing of Shape, S.M. thesis, MIT, 1999."
+CITE = (
+    "fingerpad (see CITATION.cff), after J. P. Cysyk, Skin Dynamics in the Tactile Sensing of "
+    "Shape, S.M. thesis, MIT, 1999."
+)
 
 
 def report_pages(job: SimpleNamespace) -> None:
@@ -79,5 +82,8 @@ def _parts(source, title, judged):
         for line in judged.splitlines()
         if line.startswith(f"| {source.stem.removeprefix('fig_')}: ")
     ]
-    head = "## The thesis beside this\n\n| quantity | thesis | here | verdict | why |\n|---|---|---|---|---|\n"
+    head = (
+        "## The thesis beside this\n\n| quantity | thesis | here | verdict | why "
+        "|\n|---|---|---|---|---|\n"
+    )
     return picture(source, title), of_markdown(head + "\n".join(rows)) if rows else "", footer

@@ -68,7 +68,8 @@ def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
         for row in frame.index[stroked != (frame["window"] == "burst")]:
             allowed = "burst" if stroked[row] else ", ".join(w for w in WINDOWS if w != "burst")
             raise ReferenceDataError(
-                f"{file}: row {row}, column window: '{frame.loc[row, 'window']}'; allowed: {allowed}"
+                f"{file}: row {row}, column window: '{frame.loc[row, 'window']}'; allowed: "
+                f"{allowed}"
             )
         frames.append(frame.assign(file=file.name))
     if not frames:
@@ -86,6 +87,9 @@ def read_rates(*paths: str | Path | Iterable[str | Path]) -> pd.DataFrame:
     ]
     for row in together.index[together.duplicated(key)]:
         entry = together.loc[row]
-        what = f"{entry['window']} of {entry['recording']} at {entry['curvature_per_m']:g} 1/m, {entry['force_gf']:g} gf"
+        what = (
+            f"{entry['window']} of {entry['recording']} at {entry['curvature_per_m']:g} 1/m, "
+            f"{entry['force_gf']:g} gf"
+        )
         raise ReferenceDataError(f"{entry['file']}: the {what} is given twice; allowed: each once")
     return together

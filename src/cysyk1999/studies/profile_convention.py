@@ -46,7 +46,8 @@ def fig_convention(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "How the points of a sampled profile are read",
         [
-            "x = 0 comes down on the apex of the pad; of y only differences matter, for the profile moves down until it touches."
+            "x = 0 comes down on the apex of the pad; of y only differences matter, for the "
+            "profile moves down until it touches."
         ],
         height=3.1,
         header=0.16,

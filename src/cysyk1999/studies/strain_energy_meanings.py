@@ -96,11 +96,16 @@ def fig_meanings(frame: pd.DataFrame) -> Figure:
     hold for every surface.
     """
     note = [
-        f"{axs.footnote(frame)[0].replace('; strain energy on instantaneous moduli', '')} Recorded rates fall in the "
-        "hold under every surface (Cysyk 1999, section 4.2). Hatched: where a definition does so. Without viscosity the five "
+        f"{axs.footnote(frame)[0].replace('; strain energy on instantaneous moduli', '')} "
+        "Recorded rates fall in the "
+        "hold under every surface (Cysyk 1999, section 4.2). Hatched: where a definition does so. "
+        "Without viscosity the five "
         "are one.",
     ]
-    title = "Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, under the centre"
+    title = (
+        "Which strain energy falls in the hold as neurons' rates do? 40 gf/s to 20 gf, under "
+        "the centre"
+    )
     fig = style.study_figure(title, note, 5.4)
     grid = fig.add_gridspec(2, len(MEANINGS), height_ratios=[1, 1.1])
     axes = [fig.add_subplot(grid[0, k]) for k in range(len(MEANINGS))]

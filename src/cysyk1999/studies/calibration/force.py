@@ -71,7 +71,8 @@ class ElasticCurve:
         depth = np.asarray(depth, float)
         if depth.size and not (depth.min() >= 0 and depth.max() <= self.depth[-1] * (1 + 1e-9)):
             raise ValueError(
-                f"a depth of {depth.max() * 1e3:g} mm is beyond the elastic curve, 0 to {self.depth[-1] * 1e3:g} mm"
+                f"a depth of {depth.max() * 1e3:g} mm is beyond the elastic curve, 0 to "
+                f"{self.depth[-1] * 1e3:g} mm"
             )
         return curve(np.minimum(depth, self.depth[-1]))
 
@@ -152,7 +153,8 @@ def plate_forces(data: pd.DataFrame) -> dict[str, pd.DataFrame]:
     for subject, group in out.items():
         if len(group) < 2:
             raise ValueError(
-                f"subject '{subject}' has one steady force under a {PLATE}; a fit needs at least two depths"
+                f"subject '{subject}' has one steady force under a {PLATE}; a fit needs at least "
+                "two depths"
             )
     shared = (
         chosen.groupby("depth_mm")
@@ -506,7 +508,10 @@ def _estimates(curves, forces, constants, lengths, length, specimen, plate, coar
         note=f"moduli {ratio}, epidermis {young / 1e6:g} MPa; {length * 1e3:g} mm contact length",
     )
     for who, found in constants.items():
-        note = f"equal weights in N, {length * 1e3:g} mm contact length, moduli {ratio}; interval from the misfit, not from noise"
+        note = (
+            f"equal weights in N, {length * 1e3:g} mm contact length, moduli {ratio}; interval "
+            "from the misfit, not from noise"
+        )
         add("constant", who, "modulus constant", _of(found), "1", found, note)
         add(
             "constant",
@@ -659,10 +664,13 @@ def specimen_text(who: str, found: Fit, specimen: Mapping, data: pd.DataFrame) -
     title = "mean of the subjects" if who == MEAN else f"subject {who}"
     lines = [
         "# yaml-language-server: $schema=../../workflow/schemas/specimen.schema.json",
-        f"# Calibrated by `snakemake calibration` to steady forces under a flat plate, {title}: {found.count} depths,",
+        f"# Calibrated by `snakemake calibration` to steady forces under a flat plate, {title}: "
+        f"{found.count} depths,",
         f"# {_cited(chosen)}.",
-        f"# The thesis's moduli times {s:.4g} (95 % interval {low:.3g} to {high:.3g}, from the misfit), at a",
-        f"# contact length of {length:g} mm: force alone tells only their product, {s * length:.4g} mm.",
+        f"# The thesis's moduli times {s:.4g} (95 % interval {low:.3g} to {high:.3g}, from the "
+        "misfit), at a",
+        f"# contact length of {length:g} mm: force alone tells only their product, "
+        f"{s * length:.4g} mm.",
         "layers:",
     ]
     for name in ("epidermis", "dermis", "fat"):

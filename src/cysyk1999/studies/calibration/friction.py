@@ -114,7 +114,8 @@ class StretchCurve:
         for name, values in self.values.items():
             if not (np.diff(values) < 0).all():
                 raise ValueError(
-                    f"the {name} lateral displacement does not fall with every larger coefficient of friction"
+                    f"the {name} lateral displacement does not fall with every larger coefficient "
+                    "of friction"
                 )
 
     @cached_property
@@ -133,7 +134,8 @@ class StretchCurve:
         if not values[-1] <= lateral <= values[0]:
             ends = f"{values[0] * 1e3:.3g} to {values[-1] * 1e3:.3g} mm"
             raise ValueError(
-                f"a {name} lateral displacement of {lateral * 1e3:.3g} mm is beyond the strokes, {ends}"
+                f"a {name} lateral displacement of {lateral * 1e3:.3g} mm is beyond the strokes, "
+                f"{ends}"
             )
         curve = PchipInterpolator(self.coefficient, values - lateral)
         return float(curve.roots(extrapolate=False)[0])
@@ -280,10 +282,16 @@ def _estimates(curve, varied, target, axis, published) -> pd.DataFrame:
     )
     for side, shift in (("least", ABOUT), ("most", -ABOUT)):
         value = curve.coefficient_at(target + shift)
-        note = f"mean stretch {-1e3 * (target + shift):.3g} mm; about is read as +-{about:g} mm, not a 95 % interval"
+        note = (
+            f"mean stretch {-1e3 * (target + shift):.3g} mm; about is read as +-{about:g} mm, "
+            "not a 95 % interval"
+        )
         add(study, f"{side} coefficient for about {mean}", value, note=note)
     for side, name, lateral in (("least", "highest", axis[1]), ("most", "lowest", axis[0])):
-        note = f"the {name} displacement over the waves reaches {1e3 * lateral:g} mm, the end of the axis of Fig 5-15"
+        note = (
+            f"the {name} displacement over the waves reaches {1e3 * lateral:g} mm, the end of "
+            "the axis of Fig 5-15"
+        )
         add(
             study,
             f"{side} coefficient within the axis of Fig 5-15",

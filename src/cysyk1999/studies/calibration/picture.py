@@ -54,7 +54,8 @@ def fit(frame: pd.DataFrame) -> Figure:
     with the bone moved.
     """
     note = [
-        "Lines: simulated, steady state; moduli times a fitted constant (dotted: its 95 % confidence), dashed: the moduli stated "
+        "Lines: simulated, steady state; moduli times a fitted constant (dotted: its 95 % "
+        "confidence), dashed: the moduli stated "
         f"in the thesis. Points: {_measured(frame)}."
     ]
     fig = study_figure("Calibration: steady force under a flat plate", note, 3.4)
@@ -130,8 +131,10 @@ def identifiability(frame: pd.DataFrame) -> Figure:
     across.
     """
     note = [
-        "Rise of the sum of squares of simulated against measured forces above its least, over the squared scatter of the fit. "
-        "Along the valley nothing changes: force tells modulus × contact length, nothing of either alone."
+        "Rise of the sum of squares of simulated against measured forces above its least, over "
+        "the squared scatter of the fit. "
+        "Along the valley nothing changes: force tells modulus × contact length, nothing of "
+        "either alone."
     ]
     fig = study_figure("Calibration: what force can tell", note, 3.7)
     left, right = fig.subplots(1, 2, width_ratios=(1.15, 1))
@@ -226,8 +229,10 @@ def residuals(frame: pd.DataFrame) -> Figure:
     length that force asks for.
     """
     note = [
-        "Measured forces less simulated ones, whose contact length has one parameter, fitted with the thesis's moduli. "
-        "Elliptical patch: proportional to the width; plane sections: each pressed by itself. Thin, a marker a subject; thick: "
+        "Measured forces less simulated ones, whose contact length has one parameter, fitted with "
+        "the thesis's moduli. "
+        "Elliptical patch: proportional to the width; plane sections: each pressed by itself. "
+        "Thin, a marker a subject; thick: "
         "the mean."
     ]
     fig = study_figure("Calibration: a contact that grows", note, 3.4)
@@ -289,7 +294,8 @@ def prony(frame: pd.DataFrame) -> Figure:
     constants could be told.
     """
     note = [
-        "Simulated throughout, with known noise: no measured time courses are at hand. Time constants of Pawluk and Howe "
+        "Simulated throughout, with known noise: no measured time courses are at hand. Time "
+        "constants of Pawluk and Howe "
         "(1999) are measured, without amplitudes; right: the error any amplitude would have."
     ]
     fig = study_figure("Calibration: relaxation under a held depth of 1 mm", note, 4.0)
@@ -355,8 +361,10 @@ def friction(frame: pd.DataFrame) -> Figure:
     panels = {name: rows for name, rows in frame.groupby("panel", sort=False)}
     published = panels["published"]
     note = [
-        "Simulated (the first two convexities, 20 gf, 10 mm/s). Blue: about 1 mm, the stretch the thesis states; dotted: the "
-        "axis of its Fig. 5-15. Published coefficients were measured by others: sources in the CSV.",
+        "Simulated (the first two convexities, 20 gf, 10 mm/s). Blue: about 1 mm, the stretch the "
+        "thesis states; dotted: the "
+        "axis of its Fig. 5-15. Published coefficients were measured by others: sources in the "
+        "CSV.",
     ]
     fig = study_figure("Calibration: friction from the stretch of the skin", note, 3.8)
     grid = fig.add_gridspec(2, 2, height_ratios=(3.2, 1))

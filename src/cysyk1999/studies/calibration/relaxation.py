@@ -414,7 +414,10 @@ def _estimates(
             subject="thesis",
         )
         add("Prony series: stated in the thesis", f"tau_{k}", tau, "s", subject="thesis")
-    note = f"force simulated with the thesis's series, noise {NOISE:.1%} of the peak (seed {SEED}); no measured time courses at hand"
+    note = (
+        f"force simulated with the thesis's series, noise {NOISE:.1%} of the peak (seed "
+        f"{SEED}); no measured time courses at hand"
+    )
     for title, used in (
         ("Prony series: hereditary integral alone", found.hereditary),
         ("Prony series: corrected by one simulation", found.corrected),
@@ -461,7 +464,10 @@ def _estimates(
         study = f"amplitudes told by a ramp at {record['series']}"
         quantity = f"95 % half-width of the amplitude at {record['tau (s)']:g} s"
         share = record["largest share of force (1)"]
-        note = f"for noise of {NOISE:.1%}; a branch of unit strength adds at most {share:.3g} of the held force"
+        note = (
+            f"for noise of {NOISE:.1%}; a branch of unit strength adds at most {share:.3g} of "
+            "the held force"
+        )
         add(study, quantity, record["half_width (1)"], "1", note=note)
     add(
         "cost",

@@ -268,11 +268,15 @@ def _summary(scored: pd.DataFrame, table: pd.DataFrame, reference: pd.DataFrame)
     for kind in ("values and ranges", "trends", "axes"):
         of = kinds == kind
         told.append(
-            f"{kind}: {(agrees & of).sum()} of {of.sum()} right, {(explained & of).sum()} more explained by a run"
+            f"{kind}: {(agrees & of).sum()} of {of.sum()} right, {(explained & of).sum()} more "
+            "explained by a run"
         )
     counted = ~kinds.eq("axes")
     share = ((agrees | explained) & counted).sum() / counted.sum()
-    return f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: {share:.0%}."
+    return (
+        f"**Held out, {'; '.join(told)}.** Values, ranges and trends right or explained: "
+        f"{share:.0%}."
+    )
 
 
 def _held_out(published: pd.DataFrame, reference: pd.DataFrame) -> pd.DataFrame:

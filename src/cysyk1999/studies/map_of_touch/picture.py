@@ -94,9 +94,12 @@ def contours(frame: pd.DataFrame) -> Figure:
     failed = int(frame["failed"].sum())
     error = frame.loc[frame[STRAIN] == "finite", "estimated_error (1)"]
     note = [
-        f"{len(frame)} simulated presses and holds of 1 s, {failed} not converged (white); estimated error "
-        f"{100 * error.median():.0f} % in the middle, {100 * error.max():.0f} % at most. Dots: the thesis's surfaces. a to d: "
-        "end of the hold, ramp of 40 gf/s; e to g: largest rate by Eq 5-1, which has no ceiling; h: the most of a to d.",
+        f"{len(frame)} simulated presses and holds of 1 s, {failed} not converged (white); "
+        "estimated error "
+        f"{100 * error.median():.0f} % in the middle, {100 * error.max():.0f} % at most. Dots: "
+        "the thesis's surfaces. a to d: "
+        "end of the hold, ramp of 40 gf/s; e to g: largest rate by Eq 5-1, which has no ceiling; "
+        "h: the most of a to d.",
     ]
     fig = study_figure("A map of touch: curvature, force and ramp rate", note, 4.9)
     axes = fig.subplots(2, 4, sharex=True, sharey=True)

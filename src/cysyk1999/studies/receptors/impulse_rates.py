@@ -50,7 +50,8 @@ def rate_sets(rates: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
                 yield f"{recording}, {window}", part
         if len(recordings) > 1 and group["species"].iloc[0] != "model":
             yield (
-                f"{source.split(',')[0]} and others, {group['force_gf'].nunique()} forces, {window}",
+                f"{source.split(',')[0]} and others, {group['force_gf'].nunique()} forces, "
+                f"{window}",
                 group,
             )
 
@@ -170,4 +171,7 @@ def rate_fit(
 
 def kind(group: pd.DataFrame) -> str:
     stimuli = "/".join(dict.fromkeys(group["stimulus"]))
-    return f"{'/'.join(dict.fromkeys(group['species']))}, {stimuli}; simulated: cylinders on a human pad"
+    return (
+        f"{'/'.join(dict.fromkeys(group['species']))}, {stimuli}; simulated: cylinders on a "
+        "human pad"
+    )

@@ -183,7 +183,10 @@ def _node_laws(surfaces: dict[str, xr.Dataset], intervals: bool) -> Iterator[dic
             alone = np.array([fit_nodes(law, group) for group in groups])
             each = [pressure_by_law(law, *pair) for pair in zip(groups, alone, strict=True)]
             shares = [r_squared(node[P], node[P_LAW]) for node in each]
-            note = f"median and range over nodes, not an interval; R2 of the nodes {min(shares):.3f} to {max(shares):.3f}"
+            note = (
+                "median and range over nodes, not an interval; R2 of the nodes "
+                f"{min(shares):.3f} to {max(shares):.3f}"
+            )
             for name, unit, values in zip(names[law], units[law], alone.T, strict=True):
                 ends = {"low": values.min(), "high": values.max()}
                 yield _number(
@@ -213,7 +216,10 @@ def _node_laws(surfaces: dict[str, xr.Dataset], intervals: bool) -> Iterator[dic
             own, strange = (
                 pressure_by_law(law, nodes[label], constants) for constants in (found[:, 0], others)
             )
-            note = f"{100 * rms(strange[P] - strange[P_LAW]) / rms(strange[P]):.1f} % when fitted to the other surfaces"
+            note = (
+                f"{100 * rms(strange[P] - strange[P_LAW]) / rms(strange[P]):.1f} % when fitted "
+                "to the other surfaces"
+            )
             yield _relative(
                 law, where, f"residual over the pressure, K = {label}", own[P], own[P_LAW], note
             )
@@ -300,7 +306,10 @@ def _refitted(history: xr.Dataset, scene: str, depth: float) -> dict:
         if best is None or rms(predicted - sample.energy) < rms(best[0] - sample.energy):
             best = predicted, law, shift
     predicted, law, shift = best
-    note = f"r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m, shift {shift * 1e3:.2g} mm"
+    note = (
+        f"r {law.r * 1e3:.3g} mm, A1 {law.per_depth:.3g} 1/m2, A2 {law.constant:.3g} 1/m, "
+        f"shift {shift * 1e3:.2g} mm"
+    )
     return _relative(
         "4-4, fitted to the stroke",
         scene,
@@ -354,7 +363,10 @@ def _rate_law(histories: Histories, rates: pd.DataFrame) -> Iterator[dict]:
             shares = [r_squared(data, reading[law][1]) for reading in readings]
             note = about
             if len(readings) > 1:
-                note += f"; R2 {min(shares):.2f} to {max(shares):.2f} over {len(readings)} ways to read which surface a rate is of"
+                note += (
+                    f"; R2 {min(shares):.2f} to {max(shares):.2f} over {len(readings)} ways "
+                    "to read which surface a rate is of"
+                )
             for k, (name, unit) in enumerate(names.items()):
                 value, low, high = constants[k]
                 row = _number(law, title, name, value, unit, note * (k == 0), um, low, high)

@@ -49,7 +49,8 @@ def sensor_accuracy(histories: Histories) -> pd.DataFrame:
     surfaces = NINE.histories(histories)
     if not surfaces:
         raise ValueError(
-            "the sensor's constants are fitted to scenes ramp40_*; there is none among the histories"
+            "the sensor's constants are fitted to scenes ramp40_*; there is none among the "
+            "histories"
         )
     laws = {
         True: fit_sum(surfaces.values(), RECEPTOR_DEPTH),

@@ -67,11 +67,13 @@ def read_evidence(path: str | Path) -> pd.DataFrame:
         expected = "N" if unit == "N/m" else unit
         if expected != record.unit:
             raise ReferenceDataError(
-                f"{path}: row {row}, column unit: '{record.unit}'; allowed: {expected or 'no such measure'}"
+                f"{path}: row {row}, column unit: '{record.unit}'; allowed: "
+                f"{expected or 'no such measure'}"
             )
         if not record.low < record.high:
             raise ReferenceDataError(
-                f"{path}: row {row}, column high: '{record.high:g}'; allowed: more than {record.low:g}"
+                f"{path}: row {row}, column high: '{record.high:g}'; allowed: more than "
+                f"{record.low:g}"
             )
     if not table["id"].is_unique:
         twice = table["id"][table["id"].duplicated()].iloc[0]

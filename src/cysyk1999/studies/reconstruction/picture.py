@@ -70,7 +70,8 @@ def posterior_picture(frame: pd.DataFrame) -> Figure:
         f"{name.replace('_', ' ')} {share:.0%}" for name, share in shares.items() if share >= 0.01
     )
     note = [
-        f"{len(frame)} samples; readings of the moduli: {told}. Factors: on the moduli as long-term ones, of instantaneous ones "
+        f"{len(frame)} samples; readings of the moduli: {told}. Factors: on the moduli as "
+        "long-term ones, of instantaneous ones "
         "the series leaves 0.576. Numbers: rank correlations. Orange: the pad chosen before.",
     ]
     fig = study_figure("What the thesis's figures say of its pad", note, TALLEST)
@@ -154,8 +155,10 @@ def evidence_picture(frame: pd.DataFrame) -> Figure:
     ids = frame.drop_duplicates("id")
     ids = ids.assign(k=ids["family"].map(order)).sort_values("k", kind="stable")
     note = [
-        "Bars: the interval that a figure leaves, all drawn as long; what is between its ends counts as met. White: not fitted. "
-        f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. Numbers beyond three lengths of the bar "
+        "Bars: the interval that a figure leaves, all drawn as long; what is between its ends "
+        "counts as met. White: not fitted. "
+        f"Grey: {drawn['pad'].nunique()} pads drawn from what is believed, simulated. Numbers "
+        "beyond three lengths of the bar "
         "stand at the margin.",
     ]
     fig = study_figure("The evidence, row by row", note, TALLEST, header=0.2)

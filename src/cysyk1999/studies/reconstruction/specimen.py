@@ -96,7 +96,8 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
         (
             "half_width",
             9.5,
-            "assumed: within the axes of Fig 3-5; a published section: 9.75 (Wang and Gerling 2014)",
+            "assumed: within the axes of Fig 3-5; a published section: 9.75 (Wang and Gerling "
+            "2014)",
         ),
         ("depth_below", 6.2, "assumed: within the axes of Fig 3-5"),
         (
@@ -130,8 +131,10 @@ def specimen_text(posterior: pd.DataFrame, readings: pd.DataFrame) -> str:
     lines = [
         "# yaml-language-server: $schema=../../workflow/schemas/specimen.schema.json",
         f"# The pad that the thesis's figures are most likely of: {says}",
-        f"# (probability {share:.2f} among those of figures/tables/reconstruction_readings.md). Stated: printed in the thesis.",
-        "# Inferred: from chapter 3 and half of chapter 4 (`snakemake reconstruction`): with intervals of 90 %, in mm, of",
+        f"# (probability {share:.2f} among those of figures/tables/reconstruction_readings.md). "
+        "Stated: printed in the thesis.",
+        "# Inferred: from chapter 3 and half of chapter 4 (`snakemake reconstruction`): with "
+        "intervals of 90 %, in mm, of",
         "# figures/tables/reconstruction_posterior.md. Assumed: of neither.",
         "outline:",
         *(_line(f'  {name}: "{size:.4g} mm"', why) for name, size, why in sizes),

@@ -50,7 +50,10 @@ LOOKS = dict(
         strict=True,
     )
 )
-DEFINITION = "Simulated. Index: (right − left) / (right + left) of the strain energy under a plate, over 2 to 4 mm of stroke. "
+DEFINITION = (
+    "Simulated. Index: (right − left) / (right + left) of the strain energy under a "
+    "plate, over 2 to 4 mm of stroke. "
+)
 
 
 # --- pictures --------------------------------------------------------------------------------------------------
@@ -87,7 +90,8 @@ def offset(frame: pd.DataFrame) -> Figure:
     """Map round a ridge above, profile at the thesis's depth below."""
     profile_rows = frame[frame["panel"] == "profile"]
     note = [
-        f"{DEFINITION}Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the thesis's receptors. Fine mesh, "
+        f"{DEFINITION}Black line: epidermis to dermis; dashed: {DEPTH * 1e6:.0f} µm; circles: the "
+        "thesis's receptors. Fine mesh, "
         "not smoothed; band: difference to twice the edge.",
     ]
     fig = study_figure("Ridges: directional index round a ridge", note, 5.4)
@@ -130,7 +134,8 @@ def offset(frame: pd.DataFrame) -> Figure:
     ax.text(0, -0.72, "epidermis", ha="center", fontsize=6.5)
     value, error = inner.loc[-BESIDE * 1e6, [INDEX, BAND]]
     ax.annotate(
-        f"{value:.2f} ± {max(error, 0.005):.2g} at −46 µm:\n{(1 + value) / (1 - value):.1f} times the energy",
+        f"{value:.2f} ± {max(error, 0.005):.2g} at −46 µm:\n{(1 + value) / (1 - value):.1f} times "
+        "the energy",
         (-BESIDE * 1e6, value),
         (-75, 0.45),
         ha="right",
@@ -180,7 +185,10 @@ def _sweep(frame: pd.DataFrame, column: str, title: str, xlabel: str, extra: str
 @styled
 def height(frame: pd.DataFrame) -> Figure:
     """Index against the ridges' height."""
-    extra = f"Friction {KEY[1]:g}, ridges 0.48 mm apart. Flank: 120 µm from the tip; its receptors follow the boundary."
+    extra = (
+        f"Friction {KEY[1]:g}, ridges 0.48 mm apart. Flank: 120 µm from the tip; its "
+        "receptors follow the boundary."
+    )
     return _sweep(
         frame, HEIGHT, "Ridges: directional index against their height", "ridge height (µm)", extra
     )
@@ -247,9 +255,11 @@ def outer(frame: pd.DataFrame) -> Figure:
     both ways.
     """
     note = [
-        "Simulated: flat plate, 20 gf, 10 mm/s, calibrated friction; outer ridges 60 µm high, 0.48 mm apart; islands of 3 to "
+        "Simulated: flat plate, 20 gf, 10 mm/s, calibrated friction; outer ridges 60 µm high, "
+        "0.48 mm apart; islands of 3 to "
         "5 loaded nodes: "
-        f"their peaks are the mesh's. Receptors {DEPTH * 1e6:.0f} µm deep, that at 0 in the epidermis of the tip.",
+        f"their peaks are the mesh's. Receptors {DEPTH * 1e6:.0f} µm deep, that at 0 in the "
+        "epidermis of the tip.",
     ]
     fig = study_figure("Ridges of the skin too: contact in islands", note, 5.0)
     grid = fig.add_gridspec(2, 2)

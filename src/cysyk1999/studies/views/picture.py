@@ -96,7 +96,8 @@ def overview(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "From a surface to impulses: a cylinder of 210 1/m pressed to 20 gf in 0.5 s and held",
         [
-            "Simulated in plane strain, not measured; a to c at the top of the ramp. Rate by Eq 5-1 of Cysyk (1999) from the "
+            "Simulated in plane strain, not measured; a to c at the top of the ramp. Rate by Eq "
+            "5-1 of Cysyk (1999) from the "
             "strain energy at 915 µm (lower circle); impulses of one trial."
         ],
         2.45,
@@ -203,8 +204,10 @@ def fields(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "Strain energy under three surfaces, 20 gf at the top of the ramp",
         [
-            "Simulated in plane strain, not measured. Lines: skin, epidermis to dermis, dermis to fat; circles: receptors that "
-            "were 600 and 915 µm under the skin. The stiff epidermis holds most of it; the sharper the surface, the closer to "
+            "Simulated in plane strain, not measured. Lines: skin, epidermis to dermis, dermis to "
+            "fat; circles: receptors that "
+            "were 600 and 915 µm under the skin. The stiff epidermis holds most of it; the "
+            "sharper the surface, the closer to "
             "it."
         ],
         2.6,
@@ -229,8 +232,10 @@ def mesh_close_up(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "The contact on the meshes of draft, thesis and fine",
         [
-            "Simulated. Above: deformed elements, circles: skin nodes in contact; below: pressure at the skin's nodes. Left: a "
-            "cylinder of 1260 1/m at 20 gf, top of the ramp; right: convexities of 157, 210 and 315 1/m at 20 gf, steady state."
+            "Simulated. Above: deformed elements, circles: skin nodes in contact; below: pressure "
+            "at the skin's nodes. Left: a "
+            "cylinder of 1260 1/m at 20 gf, top of the ramp; right: convexities of 157, 210 and "
+            "315 1/m at 20 gf, steady state."
         ],
         5.3,
     )
@@ -299,8 +304,10 @@ def ridges_both_ways(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "Why a ridged pad tells the way of a stroke: strain energy round the inner ridges",
         [
-            "Simulated: flat plate, 20 gf, calibrated friction, ridges 0.48 mm apart and 0.15 mm high (assumed). c is the mirror "
-            "image of b, as is its motion. Circles: receptors of the thesis, ±46 µm off the tip of a ridge, 915 µm deep. White "
+            "Simulated: flat plate, 20 gf, calibrated friction, ridges 0.48 mm apart and 0.15 mm "
+            "high (assumed). c is the mirror "
+            "image of b, as is its motion. Circles: receptors of the thesis, ±46 µm off the tip "
+            "of a ridge, 915 µm deep. White "
             "lines: boundaries of layers."
         ],
         2.9,
@@ -372,8 +379,10 @@ def space_time(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "A stroke in space and time: what every place on the skin feels, 10 mm/s",
         [
-            "Simulated: convexities of 52 to 315 1/m (labels at the right), 20 gf, calibrated friction. Black: where the middle "
-            "of a convexity is over the skin at rest; it is met late, for the skin is dragged along by the surface. Strain "
+            "Simulated: convexities of 52 to 315 1/m (labels at the right), 20 gf, calibrated "
+            "friction. Black: where the middle "
+            "of a convexity is over the skin at rest; it is met late, for the skin is dragged "
+            "along by the surface. Strain "
             "energy on instantaneous moduli."
         ],
         4.9,
@@ -436,8 +445,10 @@ def stick_slip(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "Stick and slip along the contact of a stroke, 10 mm/s",
         [
-            "Simulated. Line: tangential traction; edge of the grey area: its bound, pressure times friction. Where both meet "
-            "the skin slips, elsewhere it sticks; jumps from node to node are those of mesh and steps. e: share of the load "
+            "Simulated. Line: tangential traction; edge of the grey area: its bound, pressure "
+            "times friction. Where both meet "
+            "the skin slips, elsewhere it sticks; jumps from node to node are those of mesh and "
+            "steps. e: share of the load "
             "carried where it sticks."
         ],
         3.6,
@@ -481,8 +492,10 @@ def adaptation(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "Slowly and rapidly adapting receptors in ramp and hold, K = 210 1/m, 20 gf",
         [
-            "Predicted, not recorded. Slowly adapting: Eq 5-1 of Cysyk (1999), strain energy at 915 µm. Rapidly adapting: from "
-            "the rate of the skin's curvature; threshold, scale and highest rate are assumed, nobody states them. Ticks: "
+            "Predicted, not recorded. Slowly adapting: Eq 5-1 of Cysyk (1999), strain energy at "
+            "915 µm. Rapidly adapting: from "
+            "the rate of the skin's curvature; threshold, scale and highest rate are assumed, "
+            "nobody states them. Ticks: "
             "impulses of five trials."
         ],
         3.6,
@@ -528,8 +541,10 @@ def assumptions(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "What the model rests on: stated by the thesis, inferred from it, assumed",
         [
-            "The model's own section. Stated: printed in the thesis or drawn in it; inferred: what its figures and numbers ask "
-            "for; assumed: neither. Thick: held, as is the rim of the bone. Ridges, of some scenes only: sizes published "
+            "The model's own section. Stated: printed in the thesis or drawn in it; inferred: "
+            "what its figures and numbers ask "
+            "for; assumed: neither. Thick: held, as is the rim of the bone. Ridges, of some "
+            "scenes only: sizes published "
             "elsewhere or assumed."
         ],
         3.6,
@@ -639,8 +654,10 @@ def scorecard(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         f"Every number of the thesis against this model: {inside} of {len(frame)} within its range",
         [
-            "Simulated over the thesis's number, or over the end of its range or axis (grey: a number, a range, or half an "
-            "axis to its end; broken: reading uncertain). Filled blue: within; open orange: outside. Results only: nothing "
+            "Simulated over the thesis's number, or over the end of its range or axis (grey: a "
+            "number, a range, or half an "
+            "axis to its end; broken: reading uncertain). Filled blue: within; open orange: "
+            "outside. Results only: nothing "
             "that was put in or fitted."
         ],
         style.TALLEST,
@@ -758,8 +775,10 @@ def candidate_stimuli(frame: pd.DataFrame) -> Figure:
     fig = style.study_figure(
         "What does a slowly adapting receptor respond to? Candidate stimuli against recorded rates",
         [
-            "Share of the variance of recorded mean rates that a linear law of the simulated stimulus explains (bars: the ways "
-            "to read which surface a rate is of); ordered by the median of the sets. Few rates, of monkeys, most under "
+            "Share of the variance of recorded mean rates that a linear law of the simulated "
+            "stimulus explains (bars: the ways "
+            "to read which surface a rate is of); ordered by the median of the sets. Few rates, "
+            "of monkeys, most under "
             "spheres: an order, not a proof."
         ],
         3.3,
